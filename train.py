@@ -19,10 +19,8 @@ the run.
 """
 
 import argparse
-import importlib.metadata
 import json
 import os
-import platform
 import shlex
 import sys
 import tempfile
@@ -38,9 +36,9 @@ with needs("train.py"):
     import torch
 
     import snooker_env
-    from agents.cluster.faults import ClusterError
+    from agents.cluster.job import ClusterError
     from agents.cluster.mirror import Mirror, copied, left
-    from agents.cluster.options import add_ray, checked_ray, place
+    from agents.cluster.ray_cluster import add_ray, checked_ray, place
     from agents.evaluation.training_summary import conclusion, evaluate, show
     from agents.features.views import training_tables
     from agents.learning.callback import RunCallback, Stop, goal_of, imitate, rollout_of
@@ -51,7 +49,7 @@ with needs("train.py"):
     from agents.learning.run_folder import claimed, go_on, kept, load_model, options_of, read_checkpoint
     from commands.files import write_atomic
     from commands.physics_option import physics_option
-    from commands.provenance import commit
+    from commands.provenance import commit, software
     from snooker_env.checks import refuse
     from snooker_env.game import HELD_OUT
     from snooker_env.planning import processors
@@ -145,17 +143,6 @@ def recipe_of(settings):
 
 
 # the run -------------------------------------------------------------------------------------------------------------------------
-
-
-def provenance():
-    """Versions, commit and machine that computed these figures."""
-    versions = {"python": platform.python_version(), "platform": platform.platform()}
-    for name in ("snooker-env", "numpy", "numba", "gymnasium", "stable-baselines3", "sb3-contrib", "torch"):
-        try:
-            versions[name] = importlib.metadata.version(name)
-        except importlib.metadata.PackageNotFoundError:
-            versions[name] = "not installed: source tree"
-    return {"versions": versions, "git_commit": commit(), "processors": os.cpu_count()}
 
 
 def command_of(settings):
@@ -299,7 +286,8 @@ def judge(out, settings, recipe, model, callback, imitation, said):
     results = {
         "command": command_of(settings), "settings": asdict(settings), "steps": steps,
         "seconds": sum(part["seconds"] for part in parts), "parts": parts, "start": model.start, "learned": learned,
-        "evaluation": figures, "curve": callback.curve, "imitation": imitation, **provenance(),
+        "evaluation": figures, "curve": callback.curve, "imitation": imitation, "versions": software(),
+        "git_commit": commit(), "processors": os.cpu_count(),
     }  # fmt: skip
     write_atomic(out / "results.json", text := json.dumps(results, indent=1).encode())
     copied(out, text, "results.json")

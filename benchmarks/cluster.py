@@ -50,7 +50,7 @@ def parts_of(shots, many, seed):
 def seconds(where, shared, given):
     """How long the parts take."""
     began = time.perf_counter()
-    where.map("choices", shared | {"value": judge}, given)
+    where.map("agents.learning.self_play:choices", shared | {"value": judge}, given)
     return time.perf_counter() - began
 
 

@@ -1,10 +1,9 @@
 """How long does a player take to decide, on one table and on many at once?
 
-    python -m benchmarks.decisions [--agents planner lookahead ...] [--tables 1 256] [--repeats 9] [--seed 0] [--json FILE] [--out FOLDER]
+    python -m benchmarks.decisions [--agents planner search ...] [--tables 1 256] [--repeats 9] [--seed 0] [--json FILE] [--out FOLDER]
 
 Opened tables, a professional's errors. Milliseconds a decision, on the clock and of all processors together: medians over the repeats,
-each on new tables; on several tables the time of all divided by their number. The first decision on tables, which makes the search, is
-not timed.
+each on new tables; on several tables the time of all divided by their number. The first decision is not timed.
 """
 
 import time
@@ -12,22 +11,25 @@ import time
 import numpy as np
 
 import snooker_env as sn
-from agents.players.by_name import player_of
+from snooker_env.planning import Positions
+from snooker_env.players import VISITS
 
 from ._common.command import Command, at_least, run, save_json
 
 AGENTS = (
-    "ghost_ball", "ppo_mask", "ppo_value", "lookahead", "planner_30", "planner_60", "planner", "planner_500", "planner_2000", "search",
+    "ghost_ball", "ppo_mask", "ppo_value", "search", "planner_30", "planner_60", "planner", "planner_500", "planner_2000", "search_2000",
 )  # fmt: skip
 
 
 def milliseconds(player, tables, repeats, seed):
     """Milliseconds a decision on so many tables, of each repeat: on the clock, of all processors."""
-    env, taken = sn.SnookerVectorEnv(tables, noise="professional", **player.options), []
+    env, taken = sn.SnookerVectorEnv(tables, noise="professional", **VISITS), []
+    player = player.at(env)
     for k in range(repeats + 1):
-        seen, _ = env.reset(seed=np.random.SeedSequence([seed, k]).generate_state(tables).tolist())
+        env.reset(seed=np.random.SeedSequence([seed, k]).generate_state(tables).tolist())
+        at, seeds = Positions.of(env), np.arange(tables)
         start = time.perf_counter(), time.process_time()
-        player.act(env, seen, np.ones(tables, bool))
+        player.play(at, seeds)
         ends = time.perf_counter(), time.process_time()
         taken.append([1e3 * (end - began) / tables for began, end in zip(start, ends, strict=True)])
     env.close()
@@ -41,7 +43,7 @@ def main():
     parser.add_argument("--tables", nargs="+", type=at_least(1), default=(1, 256), help="numbers of tables at once [1 256]")
     parser.add_argument("--repeats", type=at_least(1), default=9, help="decisions of each [9]")
     args = parser.options()
-    players = {name: player_of(name) for name in args.agents}
+    players = {name: sn.player(name) for name in args.agents}
     sn.warmup()
     print(f"{'ms a decision':20s}" + "".join(f"{f'{n:,} tables':>13s}{'processors':>13s}" for n in args.tables))
     found = {}

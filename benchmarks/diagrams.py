@@ -12,7 +12,7 @@ import numpy as np
 
 import snooker_env as sn
 from snooker_env.render.diagrams import compare, density, fan
-from snooker_env.render.fan_diagram import fan_options
+from snooker_env.render.fan_diagram import Strokes, fan_options
 from snooker_env.tasks import LEVELS, Noise
 
 from ._common.command import Command, at_least, run, save_figure, save_json
@@ -32,7 +32,7 @@ TABLE, PHYSICS = "match", sn.Physics.preset("match")
 def option(top, side):
     """The stroke that pots the ball with this top and side, solved as ``fan`` does."""
     places, there, _ = sn.Position(**PLACES).arrays()
-    return fan_options(places, there, BALL, POCKET, SPEED, [top], [side], 0.0, None, sn.Table.preset(TABLE), PHYSICS)[0]
+    return fan_options(places, there, BALL, POCKET, Strokes(SPEED, [top], [side]), sn.Table.preset(TABLE), PHYSICS)[0]
 
 
 def stops(stroke, noise, n, seed):

@@ -258,7 +258,8 @@ def play(one):
     """A batch's ``Checked``."""
     here = np.ones(one.positions.shape[:2], bool)
     code = contact.parse_fidelity(one.fidelity)
-    return invariants.play(one.positions, one.velocities, one.spins, here, one.physics, one.table, code, MOST_EVENTS)
+    balls = one.positions, one.velocities, one.spins, here
+    return invariants.play(balls, one.physics, one.table, code, MOST_EVENTS)
 
 
 @dataclass

@@ -37,7 +37,7 @@ def stroke(rng, positions, on_table):
     v, w = cue.strike(speed, aim, side, top, 0.0, PHYSICS)
     velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
     velocities[CUE], spins[CUE] = v[:2], w
-    shot = play(positions, velocities, spins, on_table, PHYSICS, TABLE, FIDELITY, path=False)
+    shot = play((positions, velocities, spins, on_table), PHYSICS, TABLE, FIDELITY, path=False)
     potted = mask_of(np.flatnonzero(shot.potted >= 0))
     if potted & REDS_MASK:
         return None

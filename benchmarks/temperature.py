@@ -6,7 +6,7 @@
 Opened tables of their own seeds: no training sees them, and no table of results is played on them. All meet the same execution errors.
 """
 
-from agents.players.by_name import player_of
+from snooker_env import player
 from snooker_env.benchmark import play_visits
 from snooker_env.planning.learned import policy_proposals
 
@@ -20,7 +20,7 @@ def points(model, temperature, noise, visits, seed):
     """Points of each visit of the planner with that model."""
     usual, policy_proposals.TEMPERATURE = policy_proposals.TEMPERATURE, temperature
     try:
-        strokes = play_visits(player_of(f"planner@{model}"), visits, layout="opened", noise=noise, first_seed=FIRST_SEED + 1_000_000 * seed)
+        strokes = play_visits(player(f"planner@{model}"), visits, layout="opened", noise=noise, first_seed=FIRST_SEED + 1_000_000 * seed)
     finally:
         policy_proposals.TEMPERATURE = usual
     return strokes.a_visit(strokes.points)
@@ -30,7 +30,7 @@ def main():
     """Play and print."""
     parser = Command("temperature", __doc__, seed=0)
     parser.add_argument("--temperatures", nargs="+", type=float, default=(2.0, 3.0, 4.0, 6.0), help="of the policy's scores [2 3 4 6]")
-    parser.add_argument("--models", nargs="+", default=("ppo_value",), help="pre-trained models or run folders [ppo_value]")
+    parser.add_argument("--models", nargs="+", default=("professional",), help="levels with weights, models or runs [professional]")
     parser.add_argument("--noise", default="professional", help="execution errors [professional]")
     parser.add_argument("--visits", type=at_least(2), default=600, help="visits of each [600]")
     args = parser.options()

@@ -9,8 +9,6 @@ same strikes, by the engine's kernel alone, and what is left of the step. Thread
 plain arithmetic on two threads at the same time.
 """
 
-import os
-import platform
 import threading
 import time
 
@@ -20,6 +18,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 import snooker_env
+from commands import provenance
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.tasks import stroke
@@ -226,7 +225,7 @@ def main():
     args = parser.options()
     snooker_env.warmup()
     found = {
-        "machine": platform.platform(), "processors": os.cpu_count(), "tables": args.tables,
+        "machine": provenance.machine(), "tables": args.tables,
         "rates": rates(args.tables, args.seconds, args.repeats, args.seed),
         "outside": outside(args.tables, 4 * args.repeats, args.seed),
         "sizes": sizes(args.seconds, args.seed), "ppo": [p for p in (ppo(args.ppo_steps, n, args.seed) for n in (16, 64)) if p],

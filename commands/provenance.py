@@ -1,31 +1,25 @@
-"""Where do figures come from? The commit of the checkout, the machine, and the versions that affect speed."""
+"""Where do figures come from? The commit of the checkout, the machine, and the versions that matter."""
 
-import os
-import platform
+from snooker_env import benchmark
+from snooker_env.benchmark import commit, software
 
-import numba
-import numpy as np
-
-from snooker_env.benchmark import commit, processor
-
-__all__ = ["commit", "line", "machine", "processor"]
+__all__ = ["commit", "line", "machine", "provenance", "software"]
 
 
 def machine():
     """Platform, processor, cores, load and versions: a dict for JSON files."""
-    return {
-        "platform": f"{platform.system()} {platform.machine()}",
-        "cpu": processor(),
-        "cores": os.cpu_count(),
-        "load": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
-        "python": platform.python_version(),
-        "numba": numba.__version__,
-        "numpy": np.__version__,
-    }
+    return benchmark.machine() | software()
 
 
 def line(m=None):
-    """The same as one line for the head of a table; ``m``: a dict of ``machine`` that was kept, None for this machine."""
+    """The same as one line; ``m``: a dict of ``machine`` that was kept, None for this machine."""
     m = m or machine()
     load = "" if m["load"] is None else f", load {m['load']:.1f}"
     return f"{m['cpu']}, {m['cores']} cores{load}, {m['platform']}, Python {m['python']}, numba {m['numba']}"
+
+
+def provenance():
+    """What computed the figures of a report: version, commit, machine in words, and versions."""
+    m = machine()
+    words = f"{m['cpu']}, {m['cores']} cores, {m['platform']}"
+    return {"version": m["snooker_env"], "commit": commit() or "unknown", "machine": words, "python": m["python"], "numpy": m["numpy"]}

@@ -1,29 +1,35 @@
-"""How is a file written so that no reader ever sees half of it? Into a temporary file beside it, which is then moved there."""
+"""How is a file written so that no reader ever sees half of it? Beside it, to be moved there."""
 
-import itertools
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 
-_NUMBERS = itertools.count()
+UNFINISHED = re.compile(r"\..+\.[0-9a-f]{16}\.tmp(\.\w+)?")
+"""Names of the temporary files; a process that was killed leaves one behind."""
 
 
-def write_whole(path: str | Path, write: Callable[[Path], object]) -> None:
-    """Let ``write(temporary)`` make a file in the folder of ``path``, then move it to ``path``.
+def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], object]) -> None:
+    """Write a file so that ``path`` holds the old or the new content, complete, whenever process or machine stops.
 
-    After a crash the old file is there, or the new one.
-
-    The temporary file has the suffix of ``path`` and a name that no other call uses. If anything fails, it is removed.
+    ``content`` is bytes, a text, or a function that writes the file whose path it gets, with the suffix of ``path``.
+    On failure nothing is left behind, and the OSError names ``path``. A device or a pipe is written directly.
     """
-    target = Path(os.path.realpath(path))
-    temporary = target.with_name(f".{os.getpid()}-{next(_NUMBERS)}{target.suffix}")
+    target, data = Path(os.path.realpath(path)), content.encode() if isinstance(content, str) else content
+    write = data if callable(data) else lambda file: file.write_bytes(data)
+    if target.exists() and not target.is_file():
+        write(target)
+        return
+    name = f".{target.stem}.{os.urandom(8).hex()}.tmp{target.suffix}"  # that no machine uses twice
+    temporary = target.with_name(name)
     try:
         write(temporary)
         with temporary.open("rb+") as file:
             os.fsync(file.fileno())
-        temporary.replace(target)
+        os.replace(temporary, target)
     except BaseException as error:
         temporary.unlink(missing_ok=True)
-        if isinstance(error, OSError) and error.filename == str(temporary):
+        if isinstance(error, OSError) and error.filename in (None, str(temporary)):
             error.filename = str(path)  # the file that the caller named
+            del error.filename2
         raise

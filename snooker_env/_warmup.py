@@ -45,7 +45,7 @@ def warmup() -> None:
     from .game.referee import Situation, Stroke, judge
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
-    from .planning import Planner, Position, Positions, StrokeSearch, clear_paths, obstructions, prospects_of
+    from .planning import Planner, Position, Positions, StrokeSearch, at_balls, clear_paths, obstructions, over_cushions, prospects_of
     from .planning import pots as direct_pots
     from .tasks.box_actions import Actions, line
 
@@ -96,6 +96,10 @@ def warmup() -> None:
         planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
         obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
         prospects_of(at, 1e-3)
-        StrokeSearch({"noise": "club"}, budget=30).rank(at, seeds=[0])
+        search = StrokeSearch({"noise": "club"}, budget=30)
+        search.rank(at, seeds=[0])
+        search.planner.play(at, [0], strokes=[[1.0, 0.0, 0.0, 0.0, 0.0]], keys=[0])
+        for generate in (at_balls, over_cushions):
+            generate(search, at, 1, np.zeros(1, np.int64))
         for call in (direct_pots, clear_paths, Positions.observations, lambda batch: batch.balls_on):
             call(at)

@@ -6,6 +6,7 @@ from ._check import array, refuse
 from ._jit import entry
 from ._types import Fidelity, Floats, Real, Vector
 from .physics import cue
+from .physics.arrays import Law
 from .physics.impact import contact
 from .physics.impact.polynomial import WORK
 from .physics.parameters import FASTEST_IMPACT, MOST_SPIN_IMPACT, P_E_B, Physics, PhysicsLike
@@ -13,14 +14,14 @@ from .shot import SimulationError
 
 
 @entry(what="the impact of two balls", uses=(contact.collide_balls,))
-def _collide_balls(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps):
-    return contact.collide_balls(v1, w1, v2, w2, nx, ny, phys, phys[P_E_B], fidelity, n_steps, np.empty(WORK))
+def _collide_balls(v1, w1, v2, w2, normal, phys, fidelity, n_steps):
+    return contact.collide_balls(v1, w1, v2, w2, normal, Law(phys, fidelity, n_steps), phys[P_E_B], np.empty(WORK))
 
 
 @entry(what="the impact with a cushion", uses=(contact.collide_cushion,))
-def _collide_cushion(v, w, nx, ny, phys, fidelity, n_steps):
-    e = contact.cushion_restitution(v[0] * nx + v[1] * ny, phys)
-    return contact.collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, np.empty(WORK))
+def _collide_cushion(v, w, normal, phys, fidelity, n_steps):
+    e = contact.cushion_restitution(v[0] * normal[0] + v[1] * normal[1], phys)
+    return contact.collide_cushion(v, w, normal, Law(phys, fidelity, n_steps), e, np.empty(WORK))
 
 
 def _unit_normal(normal):
@@ -78,9 +79,9 @@ def collide_balls(
     >>> v1.round(3).tolist(), v2.round(3).tolist()
     ([0.055, 0.0, 0.0], [0.945, 0.0, 0.0])
     """
-    physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
+    physics, solver = Physics.of(physics), contact.parse_fidelity(fidelity)
     args = _velocity("v1", v1), _spin("w1", w1), _velocity("v2", v2), _spin("w2", w2)
-    v1_after, w1_after, v2_after, w2_after, solved = _collide_balls(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
+    v1_after, w1_after, v2_after, w2_after, solved = _collide_balls(*args, _unit_normal(normal), physics.pack(), *solver)
     if not solved:
         raise SimulationError(f"the impact of v1, w1, v2, w2 = {args} did not end at fidelity {fidelity!r}; try another fidelity")
     return np.array(v1_after), np.array(w1_after), np.array(v2_after), np.array(w2_after)
@@ -123,9 +124,9 @@ def collide_cushion(
     >>> bool(v[0] < 0)
     True
     """
-    physics, (code, n_steps) = Physics.of(physics), contact.parse_fidelity(fidelity)
+    physics, solver = Physics.of(physics), contact.parse_fidelity(fidelity)
     args = _velocity("v", v), _spin("w", w)
-    v_after, w_after, solved = _collide_cushion(*args, *_unit_normal(normal), physics.pack(), code, n_steps)
+    v_after, w_after, solved = _collide_cushion(*args, _unit_normal(normal), physics.pack(), *solver)
     if not solved:
         raise SimulationError(f"the cushion impact of v, w = {args} did not end at fidelity {fidelity!r}; try another fidelity")
     return np.array(v_after), np.array(w_after)

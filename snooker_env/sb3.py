@@ -8,6 +8,7 @@ import time
 
 import numpy as np
 from gymnasium.vector import AutoresetMode
+from numpy.typing import NDArray
 
 try:
     from stable_baselines3.common.monitor import Monitor
@@ -79,7 +80,8 @@ class SnookerVecEnv(VecEnv):
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
         self._actions = None
-        self.episode_returns, self.episode_lengths = np.zeros(num_envs), np.zeros(num_envs, np.int64)
+        self.episode_returns: NDArray[np.float64] = np.zeros(num_envs)
+        self.episode_lengths: NDArray[np.int64] = np.zeros(num_envs, np.int64)
         """Rewards and steps so far of the episodes going on: (n,) each. No state of a table holds them: save them with its state."""
         self._start = time.time()
         if seed is not None:

@@ -11,7 +11,7 @@ from ._check import array, flags, integer, refuse_what
 from ._shots import count
 from ._types import Batches, Bools, Fidelity, FlagRows, Flags, Floats, Solver, Vectors
 from .physics import cloth, engine
-from .physics.arrays import Balls, Ends, Log, Setup
+from .physics.arrays import Ends, Log
 from .physics.events import LOG_FULL, OK, EventKind, Status
 from .physics.impact import contact
 from .physics.parameters import FASTEST, MOST_SPIN, Physics, PhysicsLike
@@ -99,40 +99,36 @@ def simulate(
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=False)
     physics.check_stopping()
     table.check(r, physics.R, "positions", here)
-    return play(r, v, w, here, physics, table, solver, integer("max_events", max_events, 1, 2**31))
+    max_events = integer("max_events", max_events, 1, 2**31)
+    count(1)
+    return play((r, v, w, here), physics, table, solver, max_events)
 
 
 def play(
-    positions: Floats,
-    velocities: Floats,
-    spins: Floats,
-    on_table: Bools,
+    balls: tuple[Floats, Floats, Floats, Bools],
     physics: Physics,
     table: Table,
     fidelity: Solver,
     max_events: int = MAX_EVENTS,
     *,
     path: bool = True,
-    counted: bool = True,
 ) -> Shot:
-    """``simulate`` without its checks, for layouts that have been checked before. The arrays given are not changed.
+    """``simulate`` without its checks, for layouts that have been checked before; the shot is not counted.
 
-    ``fidelity``: as ``parse_fidelity`` returns it. ``path`` False leaves out the paths that ``Shot.at`` needs. ``counted``: whether
-    ``_shots`` is to count this shot.
+    ``balls``: positions, velocities, spins and on_table, which are not changed. ``fidelity``: as ``parse_fidelity`` returns it. ``path``
+    False leaves out the paths that ``Shot.at`` needs.
     """
-    count(int(counted))
     capacity = min(_FIRST_LOG, max_events)
     while True:
-        state = [a[None].copy() for a in (positions, velocities, spins, on_table)]
-        path_size = 2 * capacity + len(positions) + 2 if path else 0
-        space = _take_space(capacity, path_size)
-        out = _run(state, physics, table, fidelity, max_events, capacity, path_size, space=space)
+        state = [a[None].copy() for a in balls]
+        log = _take_log(capacity, 2 * capacity + len(balls[0]) + 2 if path else 0)
+        out = _run(state, physics, table, fidelity, max_events, log)
         if out.status[0] != LOG_FULL:
             break
         capacity *= 4
-    events, segments = out.log(0), out.segments[0, : out.n_segments[0]].copy()
+    events, segments = out.log(0), log.segments[0, : out.n_segments[0]].copy()
     if capacity <= _FIRST_LOG:
-        _KEPT.space = space
+        _KEPT.log = log
     if out.status[0] != OK:
         raise _failure(out, 0, events)
     return Shot(state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, segments, physics, table)
@@ -205,12 +201,11 @@ def simulate_batch(
     max_events = integer("max_events", max_events, 1, 2**31)
     start = r.copy(), v.copy(), w.copy(), here.copy()
     count(len(r))
-    out = _run((r, v, w, here), physics, table, solver, max_events, _FIRST_LOG if events else 0, 0, threads)
+    out = _run((r, v, w, here), physics, table, solver, max_events, log_space(len(r), _FIRST_LOG if events else 0, 0), threads)
     logs = [out.log(k) for k in range(len(r))] if events else None
     for k in np.flatnonzero(out.status != OK).tolist():
         if out.status[k] == LOG_FULL:  # rare: the log is longer than the first guess, so the shot is simulated again with more room
-            r0, v0, w0, on = (part[k] for part in start)
-            one = play(r0, v0, w0, on, physics, table, solver, max_events, path=False, counted=False)
+            one = play(tuple(part[k] for part in start), physics, table, solver, max_events, path=False)
             r[k], here[k], out.potted[k], out.duration[k] = one.positions, one.on_table, one.potted, one.duration
             out.n_events[k] = len(one.events)
             if logs is not None:
@@ -238,38 +233,34 @@ class _Run:
         return events
 
 
-def _log_space(b, log_size, path_size):
-    """Arrays for the logs of b shots: times, kinds and balls of the events, and paths."""
-    return np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT))
+def log_space(b, log_size, path_size):
+    """A ``Log`` of b shots."""
+    return Log(np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT)))
 
 
 _KEPT = threading.local()
 
 
-def _take_space(log_size, path_size):
-    """``_log_space`` of one shot: that of the last one in this thread if the sizes are the same, because making it takes longer than most
+def _take_log(log_size, path_size):
+    """``log_space`` of one shot: that of the last one in this thread if the sizes are the same, because making it takes longer than most
     shots. It is taken out until the results are copied: a shot inside a shot (a signal, a trace function) makes its own."""
-    space = _KEPT.__dict__.pop("space", None)
-    if space is None or (space[0].shape[1], space[2].shape[1]) != (log_size, path_size):
-        return _log_space(1, log_size, path_size)
-    return space
+    log = _KEPT.__dict__.pop("log", None)
+    if log is None or (log.time.shape[1], log.segments.shape[1]) != (log_size, path_size):
+        return log_space(1, log_size, path_size)
+    return log
 
 
-def _run(state, physics, table, fidelity, max_events, log_size, path_size, threads=1, space=None):
-    """Run the engine on ``state`` = positions, velocities, spins, on_table (batched, changed in place); ``space``: of ``_log_space``."""
+def _run(state, physics, table, fidelity, max_events, log=None, threads=1):
+    """Run the engine on ``state`` = positions, velocities, spins, on_table (batched, changed in place), with a ``Log`` or without."""
     b, n = state[0].shape[:2]
-    status, n_events, n_segments = (np.zeros(b, np.int64) for _ in range(3))
-    time, what, segments = space or _log_space(b, log_size, path_size)
-    out = _Run(np.zeros((b, n), np.int64), status, n_events, n_segments, np.zeros(b), time, what, segments)
-    positions, velocities, spins, on_table = state
-    balls, setup = (
-        Balls(positions, velocities, spins, on_table, out.potted),
-        Setup(physics._packed, table.noses, table.jaws, table.falls, table._reach(physics.R), *fidelity),
-    )
-    log, ends = Log(out.event_time, out.event_what, out.segments), Ends(out.status, out.n_events, out.n_segments, out.duration)
+    log = log or log_space(b, 0, 0)
+    ends = Ends(np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b))
+    out = _Run(np.zeros((b, n), np.int64), *ends, *log)
+    setup = physics._packed, table.noses, table.jaws, table.falls, table._reach(physics.R), *fidelity
+    arguments = (*state, out.potted), setup, max_events, tuple(log), tuple(ends)
 
     def run(first, last):
-        engine.run_batch(*balls, *setup, max_events, *log, *ends, first, last)
+        engine.run_batch(*arguments, first, last)
 
     threads = min(threads, b)
     if threads <= 1:

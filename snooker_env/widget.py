@@ -5,26 +5,29 @@ that Python cannot control.
 """
 
 from functools import cache
-from pathlib import Path
 from typing import Any, Literal
 
 from ._check import choice, number, truth
 from ._install import missing
 from .replays import replay
-from .replays.document import WEB
+from .web import WEB, table_js
 
 __all__ = ["replay_widget"]
 
 SPINS = ("off", "cue", "all")
 """The balls whose rotation is shown."""
-_HOST = Path(WEB) / "widget.js"
-"""Called by a notebook's host: mounts a player on the element that it is given."""
 
 
 def replay_widget(
-    source: Any, *, speed: float = 1.0, playing: bool = False, paths: bool = True, ghosts: bool = True, labels: bool = False,
+    source: Any,
+    *,
+    speed: float = 1.0,
+    playing: bool = False,
+    paths: bool = True,
+    ghosts: bool = True,
+    labels: bool = False,
     spin: Literal["off", "cue", "all"] = "cue",
-) -> Any:  # fmt: skip
+) -> Any:
     """Make a widget that plays a replay in a notebook.
 
     Its traits are synchronised in both directions: ``stroke`` (from 0), ``time`` within it [s] (below 0 before the strike), and
@@ -102,4 +105,4 @@ def _widget_class():
 
 def module() -> str:
     """The JavaScript of the widget: the module that draws and plays, and the function that a notebook's host calls."""
-    return (Path(WEB) / "table.js").read_text("utf-8") + "\n" + _HOST.read_text("utf-8")
+    return table_js() + (WEB / "widget.js").read_text("utf-8")

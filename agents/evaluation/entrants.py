@@ -2,19 +2,24 @@
 
 import glob
 import json
-import zipfile
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from commands.physics_option import physics_text
-from snooker_env import Options, SnookerVectorEnv
-from snooker_env.checks import number, refuse
+from snooker_env import Options, player, players
+from snooker_env.checks import integer, number, refuse
+from snooker_env.players import SeenPlayer
+from snooker_env.players.resolver import is_name
+from snooker_env.players.saved import saved_player
 
 from ..learning.hyperparameters import ACTION_OPTIONS, value_of
+from ..learning.model_files import Trained
 from ..learning.models import POLICY, PRETRAINED, file_of, pretrained
-from ..players.by_name import NAMES, is_player, player_of
-from ..players.trained import load_any
+from ..players.trained import read_model
+
+UNKNOWN = dict.fromkeys(("layout", "noise", "fidelity", "physics"), "unknown")
+"""The training record of a model that train.py did not make."""
 
 
 @dataclass(frozen=True)
@@ -28,11 +33,8 @@ class Entrant:
     """May code in its files run? Models of Stable-Baselines3 that train.py did not make need it."""
     options: tuple = ()
     """How the actions of such models are read: (key, value) of ``hyperparameters.ACTION_OPTIONS``."""
-    frames: bool = False
-    """Do they play frames, and not visits?"""
-
     @classmethod
-    def of(cls, text, trust=False, options=(), frames=False):
+    def of(cls, text, trust=False, options=()):
         """From NAME, PATH or LABEL=PATH,PATH,... Raises ValueError."""
         label, equals, paths = text.partition("=") if not Path(text).exists() else ("", "", "")
         if not equals:
@@ -41,20 +43,20 @@ class Entrant:
         for path in paths.split(","):
             if path in pretrained():
                 path = str(PRETRAINED / f"{path}.zip")
-            found = [path] if Path(path).exists() else _players(path) or sorted(glob.glob(path))
-            if not found:
-                known = ", ".join((*NAMES, *pretrained()))
+            some = [path] if Path(path).exists() else _names(path) or sorted(glob.glob(path))
+            if not some:
+                known = ", ".join(players())
                 allowed = f"must be {known}, MODULE:CLASS, or name existing models: a .zip, a run folder, a pattern"
                 raise refuse("agent", path, allowed)
-            runs += found
+            runs += some
         if equals and not label:
             raise refuse("agent", text, "must have a label before the =")
-        if any(map(is_player, runs)) and not all(map(is_player, runs)):
+        if any(map(is_name, runs)) and not all(map(is_name, runs)):
             raise refuse("agent", text, "must be players or trained models, not both under one label")
-        if is_player(runs[0]):
-            return cls(label or runs[0].rpartition(":")[2], tuple(runs), frames=frames)
+        if is_name(runs[0]):
+            return cls(label or runs[0].rpartition(":")[2], tuple(runs))
         path = Path(runs[0])
-        return cls(label or (path.parent if path.name in ("model.zip", POLICY) else path).stem, tuple(runs), trust, options, frames)
+        return cls(label or (path.parent if path.name in ("model.zip", POLICY) else path).stem, tuple(runs), trust, options)
 
     def trained(self):
         """How each run was trained, as far as its files say: a dict a run, {} for a player that was not trained."""
@@ -63,20 +65,18 @@ class Entrant:
     @property
     def foreign(self):
         """Whether a model is among them that train.py did not make."""
-        return not is_player(self.runs[0]) and any(_model(run, self.trust, self.options).foreign for run in self.runs)
+        return not is_name(self.runs[0]) and any(isinstance(_model(run, self.trust, self.options), Foreign) for run in self.runs)
 
-    def player(self, k, budget):
-        """A fresh player of its run k, or its model, read once. ``budget``: of a search; its seed is k."""
-        run = self.runs[k]
-        return player_of(run, budget=budget, seed=k, frames=self.frames) if is_player(run) else _model(run, self.trust, self.options)
+    def player(self, k):
+        """The player of its run k; a model is read once."""
+        return player(self.runs[k]) if is_name(self.runs[k]) else _model(self.runs[k], self.trust, self.options)
 
     def _training(self, run):
-        if is_player(run):
-            player = player_of(run, frames=self.frames)  # one's own may not be there
-            run = getattr(player, "model", None)  # the weights that a planner was given
-            if run is None:
+        if is_name(run):
+            _ = player(run)  # one's own may not be there
+            run = run.partition("@")[2]
+            if not run or not Path(run).exists():
                 return {}
-            run = str(PRETRAINED / f"{run}.zip") if run in pretrained() else run
         model, path = _model(run, self.trust, self.options).model, Path(run)
         card, results = path.with_suffix(".json"), (path if path.is_dir() else path.parent) / "results.json"
         if path.is_file() and card.is_file():
@@ -94,29 +94,54 @@ class Entrant:
 
 def options_of(changes):
     """What the "key=value" of --options say, as ``Entrant.options``. Raises ValueError."""
-    found = {}
+    chosen = {}
     for change in changes:
         key, equals, value = change.partition("=")
-        if not equals or key not in ACTION_OPTIONS or key in found:
+        if not equals or key not in ACTION_OPTIONS or key in chosen:
             raise refuse("options", change, f"must be KEY=VALUE, KEY once each of {', '.join(ACTION_OPTIONS)}")
-        found[key] = value_of(value)
-    SnookerVectorEnv(1, **found)  # makes sure of the values
-    return tuple(found.items())
+        chosen[key] = value_of(value)
+    Options(**chosen)  # makes sure of the values
+    return tuple(chosen.items())
 
 
-def _players(name):
+def _names(name):
     """The player of that name in a list; several for a planner whose model is a pattern; [] if it is not a player's name."""
     kind, at, pattern = name.partition("@")
-    if at and is_player(name):
+    if at and is_name(name):
         return [f"{kind}@{model}" for model in sorted(glob.glob(pattern))] or [name]
-    return [name] if is_player(name) else []
+    return [name] if is_name(name) else []
+
+
+class Foreign(SeenPlayer):
+    """A model that train.py did not make, and what its file says of its training."""
+
+    def __init__(self, seen, name, data):
+        super().__init__(seen, name=name)
+        self.model = data
 
 
 @cache
 def _model(path, trust, options):
-    if not zipfile.is_zipfile(file_of(Path(path), "agent")):
-        raise refuse("agent", path, "must be a model's .zip or a folder that holds model.zip")
-    return load_any(Path(path), trust, dict(options))
+    file = file_of(Path(path), "agent")
+    ours = read_model(file)
+    if ours is not None:
+        return ours
+    made = saved_player(file, dict(options), trust)
+    return Foreign(made.seen, path, _told(made.seen.model.saved, dict(options)))
+
+
+def _told(saved, options):
+    """The training record of a model that train.py did not make."""
+    try:
+        seed = saved.data.get("seed")
+        known = {
+            "num_timesteps": integer("num_timesteps", saved.data.get("num_timesteps"), 0, 10**18),
+            "gamma": number("gamma", saved.data.get("gamma"), 0, 1),
+            "seed": seed if seed is None else integer("seed", seed, 0, 2**64),
+        }
+    except ValueError as error:
+        raise saved.refused(f"must be a model saved by Stable-Baselines3 ({error})") from None
+    return Trained(None, saved.algorithm[1], "plain", UNKNOWN | options, imitated=None, start=None, **known)
 
 
 def _number_in(file, name):

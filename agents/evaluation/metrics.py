@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snooker_env.benchmark import FIGURES, Resamples, figure, iqm
+from snooker_env.benchmark import FIGURES, Resamples, figure, iqm, unseen
 
 from .entrants import Entrant
 
@@ -17,6 +17,14 @@ SCORES = ("points", "pots")
 
 def _quotient(above, below):
     return above / below if below else float("nan")
+
+
+def bounded(share, trials):
+    """A share with its interval; one that was never or always seen, which has none, with the exact bound of so many trials."""
+    if share["low"] is not None or share["value"] not in (0.0, 1.0) or not trials:
+        return share
+    most = unseen(trials)
+    return share | ({"low": 0.0, "high": most} if share["value"] == 0.0 else {"low": 1.0 - most, "high": 1.0})
 
 
 @dataclass

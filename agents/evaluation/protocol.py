@@ -4,14 +4,14 @@
     python -m agents.evaluate --agent "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against ghost_ball "pots only" \\
         --json agents/results/main.json --markdown agents/results/main.md --picture
     python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/reference-*" --fidelity fast reference --noise professional
-    python -m agents.evaluate --agent search --visits 50 --layouts held_out --noise professional
+    python -m agents.evaluate --agent search_2000 --visits 50 --layouts held_out --noise professional
 
 Every agent plays the same tables with the same execution errors (stroke by stroke): 2,000 opened tables that are never used in
 training, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every agent plays under every value of --noise,
 --fidelity and --physics, so agents that were trained under A and B make a table of A against B. (The aim of a discrete choice is solved
 with the physics that is played.) Results for the leaderboard are made by ``python -m snooker_env.benchmark`` instead.
 
-An agent is a ``NAME`` (a player of agents/players, a model of agents/pretrained), a model's .zip or run folder, LABEL=PATH,PATH,... with
+An agent is a ``NAME`` (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH,PATH,... with
 one PATH for each training seed (a PATH may be a pattern), or MODULE:CLASS for a player of your own, whose module is imported. Models of
 train.py and agents/pretrained are read as plain data. Any other model of Stable-Baselines3 or sb3-contrib that was trained on a visit
 with the environment's own observation holds pickled Python code, which runs when it is loaded: it needs --trust and, if its actions are
@@ -21,40 +21,35 @@ tables above and below.
 """
 
 import argparse
-import json
 import os
-import platform
 import shlex
 import sys
-from itertools import product
+from itertools import islice, product
 from pathlib import Path
 
 from commands.lifecycle import command, needs, of_disk
 
 with needs("agents.evaluate"):
     import numpy as np
-    import rich  # noqa: F401 - for the tables at the end, imported here so that a missing package is reported before anything starts
 
     import snooker_env
-    from commands.files import writable, write_atomic
+    from commands.files import writable, write_atomic, write_json
     from commands.physics_option import physics_option
-    from commands.provenance import commit, processor
-    from snooker_env import __version__
+    from commands.provenance import provenance
+    from commands.tables import show
     from snooker_env.benchmark import HELD_OUT_SEED, RESAMPLES, counts, play_visits, tables_of
     from snooker_env.checks import choice, integer, parse_fidelity, refuse
     from snooker_env.game import plan_of
     from snooker_env.progress import Progress
     from snooker_env.tasks import Noise
 
-    from ..cluster.faults import ClusterError
-    from ..cluster.job import Here, Job, digest_of
-    from ..cluster.options import Keep, add_keep, add_ray, checked_ray, place
+    from ..cluster.job import ClusterError, Here, ended, in_order
+    from ..cluster.keep import Keep, digest_of
+    from ..cluster.ray_cluster import add_ray, checked_ray, place
     from ..cluster.software import software
-    from ..learning.models import pretrained
-    from ..players.by_name import NAMES, player_of
     from .entrants import Entrant, options_of
     from .metrics import EntrantMetrics
-    from .report import AXES, main_condition, markdown, show
+    from .report import AXES, main_condition, markdown, parts
     from .travel import sent
     from .visits import joined, parts_of
 
@@ -65,14 +60,22 @@ REFERENCE = "ghost_ball"
 PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
 
 
-def play_agent(agent, condition, seeds, budget, resamples, rekey=False, job=None):
-    """``EntrantMetrics`` by every run of the agent on the tables with these seeds; ``job`` plays it, a new one by default."""
-    parts = [parts_of(_name(agent, k), k, condition, seeds, budget, rekey) for k in range(len(agent.runs))]
-    if job is None:
-        job = Job([one for run in parts for one in run], _shared([agent]), Here())
-    runs = [joined(job.take(run), len(seeds)) for run in parts]
-    each = [counts(strokes) for strokes in runs]
-    return EntrantMetrics(agent, {name: np.stack([one[name] for one in each]) for name in each[0]}, runs, resamples)
+def parts_of_agent(agent, condition, seeds, rekey):
+    """The parts of an agent under a condition, a list for each of its runs."""
+    return [parts_of(_name(agent, k), k, condition, seeds, rekey) for k in range(len(agent.runs))]
+
+
+def play_agent(agent, condition, seeds, resamples, rekey=False, results=None):
+    """``EntrantMetrics`` by every run of the agent on the tables with these seeds.
+
+    ``results``: those of its parts, the next of an iterator; by default they are played here.
+    """
+    each = parts_of_agent(agent, condition, seeds, rekey)
+    if results is None:
+        results = in_order(ended([part for run in each for part in run], _shared([agent]), Here()))
+    runs = [joined(list(islice(results, len(run))), len(seeds)) for run in each]
+    counted = [counts(strokes) for strokes in runs]
+    return EntrantMetrics(agent, {name: np.stack([one[name] for one in counted]) for name in counted[0]}, runs, resamples)
 
 
 def _name(agent, k):
@@ -90,28 +93,22 @@ def _conditions(report, seeds):
         yield {"layout": layout, **dict(zip(AXES, at, strict=True))}
 
 
-def job_of(report, agents, seeds, where, keep=None, tick=None):
-    """The ``Job`` of everything that the report's protocol says; ``keep``: a ``Keep``. Raises ValueError if it holds another job."""
-    p, parts = report["protocol"], []
-    for condition in _conditions(report, seeds):
-        for agent in agents:
-            for k in range(len(agent.runs)):
-                parts += parts_of(_name(agent, k), k, condition, seeds[condition["layout"]], p["search_budget"], p["rekey"])
-    return Job(parts, _shared(agents), where, keep and keep.store, keep and keep.about, tick)
-
-
-def about(report, agents):
-    """What is played, for a ``Keep``: two evaluations with the same share their parts."""
+def all_parts(report, agents, seeds):
+    """The parts of everything that the report's protocol says, in the order in which ``evaluate`` takes their results."""
     p = report["protocol"]
-    played = {name: p[name] for name in ("layouts", "first_seed", *AXES, "search_budget", "rekey")}
-    return {"command": "agents.evaluate", **played, "agents": {name: digest_of(one) for name, one in _shared(agents).items()}} | software()
+    return [
+        part
+        for condition in _conditions(report, seeds)
+        for agent in agents
+        for run in parts_of_agent(agent, condition, seeds[condition["layout"]], p["rekey"])
+        for part in run
+    ]
 
 
-def provenance():
-    """What computed these figures: version, commit and machine."""
-    machine = f"{processor()}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
-    where = {"version": __version__, "commit": commit() or "unknown", "machine": machine}
-    return where | {"python": platform.python_version(), "numpy": np.__version__}
+def about(report, shared):
+    """What is played, for a ``Keep``: two evaluations with the same share their parts."""
+    played = {name: report["protocol"][name] for name in ("layouts", "first_seed", *AXES, "rekey")}
+    return {"command": "agents.evaluate", **played, "agents": {name: digest_of(one) for name, one in shared.items()}} | software()
 
 
 def parser():
@@ -123,7 +120,7 @@ def parser():
         required=True,
         metavar="AGENT",
         help="NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... or MODULE:CLASS; NAME: "
-        + ", ".join((*NAMES, *pretrained())),
+        + ", ".join(snooker_env.players()),
     )
     p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
     p.add_argument(
@@ -136,12 +133,10 @@ def parser():
     p.add_argument("--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]")
     p.add_argument("--fidelity", nargs="+", default=["standard"], help="fast, standard, reference or euler:N [standard]")
     p.add_argument("--physics", nargs="+", default=["paper"], help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
-    p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
     p.add_argument(
         "--rekey", action="store_true", help="new execution errors after every decision: a control that no agent has seen them beforehand"
     )
-    add_ray(p)
-    add_keep(p)
+    add_ray(p, keep=True)
     p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
     p.add_argument("--json", type=Path, help="write every figure here")
     p.add_argument("--markdown", type=Path, help="write the tables here")
@@ -182,7 +177,6 @@ def checked(args):
         parse_fidelity(fidelity)
     for physics in args.physics:
         physics_option(physics)
-    player_of("search", budget=args.budget)  # checks the budget
     integer("resamples", args.resamples, 100, 10**6)
     if args.picture and "held_out" not in sizes:
         raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
@@ -196,23 +190,23 @@ def checked(args):
     return agents, list(dict.fromkeys(args.against)), {name: tables_of(name, visits) for name, visits in sizes.items()}
 
 
-def evaluate(report, agents, seeds, shown, job):
-    """Let the job play everything that the report's protocol says and add the results to it, a whole condition at a time.
+def evaluate(report, agents, seeds, shown, results):
+    """Add the figures of everything that the report's protocol says to it, a whole condition at a time.
 
-    ``shown`` becomes the strokes of the main condition, by label.
+    ``shown`` becomes the strokes of the main condition, by label; ``results``: those of ``all_parts``.
     """
     p = report["protocol"]
     for condition in _conditions(report, seeds):
-        layout, played = condition["layout"], {}
+        layout, metrics = condition["layout"], {}
         for agent in agents:
-            played[agent.label] = play_agent(agent, condition, seeds[layout], p["search_budget"], p["resamples"], p["rekey"], job)
-        others, rows = [played[label] for label in p["against"]], []
-        for one in played.values():
-            about = {"agent": one.agent.label, **condition, "visits": len(seeds[layout]), "runs": len(one.agent.runs)}
-            rows.append(about | one.result([other for other in others if other is not one]))
+            metrics[agent.label] = play_agent(agent, condition, seeds[layout], p["resamples"], p["rekey"], results)
+        others, rows = [metrics[label] for label in p["against"]], []
+        for one in metrics.values():
+            row = {"agent": one.agent.label, **condition, "visits": len(seeds[layout]), "runs": len(one.agent.runs)}
+            rows.append(row | one.result([other for other in others if other is not one]))
         report["results"] += rows
         if condition == main_condition(report):
-            shown |= {label: one.strokes for label, one in played.items()}
+            shown |= {label: one.strokes for label, one in metrics.items()}
 
 
 def spared(file):
@@ -236,12 +230,12 @@ def main(argv=None):
         p.error(str(error))
     snooker_env.warmup()
     for agent in agents:  # compiled before the clock runs
-        play_visits(agent.player(0, args.budget), 2)
+        play_visits(agent.player(0), 2)
     report = {
         "command": "python -m agents.evaluate " + shlex.join(argv), **provenance(),
         "protocol": {
             "layouts": {name: len(s) for name, s in seeds.items()}, "first_seed": HELD_OUT_SEED, "against": references,
-            **{axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}, "resamples": args.resamples, "search_budget": args.budget,
+            **{axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}, "resamples": args.resamples,
             "rekey": args.rekey,
         },
         "agents": [
@@ -250,84 +244,64 @@ def main(argv=None):
         ],
         "results": [],
     }  # fmt: skip
-    conditions, shown, code = len(list(_conditions(report, seeds))), {}, 0
+    shown, why, code = {}, "", 0
+    job, shared = all_parts(report, agents, seeds), _shared(agents)
     try:
-        keep = Keep(args.keep, args.ray, about(report, agents) if args.keep or args.ray else {})
+        keep = Keep(args.keep, args.ray, about(report, shared) if args.keep or args.ray else {})
     except ValueError as error:
         p.error(str(error))
     with keep:
         try:
-            with place(args.ray) as where:
-                code = played(report, agents, seeds, shown, where, keep, conditions)
-        except ClusterError as error:  # before anything was sent
-            raise SystemExit(f"agents.evaluate: {error}") from None
-        if "incomplete" in report:
+            with place(args.ray) as where, Progress("evaluation", sum(len(one.args["seeds"]) for one in job), "visits") as progress:
+
+                def counted():
+                    for k, result in ended(job, shared, where, keep.store):
+                        progress.at(progress.done + len(job[k].args["seeds"]), job[k].args["condition"]["layout"] + where.says)
+                        yield k, result
+
+                evaluate(report, agents, seeds, shown, in_order(counted()))
+        except KeyboardInterrupt:
+            why, code = "interrupted", 130
+        except ClusterError as error:
+            why, code = str(error), 1
+        if code:
+            complete, conditions = len(report["results"]) // len(agents), len(list(_conditions(report, seeds)))
+            kept = keep.ends if complete or keep.store else "nothing is kept"
+            report["incomplete"] = f"{why} when {complete} of {conditions} parts (layouts under one noise) were complete: {kept}"
             print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
-            if not report["results"]:
-                return code
-        write(report, shown, args)
+        if report["results"]:
+            write(report, shown, args)
         if not code:
             keep.done()
     return code
 
 
-def played(report, agents, seeds, shown, where, keep, conditions):
-    """Play everything and say how far it is. Exit code 0; 130 if it was interrupted, 1 if the cluster could not play on."""
-    why, code, size = "", 0, lambda part: len(part.given["seeds"])
-
-    def tick(part, result):
-        progress.at(progress.done + size(part), part.given["condition"]["layout"] + where.says)
-
-    try:
-        job = job_of(report, agents, seeds, where, keep, tick)
-    except ValueError as error:  # what is kept is of another job
-        print(f"agents.evaluate: error: {error}", file=sys.stderr)
-        raise SystemExit(2) from None
-    with Progress("evaluation", job.total(size), "visits") as progress:
-        try:
-            evaluate(report, agents, seeds, shown, job)
-        except KeyboardInterrupt:
-            why, code = "interrupted", 130
-            job.keep_finished()
-        except ClusterError as error:
-            why, code = str(error), 1
-            job.keep_finished()
-    if code:
-        complete = len(report["results"]) // len(agents)
-        parts = f"{complete} of {conditions} parts (layouts under one noise) were complete"
-        report["incomplete"] = f"{why} when {parts}: {keep.ends(complete)}"
-    return code
-
-
 def write(report, shown, args):
-    """Print the tables and write what was asked for. A file that cannot be written is named at the end, and the others are there."""
+    """Write what was asked for and print the tables. A file that cannot be written is named at the end, and the others are there."""
     files, failed = {name: getattr(args, name) for name in ("json", "markdown", "picture")}, []
     if "incomplete" in report:
         files = {name: spared(file) for name, file in files.items()}
     if not shown:
         files["picture"] = None
 
-    def text(file):
-        picture = files["picture"] and Path(os.path.relpath(files["picture"], file.parent)).as_posix()
-        write_atomic(file, (markdown(report, picture) + "\n").encode())
-
     def picture(file):
         from .destinations import draw
 
         draw(report, shown, file)
 
-    def written(name, writer):
-        try:
-            if files[name]:
-                writer(files[name])
-        except OSError as error:
-            failed.append(of_disk(error, files[name]))
-            files[name] = None
+    def text(file):
+        drawn = files["picture"] and Path(os.path.relpath(files["picture"], file.parent)).as_posix()
+        write_atomic(file, markdown(report, drawn))
 
-    written("json", lambda file: write_atomic(file, (json.dumps(report, indent=1) + "\n").encode()))
-    written("markdown", text)
-    written("picture", picture)
-    show(report)  # last: whoever reads it may leave, as head does
+    writers = {"json": lambda file: write_json(file, report), "markdown": text, "picture": picture}
+    for name, file in files.items():
+        try:
+            if file:
+                writers[name](file)
+        except OSError as error:
+            failed.append(of_disk(error, file))
+            files[name] = None
+    show(parts(report))  # last: whoever reads it may leave, as head does
     for name, file in files.items():
         if file:
             print(f"{name}: {file}")

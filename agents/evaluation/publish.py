@@ -14,12 +14,12 @@ from pathlib import Path
 from commands.lifecycle import command, needs
 
 with needs("agents.publish"):
-    from commands.files import write_atomic
+    from commands.files import write_atomic, write_json
     from snooker_env.checks import refuse
+    from snooker_env.players.resolver import is_name
 
     from ..learning.model_files import packed
-    from ..learning.models import PRETRAINED, load_trained
-    from ..players.by_name import NAMES
+    from ..learning.models import PRETRAINED, load_trained, pretrained
 
 AS_IT_STANDS = {"layout": "", "noise": "", "fidelity": "", "physics": "", "start": "", "set": []}
 """What these settings are in a run of its recipe as it stands. A fidelity that was given is also that of its final evaluation."""
@@ -58,8 +58,8 @@ def name_of(found, name):
     name = agent if name is None else name
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", name):
         raise refuse("name", name, "must be letters, digits and _ . -")
-    if name in NAMES:
-        raise refuse("name", name, f"must not be that of a player: {', '.join(NAMES)}")
+    if is_name(name) and name not in pretrained():
+        raise refuse("name", name, "must not be that of another player")
     return name
 
 
@@ -69,12 +69,12 @@ def publish(run, name, limits, replace=False):
         raise refuse("limits", limits, "must say what a user should know that it cannot do")
     found, trained = results_of(run)
     path = PRETRAINED / name_of(found, name)
-    card, files = card_of(found, limits), [path.with_name(path.name + end) for end in (".zip", ".json")]
-    if not replace and any(file.exists() for file in files):
+    card, model, about = card_of(found, limits), path.with_name(f"{path.name}.zip"), path.with_name(f"{path.name}.json")
+    if not replace and (model.exists() or about.exists()):
         raise refuse("name", path.name, "must be new: there is such a model; --replace overwrites it")
     PRETRAINED.mkdir(exist_ok=True)
-    for file, data in zip(files, (packed(trained), (json.dumps(card, indent=1) + "\n").encode()), strict=True):
-        write_atomic(file, data)
+    write_atomic(model, packed(trained))
+    write_json(about, card)
     return path, card
 
 

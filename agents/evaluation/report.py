@@ -10,19 +10,21 @@ which writes ``agents/results/*.md``; --show prints the tables instead.
 import argparse
 import json
 import os
+import re
 import shlex
+from functools import partial
 from pathlib import Path
 
 from commands.lifecycle import command, needs
 
 with needs("agents.report"):
     from commands.files import write_atomic
-    from snooker_env.benchmark import CENTURY, MAXIMUM, most_points, unseen
+    from commands.tables import TextTable, page, show, shown
+    from snooker_env.benchmark import CENTURY, MAXIMUM, most_points
     from snooker_env.checks import refuse
 
-    from ..players.stroke_players import by_noise
     from . import tournament_report
-    from .text_tables import TextTable, say
+    from .metrics import bounded
 
 SEEDS = 5
 """Fewer training seeds than that are pointed out."""
@@ -32,14 +34,7 @@ AXES = ("noise", "fidelity", "physics")
 USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
 
 
-def _pm(figure, form="{:.2f}", scale=1.0):
-    """A figure with its interval."""
-    if figure["value"] is None:
-        return ""
-    value = form.format(scale * figure["value"])
-    if figure["low"] is None:
-        return value
-    return f"{value} [{form.format(scale * figure['low'])}, {form.format(scale * figure['high'])}]"
+_pm = partial(shown, form="{:.2f}")
 
 
 def _trials(row, below):
@@ -60,13 +55,7 @@ SHARES = {
 
 def _share(row, name, form="{:.1f}", scale=100.0):
     """A share with its interval; where it was never so, or always, with the exact bound of that."""
-    figure = row["figures"][name]
-    if figure["low"] is None and figure["value"] in (0.0, 1.0):
-        n = _trials(row, SHARES[name])
-        if n:
-            most = unseen(n)
-            figure = figure | ({"low": 0.0, "high": most} if figure["value"] == 0.0 else {"low": 1.0 - most, "high": 1.0})
-    return _pm(figure, form, scale)
+    return shown(bounded(row["figures"][name], _trials(row, SHARES[name])), scale, form)
 
 
 def _between(values, form="{:,.0f}"):
@@ -118,7 +107,8 @@ def agents_tables(report):
     for agent in report["agents"]:
         runs, label = agent["runs"], agent["label"]
         if "recipe" not in runs[0]:
-            trained.append([label, "pre-trained, by the noise played" if by_noise(runs[0]["from"]) else "not trained", "", "", "", ""])
+            by_noise = re.match(r"planner(_|$)", runs[0]["from"]) and "@" not in runs[0]["from"]
+            trained.append([label, "pre-trained, by the noise played" if by_noise else "not trained", "", "", "", ""])
             continue
         words = [", ".join(sorted({str(run[key]) for run in runs})) for key in ("recipe", "noise", "fidelity", "physics")]
         rates = [run["shots"] / run["seconds"] if run["seconds"] else None for run in runs]
@@ -285,29 +275,14 @@ def parts(report):
         yield from [part] if isinstance(part, str) else part.tidy().narrow()
 
 
-def show(report):
-    """Print it."""
-    for part in parts(report):
-        if isinstance(part, str):
-            say(part)
-        else:
-            part.show()
-
-
 def markdown(report, picture=None):
-    """The same as one Markdown text."""
+    """The same as a Markdown page."""
     if tournament_report.is_tournament(report):
         return tournament_report.markdown(report)
     version = report.get("version", "of an unknown version")
-    out = [
-        f"# {title(report)}", "", "Made by", "", "```bash", report["command"], "```", "",
-        f"with snooker_env {version}, at commit {report['commit']} on {report['machine']}, Python {report['python']}.", "",
-    ]  # fmt: skip
-    if picture:
-        out += [f"![where the cue ball stops after a red, and what follows]({picture})", ""]
-    for part in parts(report):
-        out += [part if isinstance(part, str) else part.markdown(), ""]
-    return "\n".join(out)
+    made = f"snooker_env {version}, at commit {report['commit']} on {report['machine']}, Python {report['python']}"
+    drawn = [f"![where the cue ball stops after a red, and what follows]({picture})"] if picture else []
+    return page(title(report), report["command"], made, [*drawn, *parts(report)])
 
 
 def picture_of(report, folder):
@@ -346,9 +321,9 @@ def main(argv=None):
         p.error(str(error))
     for file, report in reports.items():
         if args.show:
-            show(report)
+            show(parts(report))
             continue
         target = file.with_suffix(".md")
-        write_atomic(target, (markdown(report, picture_of(report, target.parent)) + "\n").encode())
+        write_atomic(target, markdown(report, picture_of(report, target.parent)))
         print(target)
     return 0

@@ -1,7 +1,7 @@
 """How are positions searched to learn from? The command ``python -m agents.search``.
 
     python -m agents.search --positions 10000 --out runs/searched
-    python -m agents.search --agent search --positions 1000000 --noise club --out s3://bucket/club --ray 10.0.0.1:6379
+    python -m agents.search --agent search_2000 --positions 1000000 --noise club --out s3://bucket/club --ray 10.0.0.1:6379
 
 A search plays visits, and what it thinks of each position is kept: the strokes that met most noise samples, best first, with their scores.
 Data are written in parts as they are played; after an interruption the same command goes on, and with other options it is refused. One
@@ -21,17 +21,15 @@ with needs("agents.search"):
     from commands.physics_option import physics_option
     from snooker_env.checks import integer, parse_fidelity, refuse
     from snooker_env.game import plan_of
+    from snooker_env.players.search import SearchPlayer
     from snooker_env.progress import Progress
     from snooker_env.tasks import Noise
 
-    from ..cluster.faults import ClusterError
-    from ..cluster.job import Job, digest_of
-    from ..cluster.options import add_ray, checked_ray, place
+    from ..cluster.job import ClusterError, ended, keys_of
+    from ..cluster.keep import Store, digest_of
+    from ..cluster.ray_cluster import add_ray, checked_ray, place
     from ..cluster.software import software
-    from ..cluster.store import store_of, unpacked
     from ..evaluation.entrants import Entrant
-    from ..players.by_name import player_of
-    from ..players.stroke_players import StrokePlayer
     from .searched import ROUNDS, TABLES, parts_of
     from .travel import sent
 
@@ -42,14 +40,13 @@ INDEX = "index.json"
 def parser():
     """The command line."""
     p = argparse.ArgumentParser("python -m agents.search", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("--agent", default="search", help="who searches: search, lookahead_500, planner@runs/ppo_value-0 and the like [search]")
+    p.add_argument("--agent", default="search_2000", help="who searches: search_2000, planner_500, planner@MODEL [search_2000]")
     p.add_argument("--positions", type=int, required=True, metavar="N", help=f"rounded up to whole parts of {TABLES * ROUNDS}")
     p.add_argument("--out", required=True, metavar="URL", help="a folder or fsspec URL for these data alone")
     p.add_argument("--layout", default="opened", help="layout of the tables [opened]")
     p.add_argument("--noise", default="professional", help="level of execution noise [professional]")
     p.add_argument("--fidelity", default="standard", help="fast, standard, reference or euler:N [standard]")
     p.add_argument("--physics", default="paper", help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
-    p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
     p.add_argument("--seed", type=int, default=0, help="seed of tables and search [0]")
     add_ray(p)
     return p
@@ -67,20 +64,21 @@ def checked(args):
     checked_ray(args.ray)
     agent = Entrant.of(args.agent)
     runs = list(agent.runs)
-    if len(runs) > 1 or not isinstance(player_of(runs[0], budget=args.budget), StrokePlayer):
+    if len(runs) > 1 or not isinstance(agent.player(0), SearchPlayer):
         raise refuse(
-            "agent", args.agent, "must be one player that searches: search, lookahead, planner, with _SHOTS and @MODEL if you wish"
+            "agent", args.agent, "must be one player that searches: search, planner, with _SHOTS and @MODEL if you wish"
         )
     return sent(agent, 0), {name: getattr(args, name) for name in ("layout", "noise", "fidelity", "physics")}
 
 
 def read(url):
     """The data of a folder or URL: a dict of arrays as of ``agents.evaluation.searched.play``. Raises ValueError if they are incomplete."""
-    store = store_of(url, "out", only_read=True)
+    store = Store(url, "out", only_read=True)
     index = store.read(INDEX)
-    if index is None:
+    keys = [] if index is None else json.loads(index)["parts"]
+    parts = [part for key in keys if (part := store.part(key)) is not None]
+    if not parts or len(parts) < len(keys):
         raise refuse("out", url, "must hold complete data: give the command that makes them again")
-    parts = [unpacked(store.read(f"parts/{key}.npz") or b"", f"{store}/parts/{key}.npz") for key in json.loads(index)["parts"]]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
@@ -91,40 +89,27 @@ def main(argv=None):
     args = p.parse_args(argv)
     try:
         agent, condition = checked(args)
-        store = store_of(args.out, "out")
+        about = {"command": "agents.search", "agent": digest_of(agent), "seed": args.seed, **condition}
+        store = Store(args.out, "out")
+        store.join(about | software())
     except ValueError as error:
         p.error(str(error))
     snooker_env.warmup()
     each, why, code = TABLES * ROUNDS, "", 0
-    about = {"command": "agents.search", "agent": digest_of(agent), "seed": args.seed, **condition, "budget": args.budget} | software()
-    parts = parts_of(args.positions, args.seed, condition, args.budget)
+    parts, shared = parts_of(args.positions, args.seed, condition), {"search": agent}
+    total = each * len(parts)
     try:
-        with place(args.ray) as where, Progress(f"search{where.says}", each * len(parts), "positions") as progress:
-
-            def tick(part, result):
+        with place(args.ray) as where, Progress(f"search{where.says}", total, "positions") as progress:
+            for _ in ended(parts, shared, where, store):
                 progress.at(progress.done + each)
-
-            try:
-                job = Job(parts, {"search": agent}, where, store, about, tick)
-            except ValueError as error:
-                p.error(str(error))
-            try:
-                job.finish()
-            except KeyboardInterrupt:
-                why, code = "interrupted", 130
-                job.keep_finished()
-            except ValueError as error:  # a part that was kept is damaged
-                why, code = str(error), 1
+    except KeyboardInterrupt:
+        why, code = "interrupted", 130
     except ClusterError as error:
         why, code = str(error), 1
     if code:
-        kept = len(store.names("parts")) * each
-        print(
-            f"agents.search: {why}; {kept:,} of {each * len(parts):,} positions are kept in {store}, the same command goes on",
-            file=sys.stderr,
-        )
+        kept = f"{each * len(store.names('parts')):,} of {total:,} positions are kept in {store}, the same command goes on"
+        print(f"agents.search: {why}; {kept}", file=sys.stderr)
         return code
-    keys = [job.key(part) for part in parts]
-    store.write(INDEX, (json.dumps({"positions": each * len(parts), "parts": keys}, indent=1) + "\n").encode())
-    print(f"{each * len(parts):,} positions: {store}")
+    store.write(INDEX, (json.dumps({"positions": total, "parts": keys_of(parts, shared)}, indent=1) + "\n").encode())
+    print(f"{total:,} positions: {store}")
     return 0

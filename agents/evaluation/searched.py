@@ -7,6 +7,7 @@ import numpy as np
 from commands.physics_option import physics_option
 from snooker_env import SnookerVectorEnv
 from snooker_env.planning import Positions
+from snooker_env.players import VISITS, Strokes, decision_seeds
 
 from ..cluster.job import Part
 from .travel import arrived
@@ -17,40 +18,38 @@ KEPT = 10
 """The most strokes of a decision that are kept, best first; where there are fewer, the rest is NaN."""
 
 
-def parts_of(positions, seed, condition, budget):
+def parts_of(positions, seed, condition):
     """Parts with so many positions, rounded up to whole ones. ``condition``: layout, noise, fidelity and physics."""
     many = -(-positions // (TABLES * ROUNDS))
-    given = {"condition": condition, "budget": budget, "seed": seed}
-    return [Part("searched", "search", given | {"first": k * TABLES}) for k in range(many)]
+    same = {"condition": condition, "seed": seed}
+    return [Part(f"{__name__}:play", "search", same | {"first": k * TABLES}) for k in range(many)]
 
 
-def play(shared, given, threads):
+def play(shared, args, threads):
     """The task.
 
-    Returns
-    -------
-    dict
-        Of n positions: "positions" float64 (n, 22, 2) [m], "on_table" bool (n, 22) and "game" int64, as of ``Positions``; "actions" float32
-        (n, KEPT, 4) of ``aim="absolute"`` and "scores" float32 (n, KEPT) [points].
+    Returns of n positions "positions" float64 (n, 22, 2) [m], "on_table" bool (n, 22) and "game" int64, as of ``Positions``; "strokes"
+    float32 (n, KEPT, 5), as of ``Strokes.values``, and "scores" float32 (n, KEPT) [points].
     """
-    player: Any = arrived(shared, given["budget"], given["seed"])
-    at = given["condition"]
-    first: int = given["first"]
-    player.tables_of(first, first + TABLES)
-    options = at | {"physics": physics_option(at["physics"])}
-    tables = SnookerVectorEnv(TABLES, threads=threads, autoreset_mode="Disabled", **player.options, **options)
-    seeds = np.random.SeedSequence([given["seed"], first]).generate_state(TABLES).tolist()
-    seen, _ = tables.reset(seed=seeds)
-    everyone, found = np.ones(TABLES, bool), []
+    first: int = args["first"]
+    options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}
+    tables = SnookerVectorEnv(TABLES, threads=threads, autoreset_mode="Disabled", **VISITS, **options)
+    player: Any = arrived(shared).at(tables)
+    seeds = np.random.SeedSequence([args["seed"], first]).generate_state(TABLES).tolist()
+    tables.reset(seed=seeds)
+    rounds = []
     again: list[int | None] = [None] * TABLES
-    for _ in range(ROUNDS):
-        here = Positions.of(tables).copy()
-        actions, scores = np.full((TABLES, KEPT, 4), np.nan, np.float32), np.full((TABLES, KEPT), np.nan, np.float32)
-        for k, (some, worth) in enumerate(player.rank(tables, seen, everyone)):
-            actions[k, : len(some[:KEPT])], scores[k, : len(some[:KEPT])] = some[:KEPT], worth[:KEPT]
-        found.append({"positions": here.positions, "on_table": here.on_table, "game": here.game, "actions": actions, "scores": scores})
-        seen, _, ended, stopped, _ = tables.step(actions[:, 0])
+    for decision in range(ROUNDS):
+        at = Positions.of(tables)
+        ranked = player.rank(at, decision_seeds(args["seed"], first + np.arange(TABLES), decision))
+        strokes, scores = np.full((TABLES, KEPT, 5), np.nan, np.float32), np.full((TABLES, KEPT), np.nan, np.float32)
+        for k, one in enumerate(ranked):
+            m = min(KEPT, len(one.strokes))
+            strokes[k, :m], scores[k, :m] = one.strokes.values[:m], one.scores[:m]
+        rounds.append({"positions": at.positions, "on_table": at.on_table, "game": at.game, "strokes": strokes, "scores": scores})
+        played = Strokes.join([one.strokes[:1] for one in ranked]).actions(tables.options, at)
+        _, _, ended, stopped, _ = tables.step(played.astype(np.float32))
         if (done := ended | stopped).any():
-            seen, _ = tables.reset(seed=again, options={"reset_mask": done})
+            tables.reset(seed=again, options={"reset_mask": done})
     tables.close()
-    return {name: np.concatenate([one[name] for one in found]) for name in found[0]}
+    return {name: np.concatenate([one[name] for one in rounds]) for name in rounds[0]}

@@ -1,12 +1,12 @@
 """Who is the better player of whole frames? A round robin: every player against every other, each seed twice, both colours of the break.
 
     python -m agents.tournament random ghost_ball ppo_mask --frames 200
-    python -m agents.tournament "mine=runs/ppo_mask-0" lookahead search --frames 200 --fewer search=20 --out ladder.json --resume
-    python -m agents.tournament ppo_mask lookahead --match 7 --frames 40 --noise amateur
+    python -m agents.tournament "mine=runs/ppo_mask-0" search search_2000 --frames 200 --fewer search_2000=20 --out ladder.json --resume
+    python -m agents.tournament ppo_mask search --match 7 --frames 40 --noise amateur
     python -m agents.tournament --check ladder.json
     python -m agents.tournament --show ladder.json --markdown ladder.md
 
-A player is a NAME (a player of agents/players, a model of agents/pretrained), a model's .zip or run folder, LABEL=PATH, or MODULE:CLASS for
+A player is a NAME (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH, or MODULE:CLASS for
 a player of your own, whose module is imported. --trust and --options are those of ``python -m agents.evaluate``.
 What is played and what the figures mean: docs/agents/tournament.md.
 """
@@ -24,24 +24,23 @@ with needs("agents.tournament"):
     import snooker_env
     from commands.files import writable, write_atomic
     from commands.physics_option import physics_option
+    from commands.tables import show
     from snooker_env import Options
     from snooker_env.benchmark import RESAMPLES, machine, read_result, write_result
     from snooker_env.checks import choice, integer, refuse
+    from snooker_env.players import FRAMES
     from snooker_env.progress import Progress
 
-    from ..cluster.faults import ClusterError
-    from ..cluster.options import add_ray, checked_ray, place
-    from ..learning.models import pretrained
-    from ..players.by_name import NAMES, is_player, player_of
-    from .encounters import drawn, play_on
+    from ..cluster.job import ClusterError, Part, ended
+    from ..cluster.ray_cluster import add_ray, checked_ray, place
+    from . import encounters
     from .entrants import Entrant, options_of
-    from .text_tables import say
     from .tournament_figures import ANCHOR_ELO, schedule
     from .tournament_file import faults, kept, result_of, seeds_of
-    from .tournament_play import CHUNK, TABLES, TimedPlayer, play_pair
+    from .tournament_play import CHUNK, TABLES
     from .tournament_report import markdown, parts
     from .tournament_strengths import PRIOR
-    from .travel import one_thread
+    from .travel import sent
 
 ANCHOR = "ghost_ball"
 """The anchor if it plays; else the first player is."""
@@ -50,14 +49,9 @@ SAVED = 60.0
 
 
 def parser():
-    """The command line.
-
-    Returns
-    -------
-    argparse.ArgumentParser
-    """
+    """The command line."""
     p = argparse.ArgumentParser("python -m agents.tournament", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    names = ", ".join((*NAMES, *pretrained()))
+    names = ", ".join(snooker_env.players())
     p.add_argument("players", nargs="*", metavar="PLAYER", help=f"NAME, MODEL, LABEL=PATH or MODULE:CLASS; NAME: {names}")
     p.add_argument("--frames", type=int, default=100, metavar="N", help="frames of each pair, or matches with --match; even [100]")
     p.add_argument("--fewer", nargs="+", default=[], metavar="LABEL=N", help="only so many of each pair with a slow player")
@@ -68,7 +62,6 @@ def parser():
     p.add_argument("--rules", default="snooker", help="the option game of frames: which rules [snooker]")
     p.add_argument("--max-strokes", type=int, default=1000, help="strokes after which a frame is stopped, half a win for each [1000]")
     p.add_argument("--seed", type=int, default=0, help="seed of the first match of each pair [0]")
-    p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
     p.add_argument("--anchor", metavar="LABEL", help=f"the player whose Elo is {ANCHOR_ELO:.0f} [{ANCHOR}, else the first]")
     p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
     p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
@@ -88,38 +81,15 @@ def parser():
 
 
 def game_of(args):
-    """The options of the frames, as they stand in the file. Raises ValueError.
-
-    Parameters
-    ----------
-    args : argparse.Namespace
-
-    Returns
-    -------
-    dict
-    """
+    """The options of the frames, as they stand in the file."""
     game = {"noise": args.noise, "physics": args.physics, "miss": args.miss, "max_strokes": args.max_strokes}
     return game | ({} if args.rules == "snooker" else {"game": args.rules})
 
 
-def played_with(game):
-    """The same as keywords of ``Options``."""
-    return game | {"physics": physics_option(game["physics"])}
-
-
 def checked(args):
-    """(entrants, protocol, game) of the command line. Raises ValueError before anything is played.
-
-    Parameters
-    ----------
-    args : argparse.Namespace
-
-    Returns
-    -------
-    tuple
-    """
+    """(entrants, protocol, game) of the command line. Raises ValueError before anything is played."""
     options = options_of(args.options)
-    entrants = [Entrant.of(text, args.trust, options, frames=True) for text in args.players]
+    entrants = [Entrant.of(text, args.trust, options) for text in args.players]
     labels = [entrant.label for entrant in entrants]
     if len(labels) < 2:
         raise refuse("players", " ".join(args.players), "must be two or more")
@@ -132,11 +102,10 @@ def checked(args):
     if options and not any(entrant.foreign for entrant in entrants):
         raise refuse("options", " ".join(args.options), "must be left out: it is for models that train.py did not make")
     anchor = args.anchor or (ANCHOR if ANCHOR in labels else labels[0])
-    player_of("search", budget=args.budget)  # checks the budget
     protocol = {
         "first_seed": integer("seed", args.seed, 0, 2**53), "matches": _even("frames", args.frames, 2**20),
         "fewer": dict(_fewer(text, labels, args.frames) for text in args.fewer), "best_of": integer("match", args.match, 1, 99),
-        "tables": TABLES, "chunk": CHUNK, "search_budget": args.budget,
+        "tables": TABLES, "chunk": CHUNK,
         "resamples": integer("resamples", args.resamples, 100, 10**6), "prior": PRIOR, "anchor": choice("anchor", anchor, tuple(labels)),
         "anchor_elo": ANCHOR_ELO,
     }  # fmt: skip
@@ -144,9 +113,8 @@ def checked(args):
         raise refuse("match", args.match, "must be odd: the best of so many frames")
     game = game_of(args)
     for entrant in entrants:
-        player = TimedPlayer(player_for(entrant, "", 0, args.budget))
-        given: dict[str, Any] = {**player.options, **played_with(game)}
-        Options(task="frame", **given, opponent=player)  # makes sure that they can meet
+        meeting: dict[str, Any] = {**game, "physics": physics_option(args.physics)}
+        entrant.player(0).at(Options(task="frame", **FRAMES, **meeting))  # makes sure that they can meet
     checked_ray(args.ray)
     if args.ray and args.threads is not None:
         raise refuse("threads", args.threads, "must be left out with --ray: a part has one core there")
@@ -174,114 +142,67 @@ def _fewer(text, labels, most):
     return label, _even("fewer", int(n), most)
 
 
-def player_for(entrant, other, first, budget):
-    """A fresh player for the matches against the label ``other`` from the seed ``first`` on; what it draws depends on nothing else.
-
-    Parameters
-    ----------
-    entrant : Entrant
-    other : str
-    first, budget : int
-
-    Returns
-    -------
-    object
-    """
-    run = entrant.runs[0]
-    one_thread(run)
-    return (
-        player_of(run, budget=budget, seed=drawn(entrant.label, other, first), frames=True) if is_player(run) else entrant.player(0, budget)
-    )
-
-
 class Tournament:
-    """The round robin as far as it was played.
-
-    Parameters
-    ----------
-    entrants : list of Entrant
-    protocol, game : dict
-        As in the file.
-    command : str
-        The command line.
-    before : dict, optional
-        The content of an incomplete file to go on with.
-    """
+    """The round robin as far as it was played; ``before``: the content of an incomplete file to go on with."""
 
     def __init__(self, entrants, protocol, game, command, before=None):
         self.entrants, self.protocol, self.game, self.command = entrants, protocol, game, command
         self.labels, self.load = [entrant.label for entrant in entrants], machine()
         self.rows = list(before["rows"]) if before else []
-        times = [(p["decisions"], p["seconds"]) for p in before["players"]] if before else [(0, 0.0)] * len(entrants)
-        self.times = [list(time) for time in times]
+        self.times = [[p["decisions"], p["seconds"]] for p in before["players"]] if before else [[0, 0.0] for _ in entrants]
 
     @property
     def parts(self):
-        """What is played in one go, in order: pairs and some of their seeds."""
-        found = []
+        """What is played in one go, in order: a pair and some of its seeds."""
+        p, parts = self.protocol, []
         for pair in schedule(self.labels):
-            seeds = seeds_of(self.protocol, self.labels, pair)
-            found += [(pair, seeds[k : k + CHUNK]) for k in range(0, len(seeds), CHUNK)]
-        return found
-
-    @property
-    def left(self):
-        """The parts that are not in the rows yet."""
-        done = {tuple(row[:3]) for row in self.rows}
-        return [(pair, seeds) for pair, seeds in self.parts if not all((*pair, seed) in done for seed in seeds)]
+            seeds = seeds_of(p, self.labels, pair)
+            for some in (seeds[k : k + CHUNK] for k in range(0, len(seeds), CHUNK)):
+                draws = [encounters.drawn(self.labels[k], self.labels[other], some[0]) for k, other in (pair, pair[::-1])]
+                args = {"pair": list(pair), "seeds": some, "draws": draws, "game": self.game, "best_of": p["best_of"]}
+                parts.append(Part("agents.evaluation.encounters:play", "players", args))
+        return parts
 
     @property
     def ended(self):
         """Number of matches in the rows."""
         return len({tuple(row[:4]) for row in self.rows})
 
-    def play(self, threads=None, tick=None, saved=None):
+    def play(self, where, threads, tick, saved):
         """Play all parts that are not in the rows yet.
 
-        Parameters
-        ----------
-        threads : int, optional
-        tick : callable, optional
-            Called with the number of matches that have ended.
-        saved : callable, optional
-            Called after each part.
+        ``tick`` is called with the number of matches that have ended, ``saved`` after each part.
         """
-        ended, game, budget = self.ended, played_with(self.game), self.protocol["search_budget"]
-        for pair, seeds in self.left:
-            players = tuple(
-                TimedPlayer(player_for(self.entrants[k], self.labels[other], seeds[0], budget))
-                for k, other in (pair, pair[::-1])
-            )  # fmt: skip
-            so_far = None if tick is None else lambda n, before=ended: tick(before + n)
-            rows = play_pair(pair, players, game, seeds, self.protocol["best_of"], threads, so_far)
-            self.rows += rows
-            ended += 2 * len(seeds)
-            for k, player in zip(pair, players, strict=True):
-                self.times[k][0] += player.decisions
-                self.times[k][1] += player.seconds
-            if saved is not None:
-                saved()
+        done = {tuple(row[:3]) for row in self.rows}
+        parts = [part for part in self.parts if not all((*part.args["pair"], seed) in done for seed in part.args["seeds"])]
+        shared = {"players": {"players": [sent(entrant, 0) for entrant in self.entrants]}}
+        results = self._here(parts, shared["players"], threads, tick) if where.here else ended(parts, shared, where)
+        for k, result in results:
+            self.rows = sorted([*self.rows, *result["rows"].tolist()], key=lambda row: row[:5])
+            for player, decisions, seconds in zip(parts[k].args["pair"], result["decisions"], result["seconds"], strict=True):
+                self.times[player][0] += int(decisions)
+                self.times[player][1] += float(seconds)
+            tick(self.ended)
+            saved()
+
+    def _here(self, parts, shared, threads, tick):
+        """In this process each match is counted as it ends."""
+        for k, part in enumerate(parts):
+            yield k, encounters.play(shared, part.args, threads, lambda n, before=self.ended: tick(before + n))
 
     def result(self, incomplete=None):
-        """The content of the file.
-
-        Parameters
-        ----------
-        incomplete : str, optional
-            Why frames are missing.
-
-        Returns
-        -------
-        dict
-        """
+        """The content of the file; ``incomplete``: why frames are missing."""
         players = [
             {
-                "label": entrant.label, "source": entrant.runs[0], "options": dict(player_for(entrant, "", 0, 2).options),
-                "training": entrant.trained()[0], "decisions": decisions, "seconds": seconds,
-            } for entrant, (decisions, seconds) in zip(self.entrants, self.times, strict=True)
-        ]  # fmt: skip
-        how = {"command": self.command, "load": self.load, "incomplete": incomplete}
-        return result_of(self.protocol, self.game, players, self.rows, **how)
+                "label": entrant.label,
+                "source": entrant.runs[0],
+                "training": entrant.trained()[0],
+                "decisions": decisions,
+                "seconds": seconds,
+            }
+            for entrant, (decisions, seconds) in zip(self.entrants, self.times, strict=True)
+        ]
+        return result_of(self.protocol, self.game, players, self.rows, command=self.command, load=self.load, incomplete=incomplete)
 
 
 @command("agents.tournament")
@@ -307,11 +228,7 @@ def main(argv=None):
         return _shown(before, args.markdown)
     tournament = Tournament(entrants, protocol, game, "python -m agents.tournament " + shlex.join(argv), before)
     snooker_env.warmup()
-    try:
-        with place(args.ray) as where:
-            why, code = _play(tournament, args, where)
-    except ClusterError as error:  # before anything was sent
-        raise SystemExit(f"agents.tournament: {error}") from None
+    why, code = _play(tournament, args)
     if why is not None:
         print(f"agents.tournament: {why}", file=sys.stderr)
     if not tournament.rows:
@@ -325,7 +242,7 @@ def main(argv=None):
     return code
 
 
-def _play(tournament, args, where):
+def _play(tournament, args):
     """Play and say how far it is: why it is incomplete, or None, and the exit code."""
     last = [time.monotonic()]
 
@@ -334,21 +251,21 @@ def _play(tournament, args, where):
             write_result(args.out, tournament.result("it was still running"))
             last[0] = time.monotonic()
 
-    total, units = sum(2 * len(seeds) for _, seeds in tournament.parts), "frames" if args.match == 1 else "matches"
-    with Progress(f"tournament{where.says}", total, units, done=tournament.ended, quiet=args.quiet) as progress:
-        try:
-            if args.ray:
-                play_on(tournament, where, progress.at, saved)
-            else:
-                tournament.play(args.threads, progress.at, saved)
-        except (KeyboardInterrupt, ClusterError) as error:
-            ended, stopped = tournament.ended, isinstance(error, KeyboardInterrupt)
-            kept = "these are kept" if ended else "nothing is kept"
-            return f"{'interrupted' if stopped else error} after {ended:,} of {total:,} {units}: {kept}", 130 if stopped else 1
-        except BaseException as error:
-            if args.out and tournament.rows:  # of a player's own code: its traceback is for its author, what was played is kept
-                write_result(args.out, tournament.result(f"{type(error).__name__}: {error}"))
-            raise
+    total, units = sum(2 * len(part.args["seeds"]) for part in tournament.parts), "frames" if args.match == 1 else "matches"
+    try:
+        with (
+            place(args.ray) as where,
+            Progress(f"tournament{where.says}", total, units, done=tournament.ended, quiet=args.quiet) as progress,
+        ):
+            tournament.play(where, args.threads, progress.at, saved)
+    except (KeyboardInterrupt, ClusterError) as error:
+        stopped, number = isinstance(error, KeyboardInterrupt), tournament.ended
+        kept = "these are kept" if number else "nothing is kept"
+        return f"{'interrupted' if stopped else error} after {number:,} of {total:,} {units}: {kept}", 130 if stopped else 1
+    except BaseException as error:
+        if args.out and tournament.rows:  # of a player's own code: its traceback is for its author, what was played is kept
+            write_result(args.out, tournament.result(f"{type(error).__name__}: {error}"))
+        raise
     return None, 0
 
 
@@ -356,43 +273,40 @@ def _shown(found, file):
     """Print the tables and write them as Markdown."""
     if found["figures"] is None:
         raise refuse("show", "a file", "must hold frames")
-    for part in parts(found):
-        if isinstance(part, str):
-            say(part)
-        else:
-            part.show()
+    show(parts(found))
     if file:
-        write_atomic(file, (markdown(found) + "\n").encode())
+        write_atomic(file, markdown(found))
         print(f"markdown: {file}")
     return 0
 
 
 def _sound(file):
     """The content of a file without faults. Raises ValueError."""
+    content, wrong = _read(file)
+    if wrong:
+        raise refuse("show", str(file), f"must be the file of a tournament ({wrong[0]})")
+    return content
+
+
+def _read(file):
+    """The content of a file and what is wrong with it."""
     try:
-        found = read_result(file)
+        content = read_result(file)
+        return content, faults(content)
+    except ValueError as error:
+        return {}, [str(error)]
     except OSError as error:
-        raise refuse("show", str(file), f"must be a file that can be read ({error.strerror})") from None
-    said = faults(found)
-    if said:
-        raise refuse("show", str(file), f"must be the file of a tournament ({said[0]})")
-    return found
+        return {}, [f"cannot be read: {error.strerror}"]
 
 
 def _check(files):
-    wrong = False
+    code = 0
     for file in files:
-        try:
-            found = read_result(file)
-            said = faults(found)
-        except ValueError as error:
-            said = [str(error)]
-        except OSError as error:
-            said = [f"cannot be read: {error.strerror}"]
-        for line in said:
-            print(f"{file}: {line}")
-        if not said:
-            state = "complete" if found["incomplete"] is None else "sound, incomplete"
-            print(f"{file}: {state}, {len(found['players'])} players, {len(found['rows']):,} frames")
-        wrong |= bool(said)
-    return int(wrong)
+        content, wrong = _read(file)
+        lines = wrong
+        if not wrong:
+            state = "complete" if content["incomplete"] is None else "sound, incomplete"
+            lines = [f"{state}, {len(content['players'])} players, {len(content['rows']):,} frames"]
+        print("\n".join(f"{file}: {line}" for line in lines))
+        code |= bool(wrong)
+    return code

@@ -10,8 +10,9 @@ from itertools import combinations
 
 import numpy as np
 
-from snooker_env.benchmark import RESAMPLES, Resamples, figure, unseen
+from snooker_env.benchmark import RESAMPLES, Resamples, figure
 
+from .metrics import bounded
 from .tournament_strengths import ELO, PRIOR, bound, compared, linked, strengths
 
 KEYS = ("first", "second", "seed", "opener", "frame", "winner")
@@ -31,27 +32,12 @@ RATIOS = {
 
 @dataclass
 class PlayedPair:
-    """The frames of two players, summed for each seed.
-
-    Attributes
-    ----------
-    players : tuple of int
-        Their indices.
-    sums : dict
-        Name -> float (2, seeds), one row for each player; "won" and "matches": of matches, draws as halves; "frames_won" and "frames".
-    opened : float (2, seeds)
-        Wins of each player in the matches that he opened.
-    draws : int
-        Matches without a winner.
-    stopped : int
-        Frames without a winner.
-    best : tuple of int
-        The best visit of each.
-    """
+    """The frames of two players, summed for each seed; ``sums``: name -> float (2, seeds), one row for each player."""
 
     players: tuple
     sums: dict
     opened: np.ndarray
+    """Wins of each player in the matches that it opened, (2, seeds)."""
     draws: int
     stopped: int
     best: tuple
@@ -90,17 +76,7 @@ class PlayedPair:
 
 
 def pairs_of(rows):
-    """The ``PlayedPair`` of every pair in the rows, in order.
-
-    Parameters
-    ----------
-    rows : list of list of int
-        Columns ``COLUMNS``.
-
-    Returns
-    -------
-    list of PlayedPair
-    """
+    """The ``PlayedPair`` of every pair in the rows, in order."""
     table = np.array(rows, np.int64).reshape(-1, len(COLUMNS))
     found = sorted({(int(a), int(b)) for a, b in table[:, :2]})
     return [PlayedPair.of(pair, table[(table[:, 0] == pair[0]) & (table[:, 1] == pair[1])]) for pair in found]
@@ -108,34 +84,16 @@ def pairs_of(rows):
 
 def _share(won, matches, drawn, seeds):
     """A share with its interval; of 0 % or 100 % with the exact bound of so many seeds."""
-    value = won / matches
-    if value in (0.0, 1.0):
-        most = unseen(seeds)
-        return {"value": value, "low": 0.0 if value == 0.0 else 1.0 - most, "high": most if value == 0.0 else 1.0}
-    return figure(value, drawn)
+    return bounded(figure(won / matches, drawn), seeds)
 
 
 def figures_of(labels, rows, anchor, resamples=RESAMPLES):
     """All figures of a tournament.
 
-    Parameters
-    ----------
-    labels : list of str
-        Labels of the players.
-    rows : list of list of int
-        One for each frame, columns ``COLUMNS``.
-    anchor : str
-        The label whose Elo is ``ANCHOR_ELO``.
-    resamples : int
-        Number of bootstrap samples.
-
-    Returns
-    -------
-    dict
-        "players": for each label "matches", "frames", "won", "drawn", "win_rate" (the mean over his opponents), "frame_rate",
-        "elo", "elo_by_prior", the ratios of ``RATIOS`` and "highest_break". "pairs": for each pair "first", "second", "matches", "won",
-        "drawn", "win_rate" of the first player and "when_opening", that of each in the matches that he opened. "opener": the share of
-        matches won by the player who opened them; "stopped": frames that were stopped. A figure is {"value", "low", "high"}.
+    "players": for each label "matches", "frames", "won", "drawn", "win_rate" (the mean over his opponents), "frame_rate",
+    "elo", "elo_by_prior", the ratios of ``RATIOS`` and "highest_break". "pairs": for each pair "first", "second", "matches", "won",
+    "drawn", "win_rate" of the first player and "when_opening", that of each in the matches that he opened. "opener": the share of
+    matches won by the player who opened them; "stopped": frames that were stopped. A figure is {"value", "low", "high"}.
     """
     pairs = pairs_of(rows)
     elo = _elo(pairs, len(labels), labels.index(anchor), resamples)
@@ -219,16 +177,5 @@ def _bounds(elo, j, sound, wins, seeds):
 
 
 def schedule(labels):
-    """All pairs of players.
-
-    Parameters
-    ----------
-    labels : list
-        The players.
-
-    Returns
-    -------
-    list of (int, int)
-        Indices, each pair once.
-    """
+    """All pairs of players."""
     return list(combinations(range(len(labels)), 2))

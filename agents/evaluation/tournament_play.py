@@ -9,13 +9,14 @@ ends when one player has won more than N / 2, or after N frames. What a table dr
 A visit is all strokes of a player in succession: also over the lot at a re-spotted black.
 """
 
+import copy
 import time
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from snooker_env import Options, SnookerVectorEnv
-from snooker_env.benchmark import AtFrames
+from snooker_env.players import FRAMES, decided, decision_seeds
 
 from .tournament_figures import COUNTED
 
@@ -26,51 +27,43 @@ CHUNK = 100
 
 
 class TimedPlayer:
-    """A player whose decisions are timed.
+    """A player whose ``decisions`` are counted and timed, ``seconds`` together; ``seed``: of what it draws."""
 
-    Parameters
-    ----------
-    player : object
-        With ``options`` and ``act(tables, observations, going)``.
+    def __init__(self, player, seed=0):
+        self._player, self.seed = player, seed
+        self.count = {"decisions": 0, "seconds": 0.0}
 
-    Attributes
-    ----------
-    decisions : int
-        How many it took.
-    seconds : float
-        What that took together [s].
-    """
+    def at(self, rules):
+        """Bound; the count is shared."""
+        bound = copy.copy(self)
+        bound._player = self._player.at(rules)
+        return bound
 
-    def __init__(self, player):
-        self._player, self.options = player, player.options
-        self.frames = getattr(player, "frames", False) is True
-        self.decisions, self.seconds = 0, 0.0
-
-    def act(self, tables, observations, going):
-        """The player's actions."""
+    def play(self, positions, seeds):
+        """The player's own strokes."""
         began = time.perf_counter()
-        actions = self._player.act(tables, observations, going)
-        self.seconds += time.perf_counter() - began
-        self.decisions += int(np.sum(going))
-        return actions
+        strokes = self._player.play(positions, np.asarray(seeds) ^ (self.seed & 0xFFFFFFFF))
+        self.count["seconds"] += time.perf_counter() - began
+        self.count["decisions"] += len(strokes)
+        return strokes
+
+    @property
+    def decisions(self):
+        """Decisions so far."""
+        return self.count["decisions"]
+
+    @property
+    def seconds(self):
+        """Their time [s]."""
+        return self.count["seconds"]
 
 
 @dataclass
 class Encounter:
     """Some matches of two players, and how far each table is. Side 0 is the agent, side 1 the opponent.
 
-    Attributes
-    ----------
-    pair : tuple of int
-        Indices of the players, for the rows.
-    exchanged : bool
-        Whether the second of the pair is the agent.
-    queue : list of (int, int)
-        Seed and opening side of the matches that no table has begun.
-    best_of : int
-        Frames of a match.
-    rows : list of list of int
-        One row for each frame that has ended, columns ``COLUMNS``.
+    ``pair``: indices of the players, ``exchanged`` if the second of them is the agent; ``queue``: seed and opening side of the matches that
+    no table has begun; ``rows``: one for each frame that has ended, columns ``COLUMNS``.
     """
 
     pair: tuple
@@ -169,29 +162,10 @@ class Encounter:
 
 
 def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
-    """Play two matches on each seed.
+    """Play two matches on each seed: a row for each frame, columns ``tournament_figures.COLUMNS``, by seeds, openers and frames.
 
-    Parameters
-    ----------
-    pair : (int, int)
-        Indices of the players, for the rows.
-    players : (object, object)
-        The players.
-    game : dict
-        Options of the frames: noise, physics and the like.
-    seeds : list of int
-        Seeds of the matches.
-    best_of : int
-        Frames of a match.
-    threads : int, optional
-        As in ``SnookerVectorEnv``. The rows do not depend on it.
-    tick : callable, optional
-        Called with the number of matches that have ended, whenever that changes.
-
-    Returns
-    -------
-    list of list of int
-        One row for each frame, columns ``tournament_figures.COLUMNS``, in the order of seeds, openers and frames.
+    ``players``: those of the ``pair`` of indices; ``game``: options of the frames; ``threads`` change nothing; ``tick`` is called with the
+    number of matches that have ended.
     """
     rows = []
     for exchanged in (False, True):
@@ -209,27 +183,26 @@ def _after(tick, before):
 
 def _play(meeting, agent, opponent, game, threads, tick):
     """Play all matches of an encounter."""
-    options = Options(task="frame", **agent.options, **game, opponent=opponent)
-    agent = agent if agent.frames else AtFrames(agent)
+    options = Options(task="frame", **FRAMES, **game)
+    agent, decision = agent.at(options), 0
     matches, ended = len(meeting.queue) + meeting.n, 0
-    tables = _tables(meeting.n, options, threads)
-    observations, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
+    tables = _tables(meeting.n, options, opponent, threads)
+    _, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
     meeting.begun(meeting.going, info)
     moved = np.zeros(meeting.n, bool)  # since the reset: only then is a state sure to hold a stroke to play
     over = info["winner"] >= 0  # won by the opponent in his first visit: the next step plays nothing
     while (going := meeting.going).any():
         to_play = going & ~over
-        actions = (
-            agent.act(tables, observations, to_play) if to_play.any() else np.zeros(tables.action_space.shape, tables.action_space.dtype)
-        )
-        observations, _, terminated, truncated, info = tables.step(actions)
+        actions = decided(agent, tables, to_play, decision_seeds(0, meeting.unit[:, 0], decision))
+        decision += 1
+        _, _, terminated, truncated, info = tables.step(actions.astype(np.float32))
         meeting.stepped(going, info)
         done = terminated | truncated
         moved, over = ~done, np.zeros(meeting.n, bool)
         if done.any():
             before = meeting.unit.copy()
             meeting.ended(going & done, info)
-            observations, over = _renewed(tables, meeting, done, before)
+            over = _renewed(tables, meeting, done, before)
         now = matches - len(meeting.queue) - int(meeting.going.sum())
         if tick is not None and now != ended:
             tick(now)
@@ -238,23 +211,23 @@ def _play(meeting, agent, opponent, game, threads, tick):
             states = [state for state, some in zip(tables.get_state(), left, strict=True) if some]
             tables.close()
             meeting.keep(left)
-            tables = _tables(meeting.n, options, threads)
-            observations, info = tables.reset(options={"states": states})
+            tables = _tables(meeting.n, options, opponent, threads)
+            _, info = tables.reset(options={"states": states})
             over = np.zeros(meeting.n, bool)
     tables.close()
 
 
-def _tables(n, options, threads):
-    return SnookerVectorEnv(n, options, threads=threads, autoreset_mode="Disabled")
+def _tables(n, options, opponent, threads):
+    return SnookerVectorEnv(n, options, opponent=opponent, threads=threads, autoreset_mode="Disabled")
 
 
 def _renewed(tables, meeting, done, before):
-    """Begin the next frames where frames have ended; the observations of all tables, and where the next frame is over at once.
+    """Begin the next frames where frames have ended. Returns where the next frame is over at once.
 
     A new match is dealt from its seed; in the next frame of a match the table's random numbers go on. Tables without a match: dealt, too.
     """
     anew = (meeting.unit != before).any(1) & meeting.going
     seeds = [int(seed) if new else None for seed, new in zip(meeting.unit[:, 0], anew, strict=True)]
-    seen, info = tables.reset(seed=seeds, options={"reset_mask": done, "breaker": meeting.breakers})
+    _, info = tables.reset(seed=seeds, options={"reset_mask": done, "breaker": meeting.breakers})
     meeting.begun(done & meeting.going, info)
-    return seen, done & (info["winner"] >= 0)
+    return done & (info["winner"] >= 0)

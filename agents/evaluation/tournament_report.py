@@ -1,34 +1,15 @@
 """How is a tournament shown? The order of the players, the cross table and what they did, for a terminal and as Markdown."""
 
-from .text_tables import TextTable
+from commands.tables import TextTable, page, shown
+
 from .tournament_strengths import PRIOR
 
 NAME = "snooker_env.tournament"
 """Name of the schema of a tournament's file."""
 
 
-def _fig(figure, form="{:.1f}", scale=1.0):
-    """A figure with its interval, or with the one bound that there is."""
-    value, low, high = (None if figure[name] is None else form.format(scale * figure[name]) for name in ("value", "low", "high"))
-    if value is None:
-        return "-"
-    if low is None and high is None:
-        return value
-    return f"{value} [{low or '..'}, {high or '..'}]"
-
-
 def ranked(found):
-    """The labels of those who played, the highest Elo first.
-
-    Parameters
-    ----------
-    found : dict
-        The content of a tournament's file.
-
-    Returns
-    -------
-    list of str
-    """
+    """The labels of those who played, the highest Elo first."""
     players = found["figures"]["players"]
     there = [label for label, one in players.items() if one is not None]
     return sorted(there, key=lambda label: (-(players[label]["elo"]["value"] or 0.0), label))
@@ -39,30 +20,20 @@ def _unit(found):
 
 
 def tables_of(found):
-    """The tables of a tournament.
-
-    Parameters
-    ----------
-    found : dict
-        The content of a tournament's file, with figures.
-
-    Returns
-    -------
-    list of TextTable
-    """
+    """The tables of a tournament."""
     figures, order, unit = found["figures"], ranked(found), _unit(found)
     players, best_of = figures["players"], found["protocol"]["best_of"]
     won = "matches" if best_of > 1 else "frames"
     standing, play = [], []
     for rank, label in enumerate(order, 1):
         p = players[label]
-        elo = _fig(p["elo"], "{:.0f}") + (" *" if p["elo_by_prior"] else "")
-        frames = [_fig(p["frame_rate"], scale=100.0)] if best_of > 1 else []
-        standing.append([str(rank), label, elo, _fig(p["win_rate"], scale=100.0), *frames, f"{p['matches']:,}", f"{p['drawn']:,}"])
+        elo = shown(p["elo"], form="{:.0f}") + (" *" if p["elo_by_prior"] else "")
+        frames = [shown(p["frame_rate"], 100.0)] if best_of > 1 else []
+        standing.append([str(rank), label, elo, shown(p["win_rate"], 100.0), *frames, f"{p['matches']:,}", f"{p['drawn']:,}"])
         highest = str(p["highest_break"])
         play.append(
-            [label, _fig(p["points_a_frame"]), _fig(p["average_break"], "{:.2f}"), highest, _fig(p["fouls_a_frame"], "{:.2f}"),
-             _fig(p["strokes_a_frame"])]
+            [label, shown(p["points_a_frame"]), shown(p["average_break"], form="{:.2f}"), highest, shown(p["fouls_a_frame"], form="{:.2f}"),
+             shown(p["strokes_a_frame"])]
         )  # fmt: skip
     more = ["frames won [%]"] if best_of > 1 else []
     spent = {player["label"]: player for player in found["players"]}
@@ -91,24 +62,14 @@ def _cell(pairs, label, other):
 
 
 def sentences(found):
-    """What a reader of the tables must know.
-
-    Parameters
-    ----------
-    found : dict
-        The content of a tournament's file, with figures.
-
-    Returns
-    -------
-    list of str
-    """
+    """What a reader of the tables must know."""
     p, figures, game = found["protocol"], found["figures"], found["game"]
     unit, plural = _unit(found), "frames" if p["best_of"] == 1 else f"matches, each the best of {p['best_of']} frames"
     fewer = ", ".join(f"{n:,} with {label}" for label, n in p["fewer"].items())
     said = [
         f"Each pair plays {p['matches']:,} {plural}{f' ({fewer})' if fewer else ''}: two on each seed, each player breaking first in one.",
         "Options: " + ", ".join(f"{name}={value}" for name, value in game.items()) + ".",
-        f"Who breaks first wins {_fig(figures['opener'], scale=100.0)} %. Frames that were stopped, half for each: {figures['stopped']:,}.",
+        f"Who breaks first wins {shown(figures['opener'], 100.0)} %. Frames that were stopped, half for each: {figures['stopped']:,}.",
         "An average break is the points of a player's own pots, for each visit to the table. Intervals are 95 % bootstrap intervals over "
         "seeds; a share of 0 % or 100 % has the exact bound. They say nothing about other training seeds of the same recipe.",
         f"Elo: Bradley and Terry's model, {p['anchor']} at {p['anchor_elo']:.0f}; to each pair {PRIOR:g} drawn {unit} is added.",
@@ -124,73 +85,28 @@ def sentences(found):
 
 
 def is_tournament(found):
-    """Whether that is the content of a tournament's file, and not another report.
-
-    Parameters
-    ----------
-    found : object
-
-    Returns
-    -------
-    bool
-    """
+    """Whether that is the content of a tournament's file, and not another report."""
     schema = found.get("schema") if isinstance(found, dict) else None
     return isinstance(schema, dict) and schema.get("name") == NAME
 
 
 def title(found):
-    """Who met.
-
-    Parameters
-    ----------
-    found : dict
-        The content of a tournament's file, with figures.
-
-    Returns
-    -------
-    str
-    """
+    """Who met."""
     *others, last = ranked(found)
     where = "frames" if found["protocol"]["best_of"] == 1 else f"matches, the best of {found['protocol']['best_of']} frames"
     return f"Tournament of {', '.join(others)} and {last}: {where}, noise {found['game']['noise']}"
 
 
 def parts(found):
-    """Tables no wider than a terminal and sentences, in order.
-
-    Parameters
-    ----------
-    found : dict
-        The content of a tournament's file, with figures.
-
-    Yields
-    ------
-    TextTable or str
-    """
+    """Tables no wider than a terminal and sentences, in order."""
     for table in tables_of(found):
         yield from table.narrow()
     yield from sentences(found)
 
 
 def markdown(found):
-    """The page of a tournament.
-
-    Parameters
-    ----------
-    found : dict
-        The content of a tournament's file, with figures.
-
-    Returns
-    -------
-    str
-        Without a line's end after the last line.
-    """
+    """The page of a tournament."""
     made, m = found["software"], found["machine"]
-    out = [
-        f"# {title(found)}", "", "Made by", "", "```bash", found["command"], "```", "",
-        f"with snooker_env {made['snooker_env']}, at commit {found['commit'] or 'unknown'} on {m['cpu']}, {m['cores']} cores, "
-        f"{m['platform']}, Python {made['python']}, {found['date'][:10]}.", "",
-    ]  # fmt: skip
-    for table in tables_of(found):
-        out += [table.markdown(), ""]
-    return "\n".join([*out, *(f"* {line}" for line in sentences(found))])
+    how = f"snooker_env {made['snooker_env']}, at commit {found['commit'] or 'unknown'} on {m['cpu']}, {m['cores']} cores, "
+    how += f"{m['platform']}, Python {made['python']}, {found['date'][:10]}"
+    return page(title(found), found["command"], how, [*tables_of(found), "\n".join(f"* {line}" for line in sentences(found))])

@@ -20,19 +20,9 @@ ROUNDS = 200
 
 
 def strengths(wins, prior=PRIOR):
-    """The strengths of k players, with mean 0, for one or many tables of wins.
+    """The strengths (..., k) of k players, with mean 0, for one or many tables of wins.
 
-    Parameters
-    ----------
-    wins : array_like, float (..., k, k)
-        ``wins[..., i, j]``: how often i beat j, draws as halves. Every player must be linked to every other by pairs that met.
-    prior : float
-        Drawn matches that are added to each pair that met in the first table of wins.
-
-    Returns
-    -------
-    float64 (..., k)
-        The strengths. Without a prior they are infinite for a player who always or never won; the search then stops far out.
+    ``wins[..., i, j]``: how often i beat j, draws as halves; every player must be linked to every other by pairs that met.
     """
     w = np.array(wins, np.float64)
     k = w.shape[-1]
@@ -55,82 +45,29 @@ def strengths(wins, prior=PRIOR):
 
 
 def chance(ahead):
-    """The chance to win of a player whose strength is ``ahead`` of the other's.
-
-    Parameters
-    ----------
-    ahead : array_like, float
-        Difference of strengths.
-
-    Returns
-    -------
-    float64
-        Of the same shape.
-    """
+    """The chance to win of a player whose strength is ``ahead`` of the other's."""
     return 0.5 * (1.0 + np.tanh(0.5 * np.asarray(ahead, np.float64)))
 
 
 def linked(edges, start):
-    """Which players can be reached from one, step by step.
-
-    Parameters
-    ----------
-    edges : bool (k, k)
-        Whether a step from the first to the second is possible.
-    start : int
-        The player.
-
-    Returns
-    -------
-    bool (k,)
-        With himself.
-    """
-    found = np.zeros(len(edges), bool)
-    found[start] = True
+    """Which players (k,) can be reached from one, itself included, by steps that ``edges`` (k, k) allow."""
+    reached = np.zeros(len(edges), bool)
+    reached[start] = True
     for _ in range(len(edges)):
-        found |= edges[found].any(0)
-    return found
+        reached |= edges[reached].any(0)
+    return reached
 
 
 def compared(wins, anchor):
-    """Who can be compared with a player by results alone: he won something of him, and lost something, perhaps by way of others.
-
-    The distance of all others to him is decided by the prior.
-
-    Parameters
-    ----------
-    wins : float (k, k)
-        As in ``strengths``.
-    anchor : int
-        The player.
-
-    Returns
-    -------
-    bool (k,)
-        With himself.
-    """
+    """Who (k,) can be compared with the anchor by results alone: who won something of it and lost something, perhaps by way of others."""
     won = np.asarray(wins) > 0
     return linked(won, anchor) & linked(won.T, anchor)
 
 
 def bound(others, matches, level=0.95):
-    """The least strength of a player who won every match, by what is not too unlikely; of one who lost all it is the greatest, negated.
+    """The least strength of a player that won all its independent matches (m,) against players of known strengths (m,).
 
-    At the bound, winning all of them has the probability 1 - level. The others' strengths count as known.
-
-    Parameters
-    ----------
-    others : float (m,)
-        Strengths of his opponents; negated for a player who lost all.
-    matches : float (m,)
-        How many independent matches he played against each.
-    level : float
-        Confidence level.
-
-    Returns
-    -------
-    float
-        The bound; -inf without any match.
+    At the bound, winning all has the probability 1 - level. For one that lost all: negate the strengths and the bound.
     """
     others, matches = np.asarray(others, np.float64), np.asarray(matches, np.float64)
     if matches.sum() <= 0:

@@ -3,42 +3,39 @@
 from typing import Any
 
 import numpy as np
-import rich.box
-import rich.console
-import rich.table
 
+from commands.tables import text_table
+from snooker_env import player
 from snooker_env.benchmark import play_visits, summary, tables_of
+from snooker_env.players.search import BUDGET, SearchPlayer
 
-from ..features.views import view_of
 from ..learning.hyperparameters import SHOT_OPTIONS
-from ..players.built_in import GhostBall, Random
-from ..players.stroke_players import BUDGET, StrokePlayer
-from ..players.trained import ModelPlayer, player_options
+from ..players.trained import player_of_model
 
 
 def evaluate(recipe, model, visits, said):
     """Figures of held-out visits of the agent, ``ghost_ball`` and ``random``, on the same tables, under the training's noise and physics.
 
     The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also figures of the planner with
-    it and of the planner by the rule of thumb (``lookahead``). These are the first tables of ``agents.evaluate``. Raises ValueError if
+    it and of the search by the rule of thumb (``search``). These are the first tables of ``agents.evaluate``. Raises ValueError if
     there are not so many tables. ``said(total)``: the ``Progress`` of so many visits.
     """
-    options = player_options(recipe.env_kwargs)
-    players = {"trained": ModelPlayer(model, options, view_of(recipe.view)), "ghost_ball": GhostBall(), "random": Random()}
-    if hasattr(model.policy, "position_value"):
-        players |= {"planner": StrokePlayer("planner", model=model.policy), "lookahead": StrokePlayer("lookahead")}
+    trained = player_of_model(model)
+    players = {"trained": trained, "ghost_ball": player("ghost_ball"), "random": player("random")}
+    if trained.learned is not None:
+        players |= {"planner": SearchPlayer("planner", learned=trained.learned), "search": player("search")}
     shared: dict[str, Any] = {"noise": "none"} | {key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS}
     if not recipe.fidelity_given:  # some learn on "fast" to save time, and are meant to play on the usual fidelity
         shared.pop("fidelity", None)
     seeds = tables_of("held_out", visits)
     figures = {}
     with said(visits * len(players)) as progress:
-        for k, (name, player) in enumerate(players.items()):
+        for k, (name, one) in enumerate(players.items()):
 
             def each(going, done=(k + 1) * visits, name=name):
                 progress.at(done - going, name)
 
-            figures[name] = summary(play_visits(player, visits, first_seed=seeds, each=each, **shared))
+            figures[name] = summary(play_visits(one, visits, first_seed=seeds, each=each, **shared))
     return figures
 
 
@@ -81,7 +78,7 @@ def _of_the_planner(figures):
     """What learning is worth to the planner; nothing for an agent without a value of positions."""
     if "planner" not in figures:
         return ""
-    learned, rule = figures["planner"], figures["lookahead"]
+    learned, rule = figures["planner"], figures["search"]
     points = f"{learned['points_a_visit']:.2f} points a visit against {rule['points_a_visit']:.2f}"
     shots = f"with {BUDGET} simulated shots a decision the planner makes {points}"
     if _better(learned, rule):
@@ -93,18 +90,14 @@ def _of_the_planner(figures):
 
 def show(figures):
     """Print them."""
-    title = f"Means of {figures['random']['visits']} held-out visits on the same tables (± standard error)"
-    table = rich.table.Table(title=title, box=rich.box.SIMPLE, pad_edge=False, collapse_padding=True)
-    table.add_column("agent", no_wrap=True)
-    for name in ("pots", "points", "fouls", "pot rate", "next pot", "best"):
-        table.add_column(name, justify="right", no_wrap=True)
+    rows = []
     for name, f in figures.items():
         cells = [f"{f[key]:.2f} ± {f[key + '_se']:.2f}" for key in ("pots_a_visit", "points_a_visit", "fouls_a_visit")]
         cells += ["-" if f[key] is None else f"{100 * f[key]:.1f} %" for key in ("pot_rate", "next_pot_after_a_pot")]
-        cells.append(str(f["longest_break"]))
-        table.add_row(name, *cells)
-    console = rich.console.Console()
-    console.print(table)
-    console.print("ghost_ball: the widest pot, always softly. random: a random stroke at one of the direct pots.")
+        rows.append([name, *cells, str(f["longest_break"])])
+    title = f"Means of {figures['random']['visits']} held-out visits on the same tables (± standard error)"
+    lines = [title, *text_table(["agent", "pots", "points", "fouls", "pot rate", "next pot", "best"], rows), ""]
+    lines.append("ghost_ball: the widest pot, always softly. random: a random stroke at one of the direct pots.")
     if "planner" in figures:
-        console.print(f"planner: {BUDGET} simulated shots a decision, by what was learned; lookahead: the same by a rule of thumb.")
+        lines.append(f"planner: {BUDGET} simulated shots a decision, by what was learned; search: the same by a rule of thumb.")
+    print("\n".join(["", *lines]))

@@ -9,9 +9,9 @@ from functools import cache
 from pathlib import Path
 
 from commands.files import write_atomic
+from snooker_env.players.resolver import is_name
 
-from ..cluster.faults import ClusterError
-from ..players.by_name import is_player, player_of
+from ..cluster.job import ClusterError
 from .entrants import Entrant
 
 
@@ -21,30 +21,27 @@ def sent(entrant, k):
 
     run, file = entrant.runs[k], None
     kind, at, path = run.partition("@")
-    if is_player(run) and at and path not in pretrained():
+    if is_name(run) and at and path not in pretrained():
         file, run = file_of(Path(path), "agent"), f"{kind}@"
-    elif not is_player(run):
+    elif not is_name(run):
         file, run = file_of(Path(run), "agent"), ""
     own = _module_digest(run) if ":" in run else ""
     return {
         "run": run, "model": file and file.read_bytes(), "suffix": file and file.suffix,
-        "trust": entrant.trust, "options": [list(pair) for pair in entrant.options], "frames": entrant.frames,
+        "trust": entrant.trust, "options": [list(pair) for pair in entrant.options],
         "module": own,
     }  # fmt: skip
 
 
-def arrived(agent, budget, seed):
-    """A fresh player of what ``sent`` made. ``budget``: of a search, whose seed is ``seed``."""
+def arrived(agent):
+    """The player of what ``sent`` made."""
     run = agent["run"]
     if ":" in run and _module_digest(run) != agent["module"]:
         raise ClusterError(f"the module of {run} on this node is another than on the machine that sent it: copy the same to every node")
     if agent["model"] is not None:
         run += _unpacked(agent["model"], agent["suffix"])
     one_thread(run)
-    if is_player(run):
-        return player_of(run, budget=budget, seed=seed, frames=agent["frames"])
-    entrant = Entrant(run, (run,), agent["trust"], tuple(map(tuple, agent["options"])), agent["frames"])
-    return entrant.player(0, budget)
+    return Entrant(run, (run,), agent["trust"], tuple(map(tuple, agent["options"]))).player(0)
 
 
 def one_thread(run):

@@ -9,7 +9,6 @@ same positions. Standard errors are over visits.
 """
 
 import argparse
-import json
 import shlex
 import sys
 from pathlib import Path
@@ -20,40 +19,46 @@ with needs("agents.value_quality"):
     import numpy as np
 
     import snooker_env
-    from commands.files import writable, write_atomic
+    from commands.files import writable, write_atomic, write_json
+    from commands.provenance import provenance
+    from commands.tables import TextTable, page, show
     from snooker_env.benchmark import play_visits, tables_of
     from snooker_env.checks import integer, refuse
     from snooker_env.planning import RULE_OF_THUMB, SURE, Positions, prospects_of
+    from snooker_env.players import BoundPlayer
     from snooker_env.tasks import Noise
 
-    from ..players.by_name import player_of
-    from .protocol import provenance
 
 GROUPS, LEAST = 10, 20
 """Number of groups of positions, fewer where a group would have fewer than ``LEAST``."""
 
 
-class Recording:
+class Recording(BoundPlayer):
     """A planner that notes the values of the positions that it plays from."""
 
     def __init__(self, planner):
-        self._planner, self.options, self.rows = planner, planner.options, []
+        self._planner, self.name, self.rows = planner, planner.name, []
 
-    def act(self, tables, observations, going):
-        """The planner's own actions."""
-        actions = self._planner.act(tables, observations, going)
-        at, search = Positions.of(tables)[going], self._planner.search
+    def at(self, rules):
+        """Bound, with the same notes."""
+        bound = super().at(rules)
+        bound._planner = self._planner.at(rules)
+        return bound
+
+    def play(self, positions, seeds):
+        """The planner's own strokes."""
+        at, search = Positions.of(positions), self._planner.search
         rule = prospects_of(at, search.spread, SURE if search.noise.silent else RULE_OF_THUMB)[0]
-        self.rows.append(np.column_stack([np.flatnonzero(going), at.points, search.value(at), rule]))
-        return actions
+        self.rows.append(np.column_stack([at.points, search.value(at), rule]))
+        return self._planner.play(at, seeds)
 
 
 def quality(player, visits, layout, noise):
     """Figures of the value of ``player``, a planner, over so many visits."""
     recording = Recording(player)
     strokes = play_visits(recording, visits, layout=layout, noise=noise, first_seed=tables_of(layout, visits))
-    visit, so_far, value, rule = np.concatenate(recording.rows).T
-    visit = visit.astype(np.int64)
+    so_far, value, rule = np.concatenate(recording.rows).T
+    visit = strokes.visit  # in the order of play, as it was asked
     followed = strokes.a_visit(strokes.points)[visit] - so_far
     figures = {"layout": layout, "noise": noise, "visits": visits, "positions": len(visit), "followed": float(followed.mean())}
     for name, of in (("value", value), ("rule", rule)):
@@ -73,21 +78,18 @@ def _standard_error(values, visit):
     return float(np.sqrt((sums[many > 0] ** 2).sum()) / len(values))
 
 
-def markdown(report):
+def parts(report):
     """The figures as tables."""
-    lines = ["# How good the value of " + report["agent"] + " is", "", "Made by", "", "```bash", report["command"], "```", ""]
-    lines += [f"with snooker_env {report['version']}, at commit {report['commit']} on {report['machine']}.", ""]
     for one in report["results"]:
-        value, rule = one["value"], one["rule"]
-        lines += [
-            f"**{one['layout']}, noise {one['noise']}: {one['visits']} visits, {one['positions']:,} positions**", "",
-            "| value | correlation with what followed | mean | really followed |", "|---|--:|--:|--:|",
-            f"| learned | {value['correlation']:.3f} | {value['mean']:.1f} | {one['followed']:.1f} |",
-            f"| rule of thumb | {rule['correlation']:.3f} | {rule['mean']:.1f} | {one['followed']:.1f} |", "",
-            "| group of positions, by the learned value | mean value | followed (± s. e.) |", "|---|--:|--:|",
-            *(f"| {k + 1} | {g['value']:.1f} | {g['followed']:.1f} ± {g['se']:.1f} |" for k, g in enumerate(one["groups"])), "",
-        ]  # fmt: skip
-    return "\n".join(lines)
+        where = f"{one['layout']}, noise {one['noise']}: {one['visits']} visits, {one['positions']:,} positions"
+        rows = [
+            [words, f"{one[name]['correlation']:.3f}", f"{one[name]['mean']:.1f}", f"{one['followed']:.1f}"]
+            for name, words in (("value", "learned"), ("rule", "rule of thumb"))
+        ]
+        yield TextTable(where, ["value", "correlation with what followed", "mean", "really followed"], rows, 1, 1)
+        rows = [[str(k), f"{g['value']:.1f}", f"{g['followed']:.1f} ± {g['se']:.1f}"] for k, g in enumerate(one["groups"], 1)]
+        title = "Groups of positions, by the learned value"
+        yield TextTable(title, ["group", "mean value", "followed (± s. e.)"], rows, 1, 1)
 
 
 @command("agents.value_quality")
@@ -110,18 +112,19 @@ def main(argv=None):
             Noise.of(level)
         if not args.agent.startswith("planner"):
             raise refuse("agent", args.agent, "must be a planner: planner, planner@MODEL")
-        player_of(args.agent)
+        snooker_env.player(args.agent)
         for name in ("json", "markdown"):
             writable(name, getattr(args, name))
     except ValueError as error:
         p.error(str(error))
     snooker_env.warmup()
     report = {"command": "python -m agents.value_quality " + shlex.join(argv), "agent": args.agent, **provenance()}
-    report["results"] = [quality(player_of(args.agent), args.visits, layout, noise) for layout in args.layouts for noise in args.noise]
+    conditions = [(layout, noise) for layout in args.layouts for noise in args.noise]
+    report["results"] = [quality(snooker_env.player(args.agent), args.visits, *each) for each in conditions]
     if args.json:
-        write_atomic(args.json, (json.dumps(report, indent=1) + "\n").encode())
-    text = markdown(report)
+        write_json(args.json, report)
     if args.markdown:
-        write_atomic(args.markdown, text.encode())
-    print(text)
+        made = f"snooker_env {report['version']}, at commit {report['commit']} on {report['machine']}"
+        write_atomic(args.markdown, page(f"How good the value of {args.agent} is", report["command"], made, parts(report)))
+    show(parts(report))
     return 0

@@ -1,9 +1,9 @@
 """How are the visits of an evaluation cut into parts, and put together again?
 
-Every player is made anew for each part and told which of all tables it has, so that whatever it draws is what it would draw with all
-tables at once. The parts always have ``SIZE`` visits: the last bits of a network's product depend on how many rows it has, and one
-machine and many are to agree to the last bit.
+A player's strokes depend on positions and seeds alone, and the seeds on the table and the decision: so the parts together are what one
+machine plays at once.
 """
+
 
 import numpy as np
 
@@ -18,23 +18,20 @@ SIZE = 100
 COLUMNS = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance")
 
 
-def parts_of(shared, k, condition, seeds, budget, rekey):
+def parts_of(shared, k, condition, seeds, rekey):
     """The parts of the run ``k`` of an agent, whose data are named ``shared``, under a condition."""
-    given = {"k": k, "condition": condition, "budget": budget, "rekey": rekey, "total": len(seeds)}
-    return [Part("visits", shared, given | {"first": n, "seeds": list(seeds[n : n + SIZE])}) for n in range(0, len(seeds), SIZE)]
+    same = {"k": k, "condition": condition, "rekey": rekey}
+    return [Part(f"{__name__}:play", shared, same | {"seeds": list(seeds[n : n + SIZE])}) for n in range(0, len(seeds), SIZE)]
 
 
-def play(shared, given, threads):
+def play(shared, args, threads):
     """The task: the strokes of some visits, a dict of arrays."""
-    condition, k, seeds, first = given["condition"], given["k"], given["seeds"], given["first"]
-    player = _of_all(arrived(shared, given["budget"], k), first, given["total"])
-    if given["rekey"]:
-        player = Rekeyed(player, k, first, given["total"])
-    options = {"layout": condition["layout"], "noise": condition["noise"], "fidelity": condition["fidelity"]}
-    physics = physics_option(condition["physics"])
-    strokes = play_visits(player, len(seeds), first_seed=seeds, physics=physics, threads=threads, **options)
-    found = {name: getattr(strokes, name) for name in COLUMNS}
-    return found | {"seconds": np.float64(strokes.decision_seconds), "simulated": np.int64(strokes.simulated)}
+    k, seeds = args["k"], args["seeds"]
+    options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}
+    rekey = k if args["rekey"] else None
+    strokes = play_visits(arrived(shared), len(seeds), first_seed=seeds, seed=k, threads=threads, rekey=rekey, **options)
+    columns = {name: getattr(strokes, name) for name in COLUMNS}
+    return columns | {"seconds": np.float64(strokes.decision_seconds), "simulated": np.int64(strokes.simulated)}
 
 
 def joined(results, total):
@@ -44,36 +41,3 @@ def joined(results, total):
     order = np.lexsort((columns["visit"], columns["number"]))
     seconds, simulated = (sum(one[name].item() for one in results) for name in ("seconds", "simulated"))
     return Strokes(total, *(columns[name][order] for name in COLUMNS), decision_seconds=seconds, simulated=simulated)
-
-
-def _of_all(player, first, total):
-    """Tell a player that draws for all tables at once which of them it has. Others know nothing of tables beside their own."""
-    if hasattr(player, "tables_of"):
-        player.tables_of(first, total)
-    return player
-
-
-class Rekeyed:
-    """A player whose tables get new random streams after each of its decisions: whoever saw its errors coming would lose by it.
-
-    Parameters
-    ----------
-    player : object
-        With ``options`` and ``act(tables, observations, going)``.
-    seed : int
-        Of the new streams.
-    first, total : int
-        Which of all tables these are.
-    """
-
-    def __init__(self, player, seed, first, total):
-        self._player, self.options, self._rng = player, player.options, np.random.default_rng(seed)
-        self._first, self._total = first, total
-
-    def act(self, tables, observations, going):
-        """The player's own actions."""
-        actions = self._player.act(tables, observations, going)
-        streams = tables.tables.streams
-        drawn = self._rng.integers(0, 2**63, (self._total, streams.shape[1]), dtype=np.uint64)
-        streams[:] = drawn[self._first : self._first + len(streams)]
-        return actions

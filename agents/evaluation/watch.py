@@ -1,7 +1,7 @@
 """How does an agent play a visit? Printed stroke by stroke, and written as a replay or a film.
 
     python -m agents.watch --agent ppo_foresight --out break.html
-    python -m agents.watch --agent search --at-least 50 --out break.mp4
+    python -m agents.watch --agent search_2000 --at-least 50 --out break.mp4
 
 The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the replay is written to a temporary
 file and opened in the browser. Visits are played on held-out tables, the seeds one after the other; --at-least takes the first of --tries
@@ -23,6 +23,8 @@ with needs("agents.watch"):
     from commands.files import writable
     from snooker_env.benchmark import HELD_OUT_SEED
     from snooker_env.checks import choice, integer, number, refuse
+    from snooker_env.planning import Positions
+    from snooker_env.players import VISITS, decision_seeds
 
     from .entrants import Entrant
 
@@ -32,18 +34,16 @@ SUFFIXES = (".html", ".json", *FILMS)
 
 def visit(player, seed, **options):
     """A ``SnookerEnv`` after one whole visit of the player, with its history; the same visit as ``play_visits`` gives for that seed."""
-    options = {**player.options, **options}
-    env = sn.SnookerEnv(**options)
-    tables = sn.SnookerVectorEnv(1, threads=1, **options)
+    env = sn.SnookerEnv(**VISITS, **options)
+    bound, decision = player.at(env), 0
     env.keep_history = True
     env.reset(seed=seed)
     ended = False
     while not ended:
-        observations, _ = tables.reset(options={"state": env.get_state()})
-        action = player.act(tables, observations, np.ones(1, bool))[0]
-        _, _, terminated, truncated, _ = env.step(action)
-        ended = terminated or truncated
-    tables.close()
+        at = Positions.of(env)
+        strokes = bound.play(at, decision_seeds(0, np.array([seed]), decision))
+        _, _, terminated, truncated, _ = env.step(strokes.actions(env.options, at)[0].astype(np.float32))
+        ended, decision = terminated or truncated, decision + 1
     return env
 
 
@@ -65,7 +65,6 @@ def parser():
     p.add_argument("--seed", type=int, default=HELD_OUT_SEED, help="of the first table")
     p.add_argument("--at-least", type=int, default=0, metavar="POINTS", help="show the first visit with so many points")
     p.add_argument("--tries", type=int, default=200, help="most visits played to find it")
-    p.add_argument("--budget", type=int, default=2000, help="shots that a search simulates for each of its own")
     p.add_argument("--speed", type=float, default=1.0, help="of a film, over that of the play")
     p.add_argument("--size", help="of a film, WIDTHxHEIGHT, both even")
     p.add_argument("--fps", type=float, help="pictures a second of a film")
@@ -95,7 +94,7 @@ def found(args):
     entrant = Entrant.of(args.agent, trust=args.trust)
     longest = -1
     for seed in range(args.seed, args.seed + args.tries):
-        env = visit(entrant.player(0, args.budget), seed, layout=args.layout, noise=args.noise)
+        env = visit(entrant.player(0), seed, layout=args.layout, noise=args.noise)
         if env.points >= args.at_least:
             return env, seed, entrant.label
         longest = max(longest, env.points)

@@ -82,8 +82,8 @@ def _first_leg(positions, present, ball, dx, dy):
 
 
 @kernel
-def _keep(shots, count, kind, ball, other, pocket, ax, ay, gx, gy, tolerance, reach):
-    """Put a shot in its place among the ``count`` widest so far; returns how many there are then."""
+def _keep(shots, count, what, aim, ghost, tolerance, reach):
+    """Put a shot, what = (kind, ball, other, pocket), in its place among the ``count`` widest so far; returns how many there are then."""
     if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
         return count
     at = min(count, shots.shape[0] - 1)
@@ -92,8 +92,8 @@ def _keep(shots, count, kind, ball, other, pocket, ax, ay, gx, gy, tolerance, re
             shots[at, c] = shots[at - 1, c]
         at -= 1
     row = shots[at]
-    row[KIND], row[BALL], row[OTHER], row[POCKET], row[AIM_X], row[AIM_Y] = kind, ball, other, pocket, ax, ay
-    row[GHOST_X], row[GHOST_Y], row[TOLERANCE], row[REACH] = gx, gy, tolerance, reach
+    row[KIND], row[BALL], row[OTHER], row[POCKET] = what
+    (row[AIM_X], row[AIM_Y]), (row[GHOST_X], row[GHOST_Y]), row[TOLERANCE], row[REACH] = aim, ghost, tolerance, reach
     return min(count + 1, shots.shape[0])
 
 
@@ -132,7 +132,7 @@ def _banks(positions, present, ball, noses, shots, count):
                 continue
             if not clear_segment(positions, present, qx, qy, kx, ky, ball, 0, 2.0 * BALL_RADIUS):
                 continue
-            count = _keep(shots, count, BANK, ball, -1, k, qx, qy, gx, gy, tolerance, _BENT * gain)
+            count = _keep(shots, count, (BANK, ball, -1, k), (qx, qy), (gx, gy), tolerance, _BENT * gain)
     return count
 
 
@@ -180,9 +180,8 @@ def _plants(positions, present, ball, other, shots, count):
         if not clear_segment(positions, present, bx, by, kx, ky, other, ball, reach):
             continue
         off = max(path, BALL_RADIUS)  # the aim is not solved for a point at no distance
-        count = _keep(
-            shots, count, PLANT, ball, other, k, ax + off * px, ay + off * py, gx, gy, tolerance, min(_THROW * second * gain, face)
-        )
+        aim, reaches = (ax + off * px, ay + off * py), min(_THROW * second * gain, face)
+        count = _keep(shots, count, (PLANT, ball, other, k), aim, (gx, gy), tolerance, reaches)
     return count
 
 
@@ -257,7 +256,7 @@ def _cannons(positions, present, ball, other, e, shots, count):
                 continue
             if not clear_segment(positions, present, qx, qy, kx, ky, ball, other, reach):
                 continue
-            count = _keep(shots, count, CANNON, ball, other, k, qx, qy, gx, gy, tolerance, _BENT * turn * gain)
+            count = _keep(shots, count, (CANNON, ball, other, k), (qx, qy), (gx, gy), tolerance, _BENT * turn * gain)
     return count
 
 

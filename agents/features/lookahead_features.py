@@ -1,7 +1,7 @@
 """What does an agent with a one-shot lookahead observe? The simulated outcomes of 12 strokes at each of the two widest pots.
 
 The observation is ``pot_view.with_pots`` followed by ``STROKES_SEEN`` rows, one for each stroke at each of these pots: means of its
-outcomes over the errors of ``NOISE_SAMPLES``, scaled by the execution noise of the tables (one sample if there is none). The agent may play
+outcomes over the errors of ``EVEN_SAMPLES``, scaled by the execution noise of the tables (one sample if there is none). The agent may play
 only these strokes. A decision costs 120 simulated shots: slower than an agent that observes the table alone, far quicker than ``search``.
 
 Several noise samples a stroke are needed: one outcome does not show how execution errors affect the next pot.
@@ -12,11 +12,11 @@ from gymnasium import spaces
 
 from snooker_env.game import BallOn
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
-from snooker_env.planning import RULE_OF_THUMB, Planner, Positions, prospects_of, spread_of
+from snooker_env.planning import RULE_OF_THUMB, Planner, action_masks, prospects_of, spread_of
 from snooker_env.planning.learned.pot_view import SHOWN, with_pots
+from snooker_env.planning.planner import options_in
+from snooker_env.planning.sobol import EVEN_SAMPLES
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
-
-from .noise_samples import NOISE_SAMPLES
 
 POTS_SEEN = 2
 SEEN_SPEEDS, SEEN_TOPS = (1, 3, 5, 7), (0, 2, 4)
@@ -37,27 +37,28 @@ _TOPS = np.array(TOPS)[PICKS % len(TOPS)] / TOPS[-1]
 
 
 class ForesightView:
-    """The observation with a one-shot lookahead on the tables of a ``SnookerVectorEnv``."""
+    """The observation with a one-shot lookahead, bound to rules by ``at``."""
 
     space = SPACE
 
     def __init__(self, threads=None):
-        self._threads, self._tables = threads, None
+        self._threads = threads
 
-    def __call__(self, tables, observations, rows=None):
-        """The view of the tables ``rows`` (all if None), from their flat observations: float32 (n, SHOWN + STROKES_SEEN * ENTRIES)."""
-        rows = np.arange(tables.num_envs) if rows is None else np.flatnonzero(rows)
-        ahead = self.ahead(tables, Positions.of(tables)[rows], tables.action_masks()[rows][:, PICKS])
-        return np.concatenate([with_pots(observations), ahead.reshape(len(rows), -1)], 1)
+    def at(self, options):
+        """The view under the rules and the noise of ``options``."""
+        bound = ForesightView(self._threads)
+        bound._planner = planner = Planner(options_in(options).but(action="discrete"), threads=self._threads)
+        bound._samples = np.array(EVEN_SAMPLES[:1] if planner.noise.silent else EVEN_SAMPLES, np.uint64)
+        bound._spread = spread_of(planner.noise, planner.physics)
+        return bound
 
-    def ahead(self, tables, at, masks):
-        """The rows (n, STROKES_SEEN, ENTRIES) of ``Positions``, under the rules and noise of the ``tables``; all 0 where ``masks``
-        (n, STROKES_SEEN) says that there is no such pot."""
-        if self._tables is not tables:
-            self._tables, self._planner = tables, Planner(tables, threads=self._threads)
-            noise = self._planner.noise
-            self._samples = np.array(NOISE_SAMPLES[:1] if noise.silent else NOISE_SAMPLES, np.uint64)
-            self._spread = spread_of(noise, self._planner.physics)
+    def __call__(self, at, observations):
+        """The view of n ``Positions`` with these flat observations: float32 (n, SHOWN + STROKES_SEEN * ENTRIES)."""
+        ahead = self.ahead(at, action_masks(at)[:, PICKS])
+        return np.concatenate([with_pots(observations), ahead.reshape(len(at), -1)], 1)
+
+    def ahead(self, at, masks):
+        """The rows (n, STROKES_SEEN, ENTRIES) of ``Positions``; all 0 where ``masks`` (n, STROKES_SEEN) says that there is no such pot."""
         table, stroke = np.nonzero(masks)
         k, m = len(self._samples), len(table)
         # the samples of a stroke in succession: its aim is solved once for all of them
@@ -79,9 +80,9 @@ class ForesightView:
         seen[table, stroke] = row
         return seen
 
-    def masks(self, tables):
-        """Which choices may be played: the simulated ones, where the pot exists."""
-        return tables.action_masks() & _CHOSEN
+    def allowed(self, masks):
+        """Which of the available choices may be played: the simulated ones."""
+        return masks & _CHOSEN
 
 
 def worth_by_rule(ahead):

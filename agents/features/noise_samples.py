@@ -1,7 +1,7 @@
 """Which noise samples does the lookahead use? Five representative ones; ``python -m agents.noise_samples`` finds them again.
 
 The outcome of a shot under execution noise is an expectation over five errors (speed, side, top, aim, elevation). A mean over a few random
-draws is poor when they happen to lie on one side. ``NOISE_SAMPLES`` are keys of random streams (``game.philox``), selected so that the five
+draws is poor when they happen to lie on one side. ``EVEN_SAMPLES`` are keys of random streams (``game.philox``), selected so that the five
 errors of each kind are close to five equally likely values (-1.28, -0.52, 0, 0.52, 1.28 standard deviations) and that different kinds are
 nearly uncorrelated. All positions and strokes use the same samples (common random numbers), so strokes are compared under equal luck. Five
 errors scaled to variance 1 would lie further out and overstate the number of misses.
@@ -15,29 +15,16 @@ from commands.lifecycle import command, needs
 with needs("agents.noise_samples"):
     import numpy as np
 
-    from snooker_env.kernels import entry, executed
-    from snooker_env.tasks import Noise
+    from snooker_env.planning.sobol import EVEN_SAMPLES
+    from snooker_env.tasks.noise import errors_of
 
-NOISE_SAMPLES = (354, 1840, 979, 2326, 3875)
-"""Keys of the streams."""
 WEIGHTS = np.array([1.0, 0.5, 0.5, 1.0, 0.1])
 """Importance of an even spread of the errors of speed, side, top, aim and elevation."""
 
 
-@entry
-def _errors(keys, noise, out):
-    stream = np.zeros(2, np.uint64)
-    for i in range(len(keys)):
-        stream[0], stream[1] = keys[i], 0
-        out[i, 0], out[i, 1], out[i, 2], out[i, 3], out[i, 4] = executed(5.0, 0.0, 0.0, 0.0, 0.5, noise, stream)
-
-
-def errors_of(keys):
-    """The standard normal errors that the streams with these ``keys`` draw for a first shot: (n, 5), speed, side, top, aim, elevation."""
-    small = Noise(aim_deg=1e-3, speed_abs=1e-3, offset_mm=1e-3, elevation_deg=1e-3).pack(1.0)
-    out = np.empty((len(keys), 5))
-    _errors(np.asarray(keys, np.uint64), small, out)
-    return (out - (5.0, 0.0, 0.0, 0.0, 0.5)) / (1e-3, 1e-6, 1e-6, np.radians(1e-3), np.radians(1e-3))
+def first_of(keys):
+    """The streams with these ``keys``, at their beginnings: uint64 (n, 2)."""
+    return np.stack([np.asarray(keys, np.uint64), np.zeros(len(keys), np.uint64)], axis=1)
 
 
 def unevenness(errors):
@@ -52,7 +39,7 @@ def unevenness(errors):
 def find(k, keys=5_000, starts=20, seed=0):
     """(k of the first ``keys`` keys, their unevenness, the median unevenness of random sets): a search that exchanges one key at a time,
     the best of ``starts`` random starts."""
-    errors, rng = errors_of(np.arange(1, keys + 1)), np.random.default_rng(seed)
+    errors, rng = errors_of(first_of(np.arange(1, keys + 1))), np.random.default_rng(seed)
     best, least = np.zeros(k, np.int64), np.inf
     for _ in range(starts):
         some, uneven, before = rng.choice(keys, k, replace=False), np.inf, None
@@ -74,7 +61,7 @@ def main(argv=None):
     argparse.ArgumentParser(
         "python -m agents.noise_samples", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     ).parse_args(argv)
-    best, least, median = find(len(NOISE_SAMPLES))
-    print(f"NOISE_SAMPLES = {tuple(map(int, best))}: unevenness {least:.3f}, of a set drawn at random {median:.2f} (median)")
-    print(errors_of(best).round(2))
+    best, least, median = find(len(EVEN_SAMPLES))
+    print(f"EVEN_SAMPLES = {tuple(map(int, best))}: unevenness {least:.3f}, of a set drawn at random {median:.2f} (median)")
+    print(errors_of(first_of(best)).round(2))
     return 0

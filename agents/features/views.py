@@ -5,7 +5,6 @@ import numpy as np
 from snooker_env.checks import choice
 from snooker_env.planning import Positions
 from snooker_env.planning.learned.pot_view import SHOWN, VIEW_SPACE, with_pots
-from snooker_env.tasks import observation_space, shaped_observations
 
 from .lookahead_features import ForesightView
 
@@ -17,32 +16,17 @@ class PotsView:
 
     space = VIEW_SPACE
 
-    def __call__(self, tables, observations, rows=None):
-        """The view of the tables ``rows``, from their flat observations."""
+    def at(self, options):
+        """The view under the rules of ``options``."""
+        return self
+
+    def __call__(self, at, observations):
+        """The view of n ``Positions`` with these flat observations."""
         return with_pots(observations)
 
-    def masks(self, tables):
-        """Which choices may be played."""
-        return tables.action_masks()
-
-
-class PlainView:
-    """The view of a model from elsewhere: the environment's own observation of that ``kind``."""
-
-    def __init__(self, kind):
-        self._kind = kind
-        self.space = observation_space(kind)
-
-    def __call__(self, tables, observations, rows=None):
-        """The view of the tables ``rows``, from their flat observations."""
-        masks = None
-        if self._kind == "masked":
-            masks = tables.action_masks() if rows is None else tables.action_masks()[rows]
-        return shaped_observations(self._kind, observations, masks)
-
-    def masks(self, tables):
-        """Which choices may be played."""
-        return tables.action_masks()
+    def allowed(self, masks):
+        """Which of the available choices may be played."""
+        return masks
 
 
 def view_of(name, threads=None):
@@ -56,7 +40,8 @@ def training_tables(n, threads=None, view="pots", **options):
 
     from snooker_env.sb3 import SnookerVecEnv
 
-    shown, base = view_of(view, threads), SnookerVecEnv(n, threads=threads, **options)
+    base = SnookerVecEnv(n, threads=threads, **options)
+    shown = view_of(view, threads).at(base.tables.options)
 
     class Viewed(VecEnvWrapper):
         """All tables at once. A terminal observation holds the pots only: nothing is learned from the state after it."""
@@ -65,7 +50,8 @@ def training_tables(n, threads=None, view="pots", **options):
         """Values [points] of n ``Positions``, added to the rewards of strokes after which the visit goes on; None: points alone."""
 
         def reset(self):
-            return shown(base.tables, self.venv.reset())
+            observations = self.venv.reset()
+            return shown(Positions.of(base.tables), observations)
 
         def step_wait(self):
             observations, rewards, done, infos = self.venv.step_wait()
@@ -78,7 +64,7 @@ def training_tables(n, threads=None, view="pots", **options):
                 last[:, :SHOWN] = with_pots(np.stack([info["terminal_observation"] for info in ended]))
                 for info, row in zip(ended, last, strict=True):
                     info["terminal_observation"] = row
-            return shown(base.tables, observations), rewards, done, infos
+            return shown(Positions.of(base.tables), observations), rewards, done, infos
 
         @property
         def running(self):
@@ -91,7 +77,7 @@ def training_tables(n, threads=None, view="pots", **options):
 
         def env_method(self, method_name, *arguments, indices=None, **more):
             if method_name == "action_masks":
-                return list(shown.masks(base.tables)[np.array(self._get_indices(indices))])
+                return list(shown.allowed(base.tables.action_masks())[np.array(self._get_indices(indices))])
             return self.venv.env_method(method_name, *arguments, indices=indices, **more)
 
     return Viewed(base, shown.space)

@@ -140,11 +140,11 @@ class ExpertIteration:
         pick = rng.integers(min(AMONG, self._looks), size=n)
         errors = rng.standard_normal((n * (FRESH + 1), 5))
         errors = np.concatenate([errors[: n * FRESH].reshape(n, FRESH, 5), errors[n * FRESH :, None]], axis=1)
-        given = [
+        slices = [
             {"at": positions_given(at[k]), "seeds": seeds[k], "explored": explored[k], "pick": pick[k], "errors": errors[k]}
             for k in in_slices(n)
         ]  # fmt: skip
-        played = self._where.map("strokes", self._sent, given)
+        played = self._where.map("agents.learning.self_play:strokes", self._sent, slices)
         found = {name: np.concatenate([one[name] for one in played]) for name in played[0]}
         follows = found["follows"]
         self._value.add(found["seen"], found["after"], found["points"], found["goes_on"], follows & ~explored)

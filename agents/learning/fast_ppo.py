@@ -13,6 +13,7 @@ from sb3_contrib.common.maskable.buffers import MaskableRolloutBuffer
 from stable_baselines3.common.buffers import RolloutBuffer
 from stable_baselines3.common.utils import explained_variance
 
+from .fused import Loss, Rollout
 from .networks import TablePolicy
 
 
@@ -49,13 +50,14 @@ class FastPPO(MaskablePPO):
         seen, masks = buffer.observations.reshape(n, -1), buffer.action_masks.reshape(n, -1)
         actions, before, advantages, returns = (a.reshape(n) for a in (buffer.actions, buffer.log_probs, buffer.advantages, buffer.returns))
         scaled, figures = np.empty_like(advantages), []
+        rollout, loss = Rollout(seen, masks, actions, before, scaled, returns), Loss(clip, self.ent_coef, self.vf_coef)
         for _ in range(self.n_epochs):
             order = np.random.permutation(n)  # noqa: NPY002 - as SB3: a checkpoint holds its state
             for start in range(0, n, self.batch_size or n):
                 rows = order[start : start + (self.batch_size or n)]
                 scaled[rows] = self._normalised(advantages[rows])
                 fused.zero_grad()
-                figures.append(fused.ppo_gradient(rows, seen, masks, actions, before, scaled, returns, clip, self.ent_coef, self.vf_coef))
+                figures.append(fused.ppo_gradient(rows, rollout, loss))
                 gradient = fused.gradient
                 gradient *= min(1.0, self.max_grad_norm / (float(gradient.norm()) + 1e-6))
                 self.policy.optimizer.step()

@@ -10,6 +10,7 @@ gradients with PyTorch's own.
 
 from threading import Lock
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -23,6 +24,29 @@ from snooker_env.planning.learned.table_kernels import BALL_INPUTS, STATE
 from snooker_env.tasks import CHOICES, POTS
 
 from . import fused_kernels as kernels
+
+
+class Rollout(NamedTuple):
+    """A rollout of n tables, and how each was played."""
+
+    seen: np.ndarray
+    """float32 (n, SHOWN), as in ``FusedTable.act``."""
+    masks: np.ndarray
+    """bool (n, CHOICES)."""
+    actions: np.ndarray
+    """int64 (n,)."""
+    before: np.ndarray
+    """Logarithms of the old probabilities, and the next two: float32 (n,)."""
+    advantages: np.ndarray
+    returns: np.ndarray
+
+
+class Loss(NamedTuple):
+    """The constants of PPO's loss."""
+
+    clip: float
+    entropy_weight: float
+    value_weight: float
 
 
 class FusedTable:
@@ -78,22 +102,20 @@ class FusedTable:
                 values[here] = b.value_2_[:, 0]
         return choices, values, logs
 
-    def ppo_gradient(self, rows, seen, masks, actions, before, advantages, returns, clip, entropy_weight, value_weight):
+    def ppo_gradient(self, rows, rollout, loss):
         """Add the gradient of PPO's loss on the minibatch ``rows`` (int64) of a rollout to the parameters' ``grad``.
 
-        seen, masks as in ``act``; actions int64, before (logarithms of the old probabilities), advantages and returns float32 (n,): of the
-        whole rollout. Returns the means, over the minibatch, of the policy's loss, the squared error of the values, the entropy, the
-        share of clipped ratios and the approximate KL divergence.
+        Returns the means, over the minibatch, of the policy's loss, the squared error of the values, the entropy, the share of clipped
+        ratios and the approximate KL divergence.
         """
+        seen, masks, *played = rollout
         sums, size = np.zeros(5), len(rows)
         with self._lock, torch.no_grad():
             for b, here in self._blocks_of(rows):
                 m = self._forward(b, here, seen, masks)
                 torch.sum(torch.mul(b.likely, b.by_table, out=b.d_by_table), 1, out=b.mean)
-                kernels.ppo_gradient(
-                    here, b.by_table_, b.likely_, b.mean_, b.sides, b.value_2_, actions, before, advantages, returns, clip, entropy_weight,
-                    value_weight, size, b.d_by_table_, b.d_value_2_, sums,
-                )  # fmt: skip
+                passed = b.by_table_, b.likely_, b.mean_, b.sides, b.value_2_
+                kernels.ppo_gradient(here, passed, tuple(played), tuple(loss), size, (b.d_by_table_, b.d_value_2_), sums)
                 self._backward(b, m)
         return sums / size
 
@@ -113,7 +135,7 @@ class FusedTable:
     def _forward(self, b, rows, seen, masks):
         """The results of all layers for the tables seen[rows]; returns their number of object balls."""
         layers = self._layers
-        m = table_kernels.read_tables(rows, seen, b.balls_, b.group, b.first, b.pots_, b.context_, b.at, b.sides)
+        m = table_kernels.read_tables(rows, seen, (b.balls_, b.group, b.first, b.pots_, b.context_, b.sides), b.at)
         layers["ball_2"](_relu(layers["ball_1"](b.balls_[:m], b.ball_1_[:m])), b.ball_2_[:m])
         table_kernels.sum_balls(b.ball_2_, b.group, b.first, b.context_, b.width)
         layers["pot_2"](_relu(layers["pot_1"](b.pots_, b.pot_1_)), b.pot_2_)

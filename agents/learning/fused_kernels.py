@@ -101,14 +101,17 @@ def log_probabilities(scores, likely, sides, choices, out):
 
 
 @entry
-def ppo_gradient(rows, scores, likely, mean, sides, values, actions, before, advantages, returns, clip, entropy_weight, value_weight, batch,
-                 d_scores, d_values, sums):  # fmt: skip
-    """The gradient of PPO's loss, a mean over ``batch`` rows of which these are some.
+def ppo_gradient(rows, passed, played, loss, batch, gradients, sums):
+    """The gradients (d_scores, d_values) of PPO's loss, a mean over ``batch`` rows of which these are some.
 
-    scores, likely: as in ``log_probabilities``; values (n, 1); mean: sums of likely * scores.
-    actions, before (logarithms of the old probabilities), advantages, returns: of the whole rollout, read at ``rows``. The sums of the
-    rows' policy losses, squared errors of the values, entropies, clipped ratios and approximate KL divergences are added to ``sums``.
+    passed: (scores, likely, mean, sides, values), with scores and likely as in ``log_probabilities``, mean: sums of likely * scores, and
+    values (n, 1). played: (actions, before, advantages, returns) of a ``fused.Rollout``, read at ``rows``. loss: as ``fused.Loss``. The
+    sums of the rows' policy losses, squared errors of the values, entropies, clipped ratios and approximate KL divergences are added to
+    ``sums``.
     """
+    scores, likely, mean, sides, values = passed
+    actions, before, advantages, returns = played
+    (clip, entropy_weight, value_weight), (d_scores, d_values) = loss, gradients
     for j in range(rows.shape[0]):
         at = rows[j]
         action, own, likelihood = actions[at], scores[j], likely[j]

@@ -2,7 +2,6 @@
 
 import io
 import pickle
-import re
 import shlex
 from dataclasses import asdict
 
@@ -10,7 +9,7 @@ import numpy as np
 import torch
 from stable_baselines3.common.save_util import load_from_zip_file
 
-from commands.files import write_atomic
+from commands.files import UNFINISHED, write_atomic
 from commands.lock import NAME as LOCK
 from commands.lock import Lock
 from snooker_env.checks import refuse
@@ -18,9 +17,6 @@ from snooker_env.checks import refuse
 from ..cluster.mirror import copied
 from .hyperparameters import algorithm_class
 from .models import CHECKPOINT, zipped
-
-_UNFINISHED = re.compile(r"(checkpoint\.pkl|model\.zip|results\.json)(\.\d+)?\.tmp")
-"""Unfinished files of a process that was killed."""
 
 
 def claimed(out, resume):
@@ -31,7 +27,7 @@ def claimed(out, resume):
     lock = Lock(out)
     try:
         for file in out.iterdir():
-            if _UNFINISHED.fullmatch(file.name):
+            if UNFINISHED.fullmatch(file.name):
                 file.unlink()
         _check(out, resume)  # again: from now on no other run changes it
     except BaseException:
@@ -48,7 +44,7 @@ def _check(out, resume):
     if out.exists() and not out.is_dir():
         raise refuse("out", str(out), "must be a folder, new or empty")
     names = [p.name for p in out.iterdir()] if out.is_dir() else []
-    held = sorted(name for name in names if name not in ("tb", LOCK) and not _UNFINISHED.fullmatch(name))
+    held = sorted(name for name in names if name not in ("tb", LOCK) and not UNFINISHED.fullmatch(name))
     if held:
         others = f"is not empty (it holds {', '.join(held[:3])})"
         raise refuse("out", str(out), f"{others}: --resume continues it, --out names another folder")

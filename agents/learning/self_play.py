@@ -34,41 +34,31 @@ def policy_given(model, where):
     return {"recipe": model.recipe, "env_options": model.env_options, "view": model.view, "weights": weights}
 
 
-def strokes(shared, given, threads):
+def strokes(shared, args, threads):
     """The task: the best stroke of each position under fresh noise samples, and where play goes on.
 
-    Parameters
-    ----------
-    shared : dict
-        "run" (an id), "options", "budget", "fresh", "value" (or None), "policy" (or None, see ``policy_given``).
-    given : dict
-        "at" (arrays of m positions), "seeds" (m,), "explored" bool (m,), "pick" (m,), "errors" (m, fresh + 1, 5).
-    threads : int or None
-        Of this process.
-
-    Returns
-    -------
-    dict
-        "seen" (m, SIZE) and "after" (m, fresh, SIZE) float16, "points" and "goes_on" (m, fresh), "follows" (m,), and the positions from
-        which play goes on: "positions", "on_table", "game".
+    ``shared``: "run" (an id), "options", "budget", "fresh", "value" (or None), "policy" (or None, see ``policy_given``). ``args``: "at"
+    (arrays of m positions), "seeds" (m,), "explored" bool (m,), "pick" (m,), "errors" (m, fresh + 1, 5). Returns "seen" (m, SIZE) and
+    "after" (m, fresh, SIZE) float16, "points" and "goes_on" (m, fresh), "follows" (m,), and where play goes on: "positions", "on_table",
+    "game".
     """
-    at, fresh, every = Positions(*given["at"]), shared["fresh"], np.arange(len(given["seeds"]))
+    at, fresh, every = Positions(*args["at"]), shared["fresh"], np.arange(len(args["seeds"]))
     search = copy(search_of(shared, threads))  # which keeps its own value, the rule of thumb, and its own proposals
     if shared["value"] is not None:
         search.value = shared["value"]
     if shared["policy"] is not None:
         search.propose = _proposals(shared)
     m = len(every)
-    ranked = search.rank(at, given["seeds"])
+    ranked = search.rank(at, args["seeds"])
     rows = np.concatenate([np.repeat(every, fresh), every])
-    tried = np.concatenate([np.repeat(ranked.strokes[:, 0], fresh, axis=0), ranked.strokes[every, given["pick"]]])
-    errors = np.concatenate([given["errors"][:, :fresh].reshape(-1, 5), given["errors"][:, fresh]])
+    tried = np.concatenate([np.repeat(ranked.strokes[:, 0], fresh, axis=0), ranked.strokes[every, args["pick"]]])
+    errors = np.concatenate([args["errors"][:, :fresh].reshape(-1, 5), args["errors"][:, fresh]])
     out = search.outcomes(at, rows, tried, errors)
     features = lambda some: value_features(some, search.spread, search.planner.threads)  # noqa: E731
     goes_on = out.goes_on[: m * fresh]
     after = np.zeros((m * fresh, SIZE), np.float16)
     after[goes_on] = features(out.afterstates[np.flatnonzero(goes_on)])
-    played = np.where(given["explored"], m * fresh + every, fresh * every)
+    played = np.where(args["explored"], m * fresh + every, fresh * every)
     left = out.afterstates[played]
     return {
         "seen": features(at).astype(np.float16), "after": after.reshape(m, fresh, SIZE),
@@ -78,13 +68,13 @@ def strokes(shared, given, threads):
     }  # fmt: skip
 
 
-def choices(shared, given, threads):
+def choices(shared, args, threads):
     """The task: what discrete choices are worth, each simulated once: points, and the value of what they leave.
 
-    ``given``: "at" (arrays of m positions), "rows", "picks" and "keys" (k,). Returns "gains", float32 (k,).
+    ``args``: "at" (arrays of m positions), "rows", "picks" and "keys" (k,). Returns "gains", float32 (k,).
     """
     played = once(("planner", shared["run"], threads), lambda: planner_of(shared["options"], threads)).play(
-        Positions(*given["at"]), given["rows"], given["picks"], given["keys"]
+        Positions(*args["at"]), args["rows"], args["picks"], args["keys"]
     )
     gains, on = played.points.astype(np.float32), np.flatnonzero(played.goes_on)
     gains[on] += shared["value"](played.afterstates[on])
@@ -92,14 +82,7 @@ def choices(shared, given, threads):
 
 
 def in_slices(n):
-    """Slices of n positions.
-
-    Examples
-    --------
-    >>> from agents.learning.self_play import in_slices
-    >>> in_slices(100)
-    [slice(0, 64, None), slice(64, 100, None)]
-    """
+    """Slices of n positions."""
     return [slice(k, min(n, k + SLICE)) for k in range(0, n, SLICE)]
 
 
@@ -116,7 +99,7 @@ def of_choices(at, rows, picks, keys):
 
 def judged(where, shared, at, rows, picks, keys):
     """``choices`` of all positions: float32 (k,)."""
-    return np.concatenate([one["gains"] for one in where.map("choices", shared, of_choices(at, rows, picks, keys))])
+    return np.concatenate([one["gains"] for one in where.map(f"{__name__}:choices", shared, of_choices(at, rows, picks, keys))])
 
 
 def search_of(shared, threads):

@@ -7,14 +7,14 @@ from snooker_env.planning import Planner, Positions, prospects_of
 from .self_play import of_choices, once
 
 
-def play(shared, given, threads):
-    """The task: ``shared`` has "run" (an id), "options", "spread" and "ahead"; ``given`` is as of ``self_play.choices``."""
+def play(shared, args, threads):
+    """The task: ``shared`` has "run" (an id), "options", "spread" and "ahead"; ``args`` is as of ``self_play.choices``."""
     planner = once(("worths", shared["run"], threads), lambda: Planner(shared["options"], threads=threads))
-    points, goes_on, left, _ = planner.play(Positions(*given["at"]), given["rows"], given["picks"], given["keys"])
+    points, goes_on, left, _ = planner.play(Positions(*args["at"]), args["rows"], args["picks"], args["keys"])
     ahead = prospects_of(left, shared["spread"], threads=planner.threads)[0]
     return {"worth": points + shared["ahead"] * goes_on * ahead}
 
 
 def worths(where, shared, at, rows, picks, keys):
     """The task for all positions: float64 (k,)."""
-    return np.concatenate([one["worth"] for one in where.map("worths", shared, of_choices(at, rows, picks, keys))])
+    return np.concatenate([one["worth"] for one in where.map(f"{__name__}:play", shared, of_choices(at, rows, picks, keys))])

@@ -1,1 +1,28 @@
-"""Which players are there? The built-in ones, those that search, and trained models by name."""
+"""Which players does the repository add to the package's? Geometry with solved aims, a rule that looks one shot ahead, trained models.
+
+``pyproject.toml`` names them as entry points, so that ``snooker_env.player`` finds them in a clone.
+"""
+
+from ..learning.models import PRETRAINED, pretrained
+from .geometric import Geometric
+
+
+def read_model(path):
+    """The player of a model or run of ``train.py``; None for another file. An entry point of ``snooker_env.models``."""
+    from .trained import read_model
+
+    return read_model(path)
+
+
+def __getattr__(name):
+    """What needs other libraries when it is asked for: the rule with foresight, and a maker of each pre-trained model."""
+    if name == "ForesightRule":
+        from .foresight import ForesightRule
+
+        return ForesightRule
+    if name in pretrained():
+        return lambda: read_model(PRETRAINED / f"{name}.zip")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+__all__ = ["ForesightRule", "Geometric", "read_model"]

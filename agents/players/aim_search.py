@@ -9,7 +9,7 @@ from math import atan2
 import numpy as np
 
 from snooker_env.game import N_BALLS, SPOTS, BallOn
-from snooker_env.planning import Planner, actions_of
+from snooker_env.planning import Planner
 
 from ..features.indirect_pots import AIM_X, AIM_Y, BALL, COLUMNS, GHOST_X, GHOST_Y, REACH, direct, direct_pots, indirect
 
@@ -32,22 +32,29 @@ def widest_run(good):
     return last - length + 1, length
 
 
+def plain(speeds, aims):
+    """Strokes (n, 5) without spin."""
+    strokes = np.zeros((len(aims), 5))
+    strokes[:, 0], strokes[:, 3] = speeds, aims
+    return strokes
+
+
 class Aimer:
-    """Finds shots on the tables of an environment with aim="absolute", all of them strokes without spin.
+    """Finds shots under the rules of ``options``, all of them strokes without spin.
 
     ``speed``: cue speed [m/s] of the first attempt.
     """
 
-    def __init__(self, tables, speed):
-        self._planner, self._speed = Planner(tables, noise="none", threads=1), speed
+    def __init__(self, options, speed):
+        self._planner, self._speed = Planner(options, noise="none", threads=1), speed
         indirect(np.array(SPOTS), np.ones(N_BALLS, np.bool_), BallOn.RED, *self._bed)  # compile now, so that decision times exclude it
 
     @property
     def _bed(self):
         return self._planner.table, self._planner.physics
 
-    def actions(self, at):
-        """An action (4,) float32 for each of n ``Positions``.
+    def strokes(self, at):
+        """A stroke for each of n ``Positions``: (n, 5).
 
         In this order, until one pots without execution errors: the widest direct pot along its solved line; the direct pot with the widest
         interval of aims; the indirect pot with the widest one. If none does, the first line (without a direct
@@ -56,18 +63,18 @@ class Aimer:
         n, ball_on = len(at), at.ball_on.copy()
         shots, counts = np.empty((n, 1, COLUMNS)), np.empty(n, np.int64)
         direct_pots(at.positions, at.on_table, ball_on, shots, counts)
-        actions = actions_of(np.full(n, self._speed), self._solve(at, np.arange(n), shots[:, 0], (self._speed,))[:, 0])
-        for k in np.flatnonzero(~self.pots(at, np.arange(n), actions)).tolist():
+        strokes = plain(np.full(n, self._speed), self._solve(at, np.arange(n), shots[:, 0], (self._speed,))[:, 0])
+        for k in np.flatnonzero(~self.pots(at, np.arange(n), strokes)).tolist():
             one, (p, on) = at[k : k + 1], (at.positions[k], at.on_table[k])
             found = self.widest(one, direct(p, on, ball_on[k]))
             if found is None:
                 found = self.widest(one, indirect(p, on, ball_on[k], *self._bed))
             if found is not None:
-                actions[k] = found[0]
-        return actions
+                strokes[k] = found[0]
+        return strokes
 
     def widest(self, one, shots):
-        """The shot with the widest interval of aims that pot, simulated on the only position of ``one``: (its action, half the width [rad],
+        """The shot with the widest interval of aims that pot, simulated on the only position of ``one``: (its stroke, half the width [rad],
         index of the shot, index of the speed); None if none pots."""
         if len(shots) == 0:
             return None
@@ -81,13 +88,13 @@ class Aimer:
         reach = 0.5 * widths[best] + 2.0 * reaches[best] / AIMS
         finer = self._scan(one, speeds[best : best + 1], middles[best : best + 1], np.array([reach]))
         middle, width = (finer[0][0], finer[1][0]) if finer[1][0] > 0.0 else (middles[best], widths[best])
-        return actions_of(speeds[best : best + 1], [middle])[0], 0.5 * width, *divmod(best, len(SPEEDS))
+        return plain(speeds[best : best + 1], [middle])[0], 0.5 * width, *divmod(best, len(SPEEDS))
 
     def _scan(self, one, speeds, lines, reaches):
         """Middle and width [rad] of the widest interval of aims that pot, within ``reaches`` of ``lines``: (m,) each, 0 if none does."""
         steps = 2.0 * reaches / AIMS
         aims = lines[:, None] + steps[:, None] * (np.arange(AIMS) - 0.5 * (AIMS - 1))
-        tries = actions_of(np.repeat(speeds, AIMS), aims.ravel())
+        tries = plain(np.repeat(speeds, AIMS), aims.ravel())
         starts, lengths = widest_run(self.pots(one, np.zeros(len(tries), np.int64), tries).reshape(-1, AIMS))
         return lines + steps * (starts + 0.5 * (lengths - 1) - 0.5 * (AIMS - 1)), steps * lengths
 
@@ -106,6 +113,6 @@ class Aimer:
         ).reshape(-1, s)  # fmt: skip
         return aims
 
-    def pots(self, at, rows, actions):
-        """Which of these actions score, each on a copy of its position: (m,) bool."""
-        return self._planner.play(at, rows, actions).points > 0.0
+    def pots(self, at, rows, strokes):
+        """Which of these strokes score, each on a copy of its position: (m,) bool."""
+        return self._planner.play(at, rows, strokes=strokes).points > 0.0

@@ -35,11 +35,11 @@ with needs("agents.train_rllib"):
         logging.getLogger(part).setLevel(logging.ERROR)
 
     import snooker_env
-    from commands.files import write_atomic
+    from commands.files import write_json
     from commands.lock import NAME as LOCK
     from commands.lock import Lock
     from snooker_env import Options
-    from snooker_env.benchmark import play_visits, summary, tables_of
+    from snooker_env.benchmark import play_visits, software, summary, tables_of
     from snooker_env.checks import integer, refuse
     from snooker_env.game import HELD_OUT
     from snooker_env.progress import Progress
@@ -48,8 +48,7 @@ with needs("agents.train_rllib"):
     from ..learning.callback import Stop
     from ..learning.models import POLICY
     from ..learning.policy_files import read_policy, write_policy
-    from ..players.built_in import GhostBall, Random
-    from ..players.layers_player import LayersPlayer
+    from ..players.trained import player_of_model
     from .rllib_config import ACTIVATION, BATCH, GAMMA, PATIENCE, algorithm_of, layers_of, restore, started
 
 STATE, UNTRAINED, RESULTS = "state.json", "untrained.npz", "results.json"
@@ -166,8 +165,7 @@ def save(out, settings, progress, algorithm):
         os.replace(half, out / name)
         progress.checkpoint = name
     _write(out / POLICY, settings, progress, algorithm)
-    state = {"settings": asdict(settings), "progress": asdict(progress)}
-    write_atomic(out / STATE, (json.dumps(state, indent=1) + "\n").encode())
+    write_json(out / STATE, {"settings": asdict(settings), "progress": asdict(progress)})
     for file in out.iterdir():
         if _CHECKPOINT.fullmatch(file.name) and file.name != name:
             shutil.rmtree(file, ignore_errors=True)
@@ -205,18 +203,18 @@ def _train(out, settings, progress, algorithm, stop, said):
 def judge(out, settings, progress):
     """Held-out visits of the policy, of itself before the training, and of simple players, in ``results.json`` and as a table."""
     files = {"trained": POLICY, "untrained": UNTRAINED}
-    players = {name: LayersPlayer(read_policy(out / file, "out")) for name, file in files.items()}
-    players |= {"ghost_ball": GhostBall(), "random": Random()}
+    players = {name: player_of_model(read_policy(out / file, "out")) for name, file in files.items()}
+    players |= {name: snooker_env.player(name) for name in ("ghost_ball", "random")}
     seeds = tables_of("held_out", settings.eval_visits)
     figures = {
         name: summary(play_visits(player, settings.eval_visits, first_seed=seeds, noise=settings.noise)) for name, player in players.items()
     }
     results = {
         "settings": asdict(settings), **asdict(progress), "shots_per_second": progress.shots / max(progress.seconds, 1e-9),
-        "versions": {"ray": ray.__version__, "torch": str(torch.__version__), "snooker-env": snooker_env.__version__},
+        "versions": {"ray": ray.__version__, **software()},
         "evaluation": figures,
     }  # fmt: skip
-    write_atomic(out / RESULTS, (json.dumps(results, indent=1) + "\n").encode())
+    write_json(out / RESULTS, results)
     show(figures)
     print(f"Figures: {out / RESULTS}   by our protocol: python -m agents.evaluate --agent {out}")
 

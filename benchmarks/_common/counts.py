@@ -44,7 +44,7 @@ def counted(positions, velocities, spins, physics):
 
     state = positions, velocities, spins, np.ones(positions.shape[:2], bool)
     sys.setprofile(watch)
-    _run(state, physics, table, code, 100_000, 0, 0)
+    _run(state, physics, table, code, 100_000)
     sys.setprofile(None)
     return {name: count / len(positions) for name, count in counts.items()}
 

@@ -14,10 +14,11 @@ import numba
 import numpy as np
 
 from snooker_env.physics import cloth
+from snooker_env.physics.arrays import Boundaries, Ends
 from snooker_env.physics.cloth import AX, AY, COLUMNS, FALLING, GONE, REST, T0, T_END, VX, VY, X, Y
 from snooker_env.physics.engine import EventKind, Status
 from snooker_env.physics.parameters import P_G, P_MU_BB_EXTRA, P_MU_BB_LEAST, P_MU_S, P_R, P_SPIN
-from snooker_env.simulation import MAX_EVENTS, _run
+from snooker_env.simulation import MAX_EVENTS, _run, log_space
 
 FINITE, CLOCK, JUMP, ENERGY, PHASE, ALL, MOMENTUM, PARTING, OVERLAP, CUSHION, OUTSIDE, REST_TIME, ACCOUNT = range(13)
 NAMES = (
@@ -155,8 +156,8 @@ def _along_boundary(rows, state, i, stop, noses, jaws, R, phys):
 
 
 @numba.njit(nogil=True, error_model="numpy")
-def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws, falls, worst):
-    R = phys[P_R]
+def _check(segments, what, n, duration, phys, boundaries, worst):
+    noses, jaws, falls, R = boundaries
     D = 2.0 * R
     rows, state = np.zeros((n, COLUMNS)), np.zeros(n, np.int64)
     old, old_state = np.zeros((n, COLUMNS)), np.zeros(n, np.int64)
@@ -167,10 +168,10 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
     at, now = n, 0.0
     shot, _ = _all_energy(rows, state, 0.0, phys)
     had, flown = shot, 0  # what all balls had when none was last in the air, and the events since then
-    for e in range(n_events):
+    for e in range(len(what)):
         kind, i, j = what[e, 0], what[e, 1], what[e, 2]
         balls = 2 if kind == _BALL_BALL else 1
-        if at + balls > n_segments:
+        if at + balls > len(segments):
             _note(worst, ACCOUNT, 1.0)
             return
         t = segments[at, T0]
@@ -258,7 +259,7 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
         elif kind == _DROP or (kind == _POT and not in_air):
             far = hypot(rows[i, X] - falls[j, 0], rows[i, Y] - falls[j, 1])
             _note(worst, JUMP, abs(far - falls[j, 2]))
-    if at != n_segments:
+    if at != len(segments):
         _note(worst, ACCOUNT, 1.0)
     for i in range(n):
         if state[i] == GONE:
@@ -275,10 +276,11 @@ def _check(segments, n_segments, what, n_events, n, duration, phys, noses, jaws,
 
 
 @numba.njit(nogil=True, error_model="numpy")
-def _check_all(segments, n_segments, what, n_events, status, n, duration, phys, noses, jaws, falls, worst):
+def _check_all(log, ends, n, phys, boundaries, worst):
     for k in range(len(worst)):
-        if status[k] == 0:
-            _check(segments[k], n_segments[k], what[k], n_events[k], n, duration[k], phys, noses, jaws, falls, worst[k])
+        if ends.status[k] == 0:
+            segments, what = log.segments[k, : ends.n_segments[k]], log.what[k, : ends.n_events[k]]
+            _check(segments, what, n, ends.duration[k], phys, boundaries, worst[k])
 
 
 @dataclass(frozen=True)
@@ -296,20 +298,20 @@ class Checked:
     """(b, len(NAMES))"""
 
 
-def play(positions, velocities, spins, on_table, physics, table, fidelity, max_events=MAX_EVENTS, log_size=512):
-    """Play b shots and check each; positions (b, n, 2) and so on as in ``simulate_batch``; fidelity as ``parse_fidelity`` gives it."""
-    b, n = positions.shape[:2]
-    state = [np.array(a) for a in (positions, velocities, spins, on_table)]
-    out = _run(state, physics, table, fidelity, max_events, log_size, 2 * log_size + n + 2)
+def play(balls, physics, table, fidelity, max_events=MAX_EVENTS, log_size=512):
+    """Play b shots and check each; balls: positions, velocities, spins and on_table; fidelity as ``parse_fidelity`` gives it."""
+    state = [np.array(a) for a in balls]
+    b, n = state[0].shape[:2]
+    log = log_space(b, log_size, 2 * log_size + n + 2)
+    out = _run(state, physics, table, fidelity, max_events, log)
     worst = np.full((b, len(NAMES)), -inf)
-    args = physics.pack(), table.noses, table.jaws, table.falls, worst
-    _check_all(out.segments, out.n_segments, out.event_what, out.n_events, out.status, n, out.duration, *args)
-    found = Checked(state[0], state[3], out.potted, out.duration, out.n_events, out.status, worst)
+    ends = Ends(out.status, out.n_events, out.n_segments, out.duration)
+    _check_all(log, ends, n, physics.pack(), Boundaries(table.noses, table.jaws, table.falls, physics.R), worst)
+    checked = Checked(state[0], state[3], out.potted, out.duration, out.n_events, out.status, worst)
     for k in np.flatnonzero(out.status == Status.LOG_FULL):  # few; with more room
-        r, v, w, here = (a[k : k + 1] for a in (positions, velocities, spins, on_table))
-        one = play(r, v, w, here, physics, table, fidelity, max_events, 8 * log_size)
-        for mine, its in zip(vars(found).values(), vars(one).values(), strict=True):
+        one = play([a[k : k + 1] for a in balls], physics, table, fidelity, max_events, 8 * log_size)
+        for mine, its in zip(vars(checked).values(), vars(one).values(), strict=True):
             mine[k] = its[0]
-    finite = np.isfinite(found.positions).all((1, 2)) & np.isfinite(found.duration)
+    finite = np.isfinite(checked.positions).all((1, 2)) & np.isfinite(checked.duration)
     worst[~finite, FINITE] = 1.0
-    return found
+    return checked

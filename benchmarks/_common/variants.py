@@ -18,6 +18,8 @@ _ADDED = '''
 
 # Added by benchmarks/_common/variants.py.
 
+from ..arrays import Law
+
 _all_of_balls, _all_of_cushion = collide_balls, collide_cushion
 
 
@@ -40,13 +42,14 @@ def _smooth_cushion(v, w, nx, ny, phys, e):
 
 
 @kernel
-def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, work):
-    code = FAST if fidelity == 101 else STANDARD if fidelity > 101 else fidelity
-    return _all_of_balls(v1, w1, v2, w2, nx, ny, phys, e, code, n_steps, work)
+def collide_balls(v1, w1, v2, w2, normal, law, e, work):
+    code = FAST if law.fidelity == 101 else STANDARD if law.fidelity > 101 else law.fidelity
+    return _all_of_balls(v1, w1, v2, w2, normal, Law(law.phys, code, law.n_steps), e, work)
 
 
 @kernel
-def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, work):
+def collide_cushion(v, w, normal, law, e, work):
+    (nx, ny), phys, fidelity = normal, law.phys, law.fidelity
     closing = v[0] * nx + v[1] * ny
     if fidelity == 104 and closing > 0.0:
         back = (1.0 + e) * closing
@@ -54,7 +57,7 @@ def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, work):
     if fidelity == 103 and closing > 0.0:
         return _smooth_cushion(v, w, nx, ny, phys, e)
     code = FAST if fidelity == 102 else STANDARD if fidelity > 100 else fidelity
-    return _all_of_cushion(v, w, nx, ny, phys, e, code, n_steps, work)
+    return _all_of_cushion(v, w, normal, Law(phys, code, law.n_steps), e, work)
 '''
 
 
@@ -64,5 +67,5 @@ def load():
     texts["physics/impact/contact.py"] += _ADDED
     if texts["physics/engine.py"].count(_FLIES) != 1:
         raise RuntimeError(f"engine.py has changed: {_FLIES!r} is not in it once")
-    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES} and fidelity != {AT_ONCE}")
+    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES} and law.fidelity != {AT_ONCE}")
     return package_copies.load("snooker_env_variants", texts, ["simulation"])[0]

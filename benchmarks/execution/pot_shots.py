@@ -123,11 +123,11 @@ class Rolls:
         return sqrt(squares.sum()), *np.sqrt(squares).tolist()
 
 
-def played(pot, stroke, n, physics, table, *, aims: float | np.ndarray = 0.0, level: str | Noise = "none", seed=0,
-           in_off=False):  # fmt: skip
-    """(made (n,), where the cue ball stops (n, 2)) of n strokes at a pot, turned by ``aims`` [rad], with the errors of a ``level``."""
+def played(pot, stroke, turns, physics, table, *, level: str | Noise = "none", seed=0, in_off=False):
+    """(made (n,), where the cue ball stops (n, 2)) of n strokes at a pot, turned by ``turns`` [rad], with the errors of a ``level``."""
+    n = len(turns)
     strokes = np.repeat(stroke[None], n, 0)
-    strokes[:, 1] += aims
+    strokes[:, 1] += turns
     shots = Shots(np.repeat(pot.positions[None], n, 0), strokes, np.ones(n, int), physics)
     state = shots.struck(seed, errors=level)
     end = sn.simulate_batch(shots.positions, *state, table=table, physics=physics)
@@ -143,10 +143,10 @@ def aimed(pot, physics, table, speed=None, in_off=False):
     if len(settled.ball) == 0:
         raise RuntimeError(f"no aim sends the ball of {pot.name!r} to its pocket")
     stroke, fan = settled.stroke[0], np.linspace(-REACH, REACH, FAN)
-    made, _ = played(pot, stroke, FAN, physics, table, aims=fan, in_off=in_off)
+    made, _ = played(pot, stroke, fan, physics, table, in_off=in_off)
     first, last = _widest(made)
     stroke[1] += 0.5 * (fan[first] + fan[last])
-    _, stops = played(pot, stroke, 1, physics, table)
+    _, stops = played(pot, stroke, np.zeros(1), physics, table)
     way = aim_point - start[1]
     return Aimed(pot, stroke, 0.5 * (fan[last] - fan[first] + fan[1] - fan[0]), stops[0], start[1] - 2 * R * way / hypot(*way), in_off)
 
@@ -163,7 +163,7 @@ def _widest(made):
 
 def rolls(shot, level, n, seed, physics, table):
     """The ``Rolls`` of n strokes with the errors of a level (any ``noise``)."""
-    made, cue = played(shot.pot, shot.stroke, n, physics, table, level=level, seed=seed, in_off=shot.in_off)
+    made, cue = played(shot.pot, shot.stroke, np.zeros(n), physics, table, level=level, seed=seed, in_off=shot.in_off)
     way = shot.stops - shot.meets
     way = way / max(hypot(*way), 1e-12)
     shift = (cue - shot.stops)[made]

@@ -13,7 +13,7 @@ import numpy as np
 
 import snooker_env as sn
 
-from .windows import LonePocket, windows
+from .windows import LonePocket, Paths, windows
 
 INCH = 0.0254
 PHYSICS = {"R": 1.125 * INCH, "sin_theta": 0.27}
@@ -159,13 +159,13 @@ def sizes(kind, engines):
     here, angles = pocket(kind), np.radians(ANGLES[kind])
     found = {"Alciatore": np.array([published(kind, a) * INCH for a in ANGLES[kind]])}
     physics = sn.Physics(**MIRROR)
-    found["his assumptions"] = windows(here, angles, DISTANCE, 0.5, False, False, physics, engines["before"]).width
+    found["his assumptions"] = windows(here, Paths(angles, DISTANCE, 0.5, False, False), physics, engines["before"]).width
     physics = sn.Physics(R=PHYSICS["R"], e_c=1.0, mu_c=0.0)
-    found["his, but it rolls"] = windows(here, angles, DISTANCE, 0.5, True, False, physics, engines["before"]).width
+    found["his, but it rolls"] = windows(here, Paths(angles, DISTANCE, 0.5, True, False), physics, engines["before"]).width
     physics = sn.Physics.preset("match", **PHYSICS)
     for rule, engine in engines.items():
         for name, speed in SPEEDS.items():
-            found[f"{name} {rule}"] = windows(here, angles, DISTANCE, speed, True, False, physics, engine).width
+            found[f"{name} {rule}"] = windows(here, Paths(angles, DISTANCE, speed, True, False), physics, engine).width
     return found
 
 

@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 
-from .windows import CORNER, NEAR, alone, along, drops, reach, windows
+from .windows import CORNER, NEAR, Paths, alone, along, drops, reach, windows
 
 OFF = (0.0, 0.005, 0.010, 0.020)
 """How far the path runs from where the ball would be frozen to the cushion [m]."""
@@ -27,7 +27,7 @@ def down_the_rail(table, physics, engine, offs=OFF, runs=RUNS, speeds=SPEEDS):
     for off in offs:
         path = along(here, level - physics.R - off, here.aim[1], pi / 2)
         potted.append(drops(path, 0.0, run, speed, rolling, physics, engine, 0.0))
-        found = windows(path, 0.0, run, speed, rolling, True, physics, engine, MOST, SCAN)
+        found = windows(path, Paths(0.0, run, speed, rolling, True), physics, engine, MOST, SCAN)
         low.append(-found.high)
         high.append(-found.low)
     arrives = np.broadcast_to(reach(speed, rolling, physics) > run + NEAR, potted[0].shape)

@@ -8,6 +8,7 @@ the scan may be missed. Nothing is random and nothing is timed.
 
 import os
 from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -37,6 +38,21 @@ class Engine:
 
     run: object = simulation._run
     code: int = STANDARD
+
+
+class Paths(NamedTuple):
+    """Paths of one ball; each is a number or an array."""
+
+    angle: Any
+    """Off the pocket's axis [rad]."""
+    distance: Any
+    """From the aim point [m]."""
+    speed: Any
+    """At the start [m/s]."""
+    rolling: Any
+    """Whether the ball rolls at the start; else it has no spin."""
+    turned: Any
+    """As in ``strokes``."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +113,7 @@ def played(pocket, start, physics, engine, log=0):
     here = np.ones((len(r), 1), bool)
     here[pocket.table.unfit(r, physics.R)] = False
     threads = os.cpu_count() or 1
-    out = engine.run([r, v, w, here.copy()], physics, pocket.table, (engine.code, 0), 10_000, log, 0, threads)
+    out = engine.run([r, v, w, here.copy()], physics, pocket.table, (engine.code, 0), 10_000, simulation.log_space(len(r), log, 0), threads)
     if out.status[here[:, 0]].any():
         raise RuntimeError(f"shots {np.flatnonzero(out.status)} did not come to rest")
     return (out.potted[:, 0] >= 0) & here[:, 0], ~here[:, 0], out
@@ -126,14 +142,10 @@ class Windows:
     """Does a piece end where the ball would start in a cushion?"""
 
 
-def windows(pocket, angle, distance, speed, rolling, turned, physics, engine=None, half=None, scan=SCAN):
-    """The windows of paths at ``angle`` [rad] off the axis, ``distance`` [m] from the aim point, with ``speed`` [m/s] at the start.
-
-    rolling: the ball rolls at the start, else it has no spin. turned: as in ``strokes``. half: how far the scan goes to either side.
-    The arguments may be arrays.
-    """
+def windows(pocket, paths, physics, engine=None, half=None, scan=SCAN):
+    """The windows of ``Paths``. half: how far the scan goes to either side."""
     engine = engine or Engine()
-    angle, distance, speed, rolling, turned = np.broadcast_arrays(angle, distance, speed, rolling, turned)
+    angle, distance, speed, rolling, turned = np.broadcast_arrays(*paths)
     shape, n = angle.shape, angle.size
     angle, distance, speed, rolling, turned = (a.ravel() for a in (angle, distance, speed, rolling, turned))
     if half is None:

@@ -6,6 +6,7 @@ Used by ``python -m benchmarks.rack``, whose docstring states the contact laws, 
 from dataclasses import dataclass
 from functools import cache
 from math import pi, sqrt
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -70,12 +71,25 @@ def damping(law, e, speed=5.0):
     return unit * REDUCED * speed / length ** (1 + law.q)
 
 
+class Constants(NamedTuple):
+    """What the micro-steps compute with: F = k d^p + c d^q d' at a contact, and gravity and friction."""
+
+    p: float
+    q: float
+    k: float
+    c: float
+    g: float
+    mu_s: float
+    friction: coulomb.Friction
+
+
 @numba.njit(nogil=True)
-def micro_steps(r, v, w, p, q, k, c, g, mu_s, friction, dt, steps):
+def micro_steps(r, v, w, constants, dt, steps):
     """Balls r (n, 2), v (n, 3), w (n, 3) through ``steps`` steps, in place: half a drift, the impulses of all contacts, half a drift.
 
     Returns the energy [J] gone into dampers, friction between balls, friction on the cloth, lifting and landing; the greatest overlap [m].
     """
+    p, q, k, c, g, mu_s, friction = constants
     n = len(r)
     z = np.zeros(n)
     dv, dw = np.zeros((n, 3)), np.zeros((n, 3))
@@ -169,5 +183,6 @@ def compliant(r, v, w, physics, law=LAWS["Hertz"], dt=STEP, span=SPAN, stiffer=1
     """Balls after ``span`` seconds of micro-steps: r (n, 2), v (n, 3), w (n, 3), energy lost (4,) [J], greatest overlap [m]."""
     r, v, w = r.copy(), np.column_stack([v, np.zeros(len(v))]), w.copy()
     law = ContactLaw(law.p, law.q, law.k * stiffer)
-    constants = law.p, law.q, law.k, damping(law, physics.e_b), physics.g, physics.mu_s, coulomb.Law(*physics.friction_law)
-    return r, v, w, *micro_steps(r, v, w, *constants, dt, round(span / dt))
+    friction = coulomb.Friction(*physics.friction_law)
+    constants = Constants(law.p, law.q, law.k, damping(law, physics.e_b), physics.g, physics.mu_s, friction)
+    return r, v, w, *micro_steps(r, v, w, constants, dt, round(span / dt))

@@ -44,7 +44,7 @@ FILE = "scene.png"
 def played(run, start, constants, table_, code):
     """The batch played to the end: positions, potted, on table."""
     state = [a.copy() for a in start]
-    out = run(state, constants, table_, (code, 0), 100_000, 0, 0)
+    out = run(state, constants, table_, (code, 0), 100_000)
     if out.status.any():
         raise RuntimeError(f"shots {np.flatnonzero(out.status)} did not come to rest")
     return state[0], out.potted, state[3]
@@ -68,7 +68,7 @@ def times(ways, start, repeats):
         state = [a[k : k + 1].copy() for a in start]
         state[3] &= here
         t = time.perf_counter()
-        run(state, constants, table_, (code, 0), 100_000, 0, 0)
+        run(state, constants, table_, (code, 0), 100_000)
         return time.perf_counter() - t
 
     call = min(one(0, *nothing, here=False) for _ in range(200))

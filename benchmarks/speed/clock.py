@@ -21,6 +21,7 @@ from numba.extending import intrinsic
 import snooker_env as sn
 from snooker_env._jit import entry
 from snooker_env.physics import engine
+from snooker_env.physics.arrays import Law
 from snooker_env.physics.impact import contact
 from snooker_env.physics.impact.polynomial import WORK
 from snooker_env.physics.parameters import P_E_B
@@ -74,13 +75,13 @@ def _each_impact(cost, idle, x, normals, phys, code, n_steps):
     """With an empty ``cost`` the counter is not read."""
     total, read = 0.0, len(cost) > 0
     before = between = 0
-    work = np.empty(WORK)
+    law, work = Law(phys, code, n_steps), np.empty(WORK)
     for k in range(len(x)):
         v1, w1, still = (x[k, 0], x[k, 1], 0.0), (x[k, 2], x[k, 3], x[k, 4]), (0.0, 0.0, 0.0)
         if read:
             before = ticks()
             between = ticks()
-        out = contact.collide_balls(v1, w1, still, still, normals[k, 0], normals[k, 1], phys, phys[P_E_B], code, n_steps, work)
+        out = contact.collide_balls(v1, w1, still, still, (normals[k, 0], normals[k, 1]), law, phys[P_E_B], work)
         total += out[0][0]
         if read:
             after = ticks()
@@ -93,7 +94,7 @@ def kernel_arguments(p, v, w, physics, fidelity, module=engine, run=_run):
     caught = []
     state = [np.array(a) for a in (p, v, w, np.ones(p.shape[:2], bool))]
     with mock.patch.object(module, "run_batch", lambda *arguments: caught.append(arguments[:-2])):
-        run(state, physics, sn.Table.preset("match"), contact.parse_fidelity(fidelity), MAX_EVENTS, 0, 0)
+        run(state, physics, sn.Table.preset("match"), contact.parse_fidelity(fidelity), MAX_EVENTS)
     return caught[0]
 
 

@@ -26,8 +26,10 @@ import numpy as np
 
 import snooker_env as sn
 from commands import provenance
+from commands.tables import text_table
 from snooker_env._jit import entry
 from snooker_env.game.balls import SPOTS
+from snooker_env.physics.arrays import Law
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
 from snooker_env.physics.impact.polynomial import WORK
@@ -52,9 +54,9 @@ FILE = "speed.png"
 @entry(what="the benchmark of an impact", uses=(contact.collide_balls,))
 def _same_impact(x, normal, times, phys, code, n_steps):
     v1, w1, still, total = (x[0], x[1], 0.0), (x[2], x[3], x[4]), (0.0, 0.0, 0.0), 0.0
-    work = np.empty(WORK)
+    law, work = Law(phys, code, n_steps), np.empty(WORK)
     for _ in range(times):
-        out = contact.collide_balls(v1, w1, still, still, normal[0], normal[1], phys, phys[P_E_B], code, n_steps, work)
+        out = contact.collide_balls(v1, w1, still, still, (normal[0], normal[1]), law, phys[P_E_B], work)
         total += out[0][0]
     return total
 
@@ -138,14 +140,14 @@ def one_by_one(p, v, w, fidelity, repeats, physics=None):
             call = min(call, _call(empty, physics, table, code))
             state = [a[k : k + 1].copy() for a in (p, v, w, here)]
             t = time.perf_counter()
-            _run(state, physics, table, code, 100_000, 0, 0)
+            _run(state, physics, table, code, 100_000)
             best[k] = min(best[k], time.perf_counter() - t)
     return (best - call) * 1e6
 
 
 def _call(state, physics, table, code):
     t = time.perf_counter()
-    _run([a.copy() for a in state], physics, table, code, 100_000, 0, 0)
+    _run([a.copy() for a in state], physics, table, code, 100_000)
     return time.perf_counter() - t
 
 
@@ -285,9 +287,8 @@ def measure_against_commit(commit, n, repeats, seed=0):
     """The same shots by the code of a commit and by this tree, in turn."""
     found = against_commit.compare(commit, n, repeats, seed)
     print(f"\n{commit} and this tree in turn, {against_commit.ROUNDS} times; medians over {n} shots, one core; `standard`")
-    print(f"  {'':40s} {'before':>9s} {'now':>9s}    ratio")
-    for name, row in found.items():
-        print(f"  {name:40s} {row['before']:9.2f} {row['now']:9.2f} {row['ratio']:8.3f}")
+    rows = [[name, f"{row['before']:.2f}", f"{row['now']:.2f}", f"{row['ratio']:.3f}"] for name, row in found.items()]
+    print("\n".join(text_table(["", "before", "now", "ratio"], rows)))
     return found
 
 

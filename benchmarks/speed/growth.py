@@ -22,7 +22,7 @@ def kernel_call(p, v, w, threads=1, fidelity="standard"):
     state = [np.array(a) for a in (p, v, w, np.ones(p.shape[:2], bool))]
     physics, table = sn.Physics.of(None), sn.Table.preset("match")
     start = time.perf_counter()
-    _run(state, physics, table, contact.parse_fidelity(fidelity), MAX_EVENTS, 0, 0, threads)
+    _run(state, physics, table, contact.parse_fidelity(fidelity), MAX_EVENTS, threads=threads)
     return time.perf_counter() - start
 
 

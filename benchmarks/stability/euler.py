@@ -39,7 +39,7 @@ def euler_table():
         if n <= 1000:
             physics = sn.Physics(e_b=1.0, e_c=1.0)
             state = p.copy(), *(a.copy() for a in motion), np.ones(p.shape[:2], bool)  # not checked on the way: speeds reach 1e150 m/s
-            row["lost"] = int((_run(state, physics, Table.preset("match"), (contact.EULER, n), 3000, 0, 0).status != Status.OK).sum())
+            row["lost"] = int((_run(state, physics, Table.preset("match"), (contact.EULER, n), 3000).status != Status.OK).sum())
         out[n] = row
     return out
 

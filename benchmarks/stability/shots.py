@@ -33,7 +33,8 @@ SHOT_LIMITS = {
 def shot_figures(p, v, w, table: Any = "match", physics: Any = "paper", fidelities=EXACT_FIDELITIES):
     """Play (b, n, ...) shots at each fidelity; the worst of every invariant of ``SHOT_LIMITS``."""
     table, physics, here = Table.of(table), sn.Physics.of(physics), np.ones(p.shape[:2], bool)
-    return merge([summary(invariants.play(p, v, w, here, physics, table, contact.parse_fidelity(f), MOST_EVENTS)) for f in fidelities])
+    balls, codes = (p, v, w, here), map(contact.parse_fidelity, fidelities)
+    return merge([summary(invariants.play(balls, physics, table, code, MOST_EVENTS)) for code in codes])
 
 
 def summary(found):
@@ -171,7 +172,8 @@ def long_play():
         to = p[np.arange(b), rng.integers(1, 22, b)] - p[:, 0]
         v, w = struck(p, rng.uniform(1, 6, b), np.arctan2(to[:, 1], to[:, 0]), *rng.uniform(-0.3, 0.3, (2, b)))
         sn.simulate_batch(p, v, w, on_table=here, threads=1)  # it refuses a layout that is not sound
-        found = invariants.play(p, v, w, here, sn.Physics(), Table.preset("match"), contact.parse_fidelity("standard"))
+        code = contact.parse_fidelity("standard")
+        found = invariants.play((p, v, w, here), sn.Physics(), Table.preset("match"), code)
         figures.append(summary(found))
         p, here, played = found.positions.copy(), found.on_table.copy(), played + found.duration
         p[~here[:, 0], 0], here[:, 0] = (0.1, -1.2), True

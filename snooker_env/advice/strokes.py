@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
-from math import hypot, pi, sqrt
+from math import hypot
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 from .._check import array, choice, number, refuse_what
 from .._types import Place
 from ..game.in_hand import within_d
-from ..geometry import BAULK_Y, D_RADIUS
-from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
-
-FARTHEST = 0.5
-"""Largest tip offset over R: the miscue limit, and the end of the scale of an action."""
-(SPEED, SIDE, TOP, AIM, ELEVATION) = range(5)
-"""Columns of strokes as rows of numbers."""
+from ..physics.parameters import Physics
+from ..planning import Positions
+from ..planning.strokes import FARTHEST, encoded
+from ..players import Strokes
+from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,13 +102,13 @@ class CueStroke:
         if isinstance(stroke, Mapping):
             for key in stroke:
                 choice("field of the stroke", key, names)
-            given = dict(stroke)
+            values = dict(stroke)
         else:
-            given = {name: getattr(stroke, name) for name in names if hasattr(stroke, name)}
+            values = {name: getattr(stroke, name) for name in names if hasattr(stroke, name)}
         for name in ("speed", "aim"):
-            if name not in given:
+            if name not in values:
                 raise refuse_what("stroke", f"a {type(stroke).__name__} without {name!r}", "must be a CueStroke or a dict of its fields")
-        return cls(**given)
+        return cls(**values)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the stroke as JSON types.
@@ -162,35 +160,33 @@ class CueStroke:
         numpy.ndarray
             float32 (k,), with k from 4 to 8. The action, in [-1, 1].
 
+        Raises
+        ------
+        ValueError
+            If the cue is raised and the action does not hold the elevation.
+
         Examples
         --------
         >>> from snooker_env.advice import CueStroke
         >>> CueStroke(speed=3.6, aim=0.0, top=0.25).action(placement=True).tolist()
         [0.0, 0.0, 0.5, 0.0, 0.0, -1.0]
         """
-        row = actions_of_strokes(self.numbers()[None])[0]
-        parts = [row if elevation else row[:4]]
-        if placement:
-            x, y = self.place or (0.0, BAULK_Y)
-            across = min(1.0, max(-1.0, x / D_RADIUS))
-            depth = D_RADIUS * sqrt(1.0 - across * across)
-            back = min(1.0, max(0.0, (BAULK_Y - y) / depth)) if depth > 1e-9 else 0.0
-            parts.append(np.array([across, 2.0 * back - 1.0]))
-        if decision:
-            parts.append(np.zeros(1))
-        return np.concatenate(parts).astype(np.float32)
+        form = Actions("absolute", elevation, placement, Physics(), ("decision",) if decision else ())
+        places = None if self.place is None else [self.place]
+        return encoded(form, self.numbers()[None], places)[0].astype(np.float32)
 
 
 StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any
 """The types that arguments called ``stroke`` accept, see ``CueStroke.of``."""
 
 
-def actions_of_strokes(strokes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rows of strokes (n, 5) as actions of ``aim="absolute", elevation=True``: (n, 5)."""
-    actions = np.empty((len(strokes), 5))
-    turns = strokes[:, AIM] / pi
-    actions[:, 0] = 2.0 * (strokes[:, SPEED] - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0
-    actions[:, 1], actions[:, 2] = 2.0 * strokes[:, SIDE], 2.0 * strokes[:, TOP]
-    actions[:, 3] = turns - 2.0 * np.round(0.5 * turns)
-    actions[:, 4] = 2.0 * strokes[:, ELEVATION] / MAX_ELEVATION - 1.0
-    return np.clip(actions, -1.0, 1.0)  # removes rounding errors
+def cue_strokes(strokes: Strokes, at: Positions) -> list[CueStroke]:
+    """The strokes that a player plays in the one position ``at``, with a place in the D if the cue ball is in hand."""
+    in_hand, (here, *_) = bool(at.in_hand[0]), at.positions[0].tolist()
+    out = []
+    for (speed, side, top, aim, elevation), place in zip(strokes.values.tolist(), strokes.place, strict=True):
+        shrink = max(1.0, hypot(side, top) / FARTHEST)  # as the strike itself keeps the tip on the disc
+        put = None if not in_hand else tuple(here) if np.isnan(place).any() else tuple(place.tolist())
+        tip = {"side": side / shrink, "top": top / shrink}
+        out.append(CueStroke(speed=speed, aim=aim, **tip, elevation=elevation, place=put))
+    return out

@@ -1,26 +1,23 @@
 """The benchmark: named tasks with frozen options, and how agents are judged on them. ``python -m snooker_env.benchmark`` runs it."""
 
-from ..envs.at_frames import AtFrames
+from ..play.program import AgentError, ProgramPlayer
 from .agents import Agent
 from .checking import afresh, faults, replayed
-from .counts import FIGURES, counts, figure
 from .figures import figures_of
 from .leaderboard import page
-from .models import FittingModel, ForeignModelPlayer
 from .playing import COLUMNS, PlayedEpisodes, play_episodes
-from .program import AgentError, ProgramPlayer
 from .provenance import arithmetic, commit, machine, processor, software
 from .results import budget_of, read_result, write_result
-from .rollouts import CENTURY, MAXIMUM, Strokes, play_visits, summary
+from .rollouts import CENTURY, FIGURES, MAXIMUM, Strokes, counts, play_visits, summary
 from .run import judge
 from .schema import faults_of_fields
-from .statistics import RESAMPLES, Resamples, interval, iqm, unseen
+from .statistics import RESAMPLES, Resamples, figure, interval, iqm, unseen
 from .tasks import FREE, HELD_OUT_SEED, TASKS, Task, most_points, tables_of, task_of
 
 __all__ = [
-    "CENTURY", "COLUMNS", "FIGURES", "FREE", "HELD_OUT_SEED", "MAXIMUM", "RESAMPLES", "TASKS", "Agent", "AgentError", "AtFrames",
-    "FittingModel", "ForeignModelPlayer", "PlayedEpisodes", "ProgramPlayer", "Resamples", "Strokes", "Task", "afresh", "arithmetic",
-    "budget_of", "commit", "counts", "faults", "faults_of_fields", "figure", "figures_of", "interval", "iqm", "judge", "machine",
-    "most_points", "page", "play_episodes", "play_visits", "processor", "read_result", "replayed", "software", "summary",
-    "tables_of", "task_of", "unseen", "write_result",
+    "CENTURY", "COLUMNS", "FIGURES", "FREE", "HELD_OUT_SEED", "MAXIMUM", "RESAMPLES", "TASKS", "Agent", "AgentError",
+    "PlayedEpisodes", "ProgramPlayer", "Resamples", "Strokes", "Task", "afresh", "arithmetic", "budget_of", "commit",
+    "counts", "faults", "faults_of_fields", "figure", "figures_of", "interval", "iqm", "judge", "machine", "most_points",
+    "page", "play_episodes", "play_visits", "processor", "read_result", "replayed", "software", "summary", "tables_of",
+    "task_of", "unseen", "write_result",
 ]  # fmt: skip

@@ -1,42 +1,35 @@
-"""Which agent is judged? A built-in player, one of the repository, a model's file, MODULE:CLASS or a program, and its training."""
+"""Which agent is judged? A player for each training seed, by name, file, class, command or object, and what is declared of it."""
 
-import importlib
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from .._check import integer, refuse
-from ..advice.players import BUILT_IN, OWN, is_known, names, player_of
-from ..tasks.saved_models import by_train, entries
-from .models import ForeignModelPlayer
-from .playing import check_player
-from .program import ProgramPlayer
+from .._check import choice, integer, number, refuse
+from ..play.program import ProgramPlayer
+from ..players import Player
+from ..players import player as player_named
+from ..players.resolver import PROGRAM, RENAMED, is_name
+from ..players.saved import saved_player
+from ..players.weights import levels
 from .schema import LABEL
-from .tasks import Task
-
-KINDS = ("built_in", "repository", "model", "class", "program", "object")
-"""Kinds of agents: a player of the package, a name of the repository, a ``.zip`` of Stable-Baselines3, MODULE:CLASS, a program of the text
-protocol; "object": a player made in Python."""
-PROGRAM = "program:"
+from .tasks import FREE, Task
 
 
 @dataclass(frozen=True, kw_only=True)
 class Agent:
-    """An agent to judge; ``Agent.of`` makes one from a text.
+    """An agent to judge; ``Agent.of`` makes one from a text or a player.
 
     Attributes
     ----------
     label : str
         Its name in tables: 1 to 20 letters, digits or . + - _.
-    kind : str
-        One of ``KINDS``.
-    sources : tuple of str
-        Where it comes from: a name, MODULE:CLASS, program:COMMAND, or a file for each training seed.
+    sources : tuple of str or player
+        What ``sn.player`` makes a player of, one for each training seed.
     options : dict
-        Options of ``FREE`` with which the actions of a model of Stable-Baselines3 are read.
+        Options of ``FREE`` with which the actions of models of Stable-Baselines3 are read.
     trust : bool
         Whether code in models may run.
     timeout : float
@@ -45,95 +38,93 @@ class Agent:
         Number of simulated shots of its training; None: unknown.
     shots_declared : int, optional
         Simulated shots per decision that this process cannot count; None: nothing is declared.
-    maker : callable, optional
-        Called without arguments, returns the player; None: the player is made from ``sources``.
 
     Examples
     --------
     >>> from snooker_env.benchmark import Agent
     >>> agent = Agent.of("random")
-    >>> agent.label, agent.kind, agent.training_shots
-    ('random', 'built_in', 0)
+    >>> agent.label, agent.sources, agent.training_shots
+    ('random', ('random',), 0)
     """
 
     label: str
-    kind: str
-    sources: tuple[str, ...]
+    sources: tuple[Any, ...]
     options: dict[str, Any] = field(default_factory=dict)
     trust: bool = False
     timeout: float = 60.0
     training_shots: int | None = None
     shots_declared: int | None = None
-    maker: Callable[[], Any] | None = None
 
     @classmethod
-    def of(
-        cls, text: str, *, label: str | None = None, options: dict[str, Any] | None = None, trust: bool = False, timeout: float = 60.0,
-        training_shots: int | None = None, shots_declared: int | None = None,
-    ) -> "Agent":  # fmt: skip
-        """The agent that a text names.
+    def of(cls, agent: Any, *, label: str | None = None, training_shots: int | None = None, **more: Any) -> "Agent":
+        """The agent that a text names, or that a player is.
 
         Parameters
         ----------
-        text : str
-            A name, MODULE:CLASS, program:COMMAND, a file or run folder, or LABEL=FILE,FILE,... with one file for each training seed.
+        agent : str or player
+            A text that ``sn.player`` accepts, LABEL=SOURCE,SOURCE,... with one source for each training seed, or a player.
         label : str, optional
-            As in ``Agent``; None: made from the text.
-        options : dict, optional
-            As in ``Agent``; only for models of Stable-Baselines3.
-        trust : bool
-            As in ``Agent``.
-        timeout : float
-            As in ``Agent`` [s].
-        training_shots, shots_declared : int, optional
-            As in ``Agent``. A built-in player has 0 training shots.
+            As in ``Agent``; None: made from the text or the class.
+        training_shots : int, optional
+            As in ``Agent``; None: what a player says that is known by name.
+        **more
+            Other attributes.
 
         Returns
         -------
         Agent
-            The agent. No code of it has run.
+            The agent. No code of a class or a file has run.
 
         Raises
         ------
         ValueError
             If nothing has that name, or an argument is wrong.
         """
-        given = text
-        if not text.startswith(PROGRAM) and "=" in text and not Path(text).exists():
-            own, _, text = text.partition("=")
-            label = label or own
-        sources: tuple[str, ...] = (text,) if text.startswith(PROGRAM) else tuple(text.split(","))
-        kinds = {_kind(source) for source in sources}
-        if not all(sources) or len(kinds) > 1 or (len(sources) > 1 and kinds != {"model"} and kinds != {"repository"}):
-            raise refuse("agent", given, "must be one agent, or models with the same label: LABEL=FILE,FILE")
-        if len(set(sources)) < len(sources):
-            raise refuse("agent", given, "must be different models, one for each training seed")
-        kind = kinds.pop()
-        if training_shots is None and kind == "built_in":
-            training_shots = 0
-        if training_shots is not None:
-            integer("training_shots", training_shots, 0, 2**53)
-        if shots_declared is not None:
-            integer("simulated_shots", shots_declared, 0, 2**53)
-        if options and kind != "model":
-            raise refuse("options", options, "must be left out: it is for models of Stable-Baselines3")
-        label = label or _label(next(iter(sources)), kind)
+        sources: tuple[Any, ...] = (agent,)
+        if isinstance(agent, str) and not agent.startswith(PROGRAM) and not Path(agent).exists():
+            name, equals, text = agent.rpartition("=")
+            label, sources = label or name if equals else label, tuple(text.split(","))
+        if len(set(sources)) < len(sources) or not all(sources):
+            raise refuse("agent", agent, "must be different players or models, one for each training seed")
+        for source in sources:
+            if isinstance(source, str) and not is_name(source) and not Path(source).exists():
+                player_named(source)  # says what is allowed
+            if len(sources) > 1 and str(source).startswith(PROGRAM):
+                raise refuse("agent", agent, "must be one program")
+        label = label or _label(sources[0])
         if not LABEL.fullmatch(label):
             raise refuse("label", label, "must be 1 to 20 letters, digits or . + - _: give --label")
-        if is_reserved(label, sources):
+        made = cls(label=label, sources=sources, training_shots=training_shots, **more)
+        if is_reserved(label, made.texts):
             raise refuse("label", label, "must not be the name of another player: give --label")
-        return cls(
-            label=label, kind=kind, sources=sources, options=options or {}, trust=trust, timeout=timeout, training_shots=training_shots,
-            shots_declared=shots_declared,
-        )  # fmt: skip
+        for name, shots in (("training_shots", training_shots), ("simulated_shots", made.shots_declared)):
+            if shots is not None:
+                integer(name, shots, 0, 2**53)
+        number("timeout", made.timeout, 0.0, 1e6, open_low=True)
+        if made.options and any(is_name(text) for text in made.texts):
+            raise refuse("options", made.options, "must be left out: it is for models of Stable-Baselines3")
+        if training_shots is None and made.known:
+            shots = getattr(player_named(sources[0]), "training_shots", None)
+            object.__setattr__(made, "training_shots", shots)
+        return made
 
     @property
-    def tables_at_once(self) -> int | None:
-        """Number of episodes that it plays side by side: 1 for a program, None for the number of the protocol."""
-        return 1 if self.kind == "program" else None
+    def texts(self) -> list[str]:
+        """The sources as a file names them."""
+        return [text_of(source) for source in self.sources]
 
-    def player(self, task: Task, run: int = 0) -> Any:
-        """The player of one training seed, checked for this task. Code of the agent runs.
+    @property
+    def program(self) -> bool:
+        """Whether it is an external program."""
+        return self.texts[0].startswith(PROGRAM)
+
+    @property
+    def known(self) -> bool:
+        """Whether every source is a player of the package, or of one that is installed, by name."""
+        return all(map(is_known, self.texts))
+
+    def player(self, task: Task, run: int = 0) -> Player:
+        """The player of one training seed, not yet bound. Code of the agent runs.
 
         Parameters
         ----------
@@ -144,121 +135,78 @@ class Agent:
 
         Returns
         -------
-        object
-            A player, with ``options`` and ``act``.
+        Player
+            The player.
 
         Raises
         ------
         ValueError
             If it is no player, or cannot play the task.
         """
-        player = self._made(self.sources[run], task)
-        if getattr(player, "frames", False) is True and self.kind == "model" and not task.frame:
-            raise refuse("agent", self.sources[run], f"must be trained on a visit to play {task.id}: it sees the observation of a frame")
-        check_player(player, task)
-        return player
+        source = self.sources[run]
+        if self.program and isinstance(source, str):
+            return ProgramPlayer(source.removeprefix(PROGRAM), timeout=self.timeout)
+        made = saved_player(Path(source), self.options, self.trust) if self.options else player_named(source, trust=self.trust)
+        made.at(task.judged())
+        return made
 
-    def _made(self, source, task):
-        if self.maker is not None:
-            return self.maker()
-        if self.kind == "program":
-            return ProgramPlayer(source.removeprefix(PROGRAM), frame=task.frame, timeout=self.timeout)
-        if self.kind == "class":
-            return _own(source)
-        if self.kind == "model" and not _ours(source):
-            return _model(source, tuple(sorted(self.options.items())), self.trust)
-        if self.options:
-            raise refuse("options", self.options, "must be left out: the file of train.py says how its actions are read")
-        return player_of(source, trust=self.trust)
+
+@contextmanager
+def seated(agent: Agent, task: Task, run: int) -> Iterator[Player]:
+    """The player of one training seed; a program is ended afterwards."""
+    player = agent.player(task, run)
+    try:
+        yield player
+    finally:
+        if isinstance(player, ProgramPlayer):
+            player.close()
+
+
+def text_of(source: Any) -> str:
+    """A source as a file names it: an object by its class."""
+    if isinstance(source, str):
+        return source
+    name = getattr(source, "name", None)
+    return name if isinstance(name, str) and name.startswith(PROGRAM) else f"{type(source).__module__}:{type(source).__qualname__}"
+
+
+def is_known(text: str) -> bool:
+    """Whether that is a player of the package, or of one that is installed, with all that it has learned."""
+    name, at, model = text.partition("@")
+    return ":" not in name and is_name(name) and (not at or model in levels())
+
+
+def present(name: str) -> str:
+    """The present name of a player: that of an alias, or the name itself."""
+    kind, line, budget = name.partition("_")
+    return RENAMED.get(kind, kind) + line + budget
 
 
 def is_reserved(label: str, sources: Sequence[str]) -> bool:
-    """Whether that is the name of a built-in player, or of one of the repository, and these are not that player.
-
-    Parameters
-    ----------
-    label : str
-    sources : sequence of str
-
-    Returns
-    -------
-    bool
-    """
-    name = re.sub("[.+-]", "_", label.lower()).strip("_")  # what a reader would take for it
-    return (is_known(label) or is_known(name)) and list(sources) != [label]
+    """Whether the label is, or looks like, the name of a known player that these sources are not."""
+    alike = re.sub("[.+-]", "_", label.lower()).strip("_")  # what a reader would take for it
+    return (is_known(label) or is_known(alike)) and [present(one) for one in sources] != [present(label)]
 
 
-def plans(name: str) -> bool:
-    """Whether the built-in player, or that of the repository, with this name simulates shots when it decides.
-
-    Parameters
-    ----------
-    name : str
-
-    Returns
-    -------
-    bool
-    """
-    return name not in ("random", "random_absolute", "ghost_ball") and (not name.startswith("ppo_") or "foresight" in name)
-
-
-def kind_by_name(source: str) -> str | None:
-    """The kind of an agent whose source is a name or a command; None if it may be a file, a class or an object.
-
-    Parameters
-    ----------
-    source : str
-
-    Returns
-    -------
-    str or None
-    """
-    if source.startswith(PROGRAM):
-        return "program"
-    return "built_in" if source in BUILT_IN else "repository" if is_known(source) else None
+def options_of_words(words: Sequence[str]) -> dict[str, Any]:
+    """Options from words like "aim=target" and "placement=True"; ValueError for others."""
+    options: dict[str, Any] = {}
+    for word in words:
+        name, equals, value = word.partition("=")
+        if not equals or name not in FREE or name in options:
+            raise refuse("options", word, f"must be KEY=VALUE, KEY once each of {', '.join(FREE)}")
+        options[name] = value
+        if name in ("elevation", "placement", "decision"):
+            options[name] = choice(f"options.{name}", value.capitalize(), ("True", "False")) == "True"
+    return options
 
 
-def _kind(source):
-    found = kind_by_name(source)
-    if found is not None:
-        return found
-    if Path(source).exists():
-        return "model"
-    if OWN.fullmatch(source):
-        return "class"
-    known = ", ".join(names())
-    raise refuse("agent", source, f'must be one of {known}, a .zip or run folder, MODULE:CLASS or program:"COMMAND"')
-
-
-def _label(source, kind):
-    if kind == "class":
-        label = source.rpartition(":")[2]
+def _label(source: Any) -> str:
+    """A label from a source."""
+    text = text_of(source)
+    if text.startswith(PROGRAM):
+        path = Path((text.removeprefix(PROGRAM).split() or ["program"])[-1])
     else:
-        path = Path((source.removeprefix(PROGRAM).split() or ["program"])[-1] if kind == "program" else source)
-        label = path.parent.stem if path.name == "model.zip" and path.parent.name else path.stem
-    return re.sub(r"[^\w.+-]", "_", label)[:20]
-
-
-def _own(name):
-    """The player MODULE:CLASS, made without arguments."""
-    module, _, maker = name.partition(":")
-    try:
-        return getattr(importlib.import_module(module), maker)()
-    except Exception as error:  # it is the user's code
-        raise refuse("agent", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})") from error
-
-
-def _ours(source):
-    """Whether that is a model of train.py, or its run's folder."""
-    path = Path(source)
-    if path.is_dir():
-        return True
-    try:
-        return by_train(entries(path))
-    except Exception as error:
-        raise refuse("agent", source, f"must be a model saved by Stable-Baselines3 ({error})") from None
-
-
-@lru_cache(maxsize=16)
-def _model(path, options, trust):
-    return ForeignModelPlayer(path, dict(options), trust)
+        path = Path(text if is_known(text) else text.rpartition(":")[2])
+    stem = path.parent.stem if path.name == "model.zip" and path.parent.name else path.stem
+    return re.sub(r"[^\w.+-]", "_", stem)[:20]

@@ -3,32 +3,42 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import refuse
+from ..players import FRAMES, VISITS
 from ..simulation import SimulationError
 from ..tasks.options import MAX_STROKES
-from .agents import KINDS, Agent, is_reserved, kind_by_name, plans
+from .agents import Agent, is_known, is_reserved, seated
 from .figures import figures_of
-from .playing import BATCH, COLUMNS, PlayedEpisodes, begin, check_player, play_episodes
+from .playing import BATCH, COLUMNS, Decider, Kept, PlayedEpisodes, Repeater, play_episodes, rows_of, tables_for
 from .provenance import arithmetic
-from .results import budget_of, class_of, missing, simulated_shots
-from .schema import LONG_LINE, MOST_SOURCES, MOST_WHOLE, NAME, PACKAGES, PROTOCOL, VERSION, faults_of_fields, shortened
-from .strokes import Repeater, unpacked
-from .tasks import TASKS
+from .results import budget_of, missing, of_decisions
+from .schema import (
+    LONG_LINE,
+    MOST_SOURCES,
+    MOST_WHOLE,
+    NAME,
+    PACKAGES,
+    PROTOCOL,
+    VERSION,
+    faults_of_fields,
+    shortened,
+)
+from .strokes import unpacked
+from .tasks import TASKS, Task
 
 MOST = 12
 """Faults of rows that are named."""
-PLAYED_AGAIN = ("random", "ghost_ball")
-"""Built-in players that decide fast enough to be played again by every check."""
 SURE = 3.29
 """Standard errors that a fresh mean may be away: 99.9 %."""
+STROKES = COLUMNS.index("strokes")
 
 
 def faults(found: Any, threads: int | None = None) -> list[str]:
     """Check a result: its fields, that they fit each other, and all rows and figures by a replay of its strokes.
 
-    A result that says to be of ``random`` or ``ghost_ball`` must have the strokes that these play, too.
+    Players that are known by name, of the package or of one that is installed, are asked again for the first stroke of the
+    first tables of every training seed: they must be those of the file, and whoever simulates shots is planning.
 
     Parameters
     ----------
@@ -42,121 +52,114 @@ def faults(found: Any, threads: int | None = None) -> list[str]:
     list of str
         One line for each fault; empty if there is none.
 
+    Raises
+    ------
+    ImportError
+        If a known player needs a library that is not installed.
+
     Examples
     --------
     >>> from snooker_env.benchmark import faults
     >>> len(faults({})) > 0
     True
     """
-    said = faults_of_fields(found)
-    if said:
-        return said
-    for name, got, allowed in (
-        ("schema.name", found["schema"]["name"], (NAME,)), ("schema.version", found["schema"]["version"], (VERSION,)),
-        ("protocol.version", found["protocol"]["version"], (PROTOCOL,)), ("task", found["task"], tuple(TASKS)),
-        ("software.snooker_env", found["software"]["snooker_env"], PACKAGES),
-    ):  # fmt: skip
-        if got not in allowed:
-            said.append(f"{name} = {shortened(got)}: must be {'one of ' * (len(allowed) > 1)}{', '.join(map(str, allowed))}")
-    if found["columns"] != list(COLUMNS):
-        said.append(f"columns = {shortened(found['columns'])}: must be {list(COLUMNS)}")
-    if said:
-        return said
+    wrong = faults_of_fields(found) or _of_versions(found)
+    if wrong:
+        return wrong
     task = TASKS[found["task"]]
-    if found["protocol"]["episodes"] > task.episodes:
-        return [f"protocol.episodes = {found['protocol']['episodes']}: must be at most {task.episodes} on {task.id}"]
-    said += _faults_of_sources(found["agent"]) or _faults_of_agent(found["agent"], task) + (
-        _faults_of_rows(found, task) or _of_shots(found)
-    )
-    if said:
-        return said
-    rows, label = found["rows"], found["agent"]["label"]
+    wrong = _of_agent(found) + _of_rows(found, task)
+    if wrong:
+        return wrong
     try:
         strokes = strokes_of(found)
-        said = _faults_of_runs(found, strokes) or _faults_of_play(found, task, strokes, threads)
-        if not said:
-            said = _faults_of_figures(found["figures"], figures_of(task, label, rows) if rows else None)
-            if found["protocol"]["official"] != (not missing(found, task)):
-                said.append(f"protocol.official = {found['protocol']['official']}: must be {(not missing(found, task))} by the rules")
-        if not said and found["agent"]["sources"][0] in PLAYED_AGAIN:
-            said = replayed(found, Agent.of(found["agent"]["sources"][0]), len(rows), threads)
-    except (ValueError, SimulationError) as error:  # damaged, not in the action space, no shot that can be computed, another's options
+        wrong = _of_runs(found, strokes) or _of_play(found, task, strokes, threads)
+        if wrong:
+            return wrong
+        rows = found["rows"]
+        wrong = _of_figures(found["figures"], figures_of(task, found["agent"]["label"], rows) if rows else None)
+        official = not missing(found, task)
+        if found["protocol"]["official"] != official:
+            wrong.append(f"protocol.official = {not official}: must be {official} by the rules")
+        return wrong or _of_decisions(found, task, strokes, threads)
+    except (ValueError, SimulationError) as error:  # damaged, no actions, or no shot that can be computed
         return [str(error)]
-    return said
 
 
-def strokes_of(found: dict[str, Any]) -> list[NDArray[Any]]:
-    """The strokes of each row of a result whose rows have their form. ValueError if they are damaged.
-
-    Parameters
-    ----------
-    found : dict
-
-    Returns
-    -------
-    list of arrays
-    """
-    lengths = [row[COLUMNS.index("strokes")] for row in found["rows"]]
-    return unpacked(found["strokes"], lengths, TASKS[found["task"]].judged(**found["agent"]["options"]).rules.actions)
+def strokes_of(result: dict[str, Any]) -> Kept:
+    """The strokes of each row of a result whose rows have their form; ValueError if they are damaged."""
+    task = TASKS[result["task"]]
+    actions = task.judged(**(FRAMES if task.frame else VISITS)).rules.actions
+    return unpacked(result["strokes"], [row[STROKES] for row in result["rows"]], actions.size)
 
 
-def _faults_of_sources(agent):
-    sources, kind = agent["sources"], agent["kind"]
-    if kind not in KINDS:
-        return [f"agent.kind = {shortened(kind)}: must be one of {', '.join(KINDS)}"]
-    if not 0 < len(sources) <= MOST_SOURCES or not all(isinstance(one, str) and one and LONG_LINE[0].fullmatch(one) for one in sources):
+def _of_versions(result: dict[str, Any]) -> list[str]:
+    """Names and versions by which results compare."""
+    wrong = []
+    for name, value, allowed in (
+        ("schema.name", result["schema"]["name"], (NAME,)),
+        ("schema.version", result["schema"]["version"], (VERSION,)),
+        ("protocol.version", result["protocol"]["version"], (PROTOCOL,)),
+        ("task", result["task"], tuple(TASKS)),
+        ("software.snooker_env", result["software"]["snooker_env"], PACKAGES),
+        ("columns", result["columns"], (list(COLUMNS),)),
+    ):
+        if value not in allowed:
+            one = "one of " * (len(allowed) > 1) + ", ".join(map(str, allowed))
+            wrong.append(f"{name} = {shortened(value)}: must be {one}")
+    return wrong
+
+
+def _of_agent(result: dict[str, Any]) -> list[str]:
+    """Do the fields of the agent fit each other?"""
+    agent, sources, wrong = result["agent"], result["agent"]["sources"], []
+    texts = all(isinstance(one, str) and one and LONG_LINE[0].fullmatch(one) for one in sources)
+    if not 0 < len(sources) <= MOST_SOURCES or not texts:
         return ["agent.sources: must be texts, one for each training seed"]
     if len(set(sources)) < len(sources):
         return ["agent.sources: must be different: the same one twice makes nothing surer"]
-    if len(sources) > 1 and kind not in ("model", "repository"):
-        return [f"agent.sources: must be one for an agent of kind {kind}"]
-    for of_name in map(kind_by_name, sources):
-        if of_name not in (None, kind) or (of_name is None and kind in ("program", "built_in")):
-            return [f"agent.kind = {kind!r}: must be {of_name or 'another'} with agent.sources {shortened(sources)}"]
     if is_reserved(agent["label"], sources):
-        return [f"agent.label = {agent['label']!r}: must not be the name of another player than agent.sources"]
-    return []
+        wrong.append(f"agent.label = {agent['label']!r}: must not be the name of another player than agent.sources")
+    if agent["budget"] != (budget := budget_of(agent["training_shots"])):
+        wrong.append(f"agent.budget = {shortened(agent['budget'])}: must be {budget!r} by agent.training_shots")
+    decisions = sum(row[STROKES] for row in result["rows"] if _is_row(row))
+    by_word = agent["simulated_shots"] if agent["declared"] else None
+    shots, program = result["timing"]["simulated_shots"], sources[0].startswith("program:")
+    for name, want in of_decisions(program, by_word, shots, decisions).items():
+        if agent[name] != want:
+            by = "agent.sources and timing.simulated_shots" if name != "class" else "agent.simulated_shots"
+            wrong.append(f"agent.{name} = {shortened(agent[name])}: must be {want!r} by {by}")
+    return wrong
 
 
-def _faults_of_agent(agent, task):
-    said = []
-    try:
-        check_player(Repeater(agent["options"], []), task)
-    except (ValueError, TypeError) as error:
-        said.append(f"agent.options: {error}"[:160])
-    if agent["kind"] == "built_in" and agent["training_shots"] != 0:
-        said.append(f"agent.training_shots = {agent['training_shots']}: must be 0 for a built-in player")
-    if agent["budget"] != budget_of(agent["training_shots"]):
-        said.append(f"agent.budget = {shortened(agent['budget'])}: must be {budget_of(agent['training_shots'])!r} by agent.training_shots")
-    if agent["kind"] in ("built_in", "repository") and agent["class"] == "model_free" and any(map(plans, agent["sources"])):
-        said.append(f"agent.class = 'model_free': must be 'planning': {shortened(agent['sources'])} simulates shots")
-    if agent["class"] != class_of(agent["simulated_shots"]):
-        said.append(f"agent.class = {shortened(agent['class'])}: must be {class_of(agent['simulated_shots'])!r} by agent.simulated_shots")
-    return said
+def _is_row(row: Any) -> bool:
+    """Whether that is a row of whole numbers."""
+    numbers = isinstance(row, list) and len(row) == len(COLUMNS)
+    return numbers and all(type(x) is int and abs(x) <= MOST_WHOLE for x in row)
 
 
-def _faults_of_rows(found, task):
-    """The form of the rows, and whose they are: run by run the episodes of the protocol, or where it was stopped the first of them."""
-    rows, incomplete = found["rows"], found["incomplete"]
+def _of_rows(result: dict[str, Any], task: Task) -> list[str]:
+    """Are the rows, run by run, those of the protocol's episodes, or if it was stopped the first of them?"""
+    rows, many, runs = result["rows"], result["protocol"]["episodes"], len(result["agent"]["sources"])
+    if many > task.episodes:
+        return [f"protocol.episodes = {many}: must be at most {task.episodes} on {task.id}"]
     for k, row in enumerate(rows):
-        if not isinstance(row, list) or len(row) != len(COLUMNS) or any(type(x) is not int or abs(x) > MOST_WHOLE for x in row):
+        if not _is_row(row):
             return [f"rows[{k}] = {shortened(row)}: must be {len(COLUMNS)} whole numbers"]
-        strokes = row[COLUMNS.index("strokes")]
-        if not 0 <= strokes <= MAX_STROKES:
-            return [f"rows[{k}].strokes = {strokes}: must be between 0 and {MAX_STROKES}"]
-    seeds = task.seeds(found["protocol"]["episodes"])
-    want = [[run, seed] for run in range(len(found["agent"]["sources"])) for seed in seeds]
-    if len(rows) > len(want) or (len(rows) < len(want) and incomplete is None):
-        return [f"rows: must be {len(want)} episodes, {len(seeds)} for each training seed, not {len(rows)}; or incomplete must say why"]
+        if not 0 <= row[STROKES] <= MAX_STROKES:
+            return [f"rows[{k}].strokes = {row[STROKES]}: must be between 0 and {MAX_STROKES}"]
+    want = [[run, seed] for run in range(runs) for seed in task.seeds(many)]
+    if len(rows) > len(want) or (len(rows) < len(want) and result["incomplete"] is None):
+        each = f"{len(want)} episodes, {many} for each training seed"
+        return [f"rows: must be {each}, not {len(rows)}; or incomplete must say why"]
     for k, (row, (run, seed)) in enumerate(zip(rows, want, strict=False)):
         if row[:2] != [run, seed]:
             return [f"rows[{k}]: run {row[0]}, table {row[1]}: must be run {run}, table {seed}, as the protocol says"]
     return []
 
 
-def _faults_of_runs(found, strokes):
+def _of_runs(result: dict[str, Any], strokes: Kept) -> list[str]:
     """Two training seeds do not play whole results of a hundred episodes and more alike: they would be one."""
-    many, known = found["protocol"]["episodes"], {}
+    many, known = result["protocol"]["episodes"], {}
     for run in range(len(strokes) // many if many >= 100 else 0):
         whole = b"".join(one.tobytes() for one in strokes[run * many : (run + 1) * many])
         if known.setdefault(whole, run) != run:
@@ -164,52 +167,72 @@ def _faults_of_runs(found, strokes):
     return []
 
 
-def _of_shots(found):
-    agent, decisions = found["agent"], sum(row[COLUMNS.index("strokes")] for row in found["rows"])
-    given, said = agent["simulated_shots"] if agent["declared"] else None, agent["declared"]
-    want = simulated_shots(agent["kind"], given, found["timing"]["simulated_shots"], decisions)
-    if (agent["simulated_shots"], said) == want:
-        return []
-    how = f"must be {want[0]}, {'declared' if want[1] else 'counted'}, by agent.kind and timing.simulated_shots"
-    return [f"agent.simulated_shots = {agent['simulated_shots']}, {'declared' if said else 'counted'}: {how}"]
-
-
-def _faults_of_play(found, task, strokes, threads):
-    """Where the rows differ from what the strokes play."""
-    said, rows = [], found["rows"]
+def _of_play(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
+    """Where do the rows differ from what the strokes play?"""
+    wrong, rows = [], result["rows"]
     for first in range(0, len(rows), BATCH):
         some = rows[first : first + BATCH]
-        player = Repeater(found["agent"]["options"], strokes[first : first + BATCH])
-        played = play_episodes(task, player, [row[1] for row in some], threads=threads).rows
+        tables = tables_for(task, len(some), threads)
+        decide = Repeater(strokes[first : first + BATCH], tables.options.rules.actions.size)
+        played = rows_of(task, tables, [row[1] for row in some], decide)
         for k, (row, want) in enumerate(zip(some, played, strict=True)):
-            if player.short[k]:
-                said.append(f"rows[{first + k}].strokes = {row[3]}: must be more: the episode goes on after them")
+            name = f"rows[{first + k}]"
+            if decide.short[k]:
+                wrong.append(f"{name}.strokes = {row[STROKES]}: must be more: the episode goes on after them")
                 continue
-            wrong = [c for c in range(2, len(COLUMNS)) if row[c] != want[c]]
-            said += [f"rows[{first + k}].{COLUMNS[c]} = {row[c]}: must be {want[c]}, as its strokes play" for c in wrong]
-    made, here = found["machine"]["arithmetic"], arithmetic()
-    if said and made != here:
-        said = [f"machine.arithmetic = {made!r}: must be {here!r} to check it here, where strokes end otherwise in the last bits", *said]
-    return said[:MOST] + ([f"rows: {len(said) - MOST} more faults"] if len(said) > MOST else [])
+            other = [c for c in range(2, len(COLUMNS)) if row[c] != want[c]]
+            wrong += [f"{name}.{COLUMNS[c]} = {row[c]}: must be {want[c]}, as its strokes play" for c in other]
+    more = [f"rows: {len(wrong) - MOST} more faults"] if len(wrong) > MOST else []
+    return _elsewhere(result, wrong[:MOST] + more)
 
 
-def _faults_of_figures(got: Any, want: Any, name: str = "figures") -> list[str]:
-    """Where figures differ from those that follow from the rows."""
-    if isinstance(want, dict) and isinstance(got, dict):
-        other = [f"{name}.{key}: is no figure" for key in got if key not in want]
-        return other + [line for key in want for line in _faults_of_figures(got.get(key), want[key], f"{name}.{key}")]
-    if isinstance(want, list) and isinstance(got, list) and len(want) == len(got):
-        return [line for k in range(len(want)) for line in _faults_of_figures(got[k], want[k], f"{name}[{k}]")]
-    if type(got) is type(want) and got == want and str(got) == str(want):  # as texts: 0.0 is not -0.0
+def _elsewhere(result: dict[str, Any], wrong: list[str]) -> list[str]:
+    """The faults, after a line that says so if the last bits fall otherwise where the file was made."""
+    made, here = result["machine"]["arithmetic"], arithmetic()
+    if not wrong or made == here:
+        return wrong
+    where = "where strokes end otherwise in the last bits"
+    return [f"machine.arithmetic = {made!r}: must be {here!r} to check it here, {where}", *wrong]
+
+
+def _of_figures(value: Any, want: Any, name: str = "figures") -> list[str]:
+    """Where do figures differ from those that follow from the rows?"""
+    if isinstance(want, dict) and isinstance(value, dict):
+        other = [f"{name}.{key}: is no figure" for key in value if key not in want]
+        return other + [line for key in want for line in _of_figures(value.get(key), want[key], f"{name}.{key}")]
+    if isinstance(want, list) and isinstance(value, list) and len(want) == len(value):
+        return [line for k in range(len(want)) for line in _of_figures(value[k], want[k], f"{name}[{k}]")]
+    if type(value) is type(want) and value == want and str(value) == str(want):  # as texts: 0.0 is not -0.0
         return []
-    shown = want if isinstance(want, int | float | type(None)) else "what follows from the rows"
-    return [f"{name} = {shortened(got)}: must be {shown}"]
+    right = want if isinstance(want, int | float | type(None)) else "what follows from the rows"
+    return [f"{name} = {shortened(value)}: must be {right}"]
+
+
+def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
+    """Do known players begin on the first tables of each training seed as the file says, and plan if they simulate shots?"""
+    agent, many, wrong = result["agent"], result["protocol"]["episodes"], []
+    for run, source in enumerate(agent["sources"]):
+        first = min(BATCH, len(strokes) - run * many, many)
+        if first <= 0 or not is_known(source):
+            continue
+        kept = strokes[run * many : run * many + first]
+        tables = tables_for(task, first, threads)
+        tables.reset(seed=(seeds := task.seeds(first)))
+        decide = Decider(source, tables, seeds, run)
+        actions = decide(np.array([len(one) > 0 for one in kept]), 0)
+        tables.close()
+        for k, one in enumerate(kept):
+            if len(one) and one[0].tobytes() != actions[k].tobytes():
+                wrong.append(f"strokes: run {run}, table {seeds[k]}: {source} begins with another stroke than the file")
+                break
+        if decide.simulated and agent["class"] == "model_free":
+            shots = f"{decide.simulated:,} shots for {decide.decisions:,} strokes"
+            wrong.append(f"agent.class = 'model_free': must be 'planning': {shortened(source)} simulated {shots}")
+    return _elsewhere(result, wrong)
 
 
 def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None) -> list[str]:
     """Have the agent play the first episodes of a result again, of every training seed, and compare strokes and rows.
-
-    Only whole batches are played, so the number of episodes may be larger than ``episodes``.
 
     Parameters
     ----------
@@ -218,7 +241,7 @@ def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | 
     agent : Agent
         The agent of the result.
     episodes : int
-        The least number of episodes of each training seed.
+        Number of episodes of each training seed.
     threads : int, optional
         As in ``SnookerVectorEnv``.
 
@@ -230,7 +253,7 @@ def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | 
     Raises
     ------
     ValueError
-        If the agent is not that of the file: another kind, another number of training seeds, or other options.
+        If the agent has another number of training seeds.
 
     Examples
     --------
@@ -239,22 +262,23 @@ def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | 
     >>> replayed(judge(TASKS["SnookerPotHard-v0"], agent, episodes=2), agent, 2)
     []
     """
-    seeds = TASKS[found["task"]].seeds(found["protocol"]["episodes"])
-    again = _by(agent, found, seeds, episodes, threads)
-    kept = {(row[0], row[1]): (row, one.tobytes()) for row, one in zip(found["rows"], strokes_of(found), strict=True)}
-    said = []
+    seeds = TASKS[found["task"]].seeds(found["protocol"]["episodes"])[:episodes]
+    again, wrong = _by(agent, found, seeds, threads), []
+    kept = {tuple(row[:2]): (row, one.tobytes()) for row, one in zip(found["rows"], strokes_of(found), strict=True)}
     for row, one in zip(again.rows, again.strokes, strict=True):
-        mine = row, one.tobytes()
-        old = kept.get((row[0], row[1]), mine)
-        if old != mine:
+        old = kept.get((row[0], row[1]))
+        if old is not None and old != (row, one.tobytes()):
             what = "other strokes" if old[0] == row else str(dict(zip(COLUMNS[2:], row[2:], strict=True)))
-            said.append(f"run {row[0]}, table {row[1]}: played again {what}, the file has {old[0][2:]}")
-    if not said and len(again.rows) == len(found["rows"]) and again.simulated != found["timing"]["simulated_shots"]:
-        said.append(f"timing.simulated_shots = {found['timing']['simulated_shots']}: must be {again.simulated}, as the agent played again")
-    return said
+            wrong.append(f"run {row[0]}, table {row[1]}: played again {what}, the file has {old[0][2:]}")
+    shots = found["timing"]["simulated_shots"]
+    if not wrong and len(again.rows) == len(found["rows"]) and again.simulated != shots:
+        wrong.append(f"timing.simulated_shots = {shots}: must be {again.simulated}, as the agent played again")
+    return wrong
 
 
-def afresh(found: dict[str, Any], agent: Agent, episodes: int, seed: int, threads: int | None = None) -> tuple[float, float, list[str]]:
+def afresh(
+    found: dict[str, Any], agent: Agent, episodes: int, seed: int, threads: int | None = None
+) -> tuple[float, float, list[str]]:
     """Have the agent play a task on seeds that it cannot know, and compare its mean score and its class with those of the result.
 
     Parameters
@@ -275,13 +299,13 @@ def afresh(found: dict[str, Any], agent: Agent, episodes: int, seed: int, thread
     mean, error : float
         The mean score of the fresh episodes, and the standard error of its difference to the result.
     faults : list of str
-        One line if they differ by more than 3.29 standard errors, which one honest result in 1,000 does; one if a model-free agent
-        simulates shots.
+        One line if they differ by more than 3.29 standard errors, which one honest result in 1,000 does; one if a
+        model-free agent simulates shots.
 
     Raises
     ------
     ValueError
-        As ``replayed``.
+        As ``replayed``, or if the result is not complete.
 
     Examples
     --------
@@ -292,36 +316,27 @@ def afresh(found: dict[str, Any], agent: Agent, episodes: int, seed: int, thread
     """
     if found["figures"] is None:
         raise refuse("incomplete", found["incomplete"], "must be null to compare means")
-    played = _by(agent, found, list(range(seed, seed + episodes)), episodes, threads)
-    scores = [
-        np.array([row[COLUMNS.index("score")] for row in rows], np.float64).reshape(len(agent.sources), -1).mean(0)
-        for rows in (found["rows"], played.rows)
-    ]
-    (old, mean), error = (one.mean() for one in scores), float(np.sqrt(sum(one.var(ddof=1) / len(one) for one in scores)))
-    said = [f"figures.score.value = {old:g}: must be within {SURE * error:.2g} of {mean:g}, as on fresh seeds"]
-    said = said if abs(mean - old) > SURE * error else []
+    played, runs, column = _by(agent, found, range(seed, seed + episodes), threads), len(agent.sources), COLUMNS.index("score")
+    each = [np.reshape([row[column] for row in rows], (runs, -1)).mean(0) for rows in (found["rows"], played.rows)]
+    (old, mean), error = (one.mean() for one in each), float(np.sqrt(sum(one.var(ddof=1) / len(one) for one in each)))
+    wrong = []
+    if abs(mean - old) > SURE * error:
+        near = f"must be within {SURE * error:.2g} of {mean:g}, as on fresh seeds"
+        wrong.append(f"figures.score.value = {old:g}: {near}")
     if found["agent"]["class"] == "model_free" and played.simulated:
         shots = f"{played.simulated:,} shots for {played.decisions:,} strokes"
-        said.append(f"agent.class = 'model_free': must be 'planning': it simulated {shots}")
-    return float(mean), error, said
+        wrong.append(f"agent.class = 'model_free': must be 'planning': it simulated {shots}")
+    return float(mean), error, wrong
 
 
-def _by(agent, found, seeds, episodes, threads):
-    """What the agent of a result plays on these tables: whole batches, until so many episodes have been played."""
-    own, batch, played = found["agent"], agent.tables_at_once or BATCH, PlayedEpisodes([])
-    if agent.kind != own["kind"]:
-        raise refuse("agent", agent.kind, f"must be of the kind that the file says: {own['kind']}")
-    if len(agent.sources) != len(own["sources"]):
-        raise refuse("agent", ",".join(agent.sources), f"must have the {len(own['sources'])} training seeds of the file")
-    for run in range(len(agent.sources)):
-        player = agent.player(TASKS[found["task"]], run)
-        try:
-            if dict(player.options) != own["options"] and found["rows"]:
-                raise refuse("options", dict(player.options), f"must be those of the file: {own['options']}")
-            for first in range(0, min(episodes, len(seeds)), batch):
-                begin(player, first // batch)
-                played.add(play_episodes(TASKS[found["task"]], player, seeds[first : first + batch], run, threads))
-        finally:
-            if callable(getattr(player, "close", None)):
-                player.close()
+def _by(agent: Agent, result: dict[str, Any], seeds: Any, threads: int | None) -> PlayedEpisodes:
+    """What the agent of a result plays on these tables, with every training seed."""
+    task, runs, batch = TASKS[result["task"]], len(result["agent"]["sources"]), 1 if agent.program else BATCH
+    if len(agent.sources) != runs:
+        raise refuse("agent", ",".join(agent.texts), f"must have the {runs} training seeds of the file")
+    played = PlayedEpisodes([])
+    for run in range(runs):
+        with seated(agent, task, run) as player:
+            for first in range(0, len(seeds), batch):
+                played.add(play_episodes(task, player, list(seeds[first : first + batch]), run, threads))
     return played

@@ -15,21 +15,12 @@ from .tasks import Task
 
 
 def matrix(rows: list[list[int]]) -> dict[str, Floats] | None:
-    """The columns of the rows as arrays (runs, episodes); None unless every run has played the same tables in the same order.
-
-    Parameters
-    ----------
-    rows : list of list of int
-
-    Returns
-    -------
-    dict of float (runs, episodes), or None
-    """
+    """The columns of the rows, (runs, episodes); None unless every run has played the same tables in the same order."""
     table = np.array(rows, np.float64).reshape(-1, len(COLUMNS))
-    runs = [table[table[:, 0] == run] for run in sorted(set(table[:, 0].tolist()))]
-    if not runs or any(len(one) != len(runs[0]) or not np.array_equal(one[:, 1], runs[0][:, 1]) for one in runs):
+    runs = [table[table[:, 0] == run] for run in np.unique(table[:, 0])]
+    if not runs or any(not np.array_equal(one[:, 1], runs[0][:, 1]) for one in runs):
         return None
-    return {name: np.stack([one[:, c] for one in runs]) for c, name in enumerate(COLUMNS)}
+    return dict(zip(COLUMNS, np.moveaxis(np.stack(runs), 2, 0), strict=True))
 
 
 def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] | None:
@@ -47,8 +38,9 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
     Returns
     -------
     dict or None
-        "score", "iqm" (for points only), "profile" (a list of {"at_least", and a figure}), "by_run", "best", "points", "pots", "strokes",
-        "fouls" and "cleared". A figure is {"value", "low", "high", "exact"}. None if the runs are not complete.
+        "score", "iqm" (for points only), "profile" (a list of {"at_least", and a figure}), "by_run", "best", "points",
+        "pots", "strokes", "fouls" and "cleared". A figure is {"value", "low", "high", "exact"}. None if the runs are not
+        complete.
 
     Examples
     --------
@@ -60,29 +52,34 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
     columns = matrix(rows)
     if columns is None:
         return None
-    runs, episodes = columns["score"].shape
-    samples = Resamples(runs, episodes, RESAMPLES, zlib.crc32(label.encode()))
-    count = samples.sums(np.ones((runs, episodes)))
-
-    def mean(values, *, share=False):
-        return _figure(float(values.mean()), samples.sums(values) / count, episodes if share else 0)
-
     score, counted = columns["score"], task.counts
-    middle = _figure(iqm(score), samples.iqms(score), 0) if counted else None
-    profile = [{"at_least": t} | mean((score >= t).astype(float), share=True) for t in task.thresholds if t <= task.most]
+    samples = Resamples(*score.shape, RESAMPLES, zlib.crc32(label.encode()))
+    count = samples.sums(np.ones(score.shape))
+
+    def mean(values: Floats, *, share: bool = False) -> dict[str, Any]:
+        """The figure of a mean; of a share with its exact bound where it was never or always seen."""
+        return _figure(float(values.mean()), samples.sums(values) / count, score.shape[1] if share else 0)
+
+    profile = [t for t in task.thresholds if t <= task.most]
     return {
-        "score": mean(score, share=not counted), "iqm": middle, "profile": profile, "by_run": score.mean(axis=1).tolist(),
-        "best": int(score.max()), "points": mean(columns["points"]), "pots": mean(columns["pots"]), "strokes": mean(columns["strokes"]),
-        "fouls": mean(columns["fouls"], share=not task.frame), "cleared": mean(columns["cleared"], share=True),
-    }  # fmt: skip
+        "score": mean(score, share=not counted),
+        "iqm": _figure(iqm(score), samples.iqms(score), 0) if counted else None,
+        "profile": [{"at_least": t} | mean((score >= t).astype(float), share=True) for t in profile],
+        "by_run": score.mean(axis=1).tolist(),
+        "best": int(score.max()),
+        **{name: mean(columns[name]) for name in ("points", "pots", "strokes")},
+        "fouls": mean(columns["fouls"], share=not task.frame),
+        "cleared": mean(columns["cleared"], share=True),
+    }
 
 
-def _figure(value, samples, trials):
-    """A figure with its 95 % interval; of a share that was never or always seen the exact one-sided bound of so many ``trials``."""
+def _figure(value: float, samples: Floats, trials: int) -> dict[str, Any]:
+    """A figure with its 95 % interval; of a share never or always seen in so many ``trials`` the exact one-sided bound."""
     low, high = interval(samples)
     if np.isfinite(low):
         return {"value": value, "low": low, "high": high, "exact": False}
     if trials and value in (0.0, 1.0):
         most = unseen(trials)
-        return {"value": value, "low": 0.0 if value == 0.0 else 1.0 - most, "high": most if value == 0.0 else 1.0, "exact": True}
+        low, high = (0.0, most) if value == 0.0 else (1.0 - most, 1.0)
+        return {"value": value, "low": low, "high": high, "exact": True}
     return {"value": value, "low": None, "high": None, "exact": False}

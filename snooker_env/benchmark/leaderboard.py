@@ -4,6 +4,8 @@ from collections.abc import Iterable, Sequence
 from textwrap import wrap
 from typing import Any
 
+from .._tables import markdown_table, shown, text_table
+from .agents import present
 from .playing import COLUMNS
 from .tasks import TASKS, Task
 
@@ -11,210 +13,115 @@ WIDTH = 100
 CLASSES = {"model_free": "model-free", "planning": "planning", "undeclared": "undecl."}
 TRAINED = {"none": "0", "50k": "50 k", "1M": "1 M", "5M": "5 M", "open": "open", "unknown": "?"}
 """In the order of the table."""
+Table = tuple[list[str], list[list[str]]]
+"""Heading and rows."""
 
-
-def text_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
-    """A table for a terminal: the first columns to the left, the others to the right.
-
-    Parameters
-    ----------
-    head : sequence of str
-    rows : sequence of sequences of str
-    left : int
-        How many columns stand to the left.
-
-    Returns
-    -------
-    list of str
-    """
-    widths = [max(len(row[c]) for row in [head, *rows]) for c in range(len(head))]
-    line = lambda row: "  ".join(  # noqa: E731
-        cell.ljust(width) if c < left else cell.rjust(width) for c, (cell, width) in enumerate(zip(row, widths, strict=True))
-    )
-    return [line(head).rstrip(), "-" * (sum(widths) + 2 * (len(widths) - 1)), *(line(row).rstrip() for row in rows)]
-
-
-def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
-    """The same in Markdown.
-
-    Parameters
-    ----------
-    head, rows, left
-        As of ``text_table``.
-
-    Returns
-    -------
-    list of str
-    """
-    marks = ["---" if c < left else "--:" for c in range(len(head))]
-    cells = lambda row: [cell.replace("\\", "\\\\").replace("|", "\\|") for cell in row]  # noqa: E731
-    return [f"| {' | '.join(cells(row))} |" for row in (head, marks, *rows)]
+LEGEND = (
+    "score: mean of all episodes with its 95 % bootstrap interval over training seeds and episodes; a share that was "
+    "never or always seen has the exact one-sided 95 % bound. IQM: mean of the middle half. training: the budget of "
+    "simulated shots. seeds: training seeds. shots: simulated shots a decision (d: declared). ms: time of a decision, "
+    "100 tables at once; ms 1: one table. *: not official."
+)
+PROVED = (
+    "A result is its strokes: its file holds every one, and check plays each episode again from its seed and computes "
+    "all figures anew. Players that are known by name are asked again for their first strokes. What strokes cannot prove "
+    "is who chose them: that no held-out seed was peeked at, the class and its simulated shots, the budget of training, "
+    "times and machines are the word of whoever made the file. To doubt a row, let its agent play on fresh seeds: check "
+    "FILE --agent AGENT --fresh 500."
+)
+AWAITED = "Agents whose results are not there yet stand as missing."
 
 
 def plain(text: str) -> str:
-    """A text that a file gives, as one line of Markdown without markup of its own.
-
-    Parameters
-    ----------
-    text : str
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> from snooker_env.benchmark.leaderboard import plain
-    >>> plain("a <b> [c](d)\\n# e")
-    'a &lt;b&gt; &#91;c](d) # e'
-    """
+    """A text that a file gives, as one line of Markdown without markup of its own."""
     for sign, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ("[", "&#91;"), ("`", "&#96;")):
         text = text.replace(sign, entity)
     return " ".join(text.split())
 
 
-def board(results: Iterable[dict[str, Any]], task: Task) -> tuple[list[str], list[list[str]]]:
-    """Heading and rows of a task's table: classes and budgets apart, the best first.
+def board(results: Iterable[dict[str, Any]], task: Task) -> Table:
+    """A task's table: classes and budgets apart, the best first."""
 
-    Parameters
-    ----------
-    results : iterable of dict
-        Sound results; those of other tasks are left out.
-    task : Task
-
-    Returns
-    -------
-    head : list of str
-    rows : list of list of str
-    """
-    mine = [r for r in results if r["task"] == task.id and r["figures"] is not None]
-
-    def order(r):
-        agent = r["agent"]
-        return list(CLASSES).index(agent["class"]), list(TRAINED).index(agent["budget"]), -r["figures"]["score"]["value"], agent["label"]
+    def order(result: dict[str, Any]) -> tuple[Any, ...]:
+        agent, score = result["agent"], result["figures"]["score"]["value"]
+        return list(CLASSES).index(agent["class"]), list(TRAINED).index(agent["budget"]), -score, agent["label"]
 
     head = ["class, training", "agent", "score" if task.counts else "share %", "IQM", "seeds", "shots", "ms", "ms 1"]
-    rows = [_row(r, task) for r in sorted(mine, key=order)]
-    if not task.counts:
-        head, rows = head[:3] + head[4:], [row[:3] + row[4:] for row in rows]
-    return head, rows
+    rows = [_row(result, task) for result in sorted(_of(results, task), key=order)]
+    keep = [c for c, name in enumerate(head) if task.counts or name != "IQM"]
+    return [head[c] for c in keep], [[row[c] for c in keep] for row in rows]
 
 
-def _row(r, task):
-    agent, timing, figures = r["agent"], r["timing"], r["figures"]
-    mark = "" if r["protocol"]["official"] else " *"
-    shots = "?" if agent["simulated_shots"] is None else f"{agent['simulated_shots']:,.0f}{' d' if agent['declared'] else ''}"
-    ms = 1e3 * timing["seconds"] / max(1, sum(row[COLUMNS.index("strokes")] for row in r["rows"]))
-    alone = timing["one_table_ms"]
-    score = shown(figures["score"], 1.0 if task.counts else 100.0)
-    middle = "" if figures["iqm"] is None else f"{figures['iqm']['value']:.1f}"
-    trained = f"{CLASSES[agent['class']]}, {TRAINED[agent['budget']]}"
-    seeds = str(len(agent["sources"]))
-    return [trained, agent["label"] + mark, score, middle, seeds, shots, _ms(ms), "" if alone is None else _ms(alone)]
+def _of(results: Iterable[dict[str, Any]], task: Task) -> list[dict[str, Any]]:
+    """The results of a task that have figures."""
+    return [one for one in results if one["task"] == task.id and one["figures"] is not None]
 
 
-def _ms(value):
+def _row(result: dict[str, Any], task: Task) -> list[str]:
+    """The row of a result."""
+    agent, timing, figures = result["agent"], result["timing"], result["figures"]
+    shots, alone, middle = agent["simulated_shots"], timing["one_table_ms"], figures["iqm"]
+    strokes = sum(row[COLUMNS.index("strokes")] for row in result["rows"])
+    return [
+        f"{CLASSES[agent['class']]}, {TRAINED[agent['budget']]}",
+        agent["label"] + ("" if result["protocol"]["official"] else " *"),
+        shown(figures["score"], 1.0 if task.counts else 100.0),
+        "" if middle is None else f"{middle['value']:.1f}",
+        str(len(agent["sources"])),
+        "?" if shots is None else f"{shots:,.0f}{' d' if agent['declared'] else ''}",
+        _ms(1e3 * timing["seconds"] / max(1, strokes)),
+        "" if alone is None else _ms(alone),
+    ]
+
+
+def _ms(value: float) -> str:
+    """Milliseconds with three digits."""
     return f"{value:.0f}" if value >= 100 else f"{value:.3g}" if value >= 0.01 else "<0.01"
 
 
-def shown(figure: dict[str, Any], scale: float = 1.0) -> str:
-    """A figure with its interval, as "65.8 [61.2, 70.1]".
-
-    Parameters
-    ----------
-    figure : dict
-    scale : float
-
-    Returns
-    -------
-    str
-    """
-    value = f"{scale * figure['value']:.1f}"
-    return value if figure["low"] is None else f"{value} [{scale * figure['low']:.1f}, {scale * figure['high']:.1f}]"
+def profile(results: Iterable[dict[str, Any]], task: Task) -> Table:
+    """The performance profile of a task: the share of episodes [%] with at least so many points, a row for each agent."""
+    mine = sorted(_of(results, task), key=lambda one: (-one["figures"]["score"]["value"], one["agent"]["label"]))
+    rows = []
+    for one in mine:
+        shares = [_share(figure) for figure in one["figures"]["profile"]]
+        rows.append([one["agent"]["label"], *shares, str(one["figures"]["best"])])
+    return ["agent", *(f">= {t}" for t in task.thresholds if t <= task.most), "best"], rows
 
 
-def profile(results: Iterable[dict[str, Any]], task: Task) -> tuple[list[str], list[list[str]]]:
-    """The performance profile of a task: the share of episodes [%] with at least so many points, a row for each agent.
-
-    Parameters
-    ----------
-    results : iterable of dict
-    task : Task
-
-    Returns
-    -------
-    head : list of str
-    rows : list of list of str
-    """
-    mine = [r for r in results if r["task"] == task.id and r["figures"] is not None]
-    mine.sort(key=lambda r: (-r["figures"]["score"]["value"], r["agent"]["label"]))
-    head = ["agent", *(f">= {t}" for t in task.thresholds if t <= task.most), "best"]
-    rows = [[r["agent"]["label"], *(_share(p) for p in r["figures"]["profile"]), str(r["figures"]["best"])] for r in mine]
-    return head, rows
-
-
-def _share(figure):
+def _share(figure: dict[str, Any]) -> str:
     """A share [%]; where it was never or always seen, the exact bound of it."""
-    if figure["exact"]:
-        return f"<= {100 * figure['high']:.1f}" if figure["value"] == 0.0 else f">= {100 * figure['low']:.1f}"
-    return f"{100 * figure['value']:.1f}"
+    if not figure["exact"]:
+        return f"{100 * figure['value']:.1f}"
+    return f"<= {100 * figure['high']:.1f}" if figure["value"] == 0.0 else f">= {100 * figure['low']:.1f}"
 
 
-LEGEND = (
-    "score: mean of all episodes with its 95 % bootstrap interval over training seeds and episodes; a share that was never or always seen "
-    "has the exact one-sided 95 % bound. IQM: mean of the middle half. training: the budget of simulated shots. seeds: training seeds. "
-    "shots: simulated shots a decision (d: declared). ms: time of a decision, 100 tables at once; ms 1: one table. *: not official."
-)
+def lines(
+    results: Sequence[dict[str, Any]], *, markdown: bool = False, awaited: Sequence[str] = ()
+) -> list[str]:
+    """Leaderboard and profiles of all tasks with results; labels ``awaited`` are named where their result is missing."""
 
+    def table(head: list[str], rows: list[list[str]], label: int, left: int = 1) -> list[str]:
+        """A table whose column ``label`` holds labels: of a page as plain text."""
+        if not markdown:
+            return text_table(head, rows, left)
+        safe = [[plain(cell) if c == label else cell for c, cell in enumerate(row)] for row in rows]
+        return markdown_table(head, safe, left)
 
-TWO_PLAYERS = (
-    "Two players are called ghost_ball. In these tables it is the agent: one constant choice, the widest pot at one soft speed. The "
-    "opponent in the frames is another, a kernel that also breaks off, plays softly and escapes."
-)
-PROVED = (
-    "A result is its strokes: its file holds every one, and check plays each episode again from its seed and computes all figures anew. "
-    "What strokes cannot prove is who chose them: that no held-out seed was peeked at, the class and its simulated shots, the budget of "
-    "training, times and machines are the word of whoever made the file. Only random and ghost_ball are played again, too. To doubt a row, "
-    "let its agent play on fresh seeds: check FILE --agent AGENT --fresh 500."
-)
-AWAITED = "Rows made before results held their strokes proved nothing and have been taken down. They return as they are played anew."
-
-
-def lines(results: Sequence[dict[str, Any]], *, markdown: bool = False, awaited: Sequence[str] = ()) -> list[str]:
-    """Leaderboard and profiles of all tasks that there are results of.
-
-    Parameters
-    ----------
-    results : sequence of dict
-    markdown : bool
-    awaited : sequence of str
-        Labels that are named where their result is missing.
-
-    Returns
-    -------
-    list of str
-    """
-    made, table = [], markdown_table if markdown else text_table
-
-    def safe(rows, label):
-        """The rows, of a page with the label as plain text."""
-        return [[plain(cell) if markdown and c == label else cell for c, cell in enumerate(row)] for row in rows]
-
+    made: list[str] = []
     for task in TASKS.values():
         head, rows = board(results, task)
-        there = {r["agent"]["label"] for r in results if r["task"] == task.id}
-        lacking = [label for label in awaited if label not in there]
+        labels = {present(one["agent"]["label"]) for one in results if one["task"] == task.id}
+        lacking = [label for label in awaited if present(label) not in labels]
         if not rows and not lacking:
             continue
-        title = f"{task.id}: {task.title}"
-        made += [f"## {title}" if markdown else title, ""]
-        made += [*wrap(f"Judged by {task.measure}, {task.episodes:,} episodes. {task.note}", WIDTH), ""]
-        made += [*table(head, safe(rows, 1), 2), ""] if rows else []
+        judged = f"Judged by {task.measure}, {task.episodes:,} episodes. {task.note}"
+        made += [f"{'## ' if markdown else ''}{task.id}: {task.title}", "", *wrap(judged, WIDTH), ""]
+        made += [*table(head, rows, 1, 2), ""] if rows else []
         made += [*wrap(f"Missing: {', '.join(lacking)}.", WIDTH), ""] if lacking else []
         if task.counts and rows:
-            shares = profile(results, task)
-            made += ["Share of visits [%] with at least so many points:", "", *table(shares[0], safe(shares[1], 0)), ""]
-    return [*made, *wrap(LEGEND, WIDTH), "", *wrap(TWO_PLAYERS, WIDTH)]
+            made += ["Share of visits [%] with at least so many points:", "", *table(*profile(results, task), 0), ""]
+    return [*made, *wrap(LEGEND, WIDTH)]
 
 
 def page(results: Sequence[dict[str, Any]], awaited: Sequence[str] = ()) -> str:
@@ -240,9 +147,10 @@ def page(results: Sequence[dict[str, Any]], awaited: Sequence[str] = ()) -> str:
     """
     words = ["The rules are in [the benchmark](benchmark.md). This page is made by `leaderboard/make.sh`."]
     if results:
-        versions = sorted({r["software"]["snooker_env"] for r in results})
-        machines = sorted({f"{r['machine']['cpu']}, {r['machine']['cores']} cores" for r in results})
-        words[0] += f" snooker_env {', '.join(map(plain, versions))}; machine: {'; '.join(map(plain, machines))}."
+        versions = sorted({one["software"]["snooker_env"] for one in results})
+        machines = sorted({f"{one['machine']['cpu']}, {one['machine']['cores']} cores" for one in results})
+        made_on = "; ".join(map(plain, machines))
+        words[0] += f" snooker_env {', '.join(map(plain, versions))}; machine: {made_on}."
     tables = lines(results, markdown=True, awaited=awaited)
     words += [PROVED, *([AWAITED] if any(line.startswith("Missing: ") for line in tables) else [])]
     head = [line for text in words for line in (*wrap(text, WIDTH), "")]

@@ -1,32 +1,31 @@
-"""How are the episodes of a task played? Batches of tables side by side, a row of whole numbers for each episode; and one table, timed.
+"""How are episodes played? Tables side by side: a player decides by positions and seeds, and what it decides is kept as it is played.
 
-A player has ``options``, how it sees and acts (``FREE``), and ``act(tables, observations, going)``, an action for each table of a
-``SnookerVectorEnv`` with flat observations. In a frame a player of visits sees the stroke to come as one of a visit (``AtFrames``); a
-player whose attribute ``frames`` is true gets the frames themselves. Episodes are played ``BATCH`` at a time, and a player that has a
-method ``begin(seed)`` is called before each batch: so the same episodes are played again alike, however many follow. Box actions
-are rounded to float32, the type of the action space, before they are played: what is kept is what was played.
+The environment reads all of a stroke (``players.VISITS``, ``players.FRAMES``). An action is rounded to float32, the type
+of the action space, before it is played: what is kept is what was played. The seed of a decision depends on the training
+seed, the table's seed and the number of the stroke alone, so a player gives the same strokes in any batch.
 """
 
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import choice, refuse, refuse_what
 from .._shots import simulated
-from .._types import Floats, Ints
-from ..envs.at_frames import AtFrames
+from .._types import Bools, Floats, Ints
 from ..envs.vector import SnookerVectorEnv
-from .rollouts import play_visits
-from .strokes import Keeper
-from .tasks import FREE, Task
+from ..players import FRAMES, VISITS, decided, decision_seeds
+from ..players import player as player_named
+from .tasks import Task
 
 BATCH = 100
 """Episodes that are played side by side."""
 COLUMNS = ("run", "table", "score", "strokes", "points", "pots", "fouls", "cleared", "opponent_points", "ended")
 """Columns of a row: index of the training seed, seed of the table, then integers that docs/benchmark.md explains."""
+Kept = list[NDArray[np.float32]]
+"""The strokes of each episode: its actions, one row each."""
 
 
 @dataclass
@@ -38,7 +37,7 @@ class PlayedEpisodes:
     rows : list of list of int
         One row for each episode, columns ``COLUMNS``.
     strokes : list of numpy.ndarray
-        The strokes of each episode, one row each: uint16 choices, or float32 box actions.
+        The strokes of each episode, float32, one row each: actions of an environment that reads all of a stroke.
     decisions : int
         Number of decisions of the player.
     seconds : float
@@ -54,7 +53,7 @@ class PlayedEpisodes:
     """
 
     rows: list[list[int]]
-    strokes: list[NDArray[Any]] = field(default_factory=list)
+    strokes: Kept = field(default_factory=list)
     decisions: int = 0
     seconds: float = 0.0
     simulated: int = 0
@@ -66,10 +65,6 @@ class PlayedEpisodes:
         ----------
         more : PlayedEpisodes
             The next episodes.
-
-        Returns
-        -------
-        None
         """
         self.rows += more.rows
         self.strokes += more.strokes
@@ -78,51 +73,99 @@ class PlayedEpisodes:
         self.simulated += more.simulated
 
 
-def begin(player: Any, batch: int) -> None:
-    """Have a player draw the random numbers of this batch, if it can.
+class Decider:
+    """A player at the tables of an environment: what it decides is rounded, kept and timed, and its shots are counted."""
 
-    Parameters
-    ----------
-    player : object
-    batch : int
+    def __init__(self, player: Any, tables: SnookerVectorEnv, seeds: Any, seed: int):
+        self.player = player_named(player).at(tables)
+        self.decisions, self.seconds, self.simulated = 0, 0.0, 0
+        self._tables, self._seeds, self._seed = tables, np.asarray(seeds, np.int64), seed
+        self._log: list[tuple[Ints, NDArray[np.float32]]] = []
+
+    def __call__(self, asked: Bools, number: int) -> NDArray[np.float32]:
+        """The actions on all tables: the player's on those ``asked`` for their stroke ``number``, else 0."""
+        began, before = time.perf_counter(), simulated()
+        seeds = decision_seeds(self._seed, self._seeds, number)
+        actions = decided(self.player, self._tables, asked, seeds).astype("<f4")
+        self.seconds += time.perf_counter() - began
+        self.simulated += simulated() - before
+        self.decisions += int(asked.sum())
+        self._log.append((np.flatnonzero(asked), actions[asked]))
+        return actions
+
+    def strokes(self) -> Kept:
+        """What was played on each table."""
+        tables, actions = (np.concatenate(part) for part in zip(*self._log, strict=True))
+        ends = np.cumsum(np.bincount(tables, minlength=len(self._seeds)))
+        return np.split(actions[np.argsort(tables, kind="stable")], ends[:-1])
+
+
+class Repeater:
+    """Decides what a file holds, and knows which episodes went on after their last stroke (``short``)."""
+
+    def __init__(self, strokes: Kept, size: int):
+        self._strokes, self._size = strokes, size
+        self.short: Bools = np.zeros(len(strokes), np.bool_)
+
+    def __call__(self, asked: Bools, number: int) -> NDArray[np.float32]:
+        """The next stroke of each episode; zeros after the last."""
+        actions = np.zeros((len(asked), self._size), "<f4")
+        for k in np.flatnonzero(asked).tolist():
+            if number < len(self._strokes[k]):
+                actions[k] = self._strokes[k][number]
+            else:
+                self.short[k] = True
+        return actions
+
+
+class Round(NamedTuple):
+    """What one stroke of each player was: the tables where it was ``asked``, and what the environment said after it."""
+
+    asked: Bools
+    info: dict[str, Any]
+    done: Bools
+    terminated: Bools
+
+
+def rounds(tables: SnookerVectorEnv, seeds: Any, decide: Any, rekey: int | None = None) -> Iterator[Round]:
+    """Play every table to its end; a round is a stroke on each table that goes on.
+
+    ``rekey``: the tables get new execution errors by this seed after each decision.
     """
-    inner = getattr(player, "player", player)
-    for one in (player, inner):
-        if callable(getattr(one, "begin", None)):
-            one.begin(batch)
-            return
+    tables.reset(seed=seeds)
+    going, number = np.ones(tables.num_envs, np.bool_), 0
+    while going.any():
+        asked = going & ~tables.tables.ended()  # a frame that the opponent has won already only needs its last step
+        actions = decide(asked, number) if asked.any() else np.zeros(tables.action_space.shape, np.float32)
+        if rekey is not None:
+            tables.tables.streams[:, 0] = decision_seeds(~rekey, np.asarray(seeds), number)
+        _, _, terminated, truncated, info = tables.step(actions)
+        done = going & (terminated | truncated)
+        yield Round(asked, info, done, terminated)
+        going &= ~done
+        number += 1
 
 
-def check_player(player: Any, task: Task) -> None:
-    """Raise ValueError unless that is a player, and its options are free in this task.
-
-    Parameters
-    ----------
-    player : object
-    task : Task
-    """
-    if not isinstance(getattr(player, "options", None), dict) or not callable(getattr(player, "act", None)):
-        raise refuse_what("agent", f"a {type(player).__name__}", "must be a player: options (a dict) and act(tables, observations, going)")
-    for name in player.options:
-        choice("key of options", name, FREE)
-    if player.options.get("observation", "flat") != "flat":
-        raise refuse("observation", player.options["observation"], 'must be "flat": players get flat observations')
-    task.judged(**player.options)
+def tables_for(task: Task, n: int, threads: int | None = None) -> SnookerVectorEnv:
+    """The judged environment of n tables that reads all of a stroke."""
+    return SnookerVectorEnv(n, task.judged(**(FRAMES if task.frame else VISITS)), threads=threads)
 
 
-def play_episodes(task: Task, player: Any, seeds: list[int], run: int = 0, threads: int | None = None) -> PlayedEpisodes:
+def play_episodes(
+    task: Task, player: Any, seeds: list[int], run: int = 0, threads: int | None = None
+) -> PlayedEpisodes:
     """Play one episode on each of the judged tables with these seeds, side by side.
 
     Parameters
     ----------
     task : Task
         The task.
-    player : object
-        A player, with ``options`` and ``act(tables, observations, going)``.
+    player : Player or str
+        A player, or the name of one.
     seeds : list of int
         Seeds of the tables.
     run : int
-        Index of the player's training seed, the first number of each row.
+        Index of the player's training seed, the first number of each row, and the seed of what it draws.
     threads : int, optional
         As in ``SnookerVectorEnv``.
 
@@ -133,104 +176,36 @@ def play_episodes(task: Task, player: Any, seeds: list[int], run: int = 0, threa
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.benchmark import TASKS, play_episodes
-    >>> class Soft:
-    ...     options = {}
-    ...     def act(self, tables, observations, going):
-    ...         return np.full((len(going), 4), -1.0)
     >>> task = TASKS["SnookerPotHard-v0"]
-    >>> len(play_episodes(task, Soft(), task.seeds(2)).rows)
+    >>> len(play_episodes(task, "ghost_ball", task.seeds(2)).rows)
     2
     """
-    return (_frames if task.frame else _visits)(task, player, seeds, run, threads)
+    tables = tables_for(task, len(seeds), threads)
+    decide = Decider(player, tables, seeds, run)
+    rows = rows_of(task, tables, seeds, decide, run)
+    strokes = decide.strokes() if decide.decisions else [np.empty((0, 0), np.float32)] * len(seeds)
+    return PlayedEpisodes(rows, strokes, decide.decisions, decide.seconds, decide.simulated)
 
 
-def _visits(task, player, seeds, run, threads):
-    options = {**task.frozen, "layout": task.judged_layout}  # all of them: whatever a player's options say now, these hold
-    keeper = Keeper(player, len(seeds))
-    s = play_visits(keeper, len(seeds), first_seed=seeds, threads=threads, **options)
-    points, pots, fouls = s.a_visit(s.points), s.a_visit(s.made), s.a_visit(s.foul)
-    scores = {"points": points, "pots": pots, "legal": 1 - fouls}
-    zeros = np.zeros(len(seeds))
-    strokes, cleared = s.a_visit(np.ones(len(s.points))), s.a_visit(s.clears)
-    columns = (zeros + run, seeds, scores[task.score], strokes, points, pots, fouls, cleared, zeros, zeros + 1)
-    return PlayedEpisodes(np.array(columns).T.astype(int).tolist(), keeper.strokes(), len(s.points), s.decision_seconds, s.simulated)
-
-
-def _frames(task, player, seeds, run, threads):
+def rows_of(task: Task, tables: SnookerVectorEnv, seeds: list[int], decide: Any, run: int = 0) -> list[list[int]]:
+    """The rows of the episodes with these seeds, as ``decide`` plays them."""
     n = len(seeds)
-    tables = SnookerVectorEnv(n, task.judged(**player.options), threads=threads)
-    keeper = Keeper(player if getattr(player, "frames", False) else AtFrames(player), n)
-    observations, _ = tables.reset(seed=seeds)
-    going, ended, played = np.ones(n, bool), np.zeros(n, bool), PlayedEpisodes([])
-    sums: dict[str, Floats] = {name: np.zeros(n) for name in ("strokes", "pots", "fouls")}
-    last: dict[str, Ints] = {name: np.zeros(n, np.int64) for name in ("score", "opponent_score", "winner")}
-    while going.any():
-        actions, asked = _decided(keeper, tables, observations, going, played)
-        observations, _, terminated, truncated, info = tables.step(actions)
+    sums: dict[str, Floats] = {name: np.zeros(n) for name in ("strokes", "points", "pots", "fouls")}
+    cleared, ended, won, opponent = np.zeros((4, n))
+    for asked, info, done, terminated in rounds(tables, seeds, decide):
+        scored = asked & (info["points"] > 0)
         sums["strokes"] += asked
-        sums["pots"] += asked & (info["points"] > 0)
-        sums["fouls"] += asked & (info["fouls"] != 0)
-        done = going & (terminated | truncated)
-        for name, values in last.items():
-            values[done] = info[name][done]
-        ended |= done & terminated
-        going &= ~done
-    won = (last["winner"] == 0) & ended
-    zeros = np.zeros(n)
-    columns = (
-        zeros + run, seeds, won, sums["strokes"], last["score"], sums["pots"], sums["fouls"], zeros, last["opponent_score"], ended
-    )  # fmt: skip
+        sums["points"] += np.where(asked, info["points"], 0)
+        sums["pots"] += scored
+        sums["fouls"] += asked & info["foul"]
+        ended[done] = terminated[done]
+        if task.frame:
+            won[done] = (info["winner"] == 0)[done] & terminated[done]
+            sums["points"][done], opponent[done] = info["score"][done], info["opponent_score"][done]
+        else:
+            cleared[done] = (scored & ~tables.tables.on_table[:, 1:].any(axis=1))[done]
     tables.close()
-    played.rows, played.strokes = np.array(columns).T.astype(int).tolist(), keeper.strokes()
-    return played
-
-
-def _decided(player, tables, observations, going, played):
-    """The player's actions, and the tables on which it had one to choose; its time and simulated shots are added to what was ``played``.
-
-    A frame that the opponent won before the player's first stroke only needs its last step: any action will do.
-    """
-    asked = going & ~tables.tables.ended()
-    if not asked.any():
-        return np.zeros(tables.action_space.shape, tables.action_space.dtype), asked
-    began, before = time.perf_counter(), simulated()
-    actions = player.act(tables, observations, asked)
-    played.seconds += time.perf_counter() - began
-    played.simulated += simulated() - before
-    played.decisions += int(asked.sum())
-    return actions, asked
-
-
-def one_table(task: Task, player: Any, seeds: list[int], decisions: int) -> PlayedEpisodes:
-    """Time decisions on one table: episodes one after the other, until so many decisions have been taken; the first is not counted.
-
-    Parameters
-    ----------
-    task : Task
-    player : object
-    seeds : list of int
-        Of the tables.
-    decisions : int
-
-    Returns
-    -------
-    PlayedEpisodes
-        Without rows.
-    """
-    tables = SnookerVectorEnv(1, task.judged(**player.options), threads=None, autoreset_mode="Disabled")
-    player = AtFrames(player) if task.frame and not getattr(player, "frames", False) else player
-    played, going, first = PlayedEpisodes([]), np.ones(1, bool), True
-    for seed in seeds:
-        observations, _ = tables.reset(seed=seed)
-        over = False
-        while not over and played.decisions < decisions:
-            actions, _ = _decided(player, tables, observations, going, PlayedEpisodes([]) if first else played)
-            first = False
-            observations, _, terminated, truncated, _ = tables.step(actions)
-            over = bool(terminated[0] or truncated[0])
-        if played.decisions >= decisions:
-            break
-    tables.close()
-    return played
+    scores = {"points": sums["points"], "pots": sums["pots"], "legal": 1 - sums["fouls"], "won": won}
+    columns = (np.full(n, run), seeds, scores[task.score], *sums.values(), cleared, opponent, ended)
+    return np.array(columns).T.astype(int).tolist()

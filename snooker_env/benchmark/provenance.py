@@ -13,11 +13,8 @@ import numpy as np
 
 from ..envs.vector import SnookerVectorEnv
 
-LIBRARIES = {
-    "numpy": "numpy", "numba": "numba", "gymnasium": "gymnasium", "torch": "torch", "stable_baselines3": "stable-baselines3",
-    "sb3_contrib": "sb3-contrib",
-}  # fmt: skip
-"""Libraries whose versions a result file holds -> their distributions."""
+LIBRARIES = ("numpy", "numba", "gymnasium", "torch", "stable_baselines3", "sb3_contrib")
+"""Libraries whose versions a result file holds."""
 
 
 def commit() -> str | None:
@@ -31,8 +28,8 @@ def commit() -> str | None:
     Examples
     --------
     >>> from snooker_env.benchmark import commit
-    >>> found = commit()
-    >>> found is None or len(found.removesuffix("-dirty")) == 40
+    >>> text = commit()
+    >>> text is None or len(text.removesuffix("-dirty")) == 40
     True
     """
     here = Path(__file__).resolve().parents[2]
@@ -81,13 +78,13 @@ def software() -> dict[str, str | None]:
     """
     from .. import __version__
 
-    found: dict[str, str | None] = {"snooker_env": __version__, "python": platform.python_version()}
-    for name, distribution in LIBRARIES.items():
+    versions: dict[str, str | None] = {"snooker_env": __version__, "python": platform.python_version()}
+    for name in LIBRARIES:
         try:
-            found[name] = metadata.version(distribution)
+            versions[name] = metadata.version(name)
         except metadata.PackageNotFoundError:
-            found[name] = None
-    return found
+            versions[name] = None
+    return versions
 
 
 @cache
@@ -131,7 +128,6 @@ def machine() -> dict[str, Any]:
     >>> machine()["cores"] >= 1
     True
     """
-    return {
-        "platform": f"{platform.system()} {platform.machine()}", "cpu": processor(), "cores": os.cpu_count() or 1,
-        "load": round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None,
-    }  # fmt: skip
+    load = round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None
+    where = f"{platform.system()} {platform.machine()}"
+    return {"platform": where, "cpu": processor(), "cores": os.cpu_count() or 1, "load": load}

@@ -1,23 +1,42 @@
-"""What happens in the visits that a player plays? Every stroke of them, on tables that are the same for every player."""
+"""What happens in the visits that a player plays? Every stroke of them on tables that are the same for all players, and what is counted."""
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from .._shots import simulated
 from .._types import Bools, Floats, Ints
 from ..envs.vector import SnookerVectorEnv
 from ..game.balls import BallOn
+from ..game.layouts import POT_WINDOWS
 from ..planning import Positions, pots
+from ..players import VISITS
+from .playing import Decider, rounds
 from .tasks import HELD_OUT_SEED
 
 CENTURY = 100
 """Points of a century break."""
 MAXIMUM = 147
 """Points of the largest break with 15 reds: a black after each red, then the colours."""
+EASY = POT_WINDOWS["easy"][0]
+HIGH = 6
+"""Pink and black are colours of high value."""
+FIGURES = {
+    "points_a_visit": ("points", "visits"),
+    "pots_a_visit": ("pots", "visits"),
+    "fouls_a_visit": ("fouls", "visits"),
+    "centuries": ("centuries", "visits"),
+    "maximums": ("maximums", "visits"),
+    "clearances": ("clearances", "visits"),
+    "pot_rate": ("pots", "strokes"),
+    "next_pot_after_a_pot": ("followed", "goes_on"),
+    "easy_pot_left_by_a_pot": ("easy", "goes_on"),
+    "colour_value": ("colour_points", "colours"),
+    "high_colours": ("high", "colours"),
+    "high_colour_after_a_red": ("high_after_red", "reds"),
+}
+"""Each is a ratio of two sums over visits, see ``counts``."""
 
 
 @dataclass
@@ -51,13 +70,8 @@ class Strokes:
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.benchmark import play_visits
-    >>> class Soft:
-    ...     options = {}
-    ...     def act(self, tables, observations, going):
-    ...         return np.full((len(going), 4), -1.0)
-    >>> strokes = play_visits(Soft(), 2, layout="colours")
+    >>> strokes = play_visits("ghost_ball", 2, layout="colours")
     >>> strokes.visits, strokes.a_visit(strokes.points).shape
     (2, (2,))
     """
@@ -125,16 +139,24 @@ class Strokes:
 
 
 def play_visits(
-    player: Any, visits: int, *, layout: str = "held_out", noise: Any = "professional",
-    first_seed: int | Sequence[int | None] = HELD_OUT_SEED, threads: int | None = None, each: Callable[[int], None] | None = None,
+    player: Any,
+    visits: int,
+    *,
+    layout: str = "held_out",
+    noise: Any = "professional",
+    first_seed: int | Sequence[int] = HELD_OUT_SEED,
+    seed: int = 0,
+    rekey: int | None = None,
+    threads: int | None = None,
+    each: Callable[[int], None] | None = None,
     **options: Any,
-) -> Strokes:  # fmt: skip
+) -> Strokes:
     """Play visits side by side and record every stroke.
 
     Parameters
     ----------
-    player : object
-        A player, with ``options`` and ``act(tables, observations, going)``.
+    player : Player or str
+        A player, or the name of one.
     visits : int
         Number of visits.
     layout : str
@@ -143,12 +165,16 @@ def play_visits(
         As in ``Options``.
     first_seed : int or sequence of int
         Seed of the first table, the others have the seeds after it; or the seed of each table.
+    seed : int
+        Of what the player draws. Its strokes on a table do not depend on the other tables.
+    rekey : int, optional
+        Seed of new execution errors after every decision: a control that the player has not seen them beforehand.
     threads : int, optional
         As in ``SnookerVectorEnv``.
     each : callable, optional
         Called after each round of strokes with the number of visits that still go on.
     **options
-        Other options of the environment; they replace the player's own.
+        Other options of the environment.
 
     Returns
     -------
@@ -157,40 +183,72 @@ def play_visits(
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.benchmark import play_visits
-    >>> class Soft:
-    ...     options = {}
-    ...     def act(self, tables, observations, going):
-    ...         return np.full((len(going), 4), -1.0)
-    >>> play_visits(Soft(), 3, layout="colours").visit.tolist()[:3]
+    >>> play_visits("ghost_ball", 3, layout="colours").visit.tolist()[:3]
     [0, 1, 2]
     """
-    seeds = first_seed if isinstance(first_seed, int) else list(first_seed)
-    tables = SnookerVectorEnv(visits, layout=layout, noise=noise, threads=threads, **{**player.options, **options})
-    observations, _ = tables.reset(seed=seeds)
-    log, going, number, decision_seconds, shots = [], np.ones(visits, bool), 0, 0.0, 0
-    while going.any():
-        ball_on = Positions.of(tables).ball_on[going]
-        began, before = time.perf_counter(), simulated()
-        actions = player.act(tables, observations, going)
-        decision_seconds += time.perf_counter() - began
-        shots += simulated() - before
-        observations, _, ended, _, info = tables.step(actions)
-        here = np.flatnonzero(going)
+    seeds = list(range(first_seed, first_seed + visits)) if isinstance(first_seed, int) else list(first_seed)
+    tables = SnookerVectorEnv(visits, layout=layout, noise=noise, threads=threads, **{**VISITS, **options})
+    decide, log, ball_on = Decider(player, tables, seeds, seed), [], np.empty(0, np.int64)
+
+    def noted(asked: Bools, number: int) -> Any:
+        """Decide, with a look at what is on."""
+        nonlocal ball_on
+        ball_on = Positions.of(tables).ball_on[asked]
+        return decide(asked, number)
+
+    for number, (asked, info, done, _) in enumerate(rounds(tables, seeds, noted, rekey)):
+        here = np.flatnonzero(asked)
         left = Positions.of(tables)[here]
         cue = np.where(left.on_table[:, :1], left.positions[:, 0], np.nan)
-        log.append(
-            (here, np.full(len(here), number), info["points"][here], info["foul"][here] != 0, ball_on, ~left.on_table[:, 1:].any(1), cue,
-             pots(left, most=1).tolerance[:, 0])
-        )  # fmt: skip
-        going &= ~ended
-        number += 1
+        outcome = info["points"][here], info["foul"][here], ball_on, ~left.on_table[:, 1:].any(1), cue
+        log.append((here, np.full(len(here), number), *outcome, pots(left, most=1).tolerance[:, 0]))
         if each is not None:
-            each(int(going.sum()))
+            each(int(asked.sum() - done.sum()))
     tables.close()
     columns = [np.concatenate(column) for column in zip(*log, strict=True)]
-    return Strokes(visits, *columns, decision_seconds=decision_seconds, simulated=shots)
+    return Strokes(visits, *columns, decision_seconds=decide.seconds, simulated=decide.simulated)
+
+
+def counts(s: Strokes) -> dict[str, Floats]:
+    """Count points, pots, strokes, fouls and more in each visit.
+
+    Parameters
+    ----------
+    s : Strokes
+        All strokes of the visits.
+
+    Returns
+    -------
+    dict of str to float64 (visits,)
+        The numbers of each visit, among them both terms of every ratio of ``FIGURES``.
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import counts, play_visits
+    >>> counts(play_visits("random", 2, layout="colours"))["visits"].tolist()
+    [1.0, 1.0]
+    """
+    next_points = np.append(s.points, 0.0)[s.following]  # of the stroke after; 0 after the last
+    red, colour = s.made & (s.ball_on == BallOn.RED), s.made & s.colour
+    entries = {
+        "points": s.points,
+        "pots": s.made,
+        "strokes": np.ones(len(s.points)),
+        "fouls": s.foul,
+        "goes_on": s.goes_on,
+        "followed": s.goes_on & (next_points > 0),
+        "easy": s.goes_on & (s.tolerance >= EASY),
+        "colours": colour,
+        "colour_points": colour * s.points,
+        "high": colour & (s.points >= HIGH),
+        "reds": red,
+        "high_after_red": red & (next_points >= HIGH),
+        "clearances": s.clears,
+    }
+    sums = {name: s.a_visit(values) for name, values in entries.items()}
+    breaks = {"centuries": sums["points"] >= CENTURY, "maximums": sums["points"] >= MAXIMUM}
+    return sums | {"visits": np.ones(s.visits)} | {name: made.astype(float) for name, made in breaks.items()}
 
 
 def summary(strokes: Strokes) -> dict[str, Any]:
@@ -204,30 +262,24 @@ def summary(strokes: Strokes) -> dict[str, Any]:
     Returns
     -------
     dict of str to float, int or None
-        Points, pots, fouls and other means by name. Names that end in "_se" are standard errors over visits. None where a mean has no
-        cases.
+        Points, pots, fouls and other means by name. Names that end in "_se" are standard errors over visits. None where
+        a mean has no cases.
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.benchmark import play_visits, summary
-    >>> class Soft:
-    ...     options = {}
-    ...     def act(self, tables, observations, going):
-    ...         return np.full((len(going), 4), -1.0)
-    >>> summary(play_visits(Soft(), 3, layout="colours"))["visits"]
+    >>> summary(play_visits("random", 3, layout="colours"))["visits"]
     3
     """
-    pots, points = strokes.a_visit(strokes.points > 0), strokes.a_visit(strokes.points)
-    colours = strokes.points[strokes.colour & (strokes.points > 0)]
-    error = lambda x: float(np.std(x, ddof=1) / np.sqrt(len(x))) if len(x) > 1 else None  # noqa: E731
-    share = lambda x: float(np.mean(x)) if len(x) else None  # noqa: E731
-    fouls = strokes.a_visit(strokes.foul)
-    return {
-        "visits": strokes.visits, "strokes": len(strokes.points), "pots_a_visit": float(pots.mean()), "pots_a_visit_se": error(pots),
-        "points_a_visit": float(points.mean()), "points_a_visit_se": error(points), "pot_rate": share(strokes.points > 0),
-        "next_pot_after_a_pot": share(strokes.followed), "fouls_a_visit": float(fouls.mean()), "fouls_a_visit_se": error(fouls),
-        "foul_rate": share(strokes.foul), "colour_value": share(colours), "high_colours": share(colours >= 6),
-        "centuries": float(np.mean(points >= CENTURY)), "clearances": share(strokes.a_visit(strokes.clears) > 0),
-        "longest_break": int(points.max()),
-    }  # fmt: skip
+    each = counts(strokes)
+    totals = {name: float(values.sum()) for name, values in each.items()}
+    means: dict[str, Any] = {
+        name: totals[above] / totals[below] if totals[below] else None
+        for name, (above, below) in (FIGURES | {"foul_rate": ("fouls", "strokes")}).items()
+        if name not in ("maximums", "easy_pot_left_by_a_pot", "high_colour_after_a_red")
+    }
+    for name in ("pots", "points", "fouls"):
+        spread = float(np.std(each[name], ddof=1) / np.sqrt(strokes.visits)) if strokes.visits > 1 else None
+        means[f"{name}_a_visit_se"] = spread
+    longest = int(each["points"].max())
+    return {"visits": strokes.visits, "strokes": len(strokes.points), **means, "longest_break": longest}

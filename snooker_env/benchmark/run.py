@@ -6,25 +6,31 @@ from pathlib import Path
 from typing import Any
 
 from .._check import refuse
-from .agents import Agent
+from ..play.program import AgentError
+from .agents import Agent, seated
 from .checking import faults, strokes_of
-from .playing import BATCH, PlayedEpisodes, begin, one_table, play_episodes
-from .program import AgentError
+from .playing import BATCH, PlayedEpisodes, play_episodes
 from .provenance import machine
 from .results import read_result, result_of, write_result
 from .tasks import Task
 
 ONE_TABLE = 20
-"""Decisions that are timed on one table alone."""
+"""Decisions at least that are timed on one table alone."""
 SAVED = 60.0
 """Seconds between two files while it plays."""
-Tick = Callable[[int, int], None]
 
 
 def judge(
-    task: Task, agent: Agent, *, episodes: int | None = None, out: str | Path | None = None, resume: bool = False, command: str = "",
-    threads: int | None = None, tick: Tick | None = None,
-) -> dict[str, Any]:  # fmt: skip
+    task: Task,
+    agent: Agent,
+    *,
+    episodes: int | None = None,
+    out: str | Path | None = None,
+    resume: bool = False,
+    command: str = "",
+    threads: int | None = None,
+    tick: Callable[[int, int], None] = lambda played, total: None,
+) -> dict[str, Any]:
     """Play the episodes of a task and compute the result.
 
     Parameters
@@ -49,7 +55,8 @@ def judge(
     Returns
     -------
     dict
-        The result. After Ctrl-C, or when a program that plays fails, it holds the complete batches, and "incomplete" has the reason.
+        The result. After Ctrl-C, or when a program that plays fails, it holds the complete batches, and "incomplete" has
+        the reason.
 
     Raises
     ------
@@ -61,77 +68,61 @@ def judge(
     Examples
     --------
     >>> from snooker_env.benchmark import TASKS, Agent, judge
-    >>> found = judge(TASKS["SnookerPotHard-v0"], Agent.of("random"), episodes=2)
-    >>> len(found["rows"]), found["protocol"]["official"]
+    >>> result = judge(TASKS["SnookerPotHard-v0"], Agent.of("random"), episodes=2)
+    >>> len(result["rows"]), result["protocol"]["official"]
     (2, False)
     """
-    episodes = task.episodes if episodes is None else episodes
-    seeds = task.seeds(episodes)
-    played, why, timed, options = PlayedEpisodes([]), None, None, None
-    batch, total = agent.tables_at_once or BATCH, episodes * len(agent.sources)
-    parts = [(run, first, min(first + batch, episodes)) for run in range(len(agent.sources)) for first in range(0, episodes, batch)]
+    seeds = task.seeds(task.episodes if episodes is None else episodes)
+    many, played, alone, why = len(seeds), PlayedEpisodes([]), PlayedEpisodes([]), None
+    total, batch = many * len(agent.sources), 1 if agent.program else BATCH
     if resume and out is not None and Path(out).exists():
-        kept, played = _kept(Path(out), task, agent, episodes, {0, *(run * episodes + end for run, _, end in parts)})
+        kept, played = _kept(Path(out), task, agent, many)
         if kept["incomplete"] is None:
             return kept
-        options = kept["agent"]["options"] if kept["rows"] else None
-    load, saved = machine(), time.monotonic()
-    if tick is not None:
-        tick(len(played.rows), total)
+    about, saved = {"command": command, "load": machine()}, time.monotonic()
 
-    def result(why):
-        return result_of(task, agent, episodes, played, command=command, options=options or {}, load=load, one_table=timed, incomplete=why)
+    def kept_as(why: str | None) -> dict[str, Any]:
+        """The result so far, written to its file."""
+        result = result_of(task, agent, many, played, alone, why, about)
+        if out is not None and (played.rows or why is None):
+            write_result(out, result)
+        return result
 
+    tick(len(played.rows), total)
     try:
         for run in range(len(agent.sources)):
-            player = agent.player(task, run)
-            try:
-                if options not in (None, dict(player.options)):
-                    raise refuse("options", dict(player.options), f"must be those of all training seeds: {options}")
-                options = dict(player.options)
-                for of, first, end in parts:
-                    if of != run or run * episodes + end <= len(played.rows):
-                        continue
-                    begin(player, first // batch)
-                    played.add(play_episodes(task, player, seeds[first:end], run, threads))
-                    if tick is not None:
-                        tick(len(played.rows), total)
-                    if out is not None and time.monotonic() - saved > SAVED:
-                        write_result(out, result("it was still running"))
+            with seated(agent, task, run) as player:
+                while len(played.rows) < (run + 1) * many:
+                    first = len(played.rows) - run * many
+                    played.add(play_episodes(task, player, seeds[first : first + batch], run, threads))
+                    tick(len(played.rows), total)
+                    if time.monotonic() - saved > SAVED:
+                        kept_as("it was still running")
                         saved = time.monotonic()
-                if run == 0:
-                    begin(player, 0)
-                    timed = one_table(task, player, seeds, ONE_TABLE)
-            finally:
-                if callable(getattr(player, "close", None)):
-                    player.close()
+                for seed in seeds if run == 0 else ():
+                    if alone.decisions < ONE_TABLE:
+                        alone.add(play_episodes(task, player, [seed], run, threads))
     except KeyboardInterrupt:
         why = f"interrupted after {len(played.rows)} of {total} episodes"
     except AgentError as error:
         why = f"{error} (after {len(played.rows)} of {total} episodes)"
     except (Exception, SystemExit) as error:  # of the agent's own code: its traceback is for its author, what was played is kept
-        if out is not None and played.rows:
-            write_result(out, result(f"{type(error).__name__}: {error} (after {len(played.rows)} of {total} episodes)"))
+        kept_as(f"{type(error).__name__}: {error} (after {len(played.rows)} of {total} episodes)")
         if isinstance(error, SystemExit):
             raise RuntimeError(f"the agent ended the program: SystemExit({error})") from error
         raise
-    found = result(why)
-    if out is not None and (played.rows or why is None):
-        write_result(out, found)
-    return found
+    return kept_as(why)
 
 
-def _kept(path, task, agent, episodes, ends):
+def _kept(path: Path, task: Task, agent: Agent, episodes: int) -> tuple[dict[str, Any], PlayedEpisodes]:
     """A file of the same run, and what was played for it."""
-    found = read_result(path)
-    said = faults(found)
-    if said:
-        raise refuse("out", str(path), f"must be a sound result to go on with ({said[0]})")
-    same = (found["task"], found["agent"]["label"], found["agent"]["sources"], found["protocol"]["episodes"])
-    if same != (task.id, agent.label, list(agent.sources), episodes):
-        raise refuse("out", str(path), f"must be a result of {agent.label} on {task.id} with {episodes} episodes to go on with")
-    if len(found["rows"]) not in ends:
-        raise refuse("out", str(path), f"must hold whole batches to go on with, not {len(found['rows'])} episodes")
-    strokes = strokes_of(found)
-    timing, decisions = found["timing"], sum(map(len, strokes))
-    return found, PlayedEpisodes(found["rows"], strokes, decisions, timing["seconds"], timing["simulated_shots"])
+    result = read_result(path)
+    if wrong := faults(result):
+        raise refuse("out", str(path), f"must be a sound result to go on with ({wrong[0]})")
+    same = (result["task"], result["agent"]["label"], result["agent"]["sources"], result["protocol"]["episodes"])
+    if same != (task.id, agent.label, agent.texts, episodes):
+        what = f"{agent.label} on {task.id} with {episodes} episodes"
+        raise refuse("out", str(path), f"must be a result of {what} to go on with")
+    strokes, timing = strokes_of(result), result["timing"]
+    decisions, shots = sum(map(len, strokes)), timing["simulated_shots"]
+    return result, PlayedEpisodes(result["rows"], strokes, decisions, timing["seconds"], shots)

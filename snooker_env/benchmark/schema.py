@@ -5,13 +5,14 @@ from collections.abc import Mapping
 from datetime import datetime, timedelta, timezone
 from typing import Any
 
-NAME, VERSION = "snooker_env.benchmark.result", 2
+NAME, VERSION = "snooker_env.benchmark.result", 3
 PROTOCOL = 1
 """Version of the rules: tables, episodes, figures. Results of different versions are never put into one table."""
 PACKAGES = ("0.3.0.dev0",)
 """Versions of the package whose results compare by these rules, the present one last."""
 BEGUN = "2026-11-21T00:00:00Z"
 """No result is older than the project."""
+DATE = "%Y-%m-%dT%H:%M:%SZ"
 NUMBER = (int, float)
 
 FIELDS: dict[str, tuple[Any, bool, str]] = {
@@ -22,9 +23,7 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "protocol.official": (bool, False, "whether the rules for a leaderboard entry are kept"),
     "task": (str, False, "id of the task, with its version"),
     "agent.label": (str, False, "the name in tables; 1 to 20 letters, digits or . + - _"),
-    "agent.kind": (str, False, "built_in, repository, model, class, program or object"),
-    "agent.sources": (list, False, "what was given to --agent: one, or a file for each training seed"),
-    "agent.options": (dict, False, "how the agent sees and acts: its free options"),
+    "agent.sources": (list, False, "what was given to --agent: one, or a source for each training seed"),
     "agent.class": (str, False, "model_free, planning or undeclared"),
     "agent.budget": (str, False, "none, 50k, 1M, 5M, open or unknown"),
     "agent.training_shots": (int, True, "all simulated shots of its training; null: not known"),
@@ -32,18 +31,21 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "agent.declared": (bool, False, "true: that number was declared; false: this process counted it"),
     "software.snooker_env": (str, False, "version"),
     "software.python": (str, False, "version"),
-    "software.numpy": (str, True, "version"),
-    "software.numba": (str, True, "version"),
-    "software.gymnasium": (str, True, "version"),
-    "software.torch": (str, True, "version; null: not installed"),
-    "software.stable_baselines3": (str, True, "version; null: not installed"),
-    "software.sb3_contrib": (str, True, "version; null: not installed"),
+    **{f"software.{name}": (str, True, "version") for name in ("numpy", "numba", "gymnasium")},
+    **{
+        f"software.{name}": (str, True, "version; null: not installed")
+        for name in ("torch", "stable_baselines3", "sb3_contrib")
+    },
     "machine.platform": (str, False, "operating system and processor architecture"),
     "machine.cpu": (str, False, "the processor's name"),
     "machine.cores": (int, False, "logical processors"),
     "machine.load": (NUMBER, True, "load average of the minute before the first episode"),
     "machine.load_at_end": (NUMBER, True, "load average of the minute before the last one ended"),
-    "machine.arithmetic": (str, False, "digest of 128 strokes: machines with the same one play strokes alike, bit for bit"),
+    "machine.arithmetic": (
+        str,
+        False,
+        "digest of 128 strokes: machines with the same one play strokes alike, bit for bit",
+    ),
     "timing.seconds": (NUMBER, False, "what all decisions took together"),
     "timing.simulated_shots": (int, False, "shots that this process simulated for them"),
     "timing.one_table_ms": (NUMBER, True, "milliseconds a decision on one table, measured alone; null: not measured"),
@@ -58,12 +60,10 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "strokes.data": (str, False, "every stroke that was played, see below"),
 }
 """Dotted name: type, whether it may be null, meaning."""
-UNPROVED = (
-    "agent.label", "agent.kind", "agent.sources", "agent.training_shots", "agent.simulated_shots", "agent.declared",
-    *(f"software.{name}" for name in ("python", "numpy", "numba", "gymnasium", "torch", "stable_baselines3", "sb3_contrib")),
-    "machine.platform", "machine.cpu", "machine.cores", "machine.load", "machine.load_at_end", "machine.arithmetic",
-    "timing.seconds", "timing.simulated_shots", "timing.one_table_ms", "command", "commit", "date", "incomplete",
-)  # fmt: skip
+_PROVED = ("schema", "protocol", "task", "agent.class", "agent.budget", "columns", "rows", "figures", "strokes")
+UNPROVED = tuple(
+    name for name in FIELDS if not name.startswith(_PROVED) and name != "software.snooker_env"
+)
 """Fields that a replay cannot prove: their form is checked, and that they fit the others. Class and budget follow from them."""
 
 LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,20}")
@@ -71,19 +71,27 @@ MOST_WHOLE = 2**53
 """Whole numbers up to here are exact in every reader of JSON."""
 _COUNT, _AMOUNT = (0, MOST_WHOLE), (0.0, 1e12)
 RANGES: dict[str, tuple[float, float]] = {
-    "schema.version": _COUNT, "protocol.version": _COUNT, "protocol.episodes": (1, 2**20), "agent.training_shots": _COUNT,
-    "agent.simulated_shots": (0, MOST_WHOLE), "machine.cores": (1, 2**20), "machine.load": _AMOUNT, "machine.load_at_end": _AMOUNT,
-    "timing.seconds": _AMOUNT, "timing.simulated_shots": _COUNT, "timing.one_table_ms": _AMOUNT,
-}  # fmt: skip
+    "schema.version": _COUNT,
+    "protocol.version": _COUNT,
+    "protocol.episodes": (1, 2**20),
+    "agent.training_shots": _COUNT,
+    "agent.simulated_shots": _COUNT,
+    "machine.cores": (1, 2**20),
+    "machine.load": _AMOUNT,
+    "machine.load_at_end": _AMOUNT,
+    "timing.seconds": _AMOUNT,
+    "timing.simulated_shots": _COUNT,
+    "timing.one_table_ms": _AMOUNT,
+}
 """Lowest and highest value of every field that is a number."""
-_LINE = re.compile(r"[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]{1,200}"), "one line of at most 200 characters"
-LONG_LINE = re.compile(r"[^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]{0,2000}"), "one line of at most 2,000 characters"
+_CONTROL = r"\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff"
+_LINE = re.compile(f"[^{_CONTROL}]{{1,200}}"), "one line of at most 200 characters"
+LONG_LINE = re.compile(f"[^{_CONTROL}]{{0,2000}}"), "one line of at most 2,000 characters"
 MOST_SOURCES = 100
 """Training seeds of one result."""
-VERSION_TEXT = re.compile(r"[\w.+!-]{1,60}")
 PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
     "agent.label": (LABEL, "1 to 20 letters, digits or . + - _"),
-    **{name: (VERSION_TEXT, "a version") for name in FIELDS if name.startswith("software.")},
+    **{name: (re.compile(r"[\w.+!-]{1,60}"), "a version") for name in FIELDS if name.startswith("software.")},
     "machine.platform": _LINE,
     "machine.cpu": _LINE,
     "command": LONG_LINE,
@@ -95,9 +103,11 @@ PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
 
 
 def faults_of_fields(
-    found: Any, fields: dict[str, tuple[Any, bool, str]] | None = None, ranges: Mapping[str, tuple[float, float]] | None = None,
+    found: Any,
+    fields: dict[str, tuple[Any, bool, str]] | None = None,
+    ranges: Mapping[str, tuple[float, float]] | None = None,
     version: int = VERSION,
-) -> list[str]:  # fmt: skip
+) -> list[str]:
     """What is wrong with the fields of a result, a line each.
 
     Parameters
@@ -125,84 +135,60 @@ def faults_of_fields(
     fields, ranges = FIELDS if fields is None else fields, {**RANGES, **(ranges or {})}
     if not isinstance(found, dict):
         return ["the file must hold one JSON object"]
-    said, known = [], set(fields)
+    wrong = []
     for name, (kind, empty, _) in fields.items():
         value: Any = found
         for part in name.split("."):
             value = value.get(part, _MISSING) if isinstance(value, dict) else _MISSING
         if value is _MISSING:
-            said.append(f"{name}: is missing")
+            wrong.append(f"{name}: is missing")
         elif not (value is None and empty) and not _fits(value, kind):
-            said.append(f"{name} = {shortened(value)}: must be {_words(kind)}{' or null' if empty else ''}")
-        elif value is not None:
-            said += _faults_of_value(name, value, ranges)
+            wrong.append(f"{name} = {shortened(value)}: must be {_WORDS.get(kind, 'a number')}{' or null' if empty else ''}")
+        elif value is not None and (allowed := _allowed(name, value, ranges)):
+            wrong.append(f"{name} = {shortened(value)}: must be {allowed}")
     for name, value in found.items():
-        inner = [f"{name}.{key}" for key in value] if isinstance(value, dict) and name not in known else [name]
-        said += [f"{other}: is no field of version {version}" for other in inner if other not in known]
-    return said
+        inner = [f"{name}.{key}" for key in value] if isinstance(value, dict) and name not in fields else [name]
+        wrong += [f"{other}: is no field of version {version}" for other in inner if other not in fields]
+    return wrong
 
 
 _MISSING = object()
+_WORDS = {str: "a text", int: "a whole number", bool: "true or false", list: "a list", dict: "an object"}
 
 
-def _fits(value, kind):
-    kinds = kind if isinstance(kind, tuple) else (kind,)
-    return isinstance(value, kinds) and (not isinstance(value, bool) or bool in kinds)
+def _fits(value: Any, kind: Any) -> bool:
+    """Whether a value has a type; True is no number."""
+    return isinstance(value, kind) and (not isinstance(value, bool) or kind is bool)
 
 
-def _words(kind):
-    return {str: "a text", int: "a whole number", bool: "true or false", list: "a list", dict: "an object"}.get(kind, "a number")
-
-
-def _faults_of_value(name, value, ranges):
-    """What is wrong with the value of a field that has the right type."""
-    what = None
+def _allowed(name: str, value: Any, ranges: Mapping[str, tuple[float, float]]) -> str | None:
+    """What is allowed in place of a value that has the right type; None if nothing is wrong with it."""
     if name in ranges and not (ranges[name][0] <= value <= ranges[name][1] and str(value) != "-0.0"):
-        what = f"between {ranges[name][0]:g} and {ranges[name][1]:g}"
-    elif name in PATTERNS and not PATTERNS[name][0].fullmatch(value):
-        what = PATTERNS[name][1]
-    elif name == "date" and not _is_date(value):
-        what = "a time in UTC, as 2026-11-22T19:00:00Z"
-    elif name == "date" and not BEGUN <= value <= (datetime.now(timezone.utc) + timedelta(hours=1)).strftime(DATE):
-        what = f"between {BEGUN} and now"
-    return [] if what is None else [f"{name} = {shortened(value)}: must be {what}"]
+        return f"between {ranges[name][0]:g} and {ranges[name][1]:g}"
+    if name in PATTERNS and not PATTERNS[name][0].fullmatch(value):
+        return PATTERNS[name][1]
+    if name == "date" and not _is_date(value):
+        return "a time in UTC, as 2026-11-22T19:00:00Z"
+    if name == "date" and not BEGUN <= value <= (datetime.now(timezone.utc) + timedelta(hours=1)).strftime(DATE):
+        return f"between {BEGUN} and now"
+    return None
 
 
-def _is_date(text):
+def _is_date(text: str) -> bool:
+    """Whether a text is a date in the one form."""
     try:
         return datetime.strptime(text, DATE).strftime(DATE) == text
     except ValueError:
         return False
 
 
-DATE = "%Y-%m-%dT%H:%M:%SZ"
-
-
 def line(text: str) -> str:
-    """A text as one line that a result file may hold.
-
-    Parameters
-    ----------
-    text : str
-
-    Returns
-    -------
-    str
-    """
-    return re.sub(LONG_LINE[0].pattern.partition("]")[0].replace("[^", "[") + "]+", " ", text)[:2000]
+    """A text as one line that a result file may hold."""
+    return re.sub(f"[{_CONTROL}]+", " ", text)[:2000]
 
 
 def shortened(value: Any) -> str:
-    """A value in at most 60 characters of one line, for a message.
-
-    Parameters
-    ----------
-    value : object
-
-    Returns
-    -------
-    str
-    """
+    """A value in at most 60 characters of one line, for a message."""
     try:
         text = repr(value)
     except ValueError:  # a whole number of thousands of digits

@@ -189,3 +189,28 @@ def unseen(n: float, level: float = 0.95) -> float:
     0.095
     """
     return 1.0 - (1.0 - level) ** (1.0 / n)
+
+
+def figure(value: float, samples: Any) -> dict[str, float | None]:
+    """A figure with its 95 % bootstrap interval.
+
+    Parameters
+    ----------
+    value : float
+        The figure.
+    samples : array_like, float (n,)
+        Bootstrap samples of it.
+
+    Returns
+    -------
+    dict
+        "value", "low" and "high"; None where a number is not finite.
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import figure
+    >>> figure(0.5, [0.5, 0.5])
+    {'value': 0.5, 'low': None, 'high': None}
+    """
+    numbers = zip(("value", "low", "high"), (value, *interval(samples)), strict=True)
+    return {name: float(x) if np.isfinite(x) else None for name, x in numbers}

@@ -165,54 +165,68 @@ class Task:
 
 _USUAL = {f.name: f.default for f in fields(Options) if f.init}
 _BREAK = (1, 10, 25, 50, 75, 100, 147)
-_PROFESSIONAL = {"noise": "professional"}
-_ESCAPE = "The stroke of the built-in opponent ghost_ball escapes from 97.7 % of these tables: a share below that is no achievement."
+_ESCAPE = "ghost_ball escapes from 97.7 % of these tables: a share below that is no achievement."
 _FRAME = (
-    "A constant choice wins 84.5 % of these frames: the widest pot at 2.3 m/s with a little top, whatever lies on the table. A share near "
-    "that shows no skill."
+    "A constant choice wins 84.5 % of these frames: the widest pot at 2.3 m/s with a little top, whatever lies on the "
+    "table. A share near that shows no skill."
 )
 
 
-def _task(name: str, **given: Any) -> Task:
-    return Task(id=name, **{**given, "changes": MappingProxyType(given["changes"])})
+def _task(name: str, title: str, layout: str, score: str, measure: str, episodes: int, **more: Any) -> Task:
+    """A task played with a professional's errors, unless ``more`` says otherwise."""
+    changes = {"layout": layout, "noise": "professional"} | more.pop("changes", {})
+    more = {"judged_layout": layout, "thresholds": (1,)} | more
+    more |= {"title": title, "score": score, "measure": measure, "episodes": episodes}
+    return Task(id=f"Snooker{name}-v0", changes=MappingProxyType(changes), **more)
 
 
+_POINTS: tuple[Any, ...] = ("points", "points a visit", 500)
+_HELD_OUT: dict[str, Any] = {"judged_layout": "held_out", "thresholds": _BREAK}
 TASKS: dict[str, Task] = {
     task.id: task
     for task in (
+        _task("Break", "build a break on an opened table", "opened", *_POINTS, **_HELD_OUT),
         _task(
-            "SnookerBreak-v0", title="build a break on an opened table", changes={"layout": "opened"} | _PROFESSIONAL,
-            judged_layout="held_out", score="points", measure="points a visit", episodes=500, thresholds=_BREAK,
+            "BreakClub",
+            "the same with a club player's errors",
+            "opened",
+            *_POINTS,
+            **_HELD_OUT,
+            changes={"noise": "club"},
+        ),
+        _task("LineUp", "clear the line-up", "line_up", *_POINTS, thresholds=_BREAK),
+        _task("Colours", "clear the six colours", "colours", *_POINTS, thresholds=(2, 5, 9, 14, 20, 27)),
+        _task(
+            "PotHard",
+            "pot one hard ball",
+            "pots:hard",
+            "pots",
+            "share of balls potted",
+            1000,
+            changes={"reward": "pots"},
         ),
         _task(
-            "SnookerBreakClub-v0", title="the same with a club player's errors", changes={"layout": "opened", "noise": "club"},
-            judged_layout="held_out", score="points", measure="points a visit", episodes=500, thresholds=_BREAK,
+            "Escape",
+            "one stroke out of a snooker, without a foul",
+            "snookered",
+            "legal",
+            "share of escapes",
+            1000,
+            changes={"reward": "legal", "one_stroke": True},
+            note=_ESCAPE,
         ),
         _task(
-            "SnookerLineUp-v0", title="clear the line-up", changes={"layout": "line_up"} | _PROFESSIONAL,
-            judged_layout="line_up", score="points", measure="points a visit", episodes=500, thresholds=_BREAK,
-        ),
-        _task(
-            "SnookerColours-v0", title="clear the six colours", changes={"layout": "colours"} | _PROFESSIONAL,
-            judged_layout="colours", score="points", measure="points a visit", episodes=500, thresholds=(2, 5, 9, 14, 20, 27),
-        ),
-        _task(
-            "SnookerPotHard-v0", title="pot one hard ball", changes={"layout": "pots:hard", "reward": "pots"} | _PROFESSIONAL,
-            judged_layout="pots:hard", score="pots", measure="share of balls potted", episodes=1000,
-        ),
-        _task(
-            "SnookerEscape-v0", title="one stroke out of a snooker, without a foul",
-            changes={"layout": "snookered", "reward": "legal", "one_stroke": True} | _PROFESSIONAL,
-            judged_layout="snookered", score="legal", measure="share of escapes", episodes=1000, note=_ESCAPE,
-        ),
-        _task(
-            "SnookerFrame-v0", title="win a frame against ghost_ball",
-            changes={"task": "frame", "layout": "break_off", "opponent": "ghost_ball", "reward": "win"}
-            | _PROFESSIONAL,
-            judged_layout="break_off", score="won", measure="share of frames won", episodes=200, note=_FRAME,
+            "Frame",
+            "win a frame against ghost_ball",
+            "break_off",
+            "won",
+            "share of frames won",
+            200,
+            changes={"task": "frame", "opponent": "ghost_ball", "reward": "win"},
+            note=_FRAME,
         ),
     )
-}  # fmt: skip
+}
 """The tasks of the benchmark by id."""
 
 

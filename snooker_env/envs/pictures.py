@@ -36,8 +36,9 @@ class Pictures:
     mode: str | None
 
     def __init__(self, table: Table, mode: str | None, size: Sequence[int] = SIZE, players: tuple[str, ...] = ()):
-        self.table, self.mode, self.players = table, mode, players
-        self.size = checked_size(size)
+        self.table, self.mode = table, mode
+        self.players: tuple[str, ...] = players
+        self.size: tuple[int, int] = checked_size(size)
         self._window, self._source = None, PictureSource()
 
     def __getstate__(self) -> dict[str, Any]:

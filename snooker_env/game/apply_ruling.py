@@ -12,7 +12,7 @@ from .._types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS
 from .balls import N_BALLS, balls_on_kernel, bits, check_table, mask_of
 from .referee import Situation, Stroke, Verdict, check, numbers_of, verdict_of
-from .ruling import AUTO, FLAG, OUTCOME, ruling
+from .ruling import AUTO, FLAG, OUTCOME, Before, Facts, ruling
 from .snookered import NO_JAWS, snookered
 from .spotting import spot
 
@@ -29,29 +29,33 @@ def _put_in_order(positions, on_table, result, gone, radius):
 
 
 @kernel
-def settle_visit(positions, on_table, ball_on, lead, first, touching, moved, potted, radius):
+def settle_visit(positions, on_table, ball_on, lead, seen, radius):
     """``settle`` for a single visit: nobody plays on after a foul, so there is no test for a snooker and no free ball.
 
-    Arguments as in ``settle``, arrays changed in place; the simulation produces no ball off the table and no flag. Returns a ``Ruling``.
+    ``seen``: (first, touching, moved, potted) of ``Facts``; no ball is off the table, nothing is nominated.
     """
-    result = ruling(bits(on_table), ball_on, 0, lead, first, touching, moved, potted, 0, AUTO, 0)
+    first, touching, moved, potted = seen
+    facts = Facts(first, touching, moved, potted, 0, AUTO)
+    result = ruling(Before(bits(on_table), ball_on, 0, lead), facts, 0)
     _put_in_order(positions, on_table, result, potted, radius)
     return result
 
 
 @kernel
-def settle(positions, on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags, jaws, radius):
+def settle(positions, on_table, situation, facts, flags, jaws, radius):
     """Judge a stroke and set up the table for the next one. Returns a ``Ruling``, complete with free ball and snooker behind it.
 
     ``positions`` (22, 2) [m]: where the balls came to rest. ``on_table`` (22,) bool: *before* the stroke. Both are changed in place: balls
     potted or off leave, colours are spotted, and on_table[0] is False if the cue ball is in hand. When the frame is over, the potted balls
-    leave and the others stay. The integers are those of ``ruling``; of ``flags``, this function sets SNOOKERED and BEHIND_FREE_BALL itself.
-    ``jaws`` (m, 3): see ``snookered.NO_JAWS``.
+    leave and the others stay. ``situation``: (ball_on, free_ball, lead) of ``Before``; ``facts``: ``Facts``.
+    Of ``flags``, this function sets SNOOKERED and BEHIND_FREE_BALL itself. ``jaws`` (m, 3): see
+    ``snookered.NO_JAWS``.
     """
     flags = flags & ~(FLAG.SNOOKERED | FLAG.BEHIND_FREE_BALL)
-    before = bits(on_table)
-    result = ruling(before, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags)
-    _put_in_order(positions, on_table, result, potted | off, radius)
+    ball_on, free_ball, lead = situation
+    before = Before(bits(on_table), ball_on, free_ball, lead)
+    result = ruling(before, facts, flags)
+    _put_in_order(positions, on_table, result, facts.potted | facts.off, radius)
     # A snooker matters after a foul (free ball), and after a free ball that was not potted (no snooker may be behind that ball); in six-red
     # snooker after any nominated ball that was not potted; in the Shoot Out never.
     nominating = free_ball or (flags & FLAG.SIX_RED and ball_on == 0)
@@ -62,14 +66,15 @@ def settle(positions, on_table, ball_on, free_ball, lead, first, touching, moved
             flags |= FLAG.SNOOKERED
             if (effective >> result.nominated) & 1 and not result.fouls:
                 flags |= FLAG.BEHIND_FREE_BALL
-            result = ruling(before, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags)
+            result = ruling(before, facts, flags)
     return result
 
 
 @entry(what="the referee of frames", seconds=2)
-def settle_one(positions, on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags, jaws, radius):
+def settle_one(positions, on_table, before, facts, flags, jaws, radius):
     """``settle`` for Python."""
-    return settle(positions, on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags, jaws, radius)
+    situation = before.ball_on, before.free_ball, before.lead
+    return settle(positions, on_table, situation, facts, flags, jaws, radius)
 
 
 def settle_table(
@@ -84,5 +89,6 @@ def settle_table(
     if (mask_of(np.flatnonzero(present)) ^ situation.on_table) & ~1:
         raise refuse("situation.on_table", situation.on_table, "must be the mask of the array on_table")
     check(situation, stroke)
-    result = settle_one(placed, present, *numbers_of(situation, stroke)[1:], array("jaws", jaws, (-1, 3)), float(radius))
+    arcs = array("jaws", jaws, (-1, 3))
+    result = settle_one(placed, present, *numbers_of(situation, stroke), arcs, float(radius))
     return verdict_of(result), placed, present

@@ -5,8 +5,10 @@
     frame = frame.choose("play")                # after a foul the opponent decides
     Frame.from_dict(json.loads(json.dumps(frame.to_dict()))) == frame
 
-A ``Frame`` never changes: each act returns the next one. Players are 0 and 1. An act that is not allowed raises ``ValueError``.
-``rules`` names the game (``rule_sets``): snooker, six-red snooker or the Shoot Out.
+A ``Frame`` never changes: each act returns the next one. It is the readable face of one row of integers: each
+act packs the frame into a row, lets a kernel of ``frame_columns`` change it, as tables do, and unpacks it.
+Players are 0 and 1. An act that is not allowed raises ``ValueError``. ``rules`` names the game
+(``rule_sets``): snooker, six-red snooker or the Shoot Out.
 
 A foul and a miss (S3 R14): ``miss="off"`` never calls it. ``miss="clear_path"`` calls it where geometry alone decides: the striker failed
 to strike a ball on first although a straight path to a part of one was clear. It is not called when either player needed penalty points
@@ -20,24 +22,96 @@ out); time wasting and conduct; balls that fall in unprovoked or are moved by ot
 lot for a re-spotted black is passed in.
 """
 
-from dataclasses import asdict, dataclass, replace
-from typing import Any, Literal, TypeAlias
+from dataclasses import asdict, dataclass
+from operator import itemgetter
+from typing import Any, Literal, NamedTuple, TypeAlias, get_args
+
+import numpy as np
 
 from .._check import choice, integer, refuse, truth
-from .._types import MissRule
-from .balls import ALL_MASK, BLACK, CUE_BIT, BallOn, next_on, points_available
-from .frame_checks import MOST_BREAK, REPLACED, SETTLED, check_fields, check_fit, is_plain, tuples, within
-from .referee import FULL_TABLE, MOST_POINTS, Situation, Stroke, Verdict, judge
+from .._jit import entry
+from .._types import Ints, MissRule
+from . import frame_columns as columns
+from .balls import ALL_MASK, CUE_BIT, BallOn, next_on, points_available
+from .frame_checks import MOST_BREAK, check_fields, check_fit, is_plain, tuples, within
+from .frame_columns import Conditions, Effort, Layouts
+from .referee import FULL_TABLE, MOST_POINTS, Situation, Stroke, Verdict, ruling_of, verdict_of
 from .rule_sets import MOST_MISSES, RuleSet, RulesName, rule_set
-from .ruling import Foul, Outcome
 
 Choice: TypeAlias = Literal["play", "play_again", "replace", "anywhere"]
 """What may be chosen after a foul."""
 
+CHOICES = get_args(Choice)
 PHASES = ("stroke", "choice", "lot", "over")
 MISS_RULES = ("off", "clear_path", "attempt")
+"""Names by the codes of ``frame_columns``."""
 MOST_CLOCK = 2**50
 """Upper limit of a frame's clock [ms]."""
+
+
+_INTEGERS = {
+    "striker": columns.STRIKER,
+    "breaker": columns.BREAKER,
+    "break_points": columns.POINTS,
+    "on_table": columns.ON_TABLE,
+    "failures": columns.FAILURES,
+    "clock": columns.CLOCK,
+    "misses": columns.MISSES,
+    "rack": columns.RACK,
+}
+_FLAGS = {
+    "in_hand": columns.IN_HAND,
+    "free_ball": columns.FREE_BALL,
+    "respotted_black": columns.RESPOTTED_BLACK,
+    "miss_called": columns.MISS_CALLED,
+    "warned": columns.WARNED,
+    "anywhere": columns.ANYWHERE,
+}
+"""The columns of the fields of a ``Frame`` that are plain integers, and bools."""
+_integers, _flags = itemgetter(*_INTEGERS.values()), itemgetter(*_FLAGS.values())
+
+
+class _Asked(NamedTuple):
+    """What a frame allows."""
+
+    needs_snookers: tuple[bool, bool]
+    shot_clock: int
+    replace: bool
+    anywhere: bool
+    claim: bool
+    concede: tuple[bool, bool]
+
+
+@entry
+def _ask(row, rules):
+    return (
+        (columns.needs_snookers(row, 0), columns.needs_snookers(row, 1)),
+        columns.shot_clock(row, rules),
+        columns.may_replace(row, rules) != 0,
+        columns.may_place_anywhere(row, rules) != 0,
+        columns.may_claim(row),
+        (columns.may_concede(row, 0), columns.may_concede(row, 1)),
+    )
+
+
+@entry(what="the rules of frames", seconds=1)
+def _play(row, result, conditions, effort, layout, duration):
+    columns.after_stroke(row, result, conditions, effort, layout, duration)
+
+
+_CHOOSE, _DRAW, _CLAIM, _CONCEDE = range(4)
+
+
+@entry
+def _act(row, act, number):
+    if act == _CHOOSE:
+        columns.choose(row, number)
+    elif act == _DRAW:
+        columns.draw(row, number)
+    elif act == _CLAIM:
+        columns.claim(row)
+    else:
+        columns.concede(row)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -197,23 +271,37 @@ class Frame:
         """The most points that the striker can still score."""
         return points_available(self.on_table, self.ball_on, self.free_ball)
 
+    def _row(self):
+        """The frame as a row of ``frame_columns``."""
+        row = np.zeros(columns.COLUMNS, np.int64)
+        _pack(self, row)
+        return row
+
+    def _next(self, row, layout):
+        """The frame that a row of the same game holds; ``layout``: that of its ``saved``, if it has one."""
+        return _unpacked(row, self.rules, self.miss, layout)
+
+    def _acted(self, act, number=0):
+        """The frame after one of the acts of ``_act``."""
+        row = self._row()
+        _act(row, act, number)
+        return self._next(row, None if self.saved is None else self.saved.layout)
+
+    def _asked(self):
+        return _Asked(*_ask(self._row(), self.rule_set.code))
+
     def needs_snookers(self, player: int) -> bool:
-        """Whether ``player`` trails by more points than he can still score. The colour after a red and a free ball are the striker's."""
-        mine = integer("player", player, 0, 1) == self.striker
-        left = self.available if mine else points_available(self.on_table, BallOn.NOTHING)
-        return self.scores[1 - player] - self.scores[player] > left
+        """Whether ``player`` trails by more than is left for them; a free ball is the striker's alone."""
+        return self._asked().needs_snookers[integer("player", player, 0, 1)]
 
     def _in_phase(self, phase, act):
         if self.phase != phase:
             raise refuse("phase", self.phase, f"must be {phase!r} to {act}")
 
-    def _over(self, winner: int, **changes: Any) -> "Frame":
-        return replace(self, phase="over", winner=winner, **SETTLED | changes)
-
     @property
     def shot_clock(self) -> int:
         """The longest time to play the next stroke [ms]; 0 for no limit."""
-        return self.rule_set.shot_clock[2 * self.clock >= self.rule_set.clock]
+        return self._asked().shot_clock
 
     def play(
         self,
@@ -238,79 +326,24 @@ class Frame:
         ``time_to_play`` could not begin in time.
         """
         self._in_phase("stroke", "play")
-        late = 0 < self.shot_clock < integer("time_to_play", time_to_play, 0, MOST_CLOCK)
-        verdict = judge(self.situation, Stroke(late=True) if late else stroke)
-        me, other = self.striker, 1 - self.striker
-        gained = {me: verdict.points, other: verdict.penalty}
-        clock = self.clock
-        if self.rule_set.clock:
-            clock += (min(time_to_play, self.shot_clock) if clock else 0) + (0 if late else integer("duration", duration, 0, MOST_CLOCK))
-        score = {"scores": (self.scores[0] + gained[0], self.scores[1] + gained[1]), "on_table": verdict.on_table, "clock": clock}
-        if verdict.over:
-            final_break = 0 if verdict.fouls else self.break_points + verdict.points
-            return self._over(me if verdict.outcome == Outcome.STRIKER_WINS else other, break_points=final_break, **score), verdict
-        after = replace(
-            self,
-            striker=other if verdict.stays is False else me,
-            break_points=self.break_points + verdict.points if verdict.stays else 0,
-            ball_on=verdict.ball_on,
-            in_hand=verdict.in_hand,
-            free_ball=verdict.free_ball,
-            miss_called=False,
-            failures=0,
-            warned=False,
-            saved=None,
-            misses=0,
-            anywhere=bool(self.rule_set.anywhere and verdict.fouls and verdict.outcome == Outcome.PLAYING),
-            **score,
-        )
-        if verdict.outcome == Outcome.RESPOTTED_BLACK:
-            return replace(after, phase="lot", respotted_black=True), verdict
-        if self.rule_set.clock and not self.respotted_black and clock + time_to_play >= self.rule_set.clock:
-            return after._time_is_up(), verdict
-        if not verdict.fouls or self.rule_set.anywhere:
-            return after, verdict
-        if self.warned and full_ball_path and verdict.fouls & (Foul.NO_CONTACT | Foul.WRONG_FIRST):
-            return after._over(other), verdict
-        called = self._is_miss(verdict, after, clear_path, full_ball_path, attempt)
-        before = {name: getattr(self, name) for name in REPLACED}
-        saved, limited = Saved(**before, layout=layout), self.rule_set.most_misses > 0
-        failures = self.failures + 1 if called and full_ball_path else 0
-        misses = self.misses + 1 if called and limited else 0
-        return replace(after, phase="choice", miss_called=called, failures=failures, misses=misses, saved=saved), verdict
-
-    def _time_is_up(self):
-        """The frame's clock has run down: the higher score wins; level scores, the black is re-spotted, and nothing else is left."""
-        if self.scores[0] != self.scores[1]:
-            return self._over(int(self.scores[1] > self.scores[0]))
-        black = {"on_table": 1 << BLACK, "ball_on": BallOn.BLACK, "in_hand": True, "anywhere": False, "break_points": 0}
-        return replace(self, phase="lot", respotted_black=True, **black)
-
-    def _is_miss(self, verdict, after, clear_path, full_ball_path, attempt):
-        """Whether a foul is a miss too, as far as geometry and scores decide it."""
-        if self.miss == "off" or not verdict.fouls & (Foul.NO_CONTACT | Foul.WRONG_FIRST):
-            return False
-        if 0 < self.rule_set.most_misses == self.misses:
-            return False
-        if full_ball_path and self.failures:
-            return True
-        for frame in (self, after):
-            level = abs(frame.scores[0] - frame.scores[1]) == frame.available
-            if level or frame.needs_snookers(0) or frame.needs_snookers(1):
-                return False
-        return bool(clear_path or full_ball_path or (self.miss == "attempt" and not attempt))
+        late, lasted, rules = False, 0, self.rule_set
+        integer("time_to_play", time_to_play, 0, MOST_CLOCK)
+        if rules.clock:
+            late, lasted = 0 < self.shot_clock < time_to_play, integer("duration", duration, 0, MOST_CLOCK)
+        result = ruling_of(self.situation, Stroke(late=True) if late else stroke)
+        conditions = Conditions(rules.code, MISS_RULES.index(self.miss), int(time_to_play))
+        row, effort = self._row(), Effort(bool(clear_path), bool(full_ball_path), bool(attempt))
+        _play(row, result, conditions, effort, layout is not None, lasted)
+        return self._next(row, layout), verdict_of(result)
 
     @property
     def choices(self) -> tuple[Choice, ...]:
         """The opponent's choices after a foul; empty in other phases."""
         if self.phase != "choice":
             return ()
-        if not self.miss_called:
-            return ("play", "play_again")
-        if self.misses < self.rule_set.most_misses or not self.rule_set.most_misses:
-            return ("play", "play_again", "replace")
-        needed = abs(self.scores[0] - self.scores[1]) > points_available(self.on_table, self.ball_on)  # a free ball would be void
-        return ("play", "play_again") if needed else ("play", "play_again", "anywhere")
+        asked = self._asked()
+        last: tuple[Choice, ...] = ("replace",) if asked.replace else ("anywhere",) if asked.anywhere else ()
+        return ("play", "play_again", *last)
 
     def choose(self, what: Choice) -> "Frame":
         """The opponent's decision after a foul, which is final.
@@ -322,39 +355,31 @@ class Frame:
         """
         self._in_phase("choice", "choose")
         choice("choice", what, self.choices)
-        if what == "play":
-            return replace(self, phase="stroke", miss_called=False, failures=0, misses=0, saved=None)
-        if what == "anywhere":
-            own = {"free_ball": False, "in_hand": True, "anywhere": True}
-            return replace(self, phase="stroke", miss_called=False, failures=0, misses=0, saved=None, **own)
-        again = replace(self, phase="stroke", striker=1 - self.striker, free_ball=False, miss_called=False)
-        if what == "play_again":
-            return replace(again, failures=0, saved=None)
-        assert self.saved is not None  # a miss is never called without it
-        before = {name: getattr(self.saved, name) for name in REPLACED}
-        return replace(again, warned=self.failures >= 2, **before)
+        if what == "replace" and self.saved is None:
+            raise refuse("saved", None, 'must be the position before the miss to choose "replace"')
+        return self._acted(_CHOOSE, CHOICES.index(what))
 
     def draw(self, first: int) -> "Frame":
         """The winner of the lot has chosen that player ``first`` begins at the re-spotted black."""
         self._in_phase("lot", "draw")
-        return replace(self, phase="stroke", striker=integer("first", first, 0, 1), break_points=0)
+        return self._acted(_DRAW, integer("first", first, 0, 1))
 
     @property
     def may_claim(self) -> bool:
         """Whether the striker may claim the frame: only the black is left and the lead is more than 7."""
-        return self.phase == "stroke" and self.on_table == 1 << BLACK and self.situation.lead > 7
+        return self._asked().claim
 
     def claim(self) -> "Frame":
         """The striker claims the frame."""
         if not self.may_claim:
             raise refuse("lead", self.situation.lead if self.phase == "stroke" else self.phase, "must be over 7 with only the black left")
-        return self._over(self.striker)
+        return self._acted(_CLAIM)
 
     def concede(self, player: int) -> "Frame":
         """``player`` concedes the frame; only the striker may."""
-        if self.phase not in ("stroke", "choice") or integer("player", player, 0, 1) != self.striker:
+        if not self._asked().concede[integer("player", player, 0, 1)]:
             raise refuse("player", player, "must be the striker of a frame that is not over")
-        return self._over(1 - player)
+        return self._acted(_CONCEDE)
 
     def restart(self) -> "Frame":
         """The referee ends a stalemate: scores are void, the balls of ``rack`` are set up again and the same player breaks."""
@@ -385,6 +410,65 @@ class Frame:
             frame = cls(**plain | {"scores": tuple(scores) if isinstance(scores, list) else scores, "saved": saved})
             check_fit(frame)
         return frame
+
+
+def _pack(frame, row):
+    """Write a ``Frame`` into an empty row, but for the layout that is stored with it."""
+    for name, column in (*_INTEGERS.items(), *_FLAGS.items()):
+        row[column] = getattr(frame, name)
+    row[columns.BALL_ON], row[columns.PHASE] = frame.ball_on, PHASES.index(frame.phase)
+    row[columns.SCORE_0], row[columns.SCORE_1] = frame.scores
+    row[columns.WINNER] = -1 if frame.winner is None else frame.winner
+    row[columns.OVER] = frame.phase == "over"
+    saved = frame.saved
+    if saved is not None:
+        row[columns.SAVED], row[columns.SAVED_LAYOUT] = 1, saved.layout is not None
+        row[columns.SAVED_ON_TABLE], row[columns.SAVED_BALL_ON] = saved.on_table, saved.ball_on
+        row[columns.SAVED_FREE_BALL] = saved.free_ball
+        row[columns.SAVED_IN_HAND] = saved.in_hand + saved.anywhere
+
+
+def _unpacked(row, rules, miss, layout):
+    """The ``Frame`` of a row; ``layout``: what is stored with it, if anything is."""
+    at = row.tolist()
+    saved = None
+    if at[columns.SAVED]:
+        saved = Saved(
+            on_table=at[columns.SAVED_ON_TABLE],
+            ball_on=BallOn(at[columns.SAVED_BALL_ON]),
+            in_hand=at[columns.SAVED_IN_HAND] > 0,
+            free_ball=bool(at[columns.SAVED_FREE_BALL]),
+            anywhere=at[columns.SAVED_IN_HAND] == 2,
+            layout=layout if at[columns.SAVED_LAYOUT] else None,
+        )
+    return Frame(
+        **dict(zip(_INTEGERS, _integers(at), strict=True)),
+        **dict(zip(_FLAGS, map(bool, _flags(at)), strict=True)),
+        scores=(at[columns.SCORE_0], at[columns.SCORE_1]),
+        ball_on=BallOn(at[columns.BALL_ON]),
+        phase=PHASES[at[columns.PHASE]],
+        winner=None if at[columns.WINNER] < 0 else at[columns.WINNER],
+        rules=rules,
+        miss=miss,
+        saved=saved,
+    )
+
+
+def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int, rules: RulesName = "snooker") -> Frame:
+    """The ``Frame`` of a row (COLUMNS,) of a table; row k of ``layouts`` is what may be replaced."""
+    layout = None
+    if row[columns.SAVED_LAYOUT]:
+        layout = tuple(map(tuple, layouts.positions[k].tolist())), tuple(layouts.on_table[k].tolist())
+    return _unpacked(row, rules, miss, layout)
+
+
+def write_frame(frame: Frame, strokes: int, row: Ints, layouts: Layouts, k: int) -> None:
+    """Write a checked ``Frame`` into the row (COLUMNS,) of a table, its layout into row k of ``layouts``."""
+    row[:] = 0
+    _pack(frame, row)
+    row[columns.STROKES] = strokes
+    if frame.saved is not None and frame.saved.layout is not None:
+        layouts.positions[k], layouts.on_table[k] = map(np.array, frame.saved.layout)
 
 
 def _set(frozen, name, value):

@@ -1,23 +1,19 @@
-"""How are thousands of frames stored? The ``Frame`` of ``frame.py`` as one row of integers, and its rules as kernels.
+"""How does a frame go on? One row of integers for each, and the rules of frames as kernels that change it.
 
-``frame.Frame`` is the readable specification; this is the same for machine code, and the tests compare the two stroke by stroke. A row
-(int64, ``COLUMNS`` wide) holds the fields of a ``Frame``. Five acts change it: ``after_stroke``, ``choose``, ``draw``, ``claim`` and
-``concede``. The layouts that "replace" restores are in separate arrays, ``Layouts``. Which game is played (``rules``: a code of
-``rule_sets``) and which miss rule holds (``miss``: an index of ``frame.MISS_RULES``) is the same for all frames of an environment, and so
-not in the row.
+A row (int64, ``COLUMNS`` wide) holds a frame between two strokes; ``frame.Frame`` is its readable face. Five
+acts change it: ``after_stroke``, ``choose``, ``draw``, ``claim`` and ``concede``; whether an act is allowed,
+the caller asks first. The layouts that "replace" restores are in separate arrays, ``Layouts``. What is the
+same for all frames of an environment is not in the row: ``Conditions``.
 
 The first five columns have the same meaning for a visit without a frame, whose rows have no others.
 """
 
 from typing import NamedTuple
 
-import numpy as np
-
 from .._jit import kernel
-from .._types import Bools, Floats, Ints, MissRule
-from .balls import BLACK, COLOURS_MASK, BallOn, available, balls_on_kernel, next_on_kernel
-from .frame import PHASES, Frame, Saved
-from .rule_sets import CLOCK_LIMIT, MOST_MISSES, SHOOT_OUT, SHOT_CLOCK, SIX_RED, RulesName
+from .._types import Bools, Floats
+from .balls import BLACK, COLOURS_MASK, available, balls_on_kernel, next_on_kernel
+from .rule_sets import CLOCK_LIMIT, MOST_MISSES, SHOOT_OUT, SHOT_CLOCK, SIX_RED
 from .ruling import FOUL, OUTCOME
 
 (BALL_ON, IN_HAND, POINTS, OVER, STEPS) = range(5)
@@ -28,10 +24,10 @@ VISIT_COLUMNS = 5
     SAVED_ON_TABLE, SAVED_BALL_ON, SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT, STROKES, PAID, FRAMES_0, FRAMES_1, FIRST_BREAK, CLOCK,
     MISSES, ANYWHERE, OPPONENT, RACK,
 ) = range(5, 33)  # fmt: skip
-"""The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether there is one); strokes of both players; the agent's lead
-that rewards have already paid; frames won in a match and who broke in its first frame; simulated time played in this frame [ms]; misses
-called in succession; whether the cue ball in hand may be placed anywhere on the table; which member of a pool of opponents plays, counted
-from 1 (0: none is drawn yet); RACK. SAVED_IN_HAND is 2 if the cue ball could be placed anywhere.
+"""The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether a frame has one;
+SAVED_IN_HAND: 2 if the cue ball could be placed anywhere). Of tables only: strokes of both players; the
+agent's lead that rewards have already paid; frames won in a match and who broke in its first frame; which
+member of a pool of opponents plays, counted from 1 (0: none is drawn yet).
 """
 COLUMNS = 33
 
@@ -43,6 +39,25 @@ COLUMNS = 33
 """Miss rules, in the order of ``frame.MISS_RULES``."""
 
 MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
+
+
+class Conditions(NamedTuple):
+    """What is the same for all frames of an environment."""
+
+    rules: int
+    """Code of the rule set (``rule_sets``)."""
+    miss: int
+    """Code of the miss rule."""
+    time_to_play: int
+    """From the rest of the balls to each stroke [ms], in a game with a clock."""
+
+
+class Effort(NamedTuple):
+    """For the miss rule: were paths to a ball on clear, and did the cue ball come near one?"""
+
+    clear_path: bool
+    full_ball_path: bool
+    attempt: bool
 
 
 class Layouts(NamedTuple):
@@ -76,7 +91,7 @@ def begin_frame(row, on_table, breaker, in_hand):
 
 @kernel
 def _end(row, winner):
-    """End the frame and clear the fields of ``frame._SETTLED``."""
+    """End the frame; what no frame that is over has is cleared (``frame_checks.SETTLED``)."""
     row[PHASE], row[OVER], row[WINNER] = FINISHED, 1, winner
     row[BALL_ON] = -1
     row[FREE_BALL] = row[MISS_CALLED] = row[FAILURES] = row[WARNED] = row[SAVED] = row[SAVED_LAYOUT] = row[MISSES] = row[ANYWHERE] = 0
@@ -90,7 +105,7 @@ def lead_of(row, player):
 
 @kernel
 def needs_snookers(row, player):
-    """Whether ``player`` trails by more points than he can still score: ``Frame.needs_snookers``."""
+    """Whether ``player`` trails by more than is left for them; a free ball is the striker's alone."""
     left = available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL]) if row[STRIKER] == player else available(row[ON_TABLE], -1, 0)
     return -lead_of(row, player) > left
 
@@ -103,18 +118,21 @@ def _decided(row):
 
 
 @kernel
-def _is_miss(row, result, decided, failures, misses, rules, miss, clear, full, attempt):
-    """Whether a foul is also a miss, with ``row`` after the stroke and ``decided`` before it: ``Frame._is_miss``."""
-    if miss == NO_MISSES or not result.fouls & MISSED or (rules == SIX_RED and misses == MOST_MISSES):
+def _is_miss(result, conditions, effort, failures, misses, decided):
+    """Whether a foul is also a miss. ``decided``: the scores, before or after the stroke, rule it out."""
+    if conditions.miss == NO_MISSES or not result.fouls & MISSED:
         return False
-    if full and failures:
+    if conditions.rules == SIX_RED and misses == MOST_MISSES:
+        return False
+    if effort.full_ball_path and failures:
         return True
-    return (clear or full or (miss == ATTEMPTS and not attempt)) and not (decided or _decided(row))
+    poor = conditions.miss == ATTEMPTS and not effort.attempt
+    return (effort.clear_path or effort.full_ball_path or poor) and not decided
 
 
 @kernel
 def shot_clock(row, rules):
-    """``Frame.shot_clock``: the longest time to play the next stroke [ms]; 0 for no limit."""
+    """The longest time to play the next stroke [ms]; 0 for no limit."""
     if rules != SHOOT_OUT:
         return 0
     return SHOT_CLOCK[1] if 2 * row[CLOCK] >= CLOCK_LIMIT else SHOT_CLOCK[0]
@@ -127,12 +145,12 @@ def is_late(row, rules, time_to_play):
 
 
 @kernel
-def after_stroke(row, result, rules, miss, clear, full, attempt, layout, time_to_play, duration):
-    """One stroke with the referee's ``Ruling`` result: ``Frame.play``.
+def after_stroke(row, result, conditions, effort, layout, duration):
+    """One stroke with the referee's ``Ruling`` result, under ``Conditions`` and with an ``Effort``.
 
-    ``rules``, ``miss``: codes; ``clear``, ``full``: the paths before the stroke (``paths.best_paths``); ``attempt``: whether the cue ball
-    came near a ball on; ``layout``: whether that before the stroke is stored; ``time_to_play``, ``duration`` [ms].
+    ``layout``: whether that before the stroke is stored; ``duration`` [ms].
     """
+    rules, time_to_play, full = conditions.rules, conditions.time_to_play, effort.full_ball_path
     me = row[STRIKER]
     other = 1 - me
     failures, warned, misses = row[FAILURES], row[WARNED], row[MISSES]
@@ -165,7 +183,7 @@ def after_stroke(row, result, rules, miss, clear, full, attempt, layout, time_to
     if warned and full and result.fouls & MISSED:
         _end(row, other)
         return
-    called = _is_miss(row, result, decided, failures, misses, rules, miss, clear, full, attempt)
+    called = _is_miss(result, conditions, effort, failures, misses, decided or _decided(row))
     row[PHASE], row[MISS_CALLED] = CHOICE, called
     row[FAILURES] = failures + 1 if called and full else 0
     row[MISSES] = misses + 1 if called and rules == SIX_RED else 0
@@ -175,7 +193,7 @@ def after_stroke(row, result, rules, miss, clear, full, attempt, layout, time_to
 
 @kernel
 def _time_is_up(row):
-    """The frame's clock has run down: ``Frame._time_is_up``. If a lot follows, the caller leaves nothing but the black, on its spot."""
+    """The frame's clock has run down: the higher score wins; if level, the caller leaves only the black."""
     lead = lead_of(row, 0)
     if lead != 0:
         _end(row, 0 if lead > 0 else 1)
@@ -186,20 +204,20 @@ def _time_is_up(row):
 
 @kernel
 def may_replace(row, rules):
-    """Whether "replace" is one of ``Frame.choices``."""
+    """Whether the position before a miss may be restored."""
     return row[PHASE] == CHOICE and row[MISS_CALLED] and not (rules == SIX_RED and row[MISSES] >= MOST_MISSES)
 
 
 @kernel
 def may_place_anywhere(row, rules):
-    """Whether "anywhere" is one of ``Frame.choices``."""
+    """Whether the cue ball may go anywhere: after the last miss in succession, unless snookers are needed."""
     last = row[PHASE] == CHOICE and row[MISS_CALLED] and rules == SIX_RED and row[MISSES] >= MOST_MISSES
     return last and abs(lead_of(row, 0)) <= available(row[ON_TABLE], row[BALL_ON], 0)
 
 
 @kernel
 def choose(row, what):
-    """An allowed decision after a foul: ``Frame.choose``. The caller restores a replaced layout."""
+    """An allowed decision after a foul. The caller restores a replaced layout."""
     row[PHASE] = STROKE
     row[MISS_CALLED] = 0
     if what == REPLACE:
@@ -220,67 +238,29 @@ def choose(row, what):
 
 @kernel
 def draw(row, first):
-    """Player ``first`` begins at the re-spotted black: ``Frame.draw``."""
+    """Player ``first`` begins at the re-spotted black."""
     row[PHASE], row[STRIKER], row[POINTS] = STROKE, first, 0
 
 
 @kernel
 def may_claim(row):
-    """Whether the striker may claim the frame: ``Frame.may_claim``."""
+    """Whether the striker may claim the frame: only the black is left and the lead is more than 7."""
     return row[PHASE] == STROKE and row[ON_TABLE] == 1 << BLACK and lead_of(row, row[STRIKER]) > 7
 
 
 @kernel
 def claim(row):
-    """The striker claims the frame, where ``may_claim``: ``Frame.claim``."""
+    """The striker claims the frame, where ``may_claim``."""
     _end(row, row[STRIKER])
 
 
 @kernel
 def may_concede(row, player):
-    """Whether ``player`` may concede the frame: ``Frame.concede``."""
+    """Whether ``player`` may concede the frame: only the striker may."""
     return row[STRIKER] == player and (row[PHASE] == STROKE or row[PHASE] == CHOICE)
 
 
 @kernel
 def concede(row):
-    """The striker concedes the frame: ``Frame.concede``."""
+    """The striker concedes the frame."""
     _end(row, 1 - row[STRIKER])
-
-
-def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int, rules: RulesName = "snooker") -> Frame:
-    """The ``Frame`` of ``row`` (COLUMNS,); ``miss``, ``rules``: its rules; ``layouts``: ``Layouts``, of which row k is read."""
-    at = row.tolist()
-    saved = None
-    if at[SAVED]:
-        layout = None
-        if at[SAVED_LAYOUT]:
-            layout = tuple(map(tuple, layouts.positions[k].tolist())), tuple(layouts.on_table[k].tolist())
-        saved = Saved(
-            on_table=at[SAVED_ON_TABLE], ball_on=BallOn(at[SAVED_BALL_ON]), in_hand=bool(at[SAVED_IN_HAND]),
-            free_ball=bool(at[SAVED_FREE_BALL]), anywhere=at[SAVED_IN_HAND] == 2, layout=layout,
-        )  # fmt: skip
-    return Frame(
-        scores=(at[SCORE_0], at[SCORE_1]), striker=at[STRIKER], breaker=at[BREAKER], break_points=at[POINTS], on_table=at[ON_TABLE],
-        ball_on=BallOn(at[BALL_ON]), in_hand=bool(at[IN_HAND]), free_ball=bool(at[FREE_BALL]),
-        respotted_black=bool(at[RESPOTTED_BLACK]), phase=PHASES[at[PHASE]], winner=None if at[WINNER] < 0 else at[WINNER], miss=miss,
-        miss_called=bool(at[MISS_CALLED]), failures=at[FAILURES], warned=bool(at[WARNED]), saved=saved,
-        rules=rules, clock=at[CLOCK], misses=at[MISSES], anywhere=bool(at[ANYWHERE]), rack=at[RACK],
-    )  # fmt: skip
-
-
-def write_frame(frame: Frame, strokes: int, row: Ints, layouts: Layouts, k: int) -> None:
-    """Write a checked ``Frame`` into ``row`` (COLUMNS,), and its stored layout into row k of ``layouts``."""
-    row[:] = 0
-    row[[BALL_ON, IN_HAND, POINTS, OVER]] = frame.ball_on, frame.in_hand, frame.break_points, frame.phase == "over"
-    row[[FREE_BALL, ON_TABLE, PHASE]] = frame.free_ball, frame.on_table, PHASES.index(frame.phase)
-    row[[STRIKER, BREAKER, SCORE_0, SCORE_1]] = frame.striker, frame.breaker, *frame.scores
-    row[[WINNER, RESPOTTED_BLACK]] = -1 if frame.winner is None else frame.winner, frame.respotted_black
-    row[[MISS_CALLED, FAILURES, WARNED, STROKES]] = frame.miss_called, frame.failures, frame.warned, strokes
-    row[[CLOCK, MISSES, ANYWHERE, RACK]] = frame.clock, frame.misses, frame.anywhere, frame.rack
-    saved = frame.saved
-    if saved is not None:
-        row[[SAVED, SAVED_ON_TABLE, SAVED_BALL_ON]] = 1, saved.on_table, saved.ball_on
-        row[[SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT]] = saved.in_hand + saved.anywhere, saved.free_ball, saved.layout is not None
-        if saved.layout is not None:
-            layouts.positions[k], layouts.on_table[k] = np.array(saved.layout[0]), np.array(saved.layout[1])

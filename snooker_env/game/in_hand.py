@@ -81,48 +81,6 @@ def _meet(ax, ay, a, bx, by, b, sign):
 
 
 @kernel
-def _better(positions, on_table, wish_x, wish_y, px, py, best_x, best_y, best, radius):
-    """The better of a candidate p and the best place so far: (x, y) and distance from the wish [m]. A NaN is never better."""
-    far = np.hypot(px - wish_x, py - wish_y)
-    if far < best and in_d(px, py) and not touches(positions, on_table, px, py, 2.0 * radius + REFEREE_TOUCH):
-        return px, py, far
-    return best_x, best_y, best
-
-
-@kernel
-def nearest_place(positions, on_table, x, y, radius):
-    """The free place in the D nearest to (x, y) [m], and whether there is one: (x, y, bool). At a free place a ball touches no other.
-
-    Each ball excludes a disc around it. The nearest point outside all discs is the wish itself (moved into the D), the nearest point of one
-    circle, or a point where two of the circles and the lines of the D cross: all are tried. ``on_table[0]`` must be False.
-    """
-    x, y = _into_d(x, y)
-    reach = 2.0 * radius + CLEARANCE
-    place = _better(positions, on_table, x, y, x, y, x, y, np.inf, radius)
-    if place[2] == 0.0:
-        return x, y, True
-    for sign in (-1.0, 1.0):
-        place = _better(positions, on_table, x, y, sign * D_RADIUS, BAULK_Y, *place, radius)
-    for i in range(N_BALLS):
-        if not on_table[i]:
-            continue
-        bx, by = positions[i, 0], positions[i, 1]
-        away = np.hypot(x - bx, y - by)
-        ux, uy = (0.0, -1.0) if away == 0.0 else ((x - bx) / away, (y - by) / away)
-        place = _better(positions, on_table, x, y, bx + reach * ux, by + reach * uy, *place, radius)
-        for sign in (-1.0, 1.0):
-            half = np.sqrt(reach * reach - (by - BAULK_Y) ** 2)
-            place = _better(positions, on_table, x, y, bx + sign * half, BAULK_Y, *place, radius)
-            px, py = _meet(0.0, BAULK_Y, D_RADIUS, bx, by, reach, sign)
-            place = _better(positions, on_table, x, y, px, py, *place, radius)
-            for j in range(i):
-                if on_table[j]:
-                    px, py = _meet(bx, by, reach, positions[j, 0], positions[j, 1], reach, sign)
-                    place = _better(positions, on_table, x, y, px, py, *place, radius)
-    return place[0], place[1], place[2] < np.inf
-
-
-@kernel
 def on_bed(x, y, radius):
     """Whether a cue ball in hand may be placed at (x, y) [m] as far as cushions and pockets are concerned."""
     room = radius + CLEARANCE
@@ -135,12 +93,50 @@ def on_bed(x, y, radius):
 
 
 @kernel
-def _better_on_bed(positions, on_table, wish_x, wish_y, px, py, best_x, best_y, best, radius):
-    """As ``_better``, on the whole bed."""
-    far = np.hypot(px - wish_x, py - wish_y)
-    if far < best and on_bed(px, py, radius) and not touches(positions, on_table, px, py, 2.0 * radius + REFEREE_TOUCH):
-        return px, py, far
-    return best_x, best_y, best
+def _better(positions, on_table, wish, p, best, anywhere, radius):
+    """The better of a candidate p and the ``best`` place: (x, y, distance from the wish) [m]; never a NaN.
+
+    ``anywhere``: on the whole bed, not in the D only.
+    """
+    far = np.hypot(p[0] - wish[0], p[1] - wish[1])
+    if not far < best[2] or not (on_bed(p[0], p[1], radius) if anywhere else in_d(p[0], p[1])):
+        return best
+    if touches(positions, on_table, p[0], p[1], 2.0 * radius + REFEREE_TOUCH):
+        return best
+    return p[0], p[1], far
+
+
+@kernel
+def nearest_place(positions, on_table, x, y, radius):
+    """The free place in the D nearest to (x, y) [m], and whether there is one: (x, y, bool). At a free place a ball touches no other.
+
+    Each ball excludes a disc around it. The nearest point outside all discs is the wish itself (moved into the D), the nearest point of one
+    circle, or a point where two of the circles and the lines of the D cross: all are tried. ``on_table[0]`` must be False.
+    """
+    wish = x, y = _into_d(x, y)
+    reach = 2.0 * radius + CLEARANCE
+    place = _better(positions, on_table, wish, wish, (x, y, np.inf), False, radius)
+    if place[2] == 0.0:
+        return x, y, True
+    for sign in (-1.0, 1.0):
+        place = _better(positions, on_table, wish, (sign * D_RADIUS, BAULK_Y), place, False, radius)
+    for i in range(N_BALLS):
+        if not on_table[i]:
+            continue
+        bx, by = positions[i, 0], positions[i, 1]
+        away = np.hypot(x - bx, y - by)
+        ux, uy = (0.0, -1.0) if away == 0.0 else ((x - bx) / away, (y - by) / away)
+        place = _better(positions, on_table, wish, (bx + reach * ux, by + reach * uy), place, False, radius)
+        for sign in (-1.0, 1.0):
+            half = np.sqrt(reach * reach - (by - BAULK_Y) ** 2)
+            place = _better(positions, on_table, wish, (bx + sign * half, BAULK_Y), place, False, radius)
+            p = _meet(0.0, BAULK_Y, D_RADIUS, bx, by, reach, sign)
+            place = _better(positions, on_table, wish, p, place, False, radius)
+            for j in range(i):
+                if on_table[j]:
+                    p = _meet(bx, by, reach, positions[j, 0], positions[j, 1], reach, sign)
+                    place = _better(positions, on_table, wish, p, place, False, radius)
+    return place[0], place[1], place[2] < np.inf
 
 
 @kernel
@@ -159,8 +155,8 @@ def nearest_anywhere(positions, on_table, x, y, radius):
     an edge of the bed, cross.
     """
     wide, high, reach = HALF_WIDTH - radius - CLEARANCE, HALF_LENGTH - radius - CLEARANCE, 2.0 * radius + CLEARANCE
-    x, y = min(wide, max(-wide, x)), min(high, max(-high, y))
-    place = _better_on_bed(positions, on_table, x, y, x, y, x, y, np.inf, radius)
+    wish = x, y = min(wide, max(-wide, x)), min(high, max(-high, y))
+    place = _better(positions, on_table, wish, wish, (x, y, np.inf), True, radius)
     if place[2] == 0.0:
         return x, y, True
     for i in range(N_BALLS + POCKET_PLACES.shape[0]):
@@ -169,18 +165,18 @@ def nearest_anywhere(positions, on_table, x, y, radius):
             continue
         away = np.hypot(x - bx, y - by)
         ux, uy = (0.0, -1.0) if away == 0.0 else ((x - bx) / away, (y - by) / away)
-        place = _better_on_bed(positions, on_table, x, y, bx + b * ux, by + b * uy, *place, radius)
+        place = _better(positions, on_table, wish, (bx + b * ux, by + b * uy), place, True, radius)
         for sign in (-1.0, 1.0):
             for side in (-1.0, 1.0):
-                half = np.sqrt(b * b - (side * wide - bx) ** 2)
-                place = _better_on_bed(positions, on_table, x, y, side * wide, by + sign * half, *place, radius)
-                half = np.sqrt(b * b - (side * high - by) ** 2)
-                place = _better_on_bed(positions, on_table, x, y, bx + sign * half, side * high, *place, radius)
+                p = side * wide, by + sign * np.sqrt(b * b - (side * wide - bx) ** 2)
+                place = _better(positions, on_table, wish, p, place, True, radius)
+                p = bx + sign * np.sqrt(b * b - (side * high - by) ** 2), side * high
+                place = _better(positions, on_table, wish, p, place, True, radius)
             for j in range(i):
                 ox, oy, o = _disc(positions, on_table, j, reach)
                 if o > 0.0:
-                    px, py = _meet(bx, by, b, ox, oy, o, sign)
-                    place = _better_on_bed(positions, on_table, x, y, px, py, *place, radius)
+                    p = _meet(bx, by, b, ox, oy, o, sign)
+                    place = _better(positions, on_table, wish, p, place, True, radius)
     return place[0], place[1], place[2] < np.inf
 
 

@@ -22,6 +22,7 @@ from .._types import Flags, Vectors
 from ..geometry import BALL_RADIUS
 from .balls import ALL_MASK, CUE_BIT, N_BALLS, REDS_MASK, REFEREE_TOUCH, check_table
 from .in_hand import PLACES_IN_D, PLACES_ON_BED
+from .lines import meets
 from .snookered import SLACK, segment_distance
 from .spotting import touches
 
@@ -31,15 +32,6 @@ NO_NOSES, NO_ARCS = np.empty((0, 5)), np.empty((0, 6))
 """No cushions: ``noses`` and ``jaws`` have the rows of ``physics.Table`` (``physics.columns``)."""
 AXIS, SIDE, LEVEL, LOW, HIGH = range(5)
 ARC_X, ARC_Y, ARC_RADIUS, ARC_UX, ARC_UY, ARC_COS = range(6)
-
-
-@kernel
-def meets(bx, by, ux, uy, radius):
-    """Distance that the cue ball rolls from the origin along the unit vector u until it meets the ball at b [m]; inf if it misses."""
-    along, across = bx * ux + by * uy, bx * uy - by * ux
-    if along <= 0.0 or abs(across) >= 2.0 * radius:
-        return np.inf
-    return along - np.sqrt(4.0 * radius * radius - across * across)
 
 
 @kernel
@@ -101,11 +93,12 @@ def _open_direction(positions, on_table, on, target, angle, noses, jaws, radius)
 
 
 @kernel
-def _cushion_edges(edges, n, cx, cy, tx, ty, towards, noses, jaws, radius):
+def _cushion_edges(edges, n, c, t, towards, noses, jaws, radius):
     """Append the directions at which a cushion may open or close the path from c to the target at t; returns their number.
 
     A nose: the cue ball meets it and the target at the same time, or passes its end. A jaw: the same, or it grazes the curve.
     """
+    (cx, cy), (tx, ty) = c, t
     for k in range(noses.shape[0]):
         level, vertical = noses[k, SIDE] * (noses[k, LEVEL] - radius), noses[k, AXIS] == 0.0
         away = level - (tx if vertical else ty)
@@ -178,7 +171,7 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
                     my = 0.5 * (by + ty) + sign * height * sx
                     edges[n] = np.arctan2(my, mx) - towards
                     n += 1
-        n = _cushion_edges(edges, n, cx, cy, tx + cx, ty + cy, towards, noses, jaws, radius)
+        n = _cushion_edges(edges, n, (cx, cy), (tx + cx, ty + cy), towards, noses, jaws, radius)
         for k in range(n):  # into (-pi, pi], so that the target's window is one interval about 0
             edges[k] -= 2.0 * np.pi * np.round(edges[k] / (2.0 * np.pi))
         ordered = np.sort(edges[:n])

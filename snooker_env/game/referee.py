@@ -1,13 +1,12 @@
 """How does Python call the referee? ``judge(Situation, Stroke) -> Verdict``: checked input, named results, and the kernel ``ruling``."""
 
 from dataclasses import dataclass
-from typing import Any
 
 from .._check import choice, integer, refuse
 from .._jit import entry
 from .balls import ALL_MASK, COLOURS_MASK, CUE_BIT, N_BALLS, NAMES, REDS_MASK, BallOn, balls_on, ids_of
 from .rule_sets import RULES, RulesName
-from .ruling import AUTO, RULE_FLAGS, Flag, Foul, Outcome, VisitEnd, ruling
+from .ruling import AUTO, RULE_FLAGS, Before, Facts, Flag, Foul, Outcome, Ruling, VisitEnd, ruling
 
 FULL_TABLE = ALL_MASK & ~CUE_BIT
 """The mask of all 21 object balls."""
@@ -185,11 +184,11 @@ class Verdict:
 
 
 @entry
-def _ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags):
-    return ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags)
+def _ruling(before, facts, flags):
+    return ruling(before, facts, flags)
 
 
-def verdict_of(result: Any) -> Verdict:
+def verdict_of(result: Ruling) -> Verdict:
     """The kernel's ``Ruling`` as a ``Verdict``."""
     return Verdict(
         fouls=Foul(result.fouls),
@@ -221,11 +220,18 @@ def check(situation: Situation, stroke: Stroke) -> None:
             raise refuse("nominated", NAMES[stroke.nominated], f"must be one of {what}" if what else "must be none: no choice is on")
 
 
-def numbers_of(situation: Situation, stroke: Stroke) -> tuple[int, ...]:
-    """Both as the integer arguments of the kernels, in order."""
-    state = (situation.on_table, int(situation.ball_on), int(situation.free_ball), situation.lead)
-    flags = int(stroke.flags | RULE_FLAGS[RULES.index(situation.rules)])
-    return (*state, stroke.first, stroke.touching, stroke.moved, stroke.potted, stroke.off, stroke.nominated, flags)
+def numbers_of(situation: Situation, stroke: Stroke) -> tuple[Before, Facts, int]:
+    """Both as the arguments of ``ruling``."""
+    before = situation.on_table, situation.ball_on, situation.free_ball, situation.lead
+    facts = stroke.first, stroke.touching, stroke.moved, stroke.potted, stroke.off, stroke.nominated
+    flags = stroke.flags | RULE_FLAGS[RULES.index(situation.rules)]
+    return Before(*map(int, before)), Facts(*map(int, facts)), int(flags)
+
+
+def ruling_of(situation: Situation, stroke: Stroke) -> Ruling:
+    """``judge``, as the kernel's ``Ruling``."""
+    check(situation, stroke)
+    return _ruling(*numbers_of(situation, stroke))
 
 
 def judge(situation: Situation, stroke: Stroke) -> Verdict:
@@ -233,5 +239,4 @@ def judge(situation: Situation, stroke: Stroke) -> Verdict:
 
     Raises ``ValueError`` if the two do not fit together (a ball potted that was not on the table, a nomination that is not allowed).
     """
-    check(situation, stroke)
-    return verdict_of(_ruling(*numbers_of(situation, stroke)))
+    return verdict_of(ruling_of(situation, stroke))

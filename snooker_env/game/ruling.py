@@ -148,6 +148,36 @@ def _plain(enum):
 FLAG, FOUL, VISIT, OUTCOME = _plain(Flag), _plain(Foul), _plain(VisitEnd), _plain(Outcome)
 
 
+class Before(NamedTuple):
+    """What ``ruling`` knows of the frame before the stroke, all integers."""
+
+    on_table: int
+    """Mask of the balls on the table."""
+    ball_on: int
+    """A ``BallOn``."""
+    free_ball: int
+    """1 if the striker has a free ball."""
+    lead: int
+    """The striker's score minus the opponent's."""
+
+
+class Facts(NamedTuple):
+    """What ``ruling`` knows of the stroke, all integers: masks of balls, and an id."""
+
+    first: int
+    """The balls struck by the first impact; more than one: simultaneously."""
+    touching: int
+    """The balls that touched the cue ball before it."""
+    moved: int
+    """Those of them that the cue ball moved as it left them."""
+    potted: int
+    """The balls in pockets, bit 0 the cue ball."""
+    off: int
+    """The balls off the table, bit 0 the cue ball."""
+    nominated: int
+    """The id of the ball nominated, 0 for none, or AUTO."""
+
+
 class Ruling(NamedTuple):
     """The result of ``ruling``, all integers; ``referee.Verdict`` explains the fields."""
 
@@ -202,15 +232,13 @@ def _nomination(on, ball_on, free_ball, first, touching, nominated):
 
 
 @kernel
-def ruling(on_table, ball_on, free_ball, lead, first, touching, moved, potted, off, nominated, flags):
-    """Judge one stroke. Everything is an integer; masks have bit i for ball i. Returns a ``Ruling``.
+def ruling(before, facts, flags):
+    """The ``Ruling`` on the stroke ``facts`` in the frame ``before``; ``flags``: Flag bits.
 
-    Before the stroke: ``on_table`` mask, ``ball_on`` a BallOn, ``free_ball`` 0 or 1 (the striker has one), ``lead`` the striker's
-    score minus the opponent's. The stroke: ``first`` the balls struck by the first impact (more than one: simultaneously),
-    ``touching`` the balls that touched the cue ball before it, ``moved`` those of them that the cue ball moved as it left them,
-    ``potted`` and ``off`` the balls in pockets and off the table (bit 0 the cue ball), ``nominated`` an id, 0 for none or AUTO,
-    ``flags`` Flag bits. The order is that of the rule book; the highest penalty counts, and a foul scores nothing.
+    The order is that of the rule book; the highest penalty counts, and a foul scores nothing.
     """
+    on_table, ball_on, free_ball, lead = before
+    first, touching, moved, potted, off, nominated = facts
     reds_and_colours = on_table & ~CUE_BIT
     on = balls_on_kernel(ball_on, reds_and_colours)
     choice = _nomination(on, ball_on, free_ball, first, touching, nominated)

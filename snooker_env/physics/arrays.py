@@ -1,7 +1,6 @@
-"""Which arrays does a shot work on? The arguments of ``engine.run``, named and grouped; the last two groups are its work space.
+"""Which arrays does a shot work on? Named and grouped, as the kernels take them.
 
-The kernels that ``engine.run`` calls take arrays one by one, and so does the kernel that Python calls; ``engine.run`` and
-``engine.run_batch`` say why.
+Each group holds what its kernels read and no more: all numbers of a group are handed on at every call.
 """
 
 from typing import NamedTuple
@@ -9,20 +8,33 @@ from typing import NamedTuple
 import numpy as np
 
 
-class Setup(NamedTuple):
-    """What is the same in all shots of a batch: constants, the table, and how impacts are solved."""
+class Law(NamedTuple):
+    """What decides an impact: the constants, and how it is solved."""
 
     phys: np.ndarray
     """(17,) ``Physics.pack()``."""
+    fidelity: int
+    """As ``contact.parse_fidelity`` returns it, together with n_steps."""
+    n_steps: int
+
+
+class Boundaries(NamedTuple):
+    """What the balls of radius R [m] meet on a table."""
+
     noses: np.ndarray
     """(k, 5), and the next two: as in ``table.Table``."""
     jaws: np.ndarray
     falls: np.ndarray
+    R: float
+
+
+class Setup(NamedTuple):
+    """What is the same in all shots of a batch."""
+
+    law: Law
+    boundaries: Boundaries
     reach: np.ndarray
     """(2, 2): the lowest and highest x and y that a ball's centre may have [m]."""
-    fidelity: int
-    """As ``contact.parse_fidelity`` returns it, together with n_steps."""
-    n_steps: int
 
 
 class Balls(NamedTuple):
@@ -69,7 +81,7 @@ class Motions(NamedTuple):
     state: np.ndarray
     """(n,) int64: a state of ``cloth.py``."""
     flight: np.ndarray
-    """(n, FLIGHT): the rest of the state of a falling ball, columns below."""
+    """(n, FLIGHT): the rest of the state of a falling ball, columns of ``pocket.py``."""
 
 
 class Forecast(NamedTuple):
@@ -81,17 +93,9 @@ class Forecast(NamedTuple):
     """(n,) the earliest time of each row of ``pair`` [s]."""
     best_ball: np.ndarray
     """(n,) the other ball of that meeting; -1 if there is none."""
-    own_time: np.ndarray
+    alone_time: np.ndarray
     """(n,) time of the next event without another ball [s]."""
-    own_kind: np.ndarray
+    alone_kind: np.ndarray
     """(n,) kind of that event."""
-    own_index: np.ndarray
+    alone_index: np.ndarray
     """(n,) its nose, jaw or pocket; -1 if it has none."""
-
-
-IN_X, IN_Y, POCKET, HAD, Z0, U0, Z1, U1, END_VX, END_VY, KIND, INDEX = range(12)
-FLIGHT = 12
-"""Columns of ``flight``. IN_X, IN_Y: where the ball came in, relative to the pocket's centre [m]; POCKET: the pocket. HAD: its
-energy of translation and height at the start of this leg, per unit mass [m^2/s^2]. Z0, U0 and Z1, U1: drop of the centre [m] and its
-rate [m/s] at the start and at the end of this leg. END_VX, END_VY, KIND, INDEX: velocity [m/s],
-kind of event and its index at the end."""

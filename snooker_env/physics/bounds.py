@@ -49,9 +49,9 @@ def _in_a_jaw(x, y, jaws, R):
 
 def narrowest(noses: Floats) -> tuple[float, int, int]:
     """The least distance between two facing noses that a ball can touch at the same time [m], and their indices."""
-    found = (np.inf, -1, -1)
+    least = (np.inf, -1, -1)
     for a, (axis, side, level, low, high) in enumerate(noses):
         for b, (other_axis, other_side, other_level, other_low, other_high) in enumerate(noses):
             if a < b and axis == other_axis and side != other_side and low <= other_high and other_low <= high:
-                found = min(found, (float(level + other_level), a, b))
-    return found
+                least = min(least, (float(level + other_level), a, b))
+    return least

@@ -94,12 +94,16 @@ def _roll_on_nap(motion, state, i, vx, vy, decel, nap):
 
 
 @kernel
-def begin(motion, state, i, t, x, y, vx, vy, wx, wy, wz, phys):
-    """Write the next phase of motion of ball i into its row: at time t [s] it is at (x, y) [m] with velocity v [m/s] and spin w [rad/s]."""
+def begin(motion, state, i, t, r, v, w, phys):
+    """Write the next phase of motion of ball i into its row: at time t [s] it is at r [m] with velocity v [m/s] and spin w [rad/s].
+
+    r = (x, y), v = (vx, vy) and w = (wx, wy, wz).
+    """
     R, g = phys[P_R], phys[P_G]
+    (x, y), (vx, vy), (wx, wy, wz) = r, v, w
     ux, uy = vx - R * wy, vy + R * wx
     u = sqrt(ux * ux + uy * uy)
-    v = sqrt(vx * vx + vy * vy)
+    speed = sqrt(vx * vx + vy * vy)
     motion[i, X], motion[i, Y], motion[i, T0], motion[i, WZ] = x, y, t, wz
     if u > _STILL:
         decel = phys[P_MU_S] * g
@@ -108,16 +112,16 @@ def begin(motion, state, i, t, x, y, vx, vy, wx, wy, wz, phys):
         motion[i, AX], motion[i, AY] = -decel * ux / u, -decel * uy / u
         motion[i, WX], motion[i, WY] = wx, wy
         motion[i, T_END] = t + u / (3.5 * decel)  # eq. 19
-    elif v > _STILL and phys[P_NAP] != 0.0:
+    elif speed > _STILL and phys[P_NAP] != 0.0:
         motion[i, T_END] = t + _roll_on_nap(motion, state, i, vx, vy, phys[P_MU_R] * g, phys[P_NAP])
         motion[i, WX], motion[i, WY] = -motion[i, VY] / R, motion[i, VX] / R
-    elif v > _STILL:
+    elif speed > _STILL:
         decel = phys[P_MU_R] * g
         state[i] = ROLL
         motion[i, VX], motion[i, VY] = vx, vy
-        motion[i, AX], motion[i, AY] = -decel * vx / v, -decel * vy / v
+        motion[i, AX], motion[i, AY] = -decel * vx / speed, -decel * vy / speed
         motion[i, WX], motion[i, WY] = -vy / R, vx / R
-        motion[i, T_END] = t + v / decel
+        motion[i, T_END] = t + speed / decel
     else:
         state[i] = REST
         motion[i, VX] = motion[i, VY] = motion[i, AX] = motion[i, AY] = motion[i, WX] = motion[i, WY] = 0.0
@@ -158,17 +162,17 @@ def next_phase(motion, state, i, phys):
     In the new phase the ball rolls exactly, without a remaining slip.
     """
     t = motion[i, T_END]
-    (x, y), (vx, vy), (_wx, _wy, wz) = evaluate(motion, state, i, t, phys)
+    r, (vx, vy), (_wx, _wy, wz) = evaluate(motion, state, i, t, phys)
     if state[i] == SLIDE:
         R = phys[P_R]
         # final v = v0 - (2/7) u0 without the rounding of v0 + a T: u is then zero by construction
         vx = motion[i, VX] - (motion[i, VX] - R * motion[i, WY]) / 3.5
         vy = motion[i, VY] - (motion[i, VY] + R * motion[i, WX]) / 3.5
-        begin(motion, state, i, t, x, y, vx, vy, -vy / R, vx / R, wz, phys)
+        begin(motion, state, i, t, r, (vx, vy), (-vy / R, vx / R, wz), phys)
     elif state[i] == BEND:
         R, decel, nap = phys[P_R], phys[P_MU_R] * phys[P_G], phys[P_NAP]
         vx, vy = motion[i, VX], motion[i, VY]
         _, _, _, vx, vy = _bent(vx, vy, _piece(vx, vy, decel, nap), decel, nap)
-        begin(motion, state, i, t, x, y, vx, vy, -vy / R, vx / R, wz, phys)
+        begin(motion, state, i, t, r, (vx, vy), (-vy / R, vx / R, wz), phys)
     else:
-        begin(motion, state, i, t, x, y, 0.0, 0.0, 0.0, 0.0, wz, phys)
+        begin(motion, state, i, t, r, (0.0, 0.0), (0.0, 0.0, wz), phys)

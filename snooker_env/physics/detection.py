@@ -141,8 +141,9 @@ def _arc_outside(lo_x, hi_x, lo_y, hi_y, jaws, k, d):
 
 
 @kernel
-def clear_box(noses, jaws, falls, R):
+def clear_box(boundaries):
     """A rectangle (lo_x, hi_x, lo_y, hi_y) [m] in which a ball's centre meets no nose, jaw or fall; empty if there is none."""
+    noses, jaws, falls, R = boundaries
     lo_x, hi_x, lo_y, hi_y = -inf, inf, -inf, inf
     for k in range(noses.shape[0]):
         level = noses[k, NOSE_LEVEL] - R
@@ -176,12 +177,13 @@ def _level_crossing(gap, closing, closing2, held, T):
 
 
 @kernel
-def _beside_later(gap, closing, closing2, q, q1, q2, low, high, T):
+def _beside_later(approach, along, low, high, T):
     """Earliest contact in [0, T] with a nose of a ball that comes in touch from the next arc [s], or inf.
 
-    The gap to its line is gap - closing t - closing2 t^2, the place along it q + q1 t + q2 t^2. The ball is not beside the nose, which is
-    from ``low`` to ``high``, when it passes the line.
+    The gap to its line is gap - closing t - closing2 t^2 (``approach``), the place along it q + q1 t + q2 t^2 (``along``). The ball is not
+    beside the nose, which is from ``low`` to ``high``, when it passes the line.
     """
+    (gap, closing, closing2), (q, q1, q2) = approach, along
     first = inf
     for x in (quadratic_crossing(low - q, -q1, -q2, T), quadratic_crossing(q - high, q1, q2, T)):
         if x < inf and gap - (closing + closing2 * x) * x > -HELD:
@@ -199,8 +201,9 @@ def _past_end(x, y, ux, uy, cos_half, sin_half):
 
 
 @kernel
-def _jaw_time(x0, y0, x1, y1, x2, y2, d, ux, uy, cos_half, T):
-    """Earliest contact in [0, T] with a jaw's arc [s], or inf: |c| falls through d while c lies in the arc's sector."""
+def _jaw_time(path, d, sector, T):
+    """Earliest contact in [0, T] with a jaw's arc [s], or inf: |c| (of ``path``) falls through d while c lies in the arc's sector."""
+    (x0, y0, x1, y1, x2, y2), (ux, uy, cos_half) = path, sector
     s = distance_crossing(x0, y0, x1, y1, x2, y2, d, T)
     far2, sin_half = x0 * x0 + y0 * y0, sqrt(1.0 - cos_half * cos_half)
     held = far2 > (d - HELD) * (d - HELD) and _past_end(x0, y0, ux, uy, cos_half, sin_half) <= SEAM
@@ -227,11 +230,12 @@ def _jaw_time(x0, y0, x1, y1, x2, y2, d, ux, uy, cos_half, T):
 
 
 @kernel
-def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
+def boundary_event(motion, state, i, boundaries, clear):
     """The next nose (CUSHION), jaw (JAW) or fall (POT) that ball i meets after T0 within its phase: time [s], kind, index; inf if none.
 
     clear: as ``clear_box`` returns it.
     """
+    noses, jaws, falls, R = boundaries
     best, kind, index = inf, events.NONE, -1
     lo_x, hi_x, lo_y, hi_y = motion[i, LO_X] - _MARGIN, motion[i, HI_X] + _MARGIN, motion[i, LO_Y] - _MARGIN, motion[i, HI_Y] + _MARGIN
     clear_lo_x, clear_hi_x, clear_lo_y, clear_hi_y = clear
@@ -254,7 +258,7 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
         s = _level_crossing(gap, side * p1, side * p2, beside and gap > -HELD, min(T, best))
         past = not low <= q + (q1 + q2 * s) * s <= high if s < inf else gap <= 0.0 and not beside
         if past:
-            s = _beside_later(gap, side * p1, side * p2, q, q1, q2, low, high, min(T, best))
+            s = _beside_later((gap, side * p1, side * p2), (q, q1, q2), low, high, min(T, best))
         if s < best:
             best, kind, index = s, events.CUSHION, k
     if best < T:  # only something on the way to the nose can come first
@@ -279,7 +283,7 @@ def boundary_event(motion, state, i, noses, jaws, falls, clear, R):
         chord2 = 2.0 * (1.0 - cos_half) * d * d  # of the half arc; of a facing this is a small part of a very large circle
         if _apart(lo_x, hi_x, lo_y, hi_y, x + d * ux, y + d * uy, chord2 + _AROUND):
             continue
-        s = _jaw_time(x0 - x, y0 - y, x1, y1, x2, y2, d, ux, uy, cos_half, T)
+        s = _jaw_time((x0 - x, y0 - y, x1, y1, x2, y2), d, (ux, uy, cos_half), T)
         if s < best:
             best, kind, index = s, events.JAW, k
     return motion[i, T0] + best, kind, index

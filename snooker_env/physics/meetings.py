@@ -42,8 +42,9 @@ def _scaled(w, k):
 
 
 @inlined
-def meet(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps, series):
+def meet(v1, w1, v2, w2, normal, law, series):
     """Ball-ball impact inside a shot: ``collide_balls`` or, below ``PART``, a hop. The vertical velocity is dropped, as in the paper."""
+    (nx, ny), phys = normal, law.phys
     closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
     if closing <= PART:
         # two equal balls: the reduced mass is M/2, so the spin energy counts double
@@ -52,18 +53,19 @@ def meet(v1, w1, v2, w2, nx, ny, phys, fidelity, n_steps, series):
         return (v1[0] - dv * nx, v1[1] - dv * ny), _scaled(w1, k), (v2[0] + dv * nx, v2[1] + dv * ny), _scaled(w2, k), True
     e = max(phys[P_E_B], PART / closing)
     v1, v2 = (v1[0], v1[1], 0.0), (v2[0], v2[1], 0.0)
-    a, wa, b, wb, solved = collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, series)
+    a, wa, b, wb, solved = collide_balls(v1, w1, v2, w2, normal, law, e, series)
     return (a[0], a[1]), wa, (b[0], b[1]), wb, solved
 
 
 @inlined
-def rebound(v, w, nx, ny, jaw, phys, fidelity, n_steps, series):
-    """Impact with a nose or a jaw inside a shot, by the same rules; (nx, ny) points into the cushion."""
+def rebound(v, w, normal, jaw, law, series):
+    """Impact with a nose or a jaw inside a shot, by the same rules; ``normal`` points into the cushion."""
+    (nx, ny), phys = normal, law.phys
     closing = v[0] * nx + v[1] * ny
     if closing <= PART:
         parting, k = _hop(closing, _spin_energy(w, phys[P_R]))
         dv = closing + parting
         return (v[0] - dv * nx, v[1] - dv * ny), _scaled(w, k), True
     e = max(phys[P_E_J] if jaw else cushion_restitution(closing, phys), PART / closing)
-    a, wa, solved = collide_cushion((v[0], v[1], 0.0), w, nx, ny, phys, e, fidelity, n_steps, series)
+    a, wa, solved = collide_cushion((v[0], v[1], 0.0), w, normal, law, e, series)
     return (a[0], a[1]), wa, solved

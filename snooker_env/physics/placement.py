@@ -3,6 +3,7 @@
 from math import sqrt
 
 from .._jit import entry, kernel
+from .arrays import Boundaries
 from .columns import (
     FALL_RADIUS,
     FALL_X,
@@ -42,11 +43,12 @@ def in_jaw(x, y, jaws, k, R, allowed):
 
 
 @kernel
-def place_fault(x, y, reach, noses, jaws, falls, R, allowed, edge):
+def place_fault(x, y, reach, boundaries, allowed, edge):
     """What is wrong with a ball on the bed at (x, y) [m]: kind of fault, and index of the nose, fall or jaw; (SOUND, -1) if nothing.
 
     ``allowed``: how deep it may be in a cushion; ``edge``: how far over a pocket [m]. Else as in ``first_fault``.
     """
+    noses, jaws, falls, R = boundaries
     if not (reach[0, 0] < x < reach[0, 1] and reach[1, 0] < y < reach[1, 1]):
         return OFF, -1
     for j in range(noses.shape[0]):
@@ -70,10 +72,11 @@ def first_fault(positions, on_table, reach, noses, jaws, falls, R):
     ``reach`` (2, 2): the lowest and highest x and y [m] that a ball's centre may have; ``R``: radius of the balls [m]. (-1, -1, SOUND, -1)
     if all places are sound.
     """
+    boundaries = Boundaries(noses, jaws, falls, R)
     for k in range(positions.shape[0]):
         for i in range(positions.shape[1]):
             if on_table[k, i]:
-                fault, j = place_fault(positions[k, i, 0], positions[k, i, 1], reach, noses, jaws, falls, R, OVERLAP_ALLOWED, 0.0)
+                fault, j = place_fault(positions[k, i, 0], positions[k, i, 1], reach, boundaries, OVERLAP_ALLOWED, 0.0)
                 if fault != SOUND:
                     return k, i, fault, j
         least = 2.0 * R - OVERLAP_ALLOWED

@@ -25,6 +25,8 @@ steps of ``STEP``, each a parabola, with the impacts on the edge at its end. Ora
 from math import inf, sqrt
 
 from .._jit import kernel
+from . import events
+from .cloth import AX, AY, FALLING, HI_X, HI_Y, LO_X, LO_Y, T0, T_END, VX, VY, WX, WY, WZ, X, Y
 from .columns import FALL_RADIUS, FALL_X, FALL_Y, JAW_COS, JAW_RADIUS, JAW_UX, JAW_UY, JAW_X, JAW_Y
 from .parameters import P_E_J, P_G, P_MU_C, P_R, P_SIN
 
@@ -43,6 +45,12 @@ SHORTEST = 1e-9
 """The shortest leg [s]; the ball can meet a jaw right at the edge."""
 _MOST_STEPS = 10_000
 """A ball that stays in the mouth for so many steps, a few seconds, is lost: it is wedged in a throat narrower than a ball."""
+IN_X, IN_Y, POCKET, HAD, Z0, U0, Z1, U1, END_VX, END_VY, KIND, INDEX = range(12)
+FLIGHT = 12
+"""Columns of ``flight``. IN_X, IN_Y: where the ball came in, relative to the pocket's centre [m]; POCKET: the pocket. HAD: its
+energy of translation and height at the start of this leg, per unit mass [m^2/s^2]. Z0, U0 and Z1, U1: drop of the centre [m] and its
+rate [m/s] at the start and at the end of this leg. END_VX, END_VY, KIND, INDEX: velocity [m/s],
+kind of event and its index at the end."""
 
 
 @kernel
@@ -100,12 +108,13 @@ def _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket):
 
 
 @kernel
-def jaw_gap(x, y, z, jaws, k, R, sin_theta):
-    """A sphere at (x, y) with drop z: its distance from the nose of jaw k in the plane [m], the unit vector to it, sin(phi), and the part.
+def jaw_gap(r, jaws, k, R, sin_theta):
+    """A sphere at r = (x, y, z): its distance from the nose of jaw k in the plane [m], the unit vector to it, sin(phi), and the part.
 
     Past its ends (part 1, else 0) the arc is continued straight along its tangents: on one side into the throat, on the other as the nose.
     For a ball above the nose's height the nose is a wall: no ball flies over a cushion.
     """
+    x, y, z = r
     dx, dy, ux, uy = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY]
     cos_half = jaws[k, JAW_COS]
     far, near = dx * dx + dy * dy, jaws[k, JAW_RADIUS] + 4.0 * R
@@ -129,16 +138,17 @@ def jaw_gap(x, y, z, jaws, k, R, sin_theta):
 
 
 @kernel
-def strike_jaw(vx, vy, u, w, nx, ny, sin_phi, phys):
-    """Impact of a free ball with a nose; (nx, ny) is the unit vector to it in the plane -> vx, vy, u [m/s], w [rad/s].
+def strike_jaw(v, w, nx, ny, sin_phi, phys):
+    """Impact of a free ball with a nose; (nx, ny) is the unit vector to it in the plane -> v = (vx, vy, u) [m/s], w [rad/s].
 
     A ball that falls away from the nose faster than it moves towards it keeps its velocity: the nose does not pull.
     """
     cos_phi, R = sqrt(1.0 - sin_phi * sin_phi), phys[P_R]
+    vx, vy, u = v
     x, y, z = nx * cos_phi, ny * cos_phi, sin_phi  # from the centre to the contact, z up
     closing = vx * x + vy * y - u * z
     if not closing > 0.0:
-        return vx, vy, u, w
+        return v, w
     sx = vx + R * (w[1] * z - w[2] * y) - closing * x
     sy = vy + R * (w[2] * x - w[0] * z) - closing * y
     sz = -u + R * (w[0] * y - w[1] * x) - closing * z
@@ -147,22 +157,21 @@ def strike_jaw(vx, vy, u, w, nx, ny, sin_phi, phys):
     f = min(phys[P_MU_C] * p, slip / 3.5) / slip if slip > 0.0 else 0.0
     fx, fy, fz = -f * sx, -f * sy, -f * sz
     q = 2.5 / R
-    return (
-        vx - p * x + fx, vy - p * y + fy, u + p * z - fz,
-        (w[0] + q * (y * fz - z * fy), w[1] + q * (z * fx - x * fz), w[2] + q * (x * fy - y * fx)),
-    )  # fmt: skip
+    w = (w[0] + q * (y * fz - z * fy), w[1] + q * (z * fx - x * fz), w[2] + q * (x * fy - y * fx))
+    return (vx - p * x + fx, vy - p * y + fy, u + p * z - fz), w
 
 
 @kernel
-def _deepest_jaw(x, y, z, vx, vy, u, jaws, first, last, R, sin_theta):
+def _deepest_jaw(r, v, jaws, first, last, R, sin_theta):
     """Of the jaws that the ball touches and moves into, the deepest: its index (-1: none), gap [m], closing speed [m/s] and normal.
 
     Also: whether the ball touches any jaw, and whether one behind its arc.
     """
+    vx, vy, u = v
     jaw, deepest, hard, touches, behind = -1, 0.0, 0.0, False, False
     px, py, pz = 0.0, 0.0, 0.0
     for k in range(first, last):
-        gap, nx, ny, sin_phi, part = jaw_gap(x, y, z, jaws, k, R, sin_theta)
+        gap, nx, ny, sin_phi, part = jaw_gap(r, jaws, k, R, sin_theta)
         touches = touches or gap < 0.0
         behind = behind or (gap < 0.0 and part == 1)
         if gap < deepest:
@@ -175,19 +184,20 @@ def _deepest_jaw(x, y, z, vx, vy, u, jaws, first, last, R, sin_theta):
 
 
 @kernel
-def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
-    """One leg of a flight over the fall of ``pocket``, up to the next event.
+def fly(r, v, entered, falls, pocket, jaws, phys):
+    """One leg of a flight over the fall of ``pocket`` from r = (x, y, z) [m] with v = (vx, vy, u) [m/s], up to the next event.
 
-    (in_x, in_y): where the ball came in, relative to the pocket's centre [m]. Returns how the leg ends (``JAW``, ``LOST``, ``BACK``), the
-    jaw, the duration [s], and x, y, z [m], vx, vy, u [m/s] at its end (before the impact with the jaw; on the bed for ``BACK``).
+    entered: where the ball came in, relative to the pocket's centre [m]. Returns how the leg ends (``JAW``, ``LOST``, ``BACK``), the jaw,
+    the duration [s], and r and v at its end (before the impact with the jaw; on the bed for ``BACK``).
     """
     R, sin_theta, g = phys[P_R], phys[P_SIN], phys[P_G]
+    (x, y, z), (vx, vy, u), (in_x, in_y) = r, v, entered
     if z == 0.0 and u == 0.0:  # just over the edge: a ball that clears it goes on to the first jaw
         t, jaw = ahead(x, y, vx, vy, falls, pocket, jaws, phys)
         if 0.0 <= t < inf:
-            return JAW, jaw, t, x + vx * t, y + vy * t, 0.5 * g * t * t, vx, vy, g * t
+            return JAW, jaw, t, (x + vx * t, y + vy * t, 0.5 * g * t * t), (vx, vy, g * t)
     elif _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket) and _first_arc(x, y, vx, vy, jaws, R)[0] == inf:
-        return LOST, -1, STEP, x + vx * STEP, y + vy * STEP, z, vx, vy, u  # nothing is in its way, and the edge only pushes it inwards
+        return LOST, -1, STEP, (x + vx * STEP, y + vy * STEP, z), v  # nothing is in its way, and the edge only pushes it inwards
     first, last = jaws.shape[0], 0  # the jaws of this pocket
     for k in range(jaws.shape[0]):
         # measured from the middle of the arc (a straight facing is an arc of a very large circle, whose centre is far away)
@@ -202,16 +212,17 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
         T += h
         x, y, z, u = x + vx * h, y + vy * h, z + (u + 0.5 * g * h) * h, u + g * h
         if z >= (1.0 - sin_theta) * R:
-            return LOST, -1, T, x, y, z, vx, vy, u
+            return LOST, -1, T, (x, y, z), (vx, vy, u)
         dx, dy = x - falls[pocket, FALL_X], y - falls[pocket, FALL_Y]
         far = sqrt(dx * dx + dy * dy)
         depth, high = falls[pocket, FALL_RADIUS] - far, R - z
-        jaw, deepest, hard, px, py, pz, touches, behind = _deepest_jaw(x, y, z, vx, vy, u, jaws, first, last, R, sin_theta)
+        jaw, deepest, hard, px, py, pz, touches, behind = _deepest_jaw((x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta)
         if behind and depth > 0.0:
-            return LOST, -1, T, x, y, z, vx, vy, u  # through the throat
+            return LOST, -1, T, (x, y, z), (vx, vy, u)  # through the throat
         if hard > SOFT:  # it met the jaw within the step, with the velocity of the step: the edge comes after it
             back = min(0.9 * h, -deepest * sqrt(1.0 - pz * pz) / hard)  # time since the contact
-            return JAW, jaw, T - back, x - vx * back, y - vy * back, z - (u - 0.5 * g * back) * back, vx, vy, u - g * back
+            r = x - vx * back, y - vy * back, z - (u - 0.5 * g * back) * back
+            return JAW, jaw, T - back, r, (vx, vy, u - g * back)
         reach2 = depth * depth + high * high
         if depth > 0.0 and reach2 < R * R:  # in contact with the edge
             reach = sqrt(reach2)
@@ -221,13 +232,51 @@ def fly(x, y, z, vx, vy, u, in_x, in_y, falls, pocket, jaws, phys):
                 p = closing * (1.0 + EDGE if closing > SOFT else 1.0)
                 vx, vy, u = vx + p * ex, vy + p * ey, u - p * ez
         if touches:
-            _, _, hard, px, py, pz, _, _ = _deepest_jaw(x, y, z, vx, vy, u, jaws, first, last, R, sin_theta)
+            _, _, hard, px, py, pz, _, _ = _deepest_jaw((x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta)
             if hard <= SOFT:  # it stays on the jaw; if the edge has driven it into the jaw harder, the next step finds it there
                 vx, vy, u = vx - hard * px, vy - hard * py, u + hard * pz
         if depth < 0.0 and dx * vx + dy * vy > 0.0 and not touches:
             speed2, climb2 = vx * vx + vy * vy, 2.0 * g * max(z, 0.0)
             if dx * in_x + dy * in_y > 0.0 and speed2 > climb2:
                 slower = sqrt(1.0 - climb2 / speed2)
-                return BACK, -1, T, x, y, 0.0, vx * slower, vy * slower, 0.0
-            return LOST, -1, T, x, y, z, vx, vy, u
-    return LOST, -1, T, x, y, z, vx, vy, u
+                return BACK, -1, T, (x, y, 0.0), (vx * slower, vy * slower, 0.0)
+            return LOST, -1, T, (x, y, z), (vx, vy, u)
+    return LOST, -1, T, (x, y, z), (vx, vy, u)
+
+
+@kernel
+def next_leg(paths, i, t, r, v, w, boundaries, phys):
+    """Ball i is over a pocket, in the air at r = (x, y, z) with v = (vx, vy, u): write its next leg, a line to its next event."""
+    (motion, state, flight), (x, y, z), (vx, vy, u) = paths, r, v
+    into = int(flight[i, POCKET])
+    entered = flight[i, IN_X], flight[i, IN_Y]
+    end, jaw, T, (x1, y1, z1), (vx1, vy1, u1) = fly(r, v, entered, boundaries.falls, into, boundaries.jaws, phys)
+    state[i] = FALLING
+    T = max(T, SHORTEST)
+    motion[i, X], motion[i, Y], motion[i, VX], motion[i, VY] = x, y, (x1 - x) / T, (y1 - y) / T
+    motion[i, AX] = motion[i, AY] = 0.0
+    motion[i, WX], motion[i, WY], motion[i, WZ] = w
+    motion[i, T0], motion[i, T_END] = t, t + T
+    motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y] = min(x, x1), max(x, x1), min(y, y1), max(y, y1)
+    flight[i, HAD] = 0.5 * (vx * vx + vy * vy + u * u) - phys[P_G] * z
+    flight[i, Z0], flight[i, U0], flight[i, Z1], flight[i, U1], flight[i, END_VX], flight[i, END_VY] = z, u, z1, u1, vx1, vy1
+    flight[i, KIND] = events.JAW if end == JAW else events.RETURN if end == BACK else events.POT
+    flight[i, INDEX] = jaw if end == JAW else into
+
+
+@kernel
+def aloft(motion, flight, i, t, v, phys):
+    """Ball i in the air meets another ball at time t, when its leg has the velocity v: its velocity. The leg starts anew there.
+
+    A leg with the edge or a soft jaw on its way is not straight, and its mean speed in the plane is not that of any moment. Together with
+    the drop it may come to more energy than the ball had at the start of the leg: then the ball is slower.
+    """
+    s = (t - motion[i, T0]) / (motion[i, T_END] - motion[i, T0])
+    z, u = flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0]), flight[i, U0] + s * (flight[i, U1] - flight[i, U0])
+    vx, vy = v
+    has, had = 0.5 * (vx * vx + vy * vy + u * u), max(0.0, flight[i, HAD] + phys[P_G] * z)
+    if has > had:
+        k = sqrt(had / has)
+        vx, vy, u = vx * k, vy * k, u * k
+    flight[i, Z0], flight[i, U0] = z, u
+    return vx, vy

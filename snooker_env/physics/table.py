@@ -172,12 +172,13 @@ class Table:
         if not isinstance(pockets, (int, np.integer)) or pockets not in (6, 4, 0):
             raise refuse("table.pockets", pockets, "must be 6, 4 or 0")
         shapes = []
-        for field_name, shape, is_middle, there in (("corner", corner, False, pockets > 0), ("middle", middle, True, pockets == 6)):
-            if shape is not None and not there:
+        kinds = ("corner", corner, False, pockets > 0), ("middle", middle, True, pockets == 6)
+        for field_name, shape, is_middle, needed in kinds:
+            if shape is not None and not needed:
                 raise refuse(f"table.{field_name}", shape, f"must be None on a table with {pockets} pockets")
             if shape is not None and (not isinstance(shape, Pocket) or shape.is_middle != is_middle):
                 raise refuse(f"table.{field_name}", shape, f"must be a Pocket made by Pocket.{field_name}, or None for snooker's")
-            shapes.append((shape or getattr(PRESETS["match"], field_name)) if there else None)
+            shapes.append((shape or getattr(PRESETS["match"], field_name)) if needed else None)
         if ball_radius is not None:
             ball_radius = number("table.ball_radius", ball_radius, 1e-3, 1)
         bed = Bed(length=length, width=width, corner=shapes[0], middle=shapes[1], ball={})
@@ -268,13 +269,13 @@ class Table:
         >>> sn.Table.preset("match").unfit(np.array([[(0.0, 0.0)], [(2.0, 0.0)]]), 0.02625)
         [1]
         """
-        here, found, first = np.ones(positions.shape[:2], bool), [], 0
+        here, unfit, first = np.ones(positions.shape[:2], bool), [], 0
         while True:
             k, _, fault, _ = first_fault(positions[first:], here[first:], self._reach(R), self.noses, self.jaws, self.falls, float(R))
             if fault == SOUND:
-                return found
+                return unfit
             first += k + 1
-            found.append(first - 1)
+            unfit.append(first - 1)
 
     def check(self, positions: Batches | Vectors, R: float, field: str = "positions", on_table: FlagRows | Flags | None = None) -> None:
         """Check that layouts are sound: no ball off the table, in a cushion, jaw or other ball, or over a pocket.
@@ -308,12 +309,10 @@ class Table:
         ...
         ValueError: positions[0] = (2.0, 0.0): must be on the table, |x| <= 0.86275, |y| <= 1.75825 away from pockets
         """
-        own = self.ball_radius
-        if own is not None and abs(R - own) > SAME_BALL:
-            allowed = (
-                f'must be {own} on table "{self.name}", which is made for it: write physics={{"R": {own}}}, or give a Table of your own'
-            )
-            raise refuse("physics.R", R, allowed)
+        radius = self.ball_radius
+        if radius is not None and abs(R - radius) > SAME_BALL:
+            made = f'must be {radius} on table "{self.name}", which is made for it'
+            raise refuse("physics.R", R, f'{made}: write physics={{"R": {radius}}}, or give a Table of your own')
         positions = np.ascontiguousarray(positions, np.float64)
         many = positions.ndim == 3
         if positions.ndim not in (2, 3) or positions.shape[-1] != 2:

@@ -1,10 +1,10 @@
 """Planning: play many strokes on copies of positions, under given noise samples, and find strokes by geometry.
 
-A planner works in three steps:
+A planner works in two steps:
 
-1. Find strokes: ``pots``, ``action_masks``, ``obstructions``, ``clear_paths``.
-2. Turn them into actions: ``as_actions``, ``actions_of``, ``pot_aim``.
-3. Play them: ``Planner.play`` returns points and afterstates; ``Planner.stops`` also returns where each ball stopped.
+1. Find strokes: ``pots``, ``action_masks``, ``obstructions``, ``clear_paths``, ``pot_aim``. A stroke is five numbers in SI: cue
+   speed, side, top, direction of the cue ball, elevation. ``Planner.strokes_of`` and ``Planner.actions_of`` decode and encode actions.
+2. Play them: ``Planner.play`` returns points and afterstates; ``Planner.stops`` also returns where each ball stopped.
 
 The caller assigns a value to each afterstate. ``prospects_of`` is a rule of thumb for that.
 
@@ -24,7 +24,7 @@ from .geometry import Paths, Pots, clear_paths, obstructions, pots
 from .planner import Outcomes, Planner
 from .position import Position
 from .positions import Positions
-from .proposals import Proposals, spread_strokes, strokes_at
+from .proposals import Proposals, at_balls, at_pots, over_cushions, spread_strokes, strokes_at
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import sobol_points
 from .stops import Stops
@@ -32,7 +32,32 @@ from .stroke_search import Ranked, StrokeSearch
 from .strokes import action_masks, actions_of, as_actions, pot_aim
 
 __all__ = [
-    "RULE_OF_THUMB", "SURE", "Outcomes", "Paths", "Planner", "Position", "Positions", "Pots", "Proposals", "Ranked", "Stops",
-    "StrokeSearch", "action_masks", "actions_of", "as_actions", "clear_paths", "obstructions", "pot_aim", "pots", "processors",
-    "prospects_of", "sobol_points", "spread_of", "spread_strokes", "strokes_at",
-]  # fmt: skip
+    "RULE_OF_THUMB",
+    "SURE",
+    "Outcomes",
+    "Paths",
+    "Planner",
+    "Position",
+    "Positions",
+    "Pots",
+    "Proposals",
+    "Ranked",
+    "Stops",
+    "StrokeSearch",
+    "action_masks",
+    "actions_of",
+    "as_actions",
+    "at_balls",
+    "at_pots",
+    "clear_paths",
+    "obstructions",
+    "over_cushions",
+    "pot_aim",
+    "pots",
+    "processors",
+    "prospects_of",
+    "sobol_points",
+    "spread_of",
+    "spread_strokes",
+    "strokes_at",
+]

@@ -205,7 +205,7 @@ class Planner:
         >>> planner.play(position, [0, 0], strokes=[stroke] * 2, errors=[[0, 0, 0, 0, 0], [0, 0, 0, 2.0, 0]]).points.tolist()
         [7.0, 0.0]
         """
-        after, out = self._strokes(copy.copy(self._visits), positions, rows, actions, keys, strokes, errors)
+        after, out = self.played(positions, rows, actions, keys, strokes=strokes, errors=errors)
         return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
 
     def stops(
@@ -250,14 +250,22 @@ class Planner:
         (21, 3)
         """
         visits = copy.copy(self._watched)
-        after, out = self._strokes(visits, positions, rows, actions, keys, strokes, errors)
+        after, out = self.played(positions, rows, actions, keys, strokes=strokes, errors=errors, visits=visits)
         first, penalty = out.counts[:, I_FIRST].copy(), out.counts[:, I_PENALTY].copy()
         return Stops(visits.places, visits.potted, first, out.reals[:, 0].copy(), penalty, ~after.over, after)
 
-    def _strokes(
-        self, visits: TrialVisits, positions: Any, rows: Any, actions: Any, keys: Any, strokes: Any, errors: Any
+    def played(
+        self,
+        positions: Any,
+        rows: Any,
+        actions: Any = None,
+        keys: Any = None,
+        *,
+        strokes: Any = None,
+        errors: Any = None,
+        visits: TrialVisits | None = None,
     ) -> tuple[Positions, StepOutput]:
-        """Check the arguments and play the strokes on fresh ``visits``. Returns the afterstates and the output of the step."""
+        """Check the arguments and play the strokes on ``visits`` to be filled. Returns the afterstates and the output of the step."""
         at = Positions.of(positions).as_visits()
         which = rows_of(at, rows)
         n = len(which)
@@ -272,6 +280,7 @@ class Planner:
             wrong = np.zeros((n, STROKE)) if self.noise.silent else errors_of(streams)
         elif strokes is None and wrong is not None:
             played, after = decoded(self._rules, at, which, played)
+        visits = copy.copy(self._visits) if visits is None else visits
         visits.lay(after, streams, wrong)
         out = visits.output()
         visits.step(played, np.zeros(n, np.bool_), out, self._threads)

@@ -28,6 +28,7 @@ from ..game.frame import MOST_BREAK
 from ..game.in_hand import place_cue, within_d
 from ..geometry import BALL_RADIUS
 from ..physics.table import Table, TableLike
+from . import position_file
 
 ON = tuple(ball.name.lower() for ball in BallOn)
 """The names of all values of "on"."""
@@ -230,9 +231,7 @@ class Position:
         >>> Position.from_dict({"cue": [0.0, 0.0], "black": [0.0, 1.4605]}).on
         'black'
         """
-        from . import position_file  # here: it imports this module
-
-        return position_file.of_dict(given, table)
+        return cls(**position_file.checked(given, _NAMES), table=table)
 
     def save(self, path: str | Path) -> None:
         """Write the position to a file as JSON, see ``to_dict``.
@@ -261,9 +260,7 @@ class Position:
         >>> Position.load(file).cue
         (0.0, 0.2)
         """
-        from . import position_file
-
-        position_file.write(self, path)
+        position_file.write(self.to_dict(), path)
 
     @classmethod
     def load(cls, path: str | Path, *, table: TableLike = "match") -> "Position":
@@ -298,14 +295,16 @@ class Position:
         >>> Position.load(file).on
         'black'
         """
-        from . import position_file
+        return cls(**position_file.read(path, _NAMES), table=table)
 
-        return position_file.read(path, table)
+
+_NAMES = tuple(f.name for f in fields(Position))
+"""Keys that a position in JSON may have."""
 
 
 def _known(init: Any) -> Any:
     """``Position.__init__`` with a word on a field that it does not have: which there are, and that the reds are one list."""
-    names = (*(f.name for f in fields(Position)), "table")
+    names = (*_NAMES, "table")
 
     @wraps(init)
     def checked(self: Position, *args: Any, **given: Any) -> None:

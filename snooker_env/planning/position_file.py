@@ -1,30 +1,24 @@
 """How is a position kept in a file? As a small JSON object, replaced in one step, and read with strict checks."""
 
 import json
-from collections.abc import Mapping
-from dataclasses import fields
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from .._check import choice, refuse, refuse_what
-from .._files import write_whole
-from ..physics.table import TableLike
-from .position import Position
-
-NAMES = tuple(f.name for f in fields(Position))
-"""Keys that a position in JSON may have."""
+from .._files import write_atomic
 
 
-def of_dict(given: Any, table: TableLike, field: str = "position") -> Position:
-    """The position of a dict of JSON types. ValueError names any key that is not allowed."""
-    if not isinstance(given, Mapping):
-        raise refuse_what(field, f"a {type(given).__name__}", f"must be a dict with keys of {', '.join(NAMES)}")
-    for key in given:
-        choice(f"key of {field}", key, NAMES)
-    for key, value in given.items():
+def checked(raw: Any, names: Sequence[str], field: str = "position") -> Mapping[str, Any]:
+    """A dict of JSON types that has keys of ``names`` only and no truth values where numbers belong."""
+    if not isinstance(raw, Mapping):
+        raise refuse_what(field, f"a {type(raw).__name__}", f"must be a dict with keys of {', '.join(names)}")
+    for key in raw:
+        choice(f"key of {field}", key, names)
+    for key, value in raw.items():
         if any(isinstance(x, bool) for place in _places(value) for x in place):  # NumPy converts them to 0 and 1
             raise refuse(key, value, "must be two real numbers" + (" for each ball" if key == "reds" else ""))
-    return Position(**given, table=table)
+    return raw
 
 
 def _places(value: Any) -> list[Any]:
@@ -34,20 +28,19 @@ def _places(value: Any) -> list[Any]:
     return [part for part in value if isinstance(part, list | tuple)] or [value]
 
 
-def write(position: Position, path: str | Path) -> None:
+def write(position: dict[str, Any], path: str | Path) -> None:
     """Write the file: after a crash it holds either the old position or the new one, whole."""
-    text = json.dumps(position.to_dict()) + "\n"
-    write_whole(path, lambda file: file.write_text(text, encoding="utf-8"))
+    write_atomic(path, json.dumps(position) + "\n")
 
 
-def read(path: str | Path, table: TableLike) -> Position:
-    """Read a file of ``write``. ValueError, naming the file, the key or the ball that is wrong, unless it is JSON of a position."""
+def read(path: str | Path, names: Sequence[str]) -> Mapping[str, Any]:
+    """Read a file of ``write``; ValueError names the file or the key that is wrong."""
     try:
         text = Path(path).read_text(encoding="utf-8")
-        given = json.loads(text, object_pairs_hook=_once)
+        raw = json.loads(text, object_pairs_hook=_once)
     except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
         raise refuse("path", str(path), f"must be a file of JSON ({error})") from None
-    return of_dict(given, table, str(path))
+    return checked(raw, names, str(path))
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -55,5 +48,6 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     out = dict(pairs)
     if len(out) < len(pairs):
         names = [key for key, _ in pairs]
-        raise refuse("key of the position", next(key for key in names if names.count(key) > 1), "must be there once")
+        repeated = next(key for key in names if names.count(key) > 1)
+        raise refuse("key of the position", repeated, "must be there once")
     return out

@@ -1,26 +1,32 @@
-"""Which strokes are worth a look? Continuous strokes at the direct pots, spread evenly over speed and tip, or at given pots and tips.
+"""Which strokes are worth a look? Generators of continuous strokes: at the direct pots, at the balls on that are seen, over cushions.
 
-A pot gets the more strokes, the likelier it is: shares are proportional to chance^4 x worth. The strokes at a pot are consecutive points of
-one scrambled Sobol sequence over the logarithm of the speed, the height of the tip and its side; half of them have no side. Where there is
-no direct pot, as after a break-off, most strokes are contacts with the balls on that can be struck, from thin to full on both sides, and
-every eighth goes in any direction; most of them are hard, since a ball then goes in by chance more often.
+A generator is called with a search, n positions, a number m and n seeds, and returns m strokes for each position that it has any for.
+
+* ``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to chance^4 x worth. The strokes at a pot are
+  consecutive points of one scrambled Sobol sequence over the logarithm of the speed, the height of the tip and its side; half of them have
+  no side.
+* ``at_balls``: in the directions in which a ball on is met first (``tasks.windows``), evenly. Every other stroke is hard, since a ball then
+  goes in by chance more often.
+* ``over_cushions``, where hardly anything is seen: about the escapes of ``tasks.escapes``, aimed by the models of the engine.
 """
 
-from math import asin, atan2, cos, erf, exp, hypot, log, pi, sin, sqrt
-from typing import NamedTuple
+from math import erf, exp, hypot, log, pi, sqrt
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from .._jit import entry, kernel
 from .._types import Floats, Ints
-from ..game.balls import N_BALLS, VALUES, balls_on_kernel, bits
+from ..game.balls import VALUES, balls_on_kernel, bits, touching_balls
 from ..game.frame_columns import BALL_ON
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
-from ..physics import cloth
-from ..physics.impact.polynomial import WORK
+from ..tasks.arrays import CueLaw
 from ..tasks.box_actions import MAX_SPEED
+from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, ROLLING, escape_aim, find_escapes
+from ..tasks.lines import EASY, new_work
 from ..tasks.pot_aim import solved_aim
+from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
 from .positions import Positions
 from .prospects import FAR, FOLLOWS
 from .sobol import sobol
@@ -38,11 +44,19 @@ LOST = 0.01
 """Decay of a stroke's chance per metre of both balls' paths [1/m]: the width alone nearly says what errors leave of a pot."""
 POWER = 4.0
 """Power of the chance in a pot's share of the strokes."""
-ANYWHERE, TRIES = 8, 16
-"""Of the strokes without a pot every ``ANYWHERE``-th goes in any direction; for each other one contacts are tried, at most ``TRIES``, until
-no other ball is in the way."""
+SOFTEST = 0.5
+"""Smallest cue speed of strokes without a pot [m/s]."""
+ESCAPES, ANYWHERE = 8, 8
+"""Number of escapes that strokes are shared among; of the strokes over cushions every ``ANYWHERE``-th goes in any direction."""
 MOST_POTS = 16
 """Number of pots that strokes are shared among, the widest ones."""
+
+
+class Search(Protocol):
+    """What a generator may ask a ``StrokeSearch``."""
+
+    spread: float
+    dynamics: Dynamics
 
 
 class Proposals(NamedTuple):
@@ -53,7 +67,8 @@ class Proposals(NamedTuple):
     strokes : numpy.ndarray
         float64 (n, m, 5). Strokes in SI, see ``Planner``.
     chances : numpy.ndarray
-        float64 (n, m). Chance of each stroke's pot by its width; 1 for a contact without a pot.
+        float64 (n, m). Chance of each stroke's pot by its width; 1 for a stroke without a pot. 0 in a position that the generator has no
+        stroke for.
 
     Examples
     --------
@@ -95,63 +110,12 @@ def _spread_stroke(i, seed, stroke):
 
 
 @kernel
-def _struck_first(positions, on_table, ux, uy):
-    """Id of the ball that the cue ball meets first on a straight line in the direction (ux, uy); 0 if none."""
-    first, nearest = 0, 1e9
-    for b in range(1, N_BALLS):
-        if not on_table[b]:
-            continue
-        x, y = positions[b, 0] - positions[0, 0], positions[b, 1] - positions[0, 1]
-        along, across = x * ux + y * uy, ux * y - uy * x
-        if along > 0.0 and abs(across) < 2.0 * BALL_RADIUS:
-            far = along - sqrt(4.0 * BALL_RADIUS**2 - across**2)
-            if far < nearest:
-                first, nearest = b, far
-    return first
-
-
-@kernel
-def _towards(positions, on_table, on, which, turned):
-    """Direction of a contact with the ball on number ``which``: full at ``turned`` = 0, a graze at -1 and 1."""
-    for ball in range(1, N_BALLS):
-        if on_table[ball] and (on >> ball) & 1:
-            if which == 0:
-                x, y = positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1]
-                return atan2(y, x) + asin(min(1.0, 2.0 * BALL_RADIUS / hypot(x, y))) * turned
-            which -= 1
-    return 0.0
-
-
-@kernel
-def _contacts(positions, on_table, on, seed, strokes, chances):
-    """Fill the strokes (m, 5) with contacts at the balls on that can be struck, from thin to full, and with strokes in any direction."""
-    count = 0
-    for ball in range(1, N_BALLS):
-        count += on_table[ball] and (on >> ball) & 1
-    tried = 0
-    for i in range(len(strokes)):
-        anywhere = i % ANYWHERE == 0  # two sequences: every n-th point of one would fill a part of the cube only
-        k, own = (i // ANYWHERE, seed ^ 0xA5A5) if anywhere else (i - i // ANYWHERE - 1, seed)
-        _spread_stroke(k, own, strokes[i])
-        strokes[i, SPEED] = max(SLOWEST, MAX_SPEED * sobol(k, 0, own) ** (1.0 / 3.0))  # few balls go in by chance unless the stroke is hard
-        strokes[i, AIM] = pi * (2.0 * sobol(k, 4, own) - 1.0)
-        chances[i] = 1.0
-        for _ in range(0 if anywhere else TRIES):
-            aim = _towards(positions, on_table, on, min(count - 1, int(sobol(tried, 3, seed) * count)), 2.0 * sobol(tried, 4, seed) - 1.0)
-            tried += 1
-            if (on >> _struck_first(positions, on_table, cos(aim), sin(aim))) & 1:
-                strokes[i, AIM] = aim
-                break
-
-
-@kernel
-def _aim(stroke, positions, found, phys, end_mass_ratio, fidelity, n_steps, motion, phase, work):
-    """Solve the aim of a stroke at the pot ``found``."""
-    ball, pocket = int(found[POT_BALL]), int(found[POT_POCKET])
-    stroke[AIM] = solved_aim(
-        positions, ball, POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y], found[GHOST_X], found[GHOST_Y], stroke[SPEED],
-        stroke[SIDE], stroke[TOP], 0.0, phys, end_mass_ratio, fidelity, n_steps, motion, phase, work,
-    )  # fmt: skip
+def _aim(stroke, positions, pot, law, work):
+    """Solve the aim of a stroke at a pot."""
+    pocket, ghost = int(pot[POT_POCKET]), (pot[GHOST_X], pot[GHOST_Y])
+    target, level = (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]), 0.0
+    played = stroke[SPEED], stroke[SIDE], stroke[TOP], level
+    stroke[AIM] = solved_aim(positions, int(pot[POT_BALL]), target, ghost, played, law, work)
 
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
@@ -161,14 +125,14 @@ def _propose(positions, on_table, game, seeds, which, spread, phys, end_mass_rat
     ``which`` (n, m): at which pot each stroke is, widest first, its speed and tip being given; without rows, all are spread.
     """
     found, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
-    motion, phase, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    law, work = CueLaw(phys, end_mass_ratio, fidelity, n_steps), new_work()
     m = strokes.shape[1]
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
         on = balls_on_kernel(game[k, BALL_ON], bits(here))
         many = find_pots(p, here, on, BALL_RADIUS, found)
         if many == 0:
-            _contacts(p, here, on, seed, strokes[k], chances[k])
+            chances[k, :] = 0.0
             continue
         total = 0.0
         for j in range(many):
@@ -184,8 +148,70 @@ def _propose(positions, on_table, game, seeds, which, spread, phys, end_mass_rat
                     j += 1
                     reached += weights[j] / total
                 _spread_stroke(i, seed, strokes[k, i])
-            _aim(strokes[k, i], p, found[j], phys, end_mass_ratio, fidelity, n_steps, motion, phase, work)
+            _aim(strokes[k, i], p, found[j], law, work)
             chances[k, i] = pot_chance(p, found[j], spread, LOST)
+
+
+@kernel
+def _plain_stroke(i, seed, hard, stroke):
+    """Speed and tip of stroke i without a pot; ``hard``: few balls go in by chance unless it is."""
+    _spread_stroke(i, seed, stroke)
+    u = sobol(i, 0, seed)
+    stroke[SPEED] = max(SLOWEST, MAX_SPEED * u ** (1.0 / 3.0)) if hard else SOFTEST * exp(log(FASTEST / SOFTEST) * u)
+
+
+@entry(what="the contacts of positions", seconds=2)
+def _contacts(positions, on_table, game, seeds, strokes, chances):
+    """Fill strokes (n, m, 5) and chances (n, m) with strokes at the balls on that are seen."""
+    windows = np.empty((MOST_EDGES, 3))
+    for k in range(len(strokes)):
+        p, here, seed = positions[k], on_table[k], seeds[k]
+        on = balls_on_kernel(game[k, BALL_ON], bits(here))
+        chances[k, :] = 0.0
+        many, total = open_windows(p, here, on, touching_balls(p, here), windows), 0.0
+        for w in range(many):
+            total += windows[w, HIGH] - windows[w, LOW]
+        if total == 0.0:
+            continue
+        for i in range(strokes.shape[1]):
+            hard = i % 2 == 1  # two sequences: every other point of one would fill a part of the cube only
+            own = seed ^ 0xA5A5 if hard else seed
+            _plain_stroke(i // 2, own, hard, strokes[k, i])
+            w, along = 0, total * sobol(i // 2, 4, own)
+            while w < many - 1 and along > windows[w, HIGH] - windows[w, LOW]:
+                along -= windows[w, HIGH] - windows[w, LOW]
+                w += 1
+            strokes[k, i, AIM] = turned(windows[w, LOW] + along)
+            chances[k, i] = 1.0
+
+
+@entry(what="the escapes of positions", seconds=5, uses=(escape_aim,))
+def _escapes(positions, on_table, game, seeds, phys, end_mass_ratio, strokes, chances):
+    """Fill strokes (n, m, 5) and chances (n, m) with strokes over cushions, where hardly anything is seen."""
+    windows, lines = np.empty((MOST_EDGES, 3)), np.empty((ESCAPES, POT_COLUMNS))
+    law, work, aims = CueLaw(phys, end_mass_ratio, 0, 0), new_work(), np.empty(ESCAPES)
+    for k in range(len(strokes)):
+        p, here, seed = positions[k], on_table[k], seeds[k]
+        on, touching = balls_on_kernel(game[k, BALL_ON], bits(here)), touching_balls(p, here)
+        chances[k, :] = 0.0
+        if open_windows(p, here, on, touching, windows) and windows[0, HIGH] - windows[0, LOW] >= 2.0 * EASY:
+            continue
+        many = find_escapes(p, here, on & ~touching, lines, 0)
+        for i in range(strokes.shape[1]):
+            stroke, anywhere = strokes[k, i], many == 0 or i % ANYWHERE == ANYWHERE - 1
+            chances[k, i] = 1.0
+            if anywhere:
+                _plain_stroke(i, seed ^ 0x5A5A, True, stroke)
+                stroke[AIM] = pi * (2.0 * sobol(i, 4, seed ^ 0x5A5A) - 1.0)
+                continue
+            j = i - i // ANYWHERE
+            line, again = lines[j % many], j // many
+            faster = 0.0 if again == 0 else sobol(again - 1, 0, seed + j % many)
+            stroke[SPEED], stroke[SIDE], stroke[TOP] = line[LINE_SPEED] * exp(0.5 * faster), 0.0, ROLLING
+            if again == 0:
+                aims[j] = escape_aim(line[LINE_AIM], (stroke[SPEED], 0.0, ROLLING), p, here, on, law, work)
+            aside = 0.0 if again == 0 else line[LINE_ROOM] * (2.0 * sobol(again - 1, 4, seed + j % many) - 1.0)
+            stroke[AIM] = turned(aims[j % many] + aside)
 
 
 _NOT_GIVEN = np.empty((0, 0), np.int64)
@@ -226,8 +252,6 @@ def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: 
 def strokes_at(at: Positions, which: Ints, speeds_and_tips: Floats, seeds: Ints, spread: float, dynamics: Dynamics) -> Proposals:
     """Propose strokes at given pots with given speeds and tips; their aims are solved.
 
-    Where there is no direct pot, the strokes are the contacts of ``spread_strokes``.
-
     Parameters
     ----------
     at : Positions
@@ -267,3 +291,90 @@ def _proposed(at, strokes, seeds, which, spread, dynamics):
         at.positions, at.on_table, at.game, keys, which, spread, physics.pack(), physics.end_mass_ratio, code, n_steps, strokes, chances
     )  # fmt: skip
     return Proposals(strokes, chances)
+
+
+def at_pots(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
+    """Generate strokes spread over all direct pots, speeds and tips: ``spread_strokes`` for a search.
+
+    Parameters
+    ----------
+    search : StrokeSearch
+        The search, whose ``spread`` and ``dynamics`` count.
+    at : Positions
+        The n positions.
+    m : int
+        Number of strokes for each.
+    seeds : numpy.ndarray
+        int64 (n,), in [0, 2**32).
+
+    Returns
+    -------
+    Proposals
+        The strokes; none where there is no direct pot.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.planning import Position, Positions, StrokeSearch, at_pots
+    >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
+    >>> at_pots(search, at, 5, np.array([7])).strokes.shape
+    (1, 5, 5)
+    """
+    return spread_strokes(at, m, seeds, search.spread, search.dynamics)
+
+
+def at_balls(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
+    """Generate strokes at the balls on that the cue ball can strike.
+
+    Parameters
+    ----------
+    search, at, m, seeds
+        As for ``at_pots``.
+
+    Returns
+    -------
+    Proposals
+        The strokes; none where no ball on is seen.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.planning import Position, Positions, StrokeSearch, at_balls
+    >>> at = Positions.of(Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0)))
+    >>> at_balls(StrokeSearch({}), at, 4, np.array([7])).chances.tolist()
+    [[1.0, 1.0, 1.0, 1.0]]
+    """
+    at, made = at.as_visits(), _nothing(at, m)
+    _contacts(at.positions, at.on_table, at.game, np.asarray(seeds, np.int64), *made)
+    return made
+
+
+def over_cushions(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
+    """Generate escapes over cushions, where hardly anything of a ball on is seen.
+
+    Parameters
+    ----------
+    search, at, m, seeds
+        As for ``at_pots``.
+
+    Returns
+    -------
+    Proposals
+        The strokes; none in other positions.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from snooker_env.planning import Position, Positions, StrokeSearch, over_cushions
+    >>> hidden = Positions.of(Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], blue=(0.2, 0.0), on="red"))
+    >>> over_cushions(StrokeSearch({}), hidden, 4, np.array([7])).chances.tolist()
+    [[1.0, 1.0, 1.0, 1.0]]
+    """
+    at, made, physics = at.as_visits(), _nothing(at, m), search.dynamics[0]
+    _escapes(at.positions, at.on_table, at.game, np.asarray(seeds, np.int64), physics.pack(), physics.end_mass_ratio, *made)
+    return made
+
+
+def _nothing(at: Positions, m: int) -> Proposals:
+    """Room for m strokes in each position."""
+    return Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))

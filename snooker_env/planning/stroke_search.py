@@ -1,26 +1,30 @@
-"""Which stroke is best? A search over continuous strokes at all pots, one shot deep, with a value of what each stroke leaves.
+"""Which stroke is best? A search over continuous strokes, one shot deep, with a value of what each stroke leaves.
 
-1. Strokes are proposed (``proposals``) and each is played once without error. Its score is the chance of its pot by the pot's width, times
-   its points plus the value of the afterstate.
+1. Generators propose strokes (``proposals``), and each is played once without error. Its score is the chance of its pot by the pot's width,
+   times its points plus the value of the afterstate. Where strokes without a pot are proposed, the penalty of a foul is deducted, and if
+   the visit ends, the share ``LEFT`` of the value of the position for the opponent.
 2. The best meet noise samples, the better ones more of them (sequential halving, Karnin, Koren & Somekh 2013). The samples are scrambled
    Sobol points, common to all strokes of a position. The score is the mean over the samples, with the first look as ``PRIOR`` of them.
 
 Without execution errors the first look is the whole truth and takes the whole budget.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import integer, refuse_what
-from .._types import Environment, Floats, Integers, Ints
+from .._check import integer, number, refuse_what
+from .._types import Bools, Environment, Floats, Integers, Ints
+from ..game.balls import CUE, SPOTS, BallOn
+from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS
 from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options
+from ..tasks.tables import I_PENALTY, I_POINTS
 from .planner import Outcomes, Planner, options_in
 from .positions import Positions, PositionsLike, check_played
-from .proposals import Proposals, spread_strokes
+from .proposals import Proposals, at_balls, at_pots, over_cushions
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import DIMENSIONS, normal_points
 from .strokes import Dynamics, actions_of
@@ -39,10 +43,17 @@ SCHEDULES = (
 )
 """Budget, number of looks, and for each round the number of strokes and their further samples."""
 
+LEFT = 0.5
+"""Share of a position's value for the opponent that counts."""
+FOUL = 20.0
+"""What a foul costs beside its penalty [points]: the opponent may have the balls replaced or, snookered, has a free ball."""
+
 Value: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 """Values [points] of n positions that strokes have left: (n,)."""
 Propose: TypeAlias = Callable[["StrokeSearch", Positions, int, Ints], Proposals]
-"""Proposals of m strokes for each position: called with the search, the n positions, m and the seeds (n,)."""
+"""A generator: proposals of m strokes for each position, called with the search, the n positions, m and the seeds (n,)."""
+WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)
+"""The generators for positions in which those of the search have no likely pot."""
 
 
 class Ranked(NamedTuple):
@@ -118,10 +129,14 @@ class StrokeSearch:
         Largest number of simulated shots for a decision, at least 8; default 120.
     value : callable, optional
         Values [points] of n ``Positions``: (n,). Default: the rule of thumb ``prospects_of``.
-    propose : callable, optional
-        Which strokes are looked at, ``propose(search, at, m, seeds)`` -> ``Proposals``. Default: evenly spread over the pots.
+    propose : callable or sequence of callable, optional
+        One or several generators of the strokes that are looked at, ``propose(search, at, m, seeds)`` -> ``Proposals``. Those that have
+        strokes for a position share the looks evenly; the first is taken to propose pots. Where none of these is likelier than
+        ``doubtful``, ``at_balls`` and ``over_cushions`` share them, too. Default: ``at_pots``.
+    doubtful : float, optional
+        Largest chance of a pot at which strokes without a pot are tried as well, in [0, 1]. Default 0: where there is no pot.
     pots_only : bool, optional
-        Score by the chance of the pot alone, without points and what follows; default False.
+        Score by the chance of the pot alone, without points and what follows; without a pot, less that of a foul. Default False.
     noise : str, dict or Noise, optional
         Execution noise in place of the environment's own.
     threads : int, optional
@@ -142,9 +157,17 @@ class StrokeSearch:
     """
 
     def __init__(
-        self, env_or_options: Environment | Options | dict[str, Any], budget: int = 120, *, value: Value | None = None,
-        propose: Propose | None = None, pots_only: bool = False, noise: NoiseLike | None = None, threads: int | None = None,
-    ):  # fmt: skip
+        self,
+        env_or_options: Environment | Options | dict[str, Any],
+        budget: int = 120,
+        *,
+        value: Value | None = None,
+        propose: Propose | Sequence[Propose] = at_pots,
+        doubtful: float = 0.0,
+        pots_only: bool = False,
+        noise: NoiseLike | None = None,
+        threads: int | None = None,
+    ):
         self.budget: int = integer("budget", budget, FEWEST, 10**7)
         options = options_in(env_or_options)
         self.planner: Planner = Planner(options, noise=noise, threads=threads)
@@ -153,7 +176,8 @@ class StrokeSearch:
         self.spread: float = spread_of(self.noise, rules.physics)
         self.dynamics: Dynamics = rules.physics, rules.fidelity
         self.value: Value = self._by_rule if value is None else value
-        self.propose: Propose = evenly if propose is None else propose
+        self.propose: Propose | Sequence[Propose] = propose
+        self.doubtful: float = number("doubtful", doubtful, 0.0, 1.0)
         self.pots_only = pots_only
 
     @property
@@ -206,18 +230,24 @@ class StrokeSearch:
         looks, rounds = self.strokes_tried, () if self.noise.silent else schedule(self.budget)[1]
         if not n:
             return Ranked(np.zeros((0, looks, COLUMNS)), np.zeros((0, looks)), np.zeros((0, looks), np.int64))
-        strokes, chances = self.propose(self, at, looks, keys)
-        scores = self._gains(at, strokes[:, :, None], np.zeros((n, 1, DIMENSIONS)))[..., 0]
+        strokes, chances, which, safe = self._proposed(at, looks, keys)
+        scores = self._gains(at, safe, strokes[:, :, None], np.zeros((n, 1, DIMENSIONS)))[..., 0]
         if not self.noise.silent:
             scores *= chances
+            doubt = np.flatnonzero(safe & (chances < 1.0).any(axis=1))
+            if len(doubt) and not self.pots_only:  # a pot that is missed leaves the balls about as they lie
+                scores[doubt] -= (1.0 - chances[doubt]) * LEFT * self.value(for_opponent(at[doubt]))[:, None]
         every, tries, sums = np.arange(n)[:, None], np.zeros((n, looks), np.int64), PRIOR * scores
         order = np.argsort(-scores, axis=1, kind="stable")
+        if safe.any():  # a look flatters pots, and strokes that pot by luck: the best of each kind are sampled
+            kinds = np.where((which > 0) & (scores > 0.0), -1, which)[safe]
+            order[safe] = in_turn(order[safe], kinds)
         samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in keys.tolist()])
         done = 0
         for many, each in rounds:
             best = order[:, :many]
             picked = np.repeat(strokes[every, best][:, :, None], each, 2)
-            sums[every, best] += self._gains(at, picked, samples[:, done : done + each]).sum(2)
+            sums[every, best] += self._gains(at, safe, picked, samples[:, done : done + each]).sum(2)
             tries[every, best] += each
             done += each
             scores[every, best] = sums[every, best] / (PRIOR + tries[every, best])
@@ -260,19 +290,63 @@ class StrokeSearch:
         """
         return self.planner.play(at, rows, strokes=strokes, errors=errors)
 
-    def _gains(self, at: Positions, strokes: Floats, errors: Floats) -> Floats:
-        """Points of strokes (n, m, s, 5) under the errors (n, s, 5) of each position, and the value of what they leave: (n, m, s)."""
+    def _proposed(self, at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Ints, Bools]:
+        """Strokes (n, m, 5), chances and generators (n, m), and the positions (n,) where strokes without a pot are among them."""
+        generators = (self.propose,) if callable(self.propose) else tuple(self.propose)
+        strokes, chances, which = self._shared(generators, at, m, seeds)
+        doubt = chances.max(axis=1) <= self.doubtful
+        if doubt.any():
+            strokes, chances, which = strokes.copy(), chances.copy(), which.copy()
+            shared = self._shared((*generators, *WITHOUT_POTS), at[doubt], m, seeds[doubt])
+            strokes[doubt], chances[doubt], which[doubt] = shared
+        return strokes, chances, which, doubt | which.any(axis=1)
+
+    def _shared(self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Ints]:
+        """Strokes of the generators in turn, in each position of those that have any; chances; which generator each is of."""
+        made = [Proposals(*generate(self, at, m, seeds)) for generate in generators]
+        if len(made) == 1:
+            return *made[0], np.zeros((len(at), m), np.int64)
+        has = np.stack([each.chances.any(axis=1) for each in made])
+        turn = np.arange(m) % np.maximum(1, has.sum(axis=0))[:, None]
+        which = np.minimum((np.cumsum(has, axis=0)[:, :, None] <= turn).sum(axis=0), len(made) - 1)
+        every, looks = np.arange(len(at))[:, None], np.arange(m)
+        strokes, chances = (np.stack(part)[which, every, looks] for part in zip(*made, strict=True))
+        return strokes, chances, which
+
+    def _gains(self, at: Positions, safe: Bools, strokes: Floats, errors: Floats) -> Floats:
+        """What strokes (n, m, s, 5) under the errors (n, s, 5) of each position bring, and the value of what they leave: (n, m, s)."""
         n, m, s = strokes.shape[:3]
         every = np.broadcast_to(errors[:, None], (n, m, s, DIMENSIONS)).reshape(-1, DIMENSIONS)
-        played = self.outcomes(at, np.repeat(np.arange(n), m * s), strokes.reshape(-1, COLUMNS), every)
+        rows = np.repeat(np.arange(n), m * s)
+        after, out = self.planner.played(at, rows, strokes=strokes.reshape(-1, COLUMNS), errors=every)
+        gains, penalty, careful = out.reals[:, I_POINTS].copy(), out.counts[:, I_PENALTY], safe[rows]
         if self.pots_only:
-            return (played.points > 0).astype(np.float64).reshape(n, m, s)
-        gains, on = played.points.copy(), np.flatnonzero(played.goes_on)
+            return ((gains > 0).astype(np.float64) - (careful & (penalty > 0))).reshape(n, m, s)
+        gains[careful] -= penalty[careful] + FOUL * (penalty[careful] > 0)
+        on, left = np.flatnonzero(~after.over), np.flatnonzero(after.over & careful)
         if len(on):
-            gains[on] += self.value(played.afterstates[on])
+            gains[on] += self.value(after[on])
+        if len(left):
+            gains[left] -= LEFT * self.value(for_opponent(after[left]))
         return gains.reshape(n, m, s)
 
 
-def evenly(search: StrokeSearch, at: Positions, m: int, seeds: Ints) -> Proposals:
-    """The default proposals of a search: evenly spread over all pots, speeds and tips."""
-    return spread_strokes(at, m, seeds, search.spread, search.dynamics)
+def in_turn(order: Ints, kinds: Ints) -> Ints:
+    """Rows (n, m) of indices, best first, in a new order: the best of each of their ``kinds`` (n, m), then the second best, and so on."""
+    sorted_kinds = np.take_along_axis(kinds, order, 1)
+    place = np.zeros_like(order)
+    for kind in np.unique(kinds):
+        same = sorted_kinds == kind
+        place[same] = (np.cumsum(same, axis=1) - 1)[same]
+    return np.take_along_axis(order, np.argsort(place, axis=1, kind="stable"), 1)
+
+
+def for_opponent(after: Positions) -> Positions:
+    """Positions in which a visit has ended, as those in which the opponent's begins; a cue ball in hand lies at its usual place."""
+    theirs = after.copy()
+    reds = theirs.on_table[:, 1:16].any(axis=1)
+    theirs.game[:, BALL_ON] = np.where(reds, int(BallOn.RED), 2 + theirs.on_table[:, 16:].argmax(axis=1))
+    theirs.game[:, [IN_HAND, POINTS, OVER]] = 0
+    theirs.positions[~theirs.on_table[:, CUE], CUE] = SPOTS[CUE]
+    theirs.on_table[:, CUE] = True
+    return theirs

@@ -16,12 +16,13 @@ from .._jit import entry
 from .._types import Fidelity, Floats, Integers, Scalars, Vector, Vectors
 from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
-from ..physics import cloth, cue
+from ..physics import cue
 from ..physics.impact.contact import parse_fidelity
-from ..physics.impact.polynomial import WORK
 from ..physics.parameters import Physics, PhysicsLike
+from ..tasks.arrays import CueLaw
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, TARGET_SPAN, Actions
 from ..tasks.discrete_actions import SIZE, Choices, masks
+from ..tasks.lines import new_work
 from ..tasks.options import Options, Rules
 from ..tasks.pot_aim import solved_aim
 from ..tasks.tables import STROKES_ONLY
@@ -207,13 +208,11 @@ def solved_choices(rules: Rules, at: Positions, rows: Integers, choices: Integer
 
 @entry(what="the solving of aims", uses=(solved_aim,))
 def _pot_aim(positions, rows, balls, targets, ghosts, strokes, phys, end_mass_ratio, fidelity, n_steps, aims):
-    motion, state, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    law, work = CueLaw(phys, end_mass_ratio, fidelity, n_steps), new_work()
     for i in range(len(rows)):
-        p, (speed, side, top, elevation) = positions[rows[i]], (strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3])
-        aims[i] = solved_aim(
-            p, balls[i], targets[i, 0], targets[i, 1], ghosts[i, 0], ghosts[i, 1], speed, side, top, elevation, phys, end_mass_ratio,
-            fidelity, n_steps, motion, state, work,
-        )  # fmt: skip
+        stroke = strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3]
+        target, ghost = (targets[i, 0], targets[i, 1]), (ghosts[i, 0], ghosts[i, 1])
+        aims[i] = solved_aim(positions[rows[i]], balls[i], target, ghost, stroke, law, work)
 
 
 def pot_aim(

@@ -11,6 +11,7 @@ from .._jit import entry
 from .._types import Floats, Ints
 from ..physics.cue import squirt
 from ..tasks import stroke
+from ..tasks.arrays import StruckArrays, TableArrays
 from ..tasks.box_actions import tip_on_disc
 from ..tasks.declarations import A_END_MASS, A_MAX_OFFSET
 from ..tasks.noise import Noise, with_errors
@@ -26,14 +27,15 @@ NO_NOISE = Noise()
 
 
 @entry(what="strokes under given errors", seconds=2)
-def _strike(which, strokes, errors, positions, on_table, streams, options, noise, silent, r, v, w, here, shots):
+def _strike(which, strokes, errors, tables, shots, options, noise, silent):
     """Carry the strokes (n, 5) of the tables ``which`` out up to the strike, under their standard normal errors (n, 5)."""
+    tables, shots = TableArrays(*tables), StruckArrays(*shots)
     for j in range(which.shape[0]):
         k = which[j]
         speed, aim, elevation = strokes[k, SPEED], strokes[k, AIM], strokes[k, ELEVATION]
         side, top = tip_on_disc(strokes[k, SIDE], strokes[k, TOP], options[A_MAX_OFFSET])
         struck = with_errors(speed, side, top, aim - squirt(side, options[A_END_MASS]), elevation, errors[k], noise)
-        stroke.strike(struck, positions[k], on_table[k], streams[k], options, silent, j, r, v, w, here, shots)
+        stroke.strike(struck, tables.positions[k], tables.on_table[k], tables.streams[k], options, silent, j, shots)
 
 
 class TrialVisits(Visits):
@@ -51,9 +53,8 @@ class TrialVisits(Visits):
         if self.errors is None:
             super().address(which, actions, buffers)
             return
-        (options, noise, _), silent, b = self.packed, NO_NOISE.pack(1.0), buffers
-        tables = self.positions, self.on_table, self.streams
-        _strike(which, actions, self.errors, *tables, options, noise, silent, b.r, b.v, b.w, b.here, b.shots)
+        (options, noise, _), silent = self.packed, NO_NOISE.pack(1.0)
+        _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
 
 
 def decoded(rules: Rules, at: Positions, which: Ints, actions: Floats, nominated: Ints | None = None) -> tuple[Floats, Positions]:

@@ -1,6 +1,6 @@
 """Which paths to the pockets are open, and what blocks the others? Straight lines to each pocket for every ball on."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import acos, atan2, degrees, erf, hypot, radians, sqrt
 from typing import Any
 
@@ -19,49 +19,32 @@ MOST = 126
 
 @dataclass(frozen=True, kw_only=True)
 class Line:
-    """A straight line from the cue ball through a ball to a pocket.
-
-    Attributes
-    ----------
-    ball, pocket : int
-        Id of the ball, index of the pocket.
-    open : bool
-        Whether the ball can be potted straight, by the geometry of straight lines.
-    blocked_by : tuple of str
-        Names of the balls in the way of the ball to the pocket, or of the cue ball to the ball.
-    why : str
-        Any other reason why the line is not open: "cut too thin", "pocket too narrow from there"; else "".
-    cut : float
-        Angle between the paths of the cue ball and of the ball [rad].
-    to_ball, to_pocket : float
-        Distances of the cue ball to the contact, and of the ball to the pocket [m].
-    aim : float
-        Direction of the cue ball's path, without throw and swerve [rad].
-    tolerance : float
-        Largest error of the aim [rad]; 0 unless the line is open.
-    chance : float or None
-        Approximate probability that a player with the seat's noise keeps within the tolerance; None without noise.
-    """
+    """A straight line from the cue ball through a ball to a pocket; lengths in metres, angles in radians."""
 
     ball: int
     pocket: int
     open: bool
+    """Whether the ball can be potted straight, by the geometry of straight lines."""
     blocked_by: tuple[str, ...]
+    """Names of the balls in the way of the ball to the pocket, or of the cue ball to the ball."""
     why: str
+    """Any other reason why the line is not open: "cut too thin", "pocket too narrow from there"; else ""."""
     cut: float
+    """Angle between the paths of the cue ball and of the ball."""
     to_ball: float
     to_pocket: float
+    """Distances of the cue ball to the contact, and of the ball to the pocket."""
     aim: float
+    """Direction of the cue ball's path, without throw and swerve."""
     tolerance: float
+    """Largest error of the aim; 0 unless the line is open."""
     chance: float | None
+    """Approximate probability that a player with the seat's noise keeps within the tolerance; None without noise."""
 
     def to_dict(self) -> dict[str, Any]:
-        """The line as JSON types; lengths in metres, angles in radians."""
-        return {
-            "ball": NAMES[self.ball], "pocket": POCKETS[self.pocket], "open": self.open, "blocked_by": list(self.blocked_by),
-            "why": self.why, "cut": self.cut, "to_ball": self.to_ball, "to_pocket": self.to_pocket, "aim": self.aim,
-            "tolerance": self.tolerance, "chance": self.chance,
-        }  # fmt: skip
+        """The line as JSON types."""
+        names = {"ball": NAMES[self.ball], "pocket": POCKETS[self.pocket], "blocked_by": list(self.blocked_by)}
+        return asdict(self) | names
 
     @property
     def words(self) -> str:
@@ -78,18 +61,15 @@ class Line:
 
 
 def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
-    """All lines to pockets for the balls in the mask ``on``, ball by ball. ``positions``: the same table, once for each ball on.
-
-    With a free ball there are two positions: one with the ball on, one with the colours on.
-    """
+    """All lines to pockets for the balls in the mask ``on``; ``positions``: the table, with a free ball once more for the colours."""
     errors = LEVELS[noise]
     sigma = 0.0 if errors.silent else radians(errors.direction_deg())
-    found = {}
+    tolerances = {}
     for position in positions:
         some = pots(position, most=MOST)
         for ball, pocket, tolerance in zip(some.ball[0].tolist(), some.pocket[0].tolist(), some.tolerance[0].tolist(), strict=True):
             if ball >= 0:
-                found[ball, pocket] = tolerance
+                tolerances[ball, pocket] = tolerance
     at = positions[0]
     places, ids = at.positions[0], ids_of(on & mask_of_present(at.on_table[0]))
     ways = [(ball, pocket) for ball in ids for pocket in range(len(POCKETS))]
@@ -102,15 +82,15 @@ def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
     skip: Any = np.column_stack([np.full(len(ways), CUE), balls])
     barred = obstructions(at, rows, places[balls], aims, ignore=skip)
     barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, ignore=skip)
-    return [_line(*way, places, ghosts[k], aims[k], barred[k], found, sigma) for k, way in enumerate(ways)]
+    return [_line(*way, places, ghosts[k], aims[k], barred[k], tolerances, sigma) for k, way in enumerate(ways)]
 
 
-def _line(ball, pocket, places, ghost, aim, barred, found, sigma):
+def _line(ball, pocket, places, ghost, aim, barred, tolerances, sigma):
     run, way = ghost - places[CUE], aim - places[ball]
     far, on = hypot(*run), hypot(*way)
     cos_cut = float(run @ way / max(far * on, 1e-12))
     cut = acos(min(1.0, max(-1.0, cos_cut)))
-    tolerance = found.get((ball, pocket), 0.0)
+    tolerance = tolerances.get((ball, pocket), 0.0)
     blocked = tuple(NAMES[i] for i in np.flatnonzero(barred))
     why = "" if tolerance or blocked else "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
     chance = erf(tolerance / (sigma * sqrt(2.0))) if sigma else None

@@ -7,11 +7,11 @@ stroke is sent with the tables before and after it, so that whoever shows it nee
 from typing import Any
 
 from ..advice import POCKET_WORDS
-from ..advice.strokes import FARTHEST
 from ..game.balls import CUE, NAMES, YELLOW, ids_of
 from ..game.frame import Frame
 from ..game.snookered import is_snookered
 from ..geometry import POCKET_AIMS
+from ..planning.strokes import FARTHEST
 from ..render.scene import scene_data
 from ..replays.encode import encoded_stroke
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
@@ -25,7 +25,7 @@ from .words import asked_words, freedom, last_words, table_text
 
 def scene(service: Service) -> dict[str, Any]:
     """The constant part: the table as it is drawn, limits of strokes, available players."""
-    rules = service.session.rules_with("none")
+    rules = service.session.options_with("none").rules
     return {
         "scene": scene_data(rules.table), "R": rules.physics.R, "spin_decel": rules.physics.spin_decel,
         "limits": {
@@ -40,13 +40,13 @@ def scene(service: Service) -> dict[str, Any]:
 def table_after(act: Act, labels: tuple[str, str]) -> dict[str, Any]:
     """The table and the scoreboard after an act."""
     state, frame = act.state, Frame.from_dict(act.state["frame"])
-    there = [ball for ball, on in enumerate(state["on_table"]) if on]
+    present = [ball for ball, on in enumerate(state["on_table"]) if on]
     over = frame.phase == "over"
     return {
         "phase": frame.phase, "striker": frame.striker, "breaker": frame.breaker, "scores": list(frame.scores), "break": frame.break_points,
         "ball_on": None if over else frame.ball_on.name.lower(), "free_ball": frame.free_ball, "in_hand": frame.in_hand,
-        "reds": sum(0 < ball < YELLOW for ball in there), "available": 0 if over else frame.available, "winner": frame.winner,
-        "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in there}, "words": asked_words(frame, labels),
+        "reds": sum(0 < ball < YELLOW for ball in present), "available": 0 if over else frame.available, "winner": frame.winner,
+        "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in present}, "words": asked_words(frame, labels),
         "last": last_words(act, labels),
     }  # fmt: skip
 
@@ -108,20 +108,20 @@ def _agents_words(service: Service) -> str:
 
 def _facts(session: Session, state: dict[str, Any], places: dict[int, tuple[float, float]]) -> list[str]:
     """The sentences before the list of balls."""
-    said, ((one, other), reds) = [state["last"], state["words"]], (state["labels"], state["reds"])
-    said.append(f"Score: {one} {state['scores'][0]}, {other} {state['scores'][1]}; break {state['break']}.")
+    facts, ((one, other), reds) = [state["last"], state["words"]], (state["labels"], state["reds"])
+    facts.append(f"Score: {one} {state['scores'][0]}, {other} {state['scores'][1]}; break {state['break']}.")
     if state["phase"] == "over":
-        return said
-    said.append(f"{state['available']} points are left on the table, {reds} red{'' if reds == 1 else 's'} among the balls.")
+        return facts
+    facts.append(f"{state['available']} points are left on the table, {reds} red{'' if reds == 1 else 's'} among the balls.")
     if state["needs_snookers"]:
-        said.append("The striker needs penalty points to win.")
+        facts.append("The striker needs penalty points to win.")
     if state["phase"] == "choice":
-        said.append("Choices: " + ", ".join(state["choices"]) + ".")
-        return said
+        facts.append("Choices: " + ", ".join(state["choices"]) + ".")
+        return facts
     if state["nominations"]:
-        said.append(f"May be nominated: {', '.join(state['nominations'])}; without a nomination it is the colour first struck.")
+        facts.append(f"May be nominated: {', '.join(state['nominations'])}; without a nomination it is the colour first struck.")
     if state["in_hand"]:
-        said.append("The cue ball may be placed anywhere in the D (x^2 + (y + 1.0475)^2 <= 0.292^2 and y <= -1.0475).")
+        facts.append("The cue ball may be placed anywhere in the D (x^2 + (y + 1.0475)^2 <= 0.292^2 and y <= -1.0475).")
     if state["snookered"]:
-        said.append("The cue ball is snookered: no ball on can be struck at both edges in a straight line.")
-    return said + freedom(places)
+        facts.append("The cue ball is snookered: no ball on can be struck at both edges in a straight line.")
+    return facts + freedom(places)

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
+from .._check import refuse
 from ..simulation import SimulationError
 from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
@@ -145,8 +146,6 @@ class PlayHandler(BaseHTTPRequestHandler):
             return self._serve
         raise AttributeError(name)
 
-    # one request ------------------------------------------------------------------------------------------------------------
-
     def finish(self) -> None:
         """Read the rest of a refused request: closing a connection with unread bytes would lose the answer."""
         with suppress(OSError):
@@ -164,11 +163,11 @@ class PlayHandler(BaseHTTPRequestHandler):
                 self._file(name)
                 return
             route = (GET if self.command == "GET" else POST)[name[4:]]
-            found = answer(self.server.service, route, query if self.command == "GET" else self._body())
-            if isinstance(found, str):
-                self._send(200, found.encode(), "text/html", {"Content-Disposition": 'attachment; filename="replay.html"'})
+            reply = answer(self.server.service, route, query if self.command == "GET" else self._body())
+            if isinstance(reply, str):
+                self._send(200, reply.encode(), "text/html", {"Content-Disposition": 'attachment; filename="replay.html"'})
             else:
-                self._send(200, json.dumps(found, allow_nan=False, separators=(",", ":")).encode(), "application/json")
+                self._send(200, json.dumps(reply, allow_nan=False, separators=(",", ":")).encode(), "application/json")
         except RefusedError as refused:
             self._refuse(refused)
         except ValueError as error:
@@ -215,12 +214,12 @@ class PlayHandler(BaseHTTPRequestHandler):
         pairs = parse_qsl(text, keep_blank_values=True)
         if text and self.command == "POST":
             raise self._last(400, "POST must have its fields in its body, not in its address")
-        found: dict[str, Any] = {}
+        fields: dict[str, Any] = {}
         for name, value in pairs:
-            if name in found:
+            if name in fields:
                 raise RefusedError(400, "must be given once", name, value)
-            found[name] = json.loads(value) if re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value) else value
-        return found
+            fields[name] = json.loads(value) if re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value) else value
+        return fields
 
     def _body(self) -> dict[str, Any]:
         length = self.headers.get_all("Content-Length") or []
@@ -245,8 +244,6 @@ class PlayHandler(BaseHTTPRequestHandler):
         refused = RefusedError(status, message, field, value)
         refused.headers = headers  # type: ignore[attr-defined]
         return refused
-
-    # answers ----------------------------------------------------------------------------------------------------------------
 
     def _file(self, name):
         file, kind = FILES[name]
@@ -274,12 +271,12 @@ class PlayHandler(BaseHTTPRequestHandler):
 def parsed(raw: bytes) -> dict[str, Any]:
     """The JSON object in a body; RefusedError for anything else, including NaN, Infinity and repeated names."""
     try:
-        found = json.loads(raw.decode("utf-8"), parse_constant=_no_number, object_pairs_hook=_once) if raw else {}
+        fields = json.loads(raw.decode("utf-8"), parse_constant=_no_number, object_pairs_hook=_once) if raw else {}
     except (ValueError, RecursionError) as error:
         raise RefusedError(400, f"the body must be JSON in UTF-8 ({error})") from None
-    if not isinstance(found, dict):
+    if not isinstance(fields, dict):
         raise RefusedError(400, "the body must be a JSON object")
-    return found
+    return fields
 
 
 def _no_number(name):
@@ -287,28 +284,24 @@ def _no_number(name):
 
 
 def _once(pairs):
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    fields = dict(pairs)
+    if len(fields) < len(pairs):
         raise ValueError("a name comes twice in one object")
-    return found
+    return fields
 
 
 class PlayServer(ThreadingHTTPServer):
-    """The server of one game, on 127.0.0.1.
-
-    Parameters
-    ----------
-    service : Service
-        The game.
-    port : int
-        The port; 0 for any that is free.
-    """
+    """The server of one game, on 127.0.0.1; port 0 stands for any that is free."""
 
     daemon_threads = True
     request_queue_size = MOST_AT_ONCE
 
     def __init__(self, service: Service, port: int = 0):
-        super().__init__(("127.0.0.1", port), PlayHandler)
+        try:
+            super().__init__(("127.0.0.1", port), PlayHandler)
+        except OSError as error:
+            allowed = f"must be free ({error.strerror}): choose another with --port, or leave it out for any that is"
+            raise refuse("port", port, allowed) from error
         self.service, self.token = service, secrets.token_urlsafe(24)
         self.hosts = frozenset(f"{name}:{self.server_port}" for name in ("127.0.0.1", "localhost", "[::1]"))
         self._free = threading.BoundedSemaphore(MOST_AT_ONCE)

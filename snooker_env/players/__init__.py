@@ -10,14 +10,18 @@
 import sys as _sys
 from types import ModuleType as _ModuleType
 
+from .choices import ChoicePlayer
 from .player import Player, Ranked, Strokes
 from .playing import FRAMES, VISITS, decided, decision_seeds
 from .resolver import player, players
 from .seen import Seen, SeenPlayer
+from .simple import BoundPlayer
 
 __all__ = [
     "FRAMES",
     "VISITS",
+    "BoundPlayer",
+    "ChoicePlayer",
     "Player",
     "Ranked",
     "Seen",

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from .._check import refuse, refuse_what, truth
+from .choices import Random
 from .player import Player
 from .search import BUDGET, SearchPlayer
-from .simple import GhostBall, Random
+from .simple import GhostBall
 
 GROUP = "snooker_env.players"
 """Entry points of this group name players of other packages: NAME = MODULE:MAKER, called without arguments."""
@@ -25,9 +26,7 @@ RENAMED = {"lookahead": "search"}
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")
 """MODULE:CLASS."""
 PROGRAM = "program:"
-_SEARCHING = re.compile(
-    r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d{1,7}))?(?:@(.+))?"
-)
+_SEARCHING = re.compile(r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d{1,7}))?(?:@(.+))?")
 
 
 def players() -> list[str]:
@@ -89,16 +88,18 @@ def player(name: Any, *, trust: bool = False) -> Player:
     if (built_in := _built_in(text)) is not None:
         return built_in
     if text.startswith(PROGRAM):
-        from .program import ProgramPlayer
+        from ..play.program import ProgramPlayer
 
         return ProgramPlayer(text.removeprefix(PROGRAM))
     if (entry := _installed().get(text)) is not None:
         return _of_object(_made(text, entry.load))
-    if Path(text).exists():
+    if text and Path(text).exists():
         return _of_file(Path(text), trust)
     if OWN.fullmatch(text):
         module, _, maker = text.partition(":")
         return _of_object(_made(text, lambda: getattr(importlib.import_module(module), maker)))
+    if Path(text).suffix in (".zip", ".npz") or "/" in text or "\\" in text:
+        raise refuse("player", text, "must be a file or folder that is there: it is missing")
     known = ", ".join(map(repr, players()))
     raise refuse(
         "player",
@@ -107,9 +108,11 @@ def player(name: Any, *, trust: bool = False) -> Player:
     )
 
 
-def is_player(name: str) -> bool:
-    """Whether that is the name of a player, built in or installed."""
-    return _SEARCHING.fullmatch(name) is not None or name in players()
+def is_name(text: str) -> bool:
+    """Whether that is the name of a player, MODULE:CLASS or a program, and not a file."""
+    if _SEARCHING.fullmatch(text) is not None or text.startswith(PROGRAM) or text in players():
+        return True
+    return OWN.fullmatch(text) is not None and not Path(text).exists()
 
 
 def _built_in(name: str) -> Player | None:
@@ -123,9 +126,7 @@ def _built_in(name: str) -> Player | None:
         return None
     kind, budget, model = form.groups()
     if kind in RENAMED:
-        warnings.warn(
-            f"the player {kind!r} is called {RENAMED[kind]!r} now", DeprecationWarning, stacklevel=3
-        )
+        warnings.warn(f"the player {kind!r} is called {RENAMED[kind]!r} now", DeprecationWarning, stacklevel=3)
         kind = RENAMED[kind]
     if model is not None and not kind.startswith("planner"):
         raise refuse("player", name, f"must not name a model: {kind} has learned nothing")
@@ -151,9 +152,7 @@ def _made(name: str, maker: Callable[[], Any]) -> Any:
     try:
         return maker()()
     except Exception as error:
-        raise refuse(
-            "player", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})"
-        ) from error
+        raise refuse("player", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})") from error
 
 
 def _of_object(thing: Any) -> Player:

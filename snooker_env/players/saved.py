@@ -69,7 +69,7 @@ class SavedNetwork:
     """The policy of a saved model as a ``Seen``; its actions are deterministic. It is loaded again in another process."""
 
     def __init__(self, model: FittingModel, trust: bool):
-        self.options, self._model, self._trust = model.options, model, trust
+        self.options, self.model, self._trust = model.options, model, trust
         self._network: Any = model.network(trust)
         self._masked = model.saved.algorithm[1] == "MaskablePPO"
 
@@ -79,7 +79,7 @@ class SavedNetwork:
     def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
         """The greedy actions, one row at a time: the products of a batch round otherwise than those of one row."""
         if self._network is None:
-            self._network = self._model.network(self._trust)
+            self._network = self.model.network(self._trust)
         actions = []
         with one_thread():
             for k in range(len(seeds)):
@@ -101,6 +101,6 @@ def saved_player(path: Path, options: dict[str, Any], trust: bool) -> SeenPlayer
         raise refuse(
             "player",
             str(path),
-            "must be read in a clone of the repository: it is a model or a run of train.py",
+            "must be read in a clone of the repository, without options: it is a model or a run of train.py",
         )
     return SeenPlayer(SavedNetwork(FittingModel.of(path, options), trust), name=str(path))

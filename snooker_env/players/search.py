@@ -26,6 +26,9 @@ BUDGET = 120
 KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")
 """``planner_value`` and ``planner_policy`` have one of the planner's two halves: what is each worth?"""
 
+MOST = 40
+"""Most strokes of a ranking."""
+
 
 class SearchPlayer(BoundPlayer):
     """A player that plays the best stroke of a ``StrokeSearch``.
@@ -43,7 +46,7 @@ class SearchPlayer(BoundPlayer):
     def __init__(self, kind: str, budget: int = BUDGET, learned: Learned | None = None):
         self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"
         self.budget = integer("budget", budget, 8, 10**7)
-        self._learned = learned
+        self._learned, self.training_shots = learned, None if kind.startswith("planner") else 0
         self.search: Any = None
         """The ``StrokeSearch`` where it is bound; None before."""
 
@@ -63,10 +66,11 @@ class SearchPlayer(BoundPlayer):
         return Strokes(ranked.strokes[:, 0], places)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """The strokes that met most noise samples in each position, at most ten, best first, with their scores [points]."""
+        """The strokes that met noise samples, those that met most first, best first, with their scores [points]."""
         at = Positions.of(positions)
         ranked, places = self._ranked(at, seeds)
-        most = np.minimum((ranked.samples == ranked.samples.max(axis=1, keepdims=True)).sum(axis=1), 10)
+        met = (ranked.samples > 0).sum(axis=1)
+        most = np.minimum(np.where(met > 0, met, ranked.samples.shape[1]), MOST)
         return [
             Ranked(Strokes(ranked.strokes[k, :m], np.repeat(places[k : k + 1], m, 0)), ranked.scores[k, :m])
             for k, m in enumerate(most.tolist())

@@ -6,9 +6,20 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import choice, refuse_what
+from .._check import choice, refuse, refuse_what
 from .._types import Bools, Ints, Observation
-from ..game.frame_columns import ANYWHERE, IN_HAND, PLACE_ANYWHERE
+from ..game.balls import mask_of_present
+from ..game.frame_columns import (
+    ANYWHERE,
+    COLUMNS,
+    IN_HAND,
+    ON_TABLE,
+    PLACE_ANYWHERE,
+    RACK,
+    SCORE_0,
+    VISIT_COLUMNS,
+    WINNER,
+)
 from ..planning import Positions
 from ..planning.trials import decoded
 from ..tasks.declarations import SAYS
@@ -82,6 +93,8 @@ class SeenPlayer(BoundPlayer):
         self._bound_sees(Options())
 
     def _bind(self, options: Options) -> None:
+        if self.frames and options.task != "frame":
+            raise refuse("player", self.name, "must see visits to play them: it sees frames")
         self._bound_sees(options)
 
     def _bound_sees(self, options: Options) -> None:
@@ -117,7 +130,7 @@ class SeenPlayer(BoundPlayer):
         """The positions as it sees them, and where cue balls in hand have been placed for it (n, 2), else NaN."""
         none = np.full((len(at), 2), np.nan)
         if self.frames:
-            return at, none
+            return (at if at.of_frames else _begun(at)), none
         if not self._rules.actions.placement:
             return placed(at, keys)
         anywhere, visits = at.anywhere & at.in_hand, at.as_visits()
@@ -144,3 +157,11 @@ class SeenPlayer(BoundPlayer):
             return rules.actions.check_many(actions, n)
         except ValueError as error:
             raise ValueError(f"player {self.name}: {error}") from None
+
+
+def _begun(at: Positions) -> Positions:
+    """Positions of visits as those of frames: the striker's points alone have been scored."""
+    game = np.zeros((len(at), COLUMNS), np.int64)
+    game[:, :VISIT_COLUMNS], game[:, SCORE_0], game[:, WINNER] = at.game, at.points, -1
+    game[:, ON_TABLE] = game[:, RACK] = [mask_of_present(on_table) & ~1 for on_table in at.on_table]
+    return Positions(at.positions, at.on_table, game)

@@ -1,4 +1,4 @@
-"""How do the simplest players play? At random, or the widest pot by geometry alone."""
+"""What do all built-in players share? They are bound to options and place cue balls in hand; and ``ghost_ball``, by geometry alone."""
 
 import copy
 from typing import Any
@@ -6,17 +6,19 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse
-from ..planning import Planner, Positions, action_masks
+from ..planning import Positions
 from ..planning.planner import options_in
 from ..tasks.ghost_ball import geometric_strokes, put_in_hand
 from ..tasks.options import Options
-from .player import Ranked, RulesLike, Strokes, seeds_of
+from .player import RulesLike, Strokes, seeds_of
 
 
 class BoundPlayer:
     """What built-in players share: ``at`` returns a copy bound to options, and ``play`` refuses before that."""
 
     name: str = ""
+    training_shots: int | None = None
+    """All simulated shots of its training; None: not known."""
     _options: Options | None = None
 
     def at(self, rules: RulesLike) -> Any:
@@ -59,7 +61,7 @@ def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
 class GhostBall(BoundPlayer):
     """The geometric player ``ghost_ball``: see ``tasks.ghost_ball``, whose kernels play it."""
 
-    name = "ghost_ball"
+    name, training_shots = "ghost_ball", 0
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
@@ -72,45 +74,3 @@ class GhostBall(BoundPlayer):
         hand = moved.in_hand
         place = np.where(hand[:, None], moved.positions[:, 0], np.nan)
         return Strokes(values, place, nominate, decision)
-
-
-class Random(BoundPlayer):
-    """Uniformly random choices of ``action="discrete"``, of those available."""
-
-    name = "random"
-    _planner: Any = None
-
-    def _bind(self, options: Options) -> None:
-        same: Any = {name: getattr(options, name) for name in ("physics", "table", "fidelity")}
-        self._planner = Planner(Options(action="discrete", **same), threads=1)
-
-    def _strokes(self, at: Positions, rows: Any, choices: Any) -> np.ndarray:
-        """The strokes (m, 5) of choices in ``at[rows]``; aims are solved."""
-        return self._planner.strokes_of(at, rows, choices)[0]
-
-    def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """All available choices in a random order, without scores."""
-        _ = self.options  # it must be bound
-        at = Positions.of(positions)
-        keys = seeds_of(seeds, len(at))
-        visits, places = placed(at, keys)
-        masks = action_masks(visits)
-        order = np.stack([np.random.default_rng(key).random(masks.shape[1]) for key in keys.tolist()]) if len(at) else masks
-        out = []
-        for k, (row, mask) in enumerate(zip(order, masks, strict=True)):
-            choices = np.argsort(np.where(mask, row, 2.0), kind="stable")[: max(1, int(mask.sum()))]
-            values = self._strokes(visits, np.full(len(choices), k), choices)
-            out.append(Ranked(Strokes(values, np.repeat(places[k : k + 1], len(choices), 0)), None))
-        return out
-
-    def play(self, positions: Any, seeds: Any) -> Strokes:
-        """See ``Player.play``."""
-        _ = self.options  # it must be bound
-        at = Positions.of(positions)
-        keys = seeds_of(seeds, len(at))
-        visits, places = placed(at, keys)
-        masks = action_masks(visits)
-        choices = np.empty(len(at), np.int64)
-        for k, key in enumerate(keys.tolist()):
-            choices[k] = np.argmax(np.where(masks[k], np.random.default_rng(key).random(masks.shape[1]), -1.0))
-        return Strokes(self._strokes(visits, np.arange(len(at)), choices), places)

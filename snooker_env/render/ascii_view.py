@@ -55,10 +55,7 @@ class _Grid:
 
 
 def ansi(scene: Scene, width: int = WIDTH, *, colour: bool = False) -> str:
-    """The scene as lines of text ``width`` characters wide (60 to 400), the status and a legend below. No line ends with a line break.
-
-    colour: True adds terminal colour codes (24 bit) around balls and paths.
-    """
+    """The scene as lines of text, with status and legend; ``colour``: with 24-bit codes of terminals."""
     grid = _Grid(integer("width", width, 60, 400) - 2, scene.table)
     if is_marked(scene.table):
         grid.line(BAULK_LINE, _LINE)

@@ -68,9 +68,9 @@ def compare(
     shots = list(shots)
     if not shots:
         raise refuse("shots", shots, "must hold at least one shot")
-    for field, given in (("labels", labels), ("axes", axes), ("cues", cues)):
-        if given is not None and len(given) not in ({0, len(shots)} if field == "labels" else {len(shots)}):
-            raise refuse_what(field, f"{len(given)} of them", f"must be {len(shots)}, one for each shot")
+    for field, values in (("labels", labels), ("axes", axes), ("cues", cues)):
+        if values is not None and len(values) not in ({0, len(shots)} if field == "labels" else {len(shots)}):
+            raise refuse_what(field, f"{len(values)} of them", f"must be {len(shots)}, one for each shot")
     table = shots[0].table
     for k, shot in enumerate(shots):
         if shot.table is not table:

@@ -175,17 +175,17 @@ def density(
     >>> [text.get_text() for text in ax.texts]
     ['50 %', '90 %']
     """
-    given: Any
+    raw: Any
     try:
-        given = np.array(points, np.float64)
+        raw = np.array(points, np.float64)
     except (TypeError, ValueError):
-        given = np.empty(0)
-    if given.ndim != 2 or given.shape[1] != 2:
-        raise refuse_what("points", f"array of shape {given.shape}", "must be real numbers of shape (m, 2)")
-    there = ~np.isnan(given).all(axis=1)
-    sound = array("points", given[there], (-1, 2))
+        raw = np.empty(0)
+    if raw.ndim != 2 or raw.shape[1] != 2:
+        raise refuse_what("points", f"array of shape {raw.shape}", "must be real numbers of shape (m, 2)")
+    on_table = ~np.isnan(raw).all(axis=1)
+    sound = array("points", raw[on_table], (-1, 2))
     if not len(sound):
-        raise refuse_what("points", f"{len(given)} rows, none of them a place", "must hold at least one")
+        raise refuse_what("points", f"{len(raw)} rows, none of them a place", "must hold at least one")
     lines = [number(f"shares[{k}]", share, 0, 1, open_low=True) for k, share in enumerate(shares)]
     if any(share >= 1 for share in lines):
         raise refuse("shares", list(shares), "must each be below 1")
@@ -196,8 +196,8 @@ def density(
     _draw_balls(sketch, position)
     _draw_cloud(sketch, sound, wide, lines, colour)
     sketch.mark(sound.mean(axis=0), "+", "text", 9.0, 8.0, mew=2.0, mec=rgb("text"), gid="mean")
-    if not there.all():
-        sketch.label(sound.mean(axis=0), f"stops on the table in {100 * there.mean():.0f} %")
+    if not on_table.all():
+        sketch.label(sound.mean(axis=0), f"stops on the table in {100 * on_table.mean():.0f} %")
     return sketch.ax
 
 

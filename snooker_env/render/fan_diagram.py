@@ -28,6 +28,29 @@ _MARKS = ("<", "o", ">")  # of side: left, none, right
 _SHIFTS = np.radians(np.linspace(-4.0, 4.0, 321))
 
 
+class Strokes(NamedTuple):
+    """The strokes of a fan: every pair of a top and a side."""
+
+    speed: float
+    tops: Sequence[float]
+    sides: Sequence[float]
+    elevation: float = 0.0
+    aim: float | None = None
+
+
+class _Options(NamedTuple):
+    """The options of ``fan``."""
+
+    elevation: float = 0.0
+    aim: float | None = None
+    table: TableLike = "match"
+    physics: PhysicsLike = None
+    on_table: Flags | None = None
+    view: View = "shot"
+    labels: bool = False
+    title: str = ""
+
+
 class Option(NamedTuple):
     """One stroke of a fan."""
 
@@ -47,14 +70,7 @@ def fan(
     speed: float = 2.0,
     tops: Sequence[float] = TOPS,
     sides: Sequence[float] = SIDES,
-    elevation: float = 0.0,
-    aim: float | None = None,
-    table: TableLike = "match",
-    physics: PhysicsLike = None,
-    on_table: Flags | None = None,
-    view: View = "shot",
-    labels: bool = False,
-    title: str = "",
+    **options: Any,
 ) -> "Axes":
     """Draw the cue ball's paths of one pot, played with every pair of a top and a side, as in Fig. 1 of the paper.
 
@@ -75,22 +91,10 @@ def fan(
         Speed that the cue gives [m/s].
     tops, sides : sequence of float
         Tip offsets over R, up and to the right.
-    elevation : float
-        Elevation of the cue [rad].
-    aim : float, optional
-        Direction of every stroke [rad]; then no ball needs to be potted.
-    table : str, Table or None
-        As in ``snooker_env.simulate``.
-    physics : None, str, dict or Physics
-        As in ``snooker_env.simulate``.
-    on_table : array_like, bool (n,), optional
-        False for the balls to leave out, with an array of positions; None: all are on the table.
-    view : "table", "shot" or ((float, float), (float, float))
-        The part of the table to show, as in ``plot`` [m].
-    labels : bool
-        Whether balls carry their letters.
-    title : str
-        Title at the top left.
+    **options
+        ``elevation``: of the cue [rad]. ``aim``: direction of every stroke [rad]; then no ball needs to be potted. ``table``,
+        ``physics``: as in ``snooker_env.simulate``. ``on_table``: bool (n,), False for the balls to leave out, with an array
+        of positions. ``view``, ``labels``, ``title``: as in ``plot``; here ``view`` is "shot" by default.
 
     Returns
     -------
@@ -111,36 +115,37 @@ def fan(
     >>> len([line for line in ax.get_lines() if line.get_gid() == "fan"])
     2
     """
+    elevation, aim, table, physics, on_table, view, labels, title = _Options(**options)
     table, physics = Table.of(table), Physics.of(physics)
     r, here = _places(position, on_table)
-    options = fan_options(r, here, ball, pocket, speed, tops, sides, elevation, aim, table, physics)
-    shots = [option.shot for option in options]
+    drawn = fan_options(r, here, ball, pocket, Strokes(speed, tops, sides, elevation, aim), table, physics)
+    shots = [option.shot for option in drawn]
     region = region_of(view, np.concatenate([*map(_way, shots), _ends(shots)]), table)
     sketch = Sketch(table, physics.R, region, ax, strip=0.8 * CAPTIONS["full"])
     sketch.title(title)
     for k in np.flatnonzero(here).tolist():
         sketch.ball(k, r[k], label=labels)
     ranked = sorted(set(tops))
-    for option in options:
+    for option in drawn:
         path, met = _way(option.shot), _met(option.shot)
         colour = shade(option.top, ranked)
         sketch.line(path, colour, width=1.5, gid="fan")
         mark = _MARKS[1 + int(np.sign(round(option.side, 9)))]
         sketch.mark(path[-1], mark, colour, 7.0, gid="end")
-        if met is not None and option is options[len(options) // 2]:
+        if met is not None and option is drawn[len(drawn) // 2]:
             sketch.line(np.array([r[CUE], met.centre]), "text", width=1.5, ls=(0, (4, 2)), gid="approach")
             sketch.ghost(CUE, met.centre)
             gone = np.concatenate([piece.points for piece in paths(option.shot)[met.other]])
             sketch.line(gone, SLIDES, width=1.2, ls=(0, (4, 2)), gid="object")
-    _write(sketch, options, ranked, speed)
+    _write(sketch, drawn, ranked, speed)
     return sketch.ax
 
 
 def fan_options(
-    r: Floats, here: Any, ball: int | None, pocket: int | None, speed: float, tops: Sequence[float], sides: Sequence[float],
-    elevation: float, aim: float | None, table: Table, physics: Physics,
-) -> list[Option]:  # fmt: skip
+    r: Floats, here: Any, ball: int | None, pocket: int | None, strokes: Strokes, table: Table, physics: Physics
+) -> list[Option]:
     """The strokes of a fan: for each top and side the aim (as given, or one that pots the ball), and the shot."""
+    speed, tops, sides, elevation, aim = strokes
     tops, sides = array("tops", tops, (-1,)).tolist(), array("sides", sides, (-1,)).tolist()
     if not tops or not sides:
         raise refuse("(tops, sides)", (tops, sides), "must each hold at least one number")
@@ -150,7 +155,7 @@ def fan_options(
         ball = _object(ball, here)
         pocket, line = _line(r, ball, pocket, table, physics.R)
         aims = line + _SHIFTS
-    found = []
+    drawn = []
     for top in tops:
         for side in sides:
             struck = [strike(speed, one, side, top, elevation, physics) for one in aims]
@@ -165,8 +170,8 @@ def fan_options(
                 k = int(good[len(good) // 2])
             v, w = np.zeros((len(r), 2)), np.zeros((len(r), 3))
             v[CUE], w[CUE] = struck[k][0][:2], struck[k][1]
-            found.append(Option(top, side, float(aims[k]), simulate(r, v, w, table, physics, on_table=here)))
-    return found
+            drawn.append(Option(top, side, float(aims[k]), simulate(r, v, w, table, physics, on_table=here)))
+    return drawn
 
 
 def _batch(r, here, struck, table, physics):
@@ -224,20 +229,20 @@ def _way(shot):
     """The cue ball's path after it has met a ball, or all of it if it meets none: (m, 2) [m]."""
     met = _met(shot)
     since = -np.inf if met is None else met.time
-    own = [piece for piece in paths(shot).get(CUE, []) if piece.times[-1] > since]
-    points = [piece.points[piece.times >= since] for piece in own]
+    pieces = [piece for piece in paths(shot).get(CUE, []) if piece.times[-1] > since]
+    points = [piece.points[piece.times >= since] for piece in pieces]
     return np.concatenate(points) if points else shot.positions[[CUE]]
 
 
 def _ends(shots):
     """Where the cue ball starts, where it meets the ball, and where that ball stops: (m, 2) [m]."""
-    found = []
+    places = []
     for shot in shots:
         met = _met(shot)
-        found.append(shot.at(0.0)[0][CUE])
+        places.append(shot.at(0.0)[0][CUE])
         if met is not None:
-            found += [met.centre, shot.positions[met.other]]
-    return np.array(found)
+            places += [met.centre, shot.positions[met.other]]
+    return np.array(places)
 
 
 def shade(top: float, tops: Sequence[float]) -> tuple[int, ...]:

@@ -118,8 +118,8 @@ def _point(axis, across, along):
 def _jaw(jaws, start):
     """The jaw that begins at ``start`` on a nose, arc after arc to its end in the pocket: (m, 2); only ``start`` if there is none."""
     points, left = [start], list(jaws)
-    while (found := _arc_from(points[-1], left)) is not None:
-        k, arc = found
+    while (step := _arc_from(points[-1], left)) is not None:
+        k, arc = step
         if left.pop(k)[JAW_RADIUS] > 0.0:  # else a point, where the next arc begins too
             points += list(arc[1:])
     return np.array(points)

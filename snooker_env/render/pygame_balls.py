@@ -108,7 +108,7 @@ def _rays(positions, over):
 
 def _mirrored(positions, over, where, radius):
     """The reflections of the lamps: each where the surface normal is half-way between the eye, straight above, and the lamp."""
-    found = []
+    images = []
     ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
     across, far = _rays(positions, ends.reshape(-1, 2))
     up = LAMP_HEIGHT / far + 1
@@ -119,8 +119,8 @@ def _mirrored(positions, over, where, radius):
     length = np.abs(lean[:, :, 2, 1] - lean[:, :, 0, 1]) * radius / 2
     for places, lengths in zip(centre, length, strict=True):
         for place, half in zip(places, lengths.tolist(), strict=True):
-            found.append(_at(place, _lamp, round(4 * max(half, 0.07 * radius)), round(radius, 1)))
-    return found
+            images.append(_at(place, _lamp, round(4 * max(half, 0.07 * radius)), round(radius, 1)))
+    return images
 
 
 @lru_cache(maxsize=2048)
@@ -138,7 +138,7 @@ def _lamp(half, radius, fx, fy):
 
 def _shadows(positions, over, where, radius):
     """A soft shadow from each lamp, fainter for a lower angle of its light, and the dark place where the ball touches the cloth."""
-    found = []
+    images = []
     across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3
     strength *= _ALL_DARK / strength.sum(axis=1, keepdims=True)
@@ -146,9 +146,9 @@ def _shadows(positions, over, where, radius):
     for place, places, alphas in zip(where, centre, strength.tolist(), strict=True):
         for one, alpha in zip(places, alphas, strict=True):
             if alpha > 0.03:
-                found.append(_at(one, _shadow, round(radius, 2), round(24 * alpha), 0.45))
-        found.append(_at(place, _shadow, round(radius * 1.04, 2), 11, 0.30))
-    return found
+                images.append(_at(one, _shadow, round(radius, 2), round(24 * alpha), 0.45))
+        images.append(_at(place, _shadow, round(radius * 1.04, 2), 11, 0.30))
+    return images
 
 
 @lru_cache(maxsize=2048)
@@ -168,20 +168,7 @@ def _letter(ball, radius):
 
 
 def dot(ball: int, radius: float) -> Any:
-    """A small ball for a score bar.
-
-    Parameters
-    ----------
-    ball : int
-        Id of the ball.
-    radius : float
-        Its radius [pixels].
-
-    Returns
-    -------
-    pygame.Surface
-        The picture, with transparency.
-    """
+    """A small ball for a score bar, its id and radius [pixels], as a surface with transparency."""
     image = _body(tuple(COLOURS[ball].tolist()), round(radius, 2), 1.0, 2, 2).copy()
     if COLOURS[ball].max() < 90:  # dark on a dark bar
         ring = _body(PALETTE["text_quiet"], round(radius + 0.8, 2), 0.8, 2, 2).copy()

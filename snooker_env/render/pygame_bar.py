@@ -19,22 +19,7 @@ _GAP = 30
 
 @lru_cache(maxsize=64)
 def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> Any:
-    """The bar as a surface: ``bar``, or ``text`` if that is None.
-
-    Parameters
-    ----------
-    bar : ScoreBar or None
-        Content of the bar.
-    text : str
-        One line, for a picture without a bar.
-    width, height : int
-        Size of the surface [pixels].
-
-    Returns
-    -------
-    pygame.Surface
-        A surface that is kept: do not draw on it.
-    """
+    """The bar (if None, the text) as a surface of this size [pixels], which is kept: do not draw on it."""
     pygame = pygame_()
     page = _Page(pygame.Surface((width, height), 0, 24), height / _ROWS)
     page.surface.fill(PALETTE["bar"])
@@ -51,31 +36,16 @@ def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> Any:
 
 
 def in_words(bar: ScoreBar) -> str:
-    """The whole bar as one line of text.
-
-    Parameters
-    ----------
-    bar : ScoreBar
-        Content of the bar.
-
-    Returns
-    -------
-    str
-        The parts that are there, separated by " · ".
-
-    Examples
-    --------
-    >>> from snooker_env.render.pygame_bar import in_words
-    >>> from snooker_env.render.scene import ScoreBar
-    >>> in_words(ScoreBar(("Ann", "Bob"), (41, 12), striker=0, break_points=16, ball_on="red", points_on=59))
-    'Ann 41, Bob 12 · Ann to play · break 16 · red on · 59 left'
-    """
+    """The whole bar as one line of text: the parts that are there, separated by " · "."""
     names = ", ".join(f"{name} {score}" for name, score in zip(bar.players, bar.scores, strict=True))
     parts = [
-        names, f"{bar.players[bar.striker]} to play" if bar.striker is not None and len(bar.players) > 1 else "",
-        "" if bar.break_points is None else f"break {bar.break_points}", bar.ball_on and f"{bar.ball_on} on",
-        "" if bar.points_on is None else f"{bar.points_on} left", bar.words,
-    ]  # fmt: skip
+        names,
+        f"{bar.players[bar.striker]} to play" if bar.striker is not None and len(bar.players) > 1 else "",
+        "" if bar.break_points is None else f"break {bar.break_points}",
+        bar.ball_on and f"{bar.ball_on} on",
+        "" if bar.points_on is None else f"{bar.points_on} left",
+        bar.words,
+    ]
     return " · ".join(part for part in parts if part)
 
 
@@ -145,8 +115,16 @@ def _players(page, bar, width):
         side, on = (-1, 1)[k], bar.striker == k
         _score(page, str(score), middle + side * (half + 2), half, on)
         x = middle + side * (2 * half + 24)
-        taken = page.text(name, 36, x, 37, ink="text" if on or bar.striker is None else "text_quiet", file=BOLD if on else MEDIUM,
-                          anchor=("midright", "midleft")[k], room=300)  # fmt: skip
+        taken = page.text(
+            name,
+            36,
+            x,
+            37,
+            ink="text" if on or bar.striker is None else "text_quiet",
+            file=BOLD if on else MEDIUM,
+            anchor=("midright", "midleft")[k],
+            room=300,
+        )
         if on:
             _turn(page, x + side * (taken + 26), -side)
         begin.append(x + side * (taken + 40))

@@ -35,11 +35,7 @@ def draw_lines(surface: Any, lines: list[tuple[Floats, tuple[int, int, int]]], w
 
 
 def _pieces(points):
-    """The pieces of a line, cut at equal steps from its start: the points of each as numbers, and the cuts at its two ends.
-
-    A cut is a point and the line's direction there, or None at an end of the line. Both sides use the same cut, so that each pixel at it
-    belongs to one of them.
-    """
+    """The pieces of a line: their points, and the cuts (point, direction, or None) that neighbours share."""
     steps = np.hypot(*np.diff(points, axis=0).T)
     run = np.concatenate([[0.0], np.cumsum(steps)])
     moved = np.concatenate([[True], steps > 1e-9])

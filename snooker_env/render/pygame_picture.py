@@ -19,20 +19,7 @@ from .view import View
 
 
 def draw(scene: Scene, view: View) -> NDArray[np.uint8]:
-    """Draw a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        The scene.
-    view : View
-        A view of its table.
-
-    Returns
-    -------
-    uint8 (height, width, 3)
-        The picture, a new array.
-    """
+    """The picture of a scene in a view of its table: uint8 (height, width, 3), a new array."""
     pixels = table_picture(scene.table, view).copy()
     surface: Any = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")  # draws into ``pixels``
     surface.set_clip((0, 0, view.width, view.height - view.bar))

@@ -7,7 +7,7 @@ language, are in ``outline``; colours are in ``palette``.
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,45 +27,17 @@ from .turning import Turning
 
 @dataclass(frozen=True)
 class ScoreBar:
-    """The content of a score bar under the table, as on television. None, "" and () leave a part out.
-
-    Attributes
-    ----------
-    players : tuple of str
-        Their names: none, one or two.
-    scores : tuple of int
-        Their points in this frame, one for each player.
-    striker : int, or None
-        The player whose turn it is, an index of ``players``.
-    break_points : int, or None
-        Points of the visit so far.
-    potted : tuple of int
-        Ids of the balls potted in this visit, in their order.
-    reds_left : int, or None
-        Reds on the table.
-    points_on : int, or None
-        Points that are still on the table.
-    ball_on : str
-        The ball on: "red", "any colour", "blue", "free ball", ...
-    words : str
-        One line: what just happened, as the referee would say it.
-
-    Examples
-    --------
-    >>> from snooker_env.render.scene import ScoreBar
-    >>> ScoreBar(("Ann", "Bob"), (41, 12), striker=0, break_points=16, potted=(1, 21, 2, 21), ball_on="red").scores
-    (41, 12)
-    """
+    """The content of a score bar under the table, as on television. None, "" and () leave a part out."""
 
     players: tuple[str, ...] = ()
     scores: tuple[int, ...] = ()
-    striker: int | None = None
-    break_points: int | None = None
-    potted: tuple[int, ...] = ()
+    striker: int | None = None  # an index of players
+    break_points: int | None = None  # of the visit so far
+    potted: tuple[int, ...] = ()  # ids of the balls of this visit, in order
     reds_left: int | None = None
-    points_on: int | None = None
-    ball_on: str = ""
-    words: str = ""
+    points_on: int | None = None  # what is still on the table
+    ball_on: str = ""  # "red", "any colour", "free ball", ...
+    words: str = ""  # what just happened, as the referee would say it
 
     def __post_init__(self) -> None:
         if len(self.players) > 2 or not all(isinstance(name, str) for name in self.players):
@@ -80,48 +52,20 @@ class ScoreBar:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """One picture, with the k balls that are on the table.
-
-    Attributes
-    ----------
-    table : Table
-        The table.
-    ids : int64
-        (k,) ball ids: 0 the cue ball, 1 to 15 reds, 16 to 21 yellow to black.
-    positions : float64
-        (k, 2) centres of the balls [m].
-    ball_radius : float
-        Radius of the balls [m].
-    paths : dict of int to float64
-        Ball id -> (m, 2) points of that ball's path [m].
-    aim : float64, or None
-        (m, 2) points of the line of aim [m].
-    ghost : float64, or None
-        (2,) where the cue ball should meet its object ball [m], drawn as an outline.
-    ghosts : dict of int to float64
-        Ball id -> (m, 2) earlier places of that ball [m], drawn faded; for instance those of ``contacts``.
-    turns : dict of int to float64
-        Ball id -> (4,) unit quaternion (w, x, y, z) of the ball's rotation since the start. Such a ball has spots.
-    text : str
-        One line of status, shown if there is no ``bar``.
-    bar : ScoreBar, or None
-        The score bar.
-    lettered : bool
-        Whether balls carry their letters, so that colours are not needed.
-    """
+    """One picture, with the k balls that are on the table."""
 
     table: Table
-    ids: Ints
-    positions: Floats
+    ids: Ints  # (k,): 0 the cue ball, 1 to 15 reds, 16 to 21 yellow to black
+    positions: Floats  # (k, 2) [m]
     ball_radius: float
-    paths: dict[int, Floats]
-    aim: Floats | None
-    ghost: Floats | None
-    ghosts: dict[int, Floats]
-    turns: dict[int, Floats]
-    text: str
+    paths: dict[int, Floats]  # ball -> (m, 2) points [m]
+    aim: Floats | None  # (m, 2) points of the line of aim [m]
+    ghost: Floats | None  # (2,) where the cue ball should meet its object ball [m], drawn as an outline
+    ghosts: dict[int, Floats]  # ball -> (m, 2) earlier places [m], drawn faded
+    turns: dict[int, Floats]  # ball -> quaternion (w, x, y, z) since the start; such a ball has spots
+    text: str  # one line of status, shown without a bar
     bar: ScoreBar | None
-    lettered: bool
+    lettered: bool  # whether balls carry their letters, so that colours are not needed
 
     @property
     def colours(self) -> NDArray[np.uint8]:
@@ -134,60 +78,28 @@ class Scene:
         return tuple(LETTERS[i] for i in self.ids)
 
 
+class _Overlays(NamedTuple):
+    """What ``scene`` draws over the table and the balls."""
+
+    paths: Mapping[int, Vectors] | None = None
+    aim: Vectors | None = None
+    ghost: Vector | None = None
+    ghosts: Mapping[int, Vectors] | None = None
+    turns: Mapping[int, Vector] | None = None
+
+
 def scene(
     table: TableLike,
     positions: Vectors,
     on_table: Flags | None = None,
     *,
     ball_radius: float | None = None,
-    paths: Mapping[int, Vectors] | None = None,
-    aim: Vectors | None = None,
-    ghost: Vector | None = None,
-    ghosts: Mapping[int, Vectors] | None = None,
-    turns: Mapping[int, Vector] | None = None,
     text: str = "",
     bar: ScoreBar | None = None,
     lettered: bool = False,
+    **overlays: Any,
 ) -> Scene:
-    """Describe one picture: n <= 22 balls with the ids 0 to n-1, and overlays. Arrays are copied.
-
-    Parameters
-    ----------
-    table : str, Table or None
-        As in ``snooker_env.simulate``.
-    positions : array_like, float (n, 2)
-        Centres of the balls [m].
-    on_table : array_like, bool (n,), optional
-        False for the balls to leave out; None: all are on the table.
-    ball_radius : float, optional
-        Radius of the balls [m]; None: that of the table, or snooker's.
-    paths : dict, optional
-        {ball id: (m, 2) points [m]}, for instance of ``ball_paths``.
-    aim : array_like, float (m, 2), optional
-        Points of a line of aim [m].
-    ghost : array_like, float (2,), optional
-        Centre of a ball drawn as an outline [m].
-    ghosts : dict, optional
-        {ball id: (m, 2) places [m]} at which that ball is drawn faded, for instance {0: contacts(shot)}.
-    turns : dict, optional
-        {ball id: (4,) quaternion}, as in ``Scene``.
-    text : str
-        One line of status.
-    bar : ScoreBar, optional
-        Score bar, shown instead of the text.
-    lettered : bool
-        Whether balls carry their letters.
-
-    Returns
-    -------
-    Scene
-        The description, for ``pygame_view.rgb_array`` and ``ascii_view.ansi``.
-
-    Raises
-    ------
-    ValueError
-        For bad input; the message names the field, its value and what is allowed.
-    """
+    """Describe one picture: n <= 22 balls, ids 0 to n-1, and overlays (``_Overlays``) as in ``Scene``. Arrays are copied."""
     r = array("positions", positions, (-1, 2))
     if len(r) > N_BALLS:
         raise refuse("positions", f"array of shape {r.shape}", f"must hold at most {N_BALLS} balls")
@@ -198,25 +110,22 @@ def scene(
         raise refuse("bar", bar, "must be None or a ScoreBar")
     ids, table = np.flatnonzero(here), Table.of(table)
     radius = (table.ball_radius or BALL_RADIUS) if ball_radius is None else number("ball_radius", ball_radius, 1e-3, 1)
-    return Scene(
-        table, ids, r[ids], radius, _by_ball("paths", paths, (-1, 2)), None if aim is None else array("aim", aim, (-1, 2)),
-        None if ghost is None else array("ghost", ghost, (2,)), _by_ball("ghosts", ghosts, (-1, 2)), _by_ball("turns", turns, (4,)),
-        str(text), bar, bool(lettered),
-    )  # fmt: skip
+    paths, aim, ghost, ghosts, turns = _Overlays(**overlays)
+    aim = None if aim is None else array("aim", aim, (-1, 2))
+    ghost = None if ghost is None else array("ghost", ghost, (2,))
+    drawn = _by_ball("paths", paths, (-1, 2)), aim, ghost, _by_ball("ghosts", ghosts, (-1, 2)), _by_ball("turns", turns, (4,))
+    return Scene(table, ids, r[ids], radius, *drawn, str(text), bar, bool(lettered))
 
 
-def _by_ball(field, given, shape):
-    for ball in given or {}:
+def _by_ball(field, values, shape):
+    for ball in values or {}:
         if ball not in range(N_BALLS):
             raise refuse(field, ball, f"must have ball ids 0 to {N_BALLS - 1} as keys")
-    return {int(ball): array(f"{field}[{ball}]", value, shape) for ball, value in (given or {}).items()}
+    return {int(ball): array(f"{field}[{ball}]", value, shape) for ball, value in (values or {}).items()}
 
 
 def ball_paths(shot: Shot, balls: Iterable[int] = (CUE,), until: float | None = None, step: float = 0.02) -> dict[int, Floats]:
-    """Paths {ball: (m, 2) points [m]} of a ``Shot`` from its start to the time ``until`` [s] (None: its end), every ``step`` seconds.
-
-    Times of impacts are added, so that corners are sharp. A ball that did not move has no path.
-    """
+    """Paths {ball: (m, 2)} [m] of the balls that move, until a time [s]; impacts are points of them."""
     until = shot.duration if until is None else min(number("until", until, 0.0), shot.duration)
     return {ball: points for ball, (points, _) in _timed_paths(shot, balls, until, step).items()}
 
@@ -237,20 +146,7 @@ def _timed_paths(shot, balls, until, step=0.02):
 
 
 def contacts(shot: Shot, ball: int = CUE) -> Floats:
-    """The places of a ball when it met other balls, for faded ghosts.
-
-    Parameters
-    ----------
-    shot : Shot
-        The shot, with its path.
-    ball : int
-        Id of the ball.
-
-    Returns
-    -------
-    float64 (m, 2)
-        Centres [m] in order of time. A place nearer than one radius to the last is left out.
-    """
+    """Places (m, 2) [m] where a ball met others, in order; none nearer than a radius to the last."""
     return _timed_contacts(shot, ball)[0]
 
 
@@ -265,34 +161,19 @@ def _timed_contacts(shot, ball):
 
 
 class Film:
-    """The pictures of a ``Shot``: a ``Scene`` at any of its times. Everything that is needed more than once is computed once.
-
-    Parameters
-    ----------
-    table : str, Table or None
-        As in ``snooker_env.simulate``.
-    shot : Shot
-        The shot, with its path.
-    trail : iterable of int
-        Balls whose path is drawn up to the present time.
-    spots : iterable of int
-        Balls with spots, which show their rotation.
-    faded : iterable of int
-        Balls with a faded ghost at each place where they have met another ball.
-    **overlays
-        Other arguments of ``scene``.
-
-    Attributes
-    ----------
-    duration : float
-        Duration of the shot [s].
-    """
+    """The pictures of a ``Shot`` at any time; some balls have a trail, spots, or faded ghosts."""
 
     def __init__(
-        self, table: TableLike, shot: Shot, *, trail: Iterable[int] = (CUE,), spots: Iterable[int] = (), faded: Iterable[int] = (),
+        self,
+        table: TableLike,
+        shot: Shot,
+        *,
+        trail: Iterable[int] = (CUE,),
+        spots: Iterable[int] = (),
+        faded: Iterable[int] = (),
         **overlays: Any,
-    ):  # fmt: skip
-        self.duration = shot.duration
+    ):
+        self.duration: float = shot.duration
         self._table, self._shot, self._overlays = Table.of(table), shot, {"ball_radius": shot.physics.R, **overlays}
         self._paths = _timed_paths(shot, trail, shot.duration)
         self._turning = {int(ball): Turning(shot, ball) for ball in spots}
@@ -302,18 +183,7 @@ class Film:
         self._gone_at[drops["i"]] = drops["time"]
 
     def at(self, t: float) -> Scene:
-        """The picture at a time.
-
-        Parameters
-        ----------
-        t : float
-            Time from the start of the shot [s].
-
-        Returns
-        -------
-        Scene
-            The picture.
-        """
+        """The picture at a time [s] from the start of the shot."""
         r = self._shot.at(t)[0]
         paths = {}
         for ball, (points, times) in self._paths.items():
@@ -328,20 +198,7 @@ class Film:
         return scene(self._table, r, self._gone_at > t, **{"paths": paths, "turns": turns, "ghosts": ghosts, **self._overlays})
 
     def scenes(self, fps: float = 30.0, speed: float = 1.0) -> Iterator[Scene]:
-        """One picture every ``speed / fps`` seconds of the shot's own time, and one of its end.
-
-        Parameters
-        ----------
-        fps : float
-            Pictures per second of the film.
-        speed : float
-            Speed of the film over that of the shot.
-
-        Yields
-        ------
-        Scene
-            The pictures in order.
-        """
+        """One picture every speed / fps seconds of the shot's own time, and one of its end."""
         step = number("speed", speed, 0.0, open_low=True) / number("fps", fps, 0.0, open_low=True)
         for t in np.append(np.arange(0.0, self.duration, step), self.duration):
             yield self.at(float(t))
@@ -358,8 +215,5 @@ def shot_scenes(
     faded: Iterable[int] = (),
     **overlays: Any,
 ) -> Iterator[Scene]:
-    """The film of a ``Shot``: one ``Scene`` every speed / fps seconds of the shot's own time, and one of its end.
-
-    A potted ball leaves the picture when it drops. The other arguments are those of ``Film``, which makes a picture of any time.
-    """
+    """The scenes of the ``Film`` of a shot, whose other arguments these are."""
     return Film(table, shot, trail=trail, spots=spots, faded=faded, **overlays).scenes(fps, speed)

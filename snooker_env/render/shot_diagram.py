@@ -106,22 +106,22 @@ def plot(
     truth("labels", labels)
     truth("speeds", speeds)
     choice("caption", caption, CAPTIONS)
-    table, found = shot.table or Table.of(None), paths(shot)
-    chosen = set(found if balls is None else (integer("balls", ball, 0, len(shot.positions) - 1) for ball in balls))
+    table, moved = shot.table or Table.of(None), paths(shot)
+    chosen = set(moved if balls is None else (integer("balls", ball, 0, len(shot.positions) - 1) for ball in balls))
     first = cue_ball(shot)
     tip = _tip(cue, shot, first)
     sketch = Sketch(table, shot.physics.R, region_of(view, area(shot), table), ax, strip=CAPTIONS[caption])
     sketch.title(title)
-    start, there = shot.at(0.0)[0], shot.on_table | (shot.potted >= 0)
-    for ball in np.flatnonzero(there).tolist():
+    start, present = shot.at(0.0)[0], shot.on_table | (shot.potted >= 0)
+    for ball in np.flatnonzero(present).tolist():
         sketch.ball(ball, start[ball], label=labels)
-    main = principals(shot, found, first) if balls is None else chosen
-    for ball in sorted(chosen & set(found), reverse=True):  # the cue ball last, on top
+    main = principals(shot, moved, first) if balls is None else chosen
+    for ball in sorted(chosen & set(moved), reverse=True):  # the cue ball last, on top
         if ball in main:
-            draw_path(sketch, found[ball], ball)
+            draw_path(sketch, moved[ball], ball)
             _draw_impacts(sketch, shot, ball, start)
         else:
-            thin = np.concatenate([piece.points for piece in found[ball]])
+            thin = np.concatenate([piece.points for piece in moved[ball]])
             sketch.ax.plot(*flipped(thin).T, color=rgb(PALE[ball], 0.75), lw=0.8, zorder=4.0, gid="thin path")
         if shot.on_table[ball]:
             sketch.ghost(ball, shot.positions[ball], 0.62 if ball in main else 0.3)
@@ -146,18 +146,18 @@ def region_of(view: Any, points: Floats, table: Table) -> Region:
 
 def area(shot: Shot) -> Floats:
     """Points of the important paths of a shot: (m, 2) [m]."""
-    found = paths(shot)
-    main = principals(shot, found, cue_ball(shot))
-    points = [piece.points for ball in main for piece in found.get(ball, [])]
+    moved = paths(shot)
+    main = principals(shot, moved, cue_ball(shot))
+    points = [piece.points for ball in main for piece in moved.get(ball, [])]
     return np.concatenate(points) if points else shot.positions[shot.on_table]
 
 
-def principals(shot: Shot, found: Mapping[int, Any], first: int | None) -> set[int]:
+def principals(shot: Shot, moved: Mapping[int, Any], first: int | None) -> set[int]:
     """The important balls: all that move, or if many do, the cue ball, the first ball that it meets, and those that are potted."""
-    if len(found) <= MOST_PATHS or first is None:
-        return set(found)
+    if len(moved) <= MOST_PATHS or first is None:
+        return set(moved)
     met = [contact.other for contact in contacts(shot, first) if contact.kind == EventKind.BALL_BALL]
-    return {first, *met[:1], *np.flatnonzero(shot.potted >= 0).tolist()} & set(found)
+    return {first, *met[:1], *np.flatnonzero(shot.potted >= 0).tolist()} & set(moved)
 
 
 def draw_path(sketch: Sketch, path: Sequence[Piece], ball: int, colour: Any = None) -> None:
@@ -262,7 +262,7 @@ def draw_tip(sketch: Sketch, tip: Tip | None, middle: tuple[float, float], radiu
 
 def _write_strip(sketch: Sketch, shot: Shot, first: int | None, tip: Tip | None, known: bool, *, short: bool) -> None:
     rows, left = sketch.rows(4 if short else 3), sketch.region.low_y + 0.12 * sketch.depth
-    said = summary(shot, first)
+    facts = summary(shot, first)
     if first is not None:
         radius = (0.32 if short else 0.40) * sketch.depth
         draw_tip(sketch, tip, (left + radius, sketch.region.high_x + sketch.depth / 2), radius, shot.physics.max_offset)
@@ -274,10 +274,10 @@ def _write_strip(sketch: Sketch, shot: Shot, first: int | None, tip: Tip | None,
             source = "as it was struck" if known else "worked out from the spin" + ("" if tip.elevation else ", cue level")
             lines = [tip_words(tip), f"{tip.speed:.2f} m/s{raised}", *([] if short else [source])]
         sketch.text(left, rows[0], lines[0], weight="bold")
-        for x, words in zip(rows[1:], lines[1:] + (said[::2] if short else []), strict=False):
+        for x, words in zip(rows[1:], lines[1:] + (facts[::2] if short else []), strict=False):
             sketch.text(left, x, words, "text_quiet" if words == lines[-1] and len(lines) == 3 else "text")
     if not short:
-        for x, words in zip(rows, said, strict=False):
+        for x, words in zip(rows, facts, strict=False):
             sketch.text(sketch.region.low_y + 0.425 * sketch.region.width, x, words)
         _write_legend(sketch, shot, rows)
 
@@ -324,8 +324,8 @@ def _write_legend(sketch, shot, row):
     sketch.ghost(0, (row[2], y + long / 2), radius=0.095 * sketch.depth, level=9.5)
     sketch.text(y + 1.35 * long, row[2], "at contact, at rest")
     y = w.low_y + 0.90 * w.width
-    there = [kind for kind in _SIGNS if (shot.events["kind"] == int(kind)).any()]
-    for x, kind in zip(row[:2], [kind for kind in there if kind != EventKind.POT], strict=False):
+    kinds = [kind for kind in _SIGNS if (shot.events["kind"] == int(kind)).any()]
+    for x, kind in zip(row[:2], [kind for kind in kinds if kind != EventKind.POT], strict=False):
         marker, colour, size = _SIGNS[kind]
         sketch.mark((x, y), marker, colour, size, 9.5)
         sketch.text(y + 0.4 * long, x, _WORDS[kind])

@@ -55,25 +55,25 @@ class Meeting(NamedTuple):
 
 def pieces(shot: Shot, ball: int) -> list[Piece]:
     """The path of a ball; empty if it never moves. Pieces of the same kind without an impact between them are joined."""
-    own = shot.segments[shot.segments[:, SEGMENT_BALL] == ball]
-    ends = np.append(own[1:, T0], shot.duration)
+    rows = shot.segments[shot.segments[:, SEGMENT_BALL] == ball]
+    ends = np.append(rows[1:, T0], shot.duration)
     impacts = set(shot.events["time"][_is_impact(shot) & ((shot.events["i"] == ball) | (shot.events["j"] == ball))].tolist())
-    found: list[tuple[Kind, list[float]]] = []
-    for row, end in zip(own, ends, strict=True):
+    phases: list[tuple[Kind, list[float]]] = []
+    for row, end in zip(rows, ends, strict=True):
         kind = _KINDS.get(int(row[SEGMENT_STATE]))
         start = float(row[T0])
         if kind is None or end <= start or not (row[VX] or row[VY] or row[AX] or row[AY]):
             continue
         times = np.linspace(start, end, 1 + _steps(row, end - start)).tolist()
-        if found and found[-1][0] == kind and found[-1][1][-1] == start and start not in impacts:
-            found[-1][1].extend(times[1:])
+        if phases and phases[-1][0] == kind and phases[-1][1][-1] == start and start not in impacts:
+            phases[-1][1].extend(times[1:])
         else:
-            found.append((kind, times))
-    if not found:
+            phases.append((kind, times))
+    if not phases:
         return []
-    at = shot.at(np.concatenate([times for _, times in found]))[0][:, ball]
-    cuts = np.cumsum([len(times) for _, times in found])[:-1]
-    return [Piece(kind, np.array(times), points) for (kind, times), points in zip(found, np.split(at, cuts), strict=True)]
+    at = shot.at(np.concatenate([times for _, times in phases]))[0][:, ball]
+    cuts = np.cumsum([len(times) for _, times in phases])[:-1]
+    return [Piece(kind, np.array(times), points) for (kind, times), points in zip(phases, np.split(at, cuts), strict=True)]
 
 
 def _steps(row, duration):
@@ -90,8 +90,8 @@ def _is_impact(shot):
 def paths(shot: Shot) -> dict[int, list[Piece]]:
     """The pieces of each ball that moved, by its id."""
     check_path(shot)
-    found = {ball: pieces(shot, ball) for ball in range(len(shot.positions))}
-    return {ball: own for ball, own in found.items() if any(np.ptp(piece.points, axis=0).max() > STILL for piece in own)}
+    every = {ball: pieces(shot, ball) for ball in range(len(shot.positions))}
+    return {ball: parts for ball, parts in every.items() if any(np.ptp(piece.points, axis=0).max() > STILL for piece in parts)}
 
 
 def cue_ball(shot: Shot) -> int | None:
@@ -102,10 +102,10 @@ def cue_ball(shot: Shot) -> int | None:
 
 def velocity_before(shot: Shot, ball: int, time: float) -> Floats:
     """Velocity of a ball just before its event at that time: (2,) [m/s]."""
-    own = shot.segments[(shot.segments[:, SEGMENT_BALL] == ball) & (shot.segments[:, T0] < time)]
-    if not len(own):  # it happens at the start
+    rows = shot.segments[(shot.segments[:, SEGMENT_BALL] == ball) & (shot.segments[:, T0] < time)]
+    if not len(rows):  # it happens at the start
         return shot.at(0.0)[1][ball]
-    row = own[-1]
+    row = rows[-1]
     return row[[VX, VY]] + row[[AX, AY]] * (time - row[T0])
 
 
@@ -150,10 +150,7 @@ class Tip(NamedTuple):
 
 
 def tip_of(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
-    """The strike that gives a ball this velocity (2,) and spin (3,): ``physics.cue.struck`` solved for the tip.
-
-    Without side the spin does not depend on the elevation, so the cue is taken as level.
-    """
+    """The strike of a level cue that gives this velocity and spin: ``physics.cue.struck`` solved."""
     v = float(np.hypot(*velocity))
     c, s = velocity / v
     about_path, about_up = float(spin[0] * c + spin[1] * s), float(spin[2])
@@ -164,17 +161,14 @@ def tip_of(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
 
 
 def arrow_places(points: Floats, spacing: float) -> list[tuple[Floats, Floats]]:
-    """Places of arrowheads on a line (m, 2), one each ``spacing`` [m], the first at half of that, and their unit directions.
-
-    A line of at least half the spacing has at least one; a shorter one has none.
-    """
+    """Places of arrowheads on a line (m, 2), one each ``spacing`` [m], and their unit directions."""
     steps = np.diff(points, axis=0)
     lengths = np.hypot(*steps.T)
     total = float(lengths.sum())
     n = max(round(total / spacing), int(total >= spacing / 2))
-    ends, found = np.cumsum(lengths), []
+    ends, heads = np.cumsum(lengths), []
     for far in (np.arange(n) + 0.5) * total / max(n, 1):
         k = int(np.searchsorted(ends, far))
         unit = steps[k] / lengths[k]
-        found.append((points[k + 1] - (ends[k] - far) * unit, unit))
-    return found
+        heads.append((points[k + 1] - (ends[k] - far) * unit, unit))
+    return heads

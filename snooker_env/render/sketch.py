@@ -73,15 +73,15 @@ class Region(NamedTuple):
         height = max(height, width / ratio[1])
         whole = cls.of_table(table)
         bounded = is_closed(table)
-        found = []
+        limits = []
         for size, middle, least, most in (
             (height, (low[0] + high[0]) / 2, whole.low_x, whole.high_x),
             (width, (low[1] + high[1]) / 2, whole.low_y, whole.high_y),
         ):
             size = min(size, most - least) if bounded else size
             start = float(np.clip(middle - size / 2, least, most - size)) if bounded else middle - size / 2
-            found += [start, start + size]
-        return cls(*map(float, found))
+            limits += [start, start + size]
+        return cls(*map(float, limits))
 
 
 def is_closed(table: Table) -> bool:
@@ -101,32 +101,31 @@ def flipped(points: Any) -> Floats:
 
 
 class Sketch:
-    """Axes with a table on them; ``ax`` None makes a new figure.
-
-    Axes with an earlier sketch keep their table and their limits.
-    """
+    """Axes with a table on them; ``ax`` None makes a new figure, one with a sketch stays as it is."""
 
     def __init__(self, table: Table, R: float, region: Region | None = None, ax: "Axes | None" = None, *, strip: float = 0.0):
         plt = pyplot()
         region = Region.of_table(table) if region is None else region
-        self.table, self.R = table, R
+        self.table: Table = table
+        self.R: float = R
         depth = strip * region.width
         axes: Any = ax
         if axes is None:
             figure = plt.figure(figsize=(WIDTH, WIDTH * (region.height + depth) / region.width), facecolor=rgb("floor"))
             axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         self.ax: Axes = axes
-        self.fresh = not any(artist.get_gid() == TABLE for artist in axes.get_children())
+        self.fresh: bool = not any(artist.get_gid() == TABLE for artist in axes.get_children())
         if self.fresh:
-            self.region, self.depth = region, depth
+            self.region: Region = region
+            self.depth: float = depth
             self._set_up()
             self._draw_table()
         else:
             (low_y, high_y), (bottom, low_x) = axes.get_xlim(), axes.get_ylim()
             self.region, self.depth = Region(low_x, bottom, low_y, high_y), 0.0
         room, points = axes.get_window_extent(), 72 / axes.figure.dpi
-        self.points_per_metre = points * min(room.width / self.region.width, room.height / (self.region.height + self.depth))
-        self.font = float(np.clip(9.0 * self.points_per_metre * self.region.width / (72 * WIDTH), 7.5, 11.0))
+        self.points_per_metre: float = points * min(room.width / self.region.width, room.height / (self.region.height + self.depth))
+        self.font: float = float(np.clip(9.0 * self.points_per_metre * self.region.width / (72 * WIDTH), 7.5, 11.0))
         self._taken: list[tuple[float, float, float, float]] = []
         self._busy: list[Floats] = []
 

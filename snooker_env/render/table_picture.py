@@ -34,20 +34,7 @@ def lamps(table: Table) -> NDArray[np.float64]:
 
 @lru_cache(maxsize=8)
 def table_picture(table: Table, view: View) -> NDArray[np.uint8]:
-    """The picture of a table without balls; the rows of the score bar show the floor.
-
-    Parameters
-    ----------
-    table : Table
-        The table.
-    view : View
-        A view of that table.
-
-    Returns
-    -------
-    uint8 (height, width, 3)
-        The picture, read-only.
-    """
+    """The picture of a table without balls, read-only; the rows of the score bar show the floor."""
     canvas, parts = _Canvas(view, table), outline(table)
     canvas.image[:] = _INK["floor"]
     _bed(canvas, table)

@@ -54,17 +54,7 @@ def _no_display(why):
 
 
 class Window:
-    """A window with a table. It opens at the first ``draw``. After its close button was used it stays closed until ``close`` is called.
-
-    Parameters
-    ----------
-    height : int, optional
-        Height of the picture [pixels]; its width follows from the first table.
-    title : str
-        Title of the window.
-    size : (int, int), optional
-        Width and height [pixels]. With neither: ``SIZE``, or less on a smaller screen. The window can be resized.
-    """
+    """A window with a table, opened by the first ``draw``; closed by the user, it stays so until ``close``."""
 
     def __init__(self, height: int | None = None, title: str = "snooker", *, size: tuple[int, int] | None = None):
         View.of(Table.of(None), height, size)  # raises for a wrong size now, not when the window opens
@@ -73,7 +63,7 @@ class Window:
         self._shut = False
         self._speed, self._paused, self._letters, self._paths = SPEEDS.index(1.0), False, False, True
         self._steps, self._skip, self._hint = 0, False, 0
-        self.status = ""
+        self.status: str = ""
         """The status in the window's last line."""
 
     @property
@@ -92,25 +82,7 @@ class Window:
         return self._paused
 
     def draw(self, scene: Scene, status: str = WAITING) -> bool:
-        """Show one scene.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene.
-        status : str
-            What the window waits for, shown in its last line.
-
-        Returns
-        -------
-        bool
-            False, with nothing shown, if the user has closed the window.
-
-        Raises
-        ------
-        RuntimeError
-            If there is no display.
-        """
+        """Show a scene and what the window waits for; False, nothing shown, if the user has closed it."""
         if self._screen is not None:
             self._listen()
         if self._shut:
@@ -122,29 +94,7 @@ class Window:
         return True
 
     def play(self, scenes: Film | Iterable[Scene], fps: float = 30.0, *, speed: float = 1.0) -> bool:
-        """Show a moving shot in real time, at the speed that the user has chosen.
-
-        Parameters
-        ----------
-        scenes : Film or iterable of Scene
-            A film is drawn at the exact time of each picture. Of scenes, as from ``shot_scenes``, one is shown every 1 / fps seconds.
-        fps : float
-            Pictures per second.
-        speed : float
-            Speed of a film over that of the shot, at the user's speed 1.
-
-        Returns
-        -------
-        bool
-            False if the user has closed the window.
-
-        Raises
-        ------
-        ValueError
-            If ``fps`` or ``speed`` is not positive.
-        RuntimeError
-            If there is no display.
-        """
+        """Show a film in real time, or a scene every 1 / fps s; False if the user has closed the window."""
         fps, clock = number("fps", fps, 0.0, open_low=True), pygame_().time.Clock()
         speed = number("speed", speed, 0.0, open_low=True)
         take = _FilmReel(scenes, speed / fps) if isinstance(scenes, Film) else _SceneReel(scenes)

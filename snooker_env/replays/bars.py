@@ -22,20 +22,27 @@ def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreB
             potted = [] if not played.break_before else None
         here = _start(played)
         before = {
-            "players": names, "scores": scores if names else (), "striker": played.player if names else None,
-            "break_points": played.break_before, "potted": tuple(potted or ()), "reds_left": int(here[1 : N_REDS + 1].sum()),
+            "players": names,
+            "scores": scores if names else (),
+            "striker": played.player if names else None,
+            "break_points": played.break_before,
+            "potted": tuple(potted or ()),
+            "reds_left": int(here[1 : N_REDS + 1].sum()),
             "points_on": _left(here, played.ball_on, played.free_ball),
             "ball_on": "free ball" if played.free_ball else on_words(played.ball_on),
-        }  # fmt: skip
+        }
         if played.points and potted is not None:
             potted = potted + pots_of(played.shot)
         run = played.break_before + played.points
         after = before | {
-            "scores": played.scores if names else (), "break_points": run, "potted": tuple(potted or ()),
+            "scores": played.scores if names else (),
+            "break_points": run,
+            "potted": tuple(potted or ()),
             "reds_left": int(played.on_table[1 : N_REDS + 1].sum()),
             "points_on": _left(played.on_table, played.next_on, played.next_free_ball),
-            "ball_on": "free ball" if played.next_free_ball else on_words(played.next_on), "words": sentence(played, names),
-        }  # fmt: skip
+            "ball_on": "free ball" if played.next_free_ball else on_words(played.next_on),
+            "words": sentence(played, names),
+        }
         made.append((ScoreBar(**before), ScoreBar(**after)))
         run = run if played.points else 0
     return made
@@ -47,12 +54,16 @@ def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar 
     ball_on = BallOn(tables.game[k, BALL_ON])
     goes_on = last is not None and bool(standing["break_points"])
     return ScoreBar(
-        players=tuple(players), scores=standing["scores"] if players else (), striker=standing["next_player"] if players else None,
-        break_points=standing["break_points"], potted=last.potted if last is not None and goes_on else (),
-        reds_left=int(on_table[1 : N_REDS + 1].sum()), points_on=_left(on_table, ball_on, standing["next_free_ball"]),
+        players=tuple(players),
+        scores=standing["scores"] if players else (),
+        striker=standing["next_player"] if players else None,
+        break_points=standing["break_points"],
+        potted=last.potted if last is not None and goes_on else (),
+        reds_left=int(on_table[1 : N_REDS + 1].sum()),
+        points_on=_left(on_table, ball_on, standing["next_free_ball"]),
         ball_on="free ball" if standing["next_free_ball"] else on_words(ball_on),
         words=last.words if last is not None else "",
-    )  # fmt: skip
+    )
 
 
 def _start(played):

@@ -11,15 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import choice, refuse, refuse_what
-from .._files import write_whole
+from .._files import write_atomic
 from ..physics.table import Table, TableLike
 from ..render.scene import scene_data
 from ..simulation import Shot
 from ..tasks.played import Played
+from ..web import WEB, table_js
 from .encode import encoded_stroke
 
-WEB = Path(__file__).resolve().parent.parent / "web"
-"""Folder of the JavaScript that draws in a browser."""
 FORMAT, VERSION = "snooker-replay", 1
 SUFFIXES = (".html", ".json", ".mp4", ".gif")
 
@@ -132,9 +131,15 @@ class Replay:
             strokes = [encoded_stroke(stroke, self.players) for stroke in self.strokes]
             physics = self.shots[0].physics
             self._data = {
-                "format": FORMAT, "version": VERSION, "title": self.title, "players": list(self.players), "scene": scene_data(self.table),
-                "R": physics.R, "spin_decel": physics.spin_decel, "strokes": strokes,
-            }  # fmt: skip
+                "format": FORMAT,
+                "version": VERSION,
+                "title": self.title,
+                "players": list(self.players),
+                "scene": scene_data(self.table),
+                "R": physics.R,
+                "spin_decel": physics.spin_decel,
+                "strokes": strokes,
+            }
         return dict(self._data)
 
     def html(self) -> str:
@@ -158,7 +163,7 @@ class Replay:
         '<!DOCTYPE html>'
         """
         data = json.dumps(self.to_dict(), separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-        parts = {"title": html.escape(self.title or "Snooker replay"), "module": (WEB / "table.js").read_text("utf-8"), "data": data}
+        parts = {"title": html.escape(self.title or "Snooker replay"), "module": table_js(), "data": data}
         page = (WEB / "replay.html").read_text("utf-8")
         return re.sub(r"\{\{(title|module|data)\}\}", lambda place: parts[place[1]], page)
 
@@ -193,9 +198,9 @@ class Replay:
         ImportError
             Without pygame.
         """
-        from .film import frames
+        from .film import frames, shown
 
-        return frames(self, fps, speed, size)
+        return frames(shown(self.strokes, self.table, self.players, self.title), fps, speed, size)
 
     def save(self, path: str | Path, **film: Any) -> Path:
         """Write the replay to a file in the format of its suffix.
@@ -236,12 +241,12 @@ class Replay:
         if suffix in (".mp4", ".gif"):
             from .film import write_film
 
-            write_film(self, target, **film)
+            write_film(self.frames, target, **film)
             return target
         if film:
             raise refuse("path", str(path), f"must end in .mp4 or .gif with {', '.join(film)}")
         text = self.html() if suffix == ".html" else json.dumps(self.to_dict(), allow_nan=False)
-        write_whole(target, lambda temporary: temporary.write_text(text, "utf-8"))
+        write_atomic(target, text)
         return target
 
 

@@ -39,37 +39,56 @@ def encoded_shot(shot: Shot) -> dict[str, Any]:
     waits = (np.arange(len(states)) < n) & idle & (shot.segments[:, cloth.WZ] == 0.0)  # at rest from the start: its place is in ``start``
     moves = shot.segments[~waits]
     return {
-        "n": n, "start": packed(first[:, [cloth.X, cloth.Y]], "f8"),
+        "n": n,
+        "start": packed(first[:, [cloth.X, cloth.Y]], "f8"),
         "on_table": np.flatnonzero(first[:, cloth.SEGMENT_STATE] != cloth.GONE).tolist(),
         "paths": {
-            "count": len(moves), "f8": packed(moves[:, _PLACES], "f8"), "f4": packed(moves[:, _SPINS], "f4"),
+            "count": len(moves),
+            "f8": packed(moves[:, _PLACES], "f8"),
+            "f4": packed(moves[:, _SPINS], "f4"),
             "u1": packed(moves[:, _WHICH], "u1"),
         },
         "events": [[round(float(t), 9), int(kind), int(i), int(j)] for t, kind, i, j in shot.events.tolist()],
-        "duration": shot.duration, "pots": pots_of(shot),
-    }  # fmt: skip
+        "duration": shot.duration,
+        "pots": pots_of(shot),
+    }
 
 
 def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, Any]:
     """One stroke of a replay. For a bare ``Shot``, the parts that come from the referee are empty."""
     if isinstance(item, Shot):
         return encoded_shot(item) | {
-            "cue": None, "player": None, "ball_on": None, "points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0,
+            "cue": None,
+            "player": None,
+            "ball_on": None,
+            "points": 0,
+            "penalty": 0,
+            "fouls": [],
+            "words": "",
+            "score": [],
+            "break": 0,
             "after": None,
-        }  # fmt: skip
+        }
     shot = item.shot
     return encoded_shot(shot) | {
-        "cue": item.cue, "player": item.player, "ball_on": "free ball" if item.free_ball else on_words(item.ball_on), "points": item.points,
-        "penalty": item.penalty, "fouls": foul_words(item.fouls), "words": sentence(item, players), "score": list(item.scores),
-        "break": item.break_points, "after": _after(item),
-    }  # fmt: skip
+        "cue": item.cue,
+        "player": item.player,
+        "ball_on": "free ball" if item.free_ball else on_words(item.ball_on),
+        "points": item.points,
+        "penalty": item.penalty,
+        "fouls": foul_words(item.fouls),
+        "words": sentence(item, players),
+        "score": list(item.scores),
+        "break": item.break_points,
+        "after": _after(item),
+    }
 
 
 def _after(item: Played) -> dict[str, Any] | None:
     """The table before the next stroke, if it differs from the balls at rest."""
-    there = item.on_table
-    same = np.array_equal(there, item.shot.on_table) and np.array_equal(item.positions[there], item.shot.positions[there])
-    return None if same else {"places": packed(_places(item.positions), "f8"), "on_table": np.flatnonzero(there).tolist()}
+    on_table = item.on_table
+    same = np.array_equal(on_table, item.shot.on_table) and np.array_equal(item.positions[on_table], item.shot.positions[on_table])
+    return None if same else {"places": packed(_places(item.positions), "f8"), "on_table": np.flatnonzero(on_table).tolist()}
 
 
 def _places(positions: Floats) -> Floats:

@@ -1,16 +1,16 @@
 """How does a replay become a film? Picture after picture is sent to the encoder, so that only one is in memory at a time."""
 
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._check import number, refuse
-from .._files import write_whole
+from .._files import write_atomic
 from .._install import missing
 from ..physics.table import Table
 from ..render.scene import Film, Scene, ScoreBar, scene
@@ -19,9 +19,6 @@ from ..tasks.played import Played
 from .bars import bars
 from .video_colours import to_video
 from .words import pots_of
-
-if TYPE_CHECKING:
-    from .document import Replay
 
 PAUSE = 0.8
 """How long the table is shown after each stroke [s of the film]."""
@@ -33,13 +30,18 @@ USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif":
 """Default size [pixels] and pictures per second of a film: a GIF that fits into a page."""
 
 
-def shown(replay: "Replay") -> Iterator[tuple[Film, Scene]]:
+def shown(
+    strokes: Iterable[Shot | Played],
+    table: Table,
+    players: tuple[str, ...],
+    title: str,
+) -> Iterator[tuple[Film, Scene]]:
     """For each stroke its film, and the table after it with the referee's words."""
-    judged = [stroke for stroke in replay.strokes if isinstance(stroke, Played)]
-    shown_bars = iter(bars(judged, replay.players))
-    for stroke in replay.strokes:
+    strokes = list(strokes)
+    shown_bars = iter(bars([stroke for stroke in strokes if isinstance(stroke, Played)], players))
+    for stroke in strokes:
         during, after = next(shown_bars) if isinstance(stroke, Played) else (None, None)
-        yield filmed(replay.table, stroke, during, after, "" if during else replay.title)
+        yield filmed(table, stroke, during, after, "" if during else title)
 
 
 def filmed(table: Table, stroke: Shot | Played, during: ScoreBar | None, after: ScoreBar | None, text: str = "") -> tuple[Film, Scene]:
@@ -47,19 +49,24 @@ def filmed(table: Table, stroke: Shot | Played, during: ScoreBar | None, after: 
     shot, judged = (stroke.shot, True) if isinstance(stroke, Played) else (stroke, False)
     film = Film(table, shot, trail=(0, *pots_of(shot)), spots=(0,), faded=(0,), bar=during, text=text)
     last = film.at(shot.duration)
-    where, there = (stroke.positions, stroke.on_table) if judged else (shot.positions, shot.on_table)
+    where, on_table = (stroke.positions, stroke.on_table) if judged else (shot.positions, shot.on_table)
     placed = judged and not np.array_equal(stroke.positions[0], shot.positions[0])
     turns = {0: UNTURNED} if placed else last.turns
     over = {"ball_radius": shot.physics.R, "paths": last.paths, "ghosts": last.ghosts, "turns": turns, "bar": after, "text": text}
-    return film, scene(table, where, there, **over)
+    return film, scene(table, where, on_table, **over)
 
 
-def frames(replay: "Replay", fps: float, speed: float, size: tuple[int, int]) -> Iterator[NDArray[np.uint8]]:
-    """The pictures of ``Replay.frames``."""
+def frames(
+    films: Iterable[tuple[Film, Scene]],
+    fps: float,
+    speed: float,
+    size: tuple[int, int],
+) -> Iterator[NDArray[np.uint8]]:
+    """The pictures of what ``shown`` gives."""
     from ..render.pygame_view import rgb_array
 
     fps, speed = _rate("fps", fps), _rate("speed", speed)
-    for film, after in shown(replay):
+    for film, after in films:
         for picture in film.scenes(fps, speed):
             yield rgb_array(picture, size=size)
         still = rgb_array(after, size=size)
@@ -68,17 +75,22 @@ def frames(replay: "Replay", fps: float, speed: float, size: tuple[int, int]) ->
 
 
 def write_film(
-    replay: "Replay", target: Path, *, fps: float | None = None, speed: float = 1.0, size: tuple[int, int] | None = None
+    pictures_of: Callable[..., Iterator[NDArray[np.uint8]]],
+    target: Path,
+    *,
+    fps: float | None = None,
+    speed: float = 1.0,
+    size: tuple[int, int] | None = None,
 ) -> None:
-    """Write the pictures of ``frames`` to an .mp4 or .gif file."""
+    """Write the pictures of ``pictures_of(fps=, speed=, size=)`` to an .mp4 or .gif file."""
     usual_size, usual_fps = USUAL[target.suffix.lower()]
     size, fps = usual_size if size is None else size, usual_fps if fps is None else _rate("fps", fps)
     sides: Any = size if isinstance(size, tuple | list) else ()
     if len(sides) != 2 or not all(isinstance(side, int) and side > 0 and side % 2 == 0 for side in sides):
         raise refuse("size", size, "must be (width, height), both even, as video encoders require")
     width, height = sides
-    pictures = replay.frames(fps=fps, speed=speed, size=(width, height))
-    write_whole(target, lambda path: _encode(pictures, path, fps, (width, height)))
+    pictures = pictures_of(fps=fps, speed=speed, size=(width, height))
+    write_atomic(target, lambda path: _encode(pictures, path, fps, (width, height)))
 
 
 def _rate(field: str, value: Any) -> float:
@@ -131,8 +143,8 @@ def _pipe(pictures: Iterator[NDArray[np.uint8]], kind: str, size: tuple[int, int
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError as error:
         raise missing("films need ffmpeg", "render") from error
-    given = ["-f", "rawvideo", "-pix_fmt", kind, "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
-    command = [get_ffmpeg_exe(), "-y", "-loglevel", "error", *given, *wanted, str(path)]
+    raw = ["-f", "rawvideo", "-pix_fmt", kind, "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
+    command = [get_ffmpeg_exe(), "-y", "-loglevel", "error", *raw, *wanted, str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
         assert encoder.stdin is not None and encoder.stderr is not None
         try:

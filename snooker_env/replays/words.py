@@ -7,13 +7,24 @@ from ..simulation import Shot
 from ..tasks.played import Played
 
 FOUL_WORDS = {
-    Foul.NO_CONTACT: "no ball struck", Foul.WRONG_FIRST: "wrong ball struck first", Foul.WRONG_POT: "wrong ball potted",
-    Foul.CUE_POTTED: "in-off", Foul.CUE_OFF: "cue ball off the table", Foul.BALL_OFF: "ball off the table", Foul.JUMP: "jump shot",
-    Foul.PUSH: "push stroke", Foul.DOUBLE_HIT: "double hit", Foul.OUTSIDE_D: "played from outside the D",
+    Foul.NO_CONTACT: "no ball struck",
+    Foul.WRONG_FIRST: "wrong ball struck first",
+    Foul.WRONG_POT: "wrong ball potted",
+    Foul.CUE_POTTED: "in-off",
+    Foul.CUE_OFF: "cue ball off the table",
+    Foul.BALL_OFF: "ball off the table",
+    Foul.JUMP: "jump shot",
+    Foul.PUSH: "push stroke",
+    Foul.DOUBLE_HIT: "double hit",
+    Foul.OUTSIDE_D: "played from outside the D",
     Foul.FEET: "both feet off the floor",
-    Foul.OUT_OF_TURN: "played out of turn", Foul.BEHIND_FREE_BALL: "snooker behind the free ball", Foul.NO_NOMINATION: "no ball nominated",
-    Foul.SEVEN: "foul of seven", Foul.NO_CUSHION: "no ball reached a cushion", Foul.LATE: "not played in time",
-}  # fmt: skip
+    Foul.OUT_OF_TURN: "played out of turn",
+    Foul.BEHIND_FREE_BALL: "snooker behind the free ball",
+    Foul.NO_NOMINATION: "no ball nominated",
+    Foul.SEVEN: "foul of seven",
+    Foul.NO_CUSHION: "no ball reached a cushion",
+    Foul.LATE: "not played in time",
+}
 
 
 def ball_name(ball: int) -> str:
@@ -39,16 +50,16 @@ def pots_of(shot: Shot) -> list[int]:
 def sentence(played: Played, players: tuple[str, ...]) -> str:
     """The referee's words after this stroke; ``players``: the names of both in a frame."""
     if played.fouls:
-        said = f"Foul, {played.penalty}: {', '.join(foul_words(played.fouls))}"
+        words = f"Foul, {played.penalty}: {', '.join(foul_words(played.fouls))}"
     elif played.points:
         balls = " and ".join(ball_name(ball) for ball in pots_of(played.shot))
-        said = f"{balls[:1].upper()}{balls[1:]} potted, {played.points}"
+        words = f"{balls[:1].upper()}{balls[1:]} potted, {played.points}"
         if played.break_before:
-            said += f", break of {played.break_before + played.points}"
+            words += f", break of {played.break_before + played.points}"
     else:
-        said = "Nothing potted"
+        words = "Nothing potted"
     if played.winner is not None and len(players) > played.winner:
-        said += f". Frame to {players[played.winner]}, {played.scores[played.winner]}-{played.scores[1 - played.winner]}"
+        words += f". Frame to {players[played.winner]}, {played.scores[played.winner]}-{played.scores[1 - played.winner]}"
     elif played.over and played.next_on == BallOn.NOTHING and not played.fouls:
-        said += ". Table cleared"
-    return said + "."
+        words += ". Table cleared"
+    return words + "."

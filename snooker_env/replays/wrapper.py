@@ -55,9 +55,15 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     """
 
     def __init__(
-        self, env: gymnasium.Env[Any, Any], folder: str | Path, episode_trigger: Callable[[int], bool] | None = None, *,
-        name_prefix: str = "snooker", suffix: str = ".html", players: Iterable[str] = (),
-    ):  # fmt: skip
+        self,
+        env: gymnasium.Env[Any, Any],
+        folder: str | Path,
+        episode_trigger: Callable[[int], bool] | None = None,
+        *,
+        name_prefix: str = "snooker",
+        suffix: str = ".html",
+        players: Iterable[str] = (),
+    ):
         gymnasium.utils.RecordConstructorArgs.__init__(
             self, folder=str(folder), episode_trigger=episode_trigger, name_prefix=name_prefix, suffix=suffix, players=players
         )

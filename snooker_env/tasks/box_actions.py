@@ -12,12 +12,11 @@ from .._jit import entry, kernel
 from .._types import Action, Flags, Floats, Vectors
 from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, find_pots
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
-from ..physics.cloth import COLUMNS
 from ..physics.cue import squirt
-from ..physics.impact.polynomial import WORK
 from ..physics.parameters import Physics
+from .arrays import CueLaw
 from .declarations import A_ELEVATION, A_END_MASS, A_MAX_OFFSET, A_TARGET, SAYS
-from .lines import LINE_ROWS, aim_along, find_lines, line_of
+from .lines import LINE_ROWS, aim_along, find_lines, line_of, new_work
 
 AIMS = ("absolute", "target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
@@ -51,27 +50,24 @@ def place_anywhere_of(a, options):
 
 
 @kernel(uses=(aim_along,))
-def _target(positions, on_table, on, speed, side, top, phys, end_mass_ratio, found, motion, state, work):
+def _target(positions, on_table, on, stroke, law, work):
     """Direction [rad] from which ``aim="target"`` is measured for a stroke: the straight line of the widest pot, else the first line."""
-    if find_pots(positions, on_table, on, BALL_RADIUS, found[:1]):
-        return atan2(found[0, GHOST_Y] - positions[0, 1], found[0, GHOST_X] - positions[0, 0])
-    find_lines(positions, on_table, on, found)
-    return aim_along(found[0], speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work)
+    lines = work.lines
+    if find_pots(positions, on_table, on, BALL_RADIUS, lines[:1]):
+        return atan2(lines[0, GHOST_Y] - positions[0, 1], lines[0, GHOST_X] - positions[0, 0])
+    find_lines(positions, on_table, on, lines)
+    return aim_along(lines[0], stroke, positions, on_table, on, law, work)
 
 
 @kernel(uses=(_target,))
-def shot_of(a, positions, on_table, on, options, phys, found, motion, state, work):
-    """(speed, side, top, aim, elevation) of an action (k,). The aim is the cue's direction [rad]; ``options`` from ``Actions.pack``.
-
-    Work space: found (LINE_ROWS, POT_COLUMNS), motion (2, COLUMNS), state (2,), work.
-    """
+def shot_of(a, positions, on_table, on, options, law, work):
+    """(speed, side, top, aim of the cue, elevation) of an action (k,); ``options``: of ``Actions.pack``."""
     speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
     side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], options[A_MAX_OFFSET])
     elevation = 0.5 * (a[4] + 1.0) * MAX_ELEVATION if options[A_ELEVATION] else 0.0
     direction = pi * a[3]
     if options[A_TARGET]:
-        line = _target(positions, on_table, on, speed, side, top, phys, options[A_END_MASS], found, motion, state, work)
-        direction = line + TARGET_SPAN * a[3]
+        direction = _target(positions, on_table, on, (speed, side, top), law, work) + TARGET_SPAN * a[3]
     return speed, side, top, direction - squirt(side, options[A_END_MASS]), elevation
 
 
@@ -82,8 +78,7 @@ def _line(positions, on_table, on):
 
 @entry(uses=(shot_of,))
 def _shot(a, positions, on_table, on, options, phys):
-    found, motion, state, work = np.empty((LINE_ROWS, POT_COLUMNS)), np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
-    return shot_of(a, positions, on_table, on, options, phys, found, motion, state, work)
+    return shot_of(a, positions, on_table, on, options, CueLaw(phys, options[A_END_MASS], 0, 0), new_work())
 
 
 class Actions:

@@ -7,9 +7,23 @@ import numpy as np
 from .._jit import entry
 from .._types import Ints
 from ..game.balls import YELLOW
-from ..game.frame_columns import ANYWHERE, CHOICE, IN_HAND, LOT, PHASE, PLAY, PLAY_AGAIN, STRIKER, claim, concede, draw
+from ..game.frame_columns import (
+    ANYWHERE,
+    CHOICE,
+    IN_HAND,
+    LOT,
+    PHASE,
+    PLAY,
+    PLAY_AGAIN,
+    STRIKER,
+    Layouts,
+    claim,
+    concede,
+    draw,
+)
 from ..game.ruling import AUTO
 from ..physics.cue import squirt
+from .arrays import StruckArrays, TableArrays
 from .box_actions import tip_on_disc
 from .declarations import (
     A_END_MASS,
@@ -30,22 +44,21 @@ if TYPE_CHECKING:
 
 
 @entry(what="the strokes of players in frames", seconds=3)
-def _carry_out(which, said, tables, saved, packed, codes, buffers, playing):
+def _carry_out(which, said, tables, saved, packed, codes, shots, playing):
     """The strokes of the tables ``which``; ``playing[:m]``: those with one, whose shots are 0 to m - 1. Returns m.
 
-    ``said``: values, place, nominate, decision, declare of ``players.Strokes``, one row for each table. ``tables``:
-    positions, on_table, game, nominated, streams. ``packed``: options, noise. ``codes``: of the rule set and the reward.
+    ``said``: values, place, nominate, decision, declare of ``players.Strokes``, one row for each table. ``packed``:
+    options, noise. ``codes``: of the rule set and the reward.
     """
     values, places, nominate, decisions, declared = said
-    positions, on_table, game, nominated, streams = tables
-    (options, noise), (rules, kind), (r, v, w, here, shots) = packed, codes, buffers
-    m = 0
+    tables, saved, shots = TableArrays(*tables), Layouts(*saved), StruckArrays(*shots)
+    (options, noise), (rules, reward), m = packed, codes, 0
     for k in which:
-        row, p, on = game[k], positions[k], on_table[k]
+        row, p, on = tables.game[k], tables.positions[k], tables.on_table[k]
         says = declared[k] if may_declare(declared[k], row) else SAYS_NOTHING
         if says == CONCEDES:
             concede(row)
-            give_up(row, kind)
+            give_up(row, reward)
             continue
         if says == CLAIMS:
             claim(row)
@@ -56,9 +69,9 @@ def _carry_out(which, said, tables, saved, packed, codes, buffers, playing):
                 continue
         elif row[PHASE] == CHOICE:
             wish = 0.0 if decisions[k] == PLAY else -1.0 if decisions[k] == PLAY_AGAIN else 1.0
-            if not choose_as(k, wish, rules, row, positions, on_table, saved):
+            if not choose_as(k, wish, rules, tables, saved):
                 continue
-        nominated[k] = AUTO if nominate[k] < 0 else nominated_ball(max(0, nominate[k] - YELLOW + 1), row)
+        tables.nominated[k] = AUTO if nominate[k] < 0 else nominated_ball(max(0, nominate[k] - YELLOW + 1), row)
         if row[IN_HAND] and not np.isnan(places[k, 0]):
             if row[ANYWHERE]:
                 place_anywhere(p, on, places[k, 0], places[k, 1])
@@ -67,7 +80,7 @@ def _carry_out(which, said, tables, saved, packed, codes, buffers, playing):
         speed, aim, elevation = values[k, 0], values[k, 3], values[k, 4]
         side, top = tip_on_disc(values[k, 1], values[k, 2], options[A_MAX_OFFSET])
         intended = (speed, side, top, aim - squirt(side, options[A_END_MASS]), elevation)
-        strike(intended, p, on, streams[k], options, noise, m, r, v, w, here, shots)
+        strike(intended, p, on, tables.streams[k], options, noise, m, shots)
         playing[m] = k
         m += 1
     return m
@@ -78,9 +91,7 @@ def carry_out(frames: "Frames", which: Ints, said: tuple[Any, ...], buffers: Sho
 
     ``said``: the arrays of ``players.Strokes``, with a row for each table; ``side``: of the seat whose errors are made.
     """
-    f, b, playing = frames, buffers, np.empty(len(which), np.int64)
-    tables = f.positions, f.on_table, f.game, f.nominated, f.streams
-    packed, codes = f.packs[side][:2], (f.rules.rule_set.code, MATCH_REWARDS.index(f.rules.reward))
-    m = _carry_out(which, said, tables, f.saved, packed, codes, (b.r, b.v, b.w, b.here, b.shots), playing)
-    f.hold_late(playing[:m], b)
+    playing, codes = np.empty(len(which), np.int64), (frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward))
+    m = _carry_out(which, said, frames.arrays, frames.saved_arrays, frames.packs[side][:2], codes, buffers.struck, playing)
+    frames.hold_late(playing[:m], buffers)
     return playing[:m]

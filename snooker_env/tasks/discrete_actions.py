@@ -79,27 +79,23 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
 
 
 @kernel(seconds=1, uses=(solved_aim, aim_along))
-def chosen(index, positions, on_table, on, phys, end_mass_ratio, fidelity, n_steps, found, motion, state, work):
-    """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``.
-
-    Work space: found (LINE_ROWS, POT_COLUMNS), motion (2, COLUMNS), state (2,), work.
-    """
+def chosen(index, positions, on_table, on, law, work):
+    """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``."""
+    lines = work.lines
     index = index % SIZE  # what else the choice says is read by ``declarations``; one that may not be said now is played as a stroke
     pot, stroke = index // STROKES, index % STROKES
     speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]
     side, top = SIDES[stroke // len(TOPS) % len(SIDES)], TOPS[stroke % len(TOPS)]
-    many = find_pots(positions, on_table, on, BALL_RADIUS, found[:POTS])
+    many = find_pots(positions, on_table, on, BALL_RADIUS, lines[:POTS])
     if many == 0:
-        line = found[min(pot, find_lines(positions, on_table, on, found) - 1)]
-        aim = aim_along(line, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work)
+        line = lines[min(pot, find_lines(positions, on_table, on, lines) - 1)]
+        aim = aim_along(line, (speed, side, top), positions, on_table, on, law, work)
     else:
-        pot = min(pot, many - 1)
-        ball, pocket, gx, gy = int(found[pot, POT_BALL]), int(found[pot, POT_POCKET]), found[pot, GHOST_X], found[pot, GHOST_Y]
-        px, py = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
-        aim = solved_aim(
-            positions, ball, px, py, gx, gy, speed, side, top, 0.0, phys, end_mass_ratio, fidelity, n_steps, motion, state, work
-        )
-    return speed, side, top, aim - squirt(side, end_mass_ratio), 0.0
+        line = lines[min(pot, many - 1)]
+        pocket, ghost = int(line[POT_POCKET]), (line[GHOST_X], line[GHOST_Y])
+        target = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
+        aim = solved_aim(positions, int(line[POT_BALL]), target, ghost, (speed, side, top, 0.0), law, work)
+    return speed, side, top, aim - squirt(side, law.end_mass_ratio), 0.0
 
 
 @entry

@@ -15,13 +15,15 @@ import numpy as np
 
 from .._jit import kernel
 from ..game.balls import N_BALLS
+from ..game.lines import met
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics import cloth, cue, events
+from ..physics.arrays import Boundaries, Law
 from ..physics.columns import AXIS_X, AXIS_Y
 from ..physics.detection import boundary_event, pair_time
 from ..physics.impact.contact import FAST, collide_cushion, cushion_restitution
 from ..physics.parameters import P_R
-from .windows import met, turned
+from .windows import turned
 
 ROLL = 0.25
 """Twice a rolling ball's deceleration [m/s^2]."""
@@ -170,17 +172,19 @@ def find_escapes(positions, on_table, on, lines, first):
 
 
 @kernel(seconds=1, uses=(collide_cushion,))
-def _played(aim, speed, side, top, positions, on_table, phys, end_mass_ratio, motion, state, work):
+def _played(aim, stroke, positions, on_table, law, work):
     """The ball that the cue ball meets first, sent in the direction ``aim``, by the models of the engine; 0: none, or a pocket first.
 
-    motion (2, cloth.COLUMNS), state (2,), work: work space. Cushion impacts are of the fidelity "fast".
+    ``stroke``: (speed, side, top). ``law``: a ``Law``, but cushion impacts are of the fidelity "fast".
     """
-    R = phys[P_R]
-    (vx, vy, _), (wx, wy, wz) = cue.struck(speed, aim - cue.squirt(side, end_mass_ratio), side, top, 0.0, R, end_mass_ratio)
-    cloth.begin(motion, state, 0, 0.0, positions[0, 0], positions[0, 1], vx, vy, wx, wy, wz, phys)
+    (speed, side, top), phys, motion, state = stroke, law.phys, work.motion, work.state
+    R, m = phys[P_R], law.end_mass_ratio
+    (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, m), side, top, 0.0, R, m)
+    boundaries, rough = Boundaries(_BED, _NO_JAWS, _NO_FALLS, R), Law(phys, FAST, 0)
+    cloth.begin(motion, state, 0, 0.0, (positions[0, 0], positions[0, 1]), (vx, vy), w, phys)
     legs, now = 1, 0.0
     while state[0] > cloth.REST:
-        wall, kind, nose = boundary_event(motion, state, 0, _BED, _NO_JAWS, _NO_FALLS, _CLEAR, R)
+        wall, kind, nose = boundary_event(motion, state, 0, boundaries, _CLEAR)
         ball, until = 0, min(wall, motion[0, cloth.T_END])
         for i in range(1, N_BALLS):
             x, y, d = positions[i, 0], positions[i, 1], 2.0 * R
@@ -189,7 +193,7 @@ def _played(aim, speed, side, top, positions, on_table, phys, end_mass_ratio, mo
                 or y + d < motion[0, cloth.LO_Y] or y - d > motion[0, cloth.HI_Y]
             ):  # fmt: skip
                 continue
-            cloth.begin(motion, state, 1, 0.0, x, y, 0.0, 0.0, 0.0, 0.0, 0.0, phys)
+            cloth.begin(motion, state, 1, 0.0, (x, y), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
             t = pair_time(motion, state, 0, 1, now, d)
             if t <= until:
                 ball, until = i, t
@@ -203,10 +207,10 @@ def _played(aim, speed, side, top, positions, on_table, phys, end_mass_ratio, mo
                 return 0
             nx, ny = (0.0, _BED[nose, 1]) if end else (_BED[nose, 1], 0.0)
             e = cushion_restitution(v[0] * nx + v[1] * ny, phys)
-            v3, w, solved = collide_cushion((v[0], v[1], 0.0), w, nx, ny, phys, e, FAST, 0, work)
+            v3, w, solved = collide_cushion((v[0], v[1], 0.0), w, (nx, ny), rough, e, work.series)
             if not solved:
                 return 0
-            cloth.begin(motion, state, 0, wall, x, y, v3[0], v3[1], w[0], w[1], w[2], phys)
+            cloth.begin(motion, state, 0, wall, (x, y), (v3[0], v3[1]), w, phys)
             legs += 1
         else:
             cloth.next_phase(motion, state, 0, phys)
@@ -214,14 +218,14 @@ def _played(aim, speed, side, top, positions, on_table, phys, end_mass_ratio, mo
 
 
 @kernel(uses=(_played,))
-def _succeeds(aim, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+def _succeeds(aim, stroke, positions, on_table, on, law, work):
     """Whether the stroke meets a ball on first."""
-    ball = _played(aim, speed, side, top, positions, on_table, phys, end_mass_ratio, motion, state, work)
+    ball = _played(aim, stroke, positions, on_table, law, work)
     return ball > 0 and (on >> ball) & 1 != 0
 
 
 @kernel(uses=(_succeeds,))
-def escape_aim(about, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+def escape_aim(about, stroke, positions, on_table, on, law, work):
     """Direction [rad] in which the stroke meets a ball on: the middle of the widest window about the direction ``about``.
 
     Of equally wide windows it is the nearest one. It is sought farther away if there is none nearby, as with much side; if no direction
@@ -232,7 +236,7 @@ def escape_aim(about, speed, side, top, positions, on_table, on, phys, end_mass_
         run = 0
         for k in range(-steps, steps + 2):
             aim = about + k * _STEP
-            if k <= steps and _succeeds(aim, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+            if k <= steps and _succeeds(aim, stroke, positions, on_table, on, law, work):
                 run += 1
             elif run:
                 worth = run - 0.01 * abs(k - 0.5 * (run + 1))
@@ -246,8 +250,8 @@ def escape_aim(about, speed, side, top, positions, on_table, on, phys, end_mass_
     step = _STEP
     for _ in range(_HALVINGS):
         step *= 0.5
-        if _succeeds(low - step, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+        if _succeeds(low - step, stroke, positions, on_table, on, law, work):
             low -= step
-        if _succeeds(high + step, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+        if _succeeds(high + step, stroke, positions, on_table, on, law, work):
             high += step
     return 0.5 * (low + high)

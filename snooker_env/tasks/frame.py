@@ -24,7 +24,7 @@ import numpy as np
 from .._check import refuse
 from .._types import Bools, Floats, Ints, Singles
 from ..game.balls import COLOURS_MASK, CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_present
-from ..game.frame import MISS_RULES, Frame
+from ..game.frame import MISS_RULES, Frame, frame_of, write_frame
 from ..game.frame_columns import (
     ATTEMPTS,
     BALL_ON,
@@ -42,8 +42,6 @@ from ..game.frame_columns import (
     STRIKER,
     STROKES,
     Layouts,
-    frame_of,
-    write_frame,
 )
 from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
@@ -93,8 +91,10 @@ class Frames(Tables):
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
         self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
-        self._limits = np.array([rules.max_strokes, rules.frames // 2 + 1, rules.rule_set.clock])
-        self._kind, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
+        self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
+        game, won = rules.rule_set, rules.frames // 2 + 1
+        limits = limit, rules.max_strokes, won, game.clock
+        self._numbers = game.code, self._miss, rules.time_to_play, self._reward, *limits
         self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
             write_frame(Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.saved, 0)
@@ -106,6 +106,20 @@ class Frames(Tables):
     def saved(self) -> Layouts:
         """Where the balls lay before the last fouls: ``frame_columns.Layouts``."""
         return Layouts(self._saved_positions, self._saved_on_table)
+
+    @property
+    def saved_arrays(self) -> tuple[Floats, Bools]:
+        """For kernels: the parts of ``saved``, in a plain tuple."""
+        return self._saved_positions, self._saved_on_table
+
+    @property
+    def _setting(self) -> tuple[Any, ...]:
+        """For kernels: the parts of ``frame_kernels.Setting``, in a plain tuple."""
+        return self._setting_of(self._lot)
+
+    def _setting_of(self, options: Floats) -> tuple[Any, ...]:
+        """``_setting`` with the packed options of one seat's actions."""
+        return *self._numbers, options, self._jaws
 
     def _columns(self) -> tuple[str, ...]:
         return (*super()._columns(), "_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due")
@@ -161,10 +175,7 @@ class Frames(Tables):
     def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
         """What the strikers of the tables ``which`` say before their strokes; returns which of them play one."""
         plays = np.empty(len(which), np.bool_)
-        frame_kernels.decide(
-            which, actions, self.packs[side][0], self.rules.rule_set.code, self._kind, self.positions, self.on_table, self.game, self.saved,
-            self.nominated, plays,
-        )  # fmt: skip
+        frame_kernels.decide(which, actions, self.arrays, self.saved_arrays, self._setting_of(self.packs[side][0]), plays)
         return plays
 
     def complete(self, which: Ints, out: StepOutput, buffers: ShotBuffers, crew: Crew, *, own: bool, alone: bool = False) -> None:
@@ -182,17 +193,11 @@ class Frames(Tables):
 
     def _conclude(self, which, b, out, own, alone):
         if self.rules.misses:
-            remember(
-                which, self.positions, self.on_table, self.game, self.nominated, self.saved, b.potted, b.status, b.event_time, b.event_what,
-                b.n_events, b.shots, self.rules.table.noses, self.rules.table.jaws, b.seen,
-            )  # fmt: skip
+            remember(which, self.arrays, self.saved_arrays, b.played, self.rules.table.noses, self.rules.table.jaws)
         if self._miss == ATTEMPTS:
             judge_attempts(which, b, self.positions, self.on_table, self.game, self.rules, self.packed[2])
-        frame_kernels.conclude(
-            which, self.positions, self.on_table, self.game, self.streams, self.nominated, b.r, b.potted, b.status, b.duration,
-            b.event_time, b.event_what, b.n_events, b.shots, b.seen, self._jaws, self._lot, self.rules.rule_set.code,
-            self._kind, self.rules.time_to_play, self._miss, own, alone, self._played if own else self._replies, out.reals, out.counts,
-        )  # fmt: skip
+        played = self._played if own else self._replies
+        frame_kernels.conclude(which, self.arrays, b.played, self._setting, own, alone, played, out.arrays)
 
     def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew, which: Ints | None = None) -> Bools:
         """One turn of the striker on the tables ``which`` (those that go on), of two players. Returns where there was a stroke, (n,) bool.
@@ -262,10 +267,8 @@ class Frames(Tables):
         crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _finish(self, which, out):
-        frame_kernels.finish(
-            which, self.positions, self.on_table, self.game, self.saved, self.due, self._replies, self._played, self._kind, self.limit,
-            self._limits, out.observations, out.rewards, out.terminated, out.truncated, out.reals, out.counts,
-        )  # fmt: skip
+        counted = self.due, self._replies, self._played
+        frame_kernels.finish(which, self.arrays, self.saved_arrays, self._setting, *counted, out.arrays)
 
     def _reply(self, which, out, crew):
         """All strokes of the opponent on the tables ``which`` until it is the agent's turn or the frame has ended."""
@@ -313,14 +316,13 @@ class Frames(Tables):
         self.begun[which], self.due[which], self.nominated[which] = True, False, AUTO
 
     def _show(self, which, out, *, fresh):
-        frame_kernels.show(
-            which, fresh, self.positions, self.on_table, self.game, self.saved, self._limits, self._replies, out.rows
-        )  # fmt: skip
+        tables = self.arrays, self.saved_arrays, self._setting
+        frame_kernels.show(which, fresh, *tables, self._replies, out.arrays, out.last)
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
         """The info of the first table as ``player`` sees it; ``last``: the output of the last stroke, or None if there is none."""
         out = self.output()  # the entries that depend on the player
-        frame_kernels.inform(player, self.game, out.reals, out.counts)
+        frame_kernels.inform(player, self.game, out.arrays)
         if last is not None:
             for column in (I_POINTS, I_SECONDS):
                 out.reals[0, column] = last.reals[0, column]
@@ -341,7 +343,7 @@ class Frames(Tables):
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
         """The observations of ``player`` on the tables ``which``: float32 (len(which), SIZE), a new array."""
         rows = np.empty((len(which), self.SIZE), np.float32)
-        frame_kernels.observe(which, player, self.positions, self.on_table, self.game, self.saved, self._limits, rows)
+        frame_kernels.observe(which, player, self.arrays, self.saved_arrays, self._setting, rows)
         return rows
 
     # states ----------------------------------------------------------------------------------------------------------------

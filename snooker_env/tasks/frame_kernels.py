@@ -1,9 +1,14 @@
 """What happens to frames inside a step? Decisions, the referee, observations, rewards and infos, as kernels over tables.
 
-``tasks.frame`` calls them in the order of a turn. ``which``: the tables concerned; row j of a shot's arrays belongs to which[j].
+``tasks.frame`` calls them in the order of a turn. ``which``: the tables concerned; row j of a shot's arrays
+belongs to which[j]. ``tables``, ``saved``, ``shots``, ``output``, ``setting``: the parts of ``TableArrays``,
+``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``.
 """
 
+from typing import NamedTuple
+
 from .._jit import entry, kernel
+from .._types import Floats
 from ..game.apply_ruling import settle
 from ..game.balls import BLACK, CUE, N_BALLS, SPOTS, available, bits
 from ..game.frame_columns import (
@@ -39,6 +44,9 @@ from ..game.frame_columns import (
     STROKES,
     WARNED,
     WINNER,
+    Conditions,
+    Effort,
+    Layouts,
     after_stroke,
     begin_frame,
     choose,
@@ -54,9 +62,10 @@ from ..game.frame_columns import (
 )  # fmt: skip
 from ..game.philox import pair
 from ..game.rule_sets import SHOOT_OUT, SIX_RED
-from ..game.ruling import AUTO, FLAG, OUTCOME
+from ..game.ruling import AUTO, FLAG, OUTCOME, Facts
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import Status
+from .arrays import OutputArrays, PlayedArrays, TableArrays
 from .declarations import (
     A_DECISION,
     A_LOT,
@@ -73,11 +82,7 @@ from .rewards import FRAMES_PAID, earned, frame_reward_of
 from .stroke import (
     ATTEMPT,
     CLEAR_PATH,
-    DOWN,
-    FIRST,
     FULL_PATH,
-    MOVED,
-    TOUCHING,
     VX,
     VY,
     WX,
@@ -100,60 +105,83 @@ _OK = int(Status.OK)
 (I_FRAMES_WON, I_OPPONENT_FRAMES, I_FRAME) = range(len(COUNTS) + 10, len(COUNTS) + 13)
 """Entries of a match only."""
 
-(L_STROKES, L_FRAMES, L_CLOCK) = range(3)
-"""Columns of a game's limits: strokes after which a frame is stopped, frames that win the match, time of a frame [ms] (0: no clock)."""
+
+class Setting(NamedTuple):
+    """What is the same for all frames of some tables."""
+
+    rules: int
+    """Code of the rule set, as in ``frame_columns.Conditions``."""
+    miss: int
+    time_to_play: int
+    reward: int
+    """Code of the reward."""
+    limit: int
+    """Steps after which an episode is truncated."""
+    max_strokes: int
+    """Strokes after which a frame is stopped."""
+    frames: int
+    """Frames that win a match."""
+    clock: int
+    """Time of a frame [ms]; 0: no clock."""
+    options: Floats
+    """Packed, of the action space."""
+    jaws: Floats
+    """(m, 3): see ``snookered.NO_JAWS``."""
 
 
 @kernel
-def choose_as(k, wish, rules, row, positions, on_table, saved):
+def choose_as(k, wish, rules, tables, saved):
     """The decision ``wish`` after a foul; whether a stroke follows."""
+    row = tables.game[k]
     what = PLAY_AGAIN if wish < -1.0 / 3.0 else PLAY
     if wish > 1.0 / 3.0:
         what = REPLACE if may_replace(row, rules) else PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
     choose(row, what)
     if what == REPLACE:
+        p, on, back, back_on = tables.positions[k], tables.on_table[k], saved.positions[k], saved.on_table[k]
         for i in range(N_BALLS):
-            positions[k, i, 0], positions[k, i, 1] = saved.positions[k, i, 0], saved.positions[k, i, 1]
-            on_table[k, i] = saved.on_table[k, i]
+            p[i, 0], p[i, 1], on[i] = back[i, 0], back[i, 1], back_on[i]
     return what == PLAY or what == PLACE_ANYWHERE
 
 
 @kernel
-def give_up(row, kind):
-    """Charge the loser of a frame that he gave up, by conceding it or by a third miss, with the points left on the table; the score stands.
+def give_up(row, reward):
+    """Charge the loser of a frame that was given up, or lost by a third miss, with the points left.
 
     S4 R5(b), for matches in which points are added up: eight for each red, and the colours. Otherwise it would pay to give up at once.
     """
-    if kind != FRAMES_PAID:
+    if reward != FRAMES_PAID:
         left = available(row[ON_TABLE], -1, 0)
         row[PAID] += -left if row[WINNER] == AGENT else left
 
 
 @entry(what="the decisions of frames", seconds=2)
-def decide(which, actions, options, rules, kind, positions, on_table, game, saved, nominated, plays):
+def decide(which, actions, tables, saved, setting, plays):
     """What the strikers of the tables ``which`` say before a stroke: declarations, decisions after a foul, nominations.
 
-    ``options``: packed, of the action space; ``rules``, ``kind``: codes of the rule set and the reward. A decision below -1/3: the offender
-    plays again; above 1/3: from the position before, if a miss was called, or, after the last one that may be, the striker from anywhere on
-    the table. ``plays[j]``: whether a stroke follows.
+    A decision below -1/3: the offender plays again; above 1/3: from the position before, if a miss was
+    called, or, after the last one that may be, the striker from anywhere on the table. ``plays[j]``: whether
+    a stroke follows.
     """
+    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    options = setting.options
     for j in range(which.shape[0]):
         k = which[j]
-        row, a = game[k], actions[k]
+        row, a = tables.game[k], actions[k]
         said = declaration_of(a, options, row)
         plays[j] = said == SAYS_NOTHING
         if said == CONCEDES:
             concede(row)
-            give_up(row, kind)
+            give_up(row, setting.reward)
         elif said == CLAIMS:
             claim(row)
         elif row[PHASE] == LOT:
             draw(row, 1 - row[STRIKER] if said == OTHER_BEGINS else row[STRIKER])
         elif row[PHASE] == CHOICE:
             wish = a[int(options[A_DECISION])] if options[A_DECISION] >= 0 else 0.0
-            plays[j] = choose_as(k, wish, rules, row, positions, on_table, saved)
+            plays[j] = choose_as(k, wish, setting.rules, tables, saved)
         if plays[j] and options[A_NOMINATE] >= 0:
-            nominated[k] = nomination_of(a, options, row)
+            tables.nominated[k] = nomination_of(a, options, row)
 
 
 @kernel
@@ -183,59 +211,58 @@ def hold_late(which, game, rules, time_to_play, v, w, shots):
 
 
 @entry(what="the referee of frames", seconds=6)
-def conclude(which, positions, on_table, game, streams, nominated, r, potted, status, duration, event_time, event_what, n_events, shots,
-              seen, jaws, options, rules, kind, time_to_play, miss, own, alone, played, reals, counts):  # fmt: skip
+def conclude(which, tables, shots, setting, own, alone, played, output):
     """Judge the shots that came to rest and update tables and frames. ``own``: infos report the strokes; ``played`` counts them.
 
-    ``nominated`` (n,): the colour that each striker has nominated, 0 for none, or AUTO: the one first struck. It is AUTO afterwards.
-    ``rules``, ``kind``, ``miss``: codes of the rule set, the reward and the miss rule; ``time_to_play`` [ms]: of each stroke, in a game
-    with a clock.
+    What each striker has nominated is AUTO afterwards. ``alone``: the table returns to the agent.
     """
+    tables, shots, setting = TableArrays(*tables), PlayedArrays(*shots), Setting(*setting)
+    out = OutputArrays(*output)
+    rules, conditions = setting.rules, Conditions(setting.rules, setting.miss, setting.time_to_play)
     for j in range(which.shape[0]):
-        if status[j] != _OK:
+        if shots.status[j] != _OK:
             continue
         k = which[j]
-        p, on, row = positions[k], on_table[k], game[k]
-        see(j, event_time, event_what, n_events, potted, p, on, shots, seen)
+        p, on, row, seen = tables.positions[k], tables.on_table[k], tables.game[k], shots.seen[j]
+        first, touching, moved, potted = see(j, shots, p, on)
         for i in range(N_BALLS):
-            p[i, 0], p[i, 1] = r[j, i, 0], r[j, i, 1]
+            p[i, 0], p[i, 1] = shots.r[j, i, 0], shots.r[j, i, 1]
         ball_on, flags = row[BALL_ON], 0
         if rules == SIX_RED:
             flags = FLAG.SIX_RED
         elif rules == SHOOT_OUT:
             flags = FLAG.SHOOT_OUT
-            if is_late(row, rules, time_to_play):
+            if is_late(row, rules, setting.time_to_play):
                 flags |= FLAG.LATE
-            if not reached_cushion(event_what[j], n_events[j]):
+            if not reached_cushion(shots.event_what[j], shots.n_events[j]):
                 flags |= FLAG.NO_CUSHION
-        result = settle(
-            p, on, ball_on, row[FREE_BALL], lead_of(row, row[STRIKER]), seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN],
-            0, nominated[k], flags, jaws, BALL_RADIUS,
-        )  # fmt: skip
-        nominated[k] = AUTO
-        write_ruling(j, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result, seen)
-        lasted = int(1000.0 * duration[j] + 0.5)
-        clear, full, attempt, stored = seen[j, CLEAR_PATH], seen[j, FULL_PATH], seen[j, ATTEMPT], miss != NO_MISSES
-        after_stroke(row, result, rules, miss, clear, full, attempt, stored, time_to_play, lasted)
+        situation = ball_on, row[FREE_BALL], lead_of(row, row[STRIKER])
+        facts = Facts(first, touching, moved, potted, 0, tables.nominated[k])
+        result = settle(p, on, situation, facts, flags, setting.jaws, BALL_RADIUS)
+        tables.nominated[k] = AUTO
+        write_ruling(seen, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result)
+        effort = Effort(seen[CLEAR_PATH], seen[FULL_PATH], seen[ATTEMPT])
+        lasted = int(1000.0 * shots.duration[j] + 0.5)
+        after_stroke(row, result, conditions, effort, setting.miss != NO_MISSES, lasted)
         row[STROKES] += 1
         if row[OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
-            give_up(row, kind)
+            give_up(row, setting.reward)
         if row[PHASE] == LOT:
             _leave_the_black(p, on)
-            u, _ = pair(streams[k])
+            u, _ = pair(tables.streams[k])
             row[STRIKER] = int(2.0 * u)  # the winner of the lot
-            if alone or not options[A_LOT]:
+            if alone or not setting.options[A_LOT]:
                 draw(row, row[STRIKER])  # who begins
         if row[IN_HAND] and not row[OVER]:
             if not row[ANYWHERE]:
                 place(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
-            elif seen[j, DOWN] & 1:
+            elif potted & 1:
                 place_anywhere(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
             else:  # where it came to rest
                 place_anywhere(p, on, p[CUE, 0], p[CUE, 1])
         played[k] += 1
         if own:
-            write_stroke_info(j, k, result, ball_on, seen, duration, n_events, reals, counts)
+            write_stroke_info(k, out, j, shots, ball_on, result)
         if alone:
             _hand_back(row)
 
@@ -247,21 +274,20 @@ def _share(number, scale):
 
 
 @kernel
-def observe_frame_into(out, k, positions, on_table, row, saved, limits, player):
-    """Write the observation of ``player``: that of a visit, then ``observations.FRAME_ENTRIES``, then the saved layout if there is room.
-
-    ``positions``, ``on_table``: of table k; ``saved``: ``Layouts`` of all tables.
-    """
-    on = strikeable(row, bits(on_table) & ~1)
-    observe_into(out, positions, on_table, row[BALL_ON], on, row[IN_HAND], row[POINTS])
+def observe_frame_into(out, k, tables, saved, setting, player):
+    """Write what ``player`` observes: as in a visit, ``FRAME_ENTRIES`` and, with room, the saved layout."""
+    row, present = tables.game[k], tables.on_table[k]
+    on = strikeable(row, bits(present) & ~1)
+    observe_into(out, tables.positions[k], present, row[BALL_ON], on, row[IN_HAND], row[POINTS])
     mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
     to_play, left = not row[OVER] and row[STRIKER] == player, available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
+    clock = min(1.0, row[CLOCK] / setting.clock) if setting.clock else 0.0
     more = (
         _share(mine, 147.0), _share(other, 147.0), _share(mine - other, 147.0), left / 155.0,
         1.0 if to_play else 0.0, 1.0 if row[FREE_BALL] else 0.0, 1.0 if row[PHASE] == CHOICE else 0.0, 1.0 if row[MISS_CALLED] else 0.0,
         1.0 if row[RESPOTTED_BLACK] else 0.0, 1.0 if row[BREAKER] == player else 0.0, row[FAILURES] / 2.0, 1.0 if row[WARNED] else 0.0,
         1.0 if row[PHASE] == LOT else 0.0, _share(row[FRAMES_0 + player], 1.0), _share(row[FRAMES_1 - player], 1.0),
-        _share(limits[L_FRAMES], 1.0), min(1.0, row[CLOCK] / limits[L_CLOCK]) if limits[L_CLOCK] else 0.0, _share(row[MISSES], 5.0),
+        _share(setting.frames, 1.0), clock, _share(row[MISSES], 5.0),
         1.0 if row[ANYWHERE] else 0.0,
     )  # fmt: skip
     for c in range(len(more)):
@@ -269,23 +295,24 @@ def observe_frame_into(out, k, positions, on_table, row, saved, limits, player):
     if out.shape[0] == FRAME_SIZE:
         return
     for i in range(N_BALLS):
-        at, there = FRAME_SIZE + 3 * i, row[MISS_CALLED] and saved.on_table[k, i]
-        out[at] = saved.positions[k, i, 0] / HALF_WIDTH if there else 0.0
-        out[at + 1] = saved.positions[k, i, 1] / HALF_LENGTH if there else 0.0
-        out[at + 2] = 1.0 if there else 0.0
+        at, back = FRAME_SIZE + 3 * i, row[MISS_CALLED] and saved.on_table[k, i]
+        out[at] = saved.positions[k, i, 0] / HALF_WIDTH if back else 0.0
+        out[at + 1] = saved.positions[k, i, 1] / HALF_LENGTH if back else 0.0
+        out[at + 2] = 1.0 if back else 0.0
 
 
 @entry(what="the observations of frames", seconds=1)
-def observe(which, player, positions, on_table, game, saved, limits, out):
-    """The observations of ``player`` on the tables ``which``: one row of ``out`` each."""
+def observe(which, player, tables, saved, setting, rows):
+    """The observations of ``player`` on the tables ``which``: one of ``rows`` each."""
+    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
     for j in range(which.shape[0]):
-        k = which[j]
-        observe_frame_into(out[j], k, positions[k], on_table[k], game[k], saved, limits, player)
+        observe_frame_into(rows[j], which[j], tables, saved, setting, player)
 
 
 @kernel
-def _write_frame_info(k, row, player, replies, reals, counts):
+def _write_frame_info(k, row, player, replies, out):
     """Write the entries of the info that concern the frame, as ``player`` sees it: a break, a choice and a free ball are the striker's."""
+    reals, counts = out.reals, out.counts
     mine, other, at_table = row[SCORE_0 + player], row[SCORE_1 - player], row[STRIKER] == player
     reals[k, I_BREAK], reals[k, I_SCORE], reals[k, I_OPPONENT_SCORE] = row[POINTS] if at_table else 0, mine, other
     counts[k, I_STROKES], counts[k, I_REPLIES], counts[k, I_WINNER] = row[STROKES], replies, row[WINNER]
@@ -300,38 +327,41 @@ def _write_frame_info(k, row, player, replies, reals, counts):
 
 
 @kernel
-def _worth(row, kind):
-    """What the agent has earned so far, as the reward ``kind`` counts it."""
-    return earned(kind, lead_of(row, AGENT), row[FRAMES_0 + AGENT] - row[FRAMES_1 - AGENT])
+def _worth(row, reward):
+    """What the agent has earned so far, as the ``reward`` counts it."""
+    return earned(reward, lead_of(row, AGENT), row[FRAMES_0 + AGENT] - row[FRAMES_1 - AGENT])
 
 
 @entry(what="the steps of frames", seconds=1)
-def finish(which, positions, on_table, game, saved, due, replies, played, kind, limit, limits, observations, rewards, terminated,
-            truncated, reals, counts):  # fmt: skip
+def finish(which, tables, saved, setting, due, replies, played, output):
     """Write the results of a step for the tables ``which``; ``played`` (n,): whether the agent had a stroke.
 
     ``due`` (n,): whether the end of the frame has still to be reported: it is not, afterwards.
     """
+    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
-        row = game[k]
+        row = tables.game[k]
         row[STEPS] += 1
-        worth = _worth(row, kind)
-        rewards[k] = frame_reward_of(kind, worth - row[PAID], row[WINNER] if row[OVER] else -1, AGENT)
+        worth = _worth(row, setting.reward)
+        winner = row[WINNER] if row[OVER] else -1
+        out.rewards[k] = frame_reward_of(setting.reward, worth - row[PAID], winner, AGENT)
         row[PAID], due[k] = worth, False
-        terminated[k] = row[OVER]
-        truncated[k] = (not row[OVER] and row[STROKES] >= limits[L_STROKES]) or row[STEPS] >= limit
+        stopped = not row[OVER] and row[STROKES] >= setting.max_strokes
+        out.terminated[k], out.truncated[k] = row[OVER], stopped or row[STEPS] >= setting.limit
         if not played[k]:
-            write_empty_info(k, row[BALL_ON], reals, counts)
-        _write_frame_info(k, row, AGENT, replies[k], reals, counts)
-        observe_frame_into(observations[k], k, positions[k], on_table[k], row, saved, limits, AGENT)
+            write_empty_info(k, out, row[BALL_ON])
+        _write_frame_info(k, row, AGENT, replies[k], out)
+        observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)
 
 
 @entry
-def inform(player, game, reals, counts):
+def inform(player, game, output):
     """The info of the first table as ``player`` sees it, without a stroke."""
-    write_empty_info(0, game[0, BALL_ON], reals, counts)
-    _write_frame_info(0, game[0], player, 0, reals, counts)
+    out = OutputArrays(*output)
+    write_empty_info(0, out, game[0, BALL_ON])
+    _write_frame_info(0, game[0], player, 0, out)
 
 
 @entry(what="the start of a frame", seconds=1)
@@ -352,34 +382,35 @@ def begin(which, drawn, breakers, in_hand, on_table, game, streams):
 
 
 @entry(what="the frames of a match", seconds=1)
-def count_frames(which, game, limits, goes_on):
-    """Count the frames that have ended on the tables ``which`` for their winners; ``goes_on[j]``: whether the next one follows."""
+def count_frames(which, game, needed, goes_on):
+    """Count the frames that have ended on the tables ``which``; ``goes_on[j]``: nobody has won ``needed``."""
     for j in range(which.shape[0]):
         row = game[which[j]]
         row[FRAMES_0 + row[WINNER]] += 1
-        goes_on[j] = row[FRAMES_0 + row[WINNER]] < limits[L_FRAMES]
+        goes_on[j] = row[FRAMES_0 + row[WINNER]] < needed
 
 
 @entry(what="the next frame of a match", seconds=1)
-def begin_next(which, alone, kind, in_hand, on_table, game):
+def begin_next(which, alone, reward, in_hand, on_table, game):
     """The next frames of the matches on the tables ``which``, already dealt: the players break in turn. What was not paid remains so."""
     for j in range(which.shape[0]):
         k = which[j]
         row = game[k]
         won, lost, first, steps = row[FRAMES_0], row[FRAMES_1], row[FIRST_BREAK], row[STEPS]
-        paid = row[PAID] if kind == FRAMES_PAID else row[PAID] - lead_of(row, AGENT)
+        paid = row[PAID] if reward == FRAMES_PAID else row[PAID] - lead_of(row, AGENT)
         begin_frame(row, bits(on_table[k]), AGENT if alone else (first + won + lost) % 2, in_hand)
         row[FRAMES_0], row[FRAMES_1], row[FIRST_BREAK], row[STEPS], row[PAID] = won, lost, first, steps, paid
 
 
 @entry(what="the resets of frames", seconds=1)
-def show(which, fresh, positions, on_table, game, saved, limits, replies, out):
-    """Write the results of a reset for the tables ``which``; with ``fresh``, the last arrays of ``out`` first keep the previous rows."""
-    observations, reals, counts, _, _, _ = out
+def show(which, fresh, tables, saved, setting, replies, output, last):
+    """Write the results of a reset for the tables ``which``; ``fresh``: ``last`` first keeps the old rows."""
+    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
         if fresh:
-            keep_last(k, out)
-        write_empty_info(k, game[k, BALL_ON], reals, counts)
-        _write_frame_info(k, game[k], AGENT, replies[k], reals, counts)
-        observe_frame_into(observations[k], k, positions[k], on_table[k], game[k], saved, limits, AGENT)
+            keep_last(k, out, last)
+        write_empty_info(k, out, tables.game[k, BALL_ON])
+        _write_frame_info(k, tables.game[k], AGENT, replies[k], out)
+        observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)

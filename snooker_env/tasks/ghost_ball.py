@@ -29,6 +29,7 @@ from ..game.rule_sets import SHOOT_OUT
 from ..game.ruling import AUTO
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
+from .arrays import StruckArrays
 from .declarations import A_END_MASS, A_NOMINATE, nominated_ball
 from .escapes import ROLL
 from .lines import LINE_ROWS, racked
@@ -158,9 +159,10 @@ def geometric_turn(positions, on_table, row, rules, found, stream):
 
 
 @entry(what="the geometric opponent", seconds=3)
-def _ghost_ball(which, positions, on_table, game, rules, nominated, streams, options, noise, r, v, w, here, shots):
+def _ghost_ball(which, tables, shots, packed, rules):
     """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike. ``rules``: the code of the rule set."""
-    found = np.empty((LINE_ROWS, POT_COLUMNS))
+    positions, on_table, game, streams, nominated = tables
+    shots, (options, noise, _), found = StruckArrays(*shots), packed, np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
         p, on = positions[k], on_table[k]
@@ -168,7 +170,7 @@ def _ghost_ball(which, positions, on_table, game, rules, nominated, streams, opt
         if options[A_NOMINATE] >= 0:
             nominated[k] = colour
         intended = (speed, side, top, aim - squirt(side, options[A_END_MASS]), 0.0)
-        strike(intended, p, on, streams[k], options, noise, j, r, v, w, here, shots)
+        strike(intended, p, on, streams[k], options, noise, j, shots)
 
 
 @entry(what="the geometric player", seconds=3)
@@ -211,8 +213,6 @@ class GhostBallOpponent(Opponent):
 
     def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
         """Carry its strokes out up to the strike, one on each table."""
-        b, f, (options, noise, _) = buffers, frames, frames.packs[SIDE]
-        tables, shots = (f.positions, f.on_table, f.game), (b.r, b.v, b.w, b.here, b.shots)
-        _ghost_ball(which, *tables, f.rules.rule_set.code, f.nominated, f.streams, options, noise, *shots)
-        f.hold_late(which, b)
+        _ghost_ball(which, frames.arrays, buffers.struck, frames.packs[SIDE], frames.rules.rule_set.code)
+        frames.hold_late(which, buffers)
         return which

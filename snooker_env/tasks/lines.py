@@ -10,12 +10,18 @@ the best first:
 
 from math import atan2, cos, hypot, pi, sin
 
-from .._jit import kernel
+import numpy as np
+
+from .._jit import entry, kernel
 from ..game.balls import N_BALLS, N_REDS, SPOTS, touching_balls
-from ..game.pots import GHOST_X, GHOST_Y, count_pots, find_pots
+from ..game.lines import met
+from ..game.pots import GHOST_X, GHOST_Y, POT_COLUMNS, count_pots, find_pots
 from ..geometry import BALL_RADIUS
+from ..physics.cloth import COLUMNS
+from ..physics.impact.polynomial import WORK
+from .arrays import Work
 from .escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, escape_aim, find_escapes
-from .windows import HIGH, LOW, MOST_EDGES, half_width, met, open_windows, room, towards, turned
+from .windows import HIGH, LOW, MOST_EDGES, half_width, open_windows, room, towards, turned
 
 POTS = 4
 """Number of pots, or of other lines where there is no direct pot, to choose from."""
@@ -31,6 +37,13 @@ _SLIT = 1e-6
 """Half a window that is none [rad]."""
 _APART = 2e-3
 """Two lines differ by at least this [rad]."""
+
+
+@entry  # it makes arrays, which an inner kernel may not
+def new_work():
+    """New work space for one table after another."""
+    lines, motion = np.empty((LINE_ROWS, POT_COLUMNS)), np.empty((2, COLUMNS))
+    return Work(lines, motion, np.empty(2, np.int64), np.empty(WORK))
 
 
 @kernel
@@ -153,11 +166,11 @@ def line_of(positions, on_table, on, found):
 
 
 @kernel(uses=(escape_aim,))
-def aim_along(line, speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work):
+def aim_along(line, stroke, positions, on_table, on, law, work):
     """Direction [rad] in which a stroke leaves along a line of ``find_lines``, a row: where it is over cushions, found for the stroke.
 
-    motion (2, cloth.COLUMNS), state (2,), work: work space.
+    ``stroke``: (speed, side, top).
     """
     if line[LINE_SPEED] == 0.0:
         return line[LINE_AIM]
-    return escape_aim(line[LINE_AIM], speed, side, top, positions, on_table, on, phys, end_mass_ratio, motion, state, work)
+    return escape_aim(line[LINE_AIM], stroke, positions, on_table, on, law, work)

@@ -29,16 +29,16 @@ class Matches(Frames):
         if not len(ended):
             return
         goes_on = np.empty(len(ended), np.bool_)
-        frame_kernels.count_frames(ended, self.game, self._limits, goes_on)
+        frame_kernels.count_frames(ended, self.game, self.rules.frames // 2 + 1, goes_on)
         if not len(ended := ended[goes_on]):
             return
         plan = self.rules.plan
         deal_tables(ended, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         alone = len(self.seats) == 1
-        frame_kernels.begin_next(ended, alone, self._kind, plan.in_hand, self.on_table, self.game)
+        frame_kernels.begin_next(ended, alone, self._reward, plan.in_hand, self.on_table, self.game)
 
     def _worth(self, k):
-        if self._kind == FRAMES_PAID:
+        if self._reward == FRAMES_PAID:
             return self.game[k, FRAMES_0 + AGENT] - self.game[k, FRAMES_1 - AGENT]
         return self.game[k, SCORE_0 + AGENT] - self.game[k, SCORE_1 - AGENT]
 

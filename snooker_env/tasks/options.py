@@ -321,7 +321,7 @@ class Options:
                 raise refuse(name, value, f'must be {usual!r} with task="{self.task}"; it belongs to task="{only}"')
 
     @classmethod
-    def group(cls, name: str, task: str = "match") -> dict[str, Any]:
+    def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
         """Return the options of a group, with their defaults.
 
         Parameters
@@ -330,7 +330,7 @@ class Options:
             "task": what is played, how it begins and what it pays. "action", "view": how the agent acts and sees. "shot": what decides the
             outcome of a shot. "frame": the rules of frames.
         task : {"visit", "frame", "match"}, optional
-            Leaves out options that this task does not have; default "match".
+            Leaves out the options that this task does not have; default None: none of them.
 
         Returns
         -------
@@ -349,9 +349,8 @@ class Options:
         ['noise', 'physics', 'table', 'fidelity']
         """
         choice("name", name, GROUPS)
-        tasks = {"visit": (None, "visit"), "frame": (None, "frame"), "match": (None, "frame", "match")}
-        of = tasks[choice("task", task, TASKS)]
-        return {f.name: f.default for f in _FIELDS if f.metadata["group"] == name and f.metadata["only"] in of}
+        own = TASKS if task is None else {"match": ("frame", "match")}.get(choice("task", task, TASKS), (task,))
+        return {f.name: f.default for f in _FIELDS if f.metadata["group"] == name and f.metadata["only"] in (None, *own)}
 
     def but(self, **changes: Any) -> "Options":
         """Return a copy with some options changed.

@@ -10,6 +10,7 @@ from math import atan2, hypot, pi
 
 from .._jit import kernel
 from ..physics import cloth, cue
+from ..physics.arrays import Law
 from ..physics.detection import pair_time
 from ..physics.impact.contact import collide_balls
 from ..physics.parameters import P_E_B, P_R
@@ -20,15 +21,17 @@ _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve
 
 
 @kernel
-def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_mass_ratio, fidelity, n_steps, motion, state, work):
-    """Angle [rad] by which the object ball at b, hit by a cue ball sent in the direction ``aim``, passes p on the left; 9 if missed.
+def _passes(aim, stroke, c, b, p, law, work):
+    """Angle [rad] by which the ball at b, hit by a cue ball sent from c, passes p on the left; 9: missed.
 
-    motion (2, cloth.COLUMNS), state (2,), work: work space.
+    ``stroke``: (speed, side, top, elevation).
     """
+    (speed, side, top, elevation), (cx, cy), (bx, by), (px, py) = stroke, c, b, p
+    phys, m, motion, state = law.phys, law.end_mass_ratio, work.motion, work.state
     R = phys[P_R]
-    (vx, vy, _), (wx, wy, wz) = cue.struck(speed, aim - cue.squirt(side, end_mass_ratio), side, top, elevation, R, end_mass_ratio)
-    cloth.begin(motion, state, 0, 0.0, cx, cy, vx, vy, wx, wy, wz, phys)
-    cloth.begin(motion, state, 1, 0.0, bx, by, 0.0, 0.0, 0.0, 0.0, 0.0, phys)
+    (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, m), side, top, elevation, R, m)
+    cloth.begin(motion, state, 0, 0.0, (cx, cy), (vx, vy), w, phys)
+    cloth.begin(motion, state, 1, 0.0, (bx, by), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
     t, now = 1e300, 0.0
     while state[0] > cloth.REST:
         t = pair_time(motion, state, 0, 1, now, 2.0 * R)
@@ -41,12 +44,12 @@ def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_
     (x, y), v, w = cloth.evaluate(motion, state, 0, t, phys)
     nx, ny = bx - x, by - y
     d = hypot(nx, ny)
-    _v1, _w1, v2, w2, solved = collide_balls(
-        (v[0], v[1], 0.0), w, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), nx / d, ny / d, phys, phys[P_E_B], fidelity, n_steps, work
-    )
+    still, impact = (0.0, 0.0, 0.0), Law(phys, law.fidelity, law.n_steps)
+    ball = (v[0], v[1], 0.0)
+    _v1, _w1, v2, w2, solved = collide_balls(ball, w, still, still, (nx / d, ny / d), impact, phys[P_E_B], work.series)
     if not solved:
         return 9.0
-    cloth.begin(motion, state, 1, t, bx, by, v2[0], v2[1], w2[0], w2[1], w2[2], phys)
+    cloth.begin(motion, state, 1, t, (bx, by), (v2[0], v2[1]), w2, phys)
     if state[1] == cloth.SLIDE:  # the curve ends where it rolls, or at the pocket
         cloth.next_phase(motion, state, 1, phys)
     if state[1] <= cloth.REST:
@@ -73,24 +76,24 @@ def _passes(aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_
 
 
 @kernel(seconds=5, uses=(collide_balls,))
-def solved_aim(positions, ball, px, py, gx, gy, speed, side, top, elevation, phys, end_mass_ratio, fidelity, n_steps, motion, state, work):
-    """Direction [rad] in which the cue ball must leave to send ``ball`` to the aim point p; (gx, gy): the straight line's ghost ball.
+def solved_aim(positions, ball, target, ghost, stroke, law, work):
+    """Direction [rad] in which the cue ball must leave to send ``ball`` to the point ``target`` (x, y).
 
-    If no direction succeeds (the stroke is too soft to arrive or the cut too thin), the best one tried is returned.
+    ``ghost``: (x, y) of the straight line's ghost ball; ``stroke``: (speed, side, top, elevation). If no
+    direction succeeds (the stroke is too soft to arrive or the cut too thin), the best one tried is returned.
     """
+    (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     line = atan2(gy - cy, gx - cx)
     # an error of the cue ball's direction turns the object ball's the other way, magnified by path / (2 R cos cut)
     far = hypot(gx - cx, gy - cy)
     run = hypot(px - bx, py - by)
     cut = ((gx - cx) * (px - bx) + (gy - cy) * (py - by)) / (far * run)
-    slope = -far / (2.0 * phys[0] * max(cut, 0.05))
+    slope = -far / (2.0 * law.phys[0] * max(cut, 0.05))
     aim, best, least = line, line, 9.0
     last_aim, last = line, 9.0
     for _ in range(_TRIALS):
-        off = _passes(
-            aim, speed, side, top, elevation, cx, cy, bx, by, px, py, phys, end_mass_ratio, fidelity, n_steps, motion, state, work
-        )
+        off = _passes(aim, stroke, (cx, cy), (bx, by), target, law, work)
         if abs(off) < abs(least):
             best, least = aim, off
         if abs(off) <= _ENOUGH:

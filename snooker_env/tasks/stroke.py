@@ -5,7 +5,7 @@ has its own referee. Kernels loop over the tables named by ``which``; row j of t
 draws from its own stream (``game.philox``), so that no table's result depends on another, on their number or on the threads.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,17 +16,16 @@ from .._types import Bools, Floats, Ints
 from ..game.balls import CUE, N_BALLS, TOUCH, bits, touching_balls
 from ..game.frame_columns import ANYWHERE, IN_HAND
 from ..game.in_hand import nearest_anywhere, nearest_place
-from ..game.pots import POT_COLUMNS
 from ..game.ruling import AUTO
 from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.engine import EventKind, Status
-from ..physics.impact.polynomial import WORK
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
+from .arrays import CueLaw, StruckArrays
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, playable
-from .lines import LINE_ROWS
+from .lines import new_work
 from .noise import executed
 
 if TYPE_CHECKING:
@@ -119,11 +118,11 @@ def reached_cushion(event_what, n_events):
 
 
 @kernel
-def strike(intended, positions, on_table, stream, options, noise, j, r, v, w, here, shots):
+def strike(intended, positions, on_table, stream, options, noise, j, shots):
     """Shot j: the table as it lies, and the cue ball struck as ``intended`` = (speed, side, top, aim, elevation), errors included."""
     speed, side, top, aim, elevation = executed(*intended, noise, stream)
     side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
-    shot = shots[j]
+    shot, r, v, w, here = shots.shots[j], shots.r, shots.v, shots.w, shots.here
     (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS])
     shot[SPEED] = intended[0]
     shot[CUE_SPEED], shot[SIDE], shot[TOP], shot[AIM], shot[ELEVATION] = speed, side, top, aim, elevation
@@ -144,13 +143,14 @@ def _same_table(positions, on_table, other, other_on):
 
 
 @entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen, shot_of))
-def address(which, actions, positions, on_table, game, nominated, streams, options, noise, phys, fidelity, n_steps, r, v, w, here, shots):
+def address(which, actions, tables, shots, packed, fidelity):
     """Carry the actions (n, k) of the tables ``which`` out up to the strike: shot j is that of table which[j].
 
-    ``nominated``: of frames (n,), the colour that each striker has nominated, 0 or AUTO; of visits without rows.
+    ``tables``, ``shots``: the parts of ``TableArrays`` and ``StruckArrays``; ``packed``: ``Tables.packed``.
     """
-    found = np.empty((LINE_ROWS, POT_COLUMNS))
-    motion, phase, work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    positions, on_table, game, streams, nominated = tables
+    shots, (options, noise, phys) = StruckArrays(*shots), packed
+    law, work = CueLaw(phys, options[A_END_MASS], *fidelity), new_work()
     solved, mask_before = np.empty(6), 0  # the last choice, and the stroke that it means
     for j in range(which.shape[0]):
         k = which[j]
@@ -171,34 +171,38 @@ def address(which, actions, positions, on_table, game, nominated, streams, optio
                 or mask != mask_before
                 or not _same_table(p, on, positions[which[j - 1]], on_table[which[j - 1]])
             ):
-                chosen = discrete_actions.chosen(
-                    int(a[0]), p, on, mask, phys, options[A_END_MASS], fidelity, n_steps, found, motion, phase, work
-                )
+                chosen = discrete_actions.chosen(int(a[0]), p, on, mask, law, work)
                 solved[0], mask_before = a[0], mask
                 solved[1], solved[2], solved[3], solved[4], solved[5] = chosen
             intended = (solved[1], solved[2], solved[3], solved[4], solved[5])
         else:
-            intended = shot_of(a, p, on, mask, options, phys, found, motion, phase, work)
-        strike(intended, p, on, streams[k], options, noise, j, r, v, w, here, shots)
+            intended = shot_of(a, p, on, mask, options, law, work)
+        strike(intended, p, on, streams[k], options, noise, j, shots)
 
 
 @kernel
-def see(j, event_time, event_what, n_events, potted, positions, on_table, shots, seen):
-    """Extract the referee's facts of shot j, played from ``positions`` and ``on_table`` (as before it), into its row of ``seen``."""
+def see(j, shots, positions, on_table):
+    """The referee's facts of shot j, with ``positions`` and ``on_table`` as before it; also in ``seen``.
+
+    Returns (first, touching, moved, potted), as in ``ruling.Facts``.
+    """
+    shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
-    first, moved = first_struck(event_time[j], event_what[j], n_events[j], touching, positions, shots[j, VX], shots[j, VY])
+    log = shots.event_time[j], shots.event_what[j], shots.n_events[j]
+    first, moved = first_struck(*log, touching, positions, shot[VX], shot[VY])
     down = 0
     for i in range(N_BALLS):
-        if potted[j, i] >= 0:
+        if shots.potted[j, i] >= 0:
             down |= 1 << i
-    seen[j, FIRST], seen[j, TOUCHING], seen[j, MOVED], seen[j, DOWN] = first, touching, moved, down
+    seen[FIRST], seen[TOUCHING], seen[MOVED], seen[DOWN] = first, touching, moved, down
+    return first, touching, moved, down
 
 
 @kernel
-def write_ruling(j, player, ball_on, free_ball, before, result, seen):
-    """Record the referee's decision on shot j: ``result`` is his ``Ruling``; ``before``: points of the break until then."""
-    seen[j, PLAYER], seen[j, WAS_ON], seen[j, FREE] = player, ball_on, free_ball
-    seen[j, BREAK], seen[j, SCORED], seen[j, COST], seen[j, FOULS] = before + result.points, result.points, result.penalty, result.fouls
+def write_ruling(seen, player, ball_on, free_ball, before, result):
+    """Record the referee's ``Ruling`` on a shot in its row of ``seen``; ``before``: the break until then."""
+    seen[PLAYER], seen[WAS_ON], seen[FREE], seen[BREAK] = player, ball_on, free_ball, before + result.points
+    seen[SCORED], seen[COST], seen[FOULS] = result.points, result.penalty, result.fouls
 
 
 class ShotBuffers:
@@ -228,6 +232,9 @@ class ShotBuffers:
     """(m,) how each shot ended, and how long it took [s]."""
     enlarged: "dict[int, ShotBuffers]"
     """Shots of the last run that needed a longer log: row -> their own buffers."""
+    struck: tuple[Any, ...]
+    played: tuple[Any, ...]
+    """For kernels: the parts of ``StruckArrays`` and ``PlayedArrays``, in plain tuples."""
 
     def __init__(self, m: int, log: int = 512, *, path: bool = False):
         self.log = log
@@ -238,6 +245,9 @@ class ShotBuffers:
         self.segments = np.zeros((m, 2 * log + N_BALLS + 2 if path else 0, cloth.COLUMNS + 2))
         self.status, self.n_events, self.n_segments = (np.zeros(m, np.int64) for _ in range(3))
         self.duration = np.zeros(m)
+        self.struck = self.r, self.v, self.w, self.here, self.shots
+        log = self.event_time, self.event_what, self.n_events
+        self.played = self.r, self.shots, self.seen, self.potted, self.status, self.duration, *log
         self.enlarged = {}
 
     def __len__(self) -> int:
@@ -273,13 +283,13 @@ def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
 
 def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
     """The same without counting them."""
-    table, (fidelity, n_steps) = rules.table, rules.fidelity
+    table = rules.table
     buffers.enlarged = {}
-    engine.run_batch(
-        buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted, phys, table.noses, table.jaws, table.falls,
-        table._reach(rules.physics.R), fidelity, n_steps, MAX_EVENTS, buffers.event_time, buffers.event_what, buffers.segments,
-        buffers.status, buffers.n_events, buffers.n_segments, buffers.duration, 0, m,
-    )  # fmt: skip
+    balls = buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted
+    setup = phys, table.noses, table.jaws, table.falls, table._reach(rules.physics.R), *rules.fidelity
+    log = buffers.event_time, buffers.event_what, buffers.segments
+    ends = buffers.status, buffers.n_events, buffers.n_segments, buffers.duration
+    engine.run_batch(balls, setup, MAX_EVENTS, log, ends, 0, m)
 
 
 def run_again(buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats) -> ShotBuffers:

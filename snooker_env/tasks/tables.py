@@ -36,30 +36,32 @@ def copy_row(row, to):
 
 
 @kernel
-def keep_last(k, out):
-    """Save table k's rows of the outputs, if there is room, before a new episode overwrites them; ``out``: six arrays."""
-    observations, reals, counts, last_observations, last_reals, last_counts = out
-    if last_observations.shape[0]:
-        copy_row(observations[k], last_observations[k])
-        copy_row(reals[k], last_reals[k])
-        copy_row(counts[k], last_counts[k])
+def keep_last(k, out, last):
+    """Save table k's rows of the output in ``last``, if it has rows, before an episode overwrites them."""
+    observations, reals, counts = last
+    if observations.shape[0]:
+        copy_row(out.observations[k], observations[k])
+        copy_row(out.reals[k], reals[k])
+        copy_row(out.counts[k], counts[k])
 
 
 @kernel
-def write_stroke_info(j, k, result, ball_on, seen, duration, n_events, reals, counts):
+def write_stroke_info(k, out, j, shots, ball_on, result):
     """Write the info of table k for shot j, on which the referee made the ``Ruling`` result."""
-    reals[k, I_POINTS], reals[k, I_SECONDS] = result.points, duration[j]
+    reals, counts, seen = out.reals, out.counts, shots.seen[j]
+    reals[k, I_POINTS], reals[k, I_SECONDS] = result.points, shots.duration[j]
     pots, lowest = 0, -1
     for i in range(N_BALLS - 1, 0, -1):
-        pots += (seen[j, stroke.DOWN] >> i) & 1
-        lowest = i if (seen[j, stroke.FIRST] >> i) & 1 else lowest
+        pots += (seen[stroke.DOWN] >> i) & 1
+        lowest = i if (seen[stroke.FIRST] >> i) & 1 else lowest
     counts[k, I_PENALTY], counts[k, I_POTS], counts[k, I_FOULS] = result.penalty, pots, result.fouls
-    counts[k, I_BALL_ON], counts[k, I_FIRST], counts[k, I_EVENTS] = ball_on, lowest, n_events[j]
+    counts[k, I_BALL_ON], counts[k, I_FIRST], counts[k, I_EVENTS] = ball_on, lowest, shots.n_events[j]
 
 
 @kernel
-def write_empty_info(k, ball_on, reals, counts):
+def write_empty_info(k, out, ball_on):
     """Write the info of table k if no stroke was played."""
+    reals, counts = out.reals, out.counts
     for c in range(reals.shape[1]):
         reals[k, c] = 0.0
     for c in range(counts.shape[1]):
@@ -108,9 +110,14 @@ class StepOutput:
         self.masks, self.last_masks = (np.zeros((rows if choices else 0, choices), np.int8) for rows in (n, m))
 
     @property
-    def rows(self) -> tuple[Singles, Floats, Ints, Singles, Floats, Ints]:
-        """The arrays that an episode's start overwrites, and those that keep its end."""
-        return self.observations, self.reals, self.counts, self.last_observations, self.last_reals, self.last_counts
+    def arrays(self) -> tuple[Any, ...]:
+        """For kernels: the parts of ``OutputArrays``, in a plain tuple."""
+        return self.observations, self.rewards, self.terminated, self.truncated, self.reals, self.counts
+
+    @property
+    def last(self) -> tuple[Singles, Floats, Ints]:
+        """The arrays that keep the end of an episode where another one starts."""
+        return self.last_observations, self.last_reals, self.last_counts
 
 
 class Crew:
@@ -184,6 +191,11 @@ class Tables(ABC):
         self.streams = np.zeros((n, 2), np.uint64)
         self.begun = np.zeros(n, np.bool_)
         self.packed = rules.packed()
+
+    @property
+    def arrays(self) -> tuple[Any, ...]:
+        """For kernels: the parts of ``arrays.TableArrays``, in a plain tuple."""
+        return self.positions, self.on_table, self.game, self.streams, self.nominated
 
     def seed(self, k: int, rng: np.random.Generator) -> None:
         """Give table k a new stream with a key drawn from a NumPy generator."""
@@ -280,11 +292,7 @@ class Tables(ABC):
 
     def strike(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: tuple[Floats, Floats, Floats]) -> None:
         """``address`` with the options and errors of ``packed``."""
-        (options, noise, phys), (fidelity, n_steps), b = packed, self.rules.fidelity, buffers
-        stroke.address(
-            which, actions, self.positions, self.on_table, self.game, self.nominated, self.streams, options, noise, phys, fidelity, n_steps,
-            b.r, b.v, b.w, b.here, b.shots,
-        )  # fmt: skip
+        stroke.address(which, actions, self.arrays, buffers.struck, packed, self.rules.fidelity)
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
         """Play the shots of the tables ``which`` that have been struck; returns the rows of shots that need ``again``."""

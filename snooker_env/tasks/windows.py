@@ -11,27 +11,13 @@ from math import asin, atan2, cos, floor, hypot, pi, sin, sqrt
 
 from .._jit import kernel
 from ..game.balls import N_BALLS
+from ..game.lines import met
 from ..geometry import BALL_RADIUS
 
 LOW, HIGH, EDGE = range(3)
 """Columns of the windows: where each begins and ends [rad], anticlockwise; the last one is work space."""
 MOST_EDGES = 2 * N_BALLS + 2 * (N_BALLS // 2) ** 2
 """Rows of the windows: one for each direction at which something may change."""
-
-
-@kernel
-def met(positions, on_table, x, y, ux, uy, far):
-    """The ball that the cue ball meets first, rolling from (x, y) along the unit vector u for the distance ``far`` [m]; 0 if none."""
-    ball = 0
-    for i in range(1, N_BALLS):
-        if on_table[i]:
-            bx, by = positions[i, 0] - x, positions[i, 1] - y
-            along, across = bx * ux + by * uy, bx * uy - by * ux
-            if along > 0.0 and abs(across) < 2.0 * BALL_RADIUS:
-                run = along - sqrt(4.0 * BALL_RADIUS * BALL_RADIUS - across * across)
-                if run < far:
-                    far, ball = run, i
-    return ball
 
 
 @kernel

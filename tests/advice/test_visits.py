@@ -4,18 +4,15 @@ import numpy as np
 import pytest
 from cases import ENDGAME, OPEN
 
-from snooker_env.advice import seeds
-from snooker_env.advice.practice import practice_of
+from snooker_env.advice.practice import GOING_ON, practice_of
 from snooker_env.advice.visits import BEST, EVEN_SAMPLES, PICKS, played_on
-from snooker_env.planning import Planner, Positions, action_masks, as_actions, prospects_of, spread_of
-from snooker_env.tasks import LEVELS, SPEEDS, STROKES, TOPS
+from snooker_env.planning import Planner, Positions, action_masks, prospects_of, spread_of
+from snooker_env.tasks import LEVELS, STROKES
 
 
-def action(at, pick):
-    """A choice as an action in float64, to the last bit: rounding grows from stroke to stroke."""
-    speed, top = SPEEDS[pick % STROKES // 15], TOPS[pick % len(TOPS)]
-    turns = np.pi * float(as_actions(at, [0], [pick])[0, 3]) / np.pi
-    return np.array([[2.0 * (speed - 0.2) / (7.0 - 0.2) - 1.0, 0.0, 2.0 * top, turns]])
+def stroke(at, pick):
+    """A choice as a stroke, to the last bit: rounding grows from stroke to stroke."""
+    return Planner({"action": "discrete"}).strokes_of(at, [0], [pick])[0]
 
 
 def by_plain_python(position, visit, visits, seed, noise):
@@ -25,16 +22,16 @@ def by_plain_python(position, visit, visits, seed, noise):
     while True:
         chances, tried = prospects_of(at, spread)[1][0], []
         for pick in PICKS[action_masks(at)[0, PICKS]].tolist():
-            points, goes_on, left, _ = exact.play(at, [0], action(at, pick))
+            points, goes_on, left, _ = exact.play(at, [0], strokes=stroke(at, pick))
             tried.append((-chances[pick // STROKES] * (points[0] + goes_on[0] * prospects_of(left, spread)[0][0]), pick))
         best, chosen = -1.0, -1
         for _, pick in sorted(tried)[:BEST]:
-            five = [noisy.play(at, [0], action(at, pick), [key]) for key in EVEN_SAMPLES]
+            five = [noisy.play(at, [0], strokes=stroke(at, pick), keys=[key]) for key in EVEN_SAMPLES]
             worth = np.mean([points[0] + goes_on[0] * prospects_of(left, spread)[0][0] for points, goes_on, left, _ in five])
             if worth > best:
                 best, chosen = worth, pick
-        key = np.random.default_rng((seed, seeds.GOING_ON, strokes)).integers(0, 2**64 - 1, visits, dtype=np.uint64)[visit]
-        points, goes_on, at, _ = noisy.play(at, [0], action(at, chosen), [key])
+        key = np.random.default_rng((seed, GOING_ON, strokes)).integers(0, 2**64 - 1, visits, dtype=np.uint64)[visit]
+        points, goes_on, at, _ = noisy.play(at, [0], strokes=stroke(at, chosen), keys=[key])
         total, strokes = total + points[0], strokes + 1
         if not goes_on[0]:
             return total, strokes

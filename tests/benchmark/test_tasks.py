@@ -21,6 +21,7 @@ from snooker_env.game import layout
 from snooker_env.tasks import OBSERVATION_SIZE, SIDES, SPEEDS, TOPS, choice_of
 from snooker_env.tasks.frame import Frames
 from snooker_env.tasks.ghost_ball import GhostBallOpponent
+from snooker_env.tasks.seats import Seat
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_FOULS, Crew
 from tests.processes import python
@@ -212,7 +213,8 @@ def test_how_often_the_built_in_stroke_escapes():
     """The stroke of the opponent ghost_ball on the judged tables."""
     task = TASKS["SnookerEscape-v0"]
     n, options = task.episodes, {"noise": task.frozen["noise"], "layout": task.judged_layout, "aim": "target", "placement": True}
-    frames, buffers = Frames(sn.Options(task="frame", decision=True, **options).rules, n), ShotBuffers(n)
+    game, buffers = sn.Options(task="frame", decision=True, **options), ShotBuffers(n)
+    frames = Frames(game, n, seats=[Seat.of(game.rules)] * 2)
     visits = sn.SnookerVectorEnv(n, task.judged())
     visits.reset(seed=task.seeds(n))
     for k, seed in enumerate(task.seeds(n)):

@@ -93,25 +93,6 @@ def test_directions_by_cause():
     assert found["swerve"] < 0.05 * found["squirt"]
 
 
-def test_execution_errors_of_a_given_direction_error():
-    noise = pot_shots.of_direction(0.1, "club", PHYSICS)
-    assert noise.direction_deg() == pytest.approx(0.1) and noise.aim_deg == pytest.approx(0.1 / math.sqrt(2))
-    assert (noise.speed_rel, noise.elevation_deg) == (LEVELS["club"].speed_rel, LEVELS["club"].elevation_deg)
-
-
-def test_the_fit_finds_the_execution_errors_that_made_the_figures():
-    pots = pot_shots.LONG[:2]
-    made = published.mean_rate(shots_of(pots), pot_shots.of_direction(0.06, "professional", PHYSICS), 1500, PHYSICS, TABLE)
-    found = published._directions(pots, (made,), "professional", 1500, PHYSICS, TABLE)
-    assert found == pytest.approx([0.06], rel=0.01)
-
-
-def test_intervals_of_shares():
-    """Wilson (1927): 5 of 10 and 0 of 10."""
-    assert pot_shots.wilson(0.5, 10) == pytest.approx((0.2366, 0.7634), abs=1e-4)
-    assert pot_shots.wilson(0.0, 10) == pytest.approx((0.0, 0.2775), abs=1e-4)
-
-
 def test_the_likeliest_pot_scores_as_often_as_it_was_given_and_more_often_than_the_widest():
     made, expected = in_play.in_play("club", 40, 1)
     assert len(made) == len(expected) > 40 and abs(made.mean() - expected.mean()) < 0.15

@@ -6,8 +6,6 @@ from pathlib import Path
 import pytest
 
 from benchmarks._common import kept, package_copies
-from benchmarks.speed import against_pooltool
-from tests.processes import ROOT
 
 
 @pytest.fixture
@@ -49,19 +47,3 @@ def test_commits_and_copies_of_the_package_are_kept_there(build):
     assert tree.parent == build and (tree / "train.py").is_file()
     (module,) = package_copies.load("snooker_env_copy", {"__init__.py": "", "here.py": "VALUE = 3"}, ["here"])
     assert module.VALUE == 3 and build in Path(module.__file__).parents
-
-
-def test_pooltool_is_kept_in_the_build_folder_of_the_clone(monkeypatch):
-    """Which git ignores. Its environment is made in place."""
-    made = []
-    monkeypatch.setattr(against_pooltool.venv, "create", lambda folder, **options: made.append(folder) or (folder.mkdir(parents=True)))
-    monkeypatch.setattr(against_pooltool, "_pip", lambda *arguments: None)
-    monkeypatch.setattr(kept, "BUILD", kept.BUILD / "of_the_test")
-    try:
-        assert kept.BUILD in against_pooltool.environment().parents and made[0].parent == kept.BUILD
-    finally:
-        for folder in made:
-            (folder / "ready").unlink()
-            folder.rmdir()
-            folder.parent.rmdir()
-    assert kept.BUILD.is_relative_to(ROOT / "build")

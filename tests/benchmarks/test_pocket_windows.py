@@ -5,7 +5,7 @@ import pytest
 
 import snooker_env as sn
 from benchmarks.pockets import openings, pool_tables, rail_paths
-from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, LonePocket, alone, drops, endless, windows
+from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, LonePocket, Paths, alone, drops, endless, windows
 from snooker_env.game import pots
 from tests.kernels import from_python
 
@@ -17,7 +17,7 @@ SPEEDS = (0.5, 1.0, 6.0)
 def widths(preset, table, pocket, speeds=SPEEDS, rolling=True):
     """Lateral windows [mm] by angle and speed, from 0.3 m."""
     here, angles = alone(sn.Table.preset(table), pocket), np.radians(ANGLES[pocket])[:, None]
-    return 1e3 * windows(here, angles, 0.3, np.array(speeds), rolling, False, sn.Physics.preset(preset)).width
+    return 1e3 * windows(here, Paths(angles, 0.3, np.array(speeds), rolling, False), sn.Physics.preset(preset)).width
 
 
 @pytest.mark.parametrize("rolling", [True, False])
@@ -57,7 +57,7 @@ def test_the_clean_opening_is_the_same_at_all_speeds(preset, table, pocket):
 def test_a_window_is_what_a_dense_scan_finds():
     here, physics = alone(sn.Table.preset("match"), MIDDLE), sn.Physics.preset("match")
     for angle, speed in ((0.0, 2.0), (np.radians(45), 6.0)):
-        found = windows(here, angle, 0.3, speed, True, False, physics)
+        found = windows(here, Paths(angle, 0.3, speed, True, False), physics)
         step = 1e-4
         s = np.arange(-0.06, 0.06, step)
         hit = drops(here, angle, 0.3, speed, True, physics, Engine(), s)
@@ -72,20 +72,13 @@ def test_pots_are_offered_by_these_windows():
     given, physics = from_python(pots.window), sn.Physics.preset("match")
     for pocket, nodes in ((CORNER, pots._CORNER_ANGLE), (MIDDLE, pots._MIDDLE_ANGLE)):
         for angles, most in ((np.array(nodes), 1e-3), (0.5 * np.add(nodes[1:], nodes[:-1]), 2.5e-3)):
-            found = windows(alone(sn.Table.preset("match"), pocket), np.radians(angles), 0.3, 1.5, True, False, physics).width
+            found = windows(alone(sn.Table.preset("match"), pocket), Paths(np.radians(angles), 0.3, 1.5, True, False), physics).width
             assert [given(np.cos(a), pocket == MIDDLE) for a in np.radians(angles)] == pytest.approx(found, abs=most)
-
-
-def test_a_turned_path_and_a_shifted_one_ask_for_the_same_opening():
-    here, physics = alone(sn.Table.preset("match"), CORNER), sn.Physics.preset("match")
-    for distance in (1.0, 1.7):
-        shifted, turned = (float(windows(here, 0.0, distance, 2.0, True, way, physics).width) for way in (False, True))
-        assert shifted == pytest.approx(turned * distance, rel=0.05)
 
 
 def test_no_window_where_the_ball_stops_short():
     here, physics = alone(sn.Table.preset("match"), CORNER), sn.Physics.preset("match")
-    found = windows(here, 0.0, np.array([0.3, 1.7]), 0.5, True, False, physics)
+    found = windows(here, Paths(0.0, np.array([0.3, 1.7]), 0.5, True, False), physics)
     assert np.isnan(found.width).tolist() == [False, True]
 
 
@@ -124,15 +117,6 @@ def test_alciatore_s_target_sizes_by_his_formulas():
             assert pool_tables.published(kind, degrees) == pytest.approx(inches, abs=2e-3)
 
 
-def test_slow_mirrors_are_alciatore_s_pool_pockets():
-    """0.1 m/s: the drop takes so long that it is as good as at once."""
-    physics = sn.Physics(**pool_tables.MIRROR)
-    for kind, angles in (("corner", (0, 10, 20)), ("side", (0, 15, 30, 45))):
-        here = pool_tables.pocket(kind)
-        found = windows(here, np.radians(angles), pool_tables.DISTANCE, 0.1, False, False, physics).width / pool_tables.INCH
-        assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)
-
-
 def test_slow_mirrors_are_alciatore_s_pockets_on_the_pool9_table():
     """The preset's own arrays: two of its pockets, each alone, aimed at through the middle of the mouth."""
     table, physics = sn.Table.preset("pool9"), sn.Physics(**pool_tables.MIRROR)
@@ -143,5 +127,5 @@ def test_slow_mirrors_are_alciatore_s_pockets_on_the_pool9_table():
         noses = endless(table.noses, *mouth)
         assert len(noses) == 2
         here = LonePocket(sn.Table(kind, noses, jaws, fall[None]), tuple(mouth), float(axis))
-        found = windows(here, np.radians(angles), pool_tables.DISTANCE, 0.1, False, False, physics).width / pool_tables.INCH
+        found = windows(here, Paths(np.radians(angles), pool_tables.DISTANCE, 0.1, False, False), physics).width / pool_tables.INCH
         assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)

@@ -2,16 +2,17 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-from agents.cluster.options import Keep
+from agents.cluster.keep import Keep
 from tests.processes import ROOT
 
 ABOUT = {"command": "agents.evaluate", "noise": ["club"]}
 HOLDS = f"""
 import sys
-from agents.cluster.options import Keep
+from agents.cluster.keep import Keep
 with Keep(None, "local", {ABOUT!r}) as keep:
     keep.store.write("parts/a.npz", b"a")
     print(keep.store, flush=True)
@@ -38,7 +39,7 @@ def test_a_job_that_another_process_plays_is_refused_by_its_name(holder):
     assert "\n" not in str(error.value) and (folder / "parts" / "a.npz").read_bytes() == b"a"
     for url, address, about in (("other", "local", ABOUT), (None, "local", ABOUT | {"noise": ["none"]}), (None, None, ABOUT)):
         with Keep(url, address, about) as keep:
-            assert keep.store is None or keep.store.path.resolve() != folder.resolve()
+            assert keep.store is None or Path(keep.store.url).resolve() != folder.resolve()
 
 
 def test_its_folder_is_free_and_gone_when_it_is_complete(holder):
@@ -56,7 +57,7 @@ def test_the_same_job_goes_on_with_what_was_kept(holder, end):
         process.kill()
     process.communicate("no\n")
     with Keep(None, "local", ABOUT) as keep:
-        assert keep.store.path.resolve() == folder.resolve() and keep.store.names("parts") == {"a.npz"}
+        assert Path(keep.store.url).resolve() == folder.resolve() and keep.store.names("parts") == {"a.npz"}
         keep.done()
     assert not list(folder.parent.iterdir())
 
@@ -64,5 +65,5 @@ def test_the_same_job_goes_on_with_what_was_kept(holder, end):
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "runs").write_text("a file")
-    with pytest.raises(ValueError, match=r"keep = .*must be a folder that can be written"):
+    with pytest.raises(ValueError, match=r"keep = .*must be a folder or URL that can be written"):
         Keep(None, "local", ABOUT)

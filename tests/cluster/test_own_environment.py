@@ -24,10 +24,6 @@ def required():
     return [one for one in re.findall(r'"([^"]+)"', line[1]) if not one.startswith("snooker-env")]
 
 
-def test_the_extra_names_ray_and_fsspec():
-    assert sorted(re.split(r"[<>=]", one)[0] for one in required()) == ["fsspec", "ray"]
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("tests", [SHORT, WHOLE], ids=["short", "whole"])
 def test_the_tests_of_the_cluster_pass(tests, tmp_path):

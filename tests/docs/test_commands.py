@@ -24,29 +24,6 @@ def test_every_command_is_known():
     assert set(NOT_RUN) <= set(GIVEN) and all(NOT_RUN.values())
 
 
-def named(command, text):
-    """Does a test's text name the command? As a module, as a file, or by the module whose ``main`` the command is."""
-    if command.endswith(".py"):
-        return f'"{command.rpartition("/")[2]}"' in text
-    if "." not in command:
-        return f"-m {command}" in text
-    file = ROOT / (command.replace(".", "/") + ".py")
-    main = re.search(r"^from \.([\w.]+) import main$", file.read_text(encoding="utf-8"), re.MULTILINE) if file.is_file() else None
-    last = main[1].rpartition(".")[2] if main else command.rpartition(".")[2]
-    return bool(re.search(rf"\b{re.escape(command)}\b|\bimport (?:\w+, )*{last}\b", text))
-
-
-@pytest.mark.parametrize("command", sorted(ELSEWHERE))
-def test_the_test_beside_a_command_names_it(command):
-    assert named(command, (ROOT / ELSEWHERE[command]).read_text(encoding="utf-8"))
-    assert not named(command, (ROOT / "tests/repository/test_notices.py").read_text(encoding="utf-8"))
-
-
-def test_the_reader_of_commands_sees_every_kind():
-    text = "`python -m a.b --c 1`, `.venv/bin/python d.py`\n```bash\npython3 -m e \\\n  --f && g\n```\npython -m COMMAND; python -m h..."
-    assert commands(text) == [("a.b", ["--c", "1"]), ("d.py", []), ("e", ["--f"])]
-
-
 @pytest.mark.parametrize("name", sorted(set(GIVEN) - set(NOT_RUN) - {"pytest", "sphinx", "venv", "rl_zoo3.train"}))
 def test_commands_have_the_options_that_are_given(name):
     """They stand in the source of the command, or in what all commands of its kind share: in quotes, or as fields of a dataclass."""

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game import paths as paths_
+from snooker_env.game import lines
 from snooker_env.game.balls import BLACK, COLOURS_MASK, PINK, SPOTS, YELLOW, mask_of
 from snooker_env.game.paths import paths
 from snooker_env.game.snookered import is_snookered
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from tests.kernels import from_python
 
-meets = from_python(paths_.meets)
+meets = from_python(lines.meets)
 
 R = BALL_RADIUS
 RED = mask_of([1])

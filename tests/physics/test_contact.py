@@ -54,7 +54,7 @@ def test_balls_held_at_the_boundary_keep_every_law(name):
         physics = sn.Physics.preset("match", **{"R": 0.02625} | table.ball)
         p = fuzz.layouts(rng, "held", 1 + k % 2, table, R=physics.R)
         v, w = fuzz.motions(rng, "held", p, physics.R)
-        found = invariants.play(p, v, w, np.ones(p.shape[:2], bool), physics, table, contact.parse_fidelity("standard"))
+        found = invariants.play((p, v, w, np.ones(p.shape[:2], bool)), physics, table, contact.parse_fidelity("standard"))
         assert (found.status == Status.OK).all()
         assert (found.worst <= fuzz.allowed("standard")).all()
 
@@ -81,7 +81,7 @@ def test_a_ball_that_leaves_the_table_is_an_error():
     with pytest.raises(sn.SimulationError, match="shot 0 holds a ball that left the table"):
         sn.simulate(*rolling, OPEN)
     state = [np.array([a]) for a in (*rolling, [True])]
-    out = simulation._run(state, sn.Physics(), OPEN, contact.parse_fidelity("standard"), 1000, 0, 0)
+    out = simulation._run(state, sn.Physics(), OPEN, contact.parse_fidelity("standard"), 1000)
     assert out.status.tolist() == [Status.ASTRAY]
     assert sn.simulate(*rolling, None).on_table.all()  # unbounded cloth has no outside
 
@@ -95,7 +95,7 @@ def test_wherever_a_ball_has_gone_astray_the_next_event_finds_it(name, place):
     table = Table.preset(name)
     physics = sn.Physics.preset("match", **table.ball)
     state = [np.array([a]) for a in ([place], [(1e-3, 1e-3)], [(0.0, 0.0, 0.0)], [True])]
-    out = simulation._run(state, physics, table, contact.parse_fidelity("standard"), 1000, 0, 0)
+    out = simulation._run(state, physics, table, contact.parse_fidelity("standard"), 1000)
     assert out.status.tolist() == [Status.ASTRAY]
 
 

@@ -8,7 +8,8 @@ import snooker_env as sn
 from snooker_env import EventKind, Table
 from snooker_env.physics import cloth
 from snooker_env.physics.impact import contact
-from snooker_env.physics.impact.polynomial import WORK
+from snooker_env.tasks.arrays import Law
+from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.pot_aim import solved_aim
 from tests.kernels import from_python
 from tests.physics.test_shots import check_shot, random_table
@@ -176,10 +177,11 @@ def test_a_solved_aim_allows_for_the_nap(nap):
     line = (pocket - balls[1]) / np.linalg.norm(pocket - balls[1])
     ghost = balls[1] - 2 * R * line
     code, steps = contact.parse_fidelity("standard")
-    work = np.empty((2, cloth.COLUMNS)), np.empty(2, np.int64), np.empty(WORK)
+    work = new_work()
 
     def missed_by(solved_for):
-        aim = aim_for(balls, 1, *pocket, *ghost, 1.2, 0.0, 0.0, 0.0, solved_for.pack(), physics.end_mass_ratio, code, steps, *work)
+        law = Law(solved_for.pack(), physics.end_mass_ratio, code, steps)
+        aim = aim_for(balls, 1, tuple(pocket), tuple(ghost), (1.2, 0.0, 0.0, 0.0), law, work)
         v, w = sn.strike(1.2, aim, physics=physics)
         shot = sn.simulate(balls, [v[:2], (0, 0)], [w, (0, 0, 0)], None, physics)
         return np.hypot(*(shot.at(np.linspace(0, shot.duration, 40_000))[0][:, 1] - pocket).T).min()

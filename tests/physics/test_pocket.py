@@ -36,7 +36,7 @@ def test_the_impact_with_a_nose_is_that_of_a_free_sphere_in_small_steps(mu):
         at = np.append(np.sqrt(1 - sin_phi**2) * n, sin_phi)
         v, w = rng.normal(size=3) * 2, rng.normal(size=3) * 100
         v *= np.sign(v @ at)
-        vx, vy, u, spin = strike(v[0], v[1], -v[2], tuple(w), *n, sin_phi, physics.pack())
+        (vx, vy, u), spin = strike((v[0], v[1], -v[2]), tuple(w), *n, sin_phi, physics.pack())
         want_v, want_w = by_small_steps(v, w, at, physics)
         assert [vx, vy, -u] == pytest.approx(want_v, abs=1e-9)
         assert np.array(spin) * R == pytest.approx(want_w * R, abs=1e-9)
@@ -45,7 +45,7 @@ def test_the_impact_with_a_nose_is_that_of_a_free_sphere_in_small_steps(mu):
 def test_a_nose_does_not_pull():
     """The ball falls away from the jaw's nose faster than it grazes towards it: it once took up to 29 % more energy from it."""
     strike, w = from_python(pocket.strike_jaw), (1.0, 2.0, 3.0)
-    assert strike(0.1, 0.9, 0.5, w, 1.0, 0.0, 0.6, sn.Physics().pack()) == (0.1, 0.9, 0.5, w)
+    assert strike((0.1, 0.9, 0.5), w, 1.0, 0.0, 0.6, sn.Physics().pack()) == ((0.1, 0.9, 0.5), w)
     v = np.array([0.901733236439002, 0.4275468027601705])
     start = np.array([0.8877296491479747, -0.005912648120832327]) - 1e-3 * v
     shot = sn.simulate([start], [v], [(-v[1] / R, v[0] / R, 0.0)])
@@ -56,18 +56,18 @@ def test_a_nose_does_not_pull():
 
 def test_a_free_fall_ends_when_the_ball_is_below_the_noses():
     fly, physics = from_python(pocket.fly), sn.Physics()
-    end, _, time, x, y, z, vx, vy, u = fly(0.0, 0.01, 0.0, 0.3, 0.1, 0.0, -0.1, 0.0, FALL, 0, NO_JAWS, physics.pack())
+    end, _, time, r, v = fly((0.0, 0.01, 0.0), (0.3, 0.1, 0.0), (-0.1, 0.0), FALL, 0, NO_JAWS, physics.pack())
     assert end == pocket.LOST
     assert time == pytest.approx(np.sqrt(2 * (1 - SIN) * R / G), abs=pocket.STEP)
-    assert (x, y, z, vx, vy, u) == pytest.approx((0.3 * time, 0.01 + 0.1 * time, 0.5 * G * time**2, 0.3, 0.1, G * time), abs=1e-12)
+    assert r + v == pytest.approx((0.3 * time, 0.01 + 0.1 * time, 0.5 * G * time**2, 0.3, 0.1, G * time), abs=1e-12)
 
 
 def test_the_way_to_the_first_jaw_is_a_free_fall():
     fly, physics, jaw = from_python(pocket.fly), sn.Physics(), np.array([[0.03, 0.0, 0.02, -1.0, 0.0, -1.0]])
-    end, k, *flown = fly(-0.1, 0.0, 0.0, 3.0, 0.0, 0.0, -0.1, 0.0, FALL, 0, jaw, physics.pack())
+    end, k, flown, r, v = fly((-0.1, 0.0, 0.0), (3.0, 0.0, 0.0), (-0.1, 0.0), FALL, 0, jaw, physics.pack())
     time = (0.13 - 0.02 - R) / 3.0
     assert (end, k) == (pocket.JAW, 0)
-    assert flown == pytest.approx([time, 3.0 * time - 0.1, 0.0, 0.5 * G * time**2, 3.0, 0.0, G * time], abs=1e-12)
+    assert (flown, *r, *v) == pytest.approx((time, 3.0 * time - 0.1, 0.0, 0.5 * G * time**2, 3.0, 0.0, G * time), abs=1e-12)
 
 
 IN_THE_AIR = (
@@ -85,7 +85,7 @@ def test_what_a_ball_is_given_in_the_air_counts_as_no_gain():
     assert kinds.index(EventKind.DROP) < kinds.index(EventKind.BALL_BALL) < kinds.index(EventKind.RETURN)
     p, v, w = (np.array([a]) for a in IN_THE_AIR)
     table, fidelity = sn.Table.preset("match"), contact.parse_fidelity("standard")
-    found = invariants.play(p, v, w, np.ones((1, 2), bool), physics, table, fidelity)
+    found = invariants.play((p, v, w, np.ones((1, 2), bool)), physics, table, fidelity)
     assert found.worst[0, invariants.ENERGY] < 1e-12
 
 
@@ -99,7 +99,8 @@ FROM_NOTHING = (
 
 def test_two_balls_at_an_edge_keep_the_energy_of_their_shot():
     p, v, w = (np.array([a]) for a in FROM_NOTHING)
-    found = invariants.play(p, v, w, np.ones((1, 2), bool), sn.Physics(), sn.Table.preset("match"), contact.parse_fidelity("standard"))
+    start, table = (p, v, w, np.ones((1, 2), bool)), sn.Table.preset("match")
+    found = invariants.play(start, sn.Physics(), table, contact.parse_fidelity("standard"))
     assert found.worst[0, invariants.ALL] < 1e-12
 
 
@@ -116,23 +117,23 @@ def test_no_leg_of_a_flight_gains_energy(name):
         turn = np.arctan2(-fy if abs(fy) > 0.1 else 0.0, -fx) + rng.uniform(-1.2, 1.2)
         x, y = fx + radius * np.cos(turn), fy + radius * np.sin(turn)
         way, speed = turn + np.pi + rng.uniform(-1.4, 1.4), rng.uniform(0.4, 5)
-        state, spin, came = (x, y, 0.0, speed * np.cos(way), speed * np.sin(way), 0.0), tuple(rng.normal(0, 50, 3)), (x - fx, y - fy)
+        r, v = (x, y, 0.0), (speed * np.cos(way), speed * np.sin(way), 0.0)
+        spin, entered = tuple(rng.normal(0, 50, 3)), (x - fx, y - fy)
         for _ in range(20):
-            x, y, z, vx, vy, u = state
+            (x, y, z), (vx, vy, u) = r, v
             had = 0.5 * (vx * vx + vy * vy + u * u) - G * z
-            end, jaw, time, *state = fly(*state, *came, table.falls, k, table.jaws, phys)
-            has = 0.5 * (state[3] ** 2 + state[4] ** 2 + state[5] ** 2) - G * state[2]
+            end, jaw, time, r, v = fly(r, v, entered, table.falls, k, table.jaws, phys)
+            has = 0.5 * (v[0] ** 2 + v[1] ** 2 + v[2] ** 2) - G * r[2]
             assert has <= had + 1e-12 * speed**2
             size = np.sqrt(vx * vx + vy * vy + u * u)
             if end == pocket.JAW and pocket.SHORTEST < time < min(pocket.STEP, pocket.STRIDE / size):  # within one step: a straight line
                 short += 1
-                assert (state[0] - x, state[1] - y) == pytest.approx((vx * time, vy * time), abs=1e-12)
-                assert state[3:5] == [vx, vy]
+                assert (r[0] - x, r[1] - y) == pytest.approx((vx * time, vy * time), abs=1e-12)
+                assert v[:2] == (vx, vy)
             ends.append(end)
             if end != pocket.JAW:
                 break
-            _, nx, ny, sin_phi, _ = gap(*state[:3], table.jaws, jaw, R, table.ball["sin_theta"])
-            *moves, spin = strike(*state[3:], spin, nx, ny, sin_phi, phys)
-            state = (*state[:3], *moves)
+            _, nx, ny, sin_phi, _ = gap(r, table.jaws, jaw, R, table.ball["sin_theta"])
+            v, spin = strike(v, spin, nx, ny, sin_phi, phys)
     assert {end: ends.count(end) > 10 for end in (pocket.JAW, pocket.LOST, pocket.BACK)} == dict.fromkeys(range(3), True)
     assert short > 10

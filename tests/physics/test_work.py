@@ -79,7 +79,7 @@ def counted():
         state = p, v, w, np.ones(p.shape[:2], bool)
         sys.setprofile(watch)
         with np.errstate(all="ignore"):
-            out = _run(state, sn.Physics.preset("paper"), sn.Table.preset("match"), contact.parse_fidelity("standard"), MAX_EVENTS, 0, 0)
+            out = _run(state, sn.Physics.preset("paper"), sn.Table.preset("match"), contact.parse_fidelity("standard"), MAX_EVENTS)
         sys.setprofile(None)
         found[kind] = {"events": int(out.n_events.sum())} | counts
     return found

@@ -6,10 +6,23 @@ import numpy as np
 import pytest
 from positions import tables
 
-from snooker_env.planning import RULE_OF_THUMB, SURE, Planner, Position, Positions, StrokeSearch, prospects_of
+from snooker_env.game.balls import SPOTS
+from snooker_env.game.frame_columns import FREE_BALL
+from snooker_env.planning import (
+    RULE_OF_THUMB,
+    SURE,
+    Planner,
+    Position,
+    Positions,
+    StrokeSearch,
+    at_pots,
+    clear_paths,
+    pots,
+    prospects_of,
+)
 from snooker_env.planning.proposals import Proposals, spread_strokes
 from snooker_env.planning.sobol import normal_points
-from snooker_env.planning.stroke_search import FEWEST, PRIOR, schedule
+from snooker_env.planning.stroke_search import FEWEST, FOUL, LEFT, PRIOR, schedule
 from snooker_env.tasks.noise import errors_of
 
 OPTIONS = {"noise": "club", "fidelity": "fast"}
@@ -227,6 +240,67 @@ def test_the_search_beats_the_first_of_its_looks_under_fresh_errors():
 
 
 # what a decision depends on --------------------------------------------------------------------------------------------------------
+
+
+def test_a_decision_is_the_same_alone_or_among_many_on_any_number_of_threads():
+    """Pots, balls that are seen, escapes, in visits and in frames: the position and its seed alone decide."""
+    parts = [some(5), some(4, layout="break_off"), some(9, layout="snookered", seed=3)]
+    env = tables(3, task="frame", layout="random:5", noise="club")
+    env.tables.game[1, FREE_BALL] = True
+    parts.append(Positions.of(env).as_visits())
+    at = Positions(*(np.concatenate([getattr(one, name) for one in parts]) for name in ("positions", "on_table", "game")))
+    seeds = np.arange(len(at)) + 70
+    seen = pots(at).ball[:, 0] >= 0
+    assert (~seen & clear_paths(at).any_part).sum() > 0 and (~seen & ~clear_paths(at).any_part).sum() > 0 and seen.any()
+    order = np.random.default_rng(0).permutation(np.tile(np.arange(len(at)), 4))
+    whole = search(60, threads=2).rank(at[order], seeds[order])
+    for k in range(len(at)):
+        alone = search(60).rank(at[[k]], seeds[[k]])
+        for mine in np.flatnonzero(order == k):
+            assert all(np.array_equal(one[0], every[mine]) for one, every in zip(alone, whole, strict=True))
+
+
+@pytest.mark.parametrize("budget", [30, 120])
+@pytest.mark.parametrize("noise", ["none", "professional"])
+def test_a_fair_stroke_is_found_where_the_balls_on_are_hidden(noise, budget):
+    at = some(100, layout="snookered", seed=9)
+    assert clear_paths(at).any_part.mean() < 0.5
+    ranked = search(budget, {"noise": noise, "fidelity": "fast"}).rank(at, np.arange(100))
+    played = Planner({"fidelity": "fast"}, threads=1).stops(at, np.arange(100), strokes=ranked.strokes[:, 0])
+    assert (played.penalty == 0).mean() >= 0.98
+
+
+def test_without_a_pot_fouls_and_what_is_left_count():
+    """Recomputed for one look: points, less penalty and cost of a foul, less a share of what the opponent is left."""
+    at = some(6, layout="snookered", seed=3)
+    at = at[np.flatnonzero(pots(at).ball[:, 0] < 0)]
+    tool = search(40, {"noise": "none", "fidelity": "fast"})
+    ranked = tool.rank(at, np.arange(len(at)))
+    stops = tool.planner.stops(at, np.repeat(np.arange(len(at)), 40), strokes=ranked.strokes.reshape(-1, 5))
+    left, fouls = stops.afterstates, stops.penalty > 0
+    usual = {"on": None, "over": False, "points": 0, "in_hand": False, "table": None}
+    theirs = [Position(**vars(one) | usual | {"cue": one.cue or tuple(SPOTS[0].tolist())}) for one in left]
+    gains = stops.points - stops.penalty - FOUL * fouls
+    gains += np.where(stops.goes_on, 1.0, -LEFT) * tool.value(
+        Positions.of([mine if on else other for mine, other, on in zip(left, theirs, stops.goes_on, strict=True)])
+    )
+    assert ranked.scores.ravel() == pytest.approx(gains, abs=1e-6) and fouls.any() and not fouls.all()
+
+
+def test_generators_that_have_strokes_share_the_looks():
+    at, calls = some(3), []
+
+    def soft(tool, here, m, own):
+        calls.append(len(here))
+        made = at_pots(tool, here, m, own)
+        made.strokes[..., 0] = 1.0
+        made.chances[1] = 0.0
+        return made
+
+    tool = search(60, {"noise": "none", "fidelity": "fast"}, propose=(at_pots, soft))
+    ranked, usual = tool.rank(at, [1, 2, 3]), search(60, {"noise": "none", "fidelity": "fast"}).rank(at, [1, 2, 3])
+    assert (ranked.strokes[..., 0] == 1.0).sum(axis=1).tolist() == [30, 0, 30] and calls == [3]
+    assert np.array_equal(ranked.strokes[1], usual.strokes[1]) and not np.array_equal(ranked.scores[0], usual.scores[0])
 
 
 def test_equal_seeds_give_equal_decisions_on_any_number_of_threads():

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.game.balls import BLACK, BROWN, CUE, N_BALLS, SPOTS
+from snooker_env.game.balls import CUE, N_BALLS, SPOTS
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.render import pygame_balls, pygame_lines
 from snooker_env.render.outline import outline
-from snooker_env.render.palette import COLOURS, PALETTE
+from snooker_env.render.palette import COLOURS
 from snooker_env.render.pygame_view import SIZE, View, rgb_array, to_pixels
 from snooker_env.render.scene import scene
-from snooker_env.render.table_picture import LAMP_HEIGHT, LAMPS, _inside, _to_line, lamps, table_picture
+from snooker_env.render.table_picture import table_picture
 from snooker_env.render.turning import rotation
 
 MATCH = sn.Table.preset("match")
@@ -66,32 +66,6 @@ def test_pockets_have_leather_and_depth(empty):
         assert wood[0] > 1.8 * wood[1]
 
 
-def test_the_cloth_has_a_nap_that_runs_along_the_table(empty):
-    left, right = np.floor(to_pixels([(-0.5, -0.9), (0.5, -0.1)])).astype(int)
-    cloth = empty[left[1] : right[1], left[0] : right[0]].astype(float)
-    assert cloth.mean(axis=(0, 1)) == pytest.approx(PALETTE["cloth"], abs=8)
-    assert 0.7 < cloth[..., 1].std() < 4
-    along, across = (np.abs(np.diff(cloth[..., 1], axis=axis)).mean() for axis in (1, 0))
-    assert along < 0.8 * across
-
-
-def test_the_inside_of_a_polygon_and_the_distance_to_a_line():
-    """Against windings and distances of single points."""
-    rng = np.random.default_rng(3)
-    x, y = np.linspace(-1, 1, 41)[:, None], np.linspace(-1.5, 1.5, 61)[None, :]
-    for polygon in outline(MATCH).cushions[:2]:
-        shape = (polygon - polygon.mean(axis=0)) / np.abs(polygon - polygon.mean(axis=0)).max(axis=0) + rng.normal(0, 1e-4, polygon.shape)
-        inside, far = _inside(x, y, shape), _to_line(x, y, shape, 0.6)
-        for i in range(0, 41, 3):
-            for j in range(0, 61, 3):
-                p = np.array([x[i, 0], y[0, j]])
-                turn = np.diff(np.unwrap(np.arctan2(*(np.vstack([shape, shape[:1]]) - p).T))).sum()
-                assert inside[i, j] == (abs(turn) > 3), p
-                a, b = shape[:-1], shape[1:]
-                part = np.clip(((p - a) * (b - a)).sum(axis=1) / ((b - a) ** 2).sum(axis=1), 0, 1)[:, None]
-                assert far[i, j] == pytest.approx(min(0.6, np.hypot(*(a + part * (b - a) - p).T).min()), abs=1e-6)
-
-
 def test_cushions_are_drawn_to_their_true_ends(empty):
     """Along each nose and jaw of the outline: lighter 3 mm into the cushion than the shadow 3 mm outside."""
     for nose in outline(MATCH).noses:
@@ -103,30 +77,6 @@ def test_cushions_are_drawn_to_their_true_ends(empty):
         for k in (4, 12, 24, 36, 44):
             inside, outside = (pixel(empty, middle[k] + side * 0.003 * normal[k])[1] for side in (1, -1))
             assert inside > outside + 25, (k, middle[k])
-
-
-def test_lamps_are_mirrored_where_the_law_of_reflection_says():
-    """In a black ball: where the ray from the eye, straight above, is thrown to the middle of a lamp, it is bright; beside it is not."""
-    places = np.array([(0.0, 0.0), (0.5, 1.2), (-0.7, -1.5), (0.6, -0.3)])
-    for place in places:
-        picture = rgb_array(scene("match", np.tile(place, (N_BALLS, 1)), only(BLACK)), size=(4000, 2160)).astype(float)
-        view = View.of(MATCH, size=(4000, 2160))
-        for lamp in lamps(MATCH):
-            light = np.array([*(lamp - place), LAMP_HEIGHT])
-            normal = light / np.linalg.norm(light) + (0, 0, 1)
-            normal /= np.linalg.norm(normal)
-            assert 2 * normal[2] * normal - (0, 0, 1) == pytest.approx(light / np.linalg.norm(light))  # that is the law
-            column, row = np.floor(view(place + BALL_RADIUS * normal[:2])).astype(int)
-            assert picture[row - 1 : row + 2, column - 1 : column + 2].min(axis=2).max() > 150, (place, lamp)
-            if np.hypot(*(lamp - place)) > 1.0:
-                continue  # farther ones run into each other
-            rows, columns = np.mgrid[row - 4 : row + 5, column - 3 : column + 4]
-            bright = np.clip(picture[rows, columns].min(axis=2) - 160, 0, None)
-            middle = [(bright * (axis + 0.5)).sum() / bright.sum() for axis in (columns, rows)]
-            assert middle == pytest.approx(view(place + BALL_RADIUS * normal[:2]), abs=0.8), (place, lamp)
-        beside = np.floor(view(place + BALL_RADIUS * np.array([0.75, 0.0]))).astype(int)
-        assert picture[beside[1], beside[0]].max() < 60
-    assert len(lamps(MATCH)) == LAMPS >= 3
 
 
 def test_a_path_is_three_pixels_wide_with_a_dark_edge_at_every_angle():
@@ -154,16 +104,6 @@ def test_a_path_that_grew_is_as_if_it_was_drawn_at_once():
     assert np.array_equal(grown, rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points[:length]})))
     still = np.tile((0.1, 0.1), (5, 1))
     assert np.array_equal(rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: still})), rgb_array(scene("match", SPOTS, NOBODY)))
-
-
-def test_pieces_of_a_path_meet_without_a_seam(monkeypatch):
-    turn = np.linspace(0, 2, 400)
-    for points in (np.array([(-0.7, -1.5), (0.6, 1.6)]), np.stack([0.6 * np.sin(3 * turn), 1.4 * turn - 1.4], axis=1)):
-        pieces = rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points})).astype(int)
-        with monkeypatch.context() as patch:
-            patch.setattr(pygame_lines, "_POINTS", 10**6)
-            whole = rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points})).astype(int)
-        assert np.abs(pieces - whole).max() <= 20
 
 
 def test_ghosts_are_faded_balls(empty):
@@ -200,13 +140,6 @@ def test_letters_are_on_the_six_colours():
         mine = changed[far.argmin(axis=1) == k]
         assert (mine.min(axis=0) + mine.max(axis=0)) / 2 == pytest.approx(to_pixels(SPOTS[16 + k]), abs=3.0)
         assert 8 < np.ptp(mine[:, 1]) < 20
-
-
-def test_shadows_fall_away_from_the_lamps(empty):
-    """At the black end the cloth behind the ball, seen from the middle, is darker than before it."""
-    picture = rgb_array(scene("match", np.tile((0.0, 1.6), (N_BALLS, 1)), only(BROWN)))
-    before, behind = ((pixel(empty, at) - pixel(picture, at))[1] for at in ((0.0, 1.6 - 1.4 * BALL_RADIUS), (0.0, 1.6 + 1.4 * BALL_RADIUS)))
-    assert behind > before + 8
 
 
 def test_the_table_is_drawn_once_and_never_drawn_on():

@@ -9,7 +9,7 @@ import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.render.scene import Film, ball_paths, contacts, scene, shot_scenes
-from snooker_env.render.turning import Turning, matrix, product, rotation
+from snooker_env.render.turning import Turning, matrix
 
 
 @pytest.fixture(scope="module")
@@ -107,14 +107,3 @@ def test_a_ball_that_rolls_and_spins_turns_about_both():
         middle = point + np.cross(w, point) / 2
         point = point + np.cross(w, middle)
     assert matrix(Turning(shot, CUE).at(end)) @ (0.0, 0.0, 1.0) == pytest.approx(point, abs=2e-4)
-
-
-def test_turns_add_up():
-    rng = np.random.default_rng(0)
-    for a, b in rng.normal(0, 1, (20, 2, 3)):
-        both = matrix(product(rotation(a), rotation(b)))
-        assert both == pytest.approx(matrix(rotation(a)) @ matrix(rotation(b)), abs=1e-12)
-        axis = a / np.linalg.norm(a)
-        assert matrix(rotation(a)) @ axis == pytest.approx(axis, abs=1e-12)
-        assert np.trace(matrix(rotation(a))) == pytest.approx(1 + 2 * np.cos(np.linalg.norm(a)), abs=1e-12)
-    assert np.array_equal(rotation(np.zeros(3)), (1, 0, 0, 0))

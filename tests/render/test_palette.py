@@ -1,4 +1,4 @@
-"""Do the colours stand out from the cloth and from each other? By CIEDE2000, and as they are drawn; and does the JSON hold them all?"""
+"""Do the colours stand out from the cloth and from each other? By CIEDE2000; and does the JSON hold them all?"""
 
 import itertools
 import json
@@ -10,8 +10,6 @@ import snooker_env as sn
 from snooker_env.game.balls import NAMES, SPOTS, VALUES
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from snooker_env.render import COLOURS, PALETTE, outline, scene_data
-from snooker_env.render.pygame_view import rgb_array, to_pixels
-from snooker_env.render.scene import scene
 
 
 def lab(rgb):
@@ -43,17 +41,6 @@ def ciede2000(one, two):
     return np.sqrt(sum(p * p for p in parts) + rotated * parts[1] * parts[2])
 
 
-def test_the_measure_is_the_published_one():
-    """Four pairs of the authors' Table 1."""
-    for one, two, far in [
-        ((50.0, 2.6772, -79.7751), (50.0, 0.0, -82.7485), 2.0425),
-        ((50.0, 2.4900, -0.0010), (50.0, -2.4900, 0.0011), 7.2195),  # either side of a hue that jumps
-        ((50.0, 2.5, 0.0), (73.0, 25.0, -18.0), 27.1492),
-        ((60.2574, -34.0099, 36.2677), (60.4626, -34.1751, 39.4387), 1.2644),
-    ]:
-        assert ciede2000(one, two) == pytest.approx(far, abs=5e-5)
-
-
 def test_each_ball_stands_out_from_the_cloth():
     cloth = lab(PALETTE["cloth"])
     for ball in (0, 1, *range(16, 22)):
@@ -64,19 +51,6 @@ def test_no_two_kinds_of_ball_are_alike():
     kinds = [COLOURS[ball] for ball in (0, 1, *range(16, 22))]
     assert min(ciede2000(lab(one), lab(two)) for one, two in itertools.combinations(kinds, 2)) >= 15
     assert len({tuple(c) for c in COLOURS[1:16].tolist()}) == 1
-
-
-def test_the_picture_shows_the_contrast():
-    """The mean colour of each ball on its spot, light and shade and lamps and all, against the cloth beside it."""
-    picture = rgb_array(scene("match", SPOTS)).astype(float)
-    scale = np.diff(to_pixels([(0, 0), (0, 1)])[:, 0])[0]
-    columns, rows = np.meshgrid(np.arange(1920) + 0.5, np.arange(1080) + 0.5)
-    for ball in (0, 1, *range(16, 22)):
-        x, y = to_pixels(SPOTS[ball])
-        inside = np.hypot(columns - x, rows - y) < 0.9 * BALL_RADIUS * scale
-        free = to_pixels(SPOTS[ball] + ((0.11, 0.07) if ball != 1 else (0.0, -0.13)))
-        beside = np.hypot(*(np.stack([columns, rows], -1) - free).transpose(2, 0, 1)) < 8
-        assert ciede2000(lab(picture[inside].mean(axis=0)), lab(picture[beside].mean(axis=0))) >= 20, NAMES[ball]
 
 
 @pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9", "carom"])

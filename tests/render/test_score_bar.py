@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from snooker_env.game.balls import SPOTS
-from snooker_env.render import pygame_library
 from snooker_env.render.palette import COLOURS, PALETTE
 from snooker_env.render.pygame_bar import in_words, score_bar
-from snooker_env.render.pygame_library import BOLD, FONTS, MEDIUM, typeset
+from snooker_env.render.pygame_library import BOLD, MEDIUM, typeset
 from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import ScoreBar, scene
 
@@ -32,29 +31,6 @@ def test_figures_are_as_wide_as_each_other(file):
     widths = {typeset(digit * 20, (255, 255, 255), 40, file).get_width() for digit in "0123456789"}
     assert len(widths) == 1
     assert typeset("iii", (255, 255, 255), 40, file).get_width() < typeset("mmm", (255, 255, 255), 40, file).get_width() / 2
-
-
-def test_the_typeface_is_small_free_and_says_so():
-    fonts = sorted(file.name for file in FONTS.iterdir())
-    assert fonts == ["Inter-Bold.otf", "Inter-Medium.otf", "OFL.txt", "README.md"]
-    assert sum(file.stat().st_size for file in FONTS.glob("*.otf")) < 80_000
-    licence = (FONTS / "OFL.txt").read_text()
-    assert "SIL OPEN FONT LICENSE Version 1.1" in licence and "Copyright 2016-2022 The Inter Project Authors" in licence
-    assert "DISCLAIMER" in licence and "OFL.txt" in (FONTS / "README.md").read_text()
-
-
-@pytest.mark.parametrize("letters", ["ÀÉÎÕÜßñçøåæ", "ŁőřžšđčęąŞİğ", "'“”–—…×−"])
-def test_names_of_many_languages_are_in_it(letters):
-    pygame_library.pygame_()
-    missing = [c for c in letters if np.array_equal(*(_ink(text) for text in (c, "\U0001f3b1")))]
-    assert not missing
-
-
-def _ink(text):
-    import pygame
-
-    drawn = pygame.surfarray.array_alpha(typeset(text, (255, 255, 255), 40)).astype(int)
-    return np.pad(drawn, ((0, 120 - drawn.shape[0]), (0, 120 - drawn.shape[1])))
 
 
 def test_the_bar_is_under_the_table_and_changes_nothing_else():

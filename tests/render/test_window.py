@@ -69,14 +69,6 @@ def test_a_window_is_as_wide_as_its_first_table_and_keeps_its_size(dummy_screen)
         Window(5)
 
 
-def test_a_window_fits_the_screen(dummy_screen):
-    window = Window()
-    window.draw(scene("match", SPOTS))
-    (width, height), (most_wide, most_high) = dummy_screen.display.get_surface().get_size(), dummy_screen.display.get_desktop_sizes()[0]
-    assert 0.5 * most_wide < width <= most_wide and height <= most_high
-    window.close()
-
-
 class Pressed(Window):
     """A window whose user presses keys: {number of the picture: keys}. It keeps what it showed."""
 

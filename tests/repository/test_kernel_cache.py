@@ -117,16 +117,6 @@ def test_links_are_followed(folders, monkeypatch, tmp_path):
     assert f"others can write to {folders['snooker_env']}" in unsafe(monkeypatch, folders["home"], "others can write to")
 
 
-@root_only
-def test_a_link_that_another_user_has_laid_is_not_followed(folders, monkeypatch, tmp_path):
-    elsewhere = tmp_path / "elsewhere"
-    folders["hash"].rmdir(), folders["snooker_env"].rmdir()
-    elsewhere.mkdir(mode=0o700)
-    folders["snooker_env"].symlink_to(elsewhere)
-    os.chown(folders["snooker_env"], 12345, -1, follow_symlinks=False)
-    unsafe(monkeypatch, folders["home"], "belongs to another user")
-
-
 def test_where_there_are_no_owners_none_are_checked(folders, monkeypatch):
     folders["snooker_env"].chmod(0o777)
     monkeypatch.delattr(os, "geteuid")
@@ -134,7 +124,7 @@ def test_where_there_are_no_owners_none_are_checked(folders, monkeypatch):
 
 
 def test_a_user_without_a_home_has_no_folder(monkeypatch, tmp_path):
-    """A folder called ~ may lie wherever he stands, made by whoever gave it to him."""
+    """A folder called ~ may lie in whatever folder the program runs, made by anybody."""
     for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(os.path, "expanduser", lambda path: path)
@@ -199,15 +189,6 @@ def test_a_damaged_file_is_compiled_and_kept_anew(toy, what, how):
     assert toy() == (LOADED, "")
 
 
-def test_it_is_said_once_however_many_are_damaged(toy):
-    toy()
-    for path in files(toy, "*.nb?"):
-        path.write_bytes(b"")
-    out, err = toy()
-    assert out == FRESH and err.count("RuntimeWarning") == 1
-    assert toy() == (LOADED, "")
-
-
 def test_what_numba_itself_cannot_rebuild_is_compiled_anew(toy):
     """Whole, but not what this numba makes."""
     toy()
@@ -237,26 +218,6 @@ def test_on_a_full_disk_it_works_from_memory(toy):
     assert err.count("RuntimeWarning") == 1
     assert "cannot be kept" in err and "No space left on device" in err and "every process compiles for itself" in err
     assert toy() == (FRESH, "") and toy() == (LOADED, "")
-
-
-@root_only
-def test_on_a_disk_that_is_really_full_it_works_from_memory(toy):
-    toy.cache.mkdir(mode=0o700)
-    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k,mode=700", "tmpfs", toy.cache], check=False).returncode:
-        pytest.skip("no file system can be mounted here")
-    try:
-        out, err = toy()
-        assert out == FRESH and err.count("RuntimeWarning") == 1
-        assert {path for path in toy.cache.rglob("*") if path.is_file()} <= set(files(toy, "*.nb?"))  # nothing half written stays
-    finally:
-        subprocess.run(["umount", toy.cache], check=True)
-
-
-def test_a_file_that_cannot_be_written_through_leaves_nothing_behind(toy):
-    half = "import os\ndef replace(*args): raise OSError(28, 'No space left on device')\nos.replace = replace\n"
-    out, err = toy(half)
-    assert out == FRESH and err.count("RuntimeWarning") == 1
-    assert not [path for path in toy.folder.rglob("*") if path.is_file()]
 
 
 @pytest.mark.parametrize("instead", ["nothing", "a file"])

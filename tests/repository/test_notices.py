@@ -72,11 +72,6 @@ def test_it_can_be_silenced(toys, quiet):
     assert toys("one(1.0)", SNOOKER_ENV_QUIET=quiet) == ""
 
 
-@pytest.mark.parametrize("loud", ["", "0"])
-def test_an_empty_wish_is_none(toys, loud):
-    assert "compiling one toy" in toys("one(1.0)", SNOOKER_ENV_QUIET=loud)
-
-
 def test_without_a_cache_it_says_so(toys, tmp_path):
     (tmp_path / "file").write_text("")
     err = toys("one(1.0)", NUMBA_CACHE_DIR=str(tmp_path / "file"), warn="ignore")
@@ -86,10 +81,6 @@ def test_without_a_cache_it_says_so(toys, tmp_path):
 @pytest.mark.parametrize("without", ["sys.stderr = None", "sys.stderr.close()"])
 def test_without_stderr_it_works_all_the_same(toys, without):
     assert toys(f"import sys; {without}; assert one(1.0) == 3.0") == ""
-
-
-def test_without_compiling_there_is_nothing_to_say(toys):
-    assert toys("assert one(1.0) == 3.0 and small(2.0) == 2.0", NUMBA_DISABLE_JIT="1") == ""
 
 
 def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):

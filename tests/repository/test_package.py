@@ -73,23 +73,8 @@ def test_what_is_missing_is_installed_as_the_package_was(tmp_path):
     assert out == f'pictures need pygame-ce; install it, in the clone {tmp_path}, with: pip install -e ".[render]"\n'
 
 
-def test_no_file_makes_such_a_line_by_itself():
-    package = {path.name for path in (ROOT / "snooker_env").rglob("*.py") if "pip install" in path.read_text(encoding="utf-8")}
-    commands = {path.name for room in ("agents", "commands") for path in (ROOT / room).rglob("*.py") if "pip install" in path.read_text()}
-    assert package == {"_install.py"} and commands == {"lifecycle.py"}
-
-
-def test_every_public_name_is_there_once_and_explained():
-    assert sorted(set(sn.__all__)) == sorted(sn.__all__)
-    for name in sn.__all__:
-        thing = getattr(sn, name)
-        if not isinstance(thing, tuple):
-            assert len(inspect.getdoc(thing)) > 20, name
-            assert inspect.getdoc(thing) != inspect.getdoc(type(thing)), name
-        if inspect.isclass(thing):
-            for member, value in vars(thing).items():
-                if not member.startswith("_") and (inspect.isfunction(value) or isinstance(value, classmethod | property)):
-                    assert inspect.getdoc(getattr(thing, member)), f"{name}.{member}"
+def test_public_names_are_all_in_all():
+    assert all(hasattr(sn, name) for name in sn.__all__)  # most are loaded when they are asked for
     public = {n for n, v in vars(sn).items() if not n.startswith("_") and not inspect.ismodule(v)}
     assert public | {"planning"} == set(sn.__all__)
     promised = {"Physics", "collide_balls", "collide_cushion", "strike", "Table", "simulate", "simulate_batch", "EventKind", "warmup"}
@@ -132,15 +117,6 @@ def test_a_second_import_is_silent():
         "print(gymnasium.make('snooker_env:Snooker-v0').spec.id)\n",
     )
     assert (out, err) == ("Snooker-v0\n", "")
-
-
-def test_the_warning_of_an_overwritten_id_would_be_seen():
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        entry = gymnasium.registry["Snooker-v0"]
-        with pytest.raises(UserWarning, match="Overriding"):
-            gymnasium.register(id="Snooker-v0", entry_point="snooker_env.envs.snooker:SnookerEnv")
-        gymnasium.registry["Snooker-v0"] = entry
 
 
 # The cache of machine code
@@ -212,49 +188,6 @@ def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
     assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() == runs[1]  # and the old code's cache is good again
 
 
-def test_without_the_hash_a_change_would_be_missed(tmp_path):
-    """The control: one folder for all sources, and numba runs the old machine code. So the test above can fail."""
-    at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
-    replace(at / "snooker_env/_cache.py", 'home / "snooker_env" / kernel_hash()', 'home / "snooker_env" / "one"')
-    assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()[:2] == ["1.4605", "0"]
-    replace(at / "snooker_env/geometry.py", "(0.0, 1.4605)", "(0.0, 1.4005)")
-    assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()[:2] == ["1.4605", "1"]
-
-
-SHOT = """
-import numpy as np, snooker_env as sn
-shot = sn.simulate([(0.1, -1.0), (0.3, 0.6)], [(0.9, 2.4), (0.0, 0.0)], np.zeros((2, 3)))
-print(repr(shot.positions.tolist()))
-"""
-
-
-CHANGED = [  # below the entry kernel: more friction wherever the cloth's kernels read it, less bounce off a cushion
-    ("physics/cloth.py", "phys[P_MU_R]", "(2.0 * phys[P_MU_R])", 3),
-    ("physics/impact/contact.py", "return phys[P_E_C]\n", "return 0.5 * phys[P_E_C]\n", 1),
-]
-"""File, text, what takes its place, and how often the file holds it."""
-
-
-@pytest.mark.parametrize(("file", "old", "new", "times"), CHANGED)
-def test_what_the_slow_test_below_changes_is_there(tmp_path, file, old, new, times):
-    """In every run, so that a change of the engine shows at once that the slow test changes nothing any more."""
-    copy = tmp_path / "copy.py"
-    copy.write_text((ROOT / "snooker_env" / file).read_text())
-    replace(copy, old, new, times)
-    assert copy.read_text().count(new) == times
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("file", "old", "new", "times"), CHANGED)
-def test_a_shot_is_never_computed_by_old_code(tmp_path, file, old, new, times):
-    """The same with the whole engine: a constant or a term changed below the entry kernel changes the next run's shot."""
-    at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
-    first = python(SHOT, at=at, NUMBA_CACHE_DIR=cache)
-    assert python(SHOT, at=at, NUMBA_CACHE_DIR=cache) == first
-    replace(at / "snooker_env" / file, old, new, times)
-    assert python(SHOT, at=at, NUMBA_CACHE_DIR=cache) != first
-
-
 @pytest.mark.parametrize("where", ["NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME"])
 def test_without_a_place_for_the_cache_it_works_from_memory(tmp_path, where):
     """A file stands where the folder should be (tests may run as root, whom no access bits stop)."""
@@ -264,11 +197,6 @@ def test_without_a_place_for_the_cache_it_works_from_memory(tmp_path, where):
     assert out.split() == ["1.4605", "-1", "None"]
     assert err.count("Warning") == 1 and "is not writable: every process compiles for itself; set NUMBA_CACHE_DIR" in err
     assert (tmp_path / "file").read_text() == ""
-
-
-def test_a_cache_that_is_taken_away_does_no_harm(tmp_path):
-    code = SPOT.replace("positions, on_table", "import shutil; shutil.rmtree(_jit.CACHE_FOLDER)\npositions, on_table")
-    assert python(code, NUMBA_CACHE_DIR=str(tmp_path / "cache"))[0].split()[0] == "1.4605"
 
 
 # The same bits everywhere

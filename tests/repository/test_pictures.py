@@ -6,7 +6,6 @@ import json
 
 import matplotlib as mpl
 import pytest
-from matplotlib.figure import Figure
 
 from agents.evaluation import destinations, learning_curves
 from benchmarks import layouts_picture, pictures
@@ -64,25 +63,6 @@ def test_a_picture_of_tables_can_be_read(module, tmp_path, monkeypatch):
     read(figures)
 
 
-def test_what_cannot_be_read_is_found():
-    def figure(*texts):
-        made = Figure(figsize=(8.8, 4.0), dpi=100)
-        for x, y, text, how in texts:
-            made.text(x, y, text, **how)
-        return unreadable(made)
-
-    here = (0.3, 0.5, "a title", {"size": 9})
-    assert figure(here) == []
-    assert "high" in figure((0.3, 0.5, "tiny", {"size": 6}))[0]
-    assert "overlap" in figure(here, (0.32, 0.51, "another", {"size": 9}))[0]
-    assert figure(here, (0.3, 0.45, "below", {"size": 9})) == []
-    assert "no title" in figure()[0]
-    assert "cut off" in figure((0.98, 0.5, "beyond the edge", {"size": 9}))[0]
-    slanted = {"size": 9, "rotation": 45}
-    assert figure((0.3, 0.4, "a slanted text", slanted), (0.34, 0.4, "a slanted text", slanted)) == []  # though their boxes overlap
-    assert "overlap" in figure((0.3, 0.4, "a slanted text", slanted), (0.305, 0.4, "a slanted text", slanted))[0]
-
-
 def test_labels_beside_points_avoid_each_other(tmp_path):
     with picture_style.drawing() as plt:
         made, axes = picture_style.page(plt, 4.0, "Points", columns=1)
@@ -90,24 +70,6 @@ def test_labels_beside_points_avoid_each_other(tmp_path):
         picture_style.label_points(made, [(axes, (x, 0.0), "a long label", {}) for x in (0.0, 0.02)])
         assert unreadable(made) == []
         plt.close(made)
-
-
-def test_a_note_is_no_title():
-    with picture_style.drawing() as plt:
-        made, axes = picture_style.page(plt, 4.0, "", "How to read it", columns=1)
-        axes.set_xlabel("speed [m/s]")
-        (fault,) = unreadable(made)
-        assert "no title" in fault
-        plt.close(made)
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(0, "0"), (0.05, "0.05"), (0.001, "0.001"), (1, "1"), (2.5, "2.5"), (60, "60"), (100, "100"), (1000, "1,000"), (65536, "65,536"),
-     (1e-4, "$10^{-4}$"), (1e7, "$10^{7}$"), (2e-5, "$2 \\times 10^{-5}$")],
-)  # fmt: skip
-def test_numbers_of_an_axis_are_plain(value, text):
-    assert picture_style.number(value) == text
 
 
 def test_every_picture_has_its_command_written():

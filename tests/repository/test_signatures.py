@@ -1,15 +1,7 @@
 """Is each entry kernel compiled for one signature, whatever the numbers that users give are made of? A second one would take seconds."""
 
-import pickle
-
-import numpy as np
 import pytest
 
-import snooker_env as sn
-from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.tasks.box_actions import Actions
-from snooker_env.tasks.discrete_actions import Choices
 from tests.processes import python
 
 INPUTS = """
@@ -146,40 +138,3 @@ def test_a_warm_up_leaves_nothing_to_compile():
     code += "print([k.__qualname__ for k in ENTRIES if not k.signatures], [k.__qualname__ for k in ENTRIES if len(k.signatures) > 1])"
     out, err = python(code)
     assert out in ("[] []\n", "['clear_path'] []\n") and err == ""  # a part of another entry kernel, which may come from the cache
-
-
-WIDE = np.longdouble(1) / 3
-
-
-def test_a_wider_number_means_what_it_rounds_to():
-    for env in (SnookerEnv(), SnookerVectorEnv(1)):
-        ends = []
-        for third in (WIDE, float(WIDE)):
-            env.reset(seed=3)
-            many = isinstance(env, SnookerVectorEnv)
-            actions = np.full((1, 4) if many else 4, third)
-            ends.append(env.step(actions)[0])
-        assert np.array_equal(*ends)
-
-
-@pytest.mark.parametrize("dtype", [None, np.int8, np.longdouble, ">f4", np.float16])
-def test_checked_actions_are_floats(dtype):
-    action = [0, 0, 0, 1] if dtype is None else np.array([0, 0, 0, 1], dtype)
-    actions = Actions("absolute", False, False, sn.Physics())
-    checked = actions.check(action)
-    assert all(type(x) is float for x in checked) and checked == np.asarray(action, float).tolist()
-    many = actions.check_many([action] * 3, 3)
-    assert many.dtype == np.float64 and many.dtype.isnative and many.flags.c_contiguous and many.flags.writeable
-
-
-def test_checked_choices_are_floats():
-    choices = Choices(sn.Physics())
-    assert choices.check(np.array([5], ">i2")) == [5.0] and choices.check_many(np.array([5, 6], ">i2"), 2).dtype.isnative
-
-
-def test_a_shot_from_a_read_only_buffer_can_be_looked_at():
-    shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.5)], [(0.0, 0.0, 0.0)])
-    buffers = []
-    data = pickle.dumps(shot, protocol=5, buffer_callback=buffers.append)
-    again = pickle.loads(data, buffers=[bytes(b.raw()) for b in buffers])
-    assert not again.segments.flags.writeable and all(map(np.array_equal, again.at(0.5), shot.at(0.5)))

@@ -1,10 +1,8 @@
-"""Are the annotations true? Pyright on right and wrong calls, what it finds in the package, hints that resolve, and what help() shows."""
+"""Are the annotations true? Pyright on right and wrong calls, what it finds in the package, and hints that resolve."""
 
-import dataclasses
 import inspect
 import json
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -16,10 +14,9 @@ import pytest
 
 import snooker_env as sn
 from snooker_env import checks, game, geometry, planning, render, tasks
-from snooker_env.tasks.options import NAMES
 
 ROOT = Path(sn.__file__).resolve().parent.parent
-LEAST = 0.95
+LEAST = 0.98
 
 HEAD = """
 import gymnasium
@@ -126,7 +123,9 @@ def pyright(*arguments, cwd=ROOT):
     program = shutil.which("pyright", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")]))
     if program is None:
         pytest.skip("pyright is not installed")
-    env = os.environ | {"PYTHONPATH": str(ROOT)}
+    # --verifytypes reads no --pythonpath: it takes the first Python of PATH, and without its libraries half the types are unknown
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    env = os.environ | {"PYTHONPATH": str(ROOT), "PATH": path}
     command = [program, "--outputjson", "--pythonpath", sys.executable, *arguments]
     done = subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, timeout=600, check=False)
     try:
@@ -143,31 +142,30 @@ def report(tmp_path_factory):
     (folder / "calls.py").write_text("\n".join(lines) + "\n", encoding="utf-8")
     settings = {"typeCheckingMode": "basic", "pythonVersion": "3.10", "extraPaths": [str(ROOT)], "reportUnusedExpression": "none"}
     (folder / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
-    found: dict = {}
+    errors: dict = {}
     for one in pyright("calls.py", cwd=folder)["generalDiagnostics"]:
-        found.setdefault(one["range"]["start"]["line"], one["message"])
-    return lines, found
+        errors.setdefault(one["range"]["start"]["line"], one["message"])
+    return lines, errors
 
 
 def test_calls_of_each_documented_kind_are_right_to_the_checker(report):
-    lines, found = report
+    lines, errors = report
     first_bad = len(lines) - len(BAD)
-    assert {lines[k]: message for k, message in found.items() if k < first_bad} == {}
+    assert {lines[k]: message for k, message in errors.items() if k < first_bad} == {}
 
 
 def test_calls_that_are_wrong_are_errors_to_the_checker(report):
-    lines, found = report
-    assert [line for k, line in enumerate(lines) if line in BAD and k not in found] == []
+    lines, errors = report
+    assert [line for k, line in enumerate(lines) if line in BAD and k not in errors] == []
 
 
 @pytest.mark.slow
 def test_calls_of_each_documented_kind_run(tmp_path):
     """The calls that the checker is shown do what they say: an annotation is no promise by itself."""
     pytest.importorskip("pettingzoo")
-    done = subprocess.run(
-        [sys.executable, "-c", HEAD + "\n".join(GOOD[:-1])], capture_output=True, text=True, cwd=tmp_path, timeout=600,
-        env=os.environ | {"PYTHONPATH": str(ROOT), "SNOOKER_ENV_QUIET": "1"}, check=False,
-    )  # fmt: skip
+    command = [sys.executable, "-c", HEAD + "\n".join(GOOD[:-1])]
+    env = os.environ | {"PYTHONPATH": str(ROOT), "SNOOKER_ENV_QUIET": "1"}
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=600, env=env, check=False)
     assert done.returncode == 0, done.stderr
 
 
@@ -194,13 +192,13 @@ def members(thing):
     """A function itself; of a class it, and all that it defines in public."""
     if not inspect.isclass(thing):
         return [thing]
-    own = [(name, m) for name, m in vars(thing).items() if not name.startswith("_")]
-    return [thing, *(inspect.unwrap(m.__func__) for _, m in own if isinstance(m, classmethod | staticmethod))] + [
-        m.fget if isinstance(m, property) else m for _, m in own if inspect.isfunction(m) or isinstance(m, property)
+    inside = [m for name, m in vars(thing).items() if not name.startswith("_")]
+    return [thing, *(inspect.unwrap(m.__func__) for m in inside if isinstance(m, classmethod | staticmethod))] + [
+        m.fget if isinstance(m, property) else m for m in inside if inspect.isfunction(m) or isinstance(m, property)
     ]
 
 
-def own_annotations(thing):
+def annotated(thing):
     """A function; or a class with the annotations of this one, and none of those it inherits from other libraries."""
     if not inspect.isclass(thing):
         return thing
@@ -210,43 +208,7 @@ def own_annotations(thing):
 @pytest.mark.parametrize("name", [name for name, thing in PUBLIC.items() if callable(thing)])
 def test_annotations_can_be_resolved_when_the_program_runs(name):
     for thing in members(PUBLIC[name]):
-        hints = typing.get_type_hints(own_annotations(thing))
+        hints = typing.get_type_hints(annotated(thing))
         if inspect.isfunction(thing):
             parameters = [p for p in inspect.signature(thing).parameters if p not in ("self", "cls")]
             assert set(parameters) | {"return"} <= set(hints), thing
-
-
-# what help() shows
-
-
-@pytest.mark.parametrize("name", [name for name, thing in PUBLIC.items() if callable(thing)])
-def test_docstrings_describe_parameters_returns_and_members(name):
-    for thing in members(PUBLIC[name]):
-        text = inspect.getdoc(thing)
-        assert text, thing
-        if thing is PUBLIC[name] and inspect.isclass(thing):
-            shown = [*getattr(thing, "__members__", ())]
-            if dataclasses.is_dataclass(thing):
-                shown = [f.name for f in dataclasses.fields(thing) if not f.name.startswith("_")]
-            for member in shown:
-                assert re.search(rf"^(\w+, )*{member}\b", text, re.MULTILINE), f"{name} does not describe {member}"
-        elif inspect.isfunction(thing) and not is_property(PUBLIC[name], thing):
-            parameters = [p for p in inspect.signature(thing).parameters.values() if p.name not in ("self", "cls", "args", "kwargs")]
-            assert not parameters or re.search(r"^Parameters\n-{10}$", text, re.MULTILINE), thing.__qualname__
-            for parameter in parameters:
-                listed = re.search(rf"^([\w*]+, )*\**{parameter.name}\b", text, re.MULTILINE)
-                assert listed, f"{thing.__qualname__} does not describe {parameter.name}"
-            if inspect.signature(thing).return_annotation not in (None, "None"):
-                assert re.search(r"^Returns\n-{7}$", text, re.MULTILINE), thing.__qualname__
-
-
-def is_property(kind, function):
-    """A property's docstring says what it is, without sections."""
-    return inspect.isclass(kind) and any(isinstance(m, property) and m.fget is function for m in vars(kind).values())
-
-
-def test_the_specification_names_every_option():
-    text = inspect.getdoc(sn.SnookerEnv) or ""
-    table = text[text.index("## Arguments") : text.index("## Info")]
-    named = {word.strip() for row in table.splitlines() if row.startswith("| ") for word in row.split("|")[1].split(",")}
-    assert set(NAMES) | {"render_mode", "options"} <= named

@@ -1,13 +1,11 @@
 """How do the tests get a browser? Debian's Chromium, headless, driven by playwright; without either, its tests are skipped and say so."""
 
 import shutil
-from pathlib import Path
 
 import pytest
 
-import snooker_env as sn
+from snooker_env.web import table_js
 
-WEB = Path(sn.__file__).parent / "web"
 FLAGS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
     "--disable-sync",
@@ -30,7 +28,7 @@ def chromium():
 def module_page(browser, **options):
     """An empty page in which ``window.table`` is what ``table.js`` exports."""
     page = browser.new_page(**options)
-    source = (WEB / "table.js").read_text(encoding="utf-8")
-    page.set_content(f"<!DOCTYPE html><body><script type=module>{source}\nwindow.table = {{decode, TableView, Player, mount}};</script>")
+    script = f"{table_js()}\nwindow.table = {{decode, TableView, Player, mount}};"
+    page.set_content(f"<!DOCTYPE html><body><script type=module>{script}</script>")
     page.wait_for_function("window.table")
     return page

@@ -11,7 +11,7 @@ from ..._jit import inlined, kernel
 from ..._types import Fidelity, Solver
 from ..parameters import P_E_C, P_E_KNEE, P_E_POWER, P_MU_BB_EXTRA, P_MU_BB_FADE, P_MU_BB_LEAST, P_MU_C, P_MU_S, P_R, P_SIN
 from . import euler, inertia
-from .coulomb import Law, Problem, friction_coefficient
+from .coulomb import Friction, Problem, friction_coefficient
 from .impulse import OK, Accuracy, solve
 from .inertia import Slips
 
@@ -94,33 +94,33 @@ def _to_table(a, nx, ny):
 
 
 @kernel
-def _friction_impulse_free(xa, za, ya, law, e):
+def _friction_impulse_free(xa, za, ya, friction, e):
     """Impulses between two free spheres, per unit mass [m/s]: friction (opposite to the first slip, at most what ends it), and normal."""
     pn = 0.5 * (1.0 + e) * ya
     s = hypot(xa, za)
     if s == 0.0:
         return 0.0, 0.0, pn
-    pt = min(friction_coefficient(s, law) * pn, s / inertia.BALLS.k1)  # for free spheres the same in both tangential directions
+    pt = min(friction_coefficient(s, friction) * pn, s / inertia.BALLS.k1)  # for free spheres the same in both tangential directions
     return -pt * xa / s, -pt * za / s, pn
 
 
 @inlined
-def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps, series):
+def _balls_in_frame(vc, wc, vo, wo, law, e, series):
     """Two balls in the contact frame (X tangent, Y from C to O, Z up) that approach each other."""
+    phys, fidelity, n_steps = law.phys, law.fidelity, law.n_steps
     R = phys[P_R]
-    law = Law(phys[P_MU_BB_LEAST], phys[P_MU_BB_EXTRA], phys[P_MU_BB_FADE])
+    friction = Friction(phys[P_MU_BB_LEAST], phys[P_MU_BB_EXTRA], phys[P_MU_BB_FADE])
     if fidelity == EULER:
-        return euler.balls(vc, wc, vo, wo, law, phys[P_MU_S], R, e, n_steps)
+        return euler.balls(vc, wc, vo, wo, friction, phys, e, n_steps)
     ya = vc[1] - vo[1]
     xa = (vc[0] - R * wc[2]) - (vo[0] + R * wo[2])
     za = (vc[2] + R * wc[0]) - (vo[2] - R * wo[0])
     q = 2.5 / R
     if fidelity == FAST:
-        f1, f2, p = _friction_impulse_free(xa, za, ya, law, e)
-        return (
-            (vc[0] + f1, vc[1] - p, vc[2] + f2), (wc[0] + q * f2, wc[1], wc[2] - q * f1),
-            (vo[0] - f1, vo[1] + p, vo[2] - f2), (wo[0] + q * f2, wo[1], wo[2] - q * f1), True,
-        )  # fmt: skip
+        f1, f2, p = _friction_impulse_free(xa, za, ya, friction, e)
+        vc, vo = (vc[0] + f1, vc[1] - p, vc[2] + f2), (vo[0] - f1, vo[1] + p, vo[2] - f2)
+        wc, wo = (wc[0] + q * f2, wc[1], wc[2] - q * f1), (wo[0] + q * f2, wo[1], wo[2] - q * f1)
+        return vc, wc, vo, wo, True
     accuracy = _REFERENCE if fidelity == REFERENCE else _STANDARD
     if hypot(xa, za) <= accuracy.delta * ya:  # no slip, and nothing between two balls starts one: there is only the normal impulse
         p = 0.5 * (1.0 + e) * ya
@@ -132,8 +132,8 @@ def _balls_in_frame(vc, wc, vo, wo, phys, e, fidelity, n_steps, series):
     vp, wp = (vc, wc) if swapped else (vo, wo)  # the pressed ball
     b1, b2 = sign * (vp[0] - R * wp[1]), sign * (vp[1] + R * wp[0])
     start = Slips(xa / ya, -abs(za) / ya, b1 / ya, b2 / ya, 1.0)
-    scaled_law = Law(law.least, law.extra, law.fade * ya)
-    x, status = solve(Problem(inertia.BALLS, start, scaled_law, phys[P_MU_S], e), accuracy, series)
+    scaled = Friction(friction.least, friction.extra, friction.fade * ya)
+    x, status = solve(Problem(inertia.BALLS, start, scaled, phys[P_MU_S], e), accuracy, series)
     f1, f2, g1, g2, p = x.F1 * ya, x.F2 * ya, x.G1 * ya, x.G2 * ya, x.p * ya
     # lifted ball: (f1, -p, f2) and spin q (f2, 0, -f1); pressed: (-f1 + g1, p + g2, 0) and spin q (f2 + g2, -g1, -f1)
     lift_v, lift_w = (sign * f1, -sign * p, f2), (sign * q * f2, 0.0, -q * f1)
@@ -149,27 +149,29 @@ def _add(a, b):
 
 
 @kernel(seconds=2, uses=(solve,))
-def collide_balls(v1, w1, v2, w2, nx, ny, phys, e, fidelity, n_steps, series):
+def collide_balls(v1, w1, v2, w2, normal, law, e, series):
     """Impact of two equal balls -> v1, w1, v2, w2 [m/s, rad/s] and whether it was solved. [MJP14] 2.1 to 2.4.
 
-    (nx, ny): unit vector from ball 1 to ball 2; ``e``: the restitution; ``series``: work space, ``polynomial.WORK`` numbers. The vertical
-    velocity of the lifted ball is part of the result.
+    normal: unit vector (nx, ny) from ball 1 to ball 2; ``law``: a ``Law``; ``e``: the restitution; ``series``: work space,
+    ``polynomial.WORK`` numbers. The vertical velocity of the lifted ball is part of the result.
     """
+    nx, ny = normal
     if not (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny > _NO_CLOSING:
         return v1, w1, v2, w2, True
     vc, wc, vo, wo, solved = _balls_in_frame(
-        _to_frame(v1, nx, ny), _to_frame(w1, nx, ny), _to_frame(v2, nx, ny), _to_frame(w2, nx, ny), phys, e, fidelity, n_steps, series
+        _to_frame(v1, nx, ny), _to_frame(w1, nx, ny), _to_frame(v2, nx, ny), _to_frame(w2, nx, ny), law, e, series
     )
     return _to_table(vc, nx, ny), _to_table(wc, nx, ny), _to_table(vo, nx, ny), _to_table(wo, nx, ny), solved
 
 
 @kernel(seconds=1, uses=(solve,))
-def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, series):
+def collide_cushion(v, w, normal, law, e, series):
     """Impact of a ball with a nose -> v [m/s], w [rad/s] and whether it was solved. [MJP10], with Coulomb's law at zero slip.
 
-    (nx, ny): unit vector INTO the cushion; ``e``: the restitution. "fast" integrates with a loose tolerance: no closed form includes the
-    cloth's reaction, which matters here.
+    normal: unit vector (nx, ny) INTO the cushion; the others as in ``collide_balls``. "fast" integrates with a loose tolerance: no closed
+    form includes the cloth's reaction, which matters here.
     """
+    (nx, ny), phys, fidelity = normal, law.phys, law.fidelity
     sin_t = phys[P_SIN]
     cos_t = sqrt(1.0 - sin_t * sin_t)
     vx, vy, vz = _to_frame(v, nx, ny)
@@ -179,14 +181,14 @@ def collide_cushion(v, w, nx, ny, phys, e, fidelity, n_steps, series):
     wx, wy, wz = _to_frame(w, nx, ny)
     R, mu_s, mu_c = phys[P_R], phys[P_MU_S], phys[P_MU_C]
     if fidelity == EULER:
-        v, w, solved = euler.cushion((vx, vy, vz), (wx, wy, wz), mu_c, mu_s, R, sin_t, e, n_steps)
+        v, w, solved = euler.cushion((vx, vy, vz), (wx, wy, wz), phys, e, law.n_steps)
         return _to_table(v, nx, ny), _to_table(w, nx, ny), solved
     start = Slips(
         (vx + R * (wy * sin_t - wz * cos_t)) / closing, (-vy * sin_t + vz * cos_t + R * wx) / closing,
         (vx - R * wy) / closing, (vy + R * wx) / closing, 1.0,
     )  # fmt: skip
     accuracy = _REFERENCE if fidelity == REFERENCE else _STANDARD_CUSHION if fidelity == STANDARD else _LOOSE
-    x, status = solve(Problem(inertia.cushion(sin_t, cos_t), start, Law(mu_c, 0.0, 0.0), mu_s, e), accuracy, series)
+    x, status = solve(Problem(inertia.cushion(sin_t, cos_t), start, Friction(mu_c, 0.0, 0.0), mu_s, e), accuracy, series)
     f1, f2, g1, g2, p, lift = x.F1 * closing, x.F2 * closing, x.G1 * closing, x.G2 * closing, x.p * closing, x.Z * closing
     q = 2.5 / R
     v = (vx + f1 + g1, vy - cos_t * p - sin_t * f2 + g2, vz + lift)

@@ -30,7 +30,7 @@ _TRIALS = 60
 """Newton's method takes 3 to 6 of them; bisection alone, as where q1 is nearly zero, would take no more to end at rounding."""
 
 
-class Law(NamedTuple):
+class Friction(NamedTuple):
     """The coefficient of friction at A as a function of the slip s: mu(s) = least + extra exp(-fade s). ``fade`` in 1 / (unit of s)."""
 
     least: float
@@ -43,15 +43,15 @@ class Problem(NamedTuple):
 
     contact: Contact
     start: Slips
-    law: Law
+    friction: Friction
     mu_s: float
     e: float
 
 
 @kernel
-def friction_coefficient(s, law):
+def friction_coefficient(s, friction):
     """mu(s), without an exponential for a constant law."""
-    return law.least if law.extra == 0.0 else law.least + law.extra * exp(-law.fade * s)
+    return friction.least if friction.extra == 0.0 else friction.least + friction.extra * exp(-friction.fade * s)
 
 
 @kernel
@@ -76,7 +76,7 @@ def _slip_rates(x, near, cloth, problem):
     contact = problem.contact
     slip = slips_after(x, problem.start, contact)
     s = sqrt(slip.a1 * slip.a1 + slip.a2 * slip.a2)
-    mu = friction_coefficient(s, problem.law)
+    mu = friction_coefficient(s, problem.friction)
     f1, f2 = -mu * slip.a1, -mu * slip.a2
     load = contact.n_p * s + contact.n_f * f2
     lift = 0.0
@@ -129,7 +129,7 @@ def _creep_rates(x, near, cloth, problem):
     """
     contact, mu_s = problem.contact, problem.mu_s
     slip = slips_after(x, problem.start, contact)
-    mu = friction_coefficient(hypot(slip.a1, slip.a2), problem.law)
+    mu = friction_coefficient(hypot(slip.a1, slip.a2), problem.friction)
     e1, e2 = 0.0, 1.0 if contact.d_a >= 0.0 else -1.0
     g1 = g2 = lift = 0.0
     for _ in range(_DIRECTION_TRIALS):
@@ -200,7 +200,7 @@ def settled(x, slip, s, near, cloth, problem):
     Then steps in t (dp = |a| dt) would make little progress, and ``_creep_rates`` is accurate to within the slip.
     """
     per = _creep_rates(x, near, cloth, problem)
-    slow = _slip_rate(per, problem.contact) < _NEARLY_BALANCED * friction_coefficient(0.0, problem.law) * problem.contact.k2
+    slow = _slip_rate(per, problem.contact) < _NEARLY_BALANCED * friction_coefficient(0.0, problem.friction) * problem.contact.k2
     opposed = per.F1 * slip.a1 + per.F2 * slip.a2 < 0.0
     return slow and opposed and abs(per.F1 * slip.a2 - per.F2 * slip.a1) <= _ALIGNED * s * hypot(per.F1, per.F2)
 
@@ -210,7 +210,7 @@ def held(x, near, cloth, problem):
     """Whether friction can hold the slip at A at zero."""
     slip = slips_after(x, problem.start, problem.contact)
     f = _stick_forces(slip.b1, slip.b2, x.Z, near, cloth, problem)
-    return hypot(f[0], f[1]) <= friction_coefficient(0.0, problem.law)
+    return hypot(f[0], f[1]) <= friction_coefficient(0.0, problem.friction)
 
 
 @kernel
@@ -221,7 +221,7 @@ def wedged(problem):
     """
     _f1, f2, _g1, g2, _lift = _stick_forces(0.0, 0.0, 0.0, 0.0, GRIPS, problem)
     load = problem.contact.n_p + problem.contact.n_f * f2
-    return abs(f2) <= friction_coefficient(0.0, problem.law) and abs(g2) <= problem.mu_s * load
+    return abs(f2) <= friction_coefficient(0.0, problem.friction) and abs(g2) <= problem.mu_s * load
 
 
 @kernel

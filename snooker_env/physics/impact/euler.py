@@ -8,6 +8,7 @@ after which the work has fallen to its target. This keeps the discretisation err
 from math import hypot, sqrt
 
 from ..._jit import kernel
+from ..parameters import P_MU_C, P_MU_S, P_R, P_SIN
 from .coulomb import friction_coefficient
 
 _MAX_OVERRUN = 100
@@ -15,7 +16,7 @@ _MAX_OVERRUN = 100
 
 
 @kernel
-def balls(vc, wc, vo, wo, law, mu_s, R, e, n_steps):
+def balls(vc, wc, vo, wo, friction, phys, e, n_steps):
     """Balls C and O in the contact frame (X tangent, Y from C to O, Z up); (vx, vy, vz) in m/s and (wx, wy, wz) in rad/s.
 
     Returns the four vectors after the impact and whether the scheme ended.
@@ -24,6 +25,7 @@ def balls(vc, wc, vo, wo, law, mu_s, R, e, n_steps):
     wcx, wcy, wcz = wc
     vox, voy, voz = vo
     wox, woy, woz = wo
+    R, mu_s = phys[P_R], phys[P_MU_S]
     dp = (1.0 + e) * (vcy - voy) / n_steps  # eq. 14, with the closing speed for V0 cos(theta)
     q = 2.5 / R
     work = target = 0.0
@@ -35,7 +37,7 @@ def balls(vc, wc, vo, wo, law, mu_s, R, e, n_steps):
         s = hypot(xa, za)
         dp1 = dp2 = dxc = dyc = dxo = dyo = nc = no = 0.0
         if s > 0.0:
-            mu = friction_coefficient(s, law)
+            mu = friction_coefficient(s, friction)
             dp1, dp2 = -mu * xa / s * dp, -mu * za / s * dp  # eq. 6a, 6b
             if dp2 < 0.0:  # C is pressed into the cloth, eq. 7a, 8a, 8b
                 nc = -dp2
@@ -72,11 +74,12 @@ def balls(vc, wc, vo, wo, law, mu_s, R, e, n_steps):
 
 
 @kernel
-def cushion(v, w, mu_c, mu_s, R, sin_t, e, n_steps):
+def cushion(v, w, phys, e, n_steps):
     """Ball against a nose in the contact frame (X along the cushion, Y into it, Z up).
 
-    Returns v [m/s], w [rad/s] and whether the scheme ended. mu_c: the coefficient of friction at the nose, mu_w in [MJP10].
+    Returns v [m/s], w [rad/s] and whether the scheme ended. mu_c, the coefficient of friction at the nose, is mu_w in [MJP10].
     """
+    R, mu_s, mu_c, sin_t = phys[P_R], phys[P_MU_S], phys[P_MU_C], phys[P_SIN]
     vx, vy, vz = v
     wx, wy, wz = w
     cos_t = sqrt(1.0 - sin_t * sin_t)

@@ -32,7 +32,7 @@ from .coulomb import CREEP, GRIPS, SLIDES, SLIP, STARTS, STICK, friction_coeffic
 from .ends import Target, ends_inside, locate_end, turns_at
 from .inertia import K_CLOTH, Impulses, slips_after
 from .polynomial import state_at
-from .transitions import STANDS, Step, Tolerances, cloth_after, mode_after
+from .transitions import STANDS, Moment, Step, Tolerances, cloth_after, mode_after
 
 OK, TOO_MANY_STEPS = 0, 1
 
@@ -128,7 +128,7 @@ class Outlook(NamedTuple):
 def _outlook(problem):
     """The ``Outlook`` of an impact, from its constants."""
     contact = problem.contact
-    mu = friction_coefficient(0.0, problem.law)
+    mu = friction_coefficient(0.0, problem.friction)
     p_full = -_OVERSHOOT * (1.0 + problem.e) / contact.d_n
     h_slip = 1.0 / (contact.k1 * mu + _NO_FRICTION)
     may_grip = K_CLOTH * problem.mu_s * (contact.n_p + abs(contact.n_f) * mu) >= abs(contact.d_b) - abs(contact.c2) * mu
@@ -165,6 +165,12 @@ def _first_state(s, outlook, limits, problem):
 
 
 @inlined
+def _left(x, outlook):
+    """Estimate of the remaining normal impulse."""
+    return max(outlook.p_full - x.p, _LEAST_LEFT * outlook.p_full)
+
+
+@inlined
 def _series_step(series, x, slip, starts, left, problem, tol, order):
     """A step by the Taylor series, up to its range of accuracy or a reversal of the cloth's slip: its end, the slips, degree and length."""
     degree, span = taylor.expand(series, x, slip, starts, left, problem, _SERIES * tol, order)
@@ -179,13 +185,14 @@ def _series_step(series, x, slip, starts, left, problem, tol, order):
 
 
 @inlined
-def _runge_kutta_step(series, x, slip, h, per, mode, cloth, left, outlook, limits, problem):
-    """A Runge-Kutta step: its end, the slips and rates there, its error, and the factor for a shorter step, or ``STANDS``."""
+def _runge_kutta_step(series, start, h, mode, cloth, outlook, limits, problem):
+    """A Runge-Kutta step: the ``Moment`` at its end, its error, and the factor for a shorter step, or ``STANDS``."""
+    x, slip, per = start
     contact, shrink, slip_end = problem.contact, STANDS, slip
     end, per_end, error = dormand_prince.step(series, x, h, per, mode, limits.near, cloth, problem)
     if error > limits.tol and h > _SHORTEST:
         shrink = max(_LEAST_FACTOR, _SAFETY * (limits.tol / error) ** _ERROR_POWER)
-    elif mode == SLIP and end.p - x.p > _LEAPT * left:
+    elif mode == SLIP and end.p - x.p > _LEAPT * _left(x, outlook):
         shrink = _LEAPT_FACTOR  # the slip grew; the step's polynomial is inaccurate over the impulse of several impacts
     else:
         slip_end = slips_after(end, problem.start, contact)
@@ -194,14 +201,15 @@ def _runge_kutta_step(series, x, slip, h, per, mode, cloth, left, outlook, limit
             shrink = _TURNED_FACTOR  # the cloth's slip reversed inside the step, perhaps between two stages
         elif -_BELOW * limits.tol > end.Z and x.Z > 0.0 and h > _SHORTEST:
             shrink = _LANDED_FACTOR  # the ball came down inside the step: find where
-    return end, slip_end, per_end, error, shrink
+    return Moment(end, slip_end, per_end), error, shrink
 
 
 @inlined
-def _bounded(h, x, slip, s, per, mode, cloth, left, outlook, limits, contact):
-    """The length of the next Runge-Kutta step, limited by stability and by the rest of the impact."""
+def _bounded(h, start, s, mode, cloth, outlook, limits, contact):
+    """The length of the next Runge-Kutta step, with slip s at A, limited by stability and by the rest of the impact."""
+    x, slip, per = start
     if mode == SLIP:
-        h = min(h, outlook.h_slip, left / s)
+        h = min(h, outlook.h_slip, _left(x, outlook) / s)
     elif x.p < outlook.p_full:
         h = min(h, _PAST_END * (outlook.p_full - x.p))
     if outlook.may_grip and cloth == SLIDES:
@@ -223,31 +231,32 @@ def solve(problem, accuracy, series):
     order = accuracy.order
     limits = Tolerances(accuracy.tol, accuracy.delta, _NEAR * accuracy.delta, accuracy.creep)
     outlook = _outlook(problem)
-    p_full, x, slip = outlook.p_full, _NONE, problem.start
+    slip = problem.start
     s = sqrt(slip.a1 * slip.a1 + slip.a2 * slip.a2)
     mode, cloth, per, h = _first_state(s, outlook, limits, problem)
-    target, located = Target(True, 0.0, 0.0), False
+    now, target, located = Moment(_NONE, slip, per), Target(True, 0.0, 0.0), False
     for n in range(_MAX_STEPS):
-        # Advance: one step from x, unless it must be shorter.
-        left = max(p_full - x.p, _LEAST_LEFT * p_full)
+        # Advance: one step from now, unless it must be shorter.
         by_series = outlook.analytic and mode == SLIP
         if by_series:
-            end, slip_end, degree, span = _series_step(series, x, slip, cloth == STARTS, left, problem, limits.tol, order)
-            per_end, error = per, limits.tol
+            left, starts = _left(now.x, outlook), cloth == STARTS
+            x, slip, degree, span = _series_step(series, now.x, now.slip, starts, left, problem, limits.tol, order)
+            end, error = Moment(x, slip, now.per), limits.tol
         else:
             degree, span = dormand_prince.DEGREE, 1.0
-            end, slip_end, per_end, error, shrink = _runge_kutta_step(series, x, slip, h, per, mode, cloth, left, outlook, limits, problem)
+            end, error, shrink = _runge_kutta_step(series, now, h, mode, cloth, outlook, limits, problem)
+            x, slip = end.x, end.slip
             if shrink != STANDS:
                 h *= shrink
                 continue
 
         # Classify: what do the contacts do from here on?
-        step = Step(x, slip, per, h, end, slip_end, per_end)
+        step = Step(now, h, end)
         next_cloth, shrink = cloth_after(step, mode, cloth, outlook.may_grip, limits, problem)
         if shrink != STANDS:
             h *= shrink
             continue
-        s = sqrt(slip_end.a1 * slip_end.a1 + slip_end.a2 * slip_end.a2)
+        s = sqrt(slip.a1 * slip.a1 + slip.a2 * slip.a2)
         next_mode, shrink, located = mode_after(series, step, s, mode, cloth, located, limits, problem)
         if shrink != STANDS:
             h *= shrink
@@ -255,14 +264,14 @@ def solve(problem, accuracy, series):
         if n >= _KNIFE_EDGE:  # friction almost balances the driving force of a slip, which stays small and stiff: use its limit
             near, creep = max(limits.near, _STIFF), max(limits.creep, _STIFF_CREEP * _STIFF)
             limits = Tolerances(limits.tol, limits.delta, near, creep)
-        if n >= _JAMMED and abs(slip_end.closing) < _STOPPED:
-            return end, OK  # friction balances the elastic force almost exactly: the slow motion across the nose has no end
+        if n >= _JAMMED and abs(slip.closing) < _STOPPED:
+            return x, OK  # friction balances the elastic force almost exactly: the slow motion across the nose has no end
 
         # Locate: does compression or the impact end inside this step?
-        if ends_inside(end, slip_end.closing, target):
+        if ends_inside(x, slip.closing, target):
             if not by_series:
-                dormand_prince.leave_polynomial(series, x, end, h, problem.contact)
-            over, t, target = locate_end(series, degree, span, end, slip_end.closing, target, problem.e, limits.tol)
+                dormand_prince.leave_polynomial(series, now.x, x, h, problem.contact)
+            over, t, target = locate_end(series, degree, span, x, slip.closing, target, problem.e, limits.tol)
             if over:
                 return state_at(series, degree, t), OK
 
@@ -270,7 +279,7 @@ def solve(problem, accuracy, series):
         if not by_series:
             tol = limits.tol
             h *= _MOST_FACTOR if error < _EXACT * tol else min(_MOST_FACTOR, _SAFETY * (tol / error) ** _ERROR_POWER)
-        x, slip, per, located = end, slip_end, per_end, False
+        now, located = end, False
         if next_mode != mode or (next_cloth != cloth and (next_cloth == GRIPS or cloth == GRIPS)):
             mode, cloth = next_mode, next_cloth
             if mode == STICK and cloth == GRIPS and problem.contact.l_a != 0.0:
@@ -278,10 +287,9 @@ def solve(problem, accuracy, series):
                     return x, OK
                 cloth = STARTS
                 mode = _stick_or_creep(x, limits.near, cloth, problem)
-            per = rates(x, mode, limits.near, cloth, problem)
-            h = p_full if mode == STICK else limits.creep if mode == CREEP else _FIRST * outlook.h_slip
+            now = Moment(x, slip, rates(x, mode, limits.near, cloth, problem))
+            h = outlook.p_full if mode == STICK else limits.creep if mode == CREEP else _FIRST * outlook.h_slip
         else:
             cloth = next_cloth
-        left = max(p_full - x.p, _LEAST_LEFT * p_full)
-        h = _bounded(h, x, slip, s, per, mode, cloth, left, outlook, limits, problem.contact)
-    return x, TOO_MANY_STEPS
+        h = _bounded(h, now, s, mode, cloth, outlook, limits, problem.contact)
+    return now.x, TOO_MANY_STEPS

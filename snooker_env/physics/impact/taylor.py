@@ -62,15 +62,15 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
     code, names without a number are terms of order k, names that end in 0 are values at t = 0, and ``r`` is 1/k.
     """
     k1, k2, c1, c2, d_a, d_b, d_n, n_p, n_f, _l_a, _l_n = problem.contact
-    law, mu_s = problem.law, problem.mu_s
+    friction, mu_s = problem.friction, problem.mu_s
     a1_0, a2_0, b1_0, b2_0, closing0 = slip
 
     # order 0
     series[F1], series[F2], series[G1], series[G2], series[P], series[WORK_DONE], series[LIFT] = x
     series[CLOSING] = closing0
     s0 = sqrt(a1_0 * a1_0 + a2_0 * a2_0)
-    mu0 = friction_coefficient(s0, law)
-    m0 = mu0 - law.least
+    mu0 = friction_coefficient(s0, friction)
+    m0 = mu0 - friction.least
     f1, f2, s = -mu0 * a1_0, -mu0 * a2_0, s0  # F', and p' = s
     n_p, n_f = mu_s * n_p, mu_s * n_f  # N in units of what the cloth's friction can be: mu_s N
     load0 = n_p * s0 + n_f * f2
@@ -126,20 +126,20 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
                 t_power *= t2
 
         # The sums in brackets, over the orders i and k - i from 1 to k - 1; for even k the middle term first.
-        squares, friction, ss, cs = zeros, zeros, 0.0, 0.0  # [a.a]/2 and [e.e]/2, [B e] and [N e], [s s]/2, [closing s]
+        squares, products, ss, cs = zeros, zeros, 0.0, 0.0  # [a.a]/2 and [e.e]/2, [B e] and [N e], [s s]/2, [closing s]
         i = ROW * (k >> 1)
         if k & 1 == 0:
             ae = lanes_at(series, i + A1)
             squares = half * ae * ae
-            friction = lanes_at(series, i + _BN) * lanes_at(series, i + _E)
+            products = lanes_at(series, i + _BN) * lanes_at(series, i + _E)
             ss = 0.5 * series[i + S] * series[i + S]
             cs = series[i + CLOSING] * series[i + S]
             i -= ROW
         while i > ROW:
             j = (m - i) & _POSITIVE
             squares = squares + lanes_at(series, i + A1) * lanes_at(series, j + A1)
-            friction = (
-                friction + lanes_at(series, i + _BN) * lanes_at(series, j + _E) + lanes_at(series, j + _BN) * lanes_at(series, i + _E)
+            products = (
+                products + lanes_at(series, i + _BN) * lanes_at(series, j + _E) + lanes_at(series, j + _BN) * lanes_at(series, i + _E)
             )
             ss += series[i + S] * series[j + S]
             cs += series[i + CLOSING] * series[j + S] + series[j + CLOSING] * series[i + S]
@@ -148,11 +148,11 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
             ae_first, e_first, bn_first, s_first, closing_first = ae_last, e_last, bn_last, s_last, closing_last
         elif k > 2:
             squares = squares + ae_first * ae_last
-            friction = friction + bn_first * e_last + bn_last * e_first
+            products = products + bn_first * e_last + bn_last * e_first
             ss += s_first * s_last
             cs += closing_first * s_last + closing_last * s_first
         ee = lane(squares, 2) + lane(squares, 3)
-        be1, be2, ne1, ne2 = lane(friction, 0), lane(friction, 1), lane(friction, 2), lane(friction, 3)
+        be1, be2, ne1, ne2 = lane(products, 0), lane(products, 1), lane(products, 2), lane(products, 3)
 
         # The rates of order k: p' = s, F' = -mu a, W' = closing s, mu_s N, and from b = B e the direction e for G'.
         s = ((lane(squares, 0) + lane(squares, 1) - ss) * per_s + h1 * a1) + h2 * a2
@@ -165,7 +165,7 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
                 varying += n * series[i + S] * series[j + M]
                 f1 -= series[i + A1] * series[j + M]
                 f2 -= series[i + A2] * series[j + M]
-            varying *= -law.fade * r
+            varying *= -friction.fade * r
             series[m + M] = varying
             f1 -= varying * a1_0
             f2 -= varying * a2_0

@@ -34,30 +34,35 @@ class Tolerances(NamedTuple):
     """Up to this size a slip that begins has the direction of the driving force."""
 
 
-class Step(NamedTuple):
-    """A step from ``start`` to ``end``: the impulses, slips and rates at both, and its length h."""
+class Moment(NamedTuple):
+    """A moment of an impact: the impulses so far, the slips, and the rates."""
 
-    start: Impulses
+    x: Impulses
     slip: Slips
     per: Impulses
+
+
+class Step(NamedTuple):
+    """A step of length h."""
+
+    start: Moment
     h: float
-    end: Impulses
-    slip_end: Slips
-    per_end: Impulses
+    end: Moment
 
 
 @inlined
 def cloth_after(step, mode, cloth, may_grip, limits, problem):
     """The next state of the cloth contact, and the factor on the step."""
-    slip, shrink = step.slip_end, STANDS
+    end, slip, per = step.end
+    shrink = STANDS
     after = SLIDES if slip.b1 * slip.b1 + slip.b2 * slip.b2 > limits.near * limits.near else STARTS
     if cloth == GRIPS:
         after = GRIPS
-        if not grip_holds(step.per_end, step.end, problem):
+        if not grip_holds(per, end, problem):
             after = STARTS
-            if step.end.p - step.start.p > limits.delta:  # it began to slip inside the step: find where
+            if end.p - step.start.x.p > limits.delta:  # it began to slip inside the step: find where
                 shrink = _HALF
-    elif may_grip and after == STARTS and grip_holds(rates(step.end, mode, limits.near, GRIPS, problem), step.end, problem):
+    elif may_grip and after == STARTS and grip_holds(rates(end, mode, limits.near, GRIPS, problem), end, problem):
         after = GRIPS
     return after, shrink
 
@@ -69,7 +74,7 @@ def mode_after(series, step, s, mode, cloth, located, limits, problem):
     located: whether the last attempt at this step found that place.
     """
     after, shrink = mode, STANDS
-    end, slip, per_end = step.end, step.slip_end, step.per_end
+    start, (end, slip, per_end) = step.start, step.end
     if mode == SLIP:
         if s <= limits.delta:
             after = STICK if held(end, limits.near, cloth, problem) else CREEP
@@ -79,7 +84,7 @@ def mode_after(series, step, s, mode, cloth, located, limits, problem):
         if not held(end, limits.near, cloth, problem):
             after = CREEP
             if step.h > limits.delta and not located:  # it began to slip inside the step: take the step up to that place
-                dormand_prince.leave_polynomial(series, step.start, end, step.h, problem.contact)
+                dormand_prince.leave_polynomial(series, start.x, end, step.h, problem.contact)
                 shrink = breaks_loose_at(series, limits.near, cloth, problem)
                 located = True
     elif s > limits.creep:
@@ -87,7 +92,7 @@ def mode_after(series, step, s, mode, cloth, located, limits, problem):
         if s > _OUT_OF_CREEP * limits.creep and step.h > limits.delta:
             shrink = _HALF
     elif per_end.F1 * slip.a1 + per_end.F2 * slip.a2 > 0.0 and s > limits.delta:  # friction does not oppose the slip
-        if step.h > limits.delta and step.per.F1 * step.slip.a1 + step.per.F2 * step.slip.a2 <= 0.0:
+        if step.h > limits.delta and start.per.F1 * start.slip.a1 + start.per.F2 * start.slip.a2 <= 0.0:
             shrink = _HALF  # it did before: the slip ended inside the step
         else:
             after = STICK if held(end, limits.near, cloth, problem) else CREEP

@@ -53,7 +53,7 @@ class StrokePolicy:
         balls, pots = np.empty((n * (N_BALLS - 1), BALL_INPUTS), np.float32), np.empty((n * POTS, POT_ENTRIES), np.float32)
         groups, first = np.empty(len(balls), np.int64), np.empty(n + 1, np.int64)
         context, sides = np.empty((n, state_at + STATE + 3), np.float32), np.empty(n, np.float32)
-        m = table_kernels.read_tables(rows, seen, balls, groups, first, pots, context, state_at, sides)
+        m = table_kernels.read_tables(rows, seen, (balls, groups, first, pots, context, sides), state_at)
         table_kernels.sum_balls(self._codes("ball", balls[:m]), groups, first, context, width)
         pot_codes = self._codes("pot", pots)
         table_kernels.sum_pots(pot_codes, pots, context, 3 * width)

@@ -22,13 +22,14 @@ _ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)  # literals are float64, and ha
 
 
 @entry
-def read_tables(rows, seen, balls, group, first, pots, context, at, sides):
+def read_tables(rows, seen, inputs, at):
     """Write the inputs of the networks for the tables seen[rows]; returns the number of balls on these tables.
 
-    balls (m, BALL_INPUTS), group (m,): the balls on the tables; 0 for a red that is not on, 1 for a red on, 2 and 3 likewise for colours.
-    first (n + 1,): each table's first row of them. pots (n * POTS, POT_ENTRIES). context[:, at:]: state, cue ball, side. sides (n,): -1
-    where the table is mirrored, else 1.
+    ``inputs``: (balls, group, first, pots, context, sides). balls (m, BALL_INPUTS), group (m,): the balls on the tables;
+    0 for a red that is not on, 1 for a red on, 2 and 3 likewise for colours. first (n + 1,): each table's first row of
+    them. pots (n * POTS, POT_ENTRIES). context[:, at:]: state, cue ball, side. sides (n,): -1 where mirrored, else 1.
     """
+    balls, group, first, pots, context, sides = inputs
     m = 0
     for j in range(rows.shape[0]):
         row, first[j] = seen[rows[j]], m

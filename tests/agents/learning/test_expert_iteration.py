@@ -5,6 +5,7 @@ import pickle
 import numpy as np
 import pytest
 import torch
+from agents.players.by_name import player_of
 from positions import tables
 
 from agents.features.views import training_tables
@@ -15,7 +16,6 @@ from agents.learning.model_files import packed, read
 from agents.learning.models import zipped
 from agents.learning.self_play import search_of
 from agents.learning.value_network import value_of
-from agents.players.by_name import player_of
 from snooker_env.planning import Positions, spread_of
 from snooker_env.planning.learned.learned_value import LearnedValue
 from snooker_env.planning.learned.policy_proposals import PolicyProposals

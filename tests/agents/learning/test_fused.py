@@ -14,6 +14,7 @@ import pytest
 import torch
 
 from agents.learning import fused
+from agents.learning.fused import Loss, Rollout
 from agents.learning.networks import JudgedPolicy, TablePolicy
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.planning.learned import table_kernels
@@ -21,7 +22,7 @@ from snooker_env.planning.learned.pot_view import BALL_X, VIEW_SPACE, with_pots
 from snooker_env.tasks import CHOICES, OBSERVATION_SIZE
 
 N = fused.BLOCK + 45
-CLIP, ENTROPY, VALUE = 0.2, 0.01, 0.05
+LOSS = CLIP, ENTROPY, VALUE = Loss(0.2, 0.01, 0.05)
 
 
 @pytest.fixture(scope="module")
@@ -151,7 +152,7 @@ def test_the_gradient_is_pytorchs_own(policy, met):
     rows = rng.permutation(N)[: N - 7]
     policy.zero_grad()
     policy.fused.zero_grad()
-    figures = policy.fused.ppo_gradient(rows, seen, masks, choices, before, advantages, returns, CLIP, ENTROPY, VALUE)
+    figures = policy.fused.ppo_gradient(rows, Rollout(seen, masks, choices, before, advantages, returns), LOSS)
     own = {name: p.grad.clone() for name, p in policy.named_parameters() if p.grad is not None}
     learned = {name for name, _ in policy.named_parameters() if not name.startswith("position_value.")}
     assert own.keys() == learned and policy.fused.gradient.numel() == sum(g.numel() for g in own.values())
@@ -181,7 +182,8 @@ def test_choices_of_nearly_no_probability_keep_their_logarithm(policy, met):
     _, logs, entropy = plain(policy, seen, masks, choices)
     assert (logs < -110.0).sum() > 20  # exp(-103) is the smallest that float32 holds
     policy.fused.zero_grad()
-    found = policy.fused.ppo_gradient(rows, seen, masks, choices, logs.detach().numpy() - 0.5, nothing, nothing, CLIP, 0.0, 0.0)
+    rollout = Rollout(seen, masks, choices, logs.detach().numpy() - 0.5, nothing, nothing)
+    found = policy.fused.ppo_gradient(rows, rollout, Loss(CLIP, 0.0, 0.0))
     assert np.isclose(found[4], np.exp(0.5) - 1.5, rtol=1e-4) and np.isclose(found[2], entropy.mean().item(), rtol=1e-4)
 
 
@@ -189,12 +191,12 @@ def test_gradients_of_parts_add_up(policy, met):
     """And a block of another size leaves nothing behind."""
     seen, masks = met
     choices, _, logs = policy.fused.act(seen, masks, np.random.default_rng(3).random(N))
-    rest = (seen, masks, choices, logs, np.ones(N, np.float32), np.zeros(N, np.float32), CLIP, ENTROPY, VALUE)
+    rollout = Rollout(seen, masks, choices, logs, np.ones(N, np.float32), np.zeros(N, np.float32))
     found = []
     for parts in ([np.arange(40)], [np.arange(40), np.arange(40, 40 + 20)], [np.arange(40, 60)]):
         policy.fused.zero_grad()
         for rows in parts:
-            policy.fused.ppo_gradient(rows, *rest)
+            policy.fused.ppo_gradient(rows, rollout, LOSS)
         found.append(policy.fused.gradient.clone())
     scale = found[1].abs().max()
     assert (found[0] + found[2] - found[1]).abs().max() < 1e-5 * scale and (found[0] - found[1]).abs().max() > 1e-2 * scale

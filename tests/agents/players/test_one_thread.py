@@ -16,7 +16,7 @@ MEASURE = """if True:
     import json, os, sys, time
     import numpy as np, torch
     import snooker_env as sn
-    from agents.players.by_name import player_of
+    from snooker_env.planning import Positions
 
     os.sched_setaffinity(0, [min(os.sched_getaffinity(0))])  # of this thread: the libraries have made theirs
 
@@ -29,10 +29,10 @@ MEASURE = """if True:
         return (time.process_time() - whole) / (time.thread_time() - own) - 1.0
 
     def decisions(name, tables):
-        player = player_of(name)
-        env = sn.SnookerVectorEnv(tables, noise="professional", threads=1, **player.options)
-        seen, _ = env.reset(seed=3)
-        return lambda: player.act(env, seen, np.ones(tables, bool))
+        env = sn.SnookerVectorEnv(tables, noise="professional", threads=1)
+        env.reset(seed=3)
+        player, at = sn.player(name).at(env), Positions.of(env)
+        return lambda: player.play(at, np.arange(tables))
 
     rows, weight = np.ones((2, 256, 256), np.float32)
     given = torch.from_numpy(rows)

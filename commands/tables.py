@@ -1,6 +1,11 @@
 """How is a table of words and numbers written, on a terminal and in Markdown? No wider than a terminal is."""
 
 from dataclasses import dataclass, replace
+from textwrap import fill
+
+from snooker_env._tables import markdown_table, shown, text_table
+
+__all__ = ["WIDTH", "TextTable", "markdown_table", "page", "show", "shown", "text_table"]
 
 WIDTH = 100
 """Columns of text that no table is wider than."""
@@ -8,7 +13,7 @@ WIDTH = 100
 
 @dataclass
 class TextTable:
-    """Cells as text; the first ``keys`` columns say what a row is about, the first ``left`` are words, the others numbers."""
+    """Cells as text: ``keys`` columns say what a row is about, the first ``left`` are words, the others numbers."""
 
     title: str
     header: list
@@ -27,12 +32,12 @@ class TextTable:
 
     def narrow(self):
         """The same as tables that are no wider than ``WIDTH``, each with the key columns; none if it is empty."""
-        widths = [3 + max(len(row[k]) for row in (self.header, *self.rows)) for k in range(len(self.header))]
+        widths = [2 + max(len(row[k]) for row in (self.header, *self.rows)) for k in range(len(self.header))]
         groups, room = [], 0
         for k in range(self.keys, len(widths)):
             if not groups or widths[k] > room:
                 groups.append([])
-                room = WIDTH - 1 - sum(widths[: self.keys])
+                room = WIDTH - sum(widths[: self.keys])
             groups[-1].append(k)
             room -= widths[k]
         for n, group in enumerate(groups, 1):
@@ -42,32 +47,26 @@ class TextTable:
             left = sum(k < self.left for k in columns)
             yield replace(self, title=title, header=[self.header[k] for k in columns], rows=rows, left=left)
 
-    def show(self):
-        """Print it."""
-        import rich.box
-        import rich.console
-        import rich.table
-
-        table = rich.table.Table(box=rich.box.SIMPLE, pad_edge=False)
-        for k, name in enumerate(self.header):
-            table.add_column(name, justify="left" if k < self.left else "right", no_wrap=k >= self.keys, overflow="fold")
-        for k, row in enumerate(self.rows):
-            if k and self.grouped and row[0] != self.rows[k - 1][0]:
-                table.add_section()
-            table.add_row(*(cell.replace("[", "\\[") for cell in row))
-        console = rich.console.Console(width=WIDTH)
-        console.print(self.title, highlight=False, markup=False, style="italic")
-        console.print(table)
+    def text(self):
+        """It for a terminal, with a line between groups."""
+        head, rule, *lines = text_table(self.header, self.rows, self.left)
+        for k in range(len(lines) - 1, 0, -1):
+            if self.grouped and self.rows[k][0] != self.rows[k - 1][0]:
+                lines.insert(k, "")
+        return "\n".join([fill(self.title, WIDTH), head, rule, *lines])
 
     def markdown(self):
         """The same in Markdown."""
-        marks = [":--" if k < self.left else "--:" for k in range(len(self.header))]
-        rows = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in (self.header, marks, *self.rows)]
-        return "\n".join([f"**{self.title}**", "", *rows])
+        return "\n".join([f"**{self.title}**", "", *markdown_table(self.header, self.rows, self.left)])
 
 
-def say(text):
-    """Print a paragraph, as wide as the terminal."""
-    import rich.console
+def show(parts):
+    """Print tables and paragraphs."""
+    for part in parts:
+        print(fill(part, WIDTH) if isinstance(part, str) else part.text(), end="\n\n")
 
-    rich.console.Console().print(text, highlight=False, markup=False)
+
+def page(title, command, made, parts):
+    """A Markdown page of tables and paragraphs; ``made``: with what."""
+    head = [f"# {title}", "", "Made by", "", "```bash", command, "```", "", f"with {made}.", ""]
+    return "\n".join([*head, *(line for part in parts for line in (part if isinstance(part, str) else part.markdown(), ""))])

@@ -1,0 +1,251 @@
+"""How does an external program play? JSON lines: the state of ``docs/play/protocol.md`` on its standard input, a stroke on its output.
+
+The program is started at the first question and answers all of them. For each stroke it gets one line, the object of
+``GET api/state`` with a "seed" for what it draws, and answers with one line, an object as ``POST api/stroke`` takes it,
+without "nominate". In phase "choice" of a frame it answers with a "choice"; after "play" alone it gets the state once
+more, for its stroke. Its standard error goes to that of this process.
+"""
+
+import contextlib
+import json
+import os
+import queue
+import shlex
+import subprocess
+import threading
+import time
+from typing import Any
+
+import numpy as np
+
+from .._check import choice, number, refuse
+from ..game.balls import CUE
+from ..game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
+from ..planning import Positions
+from ..players.player import Strokes, seeds_of
+from ..players.simple import BoundPlayer
+from ..tasks.box_actions import MIN_SPEED
+from ..tasks.frame import Frames
+from ..tasks.noise import LEVELS
+from ..tasks.options import Options
+from .report import report
+from .routes import STROKE, stroke_asked
+from .seats import Seats
+from .server import RefusedError, parsed
+from .service import Service
+from .session import STATE, Session
+
+LONGEST = 1 << 20
+"""The longest answer [bytes]."""
+DECISIONS = {"play": PLAY, "play_again": PLAY_AGAIN, "replace": REPLACE}
+"""What the words of a "choice" mean."""
+
+
+class AgentError(RuntimeError):
+    """An agent that stopped playing: a program that died, was too slow, or answered something that is no stroke."""
+
+
+class ProgramPlayer(BoundPlayer):
+    """An external program as a player. All that ``at`` makes of it share one process.
+
+    Parameters
+    ----------
+    command : str
+        The command line, split as by a shell; no shell runs it.
+    timeout : float, optional
+        The longest time of an answer [s], in (0, 1e6]; default 60.
+
+    Raises
+    ------
+    ValueError
+        If the command is empty, or the timeout is out of range.
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import ProgramPlayer
+    >>> ProgramPlayer("")
+    Traceback (most recent call last):
+    ...
+    ValueError: player = 'program:': must name a program: program:"python my_player.py"
+    """
+
+    def __init__(self, command: str, *, timeout: float = 60.0):
+        try:
+            words = shlex.split(command, posix=os.name == "posix")
+        except ValueError as error:
+            raise refuse("player", f"program:{command}", f"must be a command line ({error})") from None
+        if not words:
+            raise refuse("player", f"program:{command}", 'must name a program: program:"python my_player.py"')
+        self.name = f"program:{command}"
+        self._lines = _Lines(command, words, number("timeout", timeout, 0.0, 1e6, open_low=True))
+        self._session = Session()
+        self._service = Service(self._session, Seats({}))
+
+    def _bind(self, options: Options) -> None:
+        self._noise = choice("noise", options.noise, tuple(LEVELS))
+
+    def play(self, positions: Any, seeds: Any) -> Strokes:
+        """See ``Player.play``; ``AgentError`` if the program ends, is too slow, or its answer is no stroke."""
+        _ = self.options  # it must be bound
+        at = Positions.of(positions)
+        keys = seeds_of(seeds, len(at)).tolist()
+        return Strokes.join([self._stroke(at, k, key) for k, key in enumerate(keys)] or [_struck()[:0]])
+
+    def close(self) -> None:
+        """End the program; the next question starts it again."""
+        self._service.close()
+        self._lines.close()
+
+    def _stroke(self, at: Positions, k: int, seed: int) -> Strokes:
+        """What the program does in the position k."""
+        self._stand(at, k)
+        answer = self._asked(seed)
+        if answer == {"choice": "play"} and self._session.frame.phase == "choice":
+            self._session.choose("play")  # its stroke comes with the next answer
+            self._service.revision += 1
+            answer = self._asked(seed)
+        try:
+            for name in answer:
+                choice("field", name, (*STROKE, "revision", *(("choice",) if at.of_frames else ())))
+            twin = self._session.twin()
+            what = answer.get("choice", "play")
+            if "choice" in answer or twin.frame.phase == "choice":
+                twin.choose(what)
+            if what != "play":
+                return _struck(decision=DECISIONS[what])
+            stroke = stroke_asked(twin, answer)
+            return _struck(stroke.numbers(), twin.tables.positions[0, CUE] if twin.frame.in_hand else None)
+        except ValueError as error:
+            what = f"answered {_short(json.dumps(answer))}, which is refused: {error}"
+            raise AgentError(f"the program {self._lines.command!r} {what}") from None
+
+    def _stand(self, at: Positions, k: int) -> None:
+        """The session as the position k stands."""
+        session = self._session
+        if at.of_frames:
+            table = Frames(session.tables.rules, 1)
+            table.positions[0], table.on_table[0], table.game[0] = at.positions[k], at.on_table[k], at.game[k]
+            for kept, layout in zip(table.saved, at.saved or (), strict=False):
+                kept[0] = layout[k]
+            state = table.get_state(0)
+            game = {"practice": False, "noise": [self._noise] * 2, "state": {name: state[name] for name in STATE}}
+            session.load({"format": "snooker-game", "version": 1, **game})
+        else:
+            position = at[k]
+            session.set_up(position, scores=(position.points, 0), striker=0, free_ball=False)
+            session.noise[:] = [self._noise] * 2
+        self._service.revision += 1
+
+    def _asked(self, seed: int) -> dict[str, Any]:
+        """The program's answer to the table as it stands: an object."""
+        answer = self._lines.asked(json.dumps(report(self._service) | {"seed": seed}, separators=(",", ":")).encode() + b"\n")
+        try:
+            return parsed(answer.strip())
+        except RefusedError as error:
+            what = f"answered {_short(answer)}, which is no stroke: {error}"
+            raise AgentError(f"the program {self._lines.command!r} {what}") from None
+
+
+class _Lines:
+    """A process that answers each line with one line; it is started by the first."""
+
+    def __init__(self, command: str, words: list[str], timeout: float):
+        self.command, self.timeout = command, timeout
+        self._words, self._process = words, None
+
+    def _start(self):
+        try:
+            self._process = subprocess.Popen(self._words, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        except OSError as error:
+            raise AgentError(f"the program {self.command!r} cannot be started: {error}") from None
+        self._answers: queue.Queue[bytes] = queue.Queue(2)  # a program that prints on and on has to wait
+        self._states: queue.Queue[bytes] = queue.Queue()
+        self._taken = threading.Event()  # the program has read all that was written
+        self._taken.set()
+        self._reader = threading.Thread(target=self._read, args=(self._process.stdout,), daemon=True)
+        self._writer = threading.Thread(target=self._write, args=(self._process.stdin,), daemon=True)
+        self._reader.start()
+        self._writer.start()
+
+    def asked(self, line: bytes) -> bytes:
+        """The answer to a line."""
+        if self._process is None:
+            self._start()
+        until = time.monotonic() + self.timeout
+        try:
+            answer = self._answers.get_nowait()
+        except queue.Empty:
+            self._taken.clear()
+            self._states.put(line)
+            try:
+                answer = self._answers.get(timeout=self.timeout)
+            except queue.Empty:
+                raise self._failed(f"gave no stroke within {self.timeout:g} s") from None
+            if answer and not self._taken.wait(max(0.0, until - time.monotonic())):
+                raise self._failed(f"did not read its state within {self.timeout:g} s") from None
+        else:
+            if answer:
+                raise self._failed(f"answered {_short(answer)} without a state: one line for each")
+        if len(answer) > LONGEST:
+            raise self._failed(f"answered a line of more than {LONGEST:,} bytes")
+        if not answer:
+            try:
+                code = self._process.wait(2.0)
+            except subprocess.TimeoutExpired:
+                raise self._failed("closed its output") from None
+            raise self._failed(f"ended with exit code {code} instead of a stroke")
+        return answer
+
+    def _failed(self, what):
+        return AgentError(f"the program {self.command!r} {what}")
+
+    def close(self) -> None:
+        """End the process."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        if not self._taken.is_set():  # it does not read: the end of its input would not reach it
+            process.kill()
+        self._states.put(b"")
+        self._writer.join(2.0)
+        if not self._writer.is_alive():
+            with contextlib.suppress(OSError):  # it has gone already
+                process.stdin.close()
+        try:
+            process.wait(2.0)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        until = time.monotonic() + 2.0
+        while self._reader.is_alive() and time.monotonic() < until:
+            with contextlib.suppress(queue.Empty):  # what it still had to say
+                self._answers.get(timeout=0.02)
+        if not self._reader.is_alive():  # a child of the program may hold its output open
+            process.stdout.close()
+
+    def _read(self, output):
+        line = b" "
+        while line and len(line) <= LONGEST:
+            line = output.readline(LONGEST + 1)
+            self._answers.put(line)
+
+    def _write(self, input_):
+        """Write states, in a thread of its own: a program that does not read stops whoever writes to it."""
+        pipe = input_.fileno()
+        while text := self._states.get():
+            with contextlib.suppress(OSError):  # nobody reads; the reader reports that it ended
+                while text:
+                    text = text[os.write(pipe, text) :]
+                self._taken.set()
+
+
+def _struck(values: Any = (MIN_SPEED, 0.0, 0.0, 0.0, 0.0), place: Any = None, decision: int = PLAY) -> Strokes:
+    """One stroke."""
+    places = None if place is None else np.array([place])
+    return Strokes(np.array([values]), places, decision=np.array([decision]))
+
+
+def _short(text: Any) -> str:
+    """A text in at most 80 characters, quoted."""
+    text = (text.decode(errors="replace") if isinstance(text, bytes) else text).strip()
+    return repr(text if len(text) <= 80 else text[:77] + "...")

@@ -1,0 +1,83 @@
+"""What do the kernels of tasks take? Arrays of tables, shots and a step's results, dynamics, and work space.
+
+Python hands over plain tuples (``Tables.arrays``, ``ShotBuffers.struck`` and ``played``,
+``StepOutput.arrays``), and a kernel that Python calls gives them these names where it begins: it would take
+0.7 us more to hand a named tuple over. Each array takes 0.1 us, so that no tuple holds more than its kernels
+need.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._types import Bools, Floats, Ints, Singles, Words
+
+
+class TableArrays(NamedTuple):
+    """n tables, as ``Tables`` has them."""
+
+    positions: Floats
+    on_table: Bools
+    game: Ints
+    streams: Words
+    nominated: Ints
+
+
+class StruckArrays(NamedTuple):
+    """Shots before they are played, as ``ShotBuffers`` has them."""
+
+    r: Floats
+    v: Floats
+    w: Floats
+    here: Bools
+    shots: Floats
+
+
+class PlayedArrays(NamedTuple):
+    """Shots that came to rest, as ``ShotBuffers`` has them."""
+
+    r: Floats
+    shots: Floats
+    seen: Ints
+    potted: Ints
+    status: Ints
+    duration: Floats
+    event_time: Floats
+    event_what: NDArray[np.int32]
+    n_events: Ints
+
+
+class OutputArrays(NamedTuple):
+    """The results of a step, as ``StepOutput`` has them."""
+
+    observations: Singles
+    rewards: Floats
+    terminated: Bools
+    truncated: Bools
+    reals: Floats
+    counts: Ints
+
+
+class CueLaw(NamedTuple):
+    """How the cue strikes, and how balls move and collide."""
+
+    phys: Floats
+    """Packed ``Physics``."""
+    end_mass_ratio: float
+    fidelity: int
+    n_steps: int
+    """As ``parse_fidelity`` returns them."""
+
+
+class Work(NamedTuple):
+    """Work space of the kernels that seek a line of the cue ball; ``lines.new_work`` makes it."""
+
+    lines: Floats
+    """(LINE_ROWS, POT_COLUMNS): the pots or lines of a table, and windows."""
+    motion: Floats
+    """(2, cloth.COLUMNS)"""
+    state: Ints
+    """(2,) Phases of two balls."""
+    series: Floats
+    """Of the solution of an impact."""

@@ -1,0 +1,73 @@
+"""Do the repository's players play as players, and are all of them, and its pre-trained models, found by name?"""
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from agents.export import arrays_of
+from agents.learning.models import PRETRAINED, load_trained, pretrained
+from agents.players.trained import load_player, read_model
+from snooker_env.planning import Planner, Positions
+from snooker_env.players.weights import FOLDER, levels
+from snooker_env.tasks import Noise
+
+NAMES = ("geometric", "foresight_rule", *pretrained())
+
+
+def at_tables(n=6, layout="random:6"):
+    tables = sn.SnookerVectorEnv(n, layout=layout, threads=1)
+    tables.reset(seed=1)
+    return Positions.of(tables)
+
+
+def test_every_pretrained_model_has_an_entry_point():
+    assert set(NAMES) <= set(sn.players())
+    assert {name for name in sn.players() if name.startswith("ppo_")} == set(pretrained())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_player_is_a_function_of_a_position_and_a_seed(name):
+    at, player, seeds = at_tables(), sn.player(name).at({"noise": "professional"}), np.arange(6)
+    together = player.play(at, seeds)
+    for k in range(6):
+        assert np.array_equal(player.play(at[k : k + 1], seeds[k : k + 1]).values[0], together.values[k])
+    if hasattr(player, "rank"):
+        for k, one in enumerate(player.rank(at, seeds)):
+            assert np.array_equal(one.strokes.values[0], together.values[k]) and (np.diff(one.scores) <= 0).all()
+
+
+def test_a_policy_ranks_its_choices_by_probability():
+    for name in ("ppo_mask", "ppo_foresight"):
+        for one in sn.player(name).at({}).rank(at_tables(), np.arange(6)):
+            assert 0.99 > one.scores[0] > 1.5 / len(one.scores) and one.scores.sum() <= 1.0 + 1e-9
+
+
+def test_geometric_pots_where_a_direct_pot_is():
+    at = at_tables(20, "pots:easy")
+    strokes = sn.player("geometric").at({}).play(at, np.zeros(20, int))
+    assert (Planner({}).play(at, np.arange(20), strokes=strokes.values).points > 0).mean() > 0.9
+
+
+@pytest.mark.parametrize("level", levels())
+def test_the_package_holds_the_weights_of_the_pretrained_models(level):
+    model = PRETRAINED / f"{'ppo_value' if level == 'professional' else f'ppo_value_{level}'}.zip"
+    expected = arrays_of(load_trained(model, "agent").policy)
+    with np.load(FOLDER / f"{level}.npz") as held:
+        assert set(held.files) == set(expected)
+        assert all(np.array_equal(held[name], array) for name, array in expected.items())
+
+
+def test_a_planner_takes_the_value_of_a_model_of_your_own():
+    at, seeds = at_tables(), np.arange(6)
+    by_level, by_file = (sn.player(f"planner_30@{model}").at({"noise": "none"}) for model in ("club", PRETRAINED / "ppo_value_club.zip"))
+    assert np.array_equal(by_level.play(at, seeds).values, by_file.play(at, seeds).values)
+    with pytest.raises(ValueError, match="must name a model with policy and value"):
+        sn.player(f"planner@{PRETRAINED / 'ppo_mask.zip'}")
+
+
+def test_files_of_others_are_left_to_others(tmp_path):
+    (tmp_path / "x.zip").write_bytes(b"no zip")
+    assert read_model(tmp_path / "x.zip") is None
+    with pytest.raises(ValueError, match=r"must be a model's \.zip or a folder"):
+        load_player(tmp_path)
+    assert Noise().silent

@@ -1,0 +1,89 @@
+"""Do the players that search play what their names say, each with its own value and proposals, and how well?"""
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.benchmark import play_visits, summary
+from snooker_env.planning import Planner, Positions
+from snooker_env.planning.learned.learned_value import LearnedValue
+from snooker_env.planning.learned.policy_proposals import PolicyProposals
+from snooker_env.planning.stroke_search import schedule
+from snooker_env.players import weights
+from snooker_env.players.search import BUDGET, KINDS
+from snooker_env.tasks import LEVELS, Noise
+
+
+def held_out(n=4, seed=2):
+    tables = sn.SnookerVectorEnv(n, layout="held_out", threads=1)
+    tables.reset(seed=seed)
+    return Positions.of(tables)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_name_may_end_in_a_number_of_shots(kind):
+    for name, budget in ((kind, BUDGET), (f"{kind}_8", 8), (f"{kind}_2000", 2000)):
+        player = sn.player(name)
+        assert (player.kind, player.budget, player.name) == (kind, budget, kind if budget == BUDGET else f"{kind}_{budget}")
+
+
+def test_each_kind_has_its_value_and_its_proposals():
+    kinds = {}
+    for kind in KINDS:
+        search = sn.player(f"{kind}_30").at({"noise": "professional"}).search
+        learned = isinstance(search.value, LearnedValue), isinstance(search.propose, PolicyProposals)
+        kinds[kind] = (*learned, search.pots_only)
+    assert kinds == {
+        "best_pot": (False, False, True),
+        "search": (False, False, False),
+        "planner": (True, True, False),
+        "planner_value": (True, False, False),
+        "planner_policy": (False, True, False),
+    }
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("noise", ["professional", "none"])
+def test_a_ranking_is_sorted_and_its_first_stroke_pots(kind, noise):
+    at, player = held_out(), sn.player(f"{kind}_60").at({"noise": noise})
+    ranking = player.rank(at, np.arange(4))
+    for one in ranking:
+        assert len(one.strokes) == len(one.scores) and (np.diff(one.scores) <= 0.0).all()
+        assert len(one.scores) == 10 if noise == "none" else 1 < len(one.scores) <= schedule(60)[1][0][0]
+    best = np.concatenate([one.strokes.values[:1] for one in ranking])
+    assert (Planner({}).play(at, np.arange(4), strokes=best).points > 0).sum() >= 3
+
+
+def test_a_decision_takes_as_many_shots_as_its_name_says():
+    player = sn.player("planner_60").at({"noise": "professional"})
+    player.play(held_out(), np.arange(4))
+    assert 0.9 * 4 * 60 <= player.search.shots <= 4 * 60
+
+
+def test_the_weights_are_those_of_the_noise_else_of_the_nearest():
+    assert weights.levels() == ["none", "professional", "amateur", "club"]
+    for level in weights.levels():
+        assert weights.level_for(LEVELS[level]) == level
+    # by the ratio of the errors of direction
+    assert weights.level_for(Noise(aim_deg=10.0)) == "club" and weights.level_for(Noise(aim_deg=1e-5)) == "none"
+    with pytest.raises(ValueError, match="level = 'robot': must be one of none, professional"):
+        weights.learned_at("robot")
+
+
+def test_a_value_says_more_for_a_better_player():
+    at = held_out(30)
+    values = [sn.player("planner_30").at({"noise": level}).search.value(at).mean() for level in ("none", "professional", "club")]
+    assert values[0] > values[1] > 1.5 * values[2] > 0
+
+
+def test_the_planner_makes_more_points_than_search_that_more_than_the_best_pot_and_that_more_than_the_widest():
+    points = {
+        name: summary(play_visits(sn.player(name), 60, threads=1))["points_a_visit"]
+        for name in ("planner_60", "search_60", "best_pot_60", "ghost_ball")
+    }
+    assert points["planner_60"] > 1.1 * points["search_60"] > 1.5 * points["best_pot_60"] > 1.5 * points["ghost_ball"]
+
+
+def test_without_errors_search_clears_tables():
+    cleared = summary(play_visits(sn.player("search_600"), 3, noise="none"))
+    assert cleared["clearances"] >= 2 / 3 and cleared["longest_break"] > 100

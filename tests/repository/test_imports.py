@@ -1,0 +1,47 @@
+"""Does each room import only what stands below it, without circles? The contracts are in pyproject.toml: ``lint-imports``."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from tests.processes import ROOT, python
+
+
+def lint(config, at=ROOT):
+    """Exit code and words of import-linter."""
+    pytest.importorskip("importlinter")
+    code = f"from importlinter.cli import lint_imports as lint; exit(lint({str(config)!r}, no_cache=True))"
+    env = os.environ | {"PYTHONPATH": str(at)}
+    done = subprocess.run([sys.executable, "-c", code], cwd=at, env=env, capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def test_import_contracts_are_kept():
+    code, words = lint(ROOT / "pyproject.toml")
+    assert code == 0, words
+    assert "4 kept, 0 broken" in words
+
+
+def test_a_broken_contract_is_seen(tmp_path):
+    """The lowest room put on top: all others import it, so that the check can fail."""
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    first, last = '["benchmarks", "agents", "commands", "snooker_env"]', '["snooker_env", "benchmarks", "agents", "commands"]'
+    assert first in text
+    (tmp_path / "pyproject.toml").write_text(text.replace(first, last), encoding="utf-8")
+    code, words = lint(tmp_path / "pyproject.toml")
+    assert code == 1 and "3 kept, 1 broken" in words
+
+
+def test_the_built_in_players_load_no_learning_library():
+    """Neither torch nor Stable-Baselines3, nor what reads the recipes: not even to play."""
+    code = """if True:
+        import sys
+        from agents.players.by_name import NAMES, player_of
+        for name in NAMES:
+            player_of(name)
+        ours = ("agents.learning.hyperparameters", "agents.learning.models", "agents.players.trained")
+        print([name for name in ("torch", "stable_baselines3", "sb3_contrib", *ours) if name in sys.modules])
+    """
+    assert python(code, at=ROOT)[0].strip() == "[]"
