@@ -2,6 +2,8 @@
 
 from typing import Any, ClassVar
 
+import numpy as np
+
 from ._jit import ENTRIES
 from ._notices import warming_up
 from .impacts import collide_balls, collide_cushion, strike
@@ -9,16 +11,13 @@ from .simulation import simulate
 
 
 class _Still:
-    """A player of visits whose random numbers can be set: for the kernels of such opponents."""
+    """Sees observations and plays one stroke: for the kernels of players as opponents."""
 
     options: ClassVar[dict[str, Any]] = {}
 
-    def begin(self, seed: int) -> None:
-        """Nothing is drawn."""
-
-    def act(self, tables: Any, observations: Any, going: Any) -> list[list[float]]:
-        """The same stroke on each table."""
-        return [[0.0] * 4] * len(going)
+    def act(self, observations: Any, masks: Any, seeds: Any) -> list[list[float]]:
+        """The same stroke for each observation."""
+        return [[0.0] * 4] * len(seeds)
 
 
 def warmup() -> None:

@@ -14,8 +14,8 @@ from .._check import choice, integer, refuse, refuse_what, truth
 from .._types import NoiseName
 from ..advice import CueStroke
 from ..game.balls import CUE, NAMES, BallOn, ids_of, mask_of_present
-from ..game.frame import Frame
-from ..game.frame_columns import STROKES, write_frame
+from ..game.frame import Frame, write_frame
+from ..game.frame_columns import STROKES
 from ..game.in_hand import place_cue
 from ..game.ruling import AUTO
 from ..planning.position import Position

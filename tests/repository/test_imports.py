@@ -35,12 +35,13 @@ def test_a_broken_contract_is_seen(tmp_path):
 
 
 def test_the_built_in_players_load_no_learning_library():
-    """Neither torch nor Stable-Baselines3, nor what reads the recipes: not even to play."""
+    """Neither torch nor Stable-Baselines3, nor what reads the recipes: not even to play as the planner does."""
     code = """if True:
         import sys
-        from agents.players.by_name import NAMES, player_of
-        for name in NAMES:
-            player_of(name)
+        import numpy as np, snooker_env as sn
+        at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+        for name in ("random", "ghost_ball", "best_pot_8", "search_8", "planner_8", "geometric"):
+            sn.player(name).at({}).play(at, [0])
         ours = ("agents.learning.hyperparameters", "agents.learning.models", "agents.players.trained")
         print([name for name in ("torch", "stable_baselines3", "sb3_contrib", *ours) if name in sys.modules])
     """
