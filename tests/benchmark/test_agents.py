@@ -54,11 +54,11 @@ BROKEN = {
     "hangs": (f"{EACH}time.sleep(60)\n {GOOD}", "gave no stroke within 3 s"),
     "says": (f"{EACH}print('hello', flush=True)\n {GOOD}", "answered 'hello', which is no stroke"),
     "far": (
-        f"{EACH}print('{{\"speed\": 99, \"aim\": 0}}', flush=True)\n {GOOD}",
+        f'{EACH}print(\'{{"speed": 99, "aim": 0}}\', flush=True)\n {GOOD}',
         "which is refused: speed = 99: must be a finite number in [0.2, 7]",
     ),
     "nominates": (
-        f"{EACH}print('{{\"nominate\": \"blue\"}}', flush=True)\n {GOOD}",
+        f'{EACH}print(\'{{"nominate": "blue"}}\', flush=True)\n {GOOD}',
         "field = 'nominate': must be one of",
     ),
     "never reads": (f"for k in range(3):\n sys.stdin.readline()\n {GOOD}\ntime.sleep(60)", "gave no stroke within 3 s"),
