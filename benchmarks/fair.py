@@ -16,6 +16,7 @@ from snooker_env.tasks import CHOICES, MAX_SPEED, MIN_SPEED, SPEEDS, STROKES
 from snooker_env.tasks.frame import Frames
 from snooker_env.tasks.ghost_ball import GhostBallOpponent
 from snooker_env.tasks.options import Options
+from snooker_env.tasks.seats import Seat
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_FOULS, Crew
 
@@ -32,7 +33,8 @@ SHOWN = (2.3, 3.6)
 
 def dealt(n, seed, **options):
     """n new frames."""
-    tables = Frames(Options(task="frame", **options).rules, n)
+    game = Options(task="frame", **options)
+    tables = Frames(game, n, seats=[Seat.of(game.rules)] * 2)
     for k in range(n):
         tables.seed(k, np.random.default_rng((seed, k)))
     tables.deal(np.arange(n), drawn=False)

@@ -32,10 +32,12 @@ from snooker_env.game.frame import Frame
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.frame import Frames
-from snooker_env.tasks.opponents import GhostBallOpponent, UniformOpponent
+from snooker_env.tasks.ghost_ball import GhostBallOpponent
 from snooker_env.tasks.options import Options
+from snooker_env.tasks.seats import Seat
 from snooker_env.tasks.stroke import ATTEMPT, CLEAR_PATH, DOWN, FOULS, ShotBuffers
 from snooker_env.tasks.tables import I_BALL_ON, I_FOULS, I_PENALTY, I_POINTS, Crew
+from snooker_env.tasks.uniform_opponent import UniformOpponent
 
 from ._common.command import Command, at_least, run, save_json
 
@@ -86,7 +88,8 @@ class FrameTable:
         rules = SAID if kind == "said" else {"miss": kind}
         given: dict[str, Any] = {"task": "frame", "aim": "target", "placement": True, "decision": True, "max_strokes": None}
         options = Options(**given | rules | more)
-        self.tables, self.buffers, self.generator = Frames(options.rules, 1), ShotBuffers(1), np.random.default_rng()
+        self.tables = Frames(options, seats=[Seat.of(options.rules)] * 2)
+        self.buffers, self.generator = ShotBuffers(1), np.random.default_rng()
 
     def start(self, seed):
         """Deal a new frame."""

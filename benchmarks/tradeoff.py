@@ -13,6 +13,7 @@ import numpy as np
 
 import snooker_env as sn
 from commands import picture_style, provenance
+from commands.tables import text_table
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
 
@@ -286,10 +287,11 @@ def measure(options):
     heads = [f"{a} or more" if b == 999 else f"{a}" if a == b else f"{a} to {b}" for a, b in CONTACTS]
     groups = sets["full tables"]["rows"]
     counts = [g["shots"] for g in groups["standard"]["by_contacts"]]
-    print(" " * 26 + "".join(f"{f'{h} ({c} shots)':>26s}" for h, c in zip(heads, counts, strict=True)))
-    for fidelity, row in groups.items():
-        cells = (" ".join(f"{e:7.2g}" if e < 100 else f"{e:7.0f}" for e in g["cue_mm"]) for g in row["by_contacts"])
-        print(f"  {fidelity:24s}" + "".join(f"{c:>26s}" for c in cells))
+    rows = [
+        [fidelity, *(" ".join(f"{e:7.2g}" if e < 100 else f"{e:7.0f}" for e in g["cue_mm"]) for g in row["by_contacts"])]
+        for fidelity, row in groups.items()
+    ]
+    print("\n".join(text_table(["", *(f"{h} ({c} shots)" for h, c in zip(heads, counts, strict=True))], rows)))
     says = recommendation(impact_rows, sets)
     print("\nWhich fidelity for which use")
     for sentence in says:

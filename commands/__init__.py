@@ -1,1 +1,1 @@
-"""What do the commands of this repository share? Start and stop, writing of files, the option --physics, and provenance."""
+"""What do the commands of this repository share? Start and stop, files, tables, locks, the option --physics, and provenance."""

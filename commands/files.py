@@ -1,16 +1,17 @@
-"""How do commands write their files? Tested before the work, and completely or not at all."""
+"""How do commands write their files? Tested before the work, and each completely or not at all."""
 
 import io
+import json
 import tempfile
 
-from snooker_env._files import write_atomic
+from snooker_env._files import UNFINISHED, write_atomic
 from snooker_env.checks import refuse
 
-__all__ = ["save_figure", "writable", "write_atomic"]
+__all__ = ["UNFINISHED", "save_figure", "writable", "write_atomic", "write_json"]
 
 
 def writable(name, file):
-    """Make the folders of an output; ValueError if it could not be written there. Tested by writing: access bits are wrong for root."""
+    """Make the folders of an output; ValueError if it could not be written. Tried: access bits are wrong for root."""
     if file is None:
         return
     try:
@@ -19,6 +20,11 @@ def writable(name, file):
             pass
     except OSError as error:
         raise refuse(name, str(file), f"must be a file that can be written ({error.strerror})") from None
+
+
+def write_json(file, content):
+    """Write what JSON knows, completely or not at all."""
+    write_atomic(file, json.dumps(content, indent=1) + "\n")
 
 
 def save_figure(figure, file, **options):

@@ -10,11 +10,11 @@ from filelock import FileLock, Timeout
 from snooker_env.checks import refuse
 
 NAME = "train.lock"
-"""The file in the folder. One left by kill -9 is no obstacle: not the file counts, but the system's lock on it."""
+"""The file in the folder. One left by kill -9 is no obstacle: the system's lock on it counts."""
 
 
 class Lock:
-    """Holds a folder until ``release`` or the end of the process. Raises ValueError, naming ``field`` and the holder, if another does."""
+    """Holds a folder until ``release`` or the end of the process. Raises ValueError, naming the holder, if another does."""
 
     def __init__(self, folder, field="out"):
         self._path = folder / NAME
@@ -28,7 +28,7 @@ class Lock:
         self._file = self._path.stat()
 
     def release(self):
-        """Release the folder. It may have been moved, and another run started at its old path: whose lock stays."""
+        """Release the folder. If it was moved, and another run has begun at its old path, that one's lock stays."""
         with suppress(OSError):
             if os.path.samestat(self._file, self._path.stat()):
                 self._path.unlink()
@@ -47,9 +47,5 @@ def _taken(folder, field, path):
     with suppress(OSError):
         who = path.read_text(encoding="utf-8", errors="replace").strip()
     pid = who.split()[1] if who.startswith("process ") else "PID"
-    return refuse(
-        field,
-        str(folder),
-        f"must be a folder that no other process uses: {who or 'another process'} does. Wait, or stop it, which saves what it did "
-        f"(kill -INT {pid}), or give another --{field}",
-    )
+    wanted = f"must be a folder that no other process uses: {who or 'another process'} does. Wait, or stop it, which saves"
+    return refuse(field, str(folder), f"{wanted} what it did (kill -INT {pid}), or give another --{field}")

@@ -1,4 +1,4 @@
-"""Where do figures come from? The commit of the checkout, the machine, and the versions that affect speed and results."""
+"""Where do figures come from? The commit of the checkout, the machine, and the versions that matter."""
 
 from snooker_env import benchmark
 from snooker_env.benchmark import commit, software
@@ -12,7 +12,7 @@ def machine():
 
 
 def line(m=None):
-    """The same as one line for the head of a table; ``m``: a dict of ``machine`` that was kept, None for this machine."""
+    """The same as one line; ``m``: a dict of ``machine`` that was kept, None for this machine."""
     m = m or machine()
     load = "" if m["load"] is None else f", load {m['load']:.1f}"
     return f"{m['cpu']}, {m['cores']} cores{load}, {m['platform']}, Python {m['python']}, numba {m['numba']}"

@@ -25,7 +25,6 @@ extensions = [
     "myst_nb",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
-    "sphinx.ext.doctest",
     "sphinx.ext.mathjax",
     "sphinx-mathjax-offline",  # MathJax and its fonts come from here, not from a server
     "sphinx_copybutton",
@@ -34,9 +33,7 @@ extensions = [
     "_extensions.repository_files",
 ]
 exclude_patterns = ["_build", "_extensions", "films/README.md", "pictures/README.md", "**/.ipynb_checkpoints"]
-suppress_warnings = [
-    "myst-nb.lexer",  # of notebooks that are not run, as with -b doctest
-]  # fmt: skip
+suppress_warnings = ["myst-nb.lexer"]  # of notebooks, where they are not run
 
 # pages
 myst_enable_extensions = ["amsmath", "attrs_block", "attrs_inline", "colon_fence", "deflist", "dollarmath", "fieldlist"]
@@ -61,9 +58,6 @@ napoleon_google_docstring = False
 napoleon_use_rtype = False
 napoleon_use_ivar = True
 add_module_names = False
-doctest_global_setup = "import numpy as np\nimport snooker_env as sn"
-doctest_test_doctest_blocks = "default"
-trim_doctest_flags = True
 
 # the site
 html_theme = "furo"

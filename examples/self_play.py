@@ -10,7 +10,6 @@ those of ``train.py`` (``agents.learning.networks``). The reward is the growth o
 
 import argparse
 import io
-import json
 import math
 import pickle
 import platform
@@ -29,7 +28,7 @@ from stable_baselines3.common.utils import LinearSchedule
 
 import snooker_env
 from agents.learning.networks import TablePolicy, TableReader
-from commands.files import write_atomic
+from commands.files import write_atomic, write_json
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning.learned.pot_view import with_pots
 from snooker_env.progress import Progress
@@ -251,7 +250,7 @@ def main(argv=None):
     file = io.BytesIO()
     torch.save(weights(model.policy), file)
     write_atomic(args.out / "weights.pt", file.getvalue())
-    write_atomic(args.out / "results.json", (json.dumps(results, indent=1) + "\n").encode())
+    write_json(args.out / "results.json", results)
     return 0
 
 

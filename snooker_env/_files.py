@@ -1,27 +1,27 @@
-"""How is a file written so that no reader ever sees half of it? Into a temporary file beside it, which is then moved there."""
+"""How is a file written so that no reader ever sees half of it? Beside it, to be moved there."""
 
 import os
 import re
-import uuid
 from collections.abc import Callable
 from pathlib import Path
 
-UNFINISHED = re.compile(r"\..+\.[0-9a-f]{32}\.tmp(\.\w+)?")
+UNFINISHED = re.compile(r"\..+\.[0-9a-f]{16}\.tmp(\.\w+)?")
 """Names of the temporary files; a process that was killed leaves one behind."""
 
 
 def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], object]) -> None:
-    """Write a file so that ``path`` holds either the old or the new content, complete, whenever the process or the machine stops.
+    """Write a file so that ``path`` holds the old or the new content, complete, whenever process or machine stops.
 
-    ``content`` is bytes, a text, or a function that writes the file whose path it gets, with the suffix of ``path``. On failure nothing is
-    left behind, and the OSError names ``path``. A device or a pipe is written directly.
+    ``content`` is bytes, a text, or a function that writes the file whose path it gets, with the suffix of ``path``.
+    On failure nothing is left behind, and the OSError names ``path``. A device or a pipe is written directly.
     """
     target, data = Path(os.path.realpath(path)), content.encode() if isinstance(content, str) else content
     write = data if callable(data) else lambda file: file.write_bytes(data)
     if target.exists() and not target.is_file():
         write(target)
         return
-    temporary = target.with_name(f".{target.stem}.{uuid.uuid4().hex}.tmp{target.suffix}")  # a name that no machine uses twice
+    name = f".{target.stem}.{os.urandom(8).hex()}.tmp{target.suffix}"  # that no machine uses twice
+    temporary = target.with_name(name)
     try:
         write(temporary)
         with temporary.open("rb+") as file:

@@ -1,4 +1,4 @@
-"""How are tables and figures written, on a terminal and in Markdown?"""
+"""How are tables and figures written, on a terminal and in Markdown? As lines of text; figures with intervals."""
 
 from collections.abc import Mapping, Sequence
 
@@ -6,10 +6,12 @@ from collections.abc import Mapping, Sequence
 def text_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
     """A table for a terminal, line by line: the first ``left`` columns to the left, the others to the right."""
     widths = [max(len(row[c]) for row in [head, *rows]) for c in range(len(head))]
-    line = lambda row: "  ".join(  # noqa: E731
-        cell.ljust(width) if c < left else cell.rjust(width) for c, (cell, width) in enumerate(zip(row, widths, strict=True))
-    )
-    return [line(head).rstrip(), "-" * (sum(widths) + 2 * (len(widths) - 1)), *(line(row).rstrip() for row in rows)]
+
+    def line(row):
+        cells = [cell.ljust(w) if c < left else cell.rjust(w) for c, (cell, w) in enumerate(zip(row, widths, strict=True))]
+        return "  ".join(cells).rstrip()
+
+    return [line(head), "-" * (sum(widths) + 2 * (len(widths) - 1)), *map(line, rows)]
 
 
 def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
@@ -20,7 +22,7 @@ def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int
 
 
 def shown(figure: Mapping[str, float | None], scale: float = 1.0, form: str = "{:.1f}") -> str:
-    """A figure with its interval, as "65.8 [61.2, 70.1]", or with the one bound that it has, as "65.8 [61.2, ..]"; "" without a value."""
+    """A figure with its interval, as "65.8 [61.2, 70.1]" or, with one bound, "65.8 [61.2, ..]"; "" without a value."""
     numbers = (figure["value"], figure["low"], figure["high"])
     value, low, high = (None if x is None else form.format(scale * x) for x in numbers)
     if value is None or (low is None and high is None):

@@ -2,6 +2,8 @@
 
 from typing import Any, ClassVar
 
+import numpy as np
+
 from ._jit import ENTRIES
 from ._notices import warming_up
 from .impacts import collide_balls, collide_cushion, strike
@@ -9,16 +11,13 @@ from .simulation import simulate
 
 
 class _Still:
-    """A player of visits whose random numbers can be set: for the kernels of such opponents."""
+    """Sees observations and plays one stroke: for the kernels of players as opponents."""
 
     options: ClassVar[dict[str, Any]] = {}
 
-    def begin(self, seed: int) -> None:
-        """Nothing is drawn."""
-
-    def act(self, tables: Any, observations: Any, going: Any) -> list[list[float]]:
-        """The same stroke on each table."""
-        return [[0.0] * 4] * len(going)
+    def act(self, observations: Any, masks: Any, seeds: Any) -> list[list[float]]:
+        """The same stroke for each observation."""
+        return [[0.0] * 4] * len(seeds)
 
 
 def warmup() -> None:
@@ -45,7 +44,7 @@ def warmup() -> None:
     from .game.referee import Situation, Stroke, judge
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
-    from .planning import Planner, Position, Positions, StrokeSearch, clear_paths, obstructions, prospects_of
+    from .planning import Planner, Position, Positions, StrokeSearch, at_balls, clear_paths, obstructions, over_cushions, prospects_of
     from .planning import pots as direct_pots
     from .tasks.box_actions import Actions, line
 
@@ -96,6 +95,10 @@ def warmup() -> None:
         planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
         obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
         prospects_of(at, 1e-3)
-        StrokeSearch({"noise": "club"}, budget=30).rank(at, seeds=[0])
+        search = StrokeSearch({"noise": "club"}, budget=30)
+        search.rank(at, seeds=[0])
+        search.planner.play(at, [0], strokes=[[1.0, 0.0, 0.0, 0.0, 0.0]], keys=[0])
+        for generate in (at_balls, over_cushions):
+            generate(search, at, 1, [0])
         for call in (direct_pots, clear_paths, Positions.observations, lambda batch: batch.balls_on):
             call(at)

@@ -1,1 +1,1 @@
-"""How is work that is made of many independent parts played on one machine or on many? With the same code, and the same results."""
+"""How is work of many independent parts played on one machine or on many? By the same code, to the same bits."""

@@ -1,7 +1,8 @@
 """How is a job of many parts played, here or on a cluster? Each part once, with the same results bit for bit.
 
-A part is a task by name, data that it shares with others (an agent's weights) and its own arguments. Its result is a dict of arrays that
-depends on these alone: not on where it is played, nor on which parts end before it, nor on how often a machine died over it.
+A part is a task by name, data that it shares with others (an agent's weights) and its own arguments. Its result
+is a dict of arrays that depends on these alone: not on where it is played, nor on which parts end before it, nor on
+how often a machine died over it.
 """
 
 import importlib
@@ -11,7 +12,7 @@ from .keep import digest_of, packed
 
 
 class ClusterError(Exception):
-    """A cluster cannot play on: its text is one line that says why and what to do. What was played is kept."""
+    """A cluster cannot play on: one line says why and what to do. What was played is kept."""
 
 
 @dataclass(frozen=True)
@@ -24,13 +25,13 @@ class Part:
 
 
 def run(task, shared, args, threads):
-    """Play one part: what its task, MODULE:FUNCTION, returns for the shared data, the arguments and a number of threads."""
+    """What the task, MODULE:FUNCTION, returns for the shared data, the arguments and a number of threads."""
     module, _, name = task.partition(":")
     return getattr(importlib.import_module(module), name)(shared, args, threads)
 
 
 class Here:
-    """Plays parts in this process, one after another, each with so many threads: default one for each processor."""
+    """Plays parts in this process, one after another, with so many threads: default one a processor."""
 
     here, says = True, ""
 
@@ -39,8 +40,8 @@ class Here:
 
     def played(self, parts):
         """Yield the number and the result of each (task, shared data, arguments)."""
-        for k, part in enumerate(parts):
-            yield k, run(*part, self._threads)
+        for k, (task, shared, args) in enumerate(parts):
+            yield k, run(task, shared, args, self._threads)
 
     def map(self, task, shared, many):
         """The results of a task for many arguments, in their order."""
@@ -48,11 +49,14 @@ class Here:
 
 
 def ended(parts, shared, where, store=None):
-    """Yield the number and the result of each part: those that the store keeps, then the others as they end, which it keeps at once."""
+    """Yield the number and the result of each part: first of those that the store keeps, then of the others as they end.
+
+    These are kept at once.
+    """
     keys, left = keys_of(parts, shared), []
     kept = store.names("parts") if store else ()
     for k, key in enumerate(keys):
-        result = store.part(key) if f"{key}.npz" in kept else None
+        result = store.part(key) if store and f"{key}.npz" in kept else None
         if result is None:
             left.append(k)
         else:

@@ -1,4 +1,4 @@
-"""Where is kept what a job has played? In a folder or under a URL of fsspec, as .npz without pickles: reading it runs no code."""
+"""Where is kept what a job has played? In a folder or at a URL of fsspec, without pickles: reading runs no code."""
 
 import errno
 import hashlib
@@ -20,7 +20,7 @@ KEPT = Path("runs/kept")
 
 
 class Store:
-    """Files in a folder or under a URL (s3://, gs://, memory://), each whole or not at all. Raises ValueError, naming ``field``."""
+    """Files in a folder or at a URL (s3://, gs://), each whole or not at all. Raises ValueError, naming ``field``."""
 
     def __init__(self, url, field="keep", only_read=False):
         from fsspec.core import url_to_fs
@@ -34,7 +34,7 @@ class Store:
         except ImportError:
             raise
         except Exception as error:  # each kind of store has its own errors
-            raise refuse(field, self.url, f"must be a folder or URL that can be written ({_why(error)})") from None
+            raise self._refused(f"be a folder or URL that can be written ({_why(error)})") from None
 
     def __str__(self):
         return self.url
@@ -80,21 +80,24 @@ class Store:
             return None if data is None else unpacked(data)
 
     def join(self, job):
-        """Make this the store of a ``job``, a dict of what is played. Raises ValueError, naming what differs, if it is another's."""
+        """Make this the store of a ``job``, a dict. Raises ValueError, naming what differs, if it is another's."""
         before = self.read("job.json")
         if before is None:
             if self.names("parts"):
-                raise refuse(self._field, self.url, "must be a new folder, or that of the same job: it holds parts and no job.json")
+                raise self._refused("be a new folder, or that of the same job: it holds parts and no job.json")
             self.write("job.json", (json.dumps(job, indent=1) + "\n").encode())
             return
         try:
             was, now = dict(json.loads(before)), json.loads(json.dumps(job))
         except (ValueError, TypeError):
-            raise refuse(self._field, self.url, "must hold a job.json as it was written: this one is damaged") from None
+            raise self._refused("hold a job.json as it was written: this one is damaged") from None
         for name in {**now, **was}:
             if was.get(name) != now.get(name):
-                differs = f"its {name} is {json.dumps(was.get(name)):.200}, and {json.dumps(now.get(name)):.200} is asked for"
-                raise refuse(self._field, self.url, f"must be a new folder, or that of the same job: {differs}")
+                before, asked = (f"{json.dumps(one.get(name)):.200}" for one in (was, now))
+                raise self._refused(f"be a new folder, or that of the same job: its {name} is {before}, and {asked} is asked for")
+
+    def _refused(self, wanted):
+        return refuse(self._field, self.url, f"must {wanted}")
 
 
 def _why(error):
@@ -122,9 +125,9 @@ def digest_of(data):
 
 
 class Keep:
-    """Where the parts of the job ``about`` are kept: at ``--keep``; with ``--ray`` alone in a folder of its own until it is complete.
+    """Where the parts of the job ``about`` are kept: at ``--keep``; with ``--ray`` alone in its own folder until it is complete.
 
-    As a context: that folder belongs to one process at a time. ``store`` is None if nothing is kept. Raises ValueError.
+    That folder belongs to one process at a time. ``store`` is None if nothing is kept. Raises ValueError.
     """
 
     def __init__(self, url, address, about):

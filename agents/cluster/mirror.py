@@ -1,4 +1,4 @@
-"""How does a training outlive its machine? Each checkpoint is copied to a shared folder or fsspec URL, from which any machine goes on.
+"""How does a training outlive its machine? Each checkpoint is copied to a folder or URL, from which any machine goes on.
 
 One process writes there: whoever resumes takes over, and a run that still lives elsewhere stops at its next save.
 """
@@ -17,7 +17,7 @@ from .job import ClusterError
 from .keep import Store
 
 CHECKPOINT, OWNER, RUN, SAVES = "checkpoint.pkl", "owner.json", "run.json", "mirror.json"
-"""``SAVES``, here and in the run's folder: how many checkpoints were copied, and the digest of the last one."""
+"""``SAVES``, here and in the run's folder: number of checkpoints that were copied, digest of the last one."""
 TRIES, PAUSE = 4, 2.0
 """How often a copy is tried, and the seconds before the second time, doubled each time."""
 _mirrors = {}
@@ -34,7 +34,7 @@ class Mirror:
         return json.loads(self.store.read(name) or b"{}")
 
     def fetch(self, out):
-        """Write the checkpoint into the run's folder, if that holds none or an older one. Raises ValueError if both have gone on."""
+        """Write the checkpoint into the run's folder if that holds none or an older one. Raises ValueError if both went on."""
         saves, local = self._json(SAVES), out / CHECKPOINT
         if local.is_file():
             known = json.loads((out / SAVES).read_bytes()) if (out / SAVES).is_file() else {}
@@ -51,7 +51,7 @@ class Mirror:
         write_atomic(out / SAVES, json.dumps(saves))
 
     def claim(self, out, settings, resume):
-        """Become the one that writes, for the run in ``out`` with these settings. Raises ValueError if another run is kept here."""
+        """Become the one that writes, for the run in ``out``. Raises ValueError if a run with other settings is kept here."""
         now, was = json.loads(json.dumps(settings)), self._json(RUN)
         if CHECKPOINT in self.store.names(""):
             if not resume:
@@ -66,7 +66,7 @@ class Mirror:
         _mirrors[out.resolve()] = self
 
     def save(self, data, name=CHECKPOINT):
-        """Copy a file, with patience for a network that fails. Raises ClusterError if that does not end, or if another took over."""
+        """Copy a file, with patience for a network. Raises ClusterError if it fails on, or if another took over."""
         for k in range(TRIES):
             try:
                 owner = self._json(OWNER)

@@ -1,6 +1,7 @@
 """How are parts played by a Ray cluster? The one file that imports Ray, and only when ``--ray`` asks for it.
 
-Each part is a task of one core. Ray itself queues them, keeps shared data on each node, and plays a part again whose worker or node died.
+Each part is a task of one core. Ray itself queues them, keeps shared data on each node, and plays a part again
+whose worker or node died.
 """
 
 import os
@@ -43,7 +44,7 @@ def checked_ray(address):
 
 @contextmanager
 def place(address, threads=None):
-    """Where parts are played, as a context: ``Here`` without an address, else a ``Cluster``. Raises ClusterError."""
+    """Where parts are played: ``Here`` without an address, else a ``Cluster``. Raises ClusterError."""
     if address is None:
         yield Here(threads)
         return
@@ -57,7 +58,7 @@ def place(address, threads=None):
 def ray_of():
     """The module ``ray``. Raises ImportError with the line that installs it."""
     os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")  # spares a warning
-    os.environ.setdefault("RAY_task_oom_retries", str(RETRIES))  # Ray would try for ever what takes too much memory
+    os.environ.setdefault("RAY_task_oom_retries", str(RETRIES))  # Ray tries for ever
     try:
         import ray
     except ImportError:
@@ -66,7 +67,7 @@ def ray_of():
 
 
 def connected(address, cores=None):
-    """The ``Cluster`` at an address, "local" (with so many cores, default all) or HOST:PORT. Raises ClusterError."""
+    """The ``Cluster`` at "local" (with so many cores, default all) or HOST:PORT. Raises ClusterError."""
     ray = ray_of()
     quiet = {"log_to_driver": False, "logging_level": "ERROR", "configure_logging": True}
     if address == "local":
@@ -117,19 +118,23 @@ class Cluster(Here):
 
     def played(self, parts):
         """Yield the number and the result of each (task, shared data, arguments) as it ends."""
-        sent = {name: self._ray.put(shared) for name, shared in {id(shared): shared for _, shared, _ in parts}.items()}
-        running = {self._task.remote(task, sent[id(shared)], args, self._software): k for k, (task, shared, args) in enumerate(parts)}
+        each = {id(shared): shared for _, shared, _ in parts}
+        sent = {name: self._ray.put(shared) for name, shared in each.items()}
+        running = {}
+        for k, (task, shared, args) in enumerate(parts):
+            running[self._task.remote(task, sent[id(shared)], args, self._software)] = k
         while running:
             (one,), _ = self._ray.wait(list(running))
             yield running.pop(one), self._result(one)
 
     def _result(self, one):
-        """The result of a part that has ended. Raises ClusterError for what befell its machine, else the part's own error."""
+        """The result of a part. Raises ClusterError for what befell its machine, else the part's own error."""
         exceptions = self._ray.exceptions
         try:
             result, processor = self._ray.get(one)
         except exceptions.RayTaskError as error:
-            raise fault_of(error.cause, error.ip) from None
+            where = re.search(r"\bip=([^,)\s]+)", str(error))
+            raise fault_of(error.cause, where[1] if where else "another machine") from None
         except exceptions.RayError as error:
             raise ClusterError(f"a part was given up, its worker died {RETRIES + 1} times ({_line(error)})") from None
         if self._processors and processor not in self._processors:
@@ -148,16 +153,19 @@ def fault_of(cause, node):
     if isinstance(cause, ClusterError):
         return ClusterError(f"the node {node}: {cause}")
     if isinstance(cause, MemoryError):
-        return ClusterError(f"a worker on {node} ran out of memory: give the node fewer workers (ray start --num-cpus) or more memory")
+        help_it = "give the node fewer workers (ray start --num-cpus) or more memory"
+        return ClusterError(f"a worker on {node} ran out of memory: {help_it}")
     if isinstance(cause, ImportError):
-        return ClusterError(f"the node {node} has no {cause.name or cause}: install the same clone on every node ({installs('cluster')})")
+        help_it = f"install the same clone on every node ({installs('cluster')})"
+        return ClusterError(f"the node {node} has no {cause.name or cause}: {help_it}")
     if isinstance(cause, OSError) and cause.errno in DISK:
-        return ClusterError(f"the disk of a worker on {node} is full ({cause.filename or 'its temporary folder'}): free space there")
+        where = cause.filename or "its temporary folder"
+        return ClusterError(f"the disk of a worker on {node} is full ({where}): free space there")
     return cause
 
 
 def _task():
-    """What a worker does with its one core. Made inside another function, it is sent as code: the node may lack this package."""
+    """What a worker does. Made inside another function, it is sent as code: the node may lack this package."""
 
     def play(task, shared, args, wanted):
         from agents.cluster.job import ClusterError, run

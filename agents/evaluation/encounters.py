@@ -1,4 +1,4 @@
-"""How are the matches of a tournament played in parts? A part is a pair of players and at most a hundred seeds; its result are its rows."""
+"""How are the matches of a tournament played in parts? A part is a pair of players and at most a hundred seeds."""
 
 import zlib
 
@@ -11,7 +11,7 @@ from .travel import arrived
 
 
 def drawn(label, other, first):
-    """The seed of what a player draws in the matches against the label ``other`` from the seed ``first`` on."""
+    """The seed of what a player draws against the label ``other`` in the matches from the seed ``first`` on."""
     return zlib.crc32(f"{label}\n{other}\n{first}".encode())
 
 

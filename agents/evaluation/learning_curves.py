@@ -22,7 +22,7 @@ with needs("agents.curves"):
     import numpy as np
 
     from commands import picture_style
-    from commands.files import writable, write_atomic
+    from commands.files import writable, write_json
     from snooker_env import __version__
     from snooker_env.checks import choice, refuse
 
@@ -129,7 +129,7 @@ def main(argv=None):
     except ValueError as error:
         p.error(str(error))
     if args.json:
-        write_atomic(args.json, (json.dumps(found, indent=1) + "\n").encode())
+        write_json(args.json, found)
     draw(found, args.out)
     print(args.out)
     return 0

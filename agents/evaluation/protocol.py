@@ -21,7 +21,6 @@ tables above and below.
 """
 
 import argparse
-import json
 import os
 import shlex
 import sys
@@ -34,9 +33,10 @@ with needs("agents.evaluate"):
     import numpy as np
 
     import snooker_env
-    from commands.files import writable, write_atomic
+    from commands.files import writable, write_atomic, write_json
     from commands.physics_option import physics_option
     from commands.provenance import provenance
+    from commands.tables import show
     from snooker_env.benchmark import HELD_OUT_SEED, RESAMPLES, counts, play_visits, tables_of
     from snooker_env.checks import choice, integer, parse_fidelity, refuse
     from snooker_env.game import plan_of
@@ -50,7 +50,6 @@ with needs("agents.evaluate"):
     from .entrants import Entrant, options_of
     from .metrics import EntrantMetrics
     from .report import AXES, main_condition, markdown, parts
-    from .text_tables import show
     from .travel import sent
     from .visits import joined, parts_of
 
@@ -294,7 +293,7 @@ def write(report, shown, args):
         drawn = files["picture"] and Path(os.path.relpath(files["picture"], file.parent)).as_posix()
         write_atomic(file, markdown(report, drawn))
 
-    writers = {"json": lambda file: write_atomic(file, json.dumps(report, indent=1) + "\n"), "markdown": text, "picture": picture}
+    writers = {"json": lambda file: write_json(file, report), "markdown": text, "picture": picture}
     for name, file in files.items():
         try:
             if file:

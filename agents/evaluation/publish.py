@@ -14,7 +14,7 @@ from pathlib import Path
 from commands.lifecycle import command, needs
 
 with needs("agents.publish"):
-    from commands.files import write_atomic
+    from commands.files import write_atomic, write_json
     from snooker_env.checks import refuse
     from snooker_env.players.resolver import is_name
 
@@ -69,12 +69,12 @@ def publish(run, name, limits, replace=False):
         raise refuse("limits", limits, "must say what a user should know that it cannot do")
     found, trained = results_of(run)
     path = PRETRAINED / name_of(found, name)
-    card, files = card_of(found, limits), [path.with_name(path.name + end) for end in (".zip", ".json")]
-    if not replace and any(file.exists() for file in files):
+    card, model, about = card_of(found, limits), path.with_name(f"{path.name}.zip"), path.with_name(f"{path.name}.json")
+    if not replace and (model.exists() or about.exists()):
         raise refuse("name", path.name, "must be new: there is such a model; --replace overwrites it")
     PRETRAINED.mkdir(exist_ok=True)
-    for file, data in zip(files, (packed(trained), (json.dumps(card, indent=1) + "\n").encode()), strict=True):
-        write_atomic(file, data)
+    write_atomic(model, packed(trained))
+    write_json(about, card)
     return path, card
 
 

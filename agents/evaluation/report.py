@@ -19,13 +19,12 @@ from commands.lifecycle import command, needs
 
 with needs("agents.report"):
     from commands.files import write_atomic
-    from snooker_env._tables import shown
+    from commands.tables import TextTable, page, show, shown
     from snooker_env.benchmark import CENTURY, MAXIMUM, most_points
     from snooker_env.checks import refuse
 
     from . import tournament_report
     from .metrics import bounded
-    from .text_tables import TextTable, page, show
 
 SEEDS = 5
 """Fewer training seeds than that are pointed out."""

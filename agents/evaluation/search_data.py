@@ -75,8 +75,9 @@ def read(url):
     """The data of a folder or URL: a dict of arrays as of ``agents.evaluation.searched.play``. Raises ValueError if they are incomplete."""
     store = Store(url, "out", only_read=True)
     index = store.read(INDEX)
-    parts = [] if index is None else [store.part(key) for key in json.loads(index)["parts"]]
-    if not parts or None in parts:
+    keys = [] if index is None else json.loads(index)["parts"]
+    parts = [part for key in keys if (part := store.part(key)) is not None]
+    if not parts or len(parts) < len(keys):
         raise refuse("out", url, "must hold complete data: give the command that makes them again")
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 

@@ -1,12 +1,12 @@
 """Who is the better player of whole frames? A round robin: every player against every other, each seed twice, both colours of the break.
 
     python -m agents.tournament random ghost_ball ppo_mask --frames 200
-    python -m agents.tournament "mine=runs/ppo_mask-0" lookahead search --frames 200 --fewer search=20 --out ladder.json --resume
-    python -m agents.tournament ppo_mask lookahead --match 7 --frames 40 --noise amateur
+    python -m agents.tournament "mine=runs/ppo_mask-0" search search_2000 --frames 200 --fewer search_2000=20 --out ladder.json --resume
+    python -m agents.tournament ppo_mask search --match 7 --frames 40 --noise amateur
     python -m agents.tournament --check ladder.json
     python -m agents.tournament --show ladder.json --markdown ladder.md
 
-A player is a NAME (a player of agents/players, a model of agents/pretrained), a model's .zip or run folder, LABEL=PATH, or MODULE:CLASS for
+A player is a NAME (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH, or MODULE:CLASS for
 a player of your own, whose module is imported. --trust and --options are those of ``python -m agents.evaluate``.
 What is played and what the figures mean: docs/agents/tournament.md.
 """
@@ -24,21 +24,20 @@ with needs("agents.tournament"):
     import snooker_env
     from commands.files import writable, write_atomic
     from commands.physics_option import physics_option
+    from commands.tables import show
     from snooker_env import Options
     from snooker_env.benchmark import RESAMPLES, machine, read_result, write_result
     from snooker_env.checks import choice, integer, refuse
+    from snooker_env.players import FRAMES
     from snooker_env.progress import Progress
 
     from ..cluster.job import ClusterError, Part, ended
     from ..cluster.ray_cluster import add_ray, checked_ray, place
-    from ..learning.models import pretrained
-    from ..players.by_name import NAMES, player_of
     from . import encounters
     from .entrants import Entrant, options_of
-    from .text_tables import show
     from .tournament_figures import ANCHOR_ELO, schedule
     from .tournament_file import faults, kept, result_of, seeds_of
-    from .tournament_play import CHUNK, TABLES, TimedPlayer
+    from .tournament_play import CHUNK, TABLES
     from .tournament_report import markdown, parts
     from .tournament_strengths import PRIOR
     from .travel import sent
@@ -52,7 +51,7 @@ SAVED = 60.0
 def parser():
     """The command line."""
     p = argparse.ArgumentParser("python -m agents.tournament", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    names = ", ".join((*NAMES, *pretrained()))
+    names = ", ".join(snooker_env.players())
     p.add_argument("players", nargs="*", metavar="PLAYER", help=f"NAME, MODEL, LABEL=PATH or MODULE:CLASS; NAME: {names}")
     p.add_argument("--frames", type=int, default=100, metavar="N", help="frames of each pair, or matches with --match; even [100]")
     p.add_argument("--fewer", nargs="+", default=[], metavar="LABEL=N", help="only so many of each pair with a slow player")
@@ -63,7 +62,6 @@ def parser():
     p.add_argument("--rules", default="snooker", help="the option game of frames: which rules [snooker]")
     p.add_argument("--max-strokes", type=int, default=1000, help="strokes after which a frame is stopped, half a win for each [1000]")
     p.add_argument("--seed", type=int, default=0, help="seed of the first match of each pair [0]")
-    p.add_argument("--budget", type=int, default=2000, help="simulated shots a decision of search [2000]")
     p.add_argument("--anchor", metavar="LABEL", help=f"the player whose Elo is {ANCHOR_ELO:.0f} [{ANCHOR}, else the first]")
     p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
     p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
@@ -91,7 +89,7 @@ def game_of(args):
 def checked(args):
     """(entrants, protocol, game) of the command line. Raises ValueError before anything is played."""
     options = options_of(args.options)
-    entrants = [Entrant.of(text, args.trust, options, frames=True) for text in args.players]
+    entrants = [Entrant.of(text, args.trust, options) for text in args.players]
     labels = [entrant.label for entrant in entrants]
     if len(labels) < 2:
         raise refuse("players", " ".join(args.players), "must be two or more")
@@ -104,11 +102,10 @@ def checked(args):
     if options and not any(entrant.foreign for entrant in entrants):
         raise refuse("options", " ".join(args.options), "must be left out: it is for models that train.py did not make")
     anchor = args.anchor or (ANCHOR if ANCHOR in labels else labels[0])
-    player_of("search", budget=args.budget)  # checks the budget
     protocol = {
         "first_seed": integer("seed", args.seed, 0, 2**53), "matches": _even("frames", args.frames, 2**20),
         "fewer": dict(_fewer(text, labels, args.frames) for text in args.fewer), "best_of": integer("match", args.match, 1, 99),
-        "tables": TABLES, "chunk": CHUNK, "search_budget": args.budget,
+        "tables": TABLES, "chunk": CHUNK,
         "resamples": integer("resamples", args.resamples, 100, 10**6), "prior": PRIOR, "anchor": choice("anchor", anchor, tuple(labels)),
         "anchor_elo": ANCHOR_ELO,
     }  # fmt: skip
@@ -116,9 +113,8 @@ def checked(args):
         raise refuse("match", args.match, "must be odd: the best of so many frames")
     game = game_of(args)
     for entrant in entrants:
-        player = TimedPlayer(entrant.player(0, args.budget))
-        options_of_both: dict[str, Any] = {**player.options, **game, "physics": physics_option(args.physics)}
-        Options(task="frame", **options_of_both, opponent=player)  # makes sure that they can meet
+        meeting: dict[str, Any] = {**game, "physics": physics_option(args.physics)}
+        entrant.player(0).at(Options(task="frame", **FRAMES, **meeting))  # makes sure that they can meet
     checked_ray(args.ray)
     if args.ray and args.threads is not None:
         raise refuse("threads", args.threads, "must be left out with --ray: a part has one core there")
@@ -164,7 +160,7 @@ class Tournament:
             for some in (seeds[k : k + CHUNK] for k in range(0, len(seeds), CHUNK)):
                 draws = [encounters.drawn(self.labels[k], self.labels[other], some[0]) for k, other in (pair, pair[::-1])]
                 args = {"pair": list(pair), "seeds": some, "draws": draws, "game": self.game, "best_of": p["best_of"]}
-                parts.append(Part("agents.evaluation.encounters:play", "players", args | {"budget": p["search_budget"]}))
+                parts.append(Part("agents.evaluation.encounters:play", "players", args))
         return parts
 
     @property
@@ -200,7 +196,6 @@ class Tournament:
             {
                 "label": entrant.label,
                 "source": entrant.runs[0],
-                "options": dict(entrant.player(0, self.protocol["search_budget"]).options),
                 "training": entrant.trained()[0],
                 "decisions": decisions,
                 "seconds": seconds,
@@ -299,9 +294,9 @@ def _read(file):
         content = read_result(file)
         return content, faults(content)
     except ValueError as error:
-        return None, [str(error)]
+        return {}, [str(error)]
     except OSError as error:
-        return None, [f"cannot be read: {error.strerror}"]
+        return {}, [f"cannot be read: {error.strerror}"]
 
 
 def _check(files):

@@ -14,7 +14,7 @@ from .tournament_figures import ANCHOR_ELO, COLUMNS, figures_of, schedule
 from .tournament_report import NAME
 from .tournament_strengths import PRIOR
 
-VERSION = 1
+VERSION = 2
 NUMBER = (int, float)
 
 FIELDS = {
@@ -26,7 +26,6 @@ FIELDS = {
     "protocol.best_of": (int, False, "frames of a match"),
     "protocol.tables": (int, False, "tables side by side"),
     "protocol.chunk": (int, False, "seeds for which a player is made anew"),
-    "protocol.search_budget": (int, False, "simulated shots a decision of search"),
     "protocol.resamples": (int, False, "bootstrap samples of the intervals"),
     "protocol.prior": (NUMBER, False, "drawn matches added to each pair for the strengths"),
     "protocol.anchor": (str, False, "the player whose Elo is given"),
@@ -51,7 +50,6 @@ FIELDS = {
 PLAYER = {
     "label": (str, "the name in tables"),
     "source": (str, "what was given on the command line: a name, a file or MODULE:CLASS"),
-    "options": (dict, "how it sees and acts"),
     "training": (dict, "how it was trained, as far as its file says"),
     "decisions": (int, "how often it decided, on tables that wait for others to end, too"),
     "seconds": (NUMBER, "what that took together"),
@@ -59,7 +57,7 @@ PLAYER = {
 """Fields of a player: type, meaning."""
 RANGES = {
     "protocol.matches": (2, 2**20), "protocol.best_of": (1, 99), "protocol.resamples": (100, 10**6), "protocol.tables": (1, 2**20),
-    "protocol.chunk": (1, 2**20), "protocol.search_budget": (2, 2**31), "protocol.prior": (0, 1000), "protocol.first_seed": (0, 2**53),
+    "protocol.chunk": (1, 2**20), "protocol.prior": (0, 1000), "protocol.first_seed": (0, 2**53),
     "protocol.anchor_elo": (-(10**6), 10**6),
 }  # fmt: skip
 

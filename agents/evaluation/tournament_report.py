@@ -1,8 +1,7 @@
 """How is a tournament shown? The order of the players, the cross table and what they did, for a terminal and as Markdown."""
 
-from snooker_env._tables import shown
+from commands.tables import TextTable, page, shown
 
-from .text_tables import TextTable, page
 from .tournament_strengths import PRIOR
 
 NAME = "snooker_env.tournament"

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from commands.tables import text_table
 from snooker_env import player
-from snooker_env._tables import text_table
 from snooker_env.benchmark import play_visits, summary, tables_of
 from snooker_env.players.search import BUDGET, SearchPlayer
 

@@ -9,7 +9,6 @@ same positions. Standard errors are over visits.
 """
 
 import argparse
-import json
 import shlex
 import sys
 from pathlib import Path
@@ -20,15 +19,15 @@ with needs("agents.value_quality"):
     import numpy as np
 
     import snooker_env
-    from commands.files import writable, write_atomic
+    from commands.files import writable, write_atomic, write_json
     from commands.provenance import provenance
+    from commands.tables import TextTable, page, show
     from snooker_env.benchmark import play_visits, tables_of
     from snooker_env.checks import integer, refuse
     from snooker_env.planning import RULE_OF_THUMB, SURE, Positions, prospects_of
     from snooker_env.players import BoundPlayer
     from snooker_env.tasks import Noise
 
-    from .text_tables import TextTable, page, show
 
 GROUPS, LEAST = 10, 20
 """Number of groups of positions, fewer where a group would have fewer than ``LEAST``."""
@@ -123,7 +122,7 @@ def main(argv=None):
     conditions = [(layout, noise) for layout in args.layouts for noise in args.noise]
     report["results"] = [quality(snooker_env.player(args.agent), args.visits, *each) for each in conditions]
     if args.json:
-        write_atomic(args.json, json.dumps(report, indent=1) + "\n")
+        write_json(args.json, report)
     if args.markdown:
         made = f"snooker_env {report['version']}, at commit {report['commit']} on {report['machine']}"
         write_atomic(args.markdown, page(f"How good the value of {args.agent} is", report["command"], made, parts(report)))

@@ -18,7 +18,6 @@ from snooker_env.planning.planner import options_in
 from snooker_env.planning.sobol import EVEN_SAMPLES
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
-
 POTS_SEEN = 2
 SEEN_SPEEDS, SEEN_TOPS = (1, 3, 5, 7), (0, 2, 4)
 """Places in ``SPEEDS`` and ``TOPS``; without side."""

@@ -82,14 +82,7 @@ def choices(shared, args, threads):
 
 
 def in_slices(n):
-    """Slices of n positions.
-
-    Examples
-    --------
-    >>> from agents.learning.self_play import in_slices
-    >>> in_slices(100)
-    [slice(0, 64, None), slice(64, 100, None)]
-    """
+    """Slices of n positions."""
     return [slice(k, min(n, k + SLICE)) for k in range(0, n, SLICE)]
 
 

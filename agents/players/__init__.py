@@ -3,7 +3,6 @@
 ``pyproject.toml`` names them as entry points, so that ``snooker_env.player`` finds them in a clone.
 """
 
-from ..learning.models import PRETRAINED, pretrained
 from .geometric import Geometric
 
 
@@ -20,6 +19,10 @@ def __getattr__(name):
         from .foresight import ForesightRule
 
         return ForesightRule
+    if name.startswith("__"):
+        raise AttributeError(name)
+    from ..learning.models import PRETRAINED, pretrained
+
     if name in pretrained():
         return lambda: read_model(PRETRAINED / f"{name}.zip")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

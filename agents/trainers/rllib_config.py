@@ -47,14 +47,7 @@ class RunnerTables(SnookerVectorEnv):
 
 
 def seeds_of_runner(seed, runner, n):
-    """Seeds of its n tables, 64 bits each. Those of other runners and of runs with other seeds have nothing in common with them.
-
-    Examples
-    --------
-    >>> from agents.trainers.rllib_config import seeds_of_runner
-    >>> len({*seeds_of_runner(0, 1, 8), *seeds_of_runner(0, 2, 8), *seeds_of_runner(8, 1, 8)})
-    24
-    """
+    """Seeds of its n tables, 64 bits each. Those of other runners and of runs with other seeds have nothing in common with them."""
     return np.random.SeedSequence(seed, spawn_key=(runner,)).generate_state(n, np.uint64).tolist()
 
 

@@ -35,7 +35,7 @@ with needs("agents.train_rllib"):
         logging.getLogger(part).setLevel(logging.ERROR)
 
     import snooker_env
-    from commands.files import write_atomic
+    from commands.files import write_json
     from commands.lock import NAME as LOCK
     from commands.lock import Lock
     from snooker_env import Options
@@ -165,8 +165,7 @@ def save(out, settings, progress, algorithm):
         os.replace(half, out / name)
         progress.checkpoint = name
     _write(out / POLICY, settings, progress, algorithm)
-    state = {"settings": asdict(settings), "progress": asdict(progress)}
-    write_atomic(out / STATE, (json.dumps(state, indent=1) + "\n").encode())
+    write_json(out / STATE, {"settings": asdict(settings), "progress": asdict(progress)})
     for file in out.iterdir():
         if _CHECKPOINT.fullmatch(file.name) and file.name != name:
             shutil.rmtree(file, ignore_errors=True)
@@ -215,7 +214,7 @@ def judge(out, settings, progress):
         "versions": {"ray": ray.__version__, **software()},
         "evaluation": figures,
     }  # fmt: skip
-    write_atomic(out / RESULTS, (json.dumps(results, indent=1) + "\n").encode())
+    write_json(out / RESULTS, results)
     show(figures)
     print(f"Figures: {out / RESULTS}   by our protocol: python -m agents.evaluate --agent {out}")
 

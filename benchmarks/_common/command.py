@@ -187,7 +187,8 @@ def save_text(file, text):
 def save_json(file, figures):
     """Write every figure into ``file``; nothing if that is None."""
     if file is not None:
-        save_text(file, json.dumps(figures, indent=1) + "\n")
+        with _writing(file):
+            files.write_json(file, figures)
 
 
 def save_figure(figure, file, **options):

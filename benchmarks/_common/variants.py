@@ -18,6 +18,8 @@ _ADDED = '''
 
 # Added by benchmarks/_common/variants.py.
 
+from ..arrays import Law
+
 _all_of_balls, _all_of_cushion = collide_balls, collide_cushion
 
 
@@ -65,5 +67,5 @@ def load():
     texts["physics/impact/contact.py"] += _ADDED
     if texts["physics/engine.py"].count(_FLIES) != 1:
         raise RuntimeError(f"engine.py has changed: {_FLIES!r} is not in it once")
-    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES} and fidelity != {AT_ONCE}")
+    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES} and law.fidelity != {AT_ONCE}")
     return package_copies.load("snooker_env_variants", texts, ["simulation"])[0]

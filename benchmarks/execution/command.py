@@ -23,6 +23,7 @@ derivation does not model that, so the errors are also searched with these pots 
 
 import numpy as np
 
+from commands.tables import text_table
 from snooker_env.game.layouts import POT_WINDOWS
 from snooker_env.physics.parameters import Physics
 from snooker_env.tasks.noise import LEVELS, Noise
@@ -76,24 +77,20 @@ def _rate(row):
 
 def show_pots(rows, levels):
     """Pot rates and placements at every pot."""
-    print(f"{'pot rate [%], 95 % (published; long: mean)':41s}{'m/s':>3s}{'window':>8s}" + "".join(f"{level:>25s}" for level in levels))
+    rates, places = [], []
     for k, first in enumerate(rows[levels[0]]):
-        line = f"{first['pot']:40s}{first['speed']:4.1f}{first['half_window_deg']:8.3f}"
-        for level in levels:
-            row = rows[level][k]
-            says = "{:.0f} [{:.0f}, {:.0f}]".format(*(100 * x for x in (row["rate"], *row["interval"])))
-            if row["published"] is not None:
-                says += " ({:.0f}-{:.0f})".format(*(100 * x for x in row["published"]))
-            line += f"{says:>25s}"
-        print(line)
+        where = [first["pot"], f"{first['speed']:.1f}"]
+        rates.append([*where, f"{first['half_window_deg']:.3f}", *(_rate_in_words(rows[level][k]) for level in levels)])
+        at = [rows[level][k]["placement_mm"] for level in levels]
+        places.append([*where, *("none potted" if place is None else "{:.0f} ({:.0f}, {:.0f})".format(*place) for place in at)])
+    print("\n".join(text_table(["pot rate [%], 95 % (published; long: mean)", "m/s", "window", *levels], rates)))
     print("window: half the width of the aims that pot without errors [deg]\n")
-    print(f"{'placement [mm]: distance (along, across)':40s}")
-    for k, first in enumerate(rows[levels[0]]):
-        line = f"{first['pot']:40s}{first['speed']:4.1f}{'':8s}"
-        for level in levels:
-            place = rows[level][k]["placement_mm"]
-            line += f"{'none potted' if place is None else '{:.0f} ({:.0f}, {:.0f})'.format(*place):>25s}"
-        print(line)
+    print("\n".join(text_table(["placement [mm]: distance (along, across)", "m/s", *levels], places)))
+
+
+def _rate_in_words(row):
+    words = "{:.0f} [{:.0f}, {:.0f}]".format(*(100 * x for x in (row["rate"], *row["interval"])))
+    return words if row["published"] is None else words + " ({:.0f}-{:.0f})".format(*(100 * x for x in row["published"]))
 
 
 def share(made):
@@ -141,8 +138,10 @@ def main():
         dealt = {name: first_pots(level, f"pots:{name}", options.strokes, physics=options.physics, table=table) for name in POT_WINDOWS}
         plays[level]["layouts"] = {name: float(made.mean()) for name, made in dealt.items()}
         print(f"{level:15s}" + "".join(f"{share(made):>40s}" for made in dealt.values()))
-    print(f"\n{'beside what is published':62s}{'ours':>8s}{'published':>16s}{'outside by':>12s}")
-    for level in options.levels:
-        for what, ours, low, high in plays[level]["against"]:
-            print(f"{level:14s}{what:48s}{ours:8.3f}{f'{low:.3f} to {high:.3f}':>16s}{ours - min(max(ours, low), high):+12.3f}")
+    beside = [
+        [level, what, f"{ours:.3f}", f"{low:.3f} to {high:.3f}", f"{ours - min(max(ours, low), high):+.3f}"]
+        for level in options.levels
+        for what, ours, low, high in plays[level]["against"]
+    ]
+    print("\n" + "\n".join(text_table(["level", "beside what is published", "ours", "published", "outside by"], beside, 2)))
     save_json(options.json, {"pots": rows, "direction_deg": turned, "in_play": plays})

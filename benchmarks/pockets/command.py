@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 
 import snooker_env as sn
+from commands.tables import text_table
 
 from .._common import variants
 from .._common.command import Command, save_json
@@ -104,19 +105,17 @@ def rail(physics, engines, quick):
 def print_rail(found):
     """The marks, then the ranges of the rolling ball."""
     print("\nDown the rail, parallel to it: o drops, x does not, - stops short; in brackets before")
-    head = "".join(f"{s:9g} m/s " for s in found["speeds"])
-    print(f"  table   ball      from    off the cushion {head}")
+    head, drops, widest = ["table", "ball", "from", "off the cushion", *(f"{s:g} m/s" for s in found["speeds"])], [], []
     for m in found["marks"]:
-        marks = ["xo"[int(a)] + f" ({'xo'[int(b)]})" for a, b in zip(m["after"], m["before"], strict=True)]
-        marks = "".join(f"{mark if here else '-':>14s}" for mark, here in zip(marks, m["arrives"], strict=True))
-        off = "frozen" if m["off"] == 0 else f"{1e3 * m['off']:.0f} mm"
-        print(f"  {m['table']:7s} {m['ball']:8s} {m['run']:4.1f} m   {off:>8s}    {marks}")
-    print("  widest range of angles that drops [deg], + towards the rail; rolling")
-    for m in found["marks"]:
+        where = [m["table"], m["ball"], f"{m['run']:.1f} m", "frozen" if m["off"] == 0 else f"{1e3 * m['off']:.0f} mm"]
+        each = zip(m["after"], m["before"], m["arrives"], strict=True)
+        drops.append([*where, *(f"{'xo'[int(a)]} ({'xo'[int(b)]})" if arrives else "-" for a, b, arrives in each)])
         if m["ball"] == "rolling":
-            ranges = [f"{a:+.2f}..{b:+.2f}" if a == a else "-" for a, b in zip(m["low"], m["high"], strict=True)]
-            off = "frozen" if m["off"] == 0 else f"{1e3 * m['off']:.0f} mm"
-            print(f"  {m['table']:7s}          {m['run']:4.1f} m   {off:>8s}    " + "".join(f"{r:>14s}" for r in ranges))
+            ranges = zip(m["low"], m["high"], strict=True)
+            widest.append([*where, *(f"{a:+.2f}..{b:+.2f}" if a == a else "-" for a, b in ranges)])
+    print("\n".join(text_table(head, drops, 2)))
+    print("widest range of angles that drops [deg], + towards the rail; rolling")
+    print("\n".join(text_table(head, widest, 2)))
 
 
 def sizes(physics, engines, quick):
@@ -136,10 +135,14 @@ def sizes(physics, engines, quick):
 def print_sizes(found):
     """Beside what is published."""
     print("\nOpenings [mm] from the tables' arrays")
-    print("                   mouth   across the fall's middle   where the fall meets the jaws   throat")
-    for name, p in found["pockets"].items():
-        across = "-" if np.isnan(p["at the fall"]) else f"{p['at the fall']:.2f}"
-        print(f"  {name:14s}  {p['mouth']:6.2f}   {across:>24s}   {p['fall to jaw']:29.2f}   {p['throat']:6.2f}")
+    columns = {
+        "mouth": "mouth",
+        "across the fall's middle": "at the fall",
+        "where the fall meets the jaws": "fall to jaw",
+        "throat": "throat",
+    }
+    rows = [[name, *("-" if np.isnan(p[key]) else f"{p[key]:.2f}" for key in columns.values())] for name, p in found["pockets"].items()]
+    print("\n".join(text_table(["", *columns], rows)))
     print(f"  {openings.PUBLISHED}")
     print("\nClean opening: offsets from the axis, along it, at which no jaw is touched")
     for name, p in found["pockets"].items():
@@ -178,21 +181,19 @@ def sensitivity(physics, engine):
 def print_sensitivity(found):
     """One line a variant."""
     print("\nOther jaws, another edge (table 'match'): window [mm], rolling, at 1 / 6 m/s from 0.3 m")
-    print(" " * 33 + "".join(f"{name:>15s}" for name in found["the preset"]))
-    for name, row in found.items():
-        print(f"  {name:31s}" + "".join(f"{f'{a:.1f} / {b:.1f}':>15s}" for a, b in row.values()))
+    rows = [[name, *(f"{a:.1f} / {b:.1f}" for a, b in row.values())] for name, row in found.items()]
+    print("\n".join(text_table(["", *found["the preset"]], rows)))
 
 
 def print_pool(found):
     """Target sizes beside Alciatore's, and where they differ."""
     print("\nPool: effective target size [in], in brackets [mm]; the last rows: physics 'match', rolling ball")
-    for kind, rows in found.items():
-        print(f"  {kind} pocket, off the axis: " + "".join(f"{a:12d} deg" for a in pool_tables.ANGLES[kind]))
-        for name, sizes in rows.items():
+    for kind, targets in found.items():
+        rows = []
+        for name, sizes in targets.items():
             speed = pool_tables.SPEEDS.get(name.split()[0])
-            title = name if speed is None else f"{name}, {speed:g} m/s"
-            cells = (f"{s:.3f} ({25.4 * s:.1f})" for s in sizes)
-            print(f"    {title:24s}" + "".join(f"{c:>16s}" for c in cells))
+            rows.append([name if speed is None else f"{name}, {speed:g} m/s", *(f"{s:.3f} ({25.4 * s:.1f})" for s in sizes)])
+        print("\n".join(text_table([f"{kind} pocket, off the axis", *(f"{a} deg" for a in pool_tables.ANGLES[kind])], rows)))
 
 
 def says(figures):

@@ -26,6 +26,7 @@ import numpy as np
 
 import snooker_env as sn
 from commands import provenance
+from commands.tables import text_table
 from snooker_env._jit import entry
 from snooker_env.game.balls import SPOTS
 from snooker_env.physics.arrays import Law
@@ -286,9 +287,8 @@ def measure_against_commit(commit, n, repeats, seed=0):
     """The same shots by the code of a commit and by this tree, in turn."""
     found = against_commit.compare(commit, n, repeats, seed)
     print(f"\n{commit} and this tree in turn, {against_commit.ROUNDS} times; medians over {n} shots, one core; `standard`")
-    print(f"  {'':40s} {'before':>9s} {'now':>9s}    ratio")
-    for name, row in found.items():
-        print(f"  {name:40s} {row['before']:9.2f} {row['now']:9.2f} {row['ratio']:8.3f}")
+    rows = [[name, f"{row['before']:.2f}", f"{row['now']:.2f}", f"{row['ratio']:.3f}"] for name, row in found.items()]
+    print("\n".join(text_table(["", "before", "now", "ratio"], rows)))
     return found
 
 

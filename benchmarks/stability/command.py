@@ -9,6 +9,8 @@ Exit code 1 if an invariant fails. ``--fuzz 0`` plays the extremes alone (10 s).
 
 import numpy as np
 
+from commands.tables import text_table
+
 from .. import fuzz
 from .._common.command import Command, at_least, save_json
 from .euler import euler_lines, euler_table
@@ -28,13 +30,12 @@ def shown(x):
 
 def table_of(title, results, limits):
     """Lines: an extreme a row, an invariant a column, the worst figure in each; below zero there is no violation at all."""
-    head = "".join(f"{name:>12}" for name in limits)
-    lines = [f"{title:36}{'played':>8}{head}   verdict", f"{'(allowed)':36}{'':>8}" + "".join(f"{x:>12.3g}" for x in limits.values())]
+    rows = [["(allowed)", "", *(f"{x:.3g}" for x in limits.values()), ""]]
     for name, (played, figures) in results.items():
-        cells = "".join(f"{shown(figures[c]):>12}" for c in limits)
         failed = verdict(figures, limits)
-        lines.append(f"{name:36}{played:>8}{cells}   {'FAIL: ' + ', '.join(failed) if failed else 'pass'}")
-    return lines
+        passed = f"FAIL: {', '.join(failed)}" if failed else "pass"
+        rows.append([name, str(played), *(shown(figures[c]) for c in limits), passed])
+    return text_table([title, "played", *limits, "verdict"], rows)
 
 
 def main():

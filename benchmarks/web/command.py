@@ -17,6 +17,7 @@ import numpy as np
 
 import snooker_env as sn
 from commands import provenance
+from commands.tables import text_table
 from snooker_env.game import layout
 
 from .._common.command import Command, at_least, save_json
@@ -122,8 +123,15 @@ def main():
     print(f"Chromium {figures['chromium']} without a graphics card")
     sizes = f"page {options.width} x {options.height}, table {' x '.join(map(str, figures['canvas']))} pixels"
     print(f"{sizes}; the file has {figures['page_bytes']} bytes\n")
-    print(f"{'':12s}{'pictures/s':>11s}{'late':>12s}{'one picture [ms]: median':>27s}{'95 %':>8s}")
-    for name, one in figures["settings"].items():
-        late = f"{one['late']} of {one['pictures']}"
-        print(f"{name:12s}{one['frames_per_second']:11.1f}{late:>12s}{one['draw_median_ms']:27.1f}{one['draw_95_ms']:8.1f}")
+    rows = [
+        [
+            name,
+            f"{one['frames_per_second']:.1f}",
+            f"{one['late']} of {one['pictures']}",
+            f"{one['draw_median_ms']:.1f}",
+            f"{one['draw_95_ms']:.1f}",
+        ]
+        for name, one in figures["settings"].items()
+    ]
+    print("\n".join(text_table(["", "pictures/s", "late", "one picture [ms]: median", "95 %"], rows)))
     save_json(options.json, figures)

@@ -18,7 +18,8 @@ sys.path.insert(0, str(ROOT))  # agents are found in the clone
 import numpy as np  # noqa: E402
 
 import snooker_env as sn  # noqa: E402
-from snooker_env.advice import player_of, stroke_of  # noqa: E402
+from snooker_env.planning import Positions  # noqa: E402
+from snooker_env.players import FRAMES, VISITS  # noqa: E402
 from snooker_env.replays import replay  # noqa: E402
 
 OUT = ROOT / "docs" / "_static" / "films"
@@ -36,7 +37,7 @@ class Film:
     Attributes
     ----------
     agent : str
-        Who plays: a name of ``snooker_env.advice.player_of``.
+        Who plays: a name of ``snooker_env.player``.
     options : mapping
         Of ``SnookerEnv``.
     at_least : int
@@ -59,14 +60,14 @@ FILMS = {
     "break": _visit("ppo_foresight", "held_out", 20),
     "break_club": _visit("ppo_foresight", "held_out", 8, noise="club"),
     "line_up": _visit("ppo_foresight", "line_up", 20),
-    "colours": _visit("lookahead", "colours", 27),
-    "pot_hard": _visit("lookahead", "pots:hard", 1),
+    "colours": _visit("planner_500", "colours", 27),
+    "pot_hard": _visit("planner_500", "pots:hard", 1),
     "escape": _visit("geometric", "snookered", 0, reward="legal", one_stroke=True),
     "frame": Film(
-        "lookahead", {"task": "frame", "opponent": "ghost_ball", "noise": "professional"}, 8, "a frame: lookahead against ghost_ball"
+        "planner_500", {"task": "frame", "opponent": "ghost_ball", "noise": "professional"}, 8, "a frame: planner_500 against ghost_ball"
     ),
-    "break_off": _visit("lookahead", "break_off", 0),
-    "random": _visit("lookahead", "random:6", 15),
+    "break_off": _visit("planner_500", "break_off", 0),
+    "random": _visit("planner_500", "random:6", 15),
     "pot_easy": _visit("ghost_ball", "pots:easy", 1),
 }
 """The films by name."""
@@ -74,13 +75,13 @@ FILMS = {
 
 def episode(film: Film, seed: int) -> Any:
     """A ``SnookerEnv`` with the history of the first strokes of an episode."""
-    place = film.options.get("task") == "frame" or film.options["layout"] == "break_off"
-    env, player = sn.SnookerEnv(**film.options, placement=place, elevation=True), player_of(film.agent)
+    env = sn.SnookerEnv(**film.options, **(FRAMES if film.options.get("task") == "frame" else VISITS))
+    player = sn.player(film.agent).at(env)
     env.keep_history = True
     env.reset(seed=seed)
     for stroke in range(MOST_STROKES):
-        chosen = stroke_of(player, env, noise=film.options["noise"], seed=stroke)
-        _, _, terminated, truncated, info = env.step(chosen.action(elevation=True, placement=place))
+        strokes = player.play(env, [stroke])
+        _, _, terminated, truncated, info = env.step(strokes.actions(env.options, Positions.of(env))[0])
         if terminated or truncated or len(env.history) >= MOST_STROKES:
             break
     points = film.at_least if film.options.get("reward") == "legal" else info.get("score", env.points)

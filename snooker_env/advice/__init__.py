@@ -10,15 +10,10 @@ Pockets are numbered as in ``snooker_env.POCKETS``. In words they are called gre
 and left middle. Left and right are as seen from the baulk end, facing the black end: right is the yellow side (+x).
 """
 
-from .advisor import Advisor
 from .ask import advise, stroke_of
 from .destinations import Destinations, destinations
-from .players import names, player_of
 from .strokes import CueStroke
 from .suggestions import Advice, Suggestion
 from .words import POCKET_WORDS
 
-__all__ = [
-    "POCKET_WORDS", "Advice", "Advisor", "CueStroke", "Destinations", "Suggestion", "advise", "destinations", "names", "player_of",
-    "stroke_of",
-]  # fmt: skip
+__all__ = ["POCKET_WORDS", "Advice", "CueStroke", "Destinations", "Suggestion", "advise", "destinations", "stroke_of"]

@@ -6,27 +6,16 @@ import sys
 from collections.abc import Sequence
 
 from ..planning import Position
+from ..players import players
 from ..tasks.noise import LEVELS
-from .ask import advise
-from .players import names
+from .ask import AGENT, advise
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Print advice for a position.
-
-    Parameters
-    ----------
-    argv : sequence of str, optional
-        The command line; default: that of the process.
-
-    Returns
-    -------
-    int
-        Exit code: 0; 2 for wrong arguments or files, after one line that says what is wrong.
-    """
+    """Print advice for a position."""
     parser = argparse.ArgumentParser("python -m snooker_env.advice", description="Ranked strokes of a player, and their outcomes.")
     parser.add_argument("--position", required=True, metavar="FILE", help="JSON of a position: from Position.save, or hand-written")
-    parser.add_argument("--agent", default="lookahead", help=f"{', '.join(names())}, a model's .zip or MODULE:CLASS (default: lookahead)")
+    parser.add_argument("--agent", default=AGENT, help=f"{', '.join(players())}, a model's .zip or MODULE:CLASS (default: {AGENT})")
     parser.add_argument("--noise", default="professional", help=f"execution errors: {', '.join(LEVELS)} (default: professional)")
     parser.add_argument("--n", type=int, default=5, help="largest number of strokes (default: 5)")
     parser.add_argument("--samples", type=int, default=200, help="noise samples of each stroke (default: 200)")
@@ -34,16 +23,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0, help="seed of the noise samples (default: 0)")
     parser.add_argument("--json", action="store_true", help="print all figures as JSON")
     parser.add_argument("--trust", action="store_true", help="let code in a model's file run")
-    given = parser.parse_args(argv)
+    args = parser.parse_args(argv)
     try:
-        advice = advise(
-            Position.load(given.position), agent=given.agent, noise=given.noise, n=given.n, samples=given.samples, visits=given.visits,
-            seed=given.seed, trust=given.trust,
-        )  # fmt: skip
+        names = ("agent", "noise", "n", "samples", "visits", "seed", "trust")
+        advice = advise(Position.load(args.position), **{name: getattr(args, name) for name in names})
     except (ValueError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
-    if given.json:
+    if args.json:
         print(json.dumps(advice.to_dict(), indent=1))
         return 0
     print(advice.order)

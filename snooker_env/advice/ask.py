@@ -1,39 +1,54 @@
 """What would a player do here, and how would it turn out? ``advise`` returns ranked strokes; ``stroke_of`` the one that it would play."""
 
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from .._check import integer
+from ..planning import Positions
 from ..planning.positions import PositionsLike
+from ..players import Player
+from ..players import player as player_of
 from ..tasks.noise import NoiseLike
 from . import judging
-from .advisor import Advisor
-from .lookahead import LookaheadAdvisor
-from .players import player_of
-from .practice import one_position, practice_of
-from .strokes import CueStroke
+from .practice import Practice, one_position, practice_of
+from .strokes import CueStroke, cue_strokes
 from .suggestions import Advice
 
+AGENT = "planner_500"
+"""Who is asked if nobody is named: 120 points a visit, in a twentieth of a second."""
+INSTEAD = "random"
+"""Whose strokes are judged where none of an agent's is fair: many of the choices of ``action="discrete"``."""
 CONSIDERED = 8
 """Ranked strokes that are examined for each stroke requested, so that enough of them differ."""
 
 
 def advise(
-    position: PositionsLike, *, agent: Any = "lookahead", noise: NoiseLike = "professional", n: int = 5, samples: int = 200,
-    visits: int = 40, seed: int = 0, options: Any = None, distinct: bool = True, trust: bool = False,
-) -> Advice:  # fmt: skip
+    position: PositionsLike,
+    *,
+    agent: Any = AGENT,
+    noise: NoiseLike = "professional",
+    n: int = 5,
+    samples: int = 200,
+    visits: int = 40,
+    seed: int = 0,
+    options: Any = None,
+    distinct: bool = True,
+    trust: bool = False,
+) -> Advice:
     """Return the strokes that a player would play in a position, best first, and their outcomes under execution errors.
 
     The outcomes are found in the same way for every player, so that strokes of different agents can be compared:
 
     1. Each stroke is played ``samples`` times, with the same execution errors for all strokes, and judged as a stroke of a visit.
     2. Of the visits that go on, ``visits`` are played to their end by a fast player (``snooker_env.advice.visits``). It plans one stroke
-       ahead, less thoroughly than the built-in lookahead, so ``points`` is what a good player makes of the position.
+       ahead, less thoroughly than a search, so ``points`` is what a good player makes of the position, not the best.
 
     Of the strokes that the player ranks, the first ``n`` are returned that are fair: no foul without errors, nor in most samples. They are
     ordered by the figure in their words: pots by points expected, others by how often they are fair, because what a stroke is worth as a
-    safety is not judged. Those that the player prefers, pots or others, come first. Where none of its strokes is fair, the built-in
-    lookahead is asked instead; where that finds none either, the stroke that is fair most often is returned, and its words say so.
+    safety is not judged. Those that the player prefers, pots or others, come first. Where none of its strokes is fair, many choices of
+    ``action="discrete"`` are judged, too; where none of these is fair either, the stroke that is fair most often is returned, and its
+    words say so.
 
     The errors are drawn from ``seed`` alone: the same seed gives the same advice. They are independent of the random stream that a saved
     state carries, so advice never reveals the errors of the next stroke.
@@ -41,10 +56,10 @@ def advise(
     Parameters
     ----------
     position : Position, dict, Positions or environment
-        One position, as ``Positions.of`` takes it, or the result of ``Position.to_dict()``. With the cue ball in hand, places in the D
-        are tried, and each stroke has its ``place``. Points of the visit so far do not count.
+        One position, as ``Positions.of`` takes it, or the result of ``Position.to_dict()``. With the cue ball in hand each stroke has
+        its ``place`` in the D. Points of the visit so far do not count. In a frame a free ball counts as any colour.
     agent : str, Path or player, optional
-        The player, see ``player_of``; default "lookahead".
+        The player, as ``snooker_env.player`` takes it; default "planner_500". One without ``rank`` has one stroke.
     noise : str, dict or Noise, optional
         Execution errors with which strokes are chosen and judged; default "professional".
     n : int, optional
@@ -61,7 +76,7 @@ def advise(
     distinct : bool, optional
         Whether only the first of several strokes with equal descriptions is kept, apart from the speed of a pot; default True.
     trust : bool, optional
-        Whether code in a model's file may run, see ``player_of``; default False.
+        Whether code in a model's file may run, see ``snooker_env.player``; default False.
 
     Returns
     -------
@@ -77,7 +92,7 @@ def advise(
     --------
     >>> import snooker_env as sn
     >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
-    >>> advice = sn.advise(position, agent="ghost_ball", n=1, samples=50, visits=5)
+    >>> advice = sn.advise(position, agent="search", n=1, samples=50, visits=5)
     >>> advice[0].ball, sn.POCKETS[advice[0].pocket], advice[0].chance > 0.9
     (21, 'top left', True)
     """
@@ -85,23 +100,41 @@ def advise(
     integer("samples", samples, 1, 100_000)
     integer("visits", visits, 0, 100_000)
     integer("seed", seed, 0, 2**63)
-    at, practice, player = one_position(position), practice_of(noise, options, position), player_of(agent, trust=trust)
+    at, practice, asked = one_position(position), practice_of(noise, options, position), player_of(agent, trust=trust)
 
-    def ranked_by(one: Advisor) -> list[judging.Tried]:
-        tried = judging.tried(practice, at, one.rank(practice, at, CONSIDERED * n, seed)[: CONSIDERED * n])
-        return judging.distinct(tried) if distinct else tried
+    def tried(one: Player) -> list[judging.Tried]:
+        strokes = judging.tried(practice, at, _ranked(one, practice, at, seed)[: CONSIDERED * n])
+        return judging.distinct(strokes) if distinct else strokes
 
     judge: Any = {"samples": samples, "visits": visits, "seed": seed}
-    tried = ranked_by(player)
-    chosen, of_player = judging.fair(practice, tried, n, **judge), {one.stroke for one in tried}
-    if not chosen and not isinstance(player, LookaheadAdvisor):
-        tried += ranked_by(LookaheadAdvisor())
-        chosen = judging.fair(practice, tried, n, **judge)
-    chosen = chosen or [judging.least_bad(practice, tried, **judge)]
-    own, said = all(one.stroke in of_player for one in chosen), noise if isinstance(noise, str) else asdict(practice.noise)
+    strokes = tried(asked)
+    chosen, of_agent = judging.fair(practice, strokes, n, **judge), {one.stroke for one in strokes}
+    if not chosen:
+        strokes += tried(player_of(INSTEAD))
+        chosen = judging.fair(practice, strokes, n, **judge)
+    chosen = chosen or [judging.least_bad(practice, strokes, **judge)]
+    name = str(agent) if isinstance(agent, str | Path) else getattr(asked, "name", "") or type(asked).__name__
     return Advice(
-        suggestions=tuple(chosen), position=at[0], agent=player.name, own=own, noise=said, samples=samples, visits=visits, seed=seed
-    )  # fmt: skip
+        suggestions=tuple(chosen),
+        position=at[0],
+        agent=name,
+        own=all(one.stroke in of_agent for one in chosen),
+        noise=noise if isinstance(noise, str) else asdict(practice.noise),
+        **judge,
+    )
+
+
+def _ranked(asked: Player, practice: Practice, at: Positions, seed: int) -> judging.Rankings:
+    """The player's strokes in the one position ``at``, best first, with its scores: its ranking, or the one that it plays."""
+    bound, shown = asked.at(practice.options), _shown(at)
+    rank = getattr(bound, "rank", None)
+    strokes, scores = (bound.play(shown, [seed]), None) if rank is None else rank(shown, [seed])[0]
+    return list(zip(cue_strokes(strokes, shown), [None] * len(strokes) if scores is None else scores.tolist(), strict=True))
+
+
+def _shown(at: Positions) -> Positions:
+    """What a player is asked: the stroke to come, without a choice before it or a cue ball that may stand outside the D."""
+    return at.as_visits() if at.choice[0] or at.lot[0] or at.anywhere[0] else at
 
 
 def stroke_of(player: Any, position: PositionsLike, *, noise: NoiseLike = "professional", options: Any = None, seed: int = 0) -> CueStroke:
@@ -110,7 +143,7 @@ def stroke_of(player: Any, position: PositionsLike, *, noise: NoiseLike = "profe
     Parameters
     ----------
     player : str, Path or player
-        The player, see ``player_of``. For several calls, pass the result of ``player_of``: a model is then loaded once.
+        The player, as ``snooker_env.player`` takes it. For several calls pass its result: a model is then loaded once.
     position : Position, dict, Positions or environment
         One position, see ``advise``.
     noise : str, dict or Noise, optional
@@ -134,9 +167,9 @@ def stroke_of(player: Any, position: PositionsLike, *, noise: NoiseLike = "profe
     --------
     >>> import snooker_env as sn
     >>> from snooker_env.advice import stroke_of
-    >>> stroke_of("ghost_ball", sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))).speed
-    2.3
+    >>> stroke_of("search", sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), noise="none").place is None
+    True
     """
     integer("seed", seed, 0, 2**63)
-    (stroke, _), *_ = player_of(player).rank(practice_of(noise, options, position), one_position(position), 1, seed)
-    return stroke
+    shown, practice = _shown(one_position(position)), practice_of(noise, options, position)
+    return cue_strokes(player_of(player).at(practice.options).play(shown, [seed]), shown)[0]

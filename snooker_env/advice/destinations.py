@@ -11,8 +11,7 @@ from ..game.balls import CUE
 from ..geometry import HALF_LENGTH, HALF_WIDTH
 from ..planning.positions import PositionsLike
 from ..tasks.noise import NoiseLike
-from . import seeds
-from .practice import one_position, played_from, practice_of
+from .practice import JUDGING, keys, one_position, played_from, practice_of
 from .strokes import CueStroke, StrokeLike
 
 
@@ -173,8 +172,7 @@ def destinations(
     row = struck.numbers()[None]
     trial = practice.play(start, np.zeros(1, np.int64), row)
     ball, tries = int(trial.first[0]), 1 if practice.sure else samples
-    keys = seeds.keys(seed, seeds.JUDGING, tries)
-    stops = practice.play(start, np.zeros(tries, np.int64), np.repeat(row, tries, 0), keys)
+    stops = practice.play(start, np.zeros(tries, np.int64), np.repeat(row, tries, 0), keys(seed, JUDGING, tries))
     stayed = stops.potted[:, CUE] < 0
     here = stops.potted[:, ball] < 0 if ball > 0 else np.zeros(tries, np.bool_)
     return Destinations(

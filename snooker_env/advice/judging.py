@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from math import hypot, sqrt
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 from ..game.balls import CUE
 from ..geometry import BALL_RADIUS
 from ..planning import Positions, Stops, clear_paths
-from . import seeds
-from .advisor import Ranked
-from .practice import Practice, played_from
+from .practice import JUDGING, Practice, keys, played_from
 from .strokes import CueStroke
 from .suggestions import Suggestion
 from .visits import played_on
@@ -20,19 +18,14 @@ from .words import RAISED, contact_words, cushion_words, figures_words, stroke_w
 
 FOULS = ("foul", "in-off")
 """Kinds of strokes that are fouls without errors."""
+Rankings: TypeAlias = list[tuple[CueStroke, float | None]]
+"""Strokes, best first, each with the player's own score of it."""
 Z = 1.959964
 """Standard deviations of a 95 % interval."""
 
 
 def wilson(made: int, tries: int) -> tuple[float, float]:
-    """The 95 % interval of a probability of which ``made`` of ``tries`` samples were successes (Wilson 1927).
-
-    Examples
-    --------
-    >>> from snooker_env.advice.judging import wilson
-    >>> [round(x, 4) for x in wilson(87, 100)]
-    [0.7902, 0.9224]
-    """
+    """The 95 % interval of a probability of which ``made`` of ``tries`` samples were successes (Wilson 1927)."""
     share, z2 = made / tries, Z * Z / tries
     middle = (share + 0.5 * z2) / (1.0 + z2)
     half = Z * sqrt(share * (1.0 - share) / tries + 0.25 * z2 / tries) / (1.0 + z2)
@@ -42,16 +35,11 @@ def wilson(made: int, tries: int) -> tuple[float, float]:
 def points_expected(
     points: NDArray[np.float64], goes_on: NDArray[np.bool_], rest: NDArray[np.float64]
 ) -> tuple[float, tuple[float, float]]:
-    """Mean points of a visit and its 95 % interval, from ``points`` and ``goes_on`` (samples,) of the first stroke and ``rest`` (visits,).
-
-    The mean is that of the stroke's points plus, as often as the visit goes on, the mean of the rest. The variance is the sum of two parts
-    (delta method): the variance of the first mean over the samples, and that of the mean of the rest over the visits times the squared
-    share of samples that go on.
-    """
+    """Mean points of a visit and its 95 % interval, from (samples,) of the first stroke and the ``rest`` (visits,) where it goes on."""
     n, follows = len(points), float(rest.mean()) if len(rest) else 0.0
     share, each = float(goes_on.mean()), points + goes_on * follows
     mean = float(each.mean())
-    variance = float(each.var(ddof=1)) / n if n > 1 else 0.0
+    variance = float(each.var(ddof=1)) / n if n > 1 else 0.0  # delta method: the samples' part, then that of the rest
     variance += share * share * float(rest.var(ddof=1)) / len(rest) if len(rest) > 1 else 0.0
     half = Z * sqrt(variance)
     return mean, (max(0.0, mean - half), mean + half)
@@ -72,7 +60,7 @@ class Tried(NamedTuple):
     """What it does and how it is struck, in words."""
 
 
-def tried(practice: Practice, at: Positions, ranked: Ranked) -> list[Tried]:
+def tried(practice: Practice, at: Positions, ranked: Rankings) -> list[Tried]:
     """What the strokes of a ranking do without errors in the one position ``at``."""
     strokes = [stroke for stroke, _ in ranked]
     starts = _joined([played_from(at, stroke) for stroke in strokes])
@@ -108,8 +96,8 @@ def _trial(practice: Practice, starts: Positions, trial: Stops, k: int, stroke: 
 
 def distinct(strokes: list[Tried]) -> list[Tried]:
     """Only the first of several strokes with equal descriptions, apart from the speed of a pot."""
-    said = [one.words.replace(f"{one.stroke.speed:.1f} m/s", "") if one.kind == "pot" else one.words for one in strokes]
-    return [one for k, one in enumerate(strokes) if said[k] not in said[:k]]
+    read = [one.words.replace(f"{one.stroke.speed:.1f} m/s", "") if one.kind == "pot" else one.words for one in strokes]
+    return [one for k, one in enumerate(strokes) if read[k] not in read[:k]]
 
 
 def fair(practice: Practice, strokes: list[Tried], n: int, *, samples: int, visits: int, seed: int) -> list[Suggestion]:
@@ -131,19 +119,19 @@ def judged(practice: Practice, strokes: list[Tried], *, samples: int, visits: in
     """Strokes with their outcomes under execution errors, in their order."""
     n = len(strokes)
     tries, again = (1, min(1, visits)) if practice.sure else (samples, visits)
-    keys, rows = seeds.keys(seed, seeds.JUDGING, tries), np.stack([one.stroke.numbers() for one in strokes])
+    noise, rows = keys(seed, JUDGING, tries), np.stack([one.stroke.numbers() for one in strokes])
     starts = _joined([one.start for one in strokes])
-    stops = practice.play(starts, np.repeat(np.arange(n), tries), np.repeat(rows, tries, 0), np.tile(keys, n))
+    stops = practice.play(starts, np.repeat(np.arange(n), tries), np.repeat(rows, tries, 0), np.tile(noise, n))
     rest = _rest(practice, stops, n, tries, again, seed)
     out = []
     for k, one in enumerate(strokes):
-        own = slice(k * tries, (k + 1) * tries)
-        no_foul = stops.penalty[own] == 0
-        made = no_foul & (stops.potted[own, one.ball] == one.pocket) if one.kind == "pot" else no_foul
+        mine = slice(k * tries, (k + 1) * tries)
+        no_foul = stops.penalty[mine] == 0
+        made = no_foul & (stops.potted[mine, one.ball] == one.pocket) if one.kind == "pot" else no_foul
         chance = float(made.mean())
-        points, interval = points_expected(stops.points[own], stops.goes_on[own], rest[k])
-        stayed = stops.potted[own, CUE] < 0
-        middle, spread = _cloud(stops.places[own, CUE][stayed])
+        points, interval = points_expected(stops.points[mine], stops.goes_on[mine], rest[k])
+        stayed = stops.potted[mine, CUE] < 0
+        middle, spread = _cloud(stops.places[mine, CUE][stayed])
         out.append(Suggestion(
             **{name: getattr(one.stroke, name) for name in ("speed", "aim", "side", "top", "elevation", "place")},
             kind=one.kind, ball=one.ball, pocket=one.pocket, first=one.first,
@@ -165,7 +153,7 @@ def _cloud(places: NDArray[np.float64]) -> tuple[tuple[float, float] | None, flo
 def _rest(practice: Practice, stops: Stops, n: int, tries: int, visits: int, seed: int) -> list[NDArray[np.float64]]:
     """For each of n strokes: the points that followed in the first ``visits`` of its samples in which the visit went on."""
     rows = [k * tries + np.flatnonzero(stops.goes_on[k * tries : (k + 1) * tries])[:visits] for k in range(n)]
-    numbers = np.concatenate([np.arange(len(own)) for own in rows]).astype(np.int64)
+    numbers = np.concatenate([np.arange(len(each)) for each in rows]).astype(np.int64)
     rest = played_on(practice, stops.afterstates[np.concatenate(rows).astype(np.int64)], numbers, seed)
-    ends = np.cumsum([len(own) for own in rows])
+    ends = np.cumsum([len(each) for each in rows])
     return np.split(rest, ends[:-1])

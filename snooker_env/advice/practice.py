@@ -1,28 +1,26 @@
-"""Where are trial strokes played for advice? On a ``Practice`` table: planners with and without execution noise, made once and reused."""
+"""Where are trial strokes played for advice? On a ``Practice`` table: planners with and without a player's execution errors."""
 
 from collections.abc import Mapping
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import choice, refuse, refuse_what
-from ..game.balls import SPOTS
+from .._types import Floats
 from ..game.frame_columns import POINTS
 from ..game.in_hand import place_cue
-from ..geometry import BAULK_Y, D_RADIUS
-from ..planning import Planner, Positions, Stops, prospects_of, spread_of
+from ..planning import RULE_OF_THUMB, SURE, Planner, Positions, Stops, prospects_of, spread_of
 from ..planning.positions import bare
-from ..planning.prospects import RULE_OF_THUMB, SURE
+from ..players.seen import OF_FRAMES
 from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options
+from ..tasks.tables import Tables
 from .strokes import CueStroke
 
 PHYSICAL_OPTIONS = ("physics", "table", "fidelity")
 """The options that say where strokes are played. All others belong to a game."""
-PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.4) for x in (-0.85, -0.6, -0.3, 0.0, 0.3, 0.6, 0.85))
-"""Places in the D [m] that are tried with the cue ball in hand, or the nearest free ones."""
+JUDGING, GOING_ON = 1, 2
+"""What noise samples are for: other ones judge a stroke than those that chose it, so a lucky choice is not overestimated."""
 
 
 class Practice:
@@ -34,56 +32,50 @@ class Practice:
         self.exact: Planner = Planner(options, noise="none")
         physical: Any = {name: getattr(options, name) for name in PHYSICAL_OPTIONS}
         self._choices = Planner(Options(action="discrete", **physical))
-        self.spread: float = spread_of(self.noise, options.rules.physics)
+        self.noise: Noise = options.rules.noise
         self.sure: bool = self.noise.silent
-        self._thumb = SURE if self.sure else RULE_OF_THUMB
+        self._spread = spread_of(self.noise, options.rules.physics)
 
-    @property
-    def noise(self) -> Noise:
-        """The player's execution errors."""
-        return self.options.rules.noise
-
-    def play(self, at: Positions, rows: Any, strokes: NDArray[np.float64], keys: NDArray[np.uint64] | None = None) -> Stops:
-        """Play strokes (n, 5) on copies of ``at[rows]``: with execution errors if ``keys`` are given, else as intended."""
+    def play(self, at: Positions, rows: Any, strokes: Floats, keys: Any = None) -> Stops:
+        """Play strokes (n, 5) on copies of ``at[rows]``: with execution errors if there are ``keys``, else as intended."""
         planner = self.exact if keys is None else self.noisy
         return planner.stops(at, rows, strokes=strokes, keys=None if self.sure else keys)
 
-    def chosen(self, at: Positions, rows: Any, choices: NDArray[np.int64]) -> NDArray[np.float64]:
+    def chosen(self, at: Positions, rows: Any, choices: Any) -> Floats:
         """The strokes (n, 5) that choices of ``action="discrete"`` mean on ``at[rows]``."""
         return self._choices.strokes_of(at, rows, choices)[0]
 
-    def prospects(self, at: Positions) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def prospects(self, at: Positions) -> tuple[Floats, Floats]:
         """Values of positions for this player by the rule of thumb, and the chances of their four widest pots."""
-        return prospects_of(at, self.spread, self._thumb, threads=self.exact.threads)
+        rule = SURE if self.sure else RULE_OF_THUMB
+        return prospects_of(at, self._spread, rule, threads=self.exact.threads)
 
 
 def practice_of(noise: NoiseLike, options: Any = None, source: Any = None) -> Practice:
-    """The practice table for a noise and ``options``: a mapping with keys of ``PHYSICAL_OPTIONS``, an ``Options``, or None.
-
-    None takes the options of ``source`` if that is an environment, else the defaults. Raises ValueError for anything else.
-    """
+    """The practice table for a noise and ``options``; for None those of ``source`` if it is an environment, else the defaults."""
     if options is None:
         options = getattr(bare(source), "options", None)
         options = options if isinstance(options, Options) else {}
     if isinstance(options, Options):
-        given = {name: getattr(options, name) for name in PHYSICAL_OPTIONS}
+        names = PHYSICAL_OPTIONS if options.task == "visit" else (*PHYSICAL_OPTIONS, *OF_FRAMES)
+        same: dict[str, Any] = {name: getattr(options, name) for name in names}
+        same |= {} if options.task == "visit" else {"task": "frame"}
     elif isinstance(options, Mapping):
         for key in options:
             choice("key of options", key, PHYSICAL_OPTIONS)
-        given = dict(options)
+        same = dict(options)
     else:
-        raise refuse_what("options", f"a {type(options).__name__}", f"must be None, an Options, or a dict with keys of {PHYSICAL_OPTIONS}")
-    return _practice(Options(noise=Noise.of(noise), elevation=True, **given))  # type: ignore[arg-type]
-
-
-@lru_cache(maxsize=16)
-def _practice(options: Options) -> Practice:
-    return Practice(options)
+        allowed = f"must be None, an Options, or a dict with keys of {PHYSICAL_OPTIONS}"
+        raise refuse_what("options", f"a {type(options).__name__}", allowed)
+    return Practice(Options(noise=Noise.of(noise), **same))
 
 
 def one_position(source: Any) -> Positions:
-    """The one position in a source of positions, with the points of its visit set to 0; ValueError if there are several."""
-    at = Positions.of(source).as_visits()
+    """The one position in a source of positions, with the points of its visit set to 0; ValueError if there is not one to play."""
+    tables = getattr(bare(source), "tables", None)
+    if isinstance(tables, Tables) and not tables.begun.all():
+        raise refuse_what("position", "an environment before reset()", "must have a position: call reset() first")
+    at = Positions.of(source)
     if len(at) != 1:
         raise refuse_what("position", f"{len(at)} positions", "must be one position")
     if at.over[0]:
@@ -93,34 +85,18 @@ def one_position(source: Any) -> Positions:
     return at
 
 
-def placed(at: Positions, places: Any) -> Positions:
-    """Copies of the one position ``at``, with the cue ball at each of ``places`` in the D, or at the nearest free place."""
-    out = at[np.zeros(len(places), np.int64)]
-    for k, (x, y) in enumerate(places):
-        out.positions[k, 0] = place_cue(at.positions[0], at.on_table[0], float(x), float(y))
-    return out
-
-
-def starts(practice: Practice, at: Positions, most: int = 3) -> Positions:
-    """The positions to play from: the one position or, with the cue ball in hand, the ``most`` best places in the D."""
-    if not at.in_hand[0]:
-        return at
-    tried = placed(at, (*PLACES, SPOTS[0]))
-    values, _ = practice.prospects(tried)
-    return tried[np.argsort(-values, kind="stable")[:most]]
-
-
 def played_from(at: Positions, stroke: CueStroke) -> Positions:
-    """The position that a stroke is played from: ``at``, with the cue ball at the stroke's place. ValueError if it may not be placed."""
+    """The one position that a stroke is played from: as one of a visit, with the cue ball at the free place nearest to the stroke's."""
+    at = at.as_visits()
     if stroke.place is None:
         return at
     if not at.in_hand[0]:
         raise refuse("place", stroke.place, "must be None: the cue ball is not in hand")
-    return placed(at, [stroke.place])
+    at = at.copy()
+    at.positions[0, 0] = place_cue(at.positions[0], at.on_table[0], *stroke.place)
+    return at
 
 
-def stroke_of_row(row: NDArray[np.float64], start: Positions, in_hand: bool) -> CueStroke:
-    """The stroke of a row (5,), played from the one position ``start``."""
-    speed, side, top, aim, elevation = row.tolist()
-    place = tuple(start.positions[0, 0].tolist()) if in_hand else None
-    return CueStroke(speed=speed, side=side, top=top, aim=aim, elevation=elevation, place=place)
+def keys(seed: int, purpose: int, n: int, *more: int) -> Any:
+    """n keys of noise samples, uint64 (n,). Equal arguments give equal keys, and a larger n begins with the same keys."""
+    return np.random.default_rng((seed, purpose, *more)).integers(0, 2**64 - 1, n, dtype=np.uint64)

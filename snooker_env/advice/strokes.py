@@ -12,7 +12,9 @@ from .._check import array, choice, number, refuse_what
 from .._types import Place
 from ..game.in_hand import within_d
 from ..physics.parameters import Physics
+from ..planning import Positions
 from ..planning.strokes import FARTHEST, encoded
+from ..players import Strokes
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
 
 
@@ -100,13 +102,13 @@ class CueStroke:
         if isinstance(stroke, Mapping):
             for key in stroke:
                 choice("field of the stroke", key, names)
-            given = dict(stroke)
+            values = dict(stroke)
         else:
-            given = {name: getattr(stroke, name) for name in names if hasattr(stroke, name)}
+            values = {name: getattr(stroke, name) for name in names if hasattr(stroke, name)}
         for name in ("speed", "aim"):
-            if name not in given:
+            if name not in values:
                 raise refuse_what("stroke", f"a {type(stroke).__name__} without {name!r}", "must be a CueStroke or a dict of its fields")
-        return cls(**given)
+        return cls(**values)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the stroke as JSON types.
@@ -161,7 +163,7 @@ class CueStroke:
         Raises
         ------
         ValueError
-            If the cue is elevated and the action does not hold the elevation.
+            If the cue is raised and the action does not hold the elevation.
 
         Examples
         --------
@@ -170,9 +172,21 @@ class CueStroke:
         [0.0, 0.0, 0.5, 0.0, 0.0, -1.0]
         """
         form = Actions("absolute", elevation, placement, Physics(), decision)
-        places = None if self.place is None else np.array([self.place])
+        places = None if self.place is None else [self.place]
         return encoded(form, self.numbers()[None], places)[0].astype(np.float32)
 
 
 StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any
 """The types that arguments called ``stroke`` accept, see ``CueStroke.of``."""
+
+
+def cue_strokes(strokes: Strokes, at: Positions) -> list[CueStroke]:
+    """The strokes that a player plays in the one position ``at``, with a place in the D if the cue ball is in hand."""
+    in_hand, (here, *_) = bool(at.in_hand[0]), at.positions[0].tolist()
+    out = []
+    for (speed, side, top, aim, elevation), place in zip(strokes.values.tolist(), strokes.place, strict=True):
+        shrink = max(1.0, hypot(side, top) / FARTHEST)  # as the strike itself keeps the tip on the disc
+        put = None if not in_hand else tuple(here) if np.isnan(place).any() else tuple(place.tolist())
+        tip = {"side": side / shrink, "top": top / shrink}
+        out.append(CueStroke(speed=speed, aim=aim, **tip, elevation=elevation, place=put))
+    return out

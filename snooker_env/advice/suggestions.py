@@ -52,7 +52,7 @@ class Suggestion(CueStroke):
     spread : float or None
         Root of the mean square distance from that point [m].
     score : float or None
-        The agent's own score of the stroke, in its own unit: points for the built-in lookahead, a probability for a policy.
+        The agent's own score of the stroke, in its own unit: points for a search, a probability for a policy.
     words : str
         All this in one line of text.
 
@@ -60,9 +60,11 @@ class Suggestion(CueStroke):
     --------
     >>> import snooker_env as sn
     >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
-    >>> suggestion = sn.advise(position, agent="ghost_ball", noise="none", n=1)[0]
-    >>> suggestion.kind, suggestion.chance, suggestion.words
-    ('pot', 1.0, 'black, top left, 2.3 m/s, plain, chance 100 %, 7 points expected')
+    >>> suggestion = sn.advise(position, agent="search", noise="none", n=1)[0]
+    >>> suggestion.kind, suggestion.chance
+    ('pot', 1.0)
+    >>> print(suggestion)  # doctest: +ELLIPSIS
+    black, top left, ... m/s, ..., chance 100 %, 7 points expected
     """
 
     kind: str
@@ -102,7 +104,7 @@ class Suggestion(CueStroke):
         --------
         >>> import snooker_env as sn
         >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
-        >>> sn.advise(position, agent="ghost_ball", noise="none", n=1)[0].to_dict()["chance_interval"]
+        >>> sn.advise(position, agent="search", noise="none", n=1)[0].to_dict()["chance_interval"]
         [1.0, 1.0]
         """
         return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
@@ -124,7 +126,7 @@ class Advice(Sequence[Suggestion]):
     agent : str
         Name of the agent.
     own : bool
-        Whether the strokes are the agent's own; False where none of its own is fair, so that the built-in lookahead was asked.
+        Whether the strokes are the agent's own; False where none of its own is fair, so that others were judged, too.
     noise : str or dict
         Execution errors: a level's name, or the fields of ``Noise``.
     samples : int
@@ -137,12 +139,12 @@ class Advice(Sequence[Suggestion]):
     Examples
     --------
     >>> import snooker_env as sn
-    >>> advice = sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="ghost_ball", noise="none", n=1)
+    >>> advice = sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="search", noise="none", n=1)
     >>> len(advice), advice.agent
-    (1, 'ghost_ball')
-    >>> print(advice)
+    (1, 'search')
+    >>> print(advice)  # doctest: +ELLIPSIS
     Pots by points expected:
-    1. black, top left, 2.3 m/s, plain, chance 100 %, 7 points expected
+    1. black, top left, ... m/s, ..., chance 100 %, 7 points expected
     """
 
     suggestions: tuple[Suggestion, ...]
@@ -174,7 +176,7 @@ class Advice(Sequence[Suggestion]):
         """Whose strokes these are if not the agent's own, and by what they are ordered, in words."""
         by = {True: "pots by points expected", False: "strokes without a pot by how often they are fair"}
         parts = ", then ".join(by[pot] for pot in dict.fromkeys(one.kind == "pot" for one in self))
-        whose = "" if self.own else f"{self.agent} has no fair stroke here; these are of lookahead. "
+        whose = "" if self.own else f"{self.agent} has no fair stroke here; these are not its own. "
         return f"{whose}{parts.capitalize()}:"
 
     def to_dict(self) -> dict[str, Any]:
@@ -188,7 +190,7 @@ class Advice(Sequence[Suggestion]):
         Examples
         --------
         >>> import snooker_env as sn
-        >>> advice = sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="ghost_ball", noise="none", n=1)
+        >>> advice = sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="search", noise="none", n=1)
         >>> list(advice.to_dict())
         ['position', 'agent', 'own', 'order', 'noise', 'samples', 'visits', 'seed', 'suggestions']
         """

@@ -27,23 +27,13 @@ RAISED = 0.05
 
 
 def ball_words(ball: int) -> str:
-    """The colour of a ball.
-
-    Examples
-    --------
-    >>> from snooker_env.advice.words import ball_words
-    >>> ball_words(7), ball_words(19)
-    ('red', 'blue')
-    """
+    """The colour of a ball."""
     return "red" if 1 <= ball <= 15 else NAMES[ball].replace("_", " ")
 
 
 def rolling(speed: float, top: float, distance: float, physics: Physics) -> float:
-    """Surface speed of a struck ball's rotation over its speed after a distance [m]: 1 for rolling, 0 for stun, < 0 for backspin.
-
-    The ball slides until it rolls. Its speed v falls by mu_s g t; its rotation R w, which begins at 5/2 v times the tip's height, grows by
-    5/2 mu_s g t.
-    """
+    """Surface speed of a struck ball's rotation over its speed after a distance [m]: 1 for rolling, 0 for stun, < 0 for backspin."""
+    # It slides until it rolls: v falls by mu_s g t, and R w, at first 5/2 v times the tip's height, grows by 5/2 mu_s g t.
     brake = physics.mu_s * physics.g
     v, roll = speed, 2.5 * top * speed
     way = 1.0 if roll < v else -1.0  # too much top: the rotation falls, the ball gains speed
@@ -59,11 +49,8 @@ def rolling(speed: float, top: float, distance: float, physics: Physics) -> floa
 
 
 def spin_words(stroke: CueStroke, distance: float | None, physics: Physics) -> str:
-    """The spin of a stroke: "deep screw", "screw", "drag", "stun", "plain", "follow" or "top", with "left side" or "right side".
-
-    For a blow below the middle it depends on the backspin left when the ball on, ``distance`` [m] away, is reached: screw, none (stun), or
-    rolling already (drag). A blow on the middle is plain, or stun if the ball still slides. ``distance`` None: nothing is struck.
-    """
+    """The spin of a stroke when it reaches the ball on, ``distance`` [m] away; None: nothing is struck."""
+    # Below the middle: backspin is left (screw), none (stun), or it rolls already (drag). On the middle: plain, or stun if it slides.
     top = stroke.top
     arrives = None if distance is None else rolling(stroke.speed, top, distance, physics)
     if top > _STILL:
@@ -80,14 +67,7 @@ def spin_words(stroke: CueStroke, distance: float | None, physics: Physics) -> s
 
 
 def place_words(x: float, y: float) -> str:
-    """The place of a cue ball in the D, relative to the brown spot.
-
-    Examples
-    --------
-    >>> from snooker_env.advice.words import place_words
-    >>> place_words(-0.12, -1.0475)
-    'from 12 cm left of the brown spot'
-    """
+    """The place of a cue ball in the D, relative to the brown spot."""
     across, back = round(100.0 * abs(x)), round(100.0 * (BAULK_Y - y))
     parts = [f"{across} cm {'right' if x > 0 else 'left'} of"] if across else []
     parts += [f"{back} cm behind"] if back else []
@@ -103,14 +83,7 @@ def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics) ->
 
 
 def cushion_words(x: float, y: float, aim: float) -> str:
-    """The cushion that a ball at (x, y), sent in the direction ``aim`` [rad], meets: left, right, top (the black end) or baulk.
-
-    Examples
-    --------
-    >>> from snooker_env.advice.words import cushion_words
-    >>> cushion_words(0.0, 0.0, 0.1), cushion_words(0.0, 0.0, -1.6)
-    ('right cushion', 'baulk cushion')
-    """
+    """The cushion that a ball at (x, y), sent in the direction ``aim`` [rad], meets: left, right, top (the black end) or baulk."""
     dx, dy = cos(aim), sin(aim)
     to_side = (HALF_WIDTH - x * copysign(1.0, dx)) / max(abs(dx), 1e-9)
     to_end = (HALF_LENGTH - y * copysign(1.0, dy)) / max(abs(dy), 1e-9)
@@ -120,14 +93,7 @@ def cushion_words(x: float, y: float, aim: float) -> str:
 
 
 def contact_words(x: float, y: float, aim: float) -> str:
-    """How full a ball at the offset (x, y) is struck by a cue ball that runs straight in the direction ``aim`` [rad].
-
-    Examples
-    --------
-    >>> from snooker_env.advice.words import contact_words
-    >>> contact_words(1.0, 0.0, 0.0), contact_words(1.0, 0.026, 0.0)
-    ('full', 'half-ball on the right')
-    """
+    """How full a ball at the offset (x, y) is struck by a cue ball that runs straight in the direction ``aim`` [rad]."""
     aside = (y * cos(aim) - x * sin(aim)) / (2.0 * BALL_RADIUS)
     for far, words in ((0.12, "full"), (0.38, "three-quarter ball"), (0.62, "half-ball"), (0.87, "quarter-ball"), (inf, "thin")):
         if abs(aside) <= far:
@@ -136,14 +102,7 @@ def contact_words(x: float, y: float, aim: float) -> str:
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
-    """What a stroke does when played as intended. ``how``: the first cushion of an escape, or how full a ball is struck.
-
-    Examples
-    --------
-    >>> from snooker_env.advice.words import what_words
-    >>> what_words("pot", 19, 2, 19), what_words("pot", 2, 5, 1), what_words("contact", 3, -1, 3, "full")
-    ('blue, right middle', 'red by a plant, left middle', 'contact with the red, full')
-    """
+    """What a stroke does when played as intended. ``how``: the first cushion of an escape, or how full a ball is struck."""
     if kind == "pot":
         how = "" if ball == first else " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_words(first)}"
         return f"{ball_words(ball)}{how}, {POCKET_WORDS[pocket]}"
@@ -157,14 +116,7 @@ def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> 
 
 
 def figures_words(kind: str, chance: float, points: float) -> str:
-    """The figures of a stroke: chance and points expected of a pot, otherwise how often it is fair.
-
-    Examples
-    --------
-    >>> from snooker_env.advice.words import figures_words
-    >>> figures_words("pot", 0.874, 23.4), figures_words("contact", 0.98, 0.0)
-    ('chance 87 %, 23 points expected', 'fair 98 %; no pot intended, its worth as a safety is not judged')
-    """
+    """The figures of a stroke: chance and points expected of a pot, otherwise how often it is fair."""
     if kind != "pot":
         unjudged = "; no pot intended, its worth as a safety is not judged" if kind in ("contact", "escape") else ""
         return f"fair {100.0 * chance:.0f} %{unjudged}"

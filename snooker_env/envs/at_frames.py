@@ -18,7 +18,7 @@ from ..game.frame_columns import ANYWHERE, IN_HAND, STEPS, VISIT_COLUMNS
 from ..game.sides import as_visits, swapped
 from ..geometry import HALF_LENGTH, HALF_WIDTH
 from ..tasks.frame import Frames
-from ..tasks.player_opponent import put_in_hand
+from ..tasks.ghost_ball import put_in_hand
 from .vector import SnookerVectorEnv
 
 PHYSICAL = ("noise", "physics", "table", "fidelity")
@@ -127,7 +127,9 @@ class AtFrames:
         anywhere = which[(game[which, ANYWHERE] != 0) & (game[which, IN_HAND] != 0)]
         if not len(anywhere) or not said.placement:
             return self._seat.act(self.player, going)
-        put_in_hand(anywhere, own.positions, own.on_table, game, frames.tables.streams, False)
+        put, on_table = own.positions[anywhere], own.on_table[anywhere]
+        put_in_hand(put, on_table, game[anywhere], frames.tables.streams[anywhere])
+        own.positions[anywhere] = put
         actions = np.array(self._seat.act(self.player, going), np.float64)
         at = 5 if said.elevation else 4  # the place means another one where the cue ball may stand anywhere
         actions[anywhere, at : at + 2] = own.positions[anywhere, 0] / (HALF_WIDTH, HALF_LENGTH)

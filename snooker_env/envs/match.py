@@ -21,6 +21,7 @@ from ..tasks.frame import Frames
 from ..tasks.matches import Matches
 from ..tasks.options import Options, observation_space_of, options_of
 from ..tasks.rewards import frame_reward
+from ..tasks.seats import Seat
 from ..tasks.tables import Crew
 from .one_table import ShowsBalls, TakesTurns
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
@@ -140,8 +141,8 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
         if render_mode is not None:
             choice("render_mode", render_mode, MODES)
         self.render_mode = render_mode
-        self.tables = (Matches if self.options.task == "match" else Frames)(self.options.rules, 1)
-        self.tables.two_players = True
+        seats = [Seat.of(self.options.rules)] * 2
+        self.tables = (Matches if self.options.task == "match" else Frames)(self.options, seats=seats)
         self.possible_agents = list(PLAYERS)
         self.agents = []
         self.observation_spaces = {name: observation_space_of(self.options) for name in PLAYERS}

@@ -10,11 +10,11 @@ from .._check import choice, refuse
 from .._types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
-from ..tasks.kinds import TABLES
-from ..tasks.options import Options, observation_space_of, options_of
+from ..tasks.options import Options, observation_space_of
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput, Tables
 from .one_table import OneTable
+from .opponents import game_of, tables_of
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
 from .record import HasHistory, Record
 from .reset_options import ONE, breakers_of, given_of, start_of
@@ -35,11 +35,12 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | opponent | plays |
     |---|---|
     | "none" | nobody: the agent plays on from its own misses and fouls; penalties go to the other score |
-    | "random", "ghost_ball" | uniformly random actions; the geometric player: the widest direct pot, as softly as possible |
-    | another name | a player that ``snooker_env.advice.player_of`` knows: "lookahead"; in a clone "search", "ppo_mask"; "MODULE:CLASS" |
-    | a callable | ``opponent(observation, rng) -> action``, in this environment's spaces, from its own side of the table |
-    | a player | an object with ``options``, which say how its actions are read, and ``act(tables, observations, going)`` |
+    | "random" | uniformly random actions of this environment's own action space, as an untrained agent |
+    | "ghost_ball" | the geometric player: the widest direct pot, as softly as possible |
+    | another name | what ``snooker_env.player`` takes: "search", "planner_500", "MODULE:CLASS", "program:COMMAND", a run's folder |
     | a path to a ``.zip`` | a model of Stable-Baselines3 or sb3-contrib. Its pickled code runs when it is loaded: it needs ``trust=True`` |
+    | a player | an object with ``at(rules)`` and ``play(positions, seeds)``, or with ``act(observations, masks, seeds)`` |
+    | a callable | ``opponent(observation, rng) -> action``, in this environment's spaces, from its own side of the table |
     | a ``tasks.OpponentPool`` | one of several, drawn for each frame. More about all of them: docs/environment/opponents.md |
 
     ## Action space
@@ -236,8 +237,12 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     def __init__(
         self, options: Options | None = None, *, render_mode: RenderMode | None = None, render_size: Sequence[int] = SIZE, **given: Any
     ):
-        self.options: Options = options_of(options, given)
-        self.tables: Tables = TABLES[self.options.task](self.options.rules, 1)
+        game, opponent = game_of(options, given)
+        self._set_up(game, tables_of(game, opponent, 1), render_mode, render_size)
+
+    def _set_up(self, game: Options, tables: Tables, render_mode: RenderMode | None, render_size: Sequence[int]) -> None:
+        self.options: Options = game
+        self.tables: Tables = tables
         """The one table: ``tasks.tables.Tables``."""
         self.action_space: Any = self.options.rules.actions.space
         self.observation_space: Any = observation_space_of(self.options)
@@ -247,6 +252,13 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         names = (("Agent",), ("Agent", "Opponent"))[self.options.task != "visit"]
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)
         self._record, self._seeded = Record(full=render_mode is not None), False
+
+    @classmethod
+    def _of(cls, game: Options, tables: Tables, render_mode: RenderMode | None, render_size: Sequence[int]) -> "SnookerEnv":
+        """An environment of a table that exists."""
+        one = cls.__new__(cls)
+        one._set_up(game, tables, render_mode, render_size)
+        return one
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 

@@ -16,11 +16,11 @@ from .._check import choice, integer, refuse
 from .._types import Bools, Floats, Observation
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
-from ..tasks.kinds import TABLES
-from ..tasks.options import NEVER, Options, options_of
+from ..tasks.options import NEVER, Options
 from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
 from .given_arrays import OUTPUTS, arrays_given
+from .opponents import game_of, tables_of
 from .pictures import SIZE, Picture, Pictures
 from .record import Recent
 from .reset_options import MANY, Start, breakers_of, given_of, mask_of, seeds_of, starts_of
@@ -35,9 +35,8 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
 
     The steps run as compiled kernels on several threads. ``SnookerEnv`` specifies actions, observations, rewards and infos.
 
-    **Opponents.** In a frame, the opponents "random" and "ghost_ball" run as kernels. A callable is called in Python, table by table. If it
-    has a method ``many(observations, generators, masks) -> actions``, that is called once for all tables that wait for it. A saved model is
-    always called in this way; its arithmetic on many rows may differ in the last bits from that on one.
+    **Opponents.** In a frame, the opponents "random" and "ghost_ball" run as kernels. Any other player is asked once for all tables that
+    wait for it. A callable is called table by table or, if it has a method ``many(observations, generators, masks) -> actions``, that once.
 
     **Reset.** ``reset(seed=...)`` takes an int, a list or None, as ``SyncVectorEnv`` does. ``reset(options=...)`` takes these keys:
 
@@ -114,15 +113,15 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
         if render_mode is not None:
             choice("render_mode", render_mode, PICTURES)
-        self.options = options_of(options, given)
+        self.options, opponent = game_of(options, given)
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode = render_mode
-        self._one = SnookerEnv(self.options, render_mode=render_mode, render_size=render_size)
+        self.tables = tables_of(self.options, opponent, self.num_envs, limit)
+        self._one = SnookerEnv._of(self.options, self.tables.view(0), render_mode, render_size)
         self.single_action_space: Any = self._one.action_space
         self.single_observation_space: Any = self._one.observation_space
         self.action_space: Any = batch_space(self.single_action_space, self.num_envs)
         self.observation_space: Any = batch_space(self.single_observation_space, self.num_envs)
-        self.tables = TABLES[self.options.task](self.options.rules, self.num_envs, limit=limit)
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size)
         self._generators: list[Any] = [None] * self.num_envs
         self._generator_seeds = [-1] * self.num_envs

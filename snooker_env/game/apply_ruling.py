@@ -29,13 +29,14 @@ def _put_in_order(positions, on_table, result, gone, radius):
 
 
 @kernel
-def settle_visit(positions, on_table, ball_on, lead, facts, radius):
+def settle_visit(positions, on_table, ball_on, lead, seen, radius):
     """``settle`` for a single visit: nobody plays on after a foul, so there is no test for a snooker and no free ball.
 
-    ``facts``: (first, touching, moved, potted) of ``Facts``; no ball leaves the table, and nothing is nominated.
+    ``seen``: (first, touching, moved, potted) of ``Facts``; no ball is off the table, nothing is nominated.
     """
-    first, touching, moved, potted = facts
-    result = ruling(Before(bits(on_table), ball_on, 0, lead), Facts(first, touching, moved, potted, 0, AUTO), 0)
+    first, touching, moved, potted = seen
+    facts = Facts(first, touching, moved, potted, 0, AUTO)
+    result = ruling(Before(bits(on_table), ball_on, 0, lead), facts, 0)
     _put_in_order(positions, on_table, result, potted, radius)
     return result
 
@@ -46,8 +47,9 @@ def settle(positions, on_table, situation, facts, flags, jaws, radius):
 
     ``positions`` (22, 2) [m]: where the balls came to rest. ``on_table`` (22,) bool: *before* the stroke. Both are changed in place: balls
     potted or off leave, colours are spotted, and on_table[0] is False if the cue ball is in hand. When the frame is over, the potted balls
-    leave and the others stay. ``situation``: (ball_on, free_ball, lead) of ``Before``; ``facts``: ``Facts``. Of ``flags``, this function
-    sets SNOOKERED and BEHIND_FREE_BALL itself. ``jaws`` (m, 3): see ``snookered.NO_JAWS``.
+    leave and the others stay. ``situation``: (ball_on, free_ball, lead) of ``Before``; ``facts``: ``Facts``.
+    Of ``flags``, this function sets SNOOKERED and BEHIND_FREE_BALL itself. ``jaws`` (m, 3): see
+    ``snookered.NO_JAWS``.
     """
     flags = flags & ~(FLAG.SNOOKERED | FLAG.BEHIND_FREE_BALL)
     ball_on, free_ball, lead = situation
@@ -71,7 +73,8 @@ def settle(positions, on_table, situation, facts, flags, jaws, radius):
 @entry(what="the referee of frames", seconds=2)
 def settle_one(positions, on_table, before, facts, flags, jaws, radius):
     """``settle`` for Python."""
-    return settle(positions, on_table, (before.ball_on, before.free_ball, before.lead), facts, flags, jaws, radius)
+    situation = before.ball_on, before.free_ball, before.lead
+    return settle(positions, on_table, situation, facts, flags, jaws, radius)
 
 
 def settle_table(
@@ -86,5 +89,6 @@ def settle_table(
     if (mask_of(np.flatnonzero(present)) ^ situation.on_table) & ~1:
         raise refuse("situation.on_table", situation.on_table, "must be the mask of the array on_table")
     check(situation, stroke)
-    result = settle_one(placed, present, *numbers_of(situation, stroke), array("jaws", jaws, (-1, 3)), float(radius))
+    arcs = array("jaws", jaws, (-1, 3))
+    result = settle_one(placed, present, *numbers_of(situation, stroke), arcs, float(radius))
     return verdict_of(result), placed, present

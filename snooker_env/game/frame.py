@@ -5,9 +5,10 @@
     frame = frame.choose("play")                # after a foul the opponent decides
     Frame.from_dict(json.loads(json.dumps(frame.to_dict()))) == frame
 
-A ``Frame`` never changes: each act returns the next one. It is the readable face of one row of integers: each act packs the frame into a
-row, lets a kernel of ``frame_columns`` change it, as tables do, and unpacks it. Players are 0 and 1. An act that is not allowed raises
-``ValueError``. ``rules`` names the game (``rule_sets``): snooker, six-red snooker or the Shoot Out.
+A ``Frame`` never changes: each act returns the next one. It is the readable face of one row of integers: each
+act packs the frame into a row, lets a kernel of ``frame_columns`` change it, as tables do, and unpacks it.
+Players are 0 and 1. An act that is not allowed raises ``ValueError``. ``rules`` names the game
+(``rule_sets``): snooker, six-red snooker or the Shoot Out.
 
 A foul and a miss (S3 R14): ``miss="off"`` never calls it. ``miss="clear_path"`` calls it where geometry alone decides: the striker failed
 to strike a ball on first although a straight path to a part of one was clear. It is not called when either player needed penalty points
@@ -22,6 +23,7 @@ lot for a re-spotted black is passed in.
 """
 
 from dataclasses import asdict, dataclass
+from operator import itemgetter
 from typing import Any, Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
@@ -48,14 +50,25 @@ MOST_CLOCK = 2**50
 
 
 _INTEGERS = {
-    "striker": columns.STRIKER, "breaker": columns.BREAKER, "break_points": columns.POINTS, "on_table": columns.ON_TABLE,
-    "failures": columns.FAILURES, "clock": columns.CLOCK, "misses": columns.MISSES, "rack": columns.RACK,
-}  # fmt: skip
+    "striker": columns.STRIKER,
+    "breaker": columns.BREAKER,
+    "break_points": columns.POINTS,
+    "on_table": columns.ON_TABLE,
+    "failures": columns.FAILURES,
+    "clock": columns.CLOCK,
+    "misses": columns.MISSES,
+    "rack": columns.RACK,
+}
 _FLAGS = {
-    "in_hand": columns.IN_HAND, "free_ball": columns.FREE_BALL, "respotted_black": columns.RESPOTTED_BLACK,
-    "miss_called": columns.MISS_CALLED, "warned": columns.WARNED, "anywhere": columns.ANYWHERE,
-}  # fmt: skip
+    "in_hand": columns.IN_HAND,
+    "free_ball": columns.FREE_BALL,
+    "respotted_black": columns.RESPOTTED_BLACK,
+    "miss_called": columns.MISS_CALLED,
+    "warned": columns.WARNED,
+    "anywhere": columns.ANYWHERE,
+}
 """The columns of the fields of a ``Frame`` that are plain integers, and bools."""
+_integers, _flags = itemgetter(*_INTEGERS.values()), itemgetter(*_FLAGS.values())
 
 
 class _Asked(NamedTuple):
@@ -278,7 +291,7 @@ class Frame:
         return _Asked(*_ask(self._row(), self.rule_set.code))
 
     def needs_snookers(self, player: int) -> bool:
-        """Whether ``player`` trails by more points than they can still score. The colour after a red and a free ball are the striker's."""
+        """Whether ``player`` trails by more than is left for them; a free ball is the striker's alone."""
         return self._asked().needs_snookers[integer("player", player, 0, 1)]
 
     def _in_phase(self, phase, act):
@@ -313,10 +326,12 @@ class Frame:
         ``time_to_play`` could not begin in time.
         """
         self._in_phase("stroke", "play")
-        late = 0 < self.shot_clock < integer("time_to_play", time_to_play, 0, MOST_CLOCK)
-        lasted = integer("duration", duration, 0, MOST_CLOCK) if self.rule_set.clock else 0
+        late, lasted, rules = False, 0, self.rule_set
+        integer("time_to_play", time_to_play, 0, MOST_CLOCK)
+        if rules.clock:
+            late, lasted = 0 < self.shot_clock < time_to_play, integer("duration", duration, 0, MOST_CLOCK)
         result = ruling_of(self.situation, Stroke(late=True) if late else stroke)
-        conditions = Conditions(self.rule_set.code, MISS_RULES.index(self.miss), int(time_to_play))
+        conditions = Conditions(rules.code, MISS_RULES.index(self.miss), int(time_to_play))
         row, effort = self._row(), Effort(bool(clear_path), bool(full_ball_path), bool(attempt))
         _play(row, result, conditions, effort, layout is not None, lasted)
         return self._next(row, layout), verdict_of(result)
@@ -403,12 +418,14 @@ def _pack(frame, row):
         row[column] = getattr(frame, name)
     row[columns.BALL_ON], row[columns.PHASE] = frame.ball_on, PHASES.index(frame.phase)
     row[columns.SCORE_0], row[columns.SCORE_1] = frame.scores
-    row[columns.WINNER], row[columns.OVER] = -1 if frame.winner is None else frame.winner, frame.phase == "over"
+    row[columns.WINNER] = -1 if frame.winner is None else frame.winner
+    row[columns.OVER] = frame.phase == "over"
     saved = frame.saved
     if saved is not None:
         row[columns.SAVED], row[columns.SAVED_LAYOUT] = 1, saved.layout is not None
         row[columns.SAVED_ON_TABLE], row[columns.SAVED_BALL_ON] = saved.on_table, saved.ball_on
-        row[columns.SAVED_IN_HAND], row[columns.SAVED_FREE_BALL] = saved.in_hand + saved.anywhere, saved.free_ball
+        row[columns.SAVED_FREE_BALL] = saved.free_ball
+        row[columns.SAVED_IN_HAND] = saved.in_hand + saved.anywhere
 
 
 def _unpacked(row, rules, miss, layout):
@@ -425,8 +442,8 @@ def _unpacked(row, rules, miss, layout):
             layout=layout if at[columns.SAVED_LAYOUT] else None,
         )
     return Frame(
-        **{name: at[column] for name, column in _INTEGERS.items()},
-        **{name: bool(at[column]) for name, column in _FLAGS.items()},
+        **dict(zip(_INTEGERS, _integers(at), strict=True)),
+        **dict(zip(_FLAGS, map(bool, _flags(at)), strict=True)),
         scores=(at[columns.SCORE_0], at[columns.SCORE_1]),
         ball_on=BallOn(at[columns.BALL_ON]),
         phase=PHASES[at[columns.PHASE]],
@@ -438,7 +455,7 @@ def _unpacked(row, rules, miss, layout):
 
 
 def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int, rules: RulesName = "snooker") -> Frame:
-    """The ``Frame`` of a row (COLUMNS,) of a table; ``miss``, ``rules``: its rules; ``layouts``: ``Layouts``, of which row k is read."""
+    """The ``Frame`` of a row (COLUMNS,) of a table; row k of ``layouts`` is what may be replaced."""
     layout = None
     if row[columns.SAVED_LAYOUT]:
         layout = tuple(map(tuple, layouts.positions[k].tolist())), tuple(layouts.on_table[k].tolist())
@@ -446,12 +463,12 @@ def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int, rules: RulesNa
 
 
 def write_frame(frame: Frame, strokes: int, row: Ints, layouts: Layouts, k: int) -> None:
-    """Write a checked ``Frame`` into the row (COLUMNS,) of a table, and its stored layout into row k of ``layouts``."""
+    """Write a checked ``Frame`` into the row (COLUMNS,) of a table, its layout into row k of ``layouts``."""
     row[:] = 0
     _pack(frame, row)
     row[columns.STROKES] = strokes
     if frame.saved is not None and frame.saved.layout is not None:
-        layouts.positions[k], layouts.on_table[k] = np.array(frame.saved.layout[0]), np.array(frame.saved.layout[1])
+        layouts.positions[k], layouts.on_table[k] = map(np.array, frame.saved.layout)
 
 
 def _set(frozen, name, value):

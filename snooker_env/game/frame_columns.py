@@ -1,8 +1,9 @@
-"""How does a frame go on? One row of integers for each frame, and the rules of frames as kernels that change it.
+"""How does a frame go on? One row of integers for each, and the rules of frames as kernels that change it.
 
-A row (int64, ``COLUMNS`` wide) holds a frame between two strokes; ``frame.Frame`` is its readable face. Five acts change it:
-``after_stroke``, ``choose``, ``draw``, ``claim`` and ``concede``; whether an act is allowed, the caller asks first. The layouts that
-"replace" restores are in separate arrays, ``Layouts``. What is the same for all frames of an environment is not in the row: ``Conditions``.
+A row (int64, ``COLUMNS`` wide) holds a frame between two strokes; ``frame.Frame`` is its readable face. Five
+acts change it: ``after_stroke``, ``choose``, ``draw``, ``claim`` and ``concede``; whether an act is allowed,
+the caller asks first. The layouts that "replace" restores are in separate arrays, ``Layouts``. What is the
+same for all frames of an environment is not in the row: ``Conditions``.
 
 The first five columns have the same meaning for a visit without a frame, whose rows have no others.
 """
@@ -23,9 +24,10 @@ VISIT_COLUMNS = 5
     SAVED_ON_TABLE, SAVED_BALL_ON, SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT, STROKES, PAID, FRAMES_0, FRAMES_1, FIRST_BREAK, CLOCK,
     MISSES, ANYWHERE, OPPONENT, RACK,
 ) = range(5, 33)  # fmt: skip
-"""The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether there is one; SAVED_IN_HAND: 2 if the cue ball could be
-placed anywhere). Of tables only: strokes of both players; the agent's lead that rewards have already paid; frames won in a match and who
-broke in its first frame; which member of a pool of opponents plays, counted from 1 (0: none is drawn yet).
+"""The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether a frame has one;
+SAVED_IN_HAND: 2 if the cue ball could be placed anywhere). Of tables only: strokes of both players; the
+agent's lead that rewards have already paid; frames won in a match and who broke in its first frame; which
+member of a pool of opponents plays, counted from 1 (0: none is drawn yet).
 """
 COLUMNS = 33
 
@@ -51,7 +53,7 @@ class Conditions(NamedTuple):
 
 
 class Effort(NamedTuple):
-    """What the miss rule asks of a stroke: which paths to a ball on were clear before it, and whether the cue ball came near one."""
+    """For the miss rule: were paths to a ball on clear, and did the cue ball come near one?"""
 
     clear_path: bool
     full_ball_path: bool
@@ -103,7 +105,7 @@ def lead_of(row, player):
 
 @kernel
 def needs_snookers(row, player):
-    """Whether ``player`` trails by more points than they can still score. The colour after a red and a free ball are the striker's."""
+    """Whether ``player`` trails by more than is left for them; a free ball is the striker's alone."""
     left = available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL]) if row[STRIKER] == player else available(row[ON_TABLE], -1, 0)
     return -lead_of(row, player) > left
 
@@ -117,8 +119,10 @@ def _decided(row):
 
 @kernel
 def _is_miss(result, conditions, effort, failures, misses, decided):
-    """Whether a foul is also a miss, as far as geometry and scores decide it. ``decided``: the scores do, before or after the stroke."""
-    if conditions.miss == NO_MISSES or not result.fouls & MISSED or (conditions.rules == SIX_RED and misses == MOST_MISSES):
+    """Whether a foul is also a miss. ``decided``: the scores, before or after the stroke, rule it out."""
+    if conditions.miss == NO_MISSES or not result.fouls & MISSED:
+        return False
+    if conditions.rules == SIX_RED and misses == MOST_MISSES:
         return False
     if effort.full_ball_path and failures:
         return True
@@ -142,9 +146,9 @@ def is_late(row, rules, time_to_play):
 
 @kernel
 def after_stroke(row, result, conditions, effort, layout, duration):
-    """One stroke, on which the referee made the ``Ruling`` result.
+    """One stroke with the referee's ``Ruling`` result, under ``Conditions`` and with an ``Effort``.
 
-    ``conditions``, ``effort``: ``Conditions``, ``Effort``; ``layout``: whether that before the stroke is stored; ``duration`` [ms].
+    ``layout``: whether that before the stroke is stored; ``duration`` [ms].
     """
     rules, time_to_play, full = conditions.rules, conditions.time_to_play, effort.full_ball_path
     me = row[STRIKER]
@@ -189,7 +193,7 @@ def after_stroke(row, result, conditions, effort, layout, duration):
 
 @kernel
 def _time_is_up(row):
-    """The frame's clock has run down: the higher score wins. Level, a lot follows: the caller leaves nothing but the black, on its spot."""
+    """The frame's clock has run down: the higher score wins; if level, the caller leaves only the black."""
     lead = lead_of(row, 0)
     if lead != 0:
         _end(row, 0 if lead > 0 else 1)
@@ -206,7 +210,7 @@ def may_replace(row, rules):
 
 @kernel
 def may_place_anywhere(row, rules):
-    """Whether the cue ball may be placed anywhere, after the last miss in succession; not if snookers are needed, a free ball left out."""
+    """Whether the cue ball may go anywhere: after the last miss in succession, unless snookers are needed."""
     last = row[PHASE] == CHOICE and row[MISS_CALLED] and rules == SIX_RED and row[MISSES] >= MOST_MISSES
     return last and abs(lead_of(row, 0)) <= available(row[ON_TABLE], row[BALL_ON], 0)
 

@@ -94,7 +94,7 @@ def on_bed(x, y, radius):
 
 @kernel
 def _better(positions, on_table, wish, p, best, anywhere, radius):
-    """The better of a candidate p and the ``best`` place so far: (x, y, distance from the wish) [m]. A NaN is never better.
+    """The better of a candidate p and the ``best`` place: (x, y, distance from the wish) [m]; never a NaN.
 
     ``anywhere``: on the whole bed, not in the D only.
     """
@@ -130,12 +130,12 @@ def nearest_place(positions, on_table, x, y, radius):
         for sign in (-1.0, 1.0):
             half = np.sqrt(reach * reach - (by - BAULK_Y) ** 2)
             place = _better(positions, on_table, wish, (bx + sign * half, BAULK_Y), place, False, radius)
-            px, py = _meet(0.0, BAULK_Y, D_RADIUS, bx, by, reach, sign)
-            place = _better(positions, on_table, wish, (px, py), place, False, radius)
+            p = _meet(0.0, BAULK_Y, D_RADIUS, bx, by, reach, sign)
+            place = _better(positions, on_table, wish, p, place, False, radius)
             for j in range(i):
                 if on_table[j]:
-                    px, py = _meet(bx, by, reach, positions[j, 0], positions[j, 1], reach, sign)
-                    place = _better(positions, on_table, wish, (px, py), place, False, radius)
+                    p = _meet(bx, by, reach, positions[j, 0], positions[j, 1], reach, sign)
+                    place = _better(positions, on_table, wish, p, place, False, radius)
     return place[0], place[1], place[2] < np.inf
 
 
@@ -168,15 +168,15 @@ def nearest_anywhere(positions, on_table, x, y, radius):
         place = _better(positions, on_table, wish, (bx + b * ux, by + b * uy), place, True, radius)
         for sign in (-1.0, 1.0):
             for side in (-1.0, 1.0):
-                half = np.sqrt(b * b - (side * wide - bx) ** 2)
-                place = _better(positions, on_table, wish, (side * wide, by + sign * half), place, True, radius)
-                half = np.sqrt(b * b - (side * high - by) ** 2)
-                place = _better(positions, on_table, wish, (bx + sign * half, side * high), place, True, radius)
+                p = side * wide, by + sign * np.sqrt(b * b - (side * wide - bx) ** 2)
+                place = _better(positions, on_table, wish, p, place, True, radius)
+                p = bx + sign * np.sqrt(b * b - (side * high - by) ** 2), side * high
+                place = _better(positions, on_table, wish, p, place, True, radius)
             for j in range(i):
                 ox, oy, o = _disc(positions, on_table, j, reach)
                 if o > 0.0:
-                    px, py = _meet(bx, by, b, ox, oy, o, sign)
-                    place = _better(positions, on_table, wish, (px, py), place, True, radius)
+                    p = _meet(bx, by, b, ox, oy, o, sign)
+                    place = _better(positions, on_table, wish, p, place, True, radius)
     return place[0], place[1], place[2] < np.inf
 
 

@@ -1,4 +1,4 @@
-"""What does the cue ball meet, rolling along a straight line? The distance to a ball, and the ball met first, as kernels."""
+"""What does the cue ball meet on a straight line? The way to a ball, and the ball met first; kernels."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from .balls import N_BALLS
 
 @kernel
 def meets(bx, by, ux, uy, radius):
-    """Distance that the cue ball rolls from the origin along the unit vector u until it meets the ball at b [m]; inf if it misses."""
+    """How far it rolls from the origin along the unit vector u until it meets a ball at b [m], or inf."""
     along, across = bx * ux + by * uy, bx * uy - by * ux
     if along <= 0.0 or abs(across) >= 2.0 * radius:
         return np.inf
@@ -18,7 +18,7 @@ def meets(bx, by, ux, uy, radius):
 
 @kernel
 def met(positions, on_table, x, y, ux, uy, far):
-    """The ball that the cue ball meets first, rolling from (x, y) along the unit vector u for the distance ``far`` [m]; 0 if none."""
+    """The ball met first from (x, y) along the unit vector u, up to the distance ``far`` [m]; 0 if none."""
     ball = 0
     for i in range(1, N_BALLS):
         if on_table[i]:

@@ -224,7 +224,8 @@ def numbers_of(situation: Situation, stroke: Stroke) -> tuple[Before, Facts, int
     """Both as the arguments of ``ruling``."""
     before = situation.on_table, situation.ball_on, situation.free_ball, situation.lead
     facts = stroke.first, stroke.touching, stroke.moved, stroke.potted, stroke.off, stroke.nominated
-    return Before(*map(int, before)), Facts(*map(int, facts)), int(stroke.flags | RULE_FLAGS[RULES.index(situation.rules)])
+    flags = stroke.flags | RULE_FLAGS[RULES.index(situation.rules)]
+    return Before(*map(int, before)), Facts(*map(int, facts)), int(flags)
 
 
 def ruling_of(situation: Situation, stroke: Stroke) -> Ruling:

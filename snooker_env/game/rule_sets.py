@@ -1,7 +1,7 @@
 """Which game is played? Snooker, six-red snooker or the Shoot Out: what each changes in the rules of a frame, as data.
 
-``docs/environment/rules.md`` says where each rule comes from, what is left out and why. ``Frame`` and the kernels of ``frame_columns``
-read the same numbers: kernels know a rule set by its ``code``.
+``docs/environment/rules.md`` says where each rule comes from, what is left out and why. Kernels know a rule
+set by its ``code``.
 """
 
 from dataclasses import dataclass

@@ -29,16 +29,12 @@ class Boundaries(NamedTuple):
 
 
 class Setup(NamedTuple):
-    """What is the same in all shots of a batch: constants, the table, and how impacts are solved; as in ``Law`` and ``Boundaries``."""
+    """What is the same in all shots of a batch."""
 
-    phys: np.ndarray
-    noses: np.ndarray
-    jaws: np.ndarray
-    falls: np.ndarray
+    law: Law
+    boundaries: Boundaries
     reach: np.ndarray
     """(2, 2): the lowest and highest x and y that a ball's centre may have [m]."""
-    fidelity: int
-    n_steps: int
 
 
 class Balls(NamedTuple):

@@ -145,22 +145,22 @@ def _next_event(best_time, best_ball, alone_time, alone_kind, alone_index):
     return t, kind, i, j
 
 
-@inlined
+@kernel
 def run(balls, setup, max_events, log, paths, forecast, series):
     """Simulate one shot to rest, in place. ``paths``, ``forecast`` and ``series`` are work space.
 
     Returns status, number of events, number of segments, duration [s].
 
-    The tuples are unpacked here at once, because each time that a field of one is read numba counts the references to its array.
+    A ``kernel``, because there tuples are free. Inlined into ``run_batch``, which makes arrays, numba would count the references to
+    the arrays of a tuple whenever one is made or read: shots of two balls would take 4 % longer.
     """
     positions, velocities, spins, on_table, potted = balls
-    phys, noses, jaws, falls, reach, fidelity, n_steps = setup
+    law, boundaries, reach = setup
+    phys, (noses, jaws, falls, R) = law.phys, boundaries
     time, what, segments = log
     motion, state, flight = paths
     pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
     n = positions.shape[0]
-    R = phys[P_R]
-    law, boundaries = Law(phys, fidelity, n_steps), Boundaries(noses, jaws, falls, R)
     clear = clear_box(boundaries)
     n_segments = n_events = np.int64(0)  # (typed: with a literal numba would compile every callee twice)
     for i in range(n):
@@ -227,7 +227,8 @@ def run(balls, setup, max_events, log, paths, forecast, series):
             continue
         elif kind == events.DROP:
             r, v, w = cloth.evaluate(motion, state, i, t, phys)
-            flight[i, pocket.IN_X], flight[i, pocket.IN_Y], flight[i, pocket.POCKET] = r[0] - falls[j, FALL_X], r[1] - falls[j, FALL_Y], j
+            flight[i, pocket.IN_X], flight[i, pocket.IN_Y] = r[0] - falls[j, FALL_X], r[1] - falls[j, FALL_Y]
+            flight[i, pocket.POCKET] = j
             pocket.next_leg(paths, i, t, (r[0], r[1], 0.0), (v[0], v[1], 0.0), w, boundaries, phys)
             solved = True
         elif state[i] == FALLING:
@@ -280,17 +281,20 @@ def run(balls, setup, max_events, log, paths, forecast, series):
 def run_batch(balls, setup, max_events, log, ends, start, stop):
     """Simulate shots ``start`` to ``stop`` of a batch. All arrays of the balls, the log and the outcome have a leading batch axis.
 
-    Python passes the fields of ``Balls``, ``Setup``, ``Log`` and ``Ends`` as plain tuples: a call takes 0.3 us longer than with the arrays
-    one by one, and with named tuples 3 us (a shot of two balls takes 6 us). The work space is made once.
+    Python passes plain tuples: of the fields of ``Balls``, ``Log`` and ``Ends``, and as ``setup`` phys, noses, jaws, falls, reach,
+    fidelity and n_steps. So a call takes 0.3 us longer than with the arrays one by one; with named tuples it would be 3 us (a shot
+    of two balls takes 6 us). The work space is made once.
     """
     positions, velocities, spins, on_table, potted = balls
     time, what, segments = log
     status, n_events, n_segments, duration = ends
-    setup, n = Setup(*setup), positions.shape[1]
+    phys, noses, jaws, falls, reach, fidelity, n_steps = setup
+    same = Setup(Law(phys, fidelity, n_steps), Boundaries(noses, jaws, falls, phys[P_R]), reach)
+    n = positions.shape[1]
     paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, pocket.FLIGHT)))
     forecast = Forecast(np.zeros((n, n)), np.zeros(n), np.zeros(n, np.int64), np.zeros(n), np.zeros(n, np.int64), np.zeros(n, np.int64))
     series = np.zeros(WORK)
     for k in range(start, stop):
         shot = Balls(positions[k], velocities[k], spins[k], on_table[k], potted[k])
         shot_log = Log(time[k], what[k], segments[k])
-        status[k], n_events[k], n_segments[k], duration[k] = run(shot, setup, max_events, shot_log, paths, forecast, series)
+        status[k], n_events[k], n_segments[k], duration[k] = run(shot, same, max_events, shot_log, paths, forecast, series)

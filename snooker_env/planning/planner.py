@@ -101,7 +101,7 @@ class Planner:
     ):
         rules = options_in(env_or_options).rules
         errors = rules.noise if noise is None else Noise.of(noise)
-        self._rules = replace(rules, noise=errors, reward=REWARDS[0], opponent=None, one_stroke=False, observation=OBSERVATIONS[0])
+        self._rules = replace(rules, noise=errors, reward=REWARDS[0], one_stroke=False, observation=OBSERVATIONS[0])
         self._threads = Threads(min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024))
         self._visits, self._watched = TrialVisits(self._rules, 0), WatchedVisits(self._rules, 0)
         self._lock = threading.Lock()

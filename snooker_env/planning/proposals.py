@@ -5,9 +5,9 @@ A generator is called with a search, n positions, a number m and n seeds, and re
 * ``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to chance^4 x worth. The strokes at a pot are
   consecutive points of one scrambled Sobol sequence over the logarithm of the speed, the height of the tip and its side; half of them have
   no side.
-* ``at_balls``, where there is no pot: in the directions in which a ball on is met first (``tasks.windows``), evenly. Every other stroke is
-  hard, since a ball then goes in by chance more often.
-* ``over_cushions``, where hardly anything is seen either: about the escapes of ``tasks.escapes``, aimed by the models of the engine.
+* ``at_balls``: in the directions in which a ball on is met first (``tasks.windows``), evenly. Every other stroke is hard, since a ball then
+  goes in by chance more often.
+* ``over_cushions``, where hardly anything is seen: about the escapes of ``tasks.escapes``, aimed by the models of the engine.
 """
 
 from math import erf, exp, hypot, log, pi, sqrt
@@ -16,7 +16,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from .._jit import entry, kernel
-from .._types import Floats, Ints
+from .._types import Floats, Integers, Ints
 from ..game.balls import VALUES, balls_on_kernel, bits, touching_balls
 from ..game.frame_columns import BALL_ON
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
@@ -113,8 +113,9 @@ def _spread_stroke(i, seed, stroke):
 def _aim(stroke, positions, pot, law, work):
     """Solve the aim of a stroke at a pot."""
     pocket, ghost = int(pot[POT_POCKET]), (pot[GHOST_X], pot[GHOST_Y])
-    target, tip = (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]), (stroke[SPEED], stroke[SIDE], stroke[TOP], 0.0)
-    stroke[AIM] = solved_aim(positions, int(pot[POT_BALL]), target, ghost, tip, law, work)
+    target, level = (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]), 0.0
+    played = stroke[SPEED], stroke[SIDE], stroke[TOP], level
+    stroke[AIM] = solved_aim(positions, int(pot[POT_BALL]), target, ghost, played, law, work)
 
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
@@ -161,14 +162,12 @@ def _plain_stroke(i, seed, hard, stroke):
 
 @entry(what="the contacts of positions", seconds=2)
 def _contacts(positions, on_table, game, seeds, strokes, chances):
-    """Fill strokes (n, m, 5) and chances (n, m) with strokes at the balls on that are seen, where there is no pot."""
-    found, windows = np.empty((1, POT_COLUMNS)), np.empty((MOST_EDGES, 3))
+    """Fill strokes (n, m, 5) and chances (n, m) with strokes at the balls on that are seen."""
+    windows = np.empty((MOST_EDGES, 3))
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
         on = balls_on_kernel(game[k, BALL_ON], bits(here))
         chances[k, :] = 0.0
-        if find_pots(p, here, on, BALL_RADIUS, found):
-            continue
         many, total = open_windows(p, here, on, touching_balls(p, here), windows), 0.0
         for w in range(many):
             total += windows[w, HIGH] - windows[w, LOW]
@@ -188,15 +187,13 @@ def _contacts(positions, on_table, game, seeds, strokes, chances):
 
 @entry(what="the escapes of positions", seconds=5, uses=(escape_aim,))
 def _escapes(positions, on_table, game, seeds, phys, end_mass_ratio, strokes, chances):
-    """Fill strokes (n, m, 5) and chances (n, m) with strokes over cushions, where there is no pot and hardly anything is seen."""
-    found, windows, lines = np.empty((1, POT_COLUMNS)), np.empty((MOST_EDGES, 3)), np.empty((ESCAPES, POT_COLUMNS))
+    """Fill strokes (n, m, 5) and chances (n, m) with strokes over cushions, where hardly anything is seen."""
+    windows, lines = np.empty((MOST_EDGES, 3)), np.empty((ESCAPES, POT_COLUMNS))
     law, work, aims = CueLaw(phys, end_mass_ratio, 0, 0), new_work(), np.empty(ESCAPES)
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
         on, touching = balls_on_kernel(game[k, BALL_ON], bits(here)), touching_balls(p, here)
         chances[k, :] = 0.0
-        if find_pots(p, here, on, BALL_RADIUS, found):
-            continue
         if open_windows(p, here, on, touching, windows) and windows[0, HIGH] - windows[0, LOW] >= 2.0 * EASY:
             continue
         many = find_escapes(p, here, on & ~touching, lines, 0)
@@ -326,8 +323,8 @@ def at_pots(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
     return spread_strokes(at, m, seeds, search.spread, search.dynamics)
 
 
-def at_balls(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
-    """Generate strokes at the balls on that the cue ball can strike, where there is no direct pot.
+def at_balls(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
+    """Generate strokes at the balls on that the cue ball can strike.
 
     Parameters
     ----------
@@ -337,7 +334,7 @@ def at_balls(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
     Returns
     -------
     Proposals
-        The strokes; none where there is a direct pot, or no ball on is seen.
+        The strokes; none where no ball on is seen.
 
     Examples
     --------
@@ -352,8 +349,8 @@ def at_balls(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
     return made
 
 
-def over_cushions(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
-    """Generate escapes over cushions, where there is no direct pot and hardly anything of a ball on is seen.
+def over_cushions(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
+    """Generate escapes over cushions, where hardly anything of a ball on is seen.
 
     Parameters
     ----------

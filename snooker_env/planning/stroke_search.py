@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import integer, refuse_what
+from .._check import integer, number, refuse_what
 from .._types import Bools, Environment, Floats, Integers, Ints
 from ..game.balls import CUE, SPOTS, BallOn
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS
@@ -53,7 +53,7 @@ Value: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 Propose: TypeAlias = Callable[["StrokeSearch", Positions, int, Ints], Proposals]
 """A generator: proposals of m strokes for each position, called with the search, the n positions, m and the seeds (n,)."""
 WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)
-"""The generators for positions in which those of the search have no stroke."""
+"""The generators for positions in which those of the search have no likely pot."""
 
 
 class Ranked(NamedTuple):
@@ -131,8 +131,10 @@ class StrokeSearch:
         Values [points] of n ``Positions``: (n,). Default: the rule of thumb ``prospects_of``.
     propose : callable or sequence of callable, optional
         One or several generators of the strokes that are looked at, ``propose(search, at, m, seeds)`` -> ``Proposals``. Those that have
-        strokes for a position share the looks evenly; the first is taken to propose pots. Where none of them has any, ``at_balls`` and
-        ``over_cushions`` do. Default: ``at_pots``.
+        strokes for a position share the looks evenly; the first is taken to propose pots. Where none of these is likelier than
+        ``doubtful``, ``at_balls`` and ``over_cushions`` share them, too. Default: ``at_pots``.
+    doubtful : float, optional
+        Largest chance of a pot at which strokes without a pot are tried as well, in [0, 1]. Default 0: where there is no pot.
     pots_only : bool, optional
         Score by the chance of the pot alone, without points and what follows; without a pot, less that of a foul. Default False.
     noise : str, dict or Noise, optional
@@ -161,6 +163,7 @@ class StrokeSearch:
         *,
         value: Value | None = None,
         propose: Propose | Sequence[Propose] = at_pots,
+        doubtful: float = 0.0,
         pots_only: bool = False,
         noise: NoiseLike | None = None,
         threads: int | None = None,
@@ -174,6 +177,7 @@ class StrokeSearch:
         self.dynamics: Dynamics = rules.physics, rules.fidelity
         self.value: Value = self._by_rule if value is None else value
         self.propose: Propose | Sequence[Propose] = propose
+        self.doubtful: float = number("doubtful", doubtful, 0.0, 1.0)
         self.pots_only = pots_only
 
     @property
@@ -226,12 +230,18 @@ class StrokeSearch:
         looks, rounds = self.strokes_tried, () if self.noise.silent else schedule(self.budget)[1]
         if not n:
             return Ranked(np.zeros((0, looks, COLUMNS)), np.zeros((0, looks)), np.zeros((0, looks), np.int64))
-        strokes, chances, safe = self._proposed(at, looks, keys)
+        strokes, chances, which, safe = self._proposed(at, looks, keys)
         scores = self._gains(at, safe, strokes[:, :, None], np.zeros((n, 1, DIMENSIONS)))[..., 0]
         if not self.noise.silent:
             scores *= chances
+            doubt = np.flatnonzero(safe & (chances < 1.0).any(axis=1))
+            if len(doubt) and not self.pots_only:  # a pot that is missed leaves the balls about as they lie
+                scores[doubt] -= (1.0 - chances[doubt]) * LEFT * self.value(for_opponent(at[doubt]))[:, None]
         every, tries, sums = np.arange(n)[:, None], np.zeros((n, looks), np.int64), PRIOR * scores
         order = np.argsort(-scores, axis=1, kind="stable")
+        if safe.any():  # a look flatters pots, and strokes that pot by luck: the best of each kind are sampled
+            kinds = np.where((which > 0) & (scores > 0.0), -1, which)[safe]
+            order[safe] = in_turn(order[safe], kinds)
         samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in keys.tolist()])
         done = 0
         for many, each in rounds:
@@ -280,27 +290,28 @@ class StrokeSearch:
         """
         return self.planner.play(at, rows, strokes=strokes, errors=errors)
 
-    def _proposed(self, at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Bools]:
-        """Strokes (n, m, 5), their chances (n, m), and the positions (n,) where strokes without a pot are among them."""
+    def _proposed(self, at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Ints, Bools]:
+        """Strokes (n, m, 5), chances and generators (n, m), and the positions (n,) where strokes without a pot are among them."""
         generators = (self.propose,) if callable(self.propose) else tuple(self.propose)
-        strokes, chances, has = self._shared(generators, at, m, seeds)
-        bare = ~has.any(axis=0)
-        if bare.any():
-            strokes, chances = strokes.copy(), chances.copy()
-            strokes[bare], chances[bare], _ = self._shared(WITHOUT_POTS, at[bare], m, seeds[bare])
-        return strokes, chances, bare | has[1:].any(axis=0)
+        strokes, chances, which = self._shared(generators, at, m, seeds)
+        doubt = chances.max(axis=1) <= self.doubtful
+        if doubt.any():
+            strokes, chances, which = strokes.copy(), chances.copy(), which.copy()
+            shared = self._shared((*generators, *WITHOUT_POTS), at[doubt], m, seeds[doubt])
+            strokes[doubt], chances[doubt], which[doubt] = shared
+        return strokes, chances, which, doubt | which.any(axis=1)
 
-    def _shared(self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Bools]:
-        """Strokes and chances of the generators in turn, in each position of those that have any, and which have: (generators, n)."""
-        made = [generate(self, at, m, seeds) for generate in generators]
-        has = np.stack([each.chances.any(axis=1) for each in made])
+    def _shared(self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Ints]:
+        """Strokes of the generators in turn, in each position of those that have any; chances; which generator each is of."""
+        made = [Proposals(*generate(self, at, m, seeds)) for generate in generators]
         if len(made) == 1:
-            return *made[0], has
+            return *made[0], np.zeros((len(at), m), np.int64)
+        has = np.stack([each.chances.any(axis=1) for each in made])
         turn = np.arange(m) % np.maximum(1, has.sum(axis=0))[:, None]
         which = np.minimum((np.cumsum(has, axis=0)[:, :, None] <= turn).sum(axis=0), len(made) - 1)
         every, looks = np.arange(len(at))[:, None], np.arange(m)
         strokes, chances = (np.stack(part)[which, every, looks] for part in zip(*made, strict=True))
-        return strokes, chances, has
+        return strokes, chances, which
 
     def _gains(self, at: Positions, safe: Bools, strokes: Floats, errors: Floats) -> Floats:
         """What strokes (n, m, s, 5) under the errors (n, s, 5) of each position bring, and the value of what they leave: (n, m, s)."""
@@ -318,6 +329,16 @@ class StrokeSearch:
         if len(left):
             gains[left] -= LEFT * self.value(for_opponent(after[left]))
         return gains.reshape(n, m, s)
+
+
+def in_turn(order: Ints, kinds: Ints) -> Ints:
+    """Rows (n, m) of indices, best first, in a new order: the best of each of their ``kinds`` (n, m), then the second best, and so on."""
+    sorted_kinds = np.take_along_axis(kinds, order, 1)
+    place = np.zeros_like(order)
+    for kind in np.unique(kinds):
+        same = sorted_kinds == kind
+        place[same] = (np.cumsum(same, axis=1) - 1)[same]
+    return np.take_along_axis(order, np.argsort(place, axis=1, kind="stable"), 1)
 
 
 def for_opponent(after: Positions) -> Positions:

@@ -11,7 +11,7 @@ from .._jit import entry
 from .._types import Floats, Ints
 from ..physics.cue import squirt
 from ..tasks import stroke
-from ..tasks.arrays import ShotArrays, TableArrays
+from ..tasks.arrays import StruckArrays, TableArrays
 from ..tasks.box_actions import tip_on_disc
 from ..tasks.declarations import A_END_MASS, A_MAX_OFFSET
 from ..tasks.noise import Noise, with_errors
@@ -29,7 +29,7 @@ NO_NOISE = Noise()
 @entry(what="strokes under given errors", seconds=2)
 def _strike(which, strokes, errors, tables, shots, options, noise, silent):
     """Carry the strokes (n, 5) of the tables ``which`` out up to the strike, under their standard normal errors (n, 5)."""
-    tables, shots = TableArrays(*tables), ShotArrays(*shots)
+    tables, shots = TableArrays(*tables), StruckArrays(*shots)
     for j in range(which.shape[0]):
         k = which[j]
         speed, aim, elevation = strokes[k, SPEED], strokes[k, AIM], strokes[k, ELEVATION]
@@ -54,17 +54,15 @@ class TrialVisits(Visits):
             super().address(which, actions, buffers)
             return
         (options, noise, _), silent = self.packed, NO_NOISE.pack(1.0)
-        _strike(which, actions, self.errors, self.arrays, buffers.arrays, options, noise, silent)
+        _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
 
 
-def decoded(
-    rules: Rules, at: Positions, which: Ints, actions: Floats, nominated: Ints | None = None
-) -> tuple[Floats, Positions]:
+def decoded(rules: Rules, at: Positions, which: Ints, actions: Floats, nominated: Ints | None = None) -> tuple[Floats, Positions]:
     """Strokes (n, 5) that checked actions mean on ``at[which]``, and where they are played: the cue ball placed where they say.
 
     ``nominated`` (n,): of frames, what is nominated with each stroke; a choice is a pot of that ball.
     """
-    visits, after, n = TrialVisits(replace(rules, noise=NO_NOISE, opponent=None), 0), at[which], len(which)
+    visits, after, n = TrialVisits(replace(rules, noise=NO_NOISE), 0), at[which], len(which)
     visits.lay(after, np.zeros((n, 2), np.uint64))
     if nominated is not None:
         visits.nominated = nominated

@@ -24,8 +24,8 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
     parser.add_argument(
         "--agent", action="append", default=[], metavar="NAME",
-        help="an agent that can be chosen on the page: a name of snooker_env.advice, a model's .zip, or MODULE:CLASS; the first one is "
-        "your opponent; may be given more than once",
+        help="an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or MODULE:CLASS; the first one "
+        "is your opponent; may be given more than once",
     )  # fmt: skip
     parser.add_argument("--trust", action="store_true", help="let code in an --agent's model file run")
     parser.add_argument(
@@ -37,25 +37,25 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
-def service_of(given: argparse.Namespace) -> Any:
+def service_of(args: argparse.Namespace) -> Any:
     """The game for the command line's arguments: a ``Service``. ValueError or OSError if something is invalid."""
     import numpy as np
 
-    from ..advice import player_of
+    from ..players import player
     from .routes import position_of
     from .seats import PERSON, Seats
     from .service import Service
     from .session import Session
 
-    seed = int(np.random.SeedSequence().entropy) % 2**62 if given.seed is None else given.seed  # type: ignore[arg-type]
-    session = Session(layout=given.layout, seed=seed)
-    agents = {Path(name).stem if name.endswith(".zip") else name: player_of(name, trust=given.trust) for name in given.agent}
+    seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
+    session = Session(layout=args.layout, seed=seed)
+    agents = {Path(name).stem if name.endswith(".zip") else name: player(name, trust=args.trust) for name in args.agent}
     seats = Seats(agents)
     if agents:
         seats.sit([PERSON, next(iter(agents))])
-        session.noise[1] = given.noise
-    if given.position is not None:
-        read = _read(given.position)
+        session.noise[1] = args.noise
+    if args.position is not None:
+        read = _read(args.position)
         if read.get("format") == "snooker-game":
             session.load(read)
         else:
@@ -73,7 +73,7 @@ def warm_up(service: Any) -> None:
         if session.frame.phase == "stroke":
             stroke = CueStroke(speed=2.0, aim=1.0)
             questions.scatter(session, stroke, noise="professional", samples=16, seed=0)
-            service.seats.stroke("lookahead", session)
+            service.seats.decided(service.seats.agents[0], session)
     with service.reading():
         report(service)
 
@@ -92,24 +92,13 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Serve until Ctrl-C.
-
-    Parameters
-    ----------
-    argv : list of str, optional
-        The command line; default: that of the process.
-
-    Returns
-    -------
-    int
-        0; 2 if the command line is invalid; 130 if it was interrupted while it loaded.
-    """
-    given = _arguments(argv)
+    """Serve until Ctrl-C."""
+    args = _arguments(argv)
     from .server import PlayServer
 
     try:
-        service = service_of(given)
-        server = PlayServer(service, given.port)
+        service = service_of(args)
+        server = PlayServer(service, args.port)
         print("Loading the players and the simulator ...", file=sys.stderr, flush=True)
         warm_up(service)
     except (ValueError, OSError, OverflowError) as error:
@@ -123,7 +112,7 @@ def main(argv: list[str] | None = None) -> int:
             f"Snooker is played at\n\n    {server.address}\n\nPrograms play at its api/ (docs/play/protocol.md). Ctrl-C ends it.",
             flush=True,
         )
-        if not given.no_browser:
+        if not args.no_browser:
             webbrowser.open(server.address)
         server.serve_forever(poll_interval=0.2)
     except KeyboardInterrupt:

@@ -1,6 +1,6 @@
 """Which paths to the pockets are open, and what blocks the others? Straight lines to each pocket for every ball on."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import acos, atan2, degrees, erf, hypot, radians, sqrt
 from typing import Any
 
@@ -19,35 +19,32 @@ MOST = 126
 
 @dataclass(frozen=True, kw_only=True)
 class Line:
-    """A straight line from the cue ball through a ball to a pocket."""
+    """A straight line from the cue ball through a ball to a pocket; lengths in metres, angles in radians."""
 
     ball: int
     pocket: int
-    open: bool  # whether the ball can be potted straight
-    blocked_by: tuple[str, ...]  # names of the balls in the way of either ball
-    why: str  # another reason why it is not open, e.g. "cut too thin", else ""
-    cut: float  # between the paths of the two balls [rad]
-    to_ball: float  # [m]
-    to_pocket: float  # [m]
-    aim: float  # without throw and swerve [rad]
-    tolerance: float  # largest error of the aim [rad]; 0 unless the line is open
-    chance: float | None  # that the seat's noise keeps within the tolerance; None without noise
+    open: bool
+    """Whether the ball can be potted straight, by the geometry of straight lines."""
+    blocked_by: tuple[str, ...]
+    """Names of the balls in the way of the ball to the pocket, or of the cue ball to the ball."""
+    why: str
+    """Any other reason why the line is not open: "cut too thin", "pocket too narrow from there"; else ""."""
+    cut: float
+    """Angle between the paths of the cue ball and of the ball."""
+    to_ball: float
+    to_pocket: float
+    """Distances of the cue ball to the contact, and of the ball to the pocket."""
+    aim: float
+    """Direction of the cue ball's path, without throw and swerve."""
+    tolerance: float
+    """Largest error of the aim; 0 unless the line is open."""
+    chance: float | None
+    """Approximate probability that a player with the seat's noise keeps within the tolerance; None without noise."""
 
     def to_dict(self) -> dict[str, Any]:
-        """The line as JSON types; lengths in metres, angles in radians."""
-        return {
-            "ball": NAMES[self.ball],
-            "pocket": POCKETS[self.pocket],
-            "open": self.open,
-            "blocked_by": list(self.blocked_by),
-            "why": self.why,
-            "cut": self.cut,
-            "to_ball": self.to_ball,
-            "to_pocket": self.to_pocket,
-            "aim": self.aim,
-            "tolerance": self.tolerance,
-            "chance": self.chance,
-        }
+        """The line as JSON types."""
+        names = {"ball": NAMES[self.ball], "pocket": POCKETS[self.pocket], "blocked_by": list(self.blocked_by)}
+        return asdict(self) | names
 
     @property
     def words(self) -> str:
@@ -64,7 +61,7 @@ class Line:
 
 
 def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
-    """All lines to pockets for the balls in the mask ``on``; with a free ball there are two positions."""
+    """All lines to pockets for the balls in the mask ``on``; ``positions``: the table, with a free ball once more for the colours."""
     errors = LEVELS[noise]
     sigma = 0.0 if errors.silent else radians(errors.direction_deg())
     tolerances = {}
@@ -98,18 +95,9 @@ def _line(ball, pocket, places, ghost, aim, barred, tolerances, sigma):
     why = "" if tolerance or blocked else "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
     chance = erf(tolerance / (sigma * sqrt(2.0))) if sigma else None
     return Line(
-        ball=ball,
-        pocket=pocket,
-        open=tolerance > 0.0,
-        blocked_by=() if tolerance else blocked,
-        why=why,
-        cut=cut,
-        to_ball=far,
-        to_pocket=on,
-        aim=atan2(run[1], run[0]),
-        tolerance=tolerance,
-        chance=chance if tolerance else None,
-    )
+        ball=ball, pocket=pocket, open=tolerance > 0.0, blocked_by=() if tolerance else blocked, why=why, cut=cut, to_ball=far,
+        to_pocket=on, aim=atan2(run[1], run[0]), tolerance=tolerance, chance=chance if tolerance else None,
+    )  # fmt: skip
 
 
 def _unit(v: Floats) -> Floats:

@@ -23,11 +23,11 @@ MOST_SAMPLES = 2000
 MOST_SUGGESTIONS = 10
 
 
-def aim_at(session: Session, given: Any, stroke: CueStroke) -> float:
-    """The direction in which the cue ball must leave to pot a ball, with throw and swerve; ``given``: {"pot": [ball, pocket]}."""
-    pair = given.get("pot") if isinstance(given, dict) and set(given) == {"pot"} else None
+def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
+    """The direction in which the cue ball must leave to pot a ball, with throw and swerve; ``asked``: {"pot": [ball, pocket]}."""
+    pair = asked.get("pot") if isinstance(asked, dict) and set(asked) == {"pot"} else None
     if not isinstance(pair, list) or len(pair) != 2:
-        raise refuse("aim_at", given, 'must be {"pot": [ball, pocket]}, as {"pot": ["blue", "middle right"]}')
+        raise refuse("aim_at", asked, 'must be {"pot": [ball, pocket]}, as {"pot": ["blue", "middle right"]}')
     ball, pocket = ball_named("aim_at.pot[0]", pair[0]), pocket_named("aim_at.pot[1]", pair[1])
     if not session.tables.on_table[0, ball]:
         raise refuse("aim_at.pot[0]", NAMES[ball], "must be on the table")
@@ -61,24 +61,24 @@ def paths(shot: Shot) -> dict[str, Any]:
 def scatter(session: Session, stroke: CueStroke, *, noise: NoiseName, samples: int, seed: int) -> dict[str, Any]:
     """Where cue ball and object ball stop when the stroke is played many times with execution errors; and its paths without them."""
     shot = exact(session, stroke)
-    found = destinations(session.planned(), stroke, noise=noise, samples=samples, seed=seed)
+    stops = destinations(session.planned(), stroke, noise=noise, samples=samples, seed=seed)
     return paths(shot) | {
-        "cue": packed(found.cue, "f4"), "ball": packed(found.ball, "f4"), "samples": found.samples, "potted": found.potted,
-        "in_off": found.in_off, "foul": found.foul, "points": found.points,
+        "cue": packed(stops.cue, "f4"), "ball": packed(stops.ball, "f4"), "samples": stops.samples, "potted": stops.potted,
+        "in_off": stops.in_off, "foul": stops.foul, "points": stops.points,
     }  # fmt: skip
 
 
 def suggestions(session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int) -> dict[str, Any]:
     """Strokes of the agent in words and data, each with its paths without errors; whose they are, and by what they are ordered."""
     choice("agent", agent, seats.agents)
-    advice = advise(session.planned(), agent=seats.player(agent), noise=noise, n=n, samples=samples, seed=seed)
+    advice = advise(session.planned(), agent=seats.players[agent], noise=noise, n=n, samples=samples, seed=seed)
     out = []
     for one in advice:
         twin = session.twin()
         if one.place is not None:
             twin.place(*one.place)
         out.append(one.to_dict() | _named(one) | paths(exact(twin, one.stroke)))
-    return {"agent": advice.agent, "order": advice.order, "suggestions": out}
+    return {"agent": agent, "order": advice.order, "suggestions": out}
 
 
 def _named(one: Suggestion) -> dict[str, Any]:

@@ -7,11 +7,11 @@ stroke is sent with the tables before and after it, so that whoever shows it nee
 from typing import Any
 
 from ..advice import POCKET_WORDS
-from ..advice.strokes import FARTHEST
 from ..game.balls import CUE, NAMES, YELLOW, ids_of
 from ..game.frame import Frame
 from ..game.snookered import is_snookered
 from ..geometry import POCKET_AIMS
+from ..planning.strokes import FARTHEST
 from ..render.scene import scene_data
 from ..replays.encode import encoded_stroke
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
@@ -25,23 +25,16 @@ from .words import asked_words, freedom, last_words, table_text
 
 def scene(service: Service) -> dict[str, Any]:
     """The constant part: the table as it is drawn, limits of strokes, available players."""
-    rules = service.session.rules_with("none")
+    rules = service.session.options_with("none").rules
     return {
-        "scene": scene_data(rules.table),
-        "R": rules.physics.R,
-        "spin_decel": rules.physics.spin_decel,
+        "scene": scene_data(rules.table), "R": rules.physics.R, "spin_decel": rules.physics.spin_decel,
         "limits": {
-            "speed": [MIN_SPEED, MAX_SPEED],
-            "offset": FARTHEST,
-            "elevation": [0.0, MAX_ELEVATION],
-            "samples": MOST_SAMPLES,
+            "speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, MAX_ELEVATION], "samples": MOST_SAMPLES,
             "suggestions": MOST_SUGGESTIONS,
         },
         "pockets": [{"name": name, "x": float(x), "y": float(y)} for name, (x, y) in zip(POCKET_WORDS, POCKET_AIMS[:, :2], strict=True)],
-        "agents": service.seats.agents,
-        "players": service.seats.names,
-        "noise": list(LEVELS),
-    }
+        "agents": service.seats.agents, "players": service.seats.names, "noise": list(LEVELS),
+    }  # fmt: skip
 
 
 def table_after(act: Act, labels: tuple[str, str]) -> dict[str, Any]:
@@ -50,21 +43,12 @@ def table_after(act: Act, labels: tuple[str, str]) -> dict[str, Any]:
     present = [ball for ball, on in enumerate(state["on_table"]) if on]
     over = frame.phase == "over"
     return {
-        "phase": frame.phase,
-        "striker": frame.striker,
-        "breaker": frame.breaker,
-        "scores": list(frame.scores),
-        "break": frame.break_points,
-        "ball_on": None if over else frame.ball_on.name.lower(),
-        "free_ball": frame.free_ball,
-        "in_hand": frame.in_hand,
-        "reds": sum(0 < ball < YELLOW for ball in present),
-        "available": 0 if over else frame.available,
-        "winner": frame.winner,
-        "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in present},
-        "words": asked_words(frame, labels),
+        "phase": frame.phase, "striker": frame.striker, "breaker": frame.breaker, "scores": list(frame.scores), "break": frame.break_points,
+        "ball_on": None if over else frame.ball_on.name.lower(), "free_ball": frame.free_ball, "in_hand": frame.in_hand,
+        "reds": sum(0 < ball < YELLOW for ball in present), "available": 0 if over else frame.available, "winner": frame.winner,
+        "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in present}, "words": asked_words(frame, labels),
         "last": last_words(act, labels),
-    }
+    }  # fmt: skip
 
 
 def stroke_report(service: Service, k: int) -> dict[str, Any]:
@@ -84,26 +68,14 @@ def report(service: Service) -> dict[str, Any]:
     lines = _lines(session, frame, on)
     state = table_after(session.acts[session.at - 1], seats.labels)
     state |= {
-        "revision": service.revision,
-        "players": list(seats.who),
-        "labels": list(seats.labels),
-        "noise": list(session.noise),
-        "practice": session.practice,
-        "balls_on": [NAMES[i] for i in ids_of(on)],
-        "snookered": hidden,
-        "miss_called": frame.miss_called,
-        "choices": list(frame.choices),
-        "nominations": [NAMES[i] for i in session.nominations()],
-        "needs_snookers": frame.phase != "over" and frame.needs_snookers(frame.striker),
-        "lines": [line.to_dict() for line in lines],
-        "thinking": service.thinking,
-        "paused": service.paused and service.agent_to_play(),
-        "trouble": service.trouble,
-        "strokes": len(session.strokes),
-        "undo": session.at > 1,
-        "redo": session.at < len(session.acts),
+        "revision": service.revision, "players": list(seats.who), "labels": list(seats.labels), "noise": list(session.noise),
+        "practice": session.practice, "balls_on": [NAMES[i] for i in ids_of(on)], "snookered": hidden, "miss_called": frame.miss_called,
+        "choices": list(frame.choices), "nominations": [NAMES[i] for i in session.nominations()],
+        "needs_snookers": frame.phase != "over" and frame.needs_snookers(frame.striker), "lines": [line.to_dict() for line in lines],
+        "thinking": service.thinking, "paused": service.paused and service.agent_to_play(), "trouble": service.trouble,
+        "strokes": len(session.strokes), "undo": session.at > 1, "redo": session.at < len(session.acts),
         "words": _agents_words(service) or state["words"],
-    }
+    }  # fmt: skip
     places = {NAMES.index(name): (x, y) for name, (x, y) in state["positions"].items()}
     return state | {"text": table_text(places, on, lines, _facts(session, state, places))}
 

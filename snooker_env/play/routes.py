@@ -6,7 +6,7 @@ A handler takes the fields of one request as plain JSON types and returns JSON t
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from .._check import choice, integer, number, refuse, truth
@@ -21,7 +21,7 @@ from . import questions
 from .report import report, scene, stroke_report
 from .service import Service, StaleError
 from .session import Session
-from .wishes import colour_named, place_of_request, stroke_in
+from .wishes import colour_named, place_asked, stroke_in
 
 STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")
 """Fields that define a stroke."""
@@ -30,95 +30,87 @@ Handler = Callable[[Service, dict[str, Any]], Any]
 
 @dataclass(frozen=True)
 class Route:
-    """One route.
-
-    Attributes
-    ----------
-    handler : callable
-        ``handler(service, fields)``: JSON types, or a ``str``: an HTML page.
-    fields : tuple of str
-        The fields that a request may have.
-    """
+    """One route: what answers it, with JSON types or with a ``str``, an HTML page; and the fields that a request may have."""
 
     handler: Handler
-    fields: tuple[str, ...] = field(default=())
+    fields: tuple[str, ...] = ()
 
 
-def _state(service: Service, given: dict[str, Any]) -> dict[str, Any]:
-    if "after" in given:
-        service.wait(integer("after", given["after"], 0, MOST), number("wait", given.get("wait", 0.0), 0.0, 60.0))
+def _state(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    if "after" in fields:
+        service.wait(integer("after", fields["after"], 0, MOST), number("wait", fields.get("wait", 0.0), 0.0, 60.0))
     with service.reading():
         return report(service)
 
 
-def _strokes(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+def _strokes(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading() as session:
-        first = integer("from", given.get("from", 0), 0, MOST)
+        first = integer("from", fields.get("from", 0), 0, MOST)
         return {"revision": service.revision, "strokes": [stroke_report(service, k) for k in session.strokes[first:]]}
 
 
-def stroke_asked(session: Session, given: dict[str, Any]) -> CueStroke:
+def stroke_asked(session: Session, fields: dict[str, Any]) -> CueStroke:
     """The stroke in a request, with its aim solved if it is given by a pot; the cue ball is placed first."""
-    if "place" in given:
-        session.place(*place_of_request("place", given["place"]))
-    if "aim_at" not in given:
-        return stroke_in(given)
-    if "aim" in given:
-        raise refuse("aim", given["aim"], "must be left out with aim_at")
-    stroke = stroke_in(given, 0.0)
-    return replace(stroke, aim=questions.aim_at(session, given["aim_at"], stroke))
+    if "place" in fields:
+        session.place(*place_asked("place", fields["place"]))
+    if "aim_at" not in fields:
+        return stroke_in(fields)
+    if "aim" in fields:
+        raise refuse("aim", fields["aim"], "must be left out with aim_at")
+    stroke = stroke_in(fields, 0.0)
+    return replace(stroke, aim=questions.aim_at(session, fields["aim_at"], stroke))
 
 
-def _stroke(service: Service, given: dict[str, Any]) -> dict[str, Any]:
-    strikes = any(name in given for name in STROKE)
-    if not strikes and "choice" not in given:
+def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    strikes = any(name in fields for name in STROKE)
+    if not strikes and "choice" not in fields:
         raise refuse("speed", None, 'must be given, with "aim" or "aim_at"; or "choice" after a foul')
-    nominated = colour_named("nominate", given["nominate"]) if "nominate" in given else AUTO
+    nominated = colour_named("nominate", fields["nominate"]) if "nominate" in fields else AUTO
     stroke = struck = None
-    with service.acting(_revision(given)) as session:
+    with service.acting(_revision(fields)) as session:
         twin = session.twin()  # errors occur on the copy first, so that a refused request has changed nothing
-        if "choice" in given:
-            if strikes and given["choice"] != "play":
-                raise refuse("choice", given["choice"], 'must be "play" in a request that holds a stroke too')
-            twin.choose(given["choice"])
+        if "choice" in fields:
+            if strikes and fields["choice"] != "play":
+                raise refuse("choice", fields["choice"], 'must be "play" in a request that holds a stroke too')
+            twin.choose(fields["choice"])
         if strikes:
-            stroke = stroke_asked(twin, given)
+            stroke = stroke_asked(twin, fields)
             twin.check_stroke(nominated)
-        if "choice" in given:
-            session.choose(given["choice"])
+        if "choice" in fields:
+            session.choose(fields["choice"])
         if stroke is not None:
-            if "place" in given:
-                session.place(*given["place"])
+            if "place" in fields:
+                session.place(*fields["place"])
             session.play(stroke, nominated=nominated)
             struck = stroke_report(service, session.at - 1)
     with service.reading():
         return {"stroke": struck, "state": report(service)}
 
 
-def _place(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+def _place(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.acting() as session:
-        place = session.place(*place_of_request("place", given.get("place")))
+        place = session.place(*place_asked("place", fields.get("place")))
     with service.reading():
         return {"place": list(place), "state": report(service)}
 
 
-def _set_up(service: Service, given: dict[str, Any]) -> dict[str, Any]:
-    check = truth("check", given.get("check", False))
+def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    check = truth("check", fields.get("check", False))
     try:
-        return _put(service, given, check)
+        return _put(service, fields, check)
     except ValueError as error:
         if not check:
             raise
         return {"sound": False, "error": parts_of(error)}
 
 
-def _put(service: Service, given: dict[str, Any], check: bool) -> dict[str, Any]:
-    scores = given.get("scores", [0, 0])
+def _put(service: Service, fields: dict[str, Any], check: bool) -> dict[str, Any]:
+    scores = fields.get("scores", [0, 0])
     if not isinstance(scores, list) or len(scores) != 2:
         raise refuse("scores", scores, "must be two integers")
     points = (integer("scores[0]", scores[0], 0, MOST), integer("scores[1]", scores[1], 0, MOST))
-    striker, free = integer("striker", given.get("striker", 0), 0, 1), truth("free_ball", given.get("free_ball", False))
-    position = position_of(given.get("position"))
+    striker, free = integer("striker", fields.get("striker", 0), 0, 1), truth("free_ball", fields.get("free_ball", False))
+    position = position_of(fields.get("position"))
     if check:
         with service.asking() as session:
             session.set_up(position, scores=points, striker=striker, free_ball=free, check=True)
@@ -128,25 +120,25 @@ def _put(service: Service, given: dict[str, Any], check: bool) -> dict[str, Any]
     return _state(service, {})
 
 
-def position_of(given: Any) -> Position:
+def position_of(fields: Any) -> Position:
     """A ``Position`` from JSON types; ValueError, with the name of the ball or field, if it is invalid."""
     names = tuple(Position.__dataclass_fields__)
-    if not isinstance(given, dict):
-        raise refuse("position", given, 'must be an object: {"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}')
-    for name in given:
+    if not isinstance(fields, dict):
+        raise refuse("position", fields, 'must be an object: {"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}')
+    for name in fields:
         choice("field of position", name, [n for n in names if n not in ("table", "over")])
-    points: dict[str, Any] = {"points": integer("points", given.get("points", 0), 0, MOST_BREAK)}
-    if not isinstance(given.get("reds", []), list):
-        raise refuse("reds", given["reds"], "must be a list of places [x, y]")
-    return Position(**given | points)
+    points: dict[str, Any] = {"points": integer("points", fields.get("points", 0), 0, MOST_BREAK)}
+    if not isinstance(fields.get("reds", []), list):
+        raise refuse("reds", fields["reds"], "must be a list of places [x, y]")
+    return Position(**fields | points)
 
 
-def _undo(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+def _undo(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     """Undo until a person has a stroke or decision to make."""
     return _moved(service, Session.undo)
 
 
-def _redo(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+def _redo(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     return _moved(service, Session.redo)
 
 
@@ -158,18 +150,18 @@ def _moved(service: Service, move: Callable[[Session], bool]) -> dict[str, Any]:
     return _state(service, {})
 
 
-def _new(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+def _new(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     kinds = {"layout": str, "seed": int, "breaker": int}
     for name, kind in kinds.items():
-        if name in given and type(given[name]) is not kind:
-            raise refuse(name, given[name], f"must be of type {kind.__name__}")
+        if name in fields and type(fields[name]) is not kind:
+            raise refuse(name, fields[name], f"must be of type {kind.__name__}")
     with service.acting(any_turn=True) as session:
-        session.new(**given)
+        session.new(**fields)
     return _state(service, {})
 
 
-def _players(service: Service, given: dict[str, Any]) -> dict[str, Any]:
-    noise, practice = given.get("noise"), given.get("practice")
+def _players(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    noise, practice = fields.get("noise"), fields.get("practice")
     if noise is not None:
         if not isinstance(noise, list) or len(noise) != 2:
             raise refuse("noise", noise, "must be two names")
@@ -178,67 +170,67 @@ def _players(service: Service, given: dict[str, Any]) -> dict[str, Any]:
     if practice is not None:
         truth("practice", practice)
     with service.acting(any_turn=True) as session:
-        if "players" in given:
-            service.seats.sit(given["players"])
+        if "players" in fields:
+            service.seats.sit(fields["players"])
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
     return _state(service, {})
 
 
-def _go(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+def _go(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     service.go_on()
     return _state(service, {})
 
 
-def _concede(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+def _concede(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.acting() as session:
         session.concede()
     return _state(service, {})
 
 
-def _save(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading() as session:
         return session.save()
 
 
-def _load(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+def _load(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.acting(pause=True, any_turn=True) as session:
-        session.load(given.get("saved"))
+        session.load(fields.get("saved"))
     return _state(service, {})
 
 
-def _advise(service: Service, given: dict[str, Any]) -> dict[str, Any]:
-    agent = choice("agent", given.get("agent", service.seats.agents[0]), service.seats.agents)
-    n = integer("n", given.get("n", 5), 1, questions.MOST_SUGGESTIONS)
-    with service.asking(_revision(given)) as session:
-        noise, samples, seed = _errors(given, 200, session)
+def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    agent = choice("agent", fields.get("agent", service.seats.agents[0]), service.seats.agents)
+    n = integer("n", fields.get("n", 5), 1, questions.MOST_SUGGESTIONS)
+    with service.asking(_revision(fields)) as session:
+        noise, samples, seed = _errors(fields, 200, session)
         return questions.suggestions(session, service.seats, agent=agent, noise=noise, n=n, samples=samples, seed=seed)
 
 
-def _destinations(service: Service, given: dict[str, Any]) -> dict[str, Any]:
-    with service.asking(_revision(given)) as session:
-        noise, samples, seed = _errors(given, 500, session)
-        return questions.scatter(session, stroke_asked(session, given), noise=noise, samples=samples, seed=seed)
+def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+    with service.asking(_revision(fields)) as session:
+        noise, samples, seed = _errors(fields, 500, session)
+        return questions.scatter(session, stroke_asked(session, fields), noise=noise, samples=samples, seed=seed)
 
 
-def _revision(given: dict[str, Any]) -> int | None:
+def _revision(fields: dict[str, Any]) -> int | None:
     """The revision that a request is about; None for the current one."""
-    return integer("revision", given["revision"], 0, MOST) if "revision" in given else None
+    return integer("revision", fields["revision"], 0, MOST) if "revision" in fields else None
 
 
-def _errors(given: dict[str, Any], samples: int, session: Session) -> tuple[Any, int, int]:
+def _errors(fields: dict[str, Any], samples: int, session: Session) -> tuple[Any, int, int]:
     """Noise, samples and seed of a question; the noise is that of the striker's seat unless it is given."""
-    noise = choice("noise", given.get("noise", session.noise[session.frame.striker]), LEVELS)
-    samples = integer("samples", given.get("samples", samples), 1, questions.MOST_SAMPLES)
-    return noise, samples, integer("seed", given.get("seed", 0), 0, MOST)
+    noise = choice("noise", fields.get("noise", session.noise[session.frame.striker]), LEVELS)
+    samples = integer("samples", fields.get("samples", samples), 1, questions.MOST_SAMPLES)
+    return noise, samples, integer("seed", fields.get("seed", 0), 0, MOST)
 
 
-def _replay(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+def _replay(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     return _replay_of(service).to_dict()
 
 
-def _replay_page(service: Service, given: dict[str, Any]) -> str:
+def _replay_page(service: Service, fields: dict[str, Any]) -> str:
     return _replay_of(service).html()
 
 
@@ -251,7 +243,7 @@ def _replay_of(service: Service) -> Replay:
     return Replay(strokes, title=f"{labels[0]} - {labels[1]}", players=labels)
 
 
-def _scene(service: Service, given: dict[str, Any]) -> dict[str, Any]:
+def _scene(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading():
         return scene(service)
 
@@ -277,12 +269,12 @@ def parts_of(error: ValueError) -> dict[str, Any]:
     return at.groupdict() if at else {"field": None, "value": None, "message": text}
 
 
-def answer(service: Service, route: Route, given: dict[str, Any]) -> Any:
+def answer(service: Service, route: Route, fields: dict[str, Any]) -> Any:
     """The answer of a route; ValueError for an unknown or invalid field."""
-    for name in given:
+    for name in fields:
         if name not in route.fields:
             raise refuse("field", name, f"must be one of {list(route.fields)}" if route.fields else "must be left out: there are no fields")
     try:
-        return route.handler(service, given)
+        return route.handler(service, fields)
     except StaleError:
         return {"stale": True}

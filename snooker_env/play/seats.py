@@ -1,48 +1,43 @@
-"""Who sits at the table? Persons, and agents by name: those in the package, and those named when the page was started.
+"""Who sits at the table? Persons, and agents by name: some of the package, and those named when the page was started.
 
-An agent is asked for one stroke at a time, on a copy of the table, without execution errors, which are drawn when the stroke is played.
-After a foul of the opponent every agent plays the table as it lies. Agents nominate no colour and do not use a free ball.
+An agent is asked for one stroke at a time, on a copy of the frame, without execution errors, which are drawn when the stroke is played.
 """
 
 from collections.abc import Mapping
-from typing import Any
 
-from .._check import choice, refuse
-from ..advice import CueStroke, names, player_of, stroke_of
-from ..advice.players import BUILT_IN
+from .._check import choice, refuse, refuse_what
+from ..advice.ask import AGENT
+from ..game.frame_columns import STROKES
+from ..planning import Positions
+from ..players import Player, Strokes, player
 from .session import Session
 
 PERSON = "person"
-TRAINED = "ppo_foresight"
-"""The pre-trained agent that is offered if the repository has it. It is loaded at its first stroke."""
+OFFERED = (AGENT, "search_2000", "ghost_ball", "random")
+"""The agents that can always be chosen."""
 
 
 class Seats:
-    """The two seats, and the players that may take them.
-
-    Parameters
-    ----------
-    agents : mapping of str to a player of ``snooker_env.advice``
-        Agents that may be chosen besides the built-in ones, by name.
-    """
+    """The two seats, and the players that may take them: ``OFFERED``, and ``agents`` by name."""
 
     who: list[str]
     """``PERSON`` or the name of an agent, for each seat."""
 
-    def __init__(self, agents: Mapping[str, Any]):
-        offered = [*BUILT_IN, *(name for name in names() if name == TRAINED)]
-        self._players: dict[str, Any] = {**agents, **{name: None for name in offered if name not in agents}}
+    def __init__(self, agents: Mapping[str, Player]):
+        self.players: dict[str, Player] = dict(agents)
+        for name in OFFERED:
+            self.players.setdefault(name, player(name))
         self.who = [PERSON, PERSON]
 
     @property
     def names(self) -> list[str]:
         """The players that may sit down: "person" and the agents."""
-        return [PERSON, *self._players]
+        return [PERSON, *self.players]
 
     @property
     def agents(self) -> list[str]:
         """The agents' names."""
-        return list(self._players)
+        return list(self.players)
 
     def sit(self, who: list[str]) -> None:
         """Assign both seats; ValueError for an unknown name."""
@@ -66,14 +61,10 @@ class Seats:
         """The names of both."""
         return self.label(0), self.label(1)
 
-    def player(self, name: str) -> Any:
-        """The player of ``snooker_env.advice`` with this name."""
-        choice("agent", name, self.agents)
-        if self._players[name] is None:
-            self._players[name] = player_of(name)
-        return self._players[name]
-
-    def stroke(self, name: str, session: Session) -> CueStroke:
-        """The stroke that an agent plays on the current table, with a place for a cue ball in hand. ``session`` is not changed."""
-        noise, seed = session.noise[session.frame.striker], len(session.acts)
-        return stroke_of(self.player(name), session.planned(), noise=noise, seed=seed)
+    def decided(self, name: str, session: Session) -> Strokes:
+        """What an agent does in the current frame: a decision after a foul, a declaration, or a stroke. ``session`` is not changed."""
+        options = session.options_with(session.noise[session.frame.striker])
+        decided = self.players[name].at(options).play(Positions.of(session), session.tables.game[:, STROKES])
+        if not isinstance(decided, Strokes) or len(decided) != 1:
+            raise refuse_what("strokes", f"a {type(decided).__name__}", "must be Strokes of one stroke")
+        return decided

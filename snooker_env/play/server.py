@@ -15,19 +15,24 @@ import threading
 import time
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
+from .._check import refuse
 from ..simulation import SimulationError
-from ..web import WEB, table_js
 from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
 
-FILES = {"": ("play.html", "text/html"), "play.css": ("play.css", "text/css")}
-for _script in ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_first.js", "play_setup.js", "play_parts.js"):
-    FILES[_script] = (_script, "text/javascript")
-"""Files that are served besides the protocol: path -> file in ``WEB`` and its type. No other file is ever
-read, but for the parts of ``table.js``."""
+WEB = Path(__file__).resolve().parent.parent / "web"
+FILES = {
+    "": ("play.html", "text/html"), "play.css": ("play.css", "text/css"),
+    **{
+        name: (name, "text/javascript")
+        for name in ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_first.js", "play_setup.js", "play_parts.js")
+    },
+}  # fmt: skip
+"""Files that are served besides the protocol: path -> file in ``WEB`` and its type. No other file is ever read."""
 MOST_HEAD = 16_384
 MOST_BODY = 65_536
 """Largest head and body of a request [bytes]; a saved game has about 3,000."""
@@ -54,8 +59,7 @@ class RefusedError(Exception):
 
     def __init__(self, status: int, message: str, field: str | None = None, value: Any = None):
         super().__init__(message)
-        self.status: int = status
-        self.body: dict[str, Any] = {"field": field, "value": value, "message": message}
+        self.status, self.body = status, {"field": field, "value": value, "message": message}
 
 
 class TimedReader:
@@ -109,8 +113,7 @@ class PlayHandler(BaseHTTPRequestHandler):
 
     server: "PlayServer"
     protocol_version = default_request_version = "HTTP/1.1"
-    server_version: str = "snooker_env"
-    sys_version: str = ""
+    server_version, sys_version = "snooker_env", ""
 
     def setup(self) -> None:
         """Install the limited reader."""
@@ -143,8 +146,6 @@ class PlayHandler(BaseHTTPRequestHandler):
             return self._serve
         raise AttributeError(name)
 
-    # one request ------------------------------------------------------------------------------------------------------------
-
     def finish(self) -> None:
         """Read the rest of a refused request: closing a connection with unread bytes would lose the answer."""
         with suppress(OSError):
@@ -164,11 +165,9 @@ class PlayHandler(BaseHTTPRequestHandler):
             route = (GET if self.command == "GET" else POST)[name[4:]]
             reply = answer(self.server.service, route, query if self.command == "GET" else self._body())
             if isinstance(reply, str):
-                attached = {"Content-Disposition": 'attachment; filename="replay.html"'}
-                self._send(200, reply.encode(), "text/html", attached)
+                self._send(200, reply.encode(), "text/html", {"Content-Disposition": 'attachment; filename="replay.html"'})
             else:
-                text = json.dumps(reply, allow_nan=False, separators=(",", ":"))
-                self._send(200, text.encode(), "application/json")
+                self._send(200, json.dumps(reply, allow_nan=False, separators=(",", ":")).encode(), "application/json")
         except RefusedError as refused:
             self._refuse(refused)
         except ValueError as error:
@@ -215,12 +214,12 @@ class PlayHandler(BaseHTTPRequestHandler):
         pairs = parse_qsl(text, keep_blank_values=True)
         if text and self.command == "POST":
             raise self._last(400, "POST must have its fields in its body, not in its address")
-        found: dict[str, Any] = {}
+        fields: dict[str, Any] = {}
         for name, value in pairs:
-            if name in found:
+            if name in fields:
                 raise RefusedError(400, "must be given once", name, value)
-            found[name] = json.loads(value) if re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value) else value
-        return found
+            fields[name] = json.loads(value) if re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value) else value
+        return fields
 
     def _body(self) -> dict[str, Any]:
         length = self.headers.get_all("Content-Length") or []
@@ -246,12 +245,9 @@ class PlayHandler(BaseHTTPRequestHandler):
         refused.headers = headers  # type: ignore[attr-defined]
         return refused
 
-    # answers ----------------------------------------------------------------------------------------------------------------
-
     def _file(self, name):
         file, kind = FILES[name]
-        content = table_js().encode() if file == "table.js" else (WEB / file).read_bytes()
-        self._send(200, content, f"{kind}; charset=utf-8")
+        self._send(200, (WEB / file).read_bytes(), f"{kind}; charset=utf-8")
 
     def _refuse(self, refused: RefusedError) -> None:
         body = json.dumps({"error": refused.body}, allow_nan=False, default=str).encode()
@@ -275,12 +271,12 @@ class PlayHandler(BaseHTTPRequestHandler):
 def parsed(raw: bytes) -> dict[str, Any]:
     """The JSON object in a body; RefusedError for anything else, including NaN, Infinity and repeated names."""
     try:
-        found = json.loads(raw.decode("utf-8"), parse_constant=_no_number, object_pairs_hook=_once) if raw else {}
+        fields = json.loads(raw.decode("utf-8"), parse_constant=_no_number, object_pairs_hook=_once) if raw else {}
     except (ValueError, RecursionError) as error:
         raise RefusedError(400, f"the body must be JSON in UTF-8 ({error})") from None
-    if not isinstance(found, dict):
+    if not isinstance(fields, dict):
         raise RefusedError(400, "the body must be a JSON object")
-    return found
+    return fields
 
 
 def _no_number(name):
@@ -288,31 +284,26 @@ def _no_number(name):
 
 
 def _once(pairs):
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    fields = dict(pairs)
+    if len(fields) < len(pairs):
         raise ValueError("a name comes twice in one object")
-    return found
+    return fields
 
 
 class PlayServer(ThreadingHTTPServer):
-    """The server of one game, on 127.0.0.1.
-
-    Parameters
-    ----------
-    service : Service
-        The game.
-    port : int
-        The port; 0 for any that is free.
-    """
+    """The server of one game, on 127.0.0.1; port 0 stands for any that is free."""
 
     daemon_threads = True
     request_queue_size = MOST_AT_ONCE
 
     def __init__(self, service: Service, port: int = 0):
-        super().__init__(("127.0.0.1", port), PlayHandler)
-        self.service: Service = service
-        self.token: str = secrets.token_urlsafe(24)
-        self.hosts: frozenset[str] = frozenset(f"{name}:{self.server_port}" for name in ("127.0.0.1", "localhost", "[::1]"))
+        try:
+            super().__init__(("127.0.0.1", port), PlayHandler)
+        except OSError as error:
+            allowed = f"must be free ({error.strerror}): choose another with --port, or leave it out for any that is"
+            raise refuse("port", port, allowed) from error
+        self.service, self.token = service, secrets.token_urlsafe(24)
+        self.hosts = frozenset(f"{name}:{self.server_port}" for name in ("127.0.0.1", "localhost", "[::1]"))
         self._free = threading.BoundedSemaphore(MOST_AT_ONCE)
 
     @property

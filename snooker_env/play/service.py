@@ -9,10 +9,18 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from time import monotonic
 
+from ..advice.strokes import cue_strokes
+from ..game.frame_columns import PLAY_AGAIN, REPLACE
+from ..game.ruling import AUTO
+from ..planning import Positions
+from ..players import Strokes
 from ..simulation import SimulationError
+from ..tasks.declarations import CLAIMS, CONCEDES
 from .seats import Seats
-from .session import Session
+from .session import DECLINED, Session
 
+DECIDED = {PLAY_AGAIN: "play_again", REPLACE: "replace"}
+"""Decisions after a foul other than to play."""
 LONGEST_WAIT = 25.0
 """How long a request may wait for a change [s]."""
 
@@ -26,15 +34,7 @@ class StaleError(RuntimeError):
 
 
 class Service:
-    """One game, its seats, and the thread in which agents think.
-
-    Parameters
-    ----------
-    session : Session
-        The game.
-    seats : Seats
-        The players.
-    """
+    """One game, its seats, and the thread in which agents think."""
 
     paused: bool
     """Whether an agent whose turn it is waits for ``go_on``: after an undo, a load or a position set up, and between two agents."""
@@ -58,8 +58,6 @@ class Service:
             self._closed = True
             self._changed.notify_all()
 
-    # for requests -----------------------------------------------------------------------------------------------------------
-
     @contextmanager
     def reading(self) -> Iterator[Session]:
         """The game, for reading: no other thread changes it meanwhile."""
@@ -68,10 +66,7 @@ class Service:
 
     @contextmanager
     def acting(self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False) -> Iterator[Session]:
-        """The game, for changing it. ``pause``: an agent whose turn it is then waits; ``any_turn``: allowed also during an agent's turn.
-
-        Raises ValueError during an agent's turn, StaleError if the revision is out of date. After an error inside, nothing has changed.
-        """
+        """The game, for changing it; StaleError for an old revision. ``pause``: an agent to play then waits; ``any_turn``: in its turn, too."""
         with self._changed:
             if revision not in (None, self.revision):
                 raise StaleError
@@ -110,8 +105,6 @@ class Service:
             self.paused, self.trouble = False, ""
             self._moved()
 
-    # agents -----------------------------------------------------------------------------------------------------------------
-
     def agent_to_play(self) -> bool:
         """Whether it is an agent's turn."""
         frame = self.session.frame
@@ -133,32 +126,46 @@ class Service:
                     self._changed.wait()
                 if self._closed:
                     return
-                session, revision = self.session, self.revision
-                if session.frame.phase == "choice":
-                    session.choose("play")
-                    self.revision = revision = revision + 1
-                seat = session.frame.striker
-                who, twin = self.seats.who[seat], session.twin()
-            stroke = None
-            trouble = ""
+                revision = self.revision
+                who, twin = self.seats.who[self.session.frame.striker], self.session.twin()
+            decided, trouble = None, ""
             try:
-                stroke = self.seats.stroke(who, twin)
+                decided = self.seats.decided(who, twin)
             except Exception as error:  # a custom player may raise anything: it is reported, and the game waits
                 trouble = f"{who} gave no stroke ({type(error).__name__}: {error})"
             with self._changed:
                 if self.revision != revision or self._closed:
                     continue
-                if stroke is not None:
-                    trouble = self._play(stroke)
+                if decided is not None:
+                    trouble = self._carry_out(decided)
                 self.trouble, self.paused = trouble, bool(trouble) or all(map(self.seats.is_agent, (0, 1)))
                 self._moved()
 
-    def _play(self, stroke):
-        """The agent's stroke; why it could not be played, or ""."""
+    def _carry_out(self, decided: Strokes) -> str:
+        """What an agent has decided; why it could not be carried out, or ""."""
+        session, frame = self.session, self.session.frame
+        declared, what = int(decided.declare[0]), DECIDED.get(int(decided.decision[0]), "play")
         try:
-            if stroke.place is not None and self.session.frame.in_hand:
-                self.session.place(*stroke.place)
-            self.session.play(stroke)
+            if declared == CONCEDES:
+                session.concede()
+            elif declared == CLAIMS and frame.may_claim:
+                session.claim()
+            elif frame.phase == "choice" and what != "play" and what in frame.choices:
+                session.choose(what)
+            else:
+                self._play(decided)
         except (ValueError, SimulationError) as error:
             return str(error)
         return ""
+
+    def _play(self, decided: Strokes) -> None:
+        """An agent's stroke, after its decision to play if the opponent has fouled."""
+        session = self.session
+        if session.frame.phase == "choice":
+            session.choose("play")
+        (stroke,) = cue_strokes(decided, Positions.of(session))
+        if stroke.place is not None:
+            session.place(*stroke.place)
+        nominated = int(decided.nominate[0])
+        sensible = nominated in session.nominations() or (nominated == DECLINED and session.frame.free_ball)
+        session.play(stroke, nominated=nominated if sensible else AUTO)

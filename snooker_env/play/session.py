@@ -1,6 +1,6 @@
 """What is the game on the page? One frame in memory, played by the package's own functions, with a list of acts to undo and redo.
 
-``Session`` plays the strokes and decisions that it is given, for the current striker, with the noise of that seat. ``seats.py`` says who
+``Session`` plays the strokes and decisions of the current striker, with the noise of that seat. ``seats.py`` says who
 sits there, ``service.py`` handles threads. Each act is an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so
 a stroke that is undone and played again meets the same execution errors.
 """
@@ -12,7 +12,7 @@ import numpy as np
 
 from .._check import choice, integer, refuse, refuse_what, truth
 from .._types import NoiseName
-from ..advice.strokes import CueStroke
+from ..advice import CueStroke
 from ..game.balls import CUE, NAMES, BallOn, ids_of, mask_of_present
 from ..game.frame import Frame, write_frame
 from ..game.frame_columns import STROKES
@@ -20,55 +20,41 @@ from ..game.in_hand import place_cue
 from ..game.ruling import AUTO
 from ..planning.position import Position
 from ..planning.positions import Positions
+from ..players import Strokes
 from ..simulation import SimulationError
 from ..tasks.frame import Frames
 from ..tasks.noise import LEVELS
-from ..tasks.options import Options, Rules
+from ..tasks.options import Options
 from ..tasks.played import Played
 from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew
-from .wishes import DECISIONS, action_of
 
+DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0}
+"""Last component of an action for each choice after a foul."""
+DECLINED = 0
+"""The nomination of a player who does not use a free ball."""
 STATE = ("positions", "on_table", "frame", "strokes", "stream")
 """Fields of the table in a saved game."""
 
 
 @dataclass(frozen=True, eq=False)
 class Act:
-    """An act in the game.
-
-    Attributes
-    ----------
-    what : str
-        "new", "stroke", "choice", "set_up", "load" or "concede".
-    state : dict
-        The table after it, as JSON types.
-    player : int or None
-        Who did it.
-    played : Played or None
-        For a stroke: as it was struck, simulated and judged.
-    said : str
-        For a choice: the decision; for a stroke: the colour that was nominated.
-    """
+    """An act in the game: "new", "stroke", "choice", "set_up", "load", "concede" or "claim"."""
 
     what: str
     state: dict[str, Any]
+    """The table after it, as JSON types."""
     player: int | None = None
+    """Who did it."""
     played: Played | None = None
-    said: str = ""
+    """For a stroke: as it was struck, simulated and judged."""
+    detail: str = ""
+    """For a choice: the decision; for a stroke: the colour that was nominated."""
 
 
 class Session:
-    """A frame that can be played, set up, undone, saved and loaded.
-
-    Parameters
-    ----------
-    layout : str
-        How the table is dealt: the name of a layout.
-    seed : int
-        Seed of all random numbers.
-    """
+    """A frame that can be played, set up, undone, saved and loaded; ``layout`` deals it, ``seed`` is that of all random numbers."""
 
     noise: list[NoiseName]
     """Execution errors of each seat: names of ``snooker_env.tasks.LEVELS``."""
@@ -86,11 +72,9 @@ class Session:
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
         self._buffers = ShotBuffers(1, path=True)
         self._played: Played | None = None
-        self._rules: dict[str, Rules] = {}
-        self.tables: Frames = Frames(self._options.rules, 1)
+        self._with: dict[str, Options] = {}
+        self.tables = Frames(self._options.rules, 1)
         self.new(layout=layout, seed=seed)
-
-    # what is ----------------------------------------------------------------------------------------------------------------
 
     @property
     def frame(self) -> Frame:
@@ -109,7 +93,7 @@ class Session:
         return [k for k, act in enumerate(self.acts[: self.at]) if act.played is not None]
 
     def nominations(self) -> tuple[int, ...]:
-        """The colours that the striker may nominate before his stroke: after a red, and as a free ball."""
+        """The colours that the striker may nominate before the stroke: after a red, and as a free ball."""
         frame = self.frame
         if frame.phase != "stroke":
             return ()
@@ -126,11 +110,11 @@ class Session:
         on = BallOn.ANY_COLOUR if free_ball else frame.ball_on
         return Positions(tables.positions.copy(), tables.on_table.copy(), [[int(on), int(frame.in_hand), frame.break_points, 0, 0]])
 
-    def rules_with(self, noise: NoiseName) -> Rules:
-        """The rules of this frame for a player with these execution errors."""
-        if noise not in self._rules:
-            self._rules[noise] = self._options.but(noise=noise).rules
-        return self._rules[noise]
+    def options_with(self, noise: NoiseName) -> Options:
+        """The options of this frame for a player with these execution errors."""
+        if noise not in self._with:
+            self._with[noise] = self._options.but(noise=noise)
+        return self._with[noise]
 
     def copy_to(self, tables: Frames) -> None:
         """Copy the state to another table."""
@@ -146,14 +130,12 @@ class Session:
         other.acts, other.at = [self.acts[self.at - 1]], 1
         return other
 
-    # what is done -----------------------------------------------------------------------------------------------------------
-
     def new(self, *, layout: str | None = None, seed: int = 0, breaker: int = 0) -> None:
         """Begin a new frame; earlier acts are forgotten. ValueError for an unknown layout."""
         options = self._options if layout is None else self._options.but(layout=layout)
         integer("seed", seed, 0, 2**63 - 1)
         integer("breaker", breaker, 0, 1)
-        self._options, self._rules = options, {}
+        self._options, self._with = options, {}
         self.tables.rules = options.rules
         self.tables.seed(0, np.random.default_rng(seed))
         self.tables.deal(np.zeros(1, np.int64), drawn=False)
@@ -166,19 +148,20 @@ class Session:
         if frame.phase != "stroke":
             allowed = 'must be "stroke": choose first (play, play_again or replace)' if frame.phase == "choice" else "must not be over"
             raise refuse("phase", frame.phase, allowed)
-        if nominated != AUTO and nominated not in self.nominations():
+        declined = nominated == DECLINED and frame.free_ball
+        if nominated != AUTO and not declined and nominated not in self.nominations():
             names = [NAMES[i] for i in self.nominations()]
             allowed = f"must be one of {names}" if names else "must be left out: no colour is to be named now"
             raise refuse("nominate", NAMES[nominated], allowed)
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
-        """Play the striker's stroke from where the cue ball lies; ``nominated``: his colour, or AUTO for the one first struck."""
+        """Play the stroke from where the cue ball lies; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
         self.check_stroke(nominated)
         before, tables = self.state, self.tables
         striker = self.frame.striker
-        tables.rules = self.rules_with(self.noise[striker])
+        tables.rules = self.options_with(self.noise[striker]).rules
         tables.packed = tables.rules.packed()
-        actions = action_of(stroke, tuple(tables.positions[0, CUE].tolist()))[None]
+        actions = Strokes(stroke.numbers()[None]).actions(self._options, Positions.of(self))
         tables.nominated[0] = nominated
         self._played = None
         try:
@@ -191,10 +174,10 @@ class Session:
             tables.nominated[0] = AUTO
         if self.practice:
             self._hand_back()
-        said = "" if nominated == AUTO else NAMES[nominated]
-        return self._did(Act("stroke", self.state, striker, self._played, said))
+        words = NAMES[nominated] if nominated > CUE else ""
+        return self._did(Act("stroke", self.state, striker, self._played, words))
 
-    def _watch(self, k, buffers, j, own):
+    def _watch(self, k, buffers, j, agents):
         self._played = self.tables.played(k, buffers, j)
 
     def _hand_back(self):
@@ -214,15 +197,23 @@ class Session:
         actions = np.zeros((1, 8))
         actions[0, -1] = DECISIONS[what]
         self.tables.decide(np.zeros(1, np.int64), actions)
-        return self._did(Act("choice", self.state, frame.striker, said=what))
+        return self._did(Act("choice", self.state, frame.striker, detail=what))
 
     def concede(self) -> Act:
         """End the frame: the striker concedes."""
         frame = self.frame
         if frame.phase == "over":
             raise refuse("phase", frame.phase, "must not be over")
-        self._write(frame.concede(frame.striker), int(self.tables.game[0, STROKES]))
-        return self._did(Act("concede", self.state, frame.striker))
+        return self._ended("concede", frame.concede(frame.striker))
+
+    def claim(self) -> Act:
+        """End the frame: the striker, more than seven points ahead with the black alone on the table, claims it."""
+        return self._ended("claim", self.frame.claim())
+
+    def _ended(self, what: str, after: Frame) -> Act:
+        striker = self.frame.striker
+        self._write(after, int(self.tables.game[0, STROKES]))
+        return self._did(Act(what, self.state, striker))
 
     def place(self, x: float, y: float) -> tuple[float, float]:
         """Put the cue ball in hand on the free place of the D nearest to (x, y), and return that place. It may be moved again."""
@@ -260,8 +251,6 @@ class Session:
         """Redo an act that was undone; returns whether there was one."""
         return self._go(self.at + 1)
 
-    # files ------------------------------------------------------------------------------------------------------------------
-
     def save(self) -> dict[str, Any]:
         """The current game as JSON types."""
         return {"format": "snooker-game", "version": 1, "practice": self.practice, "noise": list(self.noise), "state": self.state}
@@ -285,8 +274,6 @@ class Session:
         self.practice = practice
         self.noise[:] = levels
         self.acts, self.at = [Act("load", self.state)], 1
-
-    # inside -----------------------------------------------------------------------------------------------------------------
 
     def _did(self, act: Act) -> Act:
         del self.acts[self.at :]

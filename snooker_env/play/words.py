@@ -15,13 +15,10 @@ from .lines import Line
 from .session import Act
 
 _ALONG = (
-    (BAULK_Y, "in baulk"),
-    (-0.35, "between baulk and the middle"),
-    (0.35, "about the middle of the table"),
-    (COLOUR_SPOTS[4, 1], "between the middle and the pink spot"),
-    (COLOUR_SPOTS[5, 1], "between the pink and the black spot"),
+    (BAULK_Y, "in baulk"), (-0.35, "between baulk and the middle"), (0.35, "about the middle of the table"),
+    (COLOUR_SPOTS[4, 1], "between the middle and the pink spot"), (COLOUR_SPOTS[5, 1], "between the pink and the black spot"),
     (np.inf, "behind the black spot"),
-)
+)  # fmt: skip
 
 
 def asked_words(frame: Frame, labels: tuple[str, str]) -> str:
@@ -42,15 +39,13 @@ def last_words(act: Act, labels: tuple[str, str]) -> str:
     """An act in a sentence."""
     who = "" if act.player is None else labels[act.player]
     if act.played is not None:
-        nominated = f" ({act.said} nominated)" if act.said else ""
+        nominated = f" ({act.detail} nominated)" if act.detail else ""
         return f"{who}{nominated}: {sentence(act.played, labels)}"
     return {
-        "choice": f"{who}: {act.said.replace('_', ' ')}.",
-        "concede": f"{who} concede{'' if who == 'You' else 's'} the frame.",
-        "set_up": "Position set up.",
-        "load": "Game loaded.",
-        "new": "New frame.",
-    }[act.what]
+        "choice": f"{who}: {act.detail.replace('_', ' ')}.", "concede": f"{who} concede{'' if who == 'You' else 's'} the frame.",
+        "claim": f"{who} claim{'' if who == 'You' else 's'} the frame.",
+        "set_up": "Position set up.", "load": "Game loaded.", "new": "New frame.",
+    }[act.what]  # fmt: skip
 
 
 def where(ball: int, x: float, y: float) -> str:
@@ -61,11 +56,8 @@ def where(ball: int, x: float, y: float) -> str:
     along = next(words for limit, words in _ALONG if y <= limit)
     across = "on the centre line" if abs(x) < 0.03 else f"{'far ' if abs(x) > 0.5 else ''}{'right' if x > 0 else 'left'}"
     gaps = {
-        "left cushion": x + HALF_WIDTH,
-        "right cushion": HALF_WIDTH - x,
-        "baulk cushion": y + HALF_LENGTH,
-        "top cushion": HALF_LENGTH - y,
-    }
+        "left cushion": x + HALF_WIDTH, "right cushion": HALF_WIDTH - x, "baulk cushion": y + HALF_LENGTH, "top cushion": HALF_LENGTH - y,
+    }  # fmt: skip
     near, gap = min(gaps.items(), key=lambda item: item[1])
     gap -= BALL_RADIUS
     tight = f", tight on the {near}" if gap < 0.003 else f", {100 * gap:.0f} cm from the {near}" if gap < 0.12 else ""
@@ -74,19 +66,19 @@ def where(ball: int, x: float, y: float) -> str:
 
 def table_text(places: dict[int, tuple[float, float]], on: int, lines: list[Line], facts: list[str]) -> str:
     """The whole description; ``places``: of the balls on the table, ``on``: mask of those that may be struck first."""
-    words = [*facts, ""]
-    words.append("Balls (x to the right, y to the black end, metres from the middle of the table; * may be struck first):")
+    text = [*facts, ""]
+    text.append("Balls (x to the right, y to the black end, metres from the middle of the table; * may be struck first):")
     for ball, (x, y) in places.items():
         racked = 0 < ball < YELLOW and hypot(x - SPOTS[ball, 0], y - SPOTS[ball, 1]) < 1e-6
         place = "in the rack" if racked else where(ball, x, y)
-        words.append(f"  {'*' if on >> ball & 1 else ' '} {NAMES[ball]}: ({x:+.3f}, {y:+.3f}), {place}")
+        text.append(f"  {'*' if on >> ball & 1 else ' '} {NAMES[ball]}: ({x:+.3f}, {y:+.3f}), {place}")
     if lines:
-        words += ["", "Lines to pockets (straight lines; throw and swerve are not in them):"]
+        text += ["", "Lines to pockets (straight lines; throw and swerve are not in them):"]
         for ball in dict.fromkeys(line.ball for line in lines):
             mine = [line for line in lines if line.ball == ball]
             shown = [line for line in mine if line.open] or sorted(mine, key=_how_shut)[:1]
-            words += [f"  {NAMES[ball]}, {line.words}" for line in sorted(shown, key=lambda line: -line.tolerance)]
-    return "\n".join(words)
+            text += [f"  {NAMES[ball]}, {line.words}" for line in sorted(shown, key=lambda line: -line.tolerance)]
+    return "\n".join(text)
 
 
 def _how_shut(line):
@@ -99,13 +91,13 @@ def freedom(places: dict[int, tuple[float, float]]) -> list[str]:
     if CUE not in places:
         return []
     x, y = places[CUE]
-    words = []
+    text = []
     near = sorted((hypot(px - x, py - y) - 2.0 * BALL_RADIUS, ball) for ball, (px, py) in places.items() if ball != CUE)
     touching = [NAMES[ball] for gap, ball in near if gap < 1e-6]
     if touching:
-        words.append("Touching ball: " + ", ".join(touching) + ".")
+        text.append("Touching ball: " + ", ".join(touching) + ".")
     elif near and near[0][0] < 0.2:
-        words.append(f"The ball nearest to the cue ball is {NAMES[near[0][1]]}, {100 * near[0][0]:.1f} cm away.")
+        text.append(f"The ball nearest to the cue ball is {NAMES[near[0][1]]}, {100 * near[0][0]:.1f} cm away.")
     place = where(CUE, x, y)
-    words.append(f"The cue ball lies {place}.")
-    return words
+    text.append(f"The cue ball lies {place}.")
+    return text

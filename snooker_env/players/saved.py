@@ -13,6 +13,8 @@ from ..tasks.options import Options
 from ..tasks.saved_models import SavedModel, by_train, entries, one_thread, outline
 from .seen import SeenPlayer
 
+SAYS = ("decision", "nominate", "concede", "claim", "lot")
+"""Options of what is said beside a stroke; a model of visits says nothing."""
 _VIEW = "must be a model trained on the observation of a visit or a frame, flat, balls or masked, and nothing else"
 
 
@@ -34,9 +36,11 @@ class FittingModel:
         options = ({"action": "discrete"} if saved.action[0] == "Discrete" else {}) | options
         for frame, replaced in ((False, False), (True, False), (True, True)):
             for kind in OBSERVATIONS:
-                if outline(space(kind, frame=frame, replaced=replaced)) == saved.observation:
-                    task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
-                    model = cls(saved, options | task | {"observation": kind}, kind)
+                task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
+                told = options if frame else {name: value for name, value in options.items() if name not in SAYS}
+                model = cls(saved, told | task | {"observation": kind}, kind)
+                choices = getattr(model.actions, "n", 0)
+                if outline(space(kind, frame=frame, replaced=replaced, choices=choices)) == saved.observation:
                     if outline(model.actions) != saved.action:
                         raise model.other_actions
                     return model
@@ -45,8 +49,7 @@ class FittingModel:
     @property
     def actions(self) -> Any:
         """The space of its actions."""
-        task: Any = {"task": "frame"} if "decision" in self.options else {}
-        return Options(**task | self.options).rules.actions.space
+        return Options(**self.options | {"observation": "flat"}).rules.actions.space
 
     @property
     def other_actions(self) -> ValueError:
@@ -58,10 +61,7 @@ class FittingModel:
     def network(self, trust: bool) -> Any:
         """Load its policy: the code in its pickles runs. ValueError without ``trust``."""
         network = self.saved.network(trust, "trust=True")
-        if (
-            outline(network.observation_space) != self.saved.observation
-            or network.action_space != self.actions
-        ):
+        if outline(network.observation_space) != self.saved.observation or network.action_space != self.actions:
             raise self.saved.refused("must be a model whose spaces are those that its file describes")
         return network
 
@@ -84,11 +84,7 @@ class SavedNetwork:
         actions = []
         with one_thread():
             for k in range(len(seeds)):
-                row = (
-                    {name: part[k] for name, part in observations.items()}
-                    if isinstance(observations, dict)
-                    else observations[k]
-                )
+                row = {name: part[k] for name, part in observations.items()} if isinstance(observations, dict) else observations[k]
                 masked = {"action_masks": masks[k]} if self._masked and masks is not None else {}
                 actions.append(self._network.predict(row, deterministic=True, **masked)[0])
         space = self._network.action_space

@@ -8,7 +8,18 @@ from numpy.typing import NDArray
 
 from .._check import choice, refuse, refuse_what
 from .._types import Bools, Ints, Observation
-from ..game.frame_columns import ANYWHERE, IN_HAND, PLACE_ANYWHERE
+from ..game.balls import mask_of_present
+from ..game.frame_columns import (
+    ANYWHERE,
+    COLUMNS,
+    IN_HAND,
+    ON_TABLE,
+    PLACE_ANYWHERE,
+    RACK,
+    SCORE_0,
+    VISIT_COLUMNS,
+    WINNER,
+)
 from ..planning import Positions
 from ..planning.trials import decoded
 from ..tasks.discrete_actions import Choices
@@ -27,7 +38,7 @@ OF_FRAMES = ("game", "miss", "time_to_play")
 OPTIONS = (
     "action", "aim", "observation", "elevation", "placement", "decision", "nominate", "concede", "claim", "lot", "miss",
 )  # fmt: skip
-"""Options that say how a network sees and acts."""
+"""Options that say how a network sees and acts; with a miss rule it sees the layout that "replace" restores."""
 
 
 @runtime_checkable
@@ -77,9 +88,7 @@ class SeenPlayer(BoundPlayer):
     def __init__(self, seen: Any, options: Mapping[str, Any] | None = None, name: str | None = None):
         given = dict(getattr(seen, "options", {}) if options is None else options)
         self.seen, self.name = seen, name or type(seen).__name__
-        self.frames = (
-            choice(f"task of player {self.name}", given.pop("task", "visit"), ("visit", "frame")) == "frame"
-        )
+        self.frames = choice(f"task of player {self.name}", given.pop("task", "visit"), ("visit", "frame")) == "frame"
         for key in given:
             choice(f"key of the options of player {self.name}", key, OPTIONS)
         if not self.frames:
@@ -89,7 +98,7 @@ class SeenPlayer(BoundPlayer):
         self._bound_sees(Options())
 
     def _bind(self, options: Options) -> None:
-        if self.frames and options.task != "frame":
+        if self.frames and options.task == "visit":
             raise refuse("player", self.name, "must see visits to play them: it sees frames")
         self._bound_sees(options)
 
@@ -97,8 +106,9 @@ class SeenPlayer(BoundPlayer):
         """Read its options with the physics of ``options``; ValueError if they are not those of an environment."""
         same: dict[str, Any] = {name: getattr(options, name) for name in SHARED}
         if self.frames:
-            same |= {"task": "frame"} | {name: getattr(options, name) for name in OF_FRAMES}
-        self._rules = Options(**(same | self.sees)).rules
+            match = {"task": "match", "frames": options.frames} if options.task == "match" else {"task": "frame"}
+            same |= match | {name: getattr(options, name) for name in OF_FRAMES}
+        self._rules = Options(**same | self.sees).rules
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
@@ -125,7 +135,7 @@ class SeenPlayer(BoundPlayer):
         """The positions as it sees them, and where cue balls in hand have been placed for it (n, 2), else NaN."""
         none = np.full((len(at), 2), np.nan)
         if self.frames:
-            return at, none
+            return (at if at.of_frames else _begun(at)), none
         if not self._rules.actions.placement:
             return placed(at, keys)
         anywhere, visits = at.anywhere & at.in_hand, at.as_visits()
@@ -140,19 +150,23 @@ class SeenPlayer(BoundPlayer):
         tables: Any = (Frames if self.frames else Visits)(rules, 0)
         tables.n, tables.positions, tables.on_table, tables.game = n, at.positions, at.on_table, at.game
         if self.frames:
-            tables._saved_positions, tables._saved_on_table = (
-                np.zeros_like(at.positions),
-                np.zeros_like(at.on_table),
-            )
+            none = np.zeros_like(at.positions), np.zeros_like(at.on_table)
+            tables._saved_positions, tables._saved_on_table = none if at.saved is None else at.saved
         rows = np.arange(n)
         masks = tables.action_masks(rows) if isinstance(rules.actions, Choices) else None
         answer = self.seen.act(shaped(rules.observation, tables.observe(rows), masks), masks, keys)
         try:
             actions = np.asarray(answer)
             if actions.ndim == 0 or len(actions) != n:
-                raise refuse_what(
-                    "actions", f"array of shape {actions.shape}", f"must be {n}, one for each position"
-                )
+                raise refuse_what("actions", f"array of shape {actions.shape}", f"must be {n}, one for each position")
             return rules.actions.check_many(actions, n)
         except ValueError as error:
             raise ValueError(f"player {self.name}: {error}") from None
+
+
+def _begun(at: Positions) -> Positions:
+    """Positions of visits as those of frames: the striker's points alone have been scored."""
+    game = np.zeros((len(at), COLUMNS), np.int64)
+    game[:, :VISIT_COLUMNS], game[:, SCORE_0], game[:, WINNER] = at.game, at.points, -1
+    game[:, ON_TABLE] = game[:, RACK] = [mask_of_present(on_table) & ~1 for on_table in at.on_table]
+    return Positions(at.positions, at.on_table, game)

@@ -8,7 +8,7 @@ import numpy as np
 from .._check import refuse
 from ..planning import Positions
 from ..planning.planner import options_in
-from ..tasks.geometric_strokes import geometric_strokes, put_in_hand
+from ..tasks.ghost_ball import geometric_strokes, put_in_hand
 from ..tasks.options import Options
 from .player import RulesLike, Strokes, seeds_of
 
@@ -52,7 +52,7 @@ def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
     if not at.in_hand.any():
         return at.as_visits(), places
     moved = at.copy()
-    put_in_hand(moved.positions, moved.on_table, moved.game, streams_of(seeds), True)
+    put_in_hand(moved.positions, moved.on_table, moved.game, streams_of(seeds))
     hand = at.in_hand
     places[hand] = moved.positions[hand, 0]
     return moved.as_visits(), places
@@ -70,9 +70,7 @@ class GhostBall(BoundPlayer):
         moved, values = at.copy(), np.empty((n, 5))
         nominate, decision = np.empty(n, np.int64), np.empty(n, np.int64)
         streams = streams_of(seeds_of(seeds, n))
-        geometric_strokes(
-            moved.positions, moved.on_table, moved.game, code, streams, values, nominate, decision
-        )
+        geometric_strokes(moved.positions, moved.on_table, moved.game, code, streams, values, nominate, decision)
         hand = moved.in_hand
         place = np.where(hand[:, None], moved.positions[:, 0], np.nan)
         return Strokes(values, place, nominate, decision)

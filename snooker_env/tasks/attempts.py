@@ -13,12 +13,12 @@ from .._jit import entry
 from .._types import Bools, Floats, Ints
 from ..game.attempt import ATTEMPT_GAP, closest_approach
 from ..game.balls import CUE, N_BALLS, bits
-from ..game.frame_columns import ANYWHERE, BALL_ON, FREE_BALL, IN_HAND, MISSED, strikeable
+from ..game.frame_columns import ANYWHERE, BALL_ON, FREE_BALL, IN_HAND, MISSED, Layouts, strikeable
 from ..game.paths import best_paths
 from ..game.ruling import Before, Facts, ruling
 from ..geometry import BALL_RADIUS
 from ..physics.engine import EventKind, Status
-from .arrays import ShotArrays, TableArrays
+from .arrays import PlayedArrays, TableArrays
 from .stroke import ATTEMPT, CLEAR_PATH, FIRST, FULL_PATH, ShotBuffers, see, with_path
 
 if TYPE_CHECKING:
@@ -28,29 +28,30 @@ _BALL_BALL, _OK = int(EventKind.BALL_BALL), int(Status.OK)
 
 
 @entry(what="the paths of the miss rule", seconds=2)
-def remember(which, tables, shots, noses, jaws):
+def remember(which, tables, saved, shots, noses, jaws):
     """Record what the miss rule needs of the tables ``which``, after the shots and before the referee moves a ball.
 
     The position, and which paths were clear before a stroke that failed to strike a ball on first; of others ``seen`` says that one was.
     S3 R14(c) speaks of every ball "that is or could be on": after a red of all colours, whichever the striker has nominated.
-    ``tables``, ``shots``: the parts of ``TableArrays`` and ``ShotArrays``.
+    ``tables``, ``saved``, ``shots``: the parts of ``TableArrays``, ``Layouts`` and ``PlayedArrays``.
     """
-    tables, shots = TableArrays(*tables), ShotArrays(*shots)
+    tables, saved, shots = TableArrays(*tables), Layouts(*saved), PlayedArrays(*shots)
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
             continue
         k = which[j]
-        positions, on_table, row, seen = tables.positions[k], tables.on_table[k], tables.game[k], shots.seen[j]
-        mask = bits(on_table)
+        positions, on_table, row = tables.positions[k], tables.on_table[k], tables.game[k]
+        mask, seen = bits(on_table), shots.seen[j]
         first, touching, moved, potted = see(j, shots, positions, on_table)
         seen[CLEAR_PATH], seen[FULL_PATH] = True, False
         before = Before(mask, row[BALL_ON], row[FREE_BALL], 0)
         if ruling(before, Facts(first, touching, moved, potted, 0, tables.nominated[k]), 0).fouls & MISSED:
             in_hand, on = row[IN_HAND] + row[ANYWHERE], strikeable(row, mask & ~1)
-            seen[CLEAR_PATH], seen[FULL_PATH] = best_paths(positions, on_table, on, in_hand, noses, jaws, BALL_RADIUS)
+            clear, full = best_paths(positions, on_table, on, in_hand, noses, jaws, BALL_RADIUS)
+            seen[CLEAR_PATH], seen[FULL_PATH] = clear, full
         for i in range(N_BALLS):
-            tables.saved_positions[k, i, 0], tables.saved_positions[k, i, 1] = positions[i, 0], positions[i, 1]
-            tables.saved_on_table[k, i] = on_table[i]
+            saved.positions[k, i, 0], saved.positions[k, i, 1] = positions[i, 0], positions[i, 1]
+            saved.on_table[k, i] = on_table[i]
 
 
 @entry(what="the strokes of snookered strikers", seconds=1)
@@ -65,15 +66,18 @@ def question(which, on_table, game, status, seen, asked):
 
 
 @entry(what="the attempts of snookered strikers", seconds=1)
-def gap_of(positions, on_table, row, shots, j):
-    """How near the cue ball came to a ball on in shot j, before it struck another or came to rest [m]; ``row``: the frame before it."""
-    shots = ShotArrays(*shots)
+def gap_of(positions, on_table, row, shots, path, j):
+    """How near the cue ball came to a ball on in shot j, before it struck another or came to rest [m].
+
+    ``row``: the frame before it; ``path``: the segments of all paths and their numbers.
+    """
+    shots, (segments, n_segments) = PlayedArrays(*shots), path
     until, on = shots.duration[j], strikeable(row, bits(on_table) & ~1)
     for e in range(shots.n_events[j]):
         if shots.event_what[j, e, 0] == _BALL_BALL and shots.event_what[j, e, 1] == CUE:
             until = shots.event_time[j, e]
             break
-    return closest_approach(shots.segments[j], shots.n_segments[j], until, positions, on_table, on, BALL_RADIUS)
+    return closest_approach(segments[j], n_segments[j], until, positions, on_table, on, BALL_RADIUS)
 
 
 def judge_attempts(
@@ -89,6 +93,6 @@ def judge_attempts(
     for j in np.flatnonzero(asked).tolist():
         k = which[j]
         one, at = (b, j) if b.segments.shape[1] else (with_path(b, j, positions[k], on_table[k], rules, phys), 0)
-        gaps[j] = gap_of(positions[k], on_table[k], game[k], one.arrays, at)
+        gaps[j] = gap_of(positions[k], on_table[k], game[k], one.played, (one.segments, one.n_segments), at)
         b.seen[j, ATTEMPT] = gaps[j] <= ATTEMPT_GAP
     return gaps

@@ -60,7 +60,7 @@ def _target(positions, on_table, on, stroke, law, work):
 
 @kernel(uses=(_target,))
 def shot_of(a, positions, on_table, on, options, law, work):
-    """(speed, side, top, aim, elevation) of an action (k,). The aim is the cue's direction [rad]; ``options`` from ``Actions.pack``."""
+    """(speed, side, top, aim of the cue, elevation) of an action (k,); ``options``: of ``Actions.pack``."""
     speed = MIN_SPEED + 0.5 * (a[0] + 1.0) * (MAX_SPEED - MIN_SPEED)
     side, top = tip_on_disc(0.5 * a[1], 0.5 * a[2], options[A_MAX_OFFSET])
     elevation = 0.5 * (a[4] + 1.0) * MAX_ELEVATION if options[A_ELEVATION] else 0.0

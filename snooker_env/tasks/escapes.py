@@ -175,7 +175,7 @@ def find_escapes(positions, on_table, on, lines, first):
 def _played(aim, stroke, positions, on_table, law, work):
     """The ball that the cue ball meets first, sent in the direction ``aim``, by the models of the engine; 0: none, or a pocket first.
 
-    ``stroke``: (speed, side, top). ``law``: ``Law``; cushion impacts are of the fidelity "fast". ``work``: ``Work``.
+    ``stroke``: (speed, side, top). ``law``: a ``Law``, but cushion impacts are of the fidelity "fast".
     """
     (speed, side, top), phys, motion, state = stroke, law.phys, work.motion, work.state
     R, m = phys[P_R], law.end_mass_ratio

@@ -15,7 +15,7 @@ player may place it elsewhere before the stroke. The physics is planar: no ball 
 so those fouls never occur.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -45,11 +45,12 @@ from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
 from . import frame_kernels
 from .attempts import judge_attempts, remember
+from .declarations import A_LOT
 from .frame_kernels import AGENT
 from .observations import FRAME_SIZE, REPLACED_SIZE
-from .opponents import asked
-from .options import NEVER, Rules
+from .options import NEVER, Options, Rules
 from .rewards import MATCH_REWARDS
+from .seats import Seat
 from .states import FrameState, checked_frame
 from .stroke import ShotBuffers
 from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
@@ -71,16 +72,27 @@ class Frames(Tables):
     due: Bools
     """(n,) Which episodes have ended in a reset, so that the next step reports their end."""
 
-    two_players: bool = False
-    """Whether both players are agents, who play ``turn`` by turn; otherwise the agent plays alone or against ``rules.opponent``."""
+    seats: tuple[Seat, ...]
+    """The agent's seat, and the other player's; without the second the agent plays alone. A seat without a player is played by ``turn``."""
+    packs: tuple[Any, ...]
+    """``packed`` of each seat."""
 
-    def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
+    def __init__(self, rules: Rules | Options, n: int = 1, *, limit: int = NEVER, seats: Sequence[Seat] | None = None):
+        rules = rules.rules if isinstance(rules, Options) else rules
         super().__init__(rules, n, limit=limit)
+        self.seats = (Seat.of(rules),) if seats is None else tuple(seats)
+        self.packs = tuple(seat.packed(rules) for seat in self.seats)
+        self.packed = self.packs[AGENT]
+        self._lot = self.packed[0].copy()  # the winner of the lot is asked if either player can say who begins
+        self._lot[A_LOT] = any(pack[0][A_LOT] for pack in self.packs)
         self._saved_positions, self._saved_on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
         self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
+        game, won = rules.rule_set, rules.frames // 2 + 1
+        limits = limit, rules.max_strokes, won, game.clock
+        self._numbers = game.code, self._miss, rules.time_to_play, self._reward, *limits
         self.positions[:], self.on_table[:] = SPOTS, True  # the state of a frame before its first reset
         if n:
             write_frame(Frame.start(miss=rules.miss, rules=rules.game), 0, self.game[0], self.saved, 0)
@@ -94,14 +106,18 @@ class Frames(Tables):
         return Layouts(self._saved_positions, self._saved_on_table)
 
     @property
+    def saved_arrays(self) -> tuple[Floats, Bools]:
+        """For kernels: the parts of ``saved``, in a plain tuple."""
+        return self._saved_positions, self._saved_on_table
+
+    @property
     def _setting(self) -> tuple[Any, ...]:
         """For kernels: the parts of ``frame_kernels.Setting``, in a plain tuple."""
-        rules = self.rules
-        game, frames = rules.rule_set, rules.frames // 2 + 1
-        return (
-            game.code, self._miss, rules.time_to_play, self._reward, self.limit, rules.max_strokes, frames, game.clock, self.packed[0],
-            self._jaws,
-        )  # fmt: skip
+        return self._setting_of(self._lot)
+
+    def _setting_of(self, options: Floats) -> tuple[Any, ...]:
+        """``_setting`` with the packed options of one seat's actions."""
+        return *self._numbers, options, self._jaws
 
     def _columns(self) -> tuple[str, ...]:
         return (*super()._columns(), "_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due")
@@ -136,18 +152,16 @@ class Frames(Tables):
 
     # a turn ----------------------------------------------------------------------------------------------------------------
 
-    def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
-        """Take the decisions on the tables ``which`` and carry the strokes out up to the strike; returns the tables with a stroke."""
-        which = self.say(which, actions)
-        self.address(which, actions, buffers)
-        self.hold_late(which, buffers)
-        return which
+    def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = AGENT) -> Ints:
+        """Take the decisions on the tables ``which`` and carry the strokes out up to the strike; returns the tables with a stroke.
 
-    def say(self, which: Ints, actions: Floats) -> Ints:
-        """As ``decide``; returns the tables with a stroke."""
-        said = self.rules.actions
+        ``side``: the seat by which the actions are read and executed.
+        """
+        said = self.seats[side].actions
         if said.nominate or said.declares or self.game[which, PHASE].any():
-            return which[self.decide(which, actions)]
+            which = which[self.decide(which, actions, side)]
+        self.strike(which, actions, buffers, self.packs[side])
+        self.hold_late(which, buffers)
         return which
 
     def hold_late(self, which: Ints, buffers: ShotBuffers) -> None:
@@ -156,10 +170,10 @@ class Frames(Tables):
             b, code = buffers, self.rules.rule_set.code
             frame_kernels.hold_late(which, self.game, code, self.rules.time_to_play, b.v, b.w, b.shots)
 
-    def decide(self, which: Ints, actions: Floats) -> Bools:
+    def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
         """What the strikers of the tables ``which`` say before their strokes; returns which of them play one."""
         plays = np.empty(len(which), np.bool_)
-        frame_kernels.decide(which, actions, self.arrays, self._setting, plays)
+        frame_kernels.decide(which, actions, self.arrays, self.saved_arrays, self._setting_of(self.packs[side][0]), plays)
         return plays
 
     def complete(self, which: Ints, out: StepOutput, buffers: ShotBuffers, crew: Crew, *, own: bool, alone: bool = False) -> None:
@@ -177,11 +191,11 @@ class Frames(Tables):
 
     def _conclude(self, which, b, out, own, alone):
         if self.rules.misses:
-            remember(which, self.arrays, b.arrays, self.rules.table.noses, self.rules.table.jaws)
+            remember(which, self.arrays, self.saved_arrays, b.played, self.rules.table.noses, self.rules.table.jaws)
         if self._miss == ATTEMPTS:
             judge_attempts(which, b, self.positions, self.on_table, self.game, self.rules, self.packed[2])
         played = self._played if own else self._replies
-        frame_kernels.conclude(which, self.arrays, b.arrays, self._setting, own, alone, played, out.arrays)
+        frame_kernels.conclude(which, self.arrays, b.played, self._setting, own, alone, played, out.arrays)
 
     def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew) -> Bools:
         """One turn of the striker on each table, of two players. ``out`` gets the infos; returns where there was a stroke, (n,) bool.
@@ -210,7 +224,7 @@ class Frames(Tables):
         Raises SimulationError if a shot cannot be computed. Its balls are then left as they lay, except for a cue ball that was placed; a
         decision already taken stands; other tables may have been played. Errors raised by an opponent are passed on.
         """
-        anew, alone = bool(waiting.any()), self.rules.opponent is None
+        anew, alone = bool(waiting.any()), len(self.seats) == 1
         playing = np.flatnonzero(~waiting) if anew else np.arange(self.n)
         self._replies[:] = self._played[:] = 0
 
@@ -235,17 +249,18 @@ class Frames(Tables):
         crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _finish(self, which, out):
-        frame_kernels.finish(which, self.arrays, self._setting, self.due, self._replies, self._played, out.arrays)
+        counted = self.due, self._replies, self._played
+        frame_kernels.finish(which, self.arrays, self.saved_arrays, self._setting, *counted, out.arrays)
 
     def _reply(self, which, out, crew):
         """All strokes of the opponent on the tables ``which`` until it is the agent's turn or the frame has ended."""
-        opponent = self.rules.opponent
-        assert opponent is not None  # without an opponent there are no replies
+        opponent = self.seats[1].player
+        assert opponent is not None  # ``turn`` plays for two without
         while len(which := which[(self.game[which, STRIKER] != AGENT) & ~self.ended()[which]]):
-            for player, tables, actions in asked(opponent, self, which, crew.generators):
+            for player, tables, asked in opponent.turns(self, which, crew.generators):
 
-                def play(part, buffers, player=player, actions=actions):
-                    self.complete(player.prepare(self, part, actions, buffers), out, buffers, crew, own=False)
+                def play(part, buffers, player=player, asked=asked):
+                    self.complete(player.prepare(self, part, asked, buffers), out, buffers, crew, own=False)
                     self.go_on(part)
 
                 crew(tables, play)
@@ -259,7 +274,7 @@ class Frames(Tables):
 
     def _start(self, which, out, crew, breakers=None):
         """New frames, with the opponent's first visit if he breaks."""
-        alone = self.rules.opponent is None
+        alone = len(self.seats) == 1
         self._replies[which] = 0
         crew(which, lambda part, _: self.deal(part, drawn=not alone, breakers=breakers))
         if not alone:
@@ -283,7 +298,8 @@ class Frames(Tables):
         self.begun[which], self.due[which], self.nominated[which] = True, False, AUTO
 
     def _show(self, which, out, *, fresh):
-        frame_kernels.show(which, fresh, self.arrays, self._setting, self._replies, out.arrays)
+        tables = self.arrays, self.saved_arrays, self._setting
+        frame_kernels.show(which, fresh, *tables, self._replies, out.arrays, out.last)
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
         """The info of the first table as ``player`` sees it; ``last``: the output of the last stroke, or None if there is none."""
@@ -301,10 +317,15 @@ class Frames(Tables):
         self.game[k, PAID] += unpaid
         return unpaid
 
+    def action_masks(self, which: Ints | None = None, side: int = AGENT) -> Bools:
+        """As ``Tables.action_masks``, of the player in seat ``side``."""
+        which = np.arange(self.n) if which is None else which
+        return self.masks_of(which, self.seats[side].actions, self.packs[side][0])
+
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
         """The observations of ``player`` on the tables ``which``: float32 (len(which), SIZE), a new array."""
         rows = np.empty((len(which), self.SIZE), np.float32)
-        frame_kernels.observe(which, player, self.arrays, self._setting, rows)
+        frame_kernels.observe(which, player, self.arrays, self.saved_arrays, self._setting, rows)
         return rows
 
     # states ----------------------------------------------------------------------------------------------------------------

@@ -1,7 +1,8 @@
 """What happens to frames inside a step? Decisions, the referee, observations, rewards and infos, as kernels over tables.
 
-``tasks.frame`` calls them in the order of a turn. ``which``: the tables concerned; row j of a shot's arrays belongs to which[j].
-``tables``, ``shots``, ``output``, ``setting``: the parts of ``TableArrays``, ``ShotArrays``, ``OutputArrays`` and ``Setting``.
+``tasks.frame`` calls them in the order of a turn. ``which``: the tables concerned; row j of a shot's arrays
+belongs to which[j]. ``tables``, ``saved``, ``shots``, ``output``, ``setting``: the parts of ``TableArrays``,
+``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``.
 """
 
 from typing import NamedTuple
@@ -45,6 +46,7 @@ from ..game.frame_columns import (
     WINNER,
     Conditions,
     Effort,
+    Layouts,
     after_stroke,
     begin_frame,
     choose,
@@ -63,7 +65,7 @@ from ..game.rule_sets import SHOOT_OUT, SIX_RED
 from ..game.ruling import AUTO, FLAG, OUTCOME, Facts
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import Status
-from .arrays import OutputArrays, ShotArrays, TableArrays
+from .arrays import OutputArrays, PlayedArrays, TableArrays
 from .declarations import (
     A_DECISION,
     A_LOT,
@@ -128,7 +130,7 @@ class Setting(NamedTuple):
 
 
 @kernel
-def _choose(k, wish, rules, tables):
+def choose_as(k, wish, rules, tables, saved):
     """The decision ``wish`` after a foul; whether a stroke follows."""
     row = tables.game[k]
     what = PLAY_AGAIN if wish < -1.0 / 3.0 else PLAY
@@ -136,15 +138,15 @@ def _choose(k, wish, rules, tables):
         what = REPLACE if may_replace(row, rules) else PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
     choose(row, what)
     if what == REPLACE:
-        p, saved = tables.positions[k], tables.saved_positions[k]
+        p, on, back, back_on = tables.positions[k], tables.on_table[k], saved.positions[k], saved.on_table[k]
         for i in range(N_BALLS):
-            p[i, 0], p[i, 1], tables.on_table[k, i] = saved[i, 0], saved[i, 1], tables.saved_on_table[k, i]
+            p[i, 0], p[i, 1], on[i] = back[i, 0], back[i, 1], back_on[i]
     return what == PLAY or what == PLACE_ANYWHERE
 
 
 @kernel
-def _give_up(row, reward):
-    """Charge the loser of a frame that was given up, conceded or by a third miss, with the points left on the table; the score stands.
+def give_up(row, reward):
+    """Charge the loser of a frame that was given up, or lost by a third miss, with the points left.
 
     S4 R5(b), for matches in which points are added up: eight for each red, and the colours. Otherwise it would pay to give up at once.
     """
@@ -154,13 +156,14 @@ def _give_up(row, reward):
 
 
 @entry(what="the decisions of frames", seconds=2)
-def decide(which, actions, tables, setting, plays):
+def decide(which, actions, tables, saved, setting, plays):
     """What the strikers of the tables ``which`` say before a stroke: declarations, decisions after a foul, nominations.
 
-    A decision below -1/3: the offender plays again; above 1/3: from the position before, if a miss was called, or, after the last one that
-    may be, the striker from anywhere on the table. ``plays[j]``: whether a stroke follows.
+    A decision below -1/3: the offender plays again; above 1/3: from the position before, if a miss was
+    called, or, after the last one that may be, the striker from anywhere on the table. ``plays[j]``: whether
+    a stroke follows.
     """
-    tables, setting = TableArrays(*tables), Setting(*setting)
+    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
     options = setting.options
     for j in range(which.shape[0]):
         k = which[j]
@@ -169,14 +172,14 @@ def decide(which, actions, tables, setting, plays):
         plays[j] = said == SAYS_NOTHING
         if said == CONCEDES:
             concede(row)
-            _give_up(row, setting.reward)
+            give_up(row, setting.reward)
         elif said == CLAIMS:
             claim(row)
         elif row[PHASE] == LOT:
             draw(row, 1 - row[STRIKER] if said == OTHER_BEGINS else row[STRIKER])
         elif row[PHASE] == CHOICE:
             wish = a[int(options[A_DECISION])] if options[A_DECISION] >= 0 else 0.0
-            plays[j] = _choose(k, wish, setting.rules, tables)
+            plays[j] = choose_as(k, wish, setting.rules, tables, saved)
         if plays[j] and options[A_NOMINATE] >= 0:
             tables.nominated[k] = nomination_of(a, options, row)
 
@@ -213,7 +216,8 @@ def conclude(which, tables, shots, setting, own, alone, played, output):
 
     What each striker has nominated is AUTO afterwards. ``alone``: the table returns to the agent.
     """
-    tables, shots, setting, out = TableArrays(*tables), ShotArrays(*shots), Setting(*setting), OutputArrays(*output)
+    tables, shots, setting = TableArrays(*tables), PlayedArrays(*shots), Setting(*setting)
+    out = OutputArrays(*output)
     rules, conditions = setting.rules, Conditions(setting.rules, setting.miss, setting.time_to_play)
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
@@ -238,10 +242,11 @@ def conclude(which, tables, shots, setting, own, alone, played, output):
         tables.nominated[k] = AUTO
         write_ruling(seen, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result)
         effort = Effort(seen[CLEAR_PATH], seen[FULL_PATH], seen[ATTEMPT])
-        after_stroke(row, result, conditions, effort, setting.miss != NO_MISSES, int(1000.0 * shots.duration[j] + 0.5))
+        lasted = int(1000.0 * shots.duration[j] + 0.5)
+        after_stroke(row, result, conditions, effort, setting.miss != NO_MISSES, lasted)
         row[STROKES] += 1
         if row[OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
-            _give_up(row, setting.reward)
+            give_up(row, setting.reward)
         if row[PHASE] == LOT:
             _leave_the_black(p, on)
             u, _ = pair(tables.streams[k])
@@ -269,19 +274,20 @@ def _share(number, scale):
 
 
 @kernel
-def observe_frame_into(out, k, tables, setting, player):
-    """Write the observation of ``player``: that of a visit, then ``observations.FRAME_ENTRIES``, then the saved layout if there is room."""
+def observe_frame_into(out, k, tables, saved, setting, player):
+    """Write what ``player`` observes: as in a visit, ``FRAME_ENTRIES`` and, with room, the saved layout."""
     row, present = tables.game[k], tables.on_table[k]
     on = strikeable(row, bits(present) & ~1)
     observe_into(out, tables.positions[k], present, row[BALL_ON], on, row[IN_HAND], row[POINTS])
     mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
     to_play, left = not row[OVER] and row[STRIKER] == player, available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
+    clock = min(1.0, row[CLOCK] / setting.clock) if setting.clock else 0.0
     more = (
         _share(mine, 147.0), _share(other, 147.0), _share(mine - other, 147.0), left / 155.0,
         1.0 if to_play else 0.0, 1.0 if row[FREE_BALL] else 0.0, 1.0 if row[PHASE] == CHOICE else 0.0, 1.0 if row[MISS_CALLED] else 0.0,
         1.0 if row[RESPOTTED_BLACK] else 0.0, 1.0 if row[BREAKER] == player else 0.0, row[FAILURES] / 2.0, 1.0 if row[WARNED] else 0.0,
         1.0 if row[PHASE] == LOT else 0.0, _share(row[FRAMES_0 + player], 1.0), _share(row[FRAMES_1 - player], 1.0),
-        _share(setting.frames, 1.0), min(1.0, row[CLOCK] / setting.clock) if setting.clock else 0.0, _share(row[MISSES], 5.0),
+        _share(setting.frames, 1.0), clock, _share(row[MISSES], 5.0),
         1.0 if row[ANYWHERE] else 0.0,
     )  # fmt: skip
     for c in range(len(more)):
@@ -289,18 +295,18 @@ def observe_frame_into(out, k, tables, setting, player):
     if out.shape[0] == FRAME_SIZE:
         return
     for i in range(N_BALLS):
-        at, back = FRAME_SIZE + 3 * i, row[MISS_CALLED] and tables.saved_on_table[k, i]
-        out[at] = tables.saved_positions[k, i, 0] / HALF_WIDTH if back else 0.0
-        out[at + 1] = tables.saved_positions[k, i, 1] / HALF_LENGTH if back else 0.0
+        at, back = FRAME_SIZE + 3 * i, row[MISS_CALLED] and saved.on_table[k, i]
+        out[at] = saved.positions[k, i, 0] / HALF_WIDTH if back else 0.0
+        out[at + 1] = saved.positions[k, i, 1] / HALF_LENGTH if back else 0.0
         out[at + 2] = 1.0 if back else 0.0
 
 
 @entry(what="the observations of frames", seconds=1)
-def observe(which, player, tables, setting, rows):
+def observe(which, player, tables, saved, setting, rows):
     """The observations of ``player`` on the tables ``which``: one of ``rows`` each."""
-    tables, setting = TableArrays(*tables), Setting(*setting)
+    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
     for j in range(which.shape[0]):
-        observe_frame_into(rows[j], which[j], tables, setting, player)
+        observe_frame_into(rows[j], which[j], tables, saved, setting, player)
 
 
 @kernel
@@ -327,25 +333,27 @@ def _worth(row, reward):
 
 
 @entry(what="the steps of frames", seconds=1)
-def finish(which, tables, setting, due, replies, played, output):
+def finish(which, tables, saved, setting, due, replies, played, output):
     """Write the results of a step for the tables ``which``; ``played`` (n,): whether the agent had a stroke.
 
     ``due`` (n,): whether the end of the frame has still to be reported: it is not, afterwards.
     """
-    tables, setting, out = TableArrays(*tables), Setting(*setting), OutputArrays(*output)
+    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
         row = tables.game[k]
         row[STEPS] += 1
         worth = _worth(row, setting.reward)
-        out.rewards[k] = frame_reward_of(setting.reward, worth - row[PAID], row[WINNER] if row[OVER] else -1, AGENT)
+        winner = row[WINNER] if row[OVER] else -1
+        out.rewards[k] = frame_reward_of(setting.reward, worth - row[PAID], winner, AGENT)
         row[PAID], due[k] = worth, False
-        out.terminated[k] = row[OVER]
-        out.truncated[k] = (not row[OVER] and row[STROKES] >= setting.max_strokes) or row[STEPS] >= setting.limit
+        stopped = not row[OVER] and row[STROKES] >= setting.max_strokes
+        out.terminated[k], out.truncated[k] = row[OVER], stopped or row[STEPS] >= setting.limit
         if not played[k]:
             write_empty_info(k, out, row[BALL_ON])
         _write_frame_info(k, row, AGENT, replies[k], out)
-        observe_frame_into(out.observations[k], k, tables, setting, AGENT)
+        observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)
 
 
 @entry
@@ -375,7 +383,7 @@ def begin(which, drawn, breakers, in_hand, on_table, game, streams):
 
 @entry(what="the frames of a match", seconds=1)
 def count_frames(which, game, needed, goes_on):
-    """Count the frames that have ended on the tables ``which`` for their winners; ``goes_on[j]``: the match, won by ``needed``, does."""
+    """Count the frames that have ended on the tables ``which``; ``goes_on[j]``: nobody has won ``needed``."""
     for j in range(which.shape[0]):
         row = game[which[j]]
         row[FRAMES_0 + row[WINNER]] += 1
@@ -395,13 +403,14 @@ def begin_next(which, alone, reward, in_hand, on_table, game):
 
 
 @entry(what="the resets of frames", seconds=1)
-def show(which, fresh, tables, setting, replies, output):
-    """Write the results of a reset for the tables ``which``; with ``fresh``, its last arrays first keep the previous rows."""
-    tables, setting, out = TableArrays(*tables), Setting(*setting), OutputArrays(*output)
+def show(which, fresh, tables, saved, setting, replies, output, last):
+    """Write the results of a reset for the tables ``which``; ``fresh``: ``last`` first keeps the old rows."""
+    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
         if fresh:
-            keep_last(k, out)
+            keep_last(k, out, last)
         write_empty_info(k, out, tables.game[k, BALL_ON])
         _write_frame_info(k, tables.game[k], AGENT, replies[k], out)
-        observe_frame_into(out.observations[k], k, tables, setting, AGENT)
+        observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)

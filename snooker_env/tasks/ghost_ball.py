@@ -1,6 +1,5 @@
 """How does the built-in opponent "ghost_ball" play? The widest direct pot, softly; without one, a plain stroke. A kernel over tables."""
 
-from collections.abc import Sequence
 from math import atan2, cos, hypot, sin, sqrt
 from typing import TYPE_CHECKING, Any
 
@@ -27,12 +26,14 @@ from ..game.frame_columns import (
 from ..game.philox import pair
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..game.rule_sets import SHOOT_OUT
+from ..game.ruling import AUTO
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
-from .arrays import ShotArrays, TableArrays
+from .arrays import StruckArrays
 from .declarations import A_END_MASS, A_NOMINATE, nominated_ball
 from .escapes import ROLL
 from .lines import LINE_ROWS, racked
+from .opponents import SIDE, Opponent
 from .plain_stroke import BREAK_X, SLIDE, break_off, plain, soft
 from .stroke import ShotBuffers, place, place_anywhere, strike
 
@@ -134,50 +135,84 @@ def named(positions, on_table, row, aim):
     return nominated_ball(max(0, ball - YELLOW + 1), row)
 
 
+@kernel
+def geometric_turn(positions, on_table, row, rules, found, stream):
+    """A turn of the geometric player: (speed, side, top, aim, what it nominates, what it decides after a foul).
+
+    ``row``: of a visit or a frame, after its decision; a cue ball in hand is placed. ``rules``: the code of the rule set.
+    """
+    frame, decision = row.shape[0] > ANYWHERE, PLAY
+    if frame and row[PHASE] == CHOICE:
+        decision = PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
+        choose(row, decision)
+    elif frame and row[PHASE] == LOT:
+        draw(row, row[STRIKER])
+    mask = strikeable(row, bits(on_table) & ~1)
+    if row[IN_HAND]:
+        put(positions, on_table, mask, frame and row[ANYWHERE], found, stream)
+    jitter, _ = pair(stream)
+    failed = frame and row[SAVED] != 0  # it plays from a position that has been restored
+    drive = DRIVE if rules == SHOOT_OUT else 0.0
+    speed, side, top, aim = stroke_at(positions, on_table, mask, row[IN_HAND], failed, drive, found, stream)
+    speed *= 1.0 + (0.04 if row[IN_HAND] and racked(positions, on_table) else 0.2) * (jitter - 0.5)
+    return speed, side, top, aim, named(positions, on_table, row, aim) if frame else AUTO, decision
+
+
 @entry(what="the geometric opponent", seconds=3)
 def _ghost_ball(which, tables, shots, packed, rules):
     """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike. ``rules``: the code of the rule set."""
-    (positions, on_table, game, streams, nominated, _, _), shots = TableArrays(*tables), ShotArrays(*shots)
-    options, noise, _ = packed
-    found, drive = np.empty((LINE_ROWS, POT_COLUMNS)), DRIVE if rules == SHOOT_OUT else 0.0
+    positions, on_table, game, streams, nominated = tables
+    shots, (options, noise, _), found = StruckArrays(*shots), packed, np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
-        p, on, row, stream = positions[k], on_table[k], game[k], streams[k]
-        if row[PHASE] == CHOICE:
-            choose(row, PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY)
-        elif row[PHASE] == LOT:
-            draw(row, row[STRIKER])
-        mask = strikeable(row, bits(on) & ~1)
-        if row[IN_HAND]:
-            put(p, on, mask, row[ANYWHERE], found, stream)
-        jitter, _ = pair(stream)
-        failed = row[SAVED] != 0  # it plays from a position that has been restored
-        speed, side, top, aim = stroke_at(p, on, mask, row[IN_HAND], failed, drive, found, stream)
+        p, on = positions[k], on_table[k]
+        speed, side, top, aim, colour, _ = geometric_turn(p, on, game[k], rules, found, streams[k])
         if options[A_NOMINATE] >= 0:
-            nominated[k] = named(p, on, row, aim)
-        speed *= 1.0 + (0.04 if row[IN_HAND] and racked(p, on) else 0.2) * (jitter - 0.5)
-        strike((speed, side, top, aim - squirt(side, options[A_END_MASS]), 0.0), p, on, stream, options, noise, j, shots)
+            nominated[k] = colour
+        intended = (speed, side, top, aim - squirt(side, options[A_END_MASS]), 0.0)
+        strike(intended, p, on, streams[k], options, noise, j, shots)
 
 
-class GhostBallOpponent:
-    """The geometric player: the widest direct pot (``game.pots``), struck in the middle, as softly as possible.
+@entry(what="the geometric player", seconds=3)
+def geometric_strokes(positions, on_table, game, rules, streams, strokes, nominated, decisions):
+    """The strokes (n, 5) of the geometric player, what it nominates and decides (n,), for rows of visits or frames.
+
+    The arrays are changed: cue balls in hand are placed. ``rules``: the code of the rule set.
+    """
+    found = np.empty((LINE_ROWS, POT_COLUMNS))
+    for k in range(len(game)):
+        speed, side, top, aim, colour, decision = geometric_turn(positions[k], on_table[k], game[k], rules, found, streams[k])
+        nominated[k], decisions[k] = colour, decision
+        strokes[k, 0], strokes[k, 1], strokes[k, 2], strokes[k, 3], strokes[k, 4] = speed, side, top, aim, 0.0
+
+
+@entry(what="the places of a cue ball in hand", seconds=2)
+def put_in_hand(positions, on_table, game, streams):
+    """Place the cue balls in hand of n positions, of visits or frames, in place."""
+    found = np.empty((LINE_ROWS, POT_COLUMNS))
+    for k in range(len(game)):
+        row = game[k]
+        if row[IN_HAND]:
+            anywhere = row.shape[0] > ANYWHERE and row[ANYWHERE] != 0
+            put(positions[k], on_table[k], strikeable(row, bits(on_table[k]) & ~1), anywhere, found, streams[k])
+
+
+class GhostBallOpponent(Opponent):
+    """The geometric player ``ghost_ball`` as a kernel: the widest direct pot (``game.pots``), as softly as possible.
 
     * Without a pot it plays a plain stroke (``plain_stroke``): the break-off, a soft stroke at a ball on that it sees, an escape.
     * It nominates the colour that its line meets first. It never concedes or claims, and begins if it wins the lot.
-    * With the cue ball in hand it takes the best of ten places in the D. Where it may stand anywhere, it is placed straight behind the ball
-      of the easiest pot. After a foul it always plays the table as it lies.
+    * With the cue ball in hand it takes the best of ten places in the D. Where it may stand anywhere, it is placed straight
+      behind the ball of the easiest pot. After a foul it always plays the table as it lies.
     * In the Shoot Out its plain strokes are harder, so that a ball reaches a cushion.
     * It allows for neither throw nor position.
-    * Its speed varies by a tenth (at the break-off by a fiftieth), and the direction of a plain stroke within the window that strikes the
-      ball. From a position that was restored after its miss it tries no pot, and varies more: two exact players cannot repeat one failing
-      stroke for ever.
+    * Its speed varies by a tenth (at the break-off by a fiftieth), and the direction of a plain stroke within the window
+      that strikes the ball. From a position that was restored after its miss it tries no pot, and varies more: two exact
+      players cannot repeat one failing stroke for ever.
     """
 
-    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> None:
-        """None: it plays as a kernel."""
-
-    def prepare(self, frames: "Frames", which: Ints, actions: Any, buffers: ShotBuffers) -> Ints:
+    def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
         """Carry its strokes out up to the strike, one on each table."""
-        _ghost_ball(which, frames.arrays, buffers.arrays, frames.packed, frames.rules.rule_set.code)
+        _ghost_ball(which, frames.arrays, buffers.struck, frames.packs[SIDE], frames.rules.rule_set.code)
         frames.hold_late(which, buffers)
         return which

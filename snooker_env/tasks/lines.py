@@ -42,7 +42,8 @@ _APART = 2e-3
 @entry  # it makes arrays, which an inner kernel may not
 def new_work():
     """New work space for one table after another."""
-    return Work(np.empty((LINE_ROWS, POT_COLUMNS)), np.empty((2, COLUMNS)), np.empty(2, np.int64), np.empty(WORK))
+    lines, motion = np.empty((LINE_ROWS, POT_COLUMNS)), np.empty((2, COLUMNS))
+    return Work(lines, motion, np.empty(2, np.int64), np.empty(WORK))
 
 
 @kernel

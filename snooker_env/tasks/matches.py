@@ -34,7 +34,7 @@ class Matches(Frames):
             return
         plan = self.rules.plan
         deal_tables(ended, plan.code, plan.tables, self.streams, self.positions, self.on_table)
-        alone = self.rules.opponent is None and not self.two_players
+        alone = len(self.seats) == 1
         frame_kernels.begin_next(ended, alone, self._reward, plan.in_hand, self.on_table, self.game)
 
     def _worth(self, k):

@@ -8,7 +8,7 @@ import numpy as np
 from .._check import integer, number, refuse
 from .._types import Ints
 from ..game.frame_columns import OPPONENT
-from .player_opponent import drawn
+from .opponents import Opponent, drawn
 
 if TYPE_CHECKING:
     from .frame import Frames
@@ -24,7 +24,7 @@ class OpponentPool:
     Parameters
     ----------
     members : iterable, optional
-        What ``opponent=`` of an environment accepts, except another pool: names, models' files, callables, players. Default: none yet.
+        What ``opponent=`` of an environment accepts, except another pool. Default: none yet.
     weights : iterable of float, optional
         One weight for each member, at least 0; default 1 for each.
 
@@ -130,7 +130,7 @@ class OpponentPool:
         self._weights[integer("index", index, 0, len(self._members) - 1)] = number("weight", weight, 0.0)
 
 
-class PoolOpponent:
+class PoolOpponent(Opponent):
     """The members of a pool as opponents; ``opponent_of`` makes a member ready to play."""
 
     def __init__(self, pool: OpponentPool, opponent_of: Callable[[Any], Any]):
@@ -146,17 +146,20 @@ class PoolOpponent:
             except ValueError as error:
                 raise ValueError(f"members[{k}] of the OpponentPool: {error}") from error
 
-    def asked(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> list[tuple[Any, Ints, Any]]:
-        """As ``opponents.asked``: one entry for each member that plays on some of the tables ``which``."""
+    def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: Any) -> Ints:
+        """Nothing: its members play."""
+        return which[:0]
+
+    def turns(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> list[tuple[Opponent, Ints, Any]]:
+        """As ``Opponent.turns``: one entry for each member that plays on some of the tables ``which``."""
         self._complete()
         self._draw(frames, which)
         playing = frames.game[which, OPPONENT]
-        turns = []
+        turns: list[tuple[Opponent, Ints, Any]] = []
         for number_ in np.unique(playing).tolist():
             if number_ > len(self._ready):
                 raise refuse("opponent", f"member {number_ - 1} of a pool", f"must be below {len(self._ready)}, as many as the pool has")
-            member, own = self._ready[number_ - 1], which[playing == number_]
-            turns.append((member, own, member.ask(frames, own, generators)))
+            turns += self._ready[number_ - 1].turns(frames, which[playing == number_], generators)
         return turns
 
     def _draw(self, frames, which):

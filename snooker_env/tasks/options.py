@@ -6,6 +6,7 @@ keywords.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -24,7 +25,6 @@ from . import observations
 from .box_actions import AIMS, Actions
 from .discrete_actions import Choices
 from .noise import Noise, NoiseLike
-from .opponents import Opponent, OpponentLike, opponent_of
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
 from .table_fit import fitted, table_of
 
@@ -43,6 +43,8 @@ on average, and never more than 560 in 2,000 frames (``benchmarks.frames``). Pla
 """
 FRAMES = 7
 """Default length of a match: best of 7."""
+OBJECT = "object"
+"""As the option ``opponent``: whoever was passed to the environment as an object."""
 NEVER = 2**62
 """Stands for no limit of strokes or steps."""
 
@@ -66,8 +68,6 @@ class Rules:
     """In a frame: the rule for a foul and a miss."""
     max_strokes: int = NEVER
     """In a frame: number of strokes of both players after which it is stopped."""
-    opponent: Opponent | None = None
-    """In a frame: the player of the other side, from ``opponents.opponent_of``."""
     one_stroke: bool = False
     """In a visit: whether it ends after its first stroke."""
     frames: int = 0
@@ -126,9 +126,9 @@ class Options:
         "match" (default), "tight", or a ``Table`` whose noses are where snooker's are.
     fidelity : str, optional
         How impacts are solved: "fast", "standard" (default), "reference" or "euler:N".
-    opponent : str, Path or callable, optional
-        In a frame: "none" (default), "random", "ghost_ball", the name of a player, a model's ``.zip``, ``opponent(observation, rng) ->
-        action``, a player object, or an ``OpponentPool`` of these (docs/environment/opponents.md).
+    opponent : str or Path, optional
+        In a frame: "none" (default), or what ``snooker_env.player`` takes: the name of a player, a model's ``.zip``, ... Environments
+        also take objects as their keyword ``opponent`` (docs/environment/opponents.md); their options then say "object".
     miss : {"off", "clear_path", "attempt"}, optional
         In a frame: the rule for a foul and a miss (docs/environment/rules.md). Default "off".
     decision : bool, optional
@@ -183,7 +183,7 @@ class Options:
     physics: PhysicsLike = "paper"
     table: TableLike = "match"
     fidelity: Fidelity = "standard"
-    opponent: OpponentLike = "none"
+    opponent: str | Path = "none"
     miss: MissRule = "off"
     decision: bool = False
     max_strokes: int | None = MAX_STROKES
@@ -216,7 +216,7 @@ class Options:
         truth("trust", self.trust)
         choice("reward", self.reward, {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}[self.task])
         one_stroke = truth("one_stroke", self.one_stroke)
-        limit, opponent = NEVER, None
+        limit = NEVER
         frames = self._frames()
         if frame:
             choice("miss", self.miss, MISS_RULES)
@@ -226,14 +226,15 @@ class Options:
             if not rule_set(self.game).clock and self.time_to_play != TIME_TO_PLAY:
                 raise refuse("time_to_play", self.time_to_play, f'must be {TIME_TO_PLAY} with game="{self.game}", which has no clock')
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
-            replaced = self.miss != "off"
-            opponent = opponent_of(self.opponent, self.observation, actions, self.trust, shared=self._shared(), replaced=replaced)
+            if not isinstance(self.opponent, str | Path) or not str(self.opponent):
+                raise refuse("opponent", self.opponent, "must be text in Options; pass an object to the environment, beside them")
+            object.__setattr__(self, "opponent", str(self.opponent))
             if one_stroke:
                 raise refuse("one_stroke", True, f'must be False with task="{self.task}"; it belongs to task="visit"')
         else:
             self._check_visit()
         read = Rules(
-            actions, noise, physics, table, fidelity, plan, self.reward, self.observation, self.miss, limit, opponent, one_stroke, frames,
+            actions, noise, physics, table, fidelity, plan, self.reward, self.observation, self.miss, limit, one_stroke, frames,
             self.game, round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME)),
         )  # fmt: skip
         object.__setattr__(self, "rules", read)
@@ -247,10 +248,6 @@ class Options:
         if integer("frames", self.frames, 1, 999) % 2 == 0:
             raise refuse("frames", self.frames, "must be odd, so that one player wins")
         return int(self.frames)
-
-    def _shared(self) -> dict[str, Any]:
-        """The options that both players share: all but those that say how the agent sees, acts and is paid, and against whom."""
-        return {name: getattr(self, name) for name in NAMES if name not in AGENTS}
 
     def _physics(self) -> Physics:
         physics = Physics.of(self.physics)
@@ -307,11 +304,6 @@ class Options:
 FRAME_ONLY = ("opponent", "trust", "miss", "decision", "max_strokes", "nominate", "concede", "claim", "lot", "game", "time_to_play")
 """Options that have a meaning in the frame task only."""
 NAMES = tuple(f.name for f in fields(Options) if f.init)
-AGENTS = (
-    "action", "aim", "observation", "reward", "elevation", "placement", "decision", "opponent", "trust", "one_stroke", "nominate",
-    "concede", "claim", "lot",
-)  # fmt: skip
-"""Options of the agent alone."""
 
 
 def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:

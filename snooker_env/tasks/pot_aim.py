@@ -22,9 +22,9 @@ _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve
 
 @kernel
 def _passes(aim, stroke, c, b, p, law, work):
-    """Angle [rad] by which the object ball at b, hit by a cue ball sent from c in the direction ``aim``, passes p on the left; 9 if missed.
+    """Angle [rad] by which the ball at b, hit by a cue ball sent from c, passes p on the left; 9: missed.
 
-    ``stroke``: (speed, side, top, elevation); ``law``, ``work``: ``Law``, ``Work``.
+    ``stroke``: (speed, side, top, elevation).
     """
     (speed, side, top, elevation), (cx, cy), (bx, by), (px, py) = stroke, c, b, p
     phys, m, motion, state = law.phys, law.end_mass_ratio, work.motion, work.state
@@ -79,8 +79,8 @@ def _passes(aim, stroke, c, b, p, law, work):
 def solved_aim(positions, ball, target, ghost, stroke, law, work):
     """Direction [rad] in which the cue ball must leave to send ``ball`` to the point ``target`` (x, y).
 
-    ``ghost``: (x, y) of the straight line's ghost ball; ``stroke``: (speed, side, top, elevation); ``law``, ``work``: ``Law``, ``Work``.
-    If no direction succeeds (the stroke is too soft to arrive or the cut too thin), the best one tried is returned.
+    ``ghost``: (x, y) of the straight line's ghost ball; ``stroke``: (speed, side, top, elevation). If no
+    direction succeeds (the stroke is too soft to arrive or the cut too thin), the best one tried is returned.
     """
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]

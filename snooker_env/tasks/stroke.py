@@ -22,7 +22,7 @@ from ..physics import cloth, cue, engine
 from ..physics.engine import EventKind, Status
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
-from .arrays import CueLaw, ShotArrays, TableArrays
+from .arrays import CueLaw, StruckArrays
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, playable
 from .lines import new_work
@@ -146,10 +146,10 @@ def _same_table(positions, on_table, other, other_on):
 def address(which, actions, tables, shots, packed, fidelity):
     """Carry the actions (n, k) of the tables ``which`` out up to the strike: shot j is that of table which[j].
 
-    ``tables``, ``shots``: the parts of ``TableArrays`` and ``ShotArrays``; ``packed``: ``Tables.packed``.
+    ``tables``, ``shots``: the parts of ``TableArrays`` and ``StruckArrays``; ``packed``: ``Tables.packed``.
     """
-    (positions, on_table, game, streams, nominated, _, _), shots = TableArrays(*tables), ShotArrays(*shots)
-    options, noise, phys = packed
+    positions, on_table, game, streams, nominated = tables
+    shots, (options, noise, phys) = StruckArrays(*shots), packed
     law, work = CueLaw(phys, options[A_END_MASS], *fidelity), new_work()
     solved, mask_before = np.empty(6), 0  # the last choice, and the stroke that it means
     for j in range(which.shape[0]):
@@ -182,9 +182,9 @@ def address(which, actions, tables, shots, packed, fidelity):
 
 @kernel
 def see(j, shots, positions, on_table):
-    """Extract the referee's facts of shot j, played from ``positions`` and ``on_table`` (as before it), into its row of ``seen``.
+    """The referee's facts of shot j, with ``positions`` and ``on_table`` as before it; also in ``seen``.
 
-    Returns them: (first, touching, moved, potted), as in ``ruling.Facts``.
+    Returns (first, touching, moved, potted), as in ``ruling.Facts``.
     """
     shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
@@ -200,9 +200,9 @@ def see(j, shots, positions, on_table):
 
 @kernel
 def write_ruling(seen, player, ball_on, free_ball, before, result):
-    """Record the referee's ``Ruling`` on a shot, whose row is ``seen``; ``before``: points of the break until then."""
-    seen[PLAYER], seen[WAS_ON], seen[FREE] = player, ball_on, free_ball
-    seen[BREAK], seen[SCORED], seen[COST], seen[FOULS] = before + result.points, result.points, result.penalty, result.fouls
+    """Record the referee's ``Ruling`` on a shot in its row of ``seen``; ``before``: the break until then."""
+    seen[PLAYER], seen[WAS_ON], seen[FREE], seen[BREAK] = player, ball_on, free_ball, before + result.points
+    seen[SCORED], seen[COST], seen[FOULS] = result.points, result.penalty, result.fouls
 
 
 class ShotBuffers:
@@ -232,6 +232,9 @@ class ShotBuffers:
     """(m,) how each shot ended, and how long it took [s]."""
     enlarged: "dict[int, ShotBuffers]"
     """Shots of the last run that needed a longer log: row -> their own buffers."""
+    struck: tuple[Any, ...]
+    played: tuple[Any, ...]
+    """For kernels: the parts of ``StruckArrays`` and ``PlayedArrays``, in plain tuples."""
 
     def __init__(self, m: int, log: int = 512, *, path: bool = False):
         self.log = log
@@ -242,15 +245,10 @@ class ShotBuffers:
         self.segments = np.zeros((m, 2 * log + N_BALLS + 2 if path else 0, cloth.COLUMNS + 2))
         self.status, self.n_events, self.n_segments = (np.zeros(m, np.int64) for _ in range(3))
         self.duration = np.zeros(m)
+        self.struck = self.r, self.v, self.w, self.here, self.shots
+        log = self.event_time, self.event_what, self.n_events
+        self.played = self.r, self.shots, self.seen, self.potted, self.status, self.duration, *log
         self.enlarged = {}
-
-    @property
-    def arrays(self) -> tuple[Any, ...]:
-        """For kernels: the parts of ``ShotArrays``, in a plain tuple."""
-        return (
-            self.r, self.v, self.w, self.here, self.shots, self.seen, self.potted, self.status, self.duration, self.event_time,
-            self.event_what, self.n_events, self.segments, self.n_segments,
-        )  # fmt: skip
 
     def __len__(self) -> int:
         return len(self.duration)

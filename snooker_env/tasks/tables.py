@@ -16,6 +16,7 @@ from ..game.frame_columns import BALL_ON, IN_HAND, OVER
 from ..game.philox import stream_of
 from ..physics.parameters import Physics
 from . import discrete_actions, stroke
+from .box_actions import Actions
 from .discrete_actions import Choices
 from .options import NEVER, Rules
 from .played import Played, judged, struck
@@ -35,12 +36,13 @@ def copy_row(row, to):
 
 
 @kernel
-def keep_last(k, out):
-    """Save table k's rows of the ``OutputArrays``, if there is room, before a new episode overwrites them."""
-    if out.last_observations.shape[0]:
-        copy_row(out.observations[k], out.last_observations[k])
-        copy_row(out.reals[k], out.last_reals[k])
-        copy_row(out.counts[k], out.last_counts[k])
+def keep_last(k, out, last):
+    """Save table k's rows of the output in ``last``, if it has rows, before an episode overwrites them."""
+    observations, reals, counts = last
+    if observations.shape[0]:
+        copy_row(out.observations[k], observations[k])
+        copy_row(out.reals[k], reals[k])
+        copy_row(out.counts[k], counts[k])
 
 
 @kernel
@@ -110,10 +112,12 @@ class StepOutput:
     @property
     def arrays(self) -> tuple[Any, ...]:
         """For kernels: the parts of ``OutputArrays``, in a plain tuple."""
-        return (
-            self.observations, self.rewards, self.terminated, self.truncated, self.reals, self.counts, self.last_observations,
-            self.last_reals, self.last_counts,
-        )  # fmt: skip
+        return self.observations, self.rewards, self.terminated, self.truncated, self.reals, self.counts
+
+    @property
+    def last(self) -> tuple[Singles, Floats, Ints]:
+        """The arrays that keep the end of an episode where another one starts."""
+        return self.last_observations, self.last_reals, self.last_counts
 
 
 class Crew:
@@ -174,9 +178,6 @@ class Tables(ABC):
     """(n, 2) Key and counter of each table's random stream."""
     nominated: Ints = np.empty(0, np.int64)
     """(n,) Of frames: the colour that each striker has nominated. A visit has none: no rows."""
-    _saved_positions: Floats = np.empty((0, N_BALLS, 2))
-    _saved_on_table: Bools = np.empty((0, N_BALLS), np.bool_)
-    """Of frames: where the balls lay before the last foul (``frame_columns.Layouts``). A visit has no rows."""
     begun: Bools
     """(n,) Which tables have an episode, possibly one that has ended."""
     packed: tuple[Floats, Floats, Floats]
@@ -194,9 +195,7 @@ class Tables(ABC):
     @property
     def arrays(self) -> tuple[Any, ...]:
         """For kernels: the parts of ``arrays.TableArrays``, in a plain tuple."""
-        return (
-            self.positions, self.on_table, self.game, self.streams, self.nominated, self._saved_positions, self._saved_on_table,
-        )  # fmt: skip
+        return self.positions, self.on_table, self.game, self.streams, self.nominated
 
     def seed(self, k: int, rng: np.random.Generator) -> None:
         """Give table k a new stream with a key drawn from a NumPy generator."""
@@ -243,10 +242,12 @@ class Tables(ABC):
 
     def action_masks(self, which: Ints | None = None) -> Bools:
         """Available discrete actions on the tables ``which`` (all if None): bool (len(which), choices)."""
-        which = np.arange(self.n) if which is None else which
-        actions = self.rules.actions
+        return self.masks_of(np.arange(self.n) if which is None else which, self.rules.actions, self.packed[0])
+
+    def masks_of(self, which: Ints, actions: Actions | Choices, options: Floats) -> Bools:
+        """``action_masks`` of one space of actions; ``options``: packed, of it."""
         out = np.empty((len(which), actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE), np.bool_)
-        options = self.packed[0] if isinstance(actions, Choices) else STROKES_ONLY
+        options = options if isinstance(actions, Choices) else STROKES_ONLY
         discrete_actions.masks(which, self.positions, self.on_table, self.game, options, out)
         return out
 
@@ -287,7 +288,11 @@ class Tables(ABC):
 
     def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers) -> None:
         """Carry the actions (n, k) of the tables ``which`` out up to the strike."""
-        stroke.address(which, actions, self.arrays, buffers.arrays, self.packed, self.rules.fidelity)
+        self.strike(which, actions, buffers, self.packed)
+
+    def strike(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: tuple[Floats, Floats, Floats]) -> None:
+        """``address`` with the options and errors of ``packed``."""
+        stroke.address(which, actions, self.arrays, buffers.struck, packed, self.rules.fidelity)
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
         """Play the shots of the tables ``which`` that have been struck; returns the rows of shots that need ``again``."""

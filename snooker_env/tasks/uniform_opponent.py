@@ -11,6 +11,7 @@ from ..game.philox import pair
 from .declarations import COLOURS
 from .discrete_actions import SIZE as CHOICES
 from .discrete_actions import Choices
+from .opponents import SIDE, Opponent
 from .stroke import ShotBuffers
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def _uniform_choice(which, streams, masks, actions):
                 left -= 1
 
 
-class UniformOpponent:
+class UniformOpponent(Opponent):
     """Uniform random play: every component of a box action, the decision included; or one of the available discrete actions.
 
     It never concedes: its declarations and choices are drawn from the others.
@@ -54,18 +55,18 @@ class UniformOpponent:
 
     def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
         """Empty actions: ``prepare`` draws them from each table's own stream."""
-        return np.empty((frames.n, frames.rules.actions.size))
+        return np.empty((frames.n, frames.seats[SIDE].actions.size))
 
-    def prepare(self, frames: "Frames", which: Ints, actions: Floats, buffers: ShotBuffers) -> Ints:
+    def prepare(self, frames: "Frames", which: Ints, asked: Floats, buffers: ShotBuffers) -> Ints:
         """Carry the strokes out up to the strike; returns the tables with a stroke."""
-        own = frames.rules.actions
+        own = frames.seats[SIDE].actions
         if isinstance(own, Choices):
-            masks = frames.action_masks(which)
+            masks = frames.action_masks(which, SIDE)
             if own.concede:
                 masks[:, CHOICES * (1 + COLOURS * own.nominate)] = False
-            _uniform_choice(which, frames.streams, masks, actions)
+            _uniform_choice(which, frames.streams, masks, asked)
         else:
-            _uniform(which, frames.streams, actions)
+            _uniform(which, frames.streams, asked)
             if own.concede:
-                actions[which, -1] = (5.0 * actions[which, -1] + 1.0) / 6.0  # [-1, 1) becomes [-2/3, 1)
-        return frames.prepare(which, actions, buffers)
+                asked[which, -1] = (5.0 * asked[which, -1] + 1.0) / 6.0  # [-1, 1) becomes [-2/3, 1)
+        return frames.prepare(which, asked, buffers, SIDE)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .._jit import entry
+from .._jit import entry, kernel
 from .._types import Bools, Floats, Ints, Singles
 from ..game.apply_ruling import settle_visit
 from ..game.balls import N_BALLS, BallOn, balls_on_kernel, bits, next_on_kernel
@@ -17,7 +17,7 @@ from ..game.layouts import deal_tables
 from ..game.ruling import VISIT
 from ..geometry import BALL_RADIUS
 from ..physics.engine import Status
-from .arrays import OutputArrays, ShotArrays, TableArrays
+from .arrays import OutputArrays, PlayedArrays
 from .observations import SIZE, observe_into
 from .rewards import REWARDS, reward_of
 from .states import State, checked
@@ -27,18 +27,26 @@ from .tables import I_BREAK, Crew, StepOutput, Tables, keep_last, write_empty_in
 _OK = int(Status.OK)
 
 
+@kernel
+def _observe(out, positions, on_table, state):
+    """Write the flat observation of one table."""
+    on = balls_on_kernel(state[BALL_ON], bits(on_table))
+    observe_into(out, positions, on_table, state[BALL_ON], on, state[IN_HAND], state[POINTS])
+
+
 @entry(what="the referee of visits", seconds=4)
-def _conclude(which, tables, shots, reward, limit, one_stroke, output):
+def _conclude(which, positions, on_table, game, shots, rules, output):
     """Judge the shots that came to rest and update their tables; write all results of the step.
 
-    ``tables``, ``shots``, ``output``: the parts of ``TableArrays``, ``ShotArrays``, ``OutputArrays``.
+    ``shots``, ``output``: the parts of ``PlayedArrays``, ``OutputArrays``; ``rules``: the code of the reward,
+    the limit of steps, whether a visit ends with its first stroke.
     """
-    tables, shots, out = TableArrays(*tables), ShotArrays(*shots), OutputArrays(*output)
+    shots, out, (reward, limit, one_stroke) = PlayedArrays(*shots), OutputArrays(*output), rules
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
             continue
         k = which[j]
-        p, on, state = tables.positions[k], tables.on_table[k], tables.game[k]
+        p, on, state = positions[k], on_table[k], game[k]
         facts = see(j, shots, p, on)
         for i in range(N_BALLS):
             p[i, 0], p[i, 1] = shots.r[j, i, 0], shots.r[j, i, 1]
@@ -51,28 +59,26 @@ def _conclude(which, tables, shots, reward, limit, one_stroke, output):
         state[OVER] = one_stroke or ruling.visit_end != VISIT.CONTINUES
         out.rewards[k] = reward_of(reward, ruling.points, ruling.penalty)
         out.terminated[k], out.truncated[k] = state[OVER], state[STEPS] >= limit
-        mask = bits(on)
-        observe_into(out.observations[k], p, on, state[BALL_ON], balls_on_kernel(state[BALL_ON], mask), state[IN_HAND], state[POINTS])
+        _observe(out.observations[k], p, on, state)
         write_stroke_info(k, out, j, shots, ball_on, ruling)
         out.reals[k, I_BREAK] = state[POINTS]
 
 
 @entry(what="the start of a visit", seconds=1)
-def _begin(which, fresh, in_hand, tables, output):
+def _begin(which, fresh, in_hand, tables, output, last):
     """Write the results of a reset for the tables ``which``; with ``fresh``, start visits on them (already dealt).
 
-    The last arrays of ``output`` then keep the previous rows of these tables.
+    The arrays ``last`` (``StepOutput.last``) then keep the previous rows of these tables.
     """
-    (positions, on_table, game, _, _, _, _), out = TableArrays(*tables), OutputArrays(*output)
+    (positions, on_table, game, _, _), out = tables, OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
         mask, state = bits(on_table[k]), game[k]
         if fresh:
-            keep_last(k, out)
+            keep_last(k, out, last)
             state[BALL_ON], state[IN_HAND] = next_on_kernel(mask), in_hand
             state[POINTS] = state[OVER] = state[STEPS] = 0
-        on = balls_on_kernel(state[BALL_ON], mask)
-        observe_into(out.observations[k], positions[k], on_table[k], state[BALL_ON], on, state[IN_HAND], state[POINTS])
+        _observe(out.observations[k], positions[k], on_table[k], state)
         write_empty_info(k, out, state[BALL_ON])
         out.reals[k, I_BREAK] = state[POINTS]
 
@@ -82,8 +88,7 @@ def observe(which, positions, on_table, game, out):
     """The flat observations of the tables ``which``: one row of ``out`` each."""
     for j in range(which.shape[0]):
         k = which[j]
-        on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
-        observe_into(out[j], positions[k], on_table[k], game[k, BALL_ON], on, game[k, IN_HAND], game[k, POINTS])
+        _observe(out[j], positions[k], on_table[k], game[k])
 
 
 class Visits(Tables):
@@ -126,15 +131,15 @@ class Visits(Tables):
             self._conclude(which[j : j + 1], self.again(which, j, buffers), out)
 
     def _conclude(self, which: Ints, b: ShotBuffers, out: StepOutput) -> None:
-        reward = REWARDS.index(self.rules.reward)
-        _conclude(which, self.arrays, b.arrays, reward, self.limit, self.rules.one_stroke, out.arrays)
+        rules = REWARDS.index(self.rules.reward), self.limit, self.rules.one_stroke
+        _conclude(which, self.positions, self.on_table, self.game, b.played, rules, out.arrays)
 
     def _begin(self, which: Ints, out: StepOutput, *, fresh: bool = True) -> None:
         if len(which):
             plan = self.rules.plan
             if fresh:
                 deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
-            _begin(which, fresh, plan.in_hand, self.arrays, out.arrays)
+            _begin(which, fresh, plan.in_hand, self.arrays, out.arrays, out.last)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
         """New visits on the tables ``wanted`` (n,) bool; the results of the reset for all tables into ``out``."""

@@ -7,12 +7,12 @@ import pytest
 from cases import ALL, ENDGAME, IN_HAND, OPEN, RESPOTTED, SNOOKERED, played, state_of
 
 import snooker_env as sn
-from snooker_env.advice import names, player_of, stroke_of
-from snooker_env.advice.players import BUILT_IN
+from snooker_env.advice import stroke_of
 from snooker_env.planning import clear_paths
 from tests.refusals import refused
 
 QUICK = {"samples": 60, "visits": 4}
+AGENTS = ("planner_500", "search", "ghost_ball", "random")
 
 
 def test_chances_are_those_of_the_environment():
@@ -80,13 +80,14 @@ def test_points_of_the_visit_so_far_do_not_count():
 
 
 def test_the_choice_is_the_agents_own():
-    """The strokes are the first of its ranking, with its own scores; their order is that of the points that they show."""
-    wide = sn.advise(OPEN, agent="ghost_ball", n=4, **QUICK)
-    found = sn.planning.pots(OPEN).tolerance[0]
-    assert sorted((one.score for one in wide), reverse=True) == pytest.approx(1e3 * found[: len(wide)])
-    assert all(one.speed == 2.3 and one.side == one.top == 0.0 for one in wide)
-    assert [one.points for one in wide] == sorted((one.points for one in wide), reverse=True)
-    assert sn.advise(OPEN, agent="ghost_ball", n=1, **QUICK)[0] == max(wide, key=lambda one: one.score)
+    """The strokes are those of its ranking, with its own scores; their order is that of the points that they show."""
+    advice = sn.advise(OPEN, agent="search", n=4, seed=3, **QUICK)
+    (ranked,) = sn.player("search").at({"noise": "professional"}).rank(OPEN, [3])
+    scores = {tuple(row): score for row, score in zip(ranked.strokes.values.tolist(), ranked.scores.tolist(), strict=True)}
+    assert all(scores[one.speed, one.side, one.top, one.aim, one.elevation] == one.score for one in advice)
+    assert [one.points for one in advice] == sorted((one.points for one in advice), reverse=True)
+    (first,) = sn.advise(OPEN, agent="search", n=1, seed=3, **QUICK)
+    assert first.score == max(scores.values()) and first.stroke == stroke_of("search", OPEN, seed=3)
 
 
 def test_strokes_that_read_the_same_are_given_once():
@@ -97,7 +98,7 @@ def test_strokes_that_read_the_same_are_given_once():
 
 def test_the_first_advice_is_good():
     """The blue goes in nine times out of ten, and the best stroke scores more than the widest pot played without a thought."""
-    best, plain = (sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0] for agent in ("lookahead", "ghost_ball"))
+    best, plain = (sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0] for agent in ("planner_500", "ghost_ball"))
     assert best.points > plain.points
 
 
@@ -108,7 +109,7 @@ def test_without_noise_everything_is_certain():
 
 
 @pytest.mark.parametrize("name", ALL)
-@pytest.mark.parametrize("agent", BUILT_IN)
+@pytest.mark.parametrize("agent", AGENTS)
 def test_every_built_in_agent_has_a_stroke_at_every_position(name, agent):
     position = ALL[name]
     stroke = stroke_of(agent, position, seed=3)
@@ -116,10 +117,10 @@ def test_every_built_in_agent_has_a_stroke_at_every_position(name, agent):
     points, fouls, _ = played(position, stroke, 1, noise="none")
     (first, *_) = sn.advise(position, agent=agent, n=1, seed=3, **QUICK)
     assert first.kind not in ("foul", "in-off") and first.foul < 0.5
-    if not fouls[0]:
+    if not fouls[0] and played(position, stroke, 200, noise="professional")[1].mean() < 0.4:
         assert first.stroke == stroke and (first.kind == "pot") == bool(points[0] > 0)
-    if agent == "lookahead":
-        assert not fouls[0] and first.foul < 0.3
+    if agent == "planner_500":
+        assert first.foul < 0.3
 
 
 def test_in_hand_a_stroke_has_a_place_in_the_d_that_counts():
@@ -132,8 +133,8 @@ def test_in_hand_a_stroke_has_a_place_in_the_d_that_counts():
 
 
 def test_where_nothing_can_be_potted_a_ball_on_is_hit():
-    for position, kind in ((SNOOKERED, "escape"), (ALL["hidden"], "contact")):
-        one = sn.advise(position, n=1, **QUICK)[0]
+    for position, kind, agent in ((SNOOKERED, "escape", "planner_500"), (ALL["hidden"], "contact", "ghost_ball")):
+        one = sn.advise(position, agent=agent, n=1, samples=60, visits=0)[0]
         assert one.kind == kind and one.pocket == -1 and one.ball == one.first and 1 <= one.ball <= 15
         assert bool(clear_paths(position).any_part[0]) == (kind == "contact")
         points, fouls, _ = played(position, one.stroke, 400, noise="professional")
@@ -141,10 +142,14 @@ def test_where_nothing_can_be_potted_a_ball_on_is_hit():
         assert one.words.startswith("escape off the " if kind == "escape" else "contact with the red, ") and " fair " in one.words
 
 
-def test_a_long_pot_gives_way_to_a_mere_contact_and_a_short_one_does_not():
-    assert sn.advise(RESPOTTED, n=1, **QUICK)[0].kind == "contact"
-    assert sn.advise(RESPOTTED, n=1, noise="none", **QUICK)[0].kind == "pot"
+def test_where_no_ball_can_be_potted_directly_a_plant_is_found():
+    one = sn.advise(ALL["hidden"], n=1, **QUICK)[0]
+    assert one.kind == "pot" and " by a plant, " in one.words and one.chance > 0.6
+
+
+def test_a_short_pot_is_advised():
     assert sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), n=1, **QUICK)[0].kind == "pot"
+    assert sn.advise(RESPOTTED, n=1, noise="none", **QUICK)[0].kind == "pot"
 
 
 def test_advice_is_json_and_a_sequence():
@@ -173,9 +178,9 @@ WRONG = [
     ({"samples": 0}, "samples", "0", "must be an integer"),
     ({"visits": -1}, "visits", "-1", "must be an integer"),
     ({"seed": 1.5}, "seed", "1.5", "must be an integer"),
-    ({"agent": "nobody_at_all"}, "agent", "nobody_at_all", "ghost_ball"),
-    ({"agent": 3}, "agent", "a int", "must be a player's name"),
-    ({"agent": "no_module:Player"}, "agent", "no_module:Player", "must be MODULE:CLASS"),
+    ({"agent": "nobody_at_all"}, "player", "nobody_at_all", "ghost_ball"),
+    ({"agent": 3}, "player", "a int", "must be a player"),
+    ({"agent": "no_module:Player"}, "player", "no_module:Player", "must be MODULE:CLASS"),
     ({"noise": "wild"}, "noise", "wild", "must be one of"),
     ({"options": {"layout": "opened"}}, "key of options", "layout", "'physics', 'table', 'fidelity'"),
     ({"options": 3}, "options", "a int", "must be None, an Options, or a dict"),
@@ -194,7 +199,9 @@ def test_wrong_positions_are_refused():
         sn.advise({"cue": (0.0, 0.0), "cues": 3})
 
 
-def test_names_are_those_of_players():
-    assert names()[:3] == ["lookahead", "ghost_ball", "random"] and "search" in names()
-    for name in names():
-        assert player_of(name).name == name
+def test_an_environment_must_have_begun():
+    for env in (sn.SnookerEnv(), sn.SnookerVectorEnv(1), sn.SnookerEnv(task="frame")):
+        with pytest.raises(ValueError, match=r"call reset\(\) first"):
+            sn.advise(env, **QUICK)
+        env.reset(seed=1)
+        assert len(sn.advise(env, agent="ghost_ball", **QUICK)) >= 1

@@ -1,108 +1,129 @@
 """Is every player asked in the same way? Its first stroke is the one that it would play on tables; players of one's own are asked, too."""
 
-import sys
+from typing import ClassVar
 
 import numpy as np
 import pytest
 from cases import ALL, ENDGAME, IN_HAND, OPEN, RESPOTTED, state_of
 
 import snooker_env as sn
-from snooker_env.advice import player_of, stroke_of
+from snooker_env.advice import stroke_of
+from snooker_env.planning import Position
+from snooker_env.players import Ranked, Strokes
 from snooker_env.tasks import choice_of
-from tests.refusals import refused
 
 QUICK = {"samples": 30, "visits": 2}
 
 
-def dealt(position, player, **options):
-    """A table of a player with a position on it, and what is seen of it."""
-    tables = sn.SnookerVectorEnv(1, **{**player.options, **options})
-    observations, _ = tables.reset(seed=0, options={"state": state_of(position)})
-    return tables, observations
-
-
 class Soft:
-    """Always the first pot, softly."""
+    """Sees observations: always the first pot, softly."""
 
-    options = {"action": "discrete"}  # noqa: RUF012
+    options: ClassVar = {"action": "discrete"}
 
-    def act(self, tables, observations, going):
-        assert observations.shape == (1, 121) and going.tolist() == [True]
+    def act(self, observations, masks, seeds):
+        assert observations.shape == (1, 121) and masks.shape == (1, 540)
         return np.array([choice_of(0, 0, 1, 2)])
-
-
-class Ranking(Soft):
-    """Two strokes with scores; the second one pots more surely."""
-
-    def rank(self, tables, observations, going):
-        return [(np.array([choice_of(0, 8, 0, 0), choice_of(0, 3, 1, 2)]), np.array([2.0, 1.0]))]
 
 
 class Aiming:
     """A stroke with side, aimed away from +x, and placed where it says."""
 
-    options = {"aim": "absolute", "placement": True}  # noqa: RUF012
+    options: ClassVar = {"aim": "absolute", "placement": True}
 
-    def act(self, tables, observations, going):
+    def act(self, observations, masks, seeds):
         return np.array([[0.0, 0.6, -0.2, 0.5, 0.5, -1.0]], np.float32)
+
+
+class OfFrames:
+    """Sees frames: its score, which is 0 in a visit, and the balls."""
+
+    options: ClassVar = {"task": "frame", "aim": "absolute", "decision": True}
+    seen: ClassVar = []
+
+    def act(self, observations, masks, seeds):
+        self.seen.append(np.array(observations[0]))
+        return np.array([[-0.5, 0.0, 0.0, 0.5, -1.0]], np.float32)
+
+
+class Ranking:
+    """Two strokes with scores; the second one pots more surely."""
+
+    def at(self, rules):
+        choices = [choice_of(0, 8, 0, 0), choice_of(0, 3, 1, 2)]
+        values, _ = sn.Planner({"action": "discrete"}).strokes_of(ENDGAME, [0, 0], choices)
+        self.ranked = Ranked(Strokes(values), np.array([2.0, 1.0]))
+        return self
+
+    def rank(self, positions, seeds):
+        return [self.ranked]
+
+    def play(self, positions, seeds):
+        return self.ranked.strokes[:1]
 
 
 def test_a_players_stroke_is_read_as_the_environment_reads_it():
     """Squirt and all: the same stroke from the same place ends where the player's own action does."""
     for player, position in ((Soft(), OPEN), (Aiming(), OPEN), (Aiming(), IN_HAND)):
-        tables, observations = dealt(position, player, noise="none")
-        tables.step(player.act(tables, observations, np.ones(1, bool)))
+        tables = sn.SnookerVectorEnv(1, noise="none", **player.options)
+        observations, _ = tables.reset(seed=0, options={"state": state_of(position)})
+        tables.step(player.act(observations, np.ones((1, 540), bool), [0]))
         stroke = stroke_of(player, position)
         other = sn.SnookerVectorEnv(1, aim="absolute", placement=True)
         other.reset(seed=0, options={"state": state_of(position)})
         other.step(stroke.action(placement=True)[None])
-        own, ours = tables.get_state()[0], other.get_state()[0]
-        assert own["on_table"] == ours["on_table"]
-        assert np.allclose(own["positions"], ours["positions"], atol=2e-3)  # float32, magnified by impacts
-    assert stroke_of(Aiming(), IN_HAND).place == pytest.approx((0.146, -1.0475)) and stroke_of(Aiming(), OPEN).side == pytest.approx(0.3)
+        (one,), (same,) = tables.get_state(), other.get_state()
+        assert one["on_table"] == same["on_table"]
+        assert np.allclose(one["positions"], same["positions"], atol=2e-3)  # float32, magnified by impacts
+    assert stroke_of(Aiming(), IN_HAND).place == pytest.approx((0.146, -1.0475))
+    assert stroke_of(Aiming(), OPEN).side == pytest.approx(0.3)
 
 
-def test_a_player_who_cannot_place_the_cue_ball_plays_from_the_best_place():
+def test_a_player_who_cannot_place_the_cue_ball_plays_from_a_good_place():
     """From the usual place a colour is in the way of the only red; from the side it can be potted."""
-    position = sn.Position(in_hand=True, reds=[(0.0, -0.2)], blue=(0.03, -0.8), green=(-0.03, -0.8), pink=(0.1, -0.7), black=(-0.1, -0.7))
-    usual = sn.Position(**position.to_dict() | {"in_hand": False})
+    hidden = {"yellow": (0.0, -0.9), "green": (-0.03, -0.8), "blue": (0.03, -0.8), "pink": (0.1, -0.7), "black": (-0.1, -0.7)}
+    position = Position(in_hand=True, reds=[(0.0, -0.2)], **hidden)
+    usual = Position(**position.to_dict() | {"in_hand": False})
     assert sn.planning.pots(usual).ball[0, 0] == -1
-    stroke = stroke_of(Soft(), position)
-    there = sn.Position(**position.to_dict() | {"cue": stroke.place})
-    assert sn.planning.pots(there).ball[0, 0] == 1
-    assert stroke == stroke_of(Soft(), there, seed=5)
+    for agent in (Soft(), "search", "ghost_ball"):
+        place = stroke_of(agent, position).place
+        assert sn.planning.pots(Position(**position.to_dict() | {"cue": place})).ball[0, 0] == 1
 
 
 def test_a_ranking_chooses_and_its_scores_are_kept():
     """Its first stroke pots less surely, and so comes second where both are shown."""
     (first,) = sn.advise(ENDGAME, agent=Ranking(), n=1, samples=200, visits=0)
     advice = sn.advise(ENDGAME, agent=Ranking(), n=2, samples=200, visits=0)
-    assert [one.score for one in advice] == [1.0, 2.0] and advice[0].points > advice[1].points and advice.agent == "Ranking"
-    assert first == advice[1]
+    assert [one.score for one in advice] == [1.0, 2.0] and advice[0].points > advice[1].points
+    assert advice.agent == "Ranking" and first == advice[1]
     assert [one.score for one in sn.advise(ENDGAME, agent=Soft(), n=3, **QUICK)] == [None]
 
 
-def test_a_class_by_its_name():
-    player = player_of("agents.players.built_in:GhostBall")
-    assert player.name == "agents.players.built_in:GhostBall" and stroke_of(player, OPEN) == stroke_of("ghost_ball", OPEN)
+def test_a_player_of_frames_sees_the_frame_and_a_visit_as_one():
+    env = sn.SnookerEnv(task="frame", opponent="ghost_ball")
+    env.reset(seed=2, options={"breaker": 0})
+    OfFrames.seen.clear()
+    stroke_of(OfFrames(), env)
+    assert np.array_equal(OfFrames.seen[0], env.tables.observe(np.arange(1))[0])
+    visits = [stroke_of(OfFrames(), position) for position in ALL.values()]
+    assert len(OfFrames.seen) == 1 + len(ALL) and len({seen.tobytes() for seen in OfFrames.seen}) == 1 + len(ALL)
+    assert {round(stroke.aim, 6) for stroke in visits} == {round(np.pi / 2, 6)}
 
 
-@pytest.mark.parametrize("name", ["lookahead", "ghost_ball", "random"])
-def test_built_in_advisors_play_tables_too(name):
-    player = player_of(name)
-    tables = sn.SnookerVectorEnv(3, noise="professional", task="frame", **player.options)
-    observations, _ = tables.reset(seed=1)
-    for _ in range(3):
-        actions = player.act(tables, observations, np.array([True, False, True]))
-        assert actions.shape == tables.action_space.shape and not actions[1].any() and actions[0].any()
-        observations, *_ = tables.step(actions)
-        if any(state["frame"]["free_ball"] for state in tables.get_state()):
-            break
+def test_a_choice_in_a_frame_is_asked_as_the_stroke_to_come():
+    """After a foul of the opponent: advice is about the stroke, whatever the player would choose."""
+    from snooker_env.play.session import Session
+
+    session = Session(seed=1)
+    session.set_up(Position(cue=(0.0, -0.5), reds=[(0.6, 1.4)], blue=(0.3, -0.5)), scores=(0, 0), striker=0, free_ball=False)
+    session.play(sn.advice.CueStroke(speed=0.3, aim=-1.0))
+    assert session.frame.phase == "choice"
+    assert stroke_of(OfFrames(), sn.planning.Positions.of(session)).aim == pytest.approx(np.pi / 2)
+    assert len(sn.advise(sn.planning.Positions.of(session), agent="search", **QUICK)) >= 1
 
 
-@pytest.mark.parametrize("name", ["geometric", "search", "random_absolute", "agents.players.built_in:ForesightRule"])
+@pytest.mark.parametrize("name", ["geometric", "planner", "foresight_rule", "test_players:Soft"])
 @pytest.mark.parametrize("position", [OPEN, RESPOTTED, ALL["snookered"]], ids=["open", "respotted", "snookered"])
-def test_players_of_the_repository_give_advice(name, position):
+def test_players_are_asked_by_their_names(name, position):
     advice = sn.advise(position, agent=name, n=2, **QUICK)
     assert len(advice) >= 1 and advice.agent == name
     assert (advice[0].place is not None) == position.in_hand
@@ -113,26 +134,3 @@ def test_a_pretrained_agent_gives_its_probabilities():
     advice = sn.advise(OPEN, agent="ppo_mask", n=4, **QUICK)
     scores = [one.score for one in advice]
     assert len(set(scores)) == len(scores) > 1 and min(scores) > 0.0 and sum(scores) <= 1.0
-
-
-def test_without_the_repository_the_built_in_players_are_there(monkeypatch):
-    """As in an installed wheel, which does not hold the folder agents."""
-    for module in [name for name in sys.modules if name.split(".")[0] == "agents"]:
-        monkeypatch.delitem(sys.modules, module)
-    monkeypatch.setitem(sys.modules, "agents", None)
-    from snooker_env.advice import names
-
-    assert names() == ["lookahead", "ghost_ball", "random"]
-    assert len(sn.advise(ENDGAME, n=1, **QUICK)) == 1
-    refused(lambda: player_of("ppo_mask"), "agent", "ppo_mask", "need a clone of the repository")
-
-
-def test_a_fault_in_the_repositorys_own_code_is_not_hidden(monkeypatch):
-    import importlib
-
-    def broken(name):
-        raise ModuleNotFoundError("No module named 'torch'", name="torch")
-
-    monkeypatch.setattr(importlib, "import_module", broken)
-    with pytest.raises(ModuleNotFoundError, match="torch"):
-        player_of("ppo_mask")

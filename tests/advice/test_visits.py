@@ -4,19 +4,15 @@ import numpy as np
 import pytest
 from cases import ENDGAME, OPEN
 
-from snooker_env.advice import seeds
-from snooker_env.advice.practice import practice_of
-from snooker_env.advice.visits import BEST, PICKS, played_on
+from snooker_env.advice.practice import GOING_ON, practice_of
+from snooker_env.advice.visits import BEST, EVEN_SAMPLES, PICKS, played_on
 from snooker_env.planning import Planner, Positions, action_masks, prospects_of, spread_of
-from snooker_env.planning.sobol import EVEN_SAMPLES
 from snooker_env.tasks import LEVELS, STROKES
-
-EXACT = Planner({"action": "discrete"}, threads=1)
 
 
 def stroke(at, pick):
-    """The stroke of a choice, to the last bit: rounding grows from stroke to stroke."""
-    return EXACT.strokes_of(at, [0], [pick])[0]
+    """A choice as a stroke, to the last bit: rounding grows from stroke to stroke."""
+    return Planner({"action": "discrete"}).strokes_of(at, [0], [pick])[0]
 
 
 def by_plain_python(position, visit, visits, seed, noise):
@@ -34,7 +30,7 @@ def by_plain_python(position, visit, visits, seed, noise):
             worth = np.mean([points[0] + goes_on[0] * prospects_of(left, spread)[0][0] for points, goes_on, left, _ in five])
             if worth > best:
                 best, chosen = worth, pick
-        key = np.random.default_rng((seed, seeds.GOING_ON, strokes)).integers(0, 2**64 - 1, visits, dtype=np.uint64)[visit]
+        key = np.random.default_rng((seed, GOING_ON, strokes)).integers(0, 2**64 - 1, visits, dtype=np.uint64)[visit]
         points, goes_on, at, _ = noisy.play(at, [0], strokes=stroke(at, chosen), keys=[key])
         total, strokes = total + points[0], strokes + 1
         if not goes_on[0]:

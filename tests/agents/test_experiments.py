@@ -8,11 +8,10 @@ from pathlib import Path
 
 import pytest
 
+import snooker_env.players.resolver as resolver
 import train
 from agents.evaluation import tournament
 from agents.evaluation.protocol import parser
-from agents.players.by_name import is_player
-from agents.players.stroke_players import is_stroke_player
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -43,9 +42,9 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
             for path in (paths if equals else label).split(","):
                 player, at, folder = path.partition("@")
                 if at:
-                    assert is_stroke_player(player) and folder.startswith(f"{tmp_path}/")
+                    assert resolver.is_name(player) and folder.startswith(f"{tmp_path}/")
                 else:
-                    assert is_player(path) or path == "ppo_mask" or (equals and path.startswith(f"{tmp_path}/"))
+                    assert resolver.is_name(path) or (equals and path.startswith(f"{tmp_path}/"))
 
 
 def test_a_run_that_fails_stops_the_whole(tmp_path):

@@ -13,12 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import snooker_env as sn
 import train
 from agents.evaluation import training_summary
 from agents.learning import callback
 from agents.learning.hyperparameters import names
-from agents.players.built_in import GhostBall, Random
-from agents.players.by_name import player_of
 from agents.players.trained import load_player
 from snooker_env import progress
 from snooker_env.benchmark import play_visits, summary, tables_of
@@ -282,10 +281,10 @@ def test_resume_refuses_a_broken_checkpoint(finished, tmp_path, capsys):
 def test_every_player_meets_the_same_tables():
     seen = []
 
-    class Watching(GhostBall):
-        def act(self, tables, observations, going):
-            seen.append(observations[going])
-            return super().act(tables, observations, going)
+    class Watching(type(sn.player("ghost_ball"))):
+        def play(self, positions, seeds):
+            seen.append(positions.positions)
+            return super().play(positions, seeds)
 
     first, second = (summary(play_visits(Watching(), 3)) for _ in range(2))
     assert first == second
@@ -293,11 +292,11 @@ def test_every_player_meets_the_same_tables():
 
 
 def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
-    """All options but layout and reward, the environment's own noise where none is given; the action is each player's own."""
+    """All options but layout and reward, the environment's own noise where none is given."""
     played, original = [], play_visits
 
     def watched(player, n, **options):
-        played.append((player.options, options))
+        played.append(options)
         return original(player, n, **options)
 
     monkeypatch.setattr(training_summary, "play_visits", watched)
@@ -310,10 +309,9 @@ def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
     bare = train.recipe_of(train.Settings(agent="ppo_mask", set=("env_kwargs={'action': 'discrete'}",)))
     training_summary.evaluate(bare, model, 2, silent)
     levels = [{"noise": "professional"}] * 3 + [level] * 3 + [{"noise": "none"}] * 3
-    assert [{name: value for name, value in options.items() if name != "each"} for _, options in played] == [
+    assert [{name: value for name, value in options.items() if name != "each"} for options in played] == [
         {"first_seed": tables_of("held_out", 2)} | one for one in levels
     ]
-    assert all(own == {"action": "discrete"} for own, _ in played)
 
 
 @pytest.mark.parametrize("agent", names())
@@ -335,7 +333,7 @@ def test_random_play_is_the_same_for_every_agent(finished):
     of_each = [results(finished / agent)["evaluation"] for agent in AGENTS]
     for name in ("random", "ghost_ball"):
         assert all(figures[name] == of_each[0][name] for figures in of_each)
-    assert of_each[0]["random"] == summary(play_visits(player_of("random"), 4))
+    assert of_each[0]["random"] == summary(play_visits(sn.player("random"), 4))
 
 
 def test_a_run_can_start_from_a_model_of_its_kind(finished, tmp_path, capsys):
@@ -377,6 +375,20 @@ def test_whole_rollouts_are_announced_and_a_finished_run_says_so(tmp_path, capsy
     assert f": {steps:,} of {steps:,} shots played\nAll steps are done: nothing left to train." in capsys.readouterr().out
 
 
+class AnyAction:
+    """Any action of another player's own format."""
+
+    def __init__(self, player):
+        self.options, self._space = player.sees if hasattr(player, "sees") else {"action": "discrete"}, None
+
+    def act(self, observations, masks, seeds):
+        rngs = [np.random.default_rng(seed) for seed in seeds]
+        if masks is not None:
+            return np.array([rng.choice(np.flatnonzero(mask)) for rng, mask in zip(rngs, masks, strict=True)])
+        size = sn.Options(**self.options).rules.actions.size
+        return np.stack([rng.uniform(-1.0, 1.0, size) for rng in rngs])
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("agent", "steps", "least"), [("ppo_mask", "300000", 2.0), ("ppo_target", "100000", 0.3), ("tqc_target", "15000", 0.3)]
@@ -384,6 +396,6 @@ def test_whole_rollouts_are_announced_and_a_finished_run_says_so(tmp_path, capsy
 def test_it_learns(tmp_path, agent, steps, least):
     assert run(tmp_path / "run", "--agent", agent, "--steps", steps, "--envs", "64", "--eval-visits", "300") == 0
     trained = results(tmp_path / "run")["evaluation"]["trained"]
-    chance = summary(play_visits(Random(load_player(tmp_path / "run").options), 300))  # any action of its own
+    chance = summary(play_visits(sn.player(AnyAction(load_player(tmp_path / "run"))), 300))
     gain = trained["points_a_visit"] - chance["points_a_visit"]
     assert gain > least and gain > 3 * trained["points_a_visit_se"]

@@ -6,10 +6,10 @@ import signal
 import numpy as np
 import pytest
 
+import snooker_env as sn
 import train
 from agents.learning import callback, expert_iteration
 from agents.learning.models import load_trained
-from agents.players.by_name import player_of
 from snooker_env.benchmark import play_visits, summary
 
 TINY = [
@@ -32,11 +32,11 @@ def weights(out):
 
 def test_the_run_says_what_the_planner_gains(finished):
     found = json.loads((finished / "results.json").read_text())
-    assert set(found["evaluation"]) == {"trained", "ghost_ball", "random", "planner", "lookahead"}
+    assert set(found["evaluation"]) == {"trained", "ghost_ball", "random", "planner", "search"}
     assert "after 64 positions of expert iteration, ppo_value" in found["learned"] and "a rule by hand" in found["learned"]
     assert found["imitation"][-1]["states"] == 64 and found["imitation"][-1]["value_loss"] > 0
-    for name in (f"planner@{finished}", "lookahead"):
-        again = summary(play_visits(player_of(name), 4))
+    for name in (f"planner@{finished}", "search"):
+        again = summary(play_visits(sn.player(name), 4))
         assert again == found["evaluation"][name.partition("@")[0]]
 
 

@@ -31,7 +31,7 @@ def test_a_run_goes_on_with_the_tables_that_it_began_with(tmp_path, monkeypatch)
 def test_agents_with_longer_actions_are_judged(tmp_path):
     out, given = tmp_path / "run", "env_kwargs={'aim': 'target', 'elevation': True, 'placement': True}"
     assert run(out, "--agent", "ppo_target", "--steps", "128", "--set", given) == 0
-    assert load_player(out).options == {"aim": "target", "elevation": True, "placement": True}
+    assert load_player(out).sees == {"aim": "target", "elevation": True, "placement": True}
     again = summary(play_visits(load_player(out), 4, noise="none"))
     assert again == results(out)["evaluation"]["trained"]
 

@@ -5,7 +5,6 @@ import time
 from pathlib import Path
 
 import numpy as np
-
 from agents.players.stroke_players import StrokePlayer
 
 
@@ -48,14 +47,6 @@ class Thinking(StrokePlayer):
     def rank(self, tables, observations, going):
         note(self._decisions, len(going))
         return super().rank(tables, observations, going)
-
-
-class Slow(float):
-    """A factor that notes, slowly, each product that it is in."""
-
-    def __mul__(self, other):
-        note(0, len(other))
-        return float(self) * other
 
 
 class Failing(Noted):

@@ -10,7 +10,7 @@ from agents.cluster.job import Here, Part, ended, in_order, keys_of
 from agents.cluster.keep import Store, digest_of, packed, unpacked
 from agents.evaluation import protocol, visits
 from agents.evaluation.entrants import Entrant
-from agents.players.by_name import player_of
+from snooker_env import player
 from snooker_env.benchmark import play_visits, tables_of
 
 AT = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
@@ -22,17 +22,13 @@ def same(a, b):
     return all(np.array_equal(getattr(a, name), getattr(b, name), equal_nan=name == "cue") for name in names)
 
 
-@pytest.mark.parametrize("name", ["random", "random_absolute", "ghost_ball", "best_pot_30", "planner_30"])
+@pytest.mark.parametrize("name", ["random", "ghost_ball", "best_pot_30", "planner_30"])
 @pytest.mark.parametrize("rekey", [False, True])
 def test_parts_make_what_all_tables_at_once_make(name, rekey, monkeypatch):
-    """Also for players that draw for all tables: they are told which of them are theirs."""
     monkeypatch.setattr(visits, "SIZE", 8)
     seeds, agent = tables_of("held_out", 20), Entrant("a", (name,))
-    whole = player_of(name, seed=0)
-    if rekey:
-        whole = visits.Rekeyed(whole, 0, 0, 20)
-    at_once = play_visits(whole, 20, first_seed=seeds, physics="paper", layout="held_out", noise="professional", fidelity="standard")
-    (parted,) = protocol.play_agent(agent, AT, seeds, 100, 100, rekey).strokes
+    at_once = play_visits(player(name), 20, first_seed=seeds, rekey=0 if rekey else None, **AT)
+    (parted,) = protocol.play_agent(agent, AT, seeds, 100, rekey).strokes
     assert same(at_once, parted) and parted.simulated == at_once.simulated
 
 

@@ -22,7 +22,6 @@ from agents.evaluation.entrants import Entrant
 from agents.evaluation.travel import sent
 from agents.learning import self_play
 from snooker_env.benchmark import tables_of
-from tests.cluster.players import Slow
 
 ROOT = Path(__file__).resolve().parents[2]
 NODE = {"num_cpus": 1, "object_store_memory": 100 * 2**20, "include_dashboard": False}
@@ -109,7 +108,8 @@ def results_of(agents, seeds, where, count=None):
 def test_two_nodes_play_what_one_machine_plays(cluster, monkeypatch):
     """Every kind of player; by the workers of both nodes."""
     monkeypatch.setattr(visits, "SIZE", 10)
-    agents = [Entrant.of(name) for name in ("random", "ghost_ball", "best_pot_30", "planner_30", "ppo_mask", "tests.cluster.players:Noted")]
+    names = ("tests.cluster.players:Noted", "random", "ghost_ball", "best_pot_30", "planner_30", "ppo_mask")
+    agents = [Entrant.of(name) for name in names]
     seeds = tables_of("held_out", 24)
     assert cluster.cores == 2
     far, near = results_of(agents, seeds, cluster), results_of(agents, seeds, Here())
@@ -272,27 +272,6 @@ def test_a_node_killed_amid_a_search_for_data_is_survived_and_nothing_counts_twi
         far = store.part(key)
         assert far.keys() == alone.keys() and len(alone["scores"]) == searched.TABLES * searched.ROUNDS
         assert all(np.array_equal(one, far[name], equal_nan=one.dtype.kind == "f") for name, one in alone.items())
-
-
-def test_a_node_killed_amid_the_data_of_imitation_is_survived_and_nothing_counts_twice(nodes, cluster, tmp_path, monkeypatch):
-    """In the second of three rounds, while both nodes are at work."""
-    from agents.learning.imitation import Expert
-    from snooker_env import SnookerVectorEnv
-
-    monkeypatch.setattr(self_play, "SLICE", 3)
-    env = SnookerVectorEnv(36, action="discrete", noise="club", layout="random:9")
-    env.reset(seed=5)
-    picks = np.array([np.flatnonzero(mask)[[1, 8, 20]] for mask in env.action_masks()])
-    there, expert = np.ones(picks.shape, bool), Expert(env, 1, np.random.default_rng(0), where=cluster)
-    expert._sent["ahead"] = Slow(1.0)
-    rounds = [expert.worth(picks, there)]
-    with killed(nodes, tmp_path):
-        rounds.append(expert.worth(picks, there))
-    rounds.append(expert.worth(picks, there))
-    assert len(noted(tmp_path)) > 3 * 12  # some slice was begun twice
-    monkeypatch.delenv("NOTED")
-    expert = Expert(env, 1, np.random.default_rng(0))
-    assert all(np.array_equal(expert.worth(picks, there), one) and one.any() for one in rounds)
 
 
 def test_nothing_is_left_running():

@@ -1,7 +1,6 @@
 """Which commands does the documentation name, and how does a test run each? In a short form, or by the test named; one is not run."""
 
 SHORT = {
-    "benchmarks.paper": ["--no-pictures", "--json", "{tmp}/p.json"],
     "benchmarks.tradeoff": ["--impacts", "30", "--shots", "12", "--repeats", "1", "--out", "{tmp}"],
     "benchmarks.scene": ["--shots", "12", "--repeats", "1", "--models", "spin decay", "jaw arcs", "--out", "{tmp}"],
     "benchmarks.pockets": ["--quick", "--out", "{tmp}"],
@@ -12,7 +11,6 @@ SHORT = {
     ],
     "benchmarks.fit_cushion": [],
     "benchmarks.nap": [],
-    "benchmarks.left_out": [],
     "benchmarks.make_opened": ["--tables", "2", "--out", "{tmp}"],
     "benchmarks.execution": ["--strokes", "40", "--visits", "4", "--levels", "professional", "robot"],
     "benchmarks.fair": ["--tables", "2", "--kinds", "snookered"],
@@ -27,10 +25,8 @@ SHORT = {
     "benchmarks.temperature": ["--visits", "2", "--temperatures", "4", "8"],
     "benchmarks.fuzz": ["--shots", "300", "--threads", "1"],
     "benchmarks.vector": ["--seconds", "0.1", "--repeats", "1", "--tables", "64", "--ppo-steps", "2048"],
-    "agents.evaluate": ["--agent", "random", "--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"],
     "agents.value_quality": ["--agent", "planner_30", "--visits", "3"],
     "agents.watch": ["--agent", "ghost_ball", "--out", "{tmp}/visit.html"],
-    "agents.report": ["--show", "agents/results/147.json"],
     "tests.rules_cases": ["tests/data/rules_cases.json"],
     "tests.oracles.frame_oracle": ["--frames", "2", "--kind", "tables"],
     "docs/pictures/make.py": ["--out", "{tmp}"],
@@ -47,6 +43,10 @@ ELSEWHERE = {
     "snooker_env.play": "tests/play/test_server.py",
     "snooker_env.advice": "tests/advice/test_command.py",
     "snooker_env.benchmark": "tests/benchmark/test_results.py",
+    "benchmarks.paper": "tests/benchmarks/test_benchmark_commands.py",
+    "benchmarks.left_out": "tests/benchmarks/test_benchmark_commands.py",
+    "agents.evaluate": "tests/commands/test_lifecycle.py",
+    "agents.report": "tests/commands/test_lifecycle.py",
     "agents.curves": "tests/agents/evaluation/test_learning_curves.py",
     "agents.publish": "tests/agents/evaluation/test_publish.py",
     "agents.tournament": "tests/agents/evaluation/test_tournament.py",

@@ -8,7 +8,7 @@ import snooker_env as sn
 from snooker_env import EventKind, Table
 from snooker_env.physics import cloth
 from snooker_env.physics.impact import contact
-from snooker_env.tasks.arrays import Law
+from snooker_env.tasks.arrays import CueLaw
 from snooker_env.tasks.lines import new_work
 from snooker_env.tasks.pot_aim import solved_aim
 from tests.kernels import from_python
@@ -180,7 +180,7 @@ def test_a_solved_aim_allows_for_the_nap(nap):
     work = new_work()
 
     def missed_by(solved_for):
-        law = Law(solved_for.pack(), physics.end_mass_ratio, code, steps)
+        law = CueLaw(solved_for.pack(), physics.end_mass_ratio, code, steps)
         aim = aim_for(balls, 1, tuple(pocket), tuple(ghost), (1.2, 0.0, 0.0, 0.0), law, work)
         v, w = sn.strike(1.2, aim, physics=physics)
         shot = sn.simulate(balls, [v[:2], (0, 0)], [w, (0, 0, 0)], None, physics)

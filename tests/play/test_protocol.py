@@ -8,11 +8,15 @@ import time
 import numpy as np
 import pytest
 
+from snooker_env.game.balls import PINK
+from snooker_env.game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
 from snooker_env.geometry import POCKETS
 from snooker_env.planning import Position, Positions
 from snooker_env.play import routes
 from snooker_env.play.lines import lines_of
 from snooker_env.play.words import where
+from snooker_env.players import Strokes
+from snooker_env.tasks.declarations import CLAIMS, CONCEDES
 from tests.playing import COVERED, EASY, STRAIGHT
 from tests.processes import ROOT
 
@@ -209,16 +213,69 @@ def test_an_agent_plays_by_itself_and_waits_after_an_undo(game):
 
 def test_an_agent_that_fails_is_reported_and_the_game_waits(game):
     class Broken:
-        def act(self, *given):
+        def at(self, rules):
+            return self
+
+        def play(self, positions, seeds):
             raise AssertionError
 
-    game.service.seats._players["broken"] = Broken()
+    game.service.seats.players["broken"] = Broken()
     game("position", position=EASY)
     game("players", players=["broken", "person"])
     state = waited(game, lambda s: not s["thinking"])
     assert state["trouble"].startswith("broken gave no stroke") and state["words"] == state["trouble"] and state["strokes"] == 0
     game("players", players=["person", "person"])
     assert game.get("state")["trouble"] == ""
+
+
+class Deciding:
+    """A player of frames that says what it is told: a stroke along +x, and parts of ``Strokes``."""
+
+    def __init__(self, **says):
+        self.says, self.saw = says, []
+
+    def at(self, rules):
+        assert rules.task == "frame"
+        return self
+
+    def play(self, positions, seeds):
+        self.saw.append(positions)
+        return Strokes(np.array([[0.6, 0.0, 0.0, 0.0, 0.0]]), **{name: np.array(value) for name, value in self.says.items()})
+
+
+def deciding(game, position, *, striker=1, **says):
+    """The state after an agent's turn at a position, its acts and the agent."""
+    agent = game.service.seats.players["deciding"] = Deciding(**says)
+    game("position", position=position, striker=striker)
+    game("players", players=["person", "deciding"])
+    game("stroke", speed=0.4, aim=-1.0) if striker == 0 else game("go")
+    state = waited(game, lambda s: not s["thinking"])
+    return state, [act.what for act in game.session.acts], agent
+
+
+@pytest.mark.parametrize(("decision", "what", "striker"), [(PLAY_AGAIN, "play_again", 0), (REPLACE, "replace", 0), (PLAY, "play", None)])
+def test_an_agent_decides_after_a_foul(game, decision, what, striker):
+    state, acts, agent = deciding(game, COVERED, striker=0, decision=[decision])
+    choices = [act.detail for act in game.session.acts if act.what == "choice"]
+    assert choices == [what] and agent.saw[0].choice.tolist() == [True] and agent.saw[0].scores.tolist() == [[7, 0]]
+    assert striker is None or state["striker"] == striker
+    assert acts[-1] == ("stroke" if what == "play" else "choice")
+
+
+def test_an_agent_nominates_concedes_and_claims(game):
+    _, acts, _ = deciding(game, COVERED, nominate=[PINK])
+    assert acts[-1] == "stroke" and game.session.acts[-1].detail == "pink"  # the blue is struck first
+    assert game.session.frame.scores == (6, 0)
+    state, acts, _ = deciding(game, COVERED, declare=[CONCEDES])
+    assert acts[-1] == "concede" and state["winner"] == 0
+    black = {"cue": [0.0, -0.5], "black": [0.5, -0.5]}
+    _, acts, _ = deciding(game, black, declare=[CLAIMS])
+    assert acts[-1] == "stroke"  # a lead of nothing is no claim
+    game.service.seats.players["deciding"] = Deciding(declare=[CLAIMS])
+    game("position", position=black, scores=[0, 20], striker=1)
+    game("go")
+    state = waited(game, lambda s: not s["thinking"])
+    assert state["winner"] == 1 and state["last"] == "deciding claims the frame."
 
 
 def test_only_agents_of_the_start_may_be_named(game):
@@ -232,7 +289,7 @@ def test_only_agents_of_the_start_may_be_named(game):
 
 def test_advice_is_ranked_named_and_drawn(game):
     game("position", position=EASY)
-    found = game("advise", agent="lookahead", n=10, samples=40)["suggestions"]
+    found = game("advise", n=10, samples=40)["suggestions"]
     assert 1 <= len(found) <= 10
     assert all("points expected" in one["words"] for one in found)
     best = next(one for one in found if (one["ball"], one["pocket"]) == ("red 1", "top right"))

@@ -266,7 +266,7 @@ def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--position", "nowhere.json"], "nowhere.json"), (["--layout", "x"], "layout = 'x'"), (["--agent", "nobody"], "agent = 'nobody'"),
+        (["--position", "nowhere.json"], "nowhere.json"), (["--layout", "x"], "layout = 'x'"), (["--agent", "nobody"], "player = 'nobody'"),
         (["--position", str(ROOT / "pyproject.toml")], "must be a file of JSON"), (["--port", "99999"], "port"),
         (["--seed", "-1"], "seed = -1"),
     ],
@@ -275,3 +275,10 @@ def test_what_cannot_be_is_said_in_one_line(arguments, words, capsys):
     assert main(["--no-browser", *arguments]) == 2
     out, err = capsys.readouterr()
     assert words in err and err.count("\n") == 1 and "Traceback" not in err and out == ""
+
+
+def test_a_port_in_use_is_said_with_what_to_do(line, capsys):
+    port = line.server.server_port
+    assert main(["--no-browser", "--port", str(port)]) == 2
+    _, err = capsys.readouterr()
+    assert err.startswith(f"snooker_env.play: port = {port}: must be free (") and "another with --port" in err and err.count("\n") == 1

@@ -75,7 +75,7 @@ def test_a_colour_that_was_named_must_be_struck_first():
         session.play(ALONG_X, nominated=named)
         assert session.frame.scores == (0, penalty) and (session.frame.phase == "choice") == bool(penalty)
         assert session.tables.nominated[0] == AUTO
-        assert session.acts[-1].said == ("" if named == AUTO else {BLUE: "blue", PINK: "pink", BLACK: "black"}[named])
+        assert session.acts[-1].detail == ("" if named == AUTO else {BLUE: "blue", PINK: "pink", BLACK: "black"}[named])
 
 
 def test_a_miss_is_called_whichever_colour_was_named():

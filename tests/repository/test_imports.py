@@ -12,7 +12,7 @@ from tests.processes import ROOT, python
 def lint(config, at=ROOT):
     """Exit code and words of import-linter."""
     pytest.importorskip("importlinter")
-    code = f"from importlinter.cli import lint_imports as lint; exit(lint({str(config)!r}, cache_dir=None))"
+    code = f"from importlinter.cli import lint_imports as lint; exit(lint({str(config)!r}, no_cache=True))"
     env = os.environ | {"PYTHONPATH": str(at)}
     done = subprocess.run([sys.executable, "-c", code], cwd=at, env=env, capture_output=True, text=True, check=False)
     return done.returncode, done.stdout + done.stderr
@@ -35,12 +35,13 @@ def test_a_broken_contract_is_seen(tmp_path):
 
 
 def test_the_built_in_players_load_no_learning_library():
-    """Neither torch nor Stable-Baselines3, nor what reads the recipes: not even to play."""
+    """Neither torch nor Stable-Baselines3, nor what reads the recipes: not even to play as the planner does."""
     code = """if True:
         import sys
-        from agents.players.by_name import NAMES, player_of
-        for name in NAMES:
-            player_of(name)
+        import numpy as np, snooker_env as sn
+        at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+        for name in ("random", "ghost_ball", "best_pot_8", "search_8", "planner_8", "geometric"):
+            sn.player(name).at({}).play(at, [0])
         ours = ("agents.learning.hyperparameters", "agents.learning.models", "agents.players.trained")
         print([name for name in ("torch", "stable_baselines3", "sb3_contrib", *ours) if name in sys.modules])
     """

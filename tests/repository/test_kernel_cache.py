@@ -124,7 +124,7 @@ def test_where_there_are_no_owners_none_are_checked(folders, monkeypatch):
 
 
 def test_a_user_without_a_home_has_no_folder(monkeypatch, tmp_path):
-    """A folder called ~ may lie wherever he stands, made by whoever gave it to him."""
+    """A folder called ~ may lie in whatever folder the program runs, made by anybody."""
     for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(os.path, "expanduser", lambda path: path)

@@ -74,6 +74,7 @@ def test_what_is_missing_is_installed_as_the_package_was(tmp_path):
 
 
 def test_public_names_are_all_in_all():
+    assert all(hasattr(sn, name) for name in sn.__all__)  # most are loaded when they are asked for
     public = {n for n, v in vars(sn).items() if not n.startswith("_") and not inspect.ismodule(v)}
     assert public | {"planning"} == set(sn.__all__)
     promised = {"Physics", "collide_balls", "collide_cushion", "strike", "Table", "simulate", "simulate_batch", "EventKind", "warmup"}

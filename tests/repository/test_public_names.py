@@ -60,7 +60,9 @@ def private(source):
 
 @pytest.mark.parametrize("path", USERS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_agents_commands_and_examples_use_public_names_only(path):
-    assert private(path.read_text(encoding="utf-8")) == []
+    """But for what ``commands`` passes on: the package's writer of files and printer of tables."""
+    passed_on = {"files.py": "snooker_env._files", "tables.py": "snooker_env._tables"} if path.parent.name == "commands" else {}
+    assert [name for name in private(path.read_text(encoding="utf-8")) if not name.startswith(passed_on.get(path.name, "?"))] == []
 
 
 def examples(page):

@@ -1,4 +1,4 @@
-"""Do the kernels of frames judge every stroke as the ``Frame`` that one reads does? Random frames, stroke for stroke, all rules on."""
+"""Do tables of frames hand the referee and the frame what was played? Against ``Frame``, stroke by stroke."""
 
 from collections import Counter
 from dataclasses import replace

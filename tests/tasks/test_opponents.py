@@ -86,7 +86,7 @@ def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
 def test_the_ghost_ball_player_pots_what_is_there():
     potted = 0
     env = SnookerEnv(task="frame", layout="pots:easy", opponent="ghost_ball")
-    tables, player = env.tables, env.options.rules.opponent
+    tables, player = env.tables, env.tables.seats[1].player
     for seed in range(60):
         env.reset(seed=seed)
         out = tables.output()
@@ -142,40 +142,32 @@ def test_a_saved_model_may_play(tmp_path, task, name):
     trained.save(path)
     for decision in (False, True):
         env = SnookerEnv(task="frame", opponent=path, trust=True, decision=decision, **options)
-        network = env.options.rules.opponent.policy._network
+        network = env.tables.seats[1].player.player.seen._network
         assert all((a == b).all() for a, b in zip(network.parameters(), trained.policy.parameters(), strict=True))
         runs = []
         for one in (env, copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
             one.reset(seed=2)
             out = [one.step(np.zeros(one.action_space.shape)) for _ in range(3) if not one.over]
             runs.append(out)
-            assert one.options.rules.opponent.policy._network is not None
         assert data_equivalence(runs[0], runs[1], exact=True) and data_equivalence(runs[0], runs[2], exact=True)
 
 
 @pytest.mark.parametrize(("own", "nominate"), [({}, False), ({"task": "frame"}, False), ({"task": "frame", "nominate": True}, True)])
 def test_a_saved_model_that_sees_masks_may_play(tmp_path, own, nominate):
-    """One of visits, with 540 choices, plays in a frame with more; its choices are those of the same model without a mask in its view."""
+    """One of visits, with 540 choices, plays in a frame with more; its choices are those of the same model on what it sees."""
     contrib = pytest.importorskip("sb3_contrib")
     masked = {"action": "discrete", "observation": "masked"}
     made = contrib.MaskablePPO("MultiInputPolicy", SnookerEnv(**masked, **own), seed=1, device="cpu")
     made.save(tmp_path / "model.zip")
-    options = {"task": "frame", "layout": "random:2", "concede": True, "nominate": nominate, "miss": "clear_path", **masked}
-    size = made.action_space.n
-    if nominate:
-        options["concede"] = False
-    env = SnookerEnv(opponent=str(tmp_path / "model.zip"), trust=True, **options)
-    policy = env.options.rules.opponent.policy
+    options = {"task": "frame", "layout": "random:2", "concede": not nominate, "nominate": nominate, **masked}
+    env = SnookerVectorEnv(5, threads=1, opponent=str(tmp_path / "model.zip"), trust=True, **options)
+    seen = env.tables.seats[1].player.player.seen
+    rows = SnookerVectorEnv(5, threads=1, **masked, **own).reset(seed=3)[0]
+    want = made.predict(rows, deterministic=True, action_masks=rows["action_mask"])[0]
+    with deciding_on_one_thread(seen._network):
+        assert np.array_equal(seen.act(rows, rows["action_mask"].astype(bool), np.arange(5)), want)
     env.reset(seed=2)
-    rows = SnookerVectorEnv(5, threads=1, **options).reset(seed=3)[0]
-    numbers = made.observation_space["observations"].shape[0]
-    seen = {"observations": rows["observations"][:, :numbers], "action_mask": rows["action_mask"][:, :size]}
-    want = made.predict(seen, deterministic=True, action_masks=seen["action_mask"])[0]
-    with deciding_on_one_thread(policy._network):
-        assert np.array_equal(policy.many(rows, [None] * 5, rows["action_mask"].astype(bool)), want)
-    for _ in range(4):
-        if env.step(int(env.action_masks().argmax()))[2]:
-            env.reset()
+    assert sum(env.step(env.action_masks().argmax(axis=1))[4]["opponent_strokes"].sum() for _ in range(4)) > 4
 
 
 def test_callables_see_masks(tmp_path):
@@ -208,10 +200,10 @@ CONSENT = "holds pickled Python code, which runs when it is loaded: must be a fi
 @pytest.mark.parametrize(
     ("name", "says"),
     [
-        ("balls", 'must be a model that sees observation="flat" of the visit or frame task'),
-        ("pendulum", 'must be a model that sees observation="flat" of the visit or frame task'),
-        ("elevation", "must be a model with 6 or 7 actions"),
-        ("choices", "must be a model whose actions are a Box"),
+        ("balls", "must be a model whose actions are Box(-1.0, 1.0, (6,), float32)"),
+        ("pendulum", "must be a model trained on the observation of a visit or a frame"),
+        ("elevation", "must be a model whose actions are Box(-1.0, 1.0, (6,), float32)"),
+        ("choices", "must be a model whose actions are Box"),
         ("recurrent", "must be a model of MaskablePPO, TQC, TRPO, "),
     ],
 )
@@ -241,7 +233,7 @@ def test_nothing_of_a_model_runs_without_consent(saved, tmp_path, weights):
 def test_a_model_that_holds_other_than_it_says_is_refused_when_made(saved, tmp_path, change):
     path = rezipped(saved / "pendulum.zip", tmp_path / "model.zip", data=edited(lambda found: found["observation_space"].update(change)))
     path = rezipped(path, tmp_path / "lie.zip", data=edited(lambda found: found["action_space"].update({"_shape": [4]})))
-    with pytest.raises(ValueError, match=r"opponent = .*: must be a model that sees observation"):
+    with pytest.raises(ValueError, match=r"opponent = .*: must be a model whose spaces are those that its file describes"):
         SnookerEnv(task="frame", opponent=path, trust=True)
 
 
@@ -282,7 +274,8 @@ def test_a_file_that_is_none_of_stable_baselines_is_refused(tmp_path, content):
 def test_consent_is_a_plain_option_of_the_frame_task(saved):
     env = gymnasium.make("Snooker-v0", task="frame", opponent=str(saved / "visit.zip"), trust=True)
     spec = gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())
-    assert gymnasium.make(spec).unwrapped.options.rules.opponent.policy._network is not None
+    assert gymnasium.make(spec).unwrapped.tables.seats[1].player.name == str(saved / "visit.zip")
     state = random.getstate()
-    copy.deepcopy(env.unwrapped).options.rules.opponent.policy(env.observation_space.sample(), None)
+    one = copy.deepcopy(env.unwrapped)
+    [one.reset(seed=seed) for seed in range(4)]
     assert random.getstate() == state  # loading takes no seed from the file

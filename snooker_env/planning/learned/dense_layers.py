@@ -56,22 +56,7 @@ ACTIVATIONS = {"tanh": lambda x: np.tanh(x, out=x), "relu": relu}
 
 
 class Layers:
-    """A multilayer perceptron: one row of scores for each row of observations.
-
-    Parameters
-    ----------
-    weights : list of (numpy.ndarray, numpy.ndarray)
-        (out, in) and (out,) of each layer, from the observation to the choices. They are copied.
-    activation : {"tanh", "relu"}
-        Between two layers.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from snooker_env.planning.learned.dense_layers import Layers
-    >>> Layers([(np.eye(2), np.zeros(2)), (np.ones((1, 2)), np.ones(1))], "relu")(np.array([[2.0, -3.0]])).tolist()
-    [[3.0]]
-    """
+    """A multilayer perceptron of layers (out, in) and (out,), which are copied, with "tanh" or "relu" between two of them."""
 
     def __init__(self, weights, activation):
         self._layers = [(np.array(weight.T, np.float32, order="C"), np.array(bias, np.float32)) for weight, bias in weights]
@@ -87,6 +72,6 @@ class Layers:
         for k, (weight, bias) in enumerate(self._layers):
             if k:
                 self._between(rows)
-            inputs, rows = np.ascontiguousarray(rows, np.float32), np.empty((len(rows), len(bias)), np.float32)
-            linear(inputs, weight, bias, rows)
+            before, rows = np.ascontiguousarray(rows, np.float32), np.empty((len(rows), len(bias)), np.float32)
+            linear(before, weight, bias, rows)
         return rows

@@ -107,7 +107,7 @@ def test_figures_do_not_depend_on_the_company(models, tmp_path):
         (["--agent", "random", "--physics", "paper,R=0.03"], "physics = 'paper,R=0.03': must leave R"),
         (["--agent", "random", "--physics", "paper,mu_s=0"], "physics.mu_s = 0.0: must be > 0"),
         (["--agent", "random", "--physics", "paper,mu_r=0"], "physics.mu_r = 0.0: must be > 0"),
-        (["--agent", "random", "--budget", "1"], "budget = 1: must be an integer in \\[8"),
+        (["--agent", "search_1"], "budget = 1: must be an integer in \\[8"),
         (["--agent", "random", "--json", "tests"], "json = 'tests': must be a file"),
         (["--agent", "random", "--json", "pyproject.toml/r.json"], "json = 'pyproject.toml/r.json': must be a file"),
         (["--agent", "random", "--markdown", "/proc/none/r.md"], "markdown = '/proc/none/r.md': must be a file"),
@@ -172,7 +172,7 @@ def test_a_path_with_a_colon_is_a_path(models, tmp_path):
             protocol.Entrant.of(f"x={path}")
 
 
-@pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}", "x={0},agents.players.built_in:GhostBall"])
+@pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}", "x={0},agents.players:Geometric"])
 def test_players_and_models_under_one_label_are_refused(which, models):
     with pytest.raises(ValueError, match=r"agent = 'x=.*: must be players or trained models, not both"):
         protocol.Entrant.of(which.format(models / "m-0"))

@@ -13,10 +13,12 @@ from sb3_contrib import TQC, MaskablePPO, RecurrentPPO
 from stable_baselines3 import A2C, DQN, PPO, SAC
 
 from agents.evaluation import protocol
+from agents.evaluation.entrants import Entrant
 from agents.learning.models import PRETRAINED
-from agents.players.trained import load_any
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.planning import Planner, Positions
+from snooker_env.players.saved import saved_player
 from tests.bombs import bombed
 from tests.torch_threads import deciding_on_one_thread
 
@@ -47,16 +49,18 @@ def foreign(tmp_path_factory):
 )  # fmt: skip
 def test_a_foreign_model_plays_what_it_would_play_itself(foreign, name, options, read):
     maker = {"ppo": PPO, "balls": PPO, "sac": SAC, "dqn": DQN, "mask": MaskablePPO, "masked": MaskablePPO}[name]
-    model, player = maker.load(foreign / f"{name}.zip", device="cpu"), load_any(foreign / f"{name}.zip", True, options)
-    assert player.options == read and player.foreign
+    model, player = maker.load(foreign / f"{name}.zip", device="cpu"), saved_player(foreign / f"{name}.zip", options, True)
+    assert player.sees == read | {"observation": name if name in ("balls", "masked") else "flat"}
     tables = SnookerVectorEnv(3, layout="held_out", threads=1, **read)
     seen_by_it = SnookerVectorEnv(3, layout="held_out", threads=1, observation=name if name in ("balls", "masked") else "flat", **read)
-    observations, _ = tables.reset(seed=0)
+    tables.reset(seed=0)
     its, _ = seen_by_it.reset(seed=0)
     masks = {"action_masks": tables.action_masks()} if name in ("mask", "masked") else {}
-    with deciding_on_one_thread(player.model.policy):
-        chosen = player.act(tables, observations, np.ones(3, bool))
-    assert np.array_equal(chosen, model.predict(its, deterministic=True, **masks)[0])
+    at, bound = Positions.of(tables), player.at(tables)
+    with deciding_on_one_thread(player.seen._network):
+        strokes = bound.play(at, np.arange(3))
+    chosen = model.predict(its, deterministic=True, **masks)[0]
+    assert np.allclose(strokes.values, Planner(tables).strokes_of(at, np.arange(3), chosen)[0], atol=1e-5)
 
 
 @pytest.mark.parametrize("maker", [PPO, MaskablePPO, SAC, TQC, DQN, A2C])
@@ -75,13 +79,13 @@ def test_a_model_plays_where_the_package_of_its_schedules_is_missing(tmp_path, m
     monkeypatch.setitem(sys.modules, "rl_zoo3", None)  # missing, also where it is installed
     with zipfile.ZipFile(tmp_path / "model.zip") as file:
         assert b"rl_zoo3" in b"".join(base64.b64decode(one) for one in re.findall(r'":serialized:": "([^"]*)"', file.read("data").decode()))
-    player = load_any(tmp_path / "model.zip", True, {} if "action" in options else options)
+    player = saved_player(tmp_path / "model.zip", {} if "action" in options else options, True)
     tables = SnookerVectorEnv(3, layout="held_out", threads=1, **options)
     observations, _ = tables.reset(seed=0)
     masks = {"action_masks": tables.action_masks()} if maker is MaskablePPO else {}
-    assert np.array_equal(
-        player.act(tables, observations, np.ones(3, bool)), model.predict(observations, deterministic=True, **masks)[0]
-    )  # fmt: skip
+    at, chosen = Positions.of(tables), model.predict(observations, deterministic=True, **masks)[0]
+    expected = Planner(tables).strokes_of(at, np.arange(3), chosen)[0]
+    assert np.allclose(player.at(tables).play(at, np.arange(3)).values, expected, atol=1e-5)
 
 
 def test_a_foreign_model_is_compared_with_consent(foreign, tmp_path, capsys):
@@ -96,8 +100,8 @@ def test_a_foreign_model_is_compared_with_consent(foreign, tmp_path, capsys):
     assert "unknown" in capsys.readouterr().out
 
 
-CONSENT = "holds pickled Python code, which runs when it is loaded: must be a file that you trust, and come with --trust"
-OTHER_ACTIONS = "must be a model whose actions are {}: give --options as in its training, for example placement=True"
+CONSENT = "holds pickled Python code, which runs when it is loaded: must be a file that you trust, and come with trust=True"
+OTHER_ACTIONS = "must be a model whose actions are {}: give the options of its training, for example placement=True"
 
 
 @pytest.mark.parametrize(
@@ -107,7 +111,6 @@ OTHER_ACTIONS = "must be a model whose actions are {}: give --options as in its 
         ("ppo", ["--trust", "--options", "placement=True"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (6,), float32)")),
         ("sac", ["--trust"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (4,), float32)")),
         ("dqn", ["--trust", "--options", "action=box"], OTHER_ACTIONS.format("Box(-1.0, 1.0, (4,), float32)")),
-        ("frame", ["--trust"], "must be a model trained on the observation of a visit, flat, balls or masked, and nothing else"),
         ("recurrent", ["--trust"], "must be a model of MaskablePPO, TQC"),
         ("recurrent", [], "must be a model of MaskablePPO, TQC"),
     ],
@@ -117,14 +120,14 @@ def test_nothing_of_a_foreign_model_runs_without_consent_or_if_it_does_not_fit(f
     with pytest.raises(SystemExit) as stop:
         protocol.main(["--agent", str(file), *options, *QUICK])
     assert stop.value.code == 2 and not (tmp_path / "mark").exists()
-    assert f"agent = {str(file)!r}: {says}" in capsys.readouterr().err.strip().splitlines()[-1]
+    assert f"player = {str(file)!r}: {says}" in capsys.readouterr().err.strip().splitlines()[-1]
 
 
 @pytest.mark.parametrize("change", [{"gamma": None}, {"gamma": "1"}, {"num_timesteps": -1}, {"seed": [1]}, {"action_space": None}])
 def test_wrong_figures_of_a_foreign_model_are_refused(foreign, tmp_path, change):
     file = bombed(foreign / "ppo.zip", tmp_path / "model.zip", tmp_path / "mark", change=lambda found: found.update(change))
-    with pytest.raises(ValueError, match=r"^agent = '.*model.zip': must be a model saved by Stable-Baselines3 \("):
-        load_any(file, True, {"aim": "target"})
+    with pytest.raises(ValueError, match=r"^player = '.*model.zip': must be a model saved by Stable-Baselines3 \("):
+        Entrant.of(str(file), True, (("aim", "target"),)).trained()
     assert not (tmp_path / "mark").exists()
 
 

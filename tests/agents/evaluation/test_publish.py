@@ -22,6 +22,7 @@ from agents.learning.model_files import KEPT
 from agents.learning.models import load_trained, pretrained
 from agents.players.trained import load_player
 from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.planning import Positions
 
 FIGURES = {
     "learned": "In 4 shots nothing.",
@@ -128,13 +129,10 @@ def test_pretrained_models_hold_figures_and_weights_alone(name, monkeypatch):
 @pytest.mark.parametrize("name", pretrained())
 def test_pretrained_models_play_today(name):
     player = load_player(models.PRETRAINED / f"{name}.zip")
-    tables = SnookerVectorEnv(3, noise="professional", layout="held_out", threads=1, **player.options)
-    observations, _ = tables.reset(seed=0)
-    going = np.array([True, False, True])
-    picked = player.act(tables, observations, going)
-    assert tables.action_masks()[going, picked[going]].all() if player.options.get("action") == "discrete" else np.isfinite(picked).all()
-    tables.step(picked)
-    tables.close()
+    tables = SnookerVectorEnv(3, noise="professional", layout="held_out", threads=1)
+    tables.reset(seed=0)
+    strokes = player.at(tables).play(Positions.of(tables), np.arange(3))
+    assert np.isfinite(strokes.values).all() and len(set(strokes.aim.tolist())) == 3
 
 
 def test_a_run_is_published_with_its_card(run, capsys):
@@ -214,7 +212,7 @@ def test_a_model_of_an_older_network_is_refused(run, monkeypatch):
             with pytest.raises(ValueError, match=said.format("agent")):
                 load_player(run)
     with monkeypatch.context() as patch:
-        patch.setattr("agents.features.pot_view.PotsView.space", spaces.Box(-1.0, 1.0, (7,), np.float32))
+        patch.setattr("agents.features.views.PotsView.space", spaces.Box(-1.0, 1.0, (7,), np.float32))
         with pytest.raises(ValueError, match=said.format("start")):
             load_trained(run / "model.zip", "start")
     monkeypatch.setattr("agents.learning.model_files.Recipe.of", lambda name, **more: {}[name])

@@ -8,7 +8,7 @@ import pytest
 from scipy import stats
 
 from agents.evaluation import report
-from agents.evaluation.text_tables import WIDTH, TextTable
+from commands.tables import WIDTH, TextTable
 from snooker_env.benchmark import most_points, unseen
 
 GHOST = {"from": "ghost_ball"}

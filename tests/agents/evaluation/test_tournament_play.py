@@ -1,35 +1,50 @@
 """Is each frame of a tournament played and counted as it should be? Stroke by stroke beside it, and from both sides of the table."""
 
+from typing import ClassVar
+
 import numpy as np
 import pytest
 
+import snooker_env as sn
 from agents.evaluation import tournament_play
 from agents.evaluation.tournament_figures import COLUMNS
 from agents.evaluation.tournament_play import TimedPlayer, play_pair
-from agents.players.built_in import Geometric, GhostBall, Random
+from agents.players import Geometric
 from snooker_env import SnookerVectorEnv
+from snooker_env.players import SeenPlayer
 from snooker_env.tasks.stroke import FOULS, PLAYER, SCORED
 
 GAME = {"noise": "professional", "max_strokes": 1000}
 
 
-class Softly:
-    """A player of one's own: every stroke along the potting line, at one speed."""
+class Soft:
+    """Sees observations: every stroke along the potting line, at one speed."""
 
-    options = {"aim": "target"}  # noqa: RUF012
+    options: ClassVar = {"aim": "target"}
 
-    def act(self, tables, observations, going):
-        actions = np.zeros((len(going), 4), np.float32)
+    def act(self, observations, masks, seeds):
+        actions = np.zeros((len(seeds), 4), np.float32)
         actions[:, 0] = -0.4
         return actions
 
 
-class Careful(Softly):
-    """Who must not be asked where there is nothing to play."""
+def softly():
+    return SeenPlayer(Soft())
 
-    def act(self, tables, observations, going):
-        assert going.any() and not tables.tables.ended()[going].any()
-        return super().act(tables, observations, going)
+
+def ghost_ball():
+    return sn.player("ghost_ball")
+
+
+class Careful(SeenPlayer):
+    """Must not be asked where there is nothing to play."""
+
+    def __init__(self):
+        super().__init__(Soft())
+
+    def play(self, positions, seeds):
+        assert len(positions) and not positions.over.any()
+        return super().play(positions, seeds)
 
 
 def frames(rows):
@@ -72,7 +87,7 @@ def strokes(monkeypatch):
 
 @pytest.mark.parametrize("miss", ["off", "clear_path"])
 def test_what_is_counted_is_what_the_referee_saw(strokes, miss):
-    rows = frames(play(GhostBall(), Softly(), [3, 4, 5], miss=miss))
+    rows = frames(play(ghost_ball(), softly(), [3, 4, 5], miss=miss))
     assert len(rows) == 6 and [r["opener"] for r in rows] == [0, 1] * 3
     for r in in_order(rows):
         mine, strokes[:] = strokes[: r["strokes_first"] + r["strokes_second"]], strokes[r["strokes_first"] + r["strokes_second"] :]
@@ -96,16 +111,16 @@ def test_what_is_counted_is_what_the_referee_saw(strokes, miss):
 
 def test_rows_depend_neither_on_threads_nor_on_how_many_tables_there_are(monkeypatch):
     seeds = range(20, 28)
-    want = play(GhostBall(), Softly(), seeds)
-    assert play(GhostBall(), Softly(), seeds, tables=5, monkeypatch=monkeypatch) == want
-    assert play(GhostBall(), Softly(), seeds, threads=2, tables=16, monkeypatch=monkeypatch) == want
-    assert play(GhostBall(), Softly(), list(seeds)[3:5]) == want[6:10]
+    want = play(ghost_ball(), softly(), seeds)
+    assert play(ghost_ball(), softly(), seeds, tables=5, monkeypatch=monkeypatch) == want
+    assert play(ghost_ball(), softly(), seeds, threads=2, tables=16, monkeypatch=monkeypatch) == want
+    assert play(ghost_ball(), softly(), list(seeds)[3:5]) == want[6:10]
 
 
-@pytest.mark.parametrize("second", [GhostBall, Softly, Geometric])
+@pytest.mark.parametrize("second", [ghost_ball, softly, Geometric])
 def test_the_order_of_the_players_does_not_matter(second):
     """Both are the agent in one frame on each seed."""
-    one, other = frames(play(GhostBall(), second(), range(4))), frames(play(second(), GhostBall(), range(4)))
+    one, other = frames(play(ghost_ball(), second(), range(4))), frames(play(second(), ghost_ball(), range(4)))
     turned = sorted(other, key=lambda r: (r["seed"], 1 - r["opener"]))
     for a, b in zip(one, turned, strict=True):
         assert (a["seed"], a["opener"], a["winner"]) == (b["seed"], 1 - b["opener"], 1 - b["winner"])
@@ -116,13 +131,13 @@ def test_the_order_of_the_players_does_not_matter(second):
 
 
 def test_a_frame_that_is_stopped_has_no_winner():
-    rows = frames(play(GhostBall(), Softly(), [0, 1], max_strokes=7))
+    rows = frames(play(ghost_ball(), softly(), [0, 1], max_strokes=7))
     assert [r["winner"] for r in rows] == [-1] * 4 and {r["strokes_first"] + r["strokes_second"] for r in rows} == {7}
     assert {r["frame"] for r in rows} == {0}
 
 
 def test_a_frame_that_the_opponent_wins_in_his_first_visit_counts():
-    rows = frames(play(Careful(), GhostBall(), range(40), layout="pots:easy"))
+    rows = frames(play(Careful(), ghost_ball(), range(40), layout="pots:easy"))
     at_once = [r for r in rows if r["strokes_first"] == 0]
     assert at_once and all(r["winner"] == 1 and r["opener"] == 1 and r["visits_second"] == 1 for r in at_once)
     assert {exchanged(r) for r in at_once} == {False, True}  # the opponent won in his first visit, and the agent in its
@@ -130,7 +145,7 @@ def test_a_frame_that_the_opponent_wins_in_his_first_visit_counts():
 
 
 def test_the_frames_of_a_match_are_broken_in_turn(strokes):
-    rows = frames(play(GhostBall(), Softly(), [0, 1, 2], best_of=3))
+    rows = frames(play(ghost_ball(), softly(), [0, 1, 2], best_of=3))
     matches = {}
     for r in in_order(rows):
         first, strokes[:] = strokes[0], strokes[r["strokes_first"] + r["strokes_second"] :]
@@ -139,10 +154,10 @@ def test_the_frames_of_a_match_are_broken_in_turn(strokes):
     assert len(matches) == 6 and {len(won) for won in matches.values()} <= {2, 3}
     for won in matches.values():
         assert max(won.count(0), won.count(1)) == 2 and won.count(won[-1]) == 2  # it ends when it is decided
-    alone = frames(play(GhostBall(), Softly(), [0, 1, 2]))
+    alone = frames(play(ghost_ball(), softly(), [0, 1, 2]))
     assert [r for r in rows if r["frame"] == 0] == alone
 
 
 def test_a_random_player_meets_a_planner_of_discrete_choices():
-    rows = frames(play(Random(seed=1), GhostBall(), [0, 1], max_strokes=60))
+    rows = frames(play(sn.player("random"), ghost_ball(), [0, 1], max_strokes=60))
     assert len(rows) == 4 and all(r["strokes_second"] > 0 for r in rows)

@@ -5,14 +5,14 @@ import json
 import numpy as np
 import pytest
 
+import snooker_env as sn
 from agents.evaluation import value_quality
-from agents.players.by_name import player_of
 from snooker_env.benchmark import play_visits, tables_of
 
 
 def test_every_position_is_compared_with_what_followed(monkeypatch):
     """A value that knows the points of the visit so far: their sum with what followed is the visit's, whichever stroke it is."""
-    player = player_of("lookahead_30")
+    player = sn.player("search_30")
     seen = []
     original = value_quality.play_visits
 
@@ -38,9 +38,9 @@ def test_every_position_is_compared_with_what_followed(monkeypatch):
 
 
 def test_the_planner_plays_as_without_being_watched():
-    player = player_of("lookahead_30")
+    player = sn.player("search_30")
     seeds = tables_of("held_out", 4)
-    plain = play_visits(player_of("lookahead_30"), 4, first_seed=seeds)
+    plain = play_visits(sn.player("search_30"), 4, first_seed=seeds)
     watched = play_visits(value_quality.Recording(player), 4, first_seed=seeds)
     assert np.array_equal(plain.points, watched.points)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from agents.evaluation import watch
-from agents.players.by_name import player_of
+from snooker_env import player
 from snooker_env.benchmark import HELD_OUT_SEED, play_visits
 
 SHORT = ["--agent", "ghost_ball", "--noise", "club"]
@@ -14,8 +14,8 @@ SHORT = ["--agent", "ghost_ball", "--noise", "club"]
 
 @pytest.mark.parametrize("name", ["ghost_ball", "geometric", "ppo_mask"])
 def test_the_visit_is_the_one_that_the_protocol_plays(name):
-    env = watch.visit(player_of(name), HELD_OUT_SEED + 3, layout="held_out", noise="professional")
-    strokes = play_visits(player_of(name), 1, first_seed=HELD_OUT_SEED + 3, threads=1)
+    env = watch.visit(player(name), HELD_OUT_SEED + 3, layout="held_out", noise="professional")
+    strokes = play_visits(player(name), 1, first_seed=HELD_OUT_SEED + 3, threads=1)
     assert [p.points for p in env.history] == strokes.points.tolist()
     cue = np.array([p.positions[0] for p in env.history if p.on_table[0]])
     assert np.array_equal(cue, strokes.cue[~np.isnan(strokes.cue[:, 0])])
@@ -55,7 +55,7 @@ def test_the_first_visit_that_is_long_enough_is_taken(capsys):
     env, seed, _ = watch.found(args)
     assert env.points >= 1
     for earlier in range(HELD_OUT_SEED, seed):
-        assert watch.visit(player_of("ghost_ball"), earlier, layout="held_out", noise="club").points < 1
+        assert watch.visit(player("ghost_ball"), earlier, layout="held_out", noise="club").points < 1
     with pytest.raises(SystemExit, match="no visit of 140 points in 3 tries"):
         watch.main([*SHORT, "--at-least", "140", "--tries", "3"])
 

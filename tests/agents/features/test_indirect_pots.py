@@ -5,11 +5,10 @@ from math import atan2, cos, hypot, pi, sin
 import numpy as np
 import pytest
 
-import snooker_env
+import snooker_env as sn
 from agents.features import indirect_pots as ind
 from agents.features.indirect_pots import AIM_X, AIM_Y, BALL, BANK, CANNON, GHOST_X, GHOST_Y, KIND, OTHER, PLANT, POCKET, TOLERANCE
 from agents.players.aim_search import Aimer, widest_run
-from agents.players.by_name import player_of
 from snooker_env.benchmark import play_visits
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, GREEN, N_BALLS, PINK, YELLOW, BallOn, mask_of
@@ -18,7 +17,8 @@ from snooker_env.geometry import BALL_RADIUS, HALF_WIDTH, POCKET_AIMS
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.parameters import Physics
 from snooker_env.physics.table import Table
-from snooker_env.planning import Positions
+from snooker_env.planning import Planner, Positions
+from snooker_env.tasks import SIDES, SPEEDS, TOPS, choice_of
 from snooker_env.tasks.box_actions import line
 
 R = BALL_RADIUS
@@ -50,7 +50,7 @@ def one(shots, **wanted):
 
 @pytest.fixture(scope="module")
 def aimer():
-    return Aimer(SnookerVectorEnv(1, aim="absolute"), 2.3)
+    return Aimer(sn.Options(), 2.3)
 
 
 def batch(*several, ball_on=BallOn.RED):
@@ -68,10 +68,10 @@ def simulated(places, action, turn=0.0):
     """The ``Shot`` of an action, turned by an angle, by the simulation alone."""
     positions, on_table = table(places)
     speed, aim = 0.2 + 3.4 * (float(action[0]) + 1.0), pi * float(action[3]) + turn
-    v, w = snooker_env.strike(speed, aim)
+    v, w = sn.strike(speed, aim)
     velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
     velocities[CUE], spins[CUE] = v[:2], w
-    return snooker_env.simulate(positions, velocities, spins, on_table=on_table)
+    return sn.simulate(positions, velocities, spins, on_table=on_table)
 
 
 def met(shot, kind, *balls):
@@ -300,35 +300,29 @@ def test_mirrored_tables_offer_the_mirrored_shots():
 
 def test_mirrored_tables_are_played_with_mirrored_aims(aimer):
     tables = [*no_direct(6, len), BANKED, PLANTED]
-    here, there = (aimer.actions(batch(*side)) for side in (tables, [mirrored(t) for t in tables]))
+    here, there = (aimer.strokes(batch(*side)) for side in (tables, [mirrored(t) for t in tables]))
     assert here[:, :3] == pytest.approx(there[:, :3], abs=1e-6)
-    aside = 1.0 - here[:, 3] - there[:, 3]
-    assert aside - 2.0 * np.round(aside / 2.0) == pytest.approx(np.zeros(len(tables)), abs=2e-4)
+    aside = pi - here[:, 3] - there[:, 3]
+    assert aside - 2.0 * pi * np.round(aside / (2.0 * pi)) == pytest.approx(np.zeros(len(tables)), abs=6e-4)
 
 
 def test_where_the_plain_line_pots_it_is_played():
-    """Same table, same noiseless stroke as the plain player's: same points, and the balls end where his do."""
-    plain, own = SnookerVectorEnv(60, layout="held_out", action="discrete"), SnookerVectorEnv(60, layout="held_out", aim="absolute")
-    after = []
-    for env, name in ((plain, "ghost_ball"), (own, "geometric")):
-        observations, _ = env.reset(seed=3)
-        going = np.ones(60, bool)
-        *_, info = env.step(player_of(name).act(env, observations, going))
-        after.append((info["points"], env.tables.positions))
-    (points, places), (own_points, own_places) = after
-    made = points > 0
-    assert 30 < made.sum() < 60
-    assert (own_points[made] == points[made]).all()
-    gaps = np.abs(own_places - places)[made].reshape(made.sum(), -1).max(axis=1)
-    assert np.median(gaps) < 1e-3  # not equal bits: his aim was never a float32
-    assert (own_points > 0).sum() > made.sum()
+    """Where the widest pot goes in along its solved line, that stroke is the one; elsewhere others are found."""
+    env = SnookerVectorEnv(60, layout="held_out")
+    env.reset(seed=3)
+    at, planner = Positions.of(env), Planner({"action": "discrete"})
+    plain = planner.strokes_of(at, np.arange(60), np.full(60, choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))))[0]
+    searched = sn.player("geometric").at(env).play(at, np.zeros(60, int)).values
+    made = planner.play(at, np.arange(60), strokes=plain).points > 0
+    assert 30 < made.sum() < 60 and np.allclose(searched[made], plain[made], atol=1e-6)
+    assert (planner.play(at, np.arange(60), strokes=searched).points > 0).sum() > made.sum()
 
 
 def test_the_nearest_ball_on_is_struck_where_nothing_goes_in(aimer):
     tables = no_direct(8, lambda shots: len(shots) == 0)
     at = batch(*tables)
-    for p, on, action in zip(at.positions, at.on_table, aimer.actions(at), strict=True):
-        off = pi * float(action[3]) - line(p, on, mask_of(range(1, 5)))
+    for p, on, action in zip(at.positions, at.on_table, aimer.strokes(at), strict=True):
+        off = float(action[3]) - line(p, on, mask_of(range(1, 5)))
         assert abs(sin(off)) < 1e-6 and cos(off) > 0.0
 
 
@@ -357,5 +351,5 @@ def test_the_widest_of_several_is_taken(aimer):
 
 
 def test_a_visit_is_longer_than_the_plain_players():
-    plain, own = (play_visits(player_of(name), 30, noise="none", threads=1).made.sum() for name in ("ghost_ball", "geometric"))
+    plain, own = (play_visits(sn.player(name), 30, noise="none", threads=1).made.sum() for name in ("ghost_ball", "geometric"))
     assert own > 1.5 * plain

@@ -3,18 +3,19 @@
 import numpy as np
 from positions import tables
 
+import snooker_env as sn
 from agents.features import lookahead_features
 from agents.features.noise_samples import find, first_of, unevenness
-from agents.players.built_in import DISCRETE, GhostBall
-from agents.players.by_name import player_of
 from snooker_env.benchmark import play_visits, summary
 from snooker_env.game.balls import BallOn
-from snooker_env.planning import Planner, Positions, prospects
+from snooker_env.planning import Planner, Positions, action_masks, prospects
 from snooker_env.planning.learned import pot_view
 from snooker_env.planning.sobol import EVEN_SAMPLES
 from snooker_env.tasks.discrete_actions import SIZE
 from snooker_env.tasks.noise import errors_of
 from snooker_env.tasks.visit import BALL_ON
+
+DISCRETE = {"action": "discrete"}
 
 
 def rows_of(seen):
@@ -23,9 +24,10 @@ def rows_of(seen):
 
 def test_foresight_shows_what_happens_without_errors():
     env = tables(5, noise="none", **DISCRETE)
-    view = lookahead_features.ForesightView(2)
+    view = lookahead_features.ForesightView(2).at(env.options)
     observations = env.reset(seed=4)[0]
-    seen = view(env, observations)
+    at = Positions.of(env)
+    seen = view(at, observations)
     assert seen.shape == (5, *lookahead_features.SPACE.shape) and lookahead_features.SPACE.contains(seen[0])
     assert np.array_equal(seen[:, : pot_view.SHOWN], pot_view.with_pots(observations))
     rows, exact = rows_of(seen), tables(5, noise="none", **DISCRETE)
@@ -41,15 +43,17 @@ def test_foresight_shows_what_happens_without_errors():
         cue = exact.tables.positions[:, 0] / (pot_view.HALF_WIDTH, pot_view.HALF_LENGTH)
         assert np.allclose(row[~ended, lookahead_features.CUE_X : lookahead_features.CUE_Y + 1], cue[~ended], atol=1e-6)
         assert np.allclose(lookahead_features.worth_by_rule(rows)[ended, stroke], rewards[ended], atol=1e-5)
-    part = view(env, observations[[1, 3]], np.array([False, True, False, True, False]))
+    part = view(at[[1, 3]], observations[[1, 3]])
     assert np.array_equal(part, seen[[1, 3]])
-    assert view.masks(env).sum() == (rows[:, :, 0] > 0).sum() and view.masks(env).shape == (5, SIZE)
+    allowed = view.allowed(action_masks(at))
+    assert allowed.sum() == (rows[:, :, 0] > 0).sum() and allowed.shape == (5, SIZE)
 
 
 def test_foresight_is_the_mean_over_noise_samples_with_the_errors_of_the_tables():
     """Against the tables themselves, given the streams of each noise sample in turn."""
     env, other = tables(4, noise="club", **DISCRETE), tables(4, noise="club", **DISCRETE)
-    seen = rows_of(lookahead_features.ForesightView(1)(env, env.reset(seed=8)[0]))
+    observations = env.reset(seed=8)[0]
+    seen = rows_of(lookahead_features.ForesightView(1).at(env.options)(Positions.of(env), observations))
     spread = prospects.spread_of(env.tables.rules.noise, env.tables.rules.physics)
     for stroke in (1, 10):
         points, worth, cue, on = (np.zeros((5, 4)) for _ in range(4))
@@ -79,7 +83,7 @@ def test_foresight_says_which_stroke_it_is():
     env = tables(6, noise="professional", layout="random:6", **DISCRETE)
     env.tables.game[:3, BALL_ON], env.tables.game[3:, BALL_ON] = int(BallOn.RED), int(BallOn.ANY_COLOUR)
     planner, at, masks = Planner(env), Positions.of(env), env.action_masks()[:, lookahead_features.PICKS]
-    rows = lookahead_features.ForesightView(1).ahead(env, at, masks)
+    rows = lookahead_features.ForesightView(1).at(env.options).ahead(at, masks)
     chances = prospects.prospects_of(at, prospects.spread_of(planner.noise, planner.physics))[1]
     strokes = [(pot, speed, top) for pot in (0, 1) for speed in (1.3, 2.3, 3.6, 5.3) for top in (-0.4, 0.0, 0.4)]
     there = np.array([[chances[k, pot] > 0 for pot, _, _ in strokes] for k in range(6)])
@@ -118,11 +122,13 @@ def test_noise_samples_are_even():
 
 
 def test_lookahead_plays_the_stroke_that_promises_most():
-    env, going = tables(6, noise="professional", **DISCRETE), np.array([True, False, True, True, True, True])
-    player = player_of("lookahead_foresight")
-    picks = player.act(env, None, going)
-    rows = rows_of(lookahead_features.ForesightView()(env, env.reset(seed=0)[0]))
-    assert np.array_equal(picks[going], lookahead_features.PICKS[lookahead_features.worth_by_rule(rows).argmax(1)][going]) and picks[1] == 0
+    env = tables(6, noise="professional", **DISCRETE)
+    observations = env.reset(seed=0)[0]
+    at, player = Positions.of(env), sn.player("foresight_rule")
+    rows = rows_of(lookahead_features.ForesightView().at(env.options)(at, observations))
+    picks = lookahead_features.PICKS[lookahead_features.worth_by_rule(rows).argmax(1)]
+    expected = Planner(env).strokes_of(at, np.arange(6), picks)[0]
+    assert np.array_equal(player.at(env).play(at, np.arange(6)).values, expected)
     far = play_visits(player, 60, first_seed=5)
-    plain = play_visits(GhostBall(), 60, first_seed=5)
+    plain = play_visits(sn.player("ghost_ball"), 60, first_seed=5)
     assert summary(far)["points_a_visit"] > 2.0 * summary(plain)["points_a_visit"]

@@ -15,7 +15,7 @@ from agents.learning.model_files import packed, read
 from agents.learning.models import zipped
 from agents.learning.self_play import search_of
 from agents.learning.value_network import value_of
-from agents.players.by_name import player_of
+from snooker_env import player
 from snooker_env.planning import Positions, spread_of
 from snooker_env.planning.learned.learned_value import LearnedValue
 from snooker_env.planning.learned.policy_proposals import PolicyProposals
@@ -249,7 +249,6 @@ def test_policy_and_value_are_saved_and_read_together(tmp_path):
         assert np.array_equal(PolicyProposals(one.policy.fused).scores(at)[0], scores)
     assert packed(again) == packed(trained)
     env = tables(3, noise="professional", aim="absolute")
-    played = [
-        player_of(f"planner_30@{tmp_path / name}").act(env, None, np.ones(3, bool)) for name in ("model.zip", "plain.zip", "")
-    ]  # the last one: the folder
+    files = [tmp_path / name for name in ("model.zip", "plain.zip", "")]  # the last one: the folder
+    played = [player(f"planner_30@{file}").at(env).play(Positions.of(env), np.arange(3)).values for file in files]
     assert np.array_equal(played[0], played[1]) and np.array_equal(played[0], played[2]) and played[0].any(axis=1).all()

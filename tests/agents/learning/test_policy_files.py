@@ -14,9 +14,9 @@ from agents.evaluation.entrants import Entrant
 from agents.learning import policy_files
 from agents.learning.models import POLICY
 from agents.learning.policy_files import packed_policy, read_policy, write_policy
-from agents.players.layers_player import LayersPlayer
-from agents.players.trained import load_any, load_player
+from agents.players.trained import PolicyPlayer, load_player
 from snooker_env import SnookerVectorEnv
+from snooker_env.planning import Planner, Positions
 from snooker_env.planning.learned.dense_layers import Layers
 
 ABOUT = {"trainer": "mine", "activation": "tanh", "shots": 12, "seed": 3, "gamma": 0.9, "env_options": {"noise": "club"}}
@@ -34,17 +34,17 @@ def arrays(**changes):
 def test_a_policy_plays_the_available_choice_that_scores_highest(tmp_path):
     write_policy(tmp_path / "p.npz", WEIGHTS, **ABOUT)
     player = load_player(tmp_path / "p.npz")
-    assert isinstance(player, LayersPlayer) and player.options == {"action": "discrete"} and not player.foreign
+    assert isinstance(player, PolicyPlayer) and player.learned is None
     tables = SnookerVectorEnv(9, threads=1, action="discrete", layout="random:2")
     rows, _ = tables.reset(seed=1)
     (first, shift), (last, end) = WEIGHTS
     scores = np.tanh(rows @ first.T + shift) @ last.T + end
-    masks, going = tables.action_masks(), np.arange(9) % 3 > 0
+    masks, at = tables.action_masks(), Positions.of(tables)
     want = np.where(masks, scores, -np.inf).argmax(axis=1)
-    assert np.array_equal(player.act(tables, rows, going), np.where(going, want, 0)) and not masks.all() and len(set(want)) > 2
-    for (choices, shares), k in zip(player.rank(tables, rows, going), np.flatnonzero(going), strict=True):
-        assert choices[0] == want[k] and set(choices) == set(np.flatnonzero(masks[k]))
-        assert shares.sum() == pytest.approx(1.0) and (np.diff(shares) <= 0).all()
+    expected, bound = Planner(tables).strokes_of(at, np.arange(9), want)[0], player.at(tables)
+    assert np.array_equal(bound.play(at, np.arange(9)).values, expected) and not masks.all() and len(set(want)) > 2
+    for one, mask in zip(bound.rank(at, np.arange(9)), masks, strict=True):
+        assert len(one.scores) == min(100, mask.sum()) and (np.diff(one.scores) <= 0).all() and one.scores.sum() <= 1.0 + 1e-9
     other = Layers(WEIGHTS, "relu")(rows)
     expected = np.maximum(rows @ first.T + shift, 0) @ last.T + end
     assert np.allclose(other, expected, atol=1e-4) and not np.allclose(
@@ -89,7 +89,7 @@ def test_it_is_evaluated_like_any_other_agent(tmp_path, capsys):
     folder = tmp_path / "mine-0"
     folder.mkdir()
     write_policy(folder / POLICY, WEIGHTS, **ABOUT)
-    assert load_any(folder, False, {}).model.num_timesteps == 12
+    assert load_player(folder).model.num_timesteps == 12
     ends = ["--visits", "4", "--layouts", "held_out", "--noise", "club", "--resamples", "100", "--json", str(tmp_path / "r.json")]
     assert protocol.main(["--agent", str(folder), f"same={folder / POLICY}", *ends]) == 0
     report = json.loads((tmp_path / "r.json").read_text())

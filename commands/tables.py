@@ -3,7 +3,9 @@
 from dataclasses import dataclass, replace
 from textwrap import fill
 
-from snooker_env._tables import markdown_table, text_table
+from snooker_env._tables import markdown_table, shown, text_table
+
+__all__ = ["WIDTH", "TextTable", "markdown_table", "page", "show", "shown", "text_table"]
 
 WIDTH = 100
 """Columns of text that no table is wider than."""
@@ -11,7 +13,7 @@ WIDTH = 100
 
 @dataclass
 class TextTable:
-    """Cells as text; the first ``keys`` columns say what a row is about, the first ``left`` are words, the others numbers."""
+    """Cells as text: ``keys`` columns say what a row is about, the first ``left`` are words, the others numbers."""
 
     title: str
     header: list
