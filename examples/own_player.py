@@ -1,26 +1,32 @@
-"""How does a player of one's own play the benchmark? A class with ``options`` and ``act``: the widest pot, struck the softer the nearer.
+"""How does a player of one's own play the benchmark? A class with ``at`` and ``play``: the widest pot, the softer the nearer.
 
     python -m snooker_env.benchmark run SnookerBreak-v0 --agent examples.own_player:Softly --training-shots 0 --episodes 50
 
-``options`` says how its actions are read; ``act`` gives an action for each table of a ``snooker_env.SnookerVectorEnv``.
+``at`` binds it to where it plays; ``play`` gives a stroke for each position. The same position and seed give the same one.
 """
 
 import numpy as np
 
-from snooker_env.planning import Positions, pots
-from snooker_env.tasks import SIDES, SPEEDS, TOPS, choice_of
+from snooker_env.geometry import POCKET_AIMS
+from snooker_env.planning import Positions, pot_aim, pots
+from snooker_env.players import Strokes
 
 
 class Softly:
-    """The widest direct pot, without spin, at a speed that grows with the way of the cue ball."""
+    """The widest direct pot, without spin, at a speed that grows with the way of the cue ball; else full at a ball on."""
 
-    options = {"action": "discrete"}  # noqa: RUF012 - a player's options are read, never changed
+    def at(self, rules):
+        """It plays alike everywhere."""
+        return self
 
-    def act(self, tables, observations, going):
-        """A choice for each table; only those ``going`` count."""
-        at = Positions.of(tables)
-        found = pots(at, most=1)
-        far = np.hypot(*(found.ghost[:, 0] - at.positions[:, 0]).T)
-        wanted = np.clip(1.5 + far, SPEEDS[0], SPEEDS[-1])
-        speeds = np.abs(np.subtract.outer(wanted, SPEEDS)).argmin(axis=1)
-        return np.array([choice_of(0, int(speed), SIDES.index(0.0), TOPS.index(0.0)) for speed in speeds])
+    def play(self, positions, seeds):
+        """A stroke for each position."""
+        at = Positions.of(positions)
+        lines, balls = pots(at, most=1), at.balls_on.argmax(axis=1)
+        there = np.flatnonzero(lines.ball[:, 0] >= 0)
+        balls[there] = lines.ball[there, 0]
+        x, y = (at.positions[np.arange(len(at)), balls] - at.positions[:, 0]).T
+        speeds, aims, still = np.clip(1.5 + np.hypot(x, y), 0.5, 6.0), np.arctan2(y, x), np.zeros(len(at))
+        targets = POCKET_AIMS[lines.pocket[there, 0], :2]
+        aims[there] = pot_aim(at, there, balls[there], targets, speeds[there])  # with throw and swerve
+        return Strokes(np.column_stack([speeds, still, still, aims, still]))

@@ -28,12 +28,12 @@ judge ppo_mask 1015808
 # A step simulates 120 shots for the view, and 1 that is played: 49,152 x 121. Each of 10,240 imitated positions 48 more: x 169.
 judge ppo_foresight 7677952
 judge ppo_foresight_gamma0 7677952
-# The same view, rated by a rule of thumb; "lookahead" is the built-in player of snooker_env.advice.
-judge lookahead_foresight 0
-judge lookahead 0
+# The same view, rated by a rule of thumb.
+judge foresight_rule 0
 # The search over continuous strokes, and with what train.py learns: 153,600 positions x 64 simulated shots, 147,456 x 48 judged choices, PPO.
 judge best_pot 0
-judge lookahead_120 0
+judge search 0
+judge search_2000 0
 judge planner 18415616
 judge ppo_value 18415616
 judge ppo_mask_finetuned 26443776

@@ -2,8 +2,6 @@
 
 from typing import Any, ClassVar
 
-import numpy as np
-
 from ._jit import ENTRIES
 from ._notices import warming_up
 from .impacts import collide_balls, collide_cushion, strike
@@ -99,6 +97,6 @@ def warmup() -> None:
         search.rank(at, seeds=[0])
         search.planner.play(at, [0], strokes=[[1.0, 0.0, 0.0, 0.0, 0.0]], keys=[0])
         for generate in (at_balls, over_cushions):
-            generate(search, at, 1, np.zeros(1, np.int64))
+            generate(search, at, 1, [0])
         for call in (direct_pots, clear_paths, Positions.observations, lambda batch: batch.balls_on):
             call(at)

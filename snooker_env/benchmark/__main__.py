@@ -93,10 +93,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _tasks(args: Any) -> int:
     """List the tasks."""
-    rows = [
-        [task.id, task.title, task.judged_layout, str(task.frozen["noise"]), f"{task.episodes:,}"]
-        for task in TASKS.values()
-    ]
+    rows = [[task.id, task.title, task.judged_layout, str(task.frozen["noise"]), f"{task.episodes:,}"] for task in TASKS.values()]
     print("\n".join(text_table(["task", "what", "judged on", "noise", "episodes"], rows, 4)))
     print(f"\nFree options: {', '.join(FREE)}. All others are frozen.")
     return 0
@@ -137,7 +134,7 @@ def _run(args: Any) -> int:
 
             def tick(played: int, total: int) -> None:
                 """Say how far it is."""
-                if not shown_by:
+                if not shown_by:  # noqa: B023
                     progress = Progress(task.id, total, "episodes", done=played)  # noqa: B023 - called in this round
                     shown_by.append(ending.enter_context(progress))  # noqa: B023
                 shown_by[0].at(played)  # noqa: B023

@@ -276,9 +276,7 @@ def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | 
     return wrong
 
 
-def afresh(
-    found: dict[str, Any], agent: Agent, episodes: int, seed: int, threads: int | None = None
-) -> tuple[float, float, list[str]]:
+def afresh(found: dict[str, Any], agent: Agent, episodes: int, seed: int, threads: int | None = None) -> tuple[float, float, list[str]]:
     """Have the agent play a task on seeds that it cannot know, and compare its mean score and its class with those of the result.
 
     Parameters

@@ -96,9 +96,7 @@ def _share(figure: dict[str, Any]) -> str:
     return f"<= {100 * figure['high']:.1f}" if figure["value"] == 0.0 else f">= {100 * figure['low']:.1f}"
 
 
-def lines(
-    results: Sequence[dict[str, Any]], *, markdown: bool = False, awaited: Sequence[str] = ()
-) -> list[str]:
+def lines(results: Sequence[dict[str, Any]], *, markdown: bool = False, awaited: Sequence[str] = ()) -> list[str]:
     """Leaderboard and profiles of all tasks with results; labels ``awaited`` are named where their result is missing."""
 
     def table(head: list[str], rows: list[list[str]], label: int, left: int = 1) -> list[str]:

@@ -151,9 +151,7 @@ def tables_for(task: Task, n: int, threads: int | None = None) -> SnookerVectorE
     return SnookerVectorEnv(n, task.judged(**(FRAMES if task.frame else VISITS)), threads=threads)
 
 
-def play_episodes(
-    task: Task, player: Any, seeds: list[int], run: int = 0, threads: int | None = None
-) -> PlayedEpisodes:
+def play_episodes(task: Task, player: Any, seeds: list[int], run: int = 0, threads: int | None = None) -> PlayedEpisodes:
     """Play one episode on each of the judged tables with these seeds, side by side.
 
     Parameters

@@ -32,10 +32,7 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "software.snooker_env": (str, False, "version"),
     "software.python": (str, False, "version"),
     **{f"software.{name}": (str, True, "version") for name in ("numpy", "numba", "gymnasium")},
-    **{
-        f"software.{name}": (str, True, "version; null: not installed")
-        for name in ("torch", "stable_baselines3", "sb3_contrib")
-    },
+    **{f"software.{name}": (str, True, "version; null: not installed") for name in ("torch", "stable_baselines3", "sb3_contrib")},
     "machine.platform": (str, False, "operating system and processor architecture"),
     "machine.cpu": (str, False, "the processor's name"),
     "machine.cores": (int, False, "logical processors"),
@@ -61,9 +58,7 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
 }
 """Dotted name: type, whether it may be null, meaning."""
 _PROVED = ("schema", "protocol", "task", "agent.class", "agent.budget", "columns", "rows", "figures", "strokes")
-UNPROVED = tuple(
-    name for name in FIELDS if not name.startswith(_PROVED) and name != "software.snooker_env"
-)
+UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED) and name != "software.snooker_env")
 """Fields that a replay cannot prove: their form is checked, and that they fit the others. Class and budget follow from them."""
 
 LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,20}")

@@ -16,7 +16,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from .._jit import entry, kernel
-from .._types import Floats, Ints
+from .._types import Floats, Integers, Ints
 from ..game.balls import VALUES, balls_on_kernel, bits, touching_balls
 from ..game.frame_columns import BALL_ON
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
@@ -323,7 +323,7 @@ def at_pots(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
     return spread_strokes(at, m, seeds, search.spread, search.dynamics)
 
 
-def at_balls(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
+def at_balls(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
     """Generate strokes at the balls on that the cue ball can strike.
 
     Parameters
@@ -349,7 +349,7 @@ def at_balls(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
     return made
 
 
-def over_cushions(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
+def over_cushions(search: Search, at: Positions, m: int, seeds: Integers) -> Proposals:
     """Generate escapes over cushions, where hardly anything of a ball on is seen.
 
     Parameters

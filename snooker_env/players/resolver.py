@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from .._check import refuse, refuse_what, truth
-from .choices import Random
+from .choices import GhostBall, Random
 from .player import Player
 from .search import BUDGET, SearchPlayer
-from .simple import GhostBall
 
 GROUP = "snooker_env.players"
 """Entry points of this group name players of other packages: NAME = MODULE:MAKER, called without arguments."""

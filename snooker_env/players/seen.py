@@ -93,7 +93,7 @@ class SeenPlayer(BoundPlayer):
         self._bound_sees(Options())
 
     def _bind(self, options: Options) -> None:
-        if self.frames and options.task != "frame":
+        if self.frames and options.task == "visit":
             raise refuse("player", self.name, "must see visits to play them: it sees frames")
         self._bound_sees(options)
 

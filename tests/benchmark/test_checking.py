@@ -3,10 +3,9 @@
 import copy
 from functools import cache
 
-import numpy as np
 import pytest
 
-from agents.players.built_in import Random
+import snooker_env as sn
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, figures_of, judge, page, replayed
 from snooker_env.benchmark.checking import strokes_of
 from snooker_env.benchmark.leaderboard import markdown_table, plain, profile
@@ -18,8 +17,8 @@ HUGE = 10**400
 
 @cache
 def sound():
-    """All episodes of random on the colours, by an agent of another name, which ``check`` does not play again."""
-    return judge(TASKS["SnookerColours-v0"], Agent(label="any", kind="class", sources=("a:B",), maker=Random, training_shots=0))
+    """All episodes of random on the colours, by an agent of another name, which ``check`` does not ask again."""
+    return judge(TASKS["SnookerColours-v0"], Agent(label="any", sources=(sn.player("random"),), training_shots=0))
 
 
 def changed(**fields):
@@ -49,15 +48,13 @@ def test_sources_are_texts(sources):
 
 
 def test_the_same_source_five_times_makes_nothing_surer():
-    found, strokes = changed(agent__sources=["model.zip"] * 5, agent__kind="model"), strokes_of(sound())
+    found, strokes = changed(agent__sources=["model.zip"] * 5), strokes_of(sound())
     found["rows"] = [[run, *row[1:]] for run in range(5) for row in sound()["rows"]]
     found["strokes"] = packed(strokes * 5)
     found["figures"] = figures_of(TASKS[found["task"]], "any", found["rows"])
     assert faults(found) == ["agent.sources: must be different: the same one twice makes nothing surer"]
     found["agent"]["sources"] = [f"{k}.zip" for k in range(5)]
     assert faults(found) == ["agent.sources: 0 and 1 must be different training seeds: their strokes are equal"]
-    found["agent"]["kind"] = "class"
-    assert faults(found) == ["agent.sources: must be one for an agent of kind class"]
 
 
 WRONG = [
@@ -65,7 +62,6 @@ WRONG = [
     ("agent__label", "", "agent.label = '': must be 1 to 20 letters"),
     ("agent__label", "a" * 200, "agent.label = 'aaaa"),
     ("agent__label", "random\n", "agent.label = 'random"),
-    ("agent__kind", "human", "agent.kind = 'human': must be one of built_in"),
     ("machine__cpu", "evil\n\n## injected", "machine.cpu = 'evil"),
     ("machine__platform", "", "machine.platform = ''"),
     ("software__snooker_env", "999 | x", "software.snooker_env = '999 | x': must be a version"),
@@ -73,17 +69,13 @@ WRONG = [
     ("commit", "a commit", "commit = 'a commit': must be a commit's hash"),
     ("date", "whenever", "date = 'whenever': must be a time in UTC"),
     ("date", "2026-13-01T00:00:00Z", "date = "),
-    ("agent__options", {"noise": "none"}, "agent.options: key of options = 'noise': must be one of 'action', 'aim'"),
-    ("agent__options", {"aim": "at the pub"}, "agent.options: aim = "),
     ("agent__training_shots", -5, "agent.training_shots = -5: must be between 0"),
     ("agent__simulated_shots", -1, "agent.simulated_shots = -1: must be between 0"),
-    ("agent__simulated_shots", None, "agent.simulated_shots = None, counted: must be 0.0, counted"),
-    ("agent__simulated_shots", 7, "agent.simulated_shots = 7, counted: must be 0.0, counted"),
-    ("timing__simulated_shots", 7, "agent.simulated_shots = 0.0, counted: must be 0.00"),
-    ("agent__kind", "program", "agent.kind = 'program': must be another with agent.sources ['a:B']"),
-    ("agent__sources", ["program:a"], "agent.kind = 'class': must be program with agent.sources ['program:a']"),
-    ("agent__sources", ["random"], "agent.kind = 'class': must be built_in with agent.sources ['random']"),
-    ("agent__sources", ["planner"], "agent.kind = 'class': must be repository with agent.sources ['planner']"),
+    ("agent__simulated_shots", None, "agent.simulated_shots = None: must be 0.0 by agent.sources"),
+    ("agent__simulated_shots", 7, "agent.simulated_shots = 7: must be 0.0 by agent.sources"),
+    ("timing__simulated_shots", 7, "agent.simulated_shots = 0.0: must be 0.00"),
+    ("agent__sources", ["program:a"], "agent.class = 'model_free': must be 'undeclared' by agent.simulated_shots"),
+    ("agent__sources", ["search_60"], "strokes: run 0, table 1000000: search_60 begins with another stroke than the file"),
     ("agent__label", "random", "agent.label = 'random': must not be the name of another player"),
     ("agent__label", "lookahead_120", "agent.label = 'lookahead_120': must not be the name of another player"),
     ("machine__cores", 0, "machine.cores = 0: must be between 1"),
@@ -127,51 +119,26 @@ def test_what_is_not_known_is_not_official():
     """Training shots, and the simulated shots of a program."""
     said = faults(changed(agent__training_shots=None, agent__budget="unknown"))
     assert len(said) == 1 and said[0].startswith("protocol.official = True: must be False")
-    program = {"agent__kind": "program", "agent__sources": ["program:a"]}
-    assert faults(changed(**program))[0].startswith("agent.simulated_shots = 0.0, counted: must be None, declared")
+    program = {"agent__sources": ["program:a"]}
+    assert "agent.simulated_shots = 0.0: must be None by agent.sources" in faults(changed(**program))[1]
     program["agent__declared"] = True
     assert faults(changed(**program)) == []
     said = faults(changed(**program, agent__simulated_shots=None, **{"agent__class": "undeclared"}))
     assert len(said) == 1 and said[0].startswith("protocol.official = True: must be False")
 
 
-class Still:
-    options = {"action": "discrete"}  # noqa: RUF012
-    shift = 0
-
-    def act(self, tables, observations, going):
-        return np.full(len(going), 67 + self.shift)
-
-
-def still(kind="object", sources=("here",), **options):
-    made = iter(range(99))
-
-    def maker():
-        player = Still()
-        player.options, player.shift = {"action": "discrete"} | options, 5 * next(made)
-        return player
-
-    return Agent(label="still", kind=kind, sources=sources, maker=maker, training_shots=0)
-
-
 def test_a_replay_is_of_every_training_seed_by_the_same_agent():
-    two = ("a.zip", "b.zip")
-    found = judge(TASKS["SnookerPotHard-v0"], still("model", two), episodes=6)
-    assert faults(found) == [] and replayed(found, still("model", two), 6) == []
-    other = copy.deepcopy(found)
-    k = next(k for k, r in enumerate(found["rows"]) if r[0] == 1)
-    strokes = strokes_of(found)
-    strokes[k] = strokes[k] ^ 1
+    two = Agent(label="two", sources=("random", "search_30"), training_shots=0)
+    found = judge(TASKS["SnookerPotHard-v0"], two, episodes=6)
+    assert faults(found) == [] and replayed(found, two, 6) == [] and replayed(found, two, 4) == []
+    other, strokes = copy.deepcopy(found), strokes_of(found)
+    strokes[8] = -strokes[8]
     other["strokes"] = packed(strokes)
-    said = replayed(other, still("model", two), 6)
-    assert len(said) == 1 and said[0].startswith(f"run 1, table {found['rows'][k][1]}: played again")
-    assert "played again other strokes" in said[0]
-    with pytest.raises(ValueError, match="must be of the kind that the file says: model"):
-        replayed(found, still("object", two), 6)
+    wrong = replayed(other, two, 6)
+    assert len(wrong) == 1 and wrong[0].startswith(f"run 1, table {found['rows'][8][1]}: played again other strokes")
+    assert replayed(other, two, 2) == []
     with pytest.raises(ValueError, match="must have the 2 training seeds of the file"):
-        replayed(found, still("model", ("a.zip",)), 6)
-    with pytest.raises(ValueError, match="must be those of the file"):
-        replayed(found, still("model", two, observation="flat"), 6)
+        replayed(found, Agent.of("random"), 6)
 
 
 def test_no_text_of_a_file_is_markup_of_the_page():

@@ -27,6 +27,7 @@ from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.leaderboard import LEGEND, lines
 from snooker_env.benchmark.schema import FIELDS
 from snooker_env.planning import Planner
+from snooker_env.players import VISITS, BoundPlayer, Strokes, decision_seeds
 
 EPISODES = 24
 
@@ -57,19 +58,18 @@ def test_what_is_written_is_sound(made, name):
 
 def test_rows_are_the_visits_that_the_environment_plays(made):
     """Stroke by stroke on one table with the same seeds, by nobody's rollout code."""
-    from snooker_env.advice import player_of
-
     found = result(made)
-    env = sn.SnookerEnv(layout="held_out", noise="professional", placement=True)
-    player = player_of("ghost_ball")
+    env = sn.SnookerEnv(layout="held_out", noise="professional", **VISITS)
+    player = sn.player("ghost_ball").at(env)
     for row in found["rows"][:6]:
         env.reset(seed=row[1])
         points = pots = strokes = fouls = 0
         over = False
         while not over:
-            many = sn.SnookerVectorEnv(1, threads=1, noise="professional", placement=True)
-            many.reset(options={"state": env.get_state()})
-            _, reward, over, _, info = env.step(player.act(many, None, np.ones(1, bool))[0])
+            at = sn.Positions.of(env)
+            seeds = decision_seeds(0, np.array([row[1]]), strokes)
+            action = player.play(at, seeds).actions(env.options, at).astype(np.float32)
+            _, reward, over, _, info = env.step(action[0])
             points, pots, strokes, fouls = points + info["points"], pots + (reward > 0), strokes + 1, fouls + info["foul"]
         assert row[2:7] == [points, strokes, points, pots, fouls]
 
@@ -126,10 +126,10 @@ TAMPERED = [
     (("task",), "SnookerBreak-v1", "task = 'SnookerBreak-v1': must be one of SnookerBreak-v0"),
     (("agent", "class"), "planning", "agent.class = 'planning': must be 'model_free' by agent.simulated_shots"),
     (("agent", "budget"), "1M", "agent.budget = '1M': must be 'none' by agent.training_shots"),
-    (("timing", "simulated_shots"), 10**6, "agent.simulated_shots = 0.0, counted: must be "),
+    (("timing", "simulated_shots"), 10**6, "agent.simulated_shots = 0.0: must be "),
     (("software", "numpy"), 2, "software.numpy = 2: must be a text or null"),
-    (("machine", "colour"), 2, "machine.colour: is no field of version 2"),
-    (("extra",), 2, "extra: is no field of version 2"),
+    (("machine", "colour"), 2, "machine.colour: is no field of version 3"),
+    (("extra",), 2, "extra: is no field of version 3"),
     (("incomplete",), False, "incomplete = False: must be a text or null"),
 ]
 
@@ -152,21 +152,20 @@ def test_a_missing_field_is_named(made, field):
 
 
 def test_simulated_shots_are_counted():
-    class Thinks:
+    class Thinks(BoundPlayer):
         """Plays 7 shots on copies of each table before each stroke, 3 more by ``simulate``, and one batch of 5."""
 
-        options = {"action": "discrete"}  # noqa: RUF012
-
-        def act(self, tables, observations, going):
-            planner = Planner(tables, noise="none")
-            for k in np.flatnonzero(going):
-                planner.play(tables, np.full(7, k), np.arange(7))
+        def play(self, positions, seeds):
+            at, rng = sn.Positions.of(positions), np.random.default_rng(0)
+            planner = Planner({"action": "discrete"})
+            for k in range(len(at)):
+                planner.play(at.as_visits(), np.full(7, k), np.arange(7))
                 for _ in range(3):
                     sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)])
                 sn.simulate_batch(np.zeros((5, 1, 2)), np.zeros((5, 1, 2)), np.zeros((5, 1, 3)))
-            return np.zeros(len(going), int)
+            return Strokes(np.column_stack([np.full((len(at), 3), [2.0, 0, 0]), rng.uniform(-3, 3, len(at)), np.zeros(len(at))]))
 
-    agent = Agent(label="thinks", kind="object", sources=("here",), maker=Thinks, training_shots=40_000)
+    agent = Agent(label="thinks", sources=(Thinks(),), training_shots=40_000)
     found = judge(TASKS["SnookerPotHard-v0"], agent, episodes=9)
     assert sum(row[3] for row in found["rows"]) == 9 and found["timing"]["simulated_shots"] == 9 * 15
     assert (found["agent"]["simulated_shots"], found["agent"]["class"], found["agent"]["budget"]) == (15.0, "planning", "50k")
@@ -199,13 +198,32 @@ def test_budgets_are_limits_with_room_for_a_rollout():
     ]  # fmt: skip
 
 
-def test_randomness_is_repeated_batch_by_batch():
+def test_randomness_is_repeated():
     task = TASKS["SnookerColours-v0"]
     first, second = (judge(task, Agent.of("random"), episodes=12)["rows"] for _ in range(2))
-    assert first == second
-    player = Agent.of("random").player(task)
-    one = play_episodes(task, player, task.seeds(12))
-    assert one.rows != play_episodes(task, player, task.seeds(12)).rows  # it draws on
+    assert first == second == play_episodes(task, "random", task.seeds(12)).rows
+    assert play_episodes(task, "random", task.seeds(12), run=1).rows != [[1, *row[1:]] for row in first]
+
+
+def test_bounds_of_what_was_always_or_never_seen():
+    """Several runs on the same tables are no more trials than one."""
+    task, bound = TASKS["SnookerColours-v0"], unseen(30)
+    always = [[run, table, 27, 6, 27, 6, 0, 1, 0, 1] for run in range(3) for table in range(30)]
+    never = [[run, table, 0, 1, 0, 0, 0, 0, 0, 1] for run in range(3) for table in range(30)]
+    assert bound == pytest.approx(1 - 0.05 ** (1 / 30))
+    one = {"value": 1.0, "low": pytest.approx(1 - bound), "high": 1.0, "exact": True}
+    none = {"value": 0.0, "low": 0.0, "high": pytest.approx(bound), "exact": True}
+    assert figures_of(task, "a", always)["cleared"] == one and figures_of(task, "a", never)["cleared"] == none
+
+
+def test_agents_draw_their_runs_apart():
+    """With another label other training seeds are drawn; with the same label the same."""
+    task, points = TASKS["SnookerColours-v0"], np.random.default_rng(0).integers(0, 9, 40)
+    rows = [[run, table, x, 1, x, 0, 0, 0, 0, 1] for run in range(5) for table, x in enumerate(points + 5 * run)]
+    one, same, other = (figures_of(task, label, rows)["score"] for label in ("a", "a", "b"))
+    assert one == same and one["value"] == other["value"] and (one["low"], one["high"]) != (other["low"], other["high"])
+    alone = [figures_of(task, label, rows[:40])["score"] for label in ("a", "b")]
+    assert alone[0] == alone[1]  # of one run only the tables are drawn, the same for all agents
 
 
 def test_tables_fit_100_columns(made, capsys):

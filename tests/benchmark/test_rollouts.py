@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+import snooker_env as sn
 from agents.evaluation import protocol
-from agents.players.built_in import GhostBall, Random
 from snooker_env.benchmark import FIGURES, HELD_OUT_SEED, Strokes, counts, play_visits, rollouts, summary, tables_of
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BallOn
@@ -16,13 +16,16 @@ from snooker_env.game.opened import HELD_OUT
 class Watched:
     """A player that keeps how the tables stood before its first stroke."""
 
-    def __init__(self, player):
-        self.player, self.options, self.start = player, player.options, None
+    def __init__(self, name):
+        self.player, self.start = sn.player(name), []
 
-    def act(self, tables, observations, going):
-        if self.start is None:
-            self.start = tables.tables.positions.copy(), tables.tables.on_table.copy()
-        return self.player.act(tables, observations, going)
+    def at(self, rules):
+        self.player = self.player.at(rules)
+        return self
+
+    def play(self, positions, seeds):
+        self.start.append((positions.positions, positions.on_table))
+        return self.player.play(positions, seeds)
 
 
 def test_counts_of_a_visit_by_hand():
@@ -67,7 +70,7 @@ def test_centuries_and_maximums(points, century, maximum):
 
 
 def test_counts_agree_with_the_summary():
-    s = play_visits(GhostBall(), 60, noise="professional")
+    s = play_visits("ghost_ball", 60, noise="professional")
     for strokes in (s, a_clearance_a_foul_and_a_miss()):
         c, f = counts(strokes), summary(strokes)
         for name in ("points_a_visit", "pots_a_visit", "fouls_a_visit", "pot_rate", "next_pot_after_a_pot", "colour_value", "high_colours",
@@ -88,7 +91,7 @@ def test_the_cue_balls_place_is_kept_unless_it_was_potted(monkeypatch):
             return found
 
     monkeypatch.setattr(rollouts, "SnookerVectorEnv", Kept)
-    s = play_visits(Random(seed=1), 200, noise="club")
+    s = play_visits("random", 200, noise="club")
     places, there = (np.stack(column)[s.number, s.visit] for column in zip(*after, strict=True))
     assert 0 < (~there).sum() < s.foul.sum()
     assert np.isnan(s.cue[~there]).all() and np.array_equal(s.cue[there], places[there])
@@ -104,9 +107,9 @@ def test_an_agent_is_played_under_its_condition(change):
     """Stroke by stroke as ``play_visits`` plays it there; and what is changed changes the play."""
     condition, seeds = USUAL | change, list(range(change.get("seeds", 3), 33))[:20]
     condition.pop("seeds", None)
-    found = protocol.play_agent(protocol.Entrant("a", ("ghost_ball",)), condition, seeds, 100, 100)
-    wanted = play_visits(GhostBall(), 20, first_seed=seeds, **condition)
-    usual = play_visits(GhostBall(), 20, first_seed=list(range(3, 23)), **USUAL)
+    found = protocol.play_agent(protocol.Entrant("a", ("ghost_ball",)), condition, seeds, 100)
+    wanted = play_visits("ghost_ball", 20, first_seed=seeds, **condition)
+    usual = play_visits("ghost_ball", 20, first_seed=list(range(3, 23)), **USUAL)
     (strokes,) = found.strokes
     for name in ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance"):
         assert np.array_equal(getattr(strokes, name), getattr(wanted, name), equal_nan=name == "cue"), name
@@ -117,17 +120,21 @@ def test_an_agent_is_played_under_its_condition(change):
 # tables --------------------------------------------------------------------------------------------------------------------------
 
 
+def test_a_control_has_other_errors_and_the_same_first_strokes():
+    """Drawn anew after each decision; equal seeds, equal errors."""
+    plain, one, same, other = (play_visits("search_30", 20, rekey=rekey) for rekey in (None, 1, 1, 2))
+    assert np.array_equal(one.cue, same.cue, equal_nan=True)
+    for two in (plain, other):
+        assert not np.array_equal(one.cue[:20], two.cue[:20], equal_nan=True)
+
+
 @pytest.mark.parametrize("layout", ["held_out", "line_up", "colours"])
 def test_everyone_starts_from_the_same_tables(layout):
     seeds, starts = tables_of(layout, 12), []
-    for player, noise, fidelity in (
-        (GhostBall(), "none", "fast"),
-        (Random(), "club", "standard"),
-        (Random({"aim": "absolute"}), "none", "standard"),
-    ):
-        watched = Watched(player)
+    for name, noise, fidelity in (("ghost_ball", "none", "fast"), ("random", "club", "standard")):
+        watched = Watched(name)
         play_visits(watched, 12, layout=layout, noise=noise, fidelity=fidelity, first_seed=seeds)
-        starts.append(watched.start)
+        starts.append(watched.start[0])
     for positions, on_table in starts[1:]:
         assert np.array_equal(positions, starts[0][0]) and np.array_equal(on_table, starts[0][1])
 

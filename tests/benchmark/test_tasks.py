@@ -15,15 +15,11 @@ from gymnasium.utils.env_checker import check_env
 import snooker_env as sn
 from snooker_env._registration import ENTRY_POINTS, ID
 from snooker_env.benchmark import COLUMNS, FREE, HELD_OUT_SEED, TASKS, play_episodes, tables_of, task_of
-from snooker_env.benchmark.playing import one_table
-from snooker_env.benchmark.strokes import Repeater
+from snooker_env.benchmark import tasks as benchmark_tasks
+from snooker_env.benchmark.playing import Repeater, rows_of, tables_for
 from snooker_env.game import layout
+from snooker_env.players import BoundPlayer, Strokes
 from snooker_env.tasks import OBSERVATION_SIZE, SIDES, SPEEDS, TOPS, choice_of
-from snooker_env.tasks.frame import Frames
-from snooker_env.tasks.ghost_ball import GhostBallOpponent
-from snooker_env.tasks.seats import Seat
-from snooker_env.tasks.stroke import ShotBuffers
-from snooker_env.tasks.tables import I_FOULS, Crew
 from tests.processes import python
 
 IDS = tuple(TASKS)
@@ -161,27 +157,38 @@ def test_the_finder_registers_all_ids_without_importing_the_package():
 
 
 def test_a_frame_lost_before_the_first_stroke_counts_as_lost_and_asks_for_no_decision():
-    class Counted:
-        options = {"aim": "target"}  # noqa: RUF012
+    class Counted(BoundPlayer):
+        asked = 0
 
-        def __init__(self):
-            self.asked = 0
-
-        def act(self, tables, observations, going):
-            assert not tables.tables.ended()[going].any()
-            self.asked += int(going.sum())
-            return np.zeros((len(going), 4))
+        def play(self, positions, seeds):
+            assert not positions.over.any()
+            Counted.asked += len(positions)
+            return Strokes(np.column_stack([np.full((len(seeds), 1), 2.0), np.zeros((len(seeds), 4))]))
 
     easy = dataclasses.replace(TASKS["SnookerFrame-v0"], judged_layout="pots:easy")
-    player = Counted()
-    played = play_episodes(easy, player, list(range(40)))
+    seeds = list(range(40))
+    played = play_episodes(easy, Counted(), seeds)
     rows = [dict(zip(COLUMNS, row, strict=True)) for row in played.rows]
-    lost_at_once = [row for row in rows if not row["strokes"]]
-    assert 4 <= len(lost_at_once) <= 36 and all(row["score"] == 0 and row["ended"] and row["opponent_points"] > 0 for row in lost_at_once)
-    assert player.asked == played.decisions == sum(row["strokes"] for row in rows) > 0
-    assert one_table(easy, Counted(), list(range(8)), 5).decisions <= 5
-    again = play_episodes(easy, Repeater(Counted.options, played.strokes), list(range(40)))
-    assert again.rows == played.rows and list(map(len, again.strokes)) == [row["strokes"] for row in rows]
+    at_once = [row for row in rows if not row["strokes"]]
+    assert 4 <= len(at_once) <= 36
+    assert all(row["score"] == 0 and row["ended"] and row["opponent_points"] > 0 for row in at_once)
+    assert Counted.asked == played.decisions == sum(row["strokes"] for row in rows) > 0
+    assert list(map(len, played.strokes)) == [row["strokes"] for row in rows]
+    assert rows_of(easy, tables_for(easy, 40), seeds, Repeater(played.strokes, 8)) == played.rows
+
+
+def test_a_mirrored_table_is_no_other_table(monkeypatch):
+    """Each table is dealt twice, the second time mirrored at the long axis."""
+
+    def deal(plan, rng):
+        seed = rng.bit_generator.seed_seq.entropy - HELD_OUT_SEED
+        places = np.random.default_rng(seed // 2).uniform(-1, 1, (22, 2))
+        return (1 - 2 * (seed % 2)) * places, np.ones(22, bool)
+
+    monkeypatch.setattr(benchmark_tasks, "deal", deal)
+    monkeypatch.setattr(benchmark_tasks, "plan_of", lambda name: None)
+    made = benchmark_tasks._tables_of.__wrapped__("made here", 5)
+    assert made == tuple(HELD_OUT_SEED + 2 * k for k in range(5))
 
 
 # what the notes say --------------------------------------------------------------------------------------------------------------
@@ -202,26 +209,14 @@ def test_what_a_constant_choice_wins():
     class Constant:
         options = {"action": "discrete"}  # noqa: RUF012
 
-        def act(self, tables, observations, going):
-            return np.full(len(going), choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.2)))
+        def act(self, observations, masks, seeds):
+            return np.full(len(seeds), choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.2)))
 
     rows = play_episodes(task, Constant(), task.seeds(task.episodes)).rows
     assert 100 * np.mean([row[2] for row in rows]) == pytest.approx(said(task, "A constant choice wins"), abs=3.0)
 
 
-def test_how_often_the_built_in_stroke_escapes():
-    """The stroke of the opponent ghost_ball on the judged tables."""
+def test_how_often_ghost_ball_escapes():
     task = TASKS["SnookerEscape-v0"]
-    n, options = task.episodes, {"noise": task.frozen["noise"], "layout": task.judged_layout, "aim": "target", "placement": True}
-    game, buffers = sn.Options(task="frame", decision=True, **options), ShotBuffers(n)
-    frames = Frames(game, n, seats=[Seat.of(game.rules)] * 2)
-    visits = sn.SnookerVectorEnv(n, task.judged())
-    visits.reset(seed=task.seeds(n))
-    for k, seed in enumerate(task.seeds(n)):
-        frames.seed(k, np.random.default_rng(seed))
-    frames.deal(np.arange(n), drawn=False)
-    assert np.array_equal(frames.positions, visits.tables.positions)
-    out = frames.output()
-    frames.complete(GhostBallOpponent().prepare(frames, np.arange(n), None, buffers), out, buffers, Crew(buffers), own=True)
-    share = 100 * (out.counts[:, I_FOULS] == 0).mean()
-    assert share == pytest.approx(said(task, "opponent ghost_ball escapes from"), abs=1.0)
+    rows = play_episodes(task, "ghost_ball", task.seeds(task.episodes)).rows
+    assert 100 * np.mean([row[2] for row in rows]) == pytest.approx(said(task, "ghost_ball escapes from"), abs=1.0)
