@@ -128,7 +128,11 @@ class ProgramPlayer(BoundPlayer):
             for kept, layout in zip(table.saved, at.saved or (), strict=False):
                 kept[0] = layout[k]
             state = table.get_state(0)
-            game = {"practice": False, "noise": [self._noise] * 2, "state": {name: state[name] for name in STATE}}
+            game = {
+                "practice": False,
+                "noise": [self._noise] * 2,
+                "state": {name: state[name] for name in STATE},
+            }
             session.load({"format": "snooker-game", "version": 1, **game})
         else:
             position = at[k]
