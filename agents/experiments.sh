@@ -70,11 +70,11 @@ evaluate() { # name of the output, then the options of agents.evaluate
 module agents.curves "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" \
     "ppo_mask=$folder/mask-?" "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?"
 evaluate main --against ghost_ball ppo_foresight_gamma0 --agent \
-    "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" ghost_ball lookahead_foresight ppo_mask "ppo_mask_1M=$folder/mask-?" \
+    "ppo_foresight=$folder/fore-?" "ppo_foresight_gamma0=$folder/gamma0-?" ghost_ball foresight_rule ppo_mask "ppo_mask_1M=$folder/mask-?" \
     geometric random
-evaluate aim --against ghost_ball random_absolute --layouts held_out --noise professional --agent \
-    "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?" ghost_ball random_absolute
-evaluate imitation_against_rule --against lookahead_foresight --noise professional --agent "ppo_foresight=$folder/fore-?" lookahead_foresight
+evaluate aim --against ghost_ball --layouts held_out --noise professional --agent \
+    "ppo_absolute=$folder/absolute-?" "ppo_target=$folder/target-?" "tqc_target=$folder/tqc-?" ghost_ball
+evaluate imitation_against_rule --against foresight_rule --noise professional --agent "ppo_foresight=$folder/fore-?" foresight_rule
 evaluate curriculum --against ghost_ball ppo_mask_1M --layouts held_out line_up --noise professional --agent \
     "curriculum=$folder/curriculum-?" "ppo_mask_1M=$folder/mask-[012]" ghost_ball
 evaluate fidelity --layouts held_out --noise professional --fidelity fast standard reference --agent \
@@ -84,26 +84,26 @@ evaluate physics --layouts held_out --noise professional --physics paper match p
 evaluate noise --layouts held_out --agent \
     "none=$folder/none-?" "professional=$folder/fore-0" "amateur=$folder/amateur-?" "club=$folder/club-?"
 
-evaluate planner --layouts held_out --noise professional club --against lookahead lookahead_foresight best_pot ppo_mask \
-    --picture agents/pictures/destinations.png --agent "planner=planner@$folder/value-?" best_pot ghost_ball lookahead \
-    lookahead_foresight "ppo_value=$folder/value-?" ppo_mask
+evaluate planner --layouts held_out --noise professional club --against search foresight_rule best_pot ppo_mask \
+    --picture agents/pictures/destinations.png --agent "planner=planner@$folder/value-?" best_pot ghost_ball search \
+    foresight_rule "ppo_value=$folder/value-?" ppo_mask
 evaluate model_free --layouts held_out --noise professional --against best_pot ppo_mask_5M --agent \
     "ppo_mask_finetuned=$folder/again-0" "ppo_mask_finetuned_5M=$folder/taught-0" "ppo_value=$folder/value-?" "ppo_mask_5M=$folder/mask5M-0" best_pot
-evaluate planner_parts --layouts held_out=400 line_up=200 colours=200 random:3=200 --noise professional club --against lookahead --agent \
+evaluate planner_parts --layouts held_out=400 line_up=200 colours=200 random:3=200 --noise professional club --against search --agent \
     "planner=planner@$folder/value-[012]" "planner_value=planner_value@$folder/value-[012]" \
-    "planner_policy=planner_policy@$folder/value-[012]" lookahead
+    "planner_policy=planner_policy@$folder/value-[012]" search
 [[ -n ${LIST:-} ]] || git show f19a568:agents/players/search.py | sed "s/from \.\.features/from agents.features/" > "$folder/search_before.py"
 PYTHONPATH=$folder evaluate planner_budgets --layouts held_out=200 --noise professional --against search search_before --agent \
     "planner_30=planner_30@$folder/value-0" "planner_60=planner_60@$folder/value-0" "planner=planner@$folder/value-0" \
     "planner_500=planner_500@$folder/value-?" "planner_2000=planner_2000@$folder/value-0" search search_before=search_before:Search
-evaluate planner_curve --layouts held_out=400 --noise professional --against lookahead --agent "positions_9600=planner@$folder/curve-9600" \
-    "positions_38400=planner@$folder/curve-38400" "positions_153600=planner@$folder/value-0" lookahead
-evaluate planner_club --layouts held_out --noise club --against lookahead lookahead_foresight --agent \
-    "planner=planner@$folder/value-club" lookahead lookahead_foresight
-evaluate planner_noise --layouts held_out=300 --against lookahead --agent "none=planner@$folder/value-none" \
-    "professional=planner@$folder/value-0" "amateur=planner@$folder/value-amateur" "club=planner@$folder/value-club" lookahead
-evaluate planner_rekeyed --layouts held_out=500 --noise professional --rekey --against lookahead --agent \
-    "planner=planner@$folder/value-0" lookahead
+evaluate planner_curve --layouts held_out=400 --noise professional --against search --agent "positions_9600=planner@$folder/curve-9600" \
+    "positions_38400=planner@$folder/curve-38400" "positions_153600=planner@$folder/value-0" search
+evaluate planner_club --layouts held_out --noise club --against search foresight_rule --agent \
+    "planner=planner@$folder/value-club" search foresight_rule
+evaluate planner_noise --layouts held_out=300 --against search --agent "none=planner@$folder/value-none" \
+    "professional=planner@$folder/value-0" "amateur=planner@$folder/value-amateur" "club=planner@$folder/value-club" search
+evaluate planner_rekeyed --layouts held_out=500 --noise professional --rekey --against search --agent \
+    "planner=planner@$folder/value-0" search
 evaluate planner_147 --layouts break_off=50 --noise none --against search --agent "planner_2000=planner_2000@$folder/value-none" search
 module agents.value_quality --agent "planner@$folder/value-0" --visits 500 --layouts held_out line_up colours random:3 \
     --noise professional club --markdown agents/results/value_quality.md

@@ -8,8 +8,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 file=${1:-agents/results/ladder.json}
 export OMP_NUM_THREADS=1 # the networks are small: more threads than one make them slower
-command=(python -m agents.tournament random ghost_ball geometric ppo_target ppo_mask ppo_foresight lookahead search_200=search
-    --budget 200 --frames 60 --fewer ppo_foresight=20 search_200=20 --threads 1 --resume --out "$file" --markdown "${file%.json}.md")
+command=(python -m agents.tournament random ghost_ball geometric ppo_target ppo_mask ppo_foresight search search_200
+    --frames 60 --fewer ppo_foresight=20 search_200=20 --threads 1 --resume --out "$file" --markdown "${file%.json}.md")
 if [[ -n ${LIST:-} ]]; then
     printf '%q ' "${command[@]}"
     echo

@@ -37,6 +37,7 @@ from .simulation import simulate, simulate_batch
 if _typing.TYPE_CHECKING:
     from . import planning
     from .advice import advise
+    from .envs.match_vector import MatchVectorEnv
     from .envs.snooker import SnookerEnv
     from .envs.vector import SnookerVectorEnv
     from .planning import Planner, Position, Positions
@@ -47,12 +48,14 @@ if _typing.TYPE_CHECKING:
 __version__ = "0.3.0.dev0"
 
 __all__ = [
-    "POCKETS", "EventKind", "Options", "Physics", "Planner", "Pocket", "Position", "Positions", "RecordReplay", "Replay", "Shot",
-    "ShotBatch", "SimulationError", "SnookerEnv", "SnookerVectorEnv", "Table", "advise", "collide_balls", "collide_cushion", "match_env",
-    "planning", "player", "players", "replay", "simulate", "simulate_batch", "strike", "warmup",
+    "POCKETS", "EventKind", "MatchVectorEnv", "Options", "Physics", "Planner", "Pocket", "Position",
+    "Positions", "RecordReplay", "Replay", "Shot", "ShotBatch", "SimulationError", "SnookerEnv",
+    "SnookerVectorEnv", "Table", "advise", "collide_balls", "collide_cushion", "match_env", "planning",
+    "player", "players", "replay", "simulate", "simulate_batch", "strike", "warmup",
 ]  # fmt: skip
 
 _LATER = {
+    "MatchVectorEnv": "envs.match_vector",
     "Options": "tasks.options", "SnookerEnv": "envs.snooker", "SnookerVectorEnv": "envs.vector", "Planner": "planning",
     "Position": "planning", "Positions": "planning", "RecordReplay": "replays", "Replay": "replays", "replay": "replays",
     "advise": "advice", "player": "players",

@@ -23,7 +23,8 @@ def match_env(options: Options | None = None, *, render_mode: RenderMode | None 
     render_mode : {"human", "rgb_array", "ansi"}, optional
         How ``render`` shows the table; default None: not at all.
     **given
-        ``render_size``, and the keywords of ``Options`` in place of ``options``. Box actions hold the place in the D and the decision after
+        ``seats`` (two dicts: what differs in the actions and the noise of each player), ``render_size``, and the keywords of
+        ``Options`` in place of ``options``. Box actions hold the place in the D and the decision after
         a foul, unless ``placement=False`` or ``decision=False``. After ``max_strokes`` strokes of both players together (default 1000,
         None for never) the referee stops the frame, and both players are truncated.
 

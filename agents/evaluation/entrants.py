@@ -33,6 +33,7 @@ class Entrant:
     """May code in its files run? Models of Stable-Baselines3 that train.py did not make need it."""
     options: tuple = ()
     """How the actions of such models are read: (key, value) of ``hyperparameters.ACTION_OPTIONS``."""
+
     @classmethod
     def of(cls, text, trust=False, options=()):
         """From NAME, PATH or LABEL=PATH,PATH,... Raises ValueError."""

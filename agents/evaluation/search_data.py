@@ -65,9 +65,7 @@ def checked(args):
     agent = Entrant.of(args.agent)
     runs = list(agent.runs)
     if len(runs) > 1 or not isinstance(agent.player(0), SearchPlayer):
-        raise refuse(
-            "agent", args.agent, "must be one player that searches: search, planner, with _SHOTS and @MODEL if you wish"
-        )
+        raise refuse("agent", args.agent, "must be one player that searches: search, planner, with _SHOTS and @MODEL if you wish")
     return sent(agent, 0), {name: getattr(args, name) for name in ("layout", "noise", "fidelity", "physics")}
 
 

@@ -183,10 +183,10 @@ def _after(tick, before):
 
 def _play(meeting, agent, opponent, game, threads, tick):
     """Play all matches of an encounter."""
-    options = Options(task="frame", **FRAMES, **game, opponent=opponent)
+    options = Options(task="frame", **FRAMES, **game)
     agent, decision = agent.at(options), 0
     matches, ended = len(meeting.queue) + meeting.n, 0
-    tables = _tables(meeting.n, options, threads)
+    tables = _tables(meeting.n, options, opponent, threads)
     _, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
     meeting.begun(meeting.going, info)
     moved = np.zeros(meeting.n, bool)  # since the reset: only then is a state sure to hold a stroke to play
@@ -211,14 +211,14 @@ def _play(meeting, agent, opponent, game, threads, tick):
             states = [state for state, some in zip(tables.get_state(), left, strict=True) if some]
             tables.close()
             meeting.keep(left)
-            tables = _tables(meeting.n, options, threads)
+            tables = _tables(meeting.n, options, opponent, threads)
             _, info = tables.reset(options={"states": states})
             over = np.zeros(meeting.n, bool)
     tables.close()
 
 
-def _tables(n, options, threads):
-    return SnookerVectorEnv(n, options, threads=threads, autoreset_mode="Disabled")
+def _tables(n, options, opponent, threads):
+    return SnookerVectorEnv(n, options, opponent=opponent, threads=threads, autoreset_mode="Disabled")
 
 
 def _renewed(tables, meeting, done, before):

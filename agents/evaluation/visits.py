@@ -4,7 +4,6 @@ A player's strokes depend on positions and seeds alone, and the seeds on the tab
 machine plays at once.
 """
 
-
 import numpy as np
 
 from commands.physics_option import physics_option

@@ -47,7 +47,8 @@ class ForesightView:
     def at(self, options):
         """The view under the rules and the noise of ``options``."""
         bound = ForesightView(self._threads)
-        bound._planner = planner = Planner(options_in(options).but(action="discrete", elevation=False, placement=False, decision=False), threads=self._threads)
+        choices = options_in(options).but(action="discrete", elevation=False, placement=False, decision=False)
+        bound._planner = planner = Planner(choices, threads=self._threads)
         bound._samples = np.array(EVEN_SAMPLES[:1] if planner.noise.silent else EVEN_SAMPLES, np.uint64)
         bound._spread = spread_of(planner.noise, planner.physics)
         return bound

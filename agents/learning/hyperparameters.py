@@ -13,13 +13,14 @@ from pathlib import Path
 
 import yaml
 
+from snooker_env import Options
 from snooker_env.checks import choice, integer, number, refuse
 
 FOLDER = Path(__file__).parents[1] / "hyperparams"
 ENV_ID = "Snooker-v0"
-ACTION_OPTIONS = {"action": "box", "aim": "absolute", "elevation": False, "placement": False}
+ACTION_OPTIONS = Options.group("action", "visit")
 """Options of the environment that say how actions are read, with its defaults: they belong to the agent."""
-SHOT_OPTIONS = ("noise", "physics", "table", "fidelity")
+SHOT_OPTIONS = tuple(Options.group("shot"))
 """Options that decide the outcome of a shot: the same in training and evaluation."""
 TRAINING_OPTIONS = ("layout", "reward")
 """Options of training alone."""

@@ -11,13 +11,12 @@ from ..game.frame_columns import POINTS
 from ..game.in_hand import place_cue
 from ..planning import RULE_OF_THUMB, SURE, Planner, Positions, Stops, prospects_of, spread_of
 from ..planning.positions import bare
-from ..players.seen import OF_FRAMES
 from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options
 from ..tasks.tables import Tables
 from .strokes import CueStroke
 
-PHYSICAL_OPTIONS = ("physics", "table", "fidelity")
+PHYSICAL_OPTIONS = tuple(name for name in Options.group("shot") if name != "noise")
 """The options that say where strokes are played. All others belong to a game."""
 JUDGING, GOING_ON = 1, 2
 """What noise samples are for: other ones judge a stroke than those that chose it, so a lucky choice is not overestimated."""
@@ -57,7 +56,7 @@ def practice_of(noise: NoiseLike, options: Any = None, source: Any = None) -> Pr
         options = getattr(bare(source), "options", None)
         options = options if isinstance(options, Options) else {}
     if isinstance(options, Options):
-        names = PHYSICAL_OPTIONS if options.task == "visit" else (*PHYSICAL_OPTIONS, *OF_FRAMES)
+        names = PHYSICAL_OPTIONS if options.task == "visit" else (*PHYSICAL_OPTIONS, *Options.group("frame"))
         same: dict[str, Any] = {name: getattr(options, name) for name in names}
         same |= {} if options.task == "visit" else {"task": "frame"}
     elif isinstance(options, Mapping):

@@ -171,7 +171,7 @@ class CueStroke:
         >>> CueStroke(speed=3.6, aim=0.0, top=0.25).action(placement=True).tolist()
         [0.0, 0.0, 0.5, 0.0, 0.0, -1.0]
         """
-        form = Actions("absolute", elevation, placement, Physics(), decision)
+        form = Actions("absolute", elevation, placement, Physics(), ("decision",) if decision else ())
         places = None if self.place is None else [self.place]
         return encoded(form, self.numbers()[None], places)[0].astype(np.float32)
 

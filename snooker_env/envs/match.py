@@ -1,7 +1,7 @@
 """How do two agents play a frame or match against each other? PettingZoo's AEC interface around one table of ``tasks.frame``."""
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import gymnasium
@@ -19,11 +19,11 @@ from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
 from ..tasks.matches import Matches
-from ..tasks.options import Options, observation_space_of, options_of
+from ..tasks.options import Options, observation_space_of
 from ..tasks.rewards import frame_reward
-from ..tasks.seats import Seat
 from ..tasks.tables import Crew
 from .one_table import ShowsBalls, TakesTurns
+from .opponents import match_options, two_seats
 from .pictures import FPS, MODES, SIZE, Picture, Pictures
 from .record import HasHistory, Record
 from .reset_options import Start, breakers_of, start_of
@@ -84,6 +84,8 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
     ----------
     options : Options, optional
         The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the keywords.
+    seats : (dict, dict), optional
+        What differs for each player: options of its actions, and "noise", its execution errors. Default None: nothing.
     render_mode : {"human", "rgb_array", "ansi"}, optional
         How ``render`` shows the table; default None: not at all.
     render_size : (int, int), optional
@@ -127,26 +129,20 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
     np_random: np.random.Generator
 
     def __init__(
-        self, options: Options | None = None, *, render_mode: RenderMode | None = None, render_size: Sequence[int] = SIZE, **given: Any
-    ):
+        self, options: Options | None = None, *, seats: Sequence[Mapping[str, Any]] | None = None, render_mode: RenderMode | None = None,
+        render_size: Sequence[int] = SIZE, **given: Any,
+    ):  # fmt: skip
         super().__init__()
-        if options is None:
-            box = given.get("action", "box") == "box"
-            given = {"task": "match" if "frames" in given else "frame", "placement": box, "decision": box, **given}
-        self.options = options_of(options, given)
-        if self.options.task == "visit" or self.options.opponent != "none" or self.options.trust:
-            what = f"task={self.options.task!r}, opponent={self.options.opponent!r}, trust={self.options.trust!r}"
-            allowed = 'must be task="frame" or "match", opponent="none" and trust=False: a match has two players'
-            raise ValueError(f"options = {what}: {allowed}")
+        self.options = match_options(options, given)
         if render_mode is not None:
             choice("render_mode", render_mode, MODES)
         self.render_mode = render_mode
-        seats = [Seat.of(self.options.rules)] * 2
-        self.tables = (Matches if self.options.task == "match" else Frames)(self.options, seats=seats)
+        self.tables = (Matches if self.options.task == "match" else Frames)(self.options, seats=two_seats(self.options, seats))
         self.possible_agents = list(PLAYERS)
         self.agents = []
         self.observation_spaces = {name: observation_space_of(self.options) for name in PLAYERS}
-        self.action_spaces = {name: copy.deepcopy(self.options.rules.actions.space) for name in PLAYERS}  # each with its own generator
+        spaces = [copy.deepcopy(seat.actions.space) for seat in self.tables.seats]  # each with its own generator
+        self.action_spaces = dict(zip(PLAYERS, spaces, strict=True))
         self.np_random, _ = seeding.np_random()
         self._seeded = False
         self._record, self._last = Record(full=render_mode is not None), None
@@ -211,8 +207,9 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
             As in the observation space; new arrays.
         """
         turn = agent == self.agent_selection  # an error before reset()
-        rows = self.tables.observe(np.zeros(1, np.int64), PLAYERS.index(agent))
-        masks = self._mask(turn) if self.options.observation == "masked" else None
+        side = PLAYERS.index(agent)
+        rows = self.tables.observe(np.zeros(1, np.int64), side)
+        masks = self._mask(side, turn) if self.options.observation == "masked" else None
         return observations.shaped(self.options.observation, rows[0], masks)
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
@@ -233,12 +230,13 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
         ValueError
             With ``action="box"``.
         """
-        if not isinstance(self.options.rules.actions, Choices):
+        side = PLAYERS.index(agent)
+        if not isinstance(self.tables.seats[side].actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
-        return self._mask(agent == self.agent_selection)
+        return self._mask(side, agent == self.agent_selection)
 
-    def _mask(self, turn):
-        return (self.tables.action_masks()[0] & (turn and not self.tables.ended()[0])).astype(np.int8)
+    def _mask(self, side, turn):
+        return (self.tables.action_masks(side=side)[0] & (turn and not self.tables.ended()[0])).astype(np.int8)
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Begin a new frame.
@@ -321,12 +319,12 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
         if self.terminations[name] or self.truncations[name]:
             self._was_dead_step(action)
             return
-        a = self.options.rules.actions.check(action)
-        self._pictures.require_display()
         striker, out = int(self.tables.game[0, STRIKER]), self.tables.output()
+        a = self.tables.seats[striker].actions.check(action)
+        self._pictures.require_display()
         crew = Crew(self._record.buffers, (), self._watch)
         self._record.begin_step()
-        played = self.tables.turn(lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers), out, crew)[0]
+        played = self.tables.turn(lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers, striker), out, crew)[0]
         self._last = out if played else None
         self._cumulative_rewards[name] = 0.0
         gained, winner = self.tables.pay(0), self.frame.winner
@@ -342,7 +340,7 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
         """The keys of ``SnookerEnv``'s info: what the last stroke was, whoever played it, and the frame as the player sees it."""
         info = self.tables.info_of(player, self._last)
         info["opponent_strokes"] = int(self._last is not None and striker is not None and striker != player)
-        if isinstance(self.options.rules.actions, Choices):
+        if isinstance(self.tables.seats[player].actions, Choices):
             info["action_mask"] = self.action_mask(PLAYERS[player])
         return info
 

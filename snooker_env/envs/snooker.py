@@ -1,6 +1,7 @@
 """What is ``Snooker-v0``? The Gymnasium environment: composes action, noise, strike, engine, referee, observation and reward."""
 
 from collections.abc import Sequence
+from inspect import cleandoc
 from typing import Any
 
 import gymnasium
@@ -10,7 +11,7 @@ from .._check import choice, refuse
 from .._types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
-from ..tasks.options import Options, observation_space_of
+from ..tasks.options import Options, observation_space_of, options_table
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput, Tables
 from .one_table import OneTable
@@ -136,28 +137,9 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
 
     ## Arguments
     All but an opponent that is an object are JSON types, so that ``EnvSpec.to_json`` round-trips. ``Options`` describes each option.
+    ``decision=True`` and the like are another spelling of ``says=("decision",)``.
 
-    | name | default | values |
-    |---|---|---|
-    | task | "visit" | "visit", "frame", "match" |
-    | layout | "default" | see Starting state |
-    | action | "box" | "box", "discrete" |
-    | aim | "absolute" | "absolute", "target" |
-    | observation | "flat" | "flat", "balls", "masked" |
-    | noise | "none" | "professional", "amateur", "club", "robot", "olympiad", or a dict of ``snooker_env.tasks.Noise`` |
-    | reward | "points" | see Rewards |
-    | elevation, placement | False | longer box actions |
-    | physics | "paper" | "match", or a dict of overrides of ``snooker_env.Physics`` (not R) |
-    | table | "match" | "tight", or a ``Table`` whose noses are where snooker's are |
-    | fidelity | "standard" | "fast", "reference", "euler:N" |
-    | opponent, trust | "none", False | frame only; see Description; whether the code in an opponent's ``.zip`` may run |
-    | miss | "off" | frame only; "clear_path", "attempt": the rule for a foul and a miss (``snooker_env.game.frame``) |
-    | max_strokes | 1000 | frame only; None for no limit |
-    | decision, nominate, concede, claim, lot | False | frame only; see Action space |
-    | game | "snooker" | frame only; "six_red", "shoot_out": another game (``snooker_env.game.rule_sets``) |
-    | time_to_play | 9.0 | frame of the Shoot Out only; time from the rest of the balls to the next stroke [s] |
-    | frames | 7 | match only; odd: the best of so many |
-    | one_stroke | False | visit only; True: the visit ends after its first stroke |
+    {options}
     | options | None | an ``Options`` in place of all of the above |
     | render_mode, render_size | None, (1920, 1080) | "human", "rgb_array", "ansi"; width and height [pixels]: see Pictures and films |
 
@@ -409,3 +391,6 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
 
     def _show(self, *, played: bool = False) -> None:
         self._pictures.show(self.tables, self._record.strokes, played=played)
+
+
+SnookerEnv.__doc__ = cleandoc(SnookerEnv.__doc__ or "").replace("{options}", options_table().rstrip())

@@ -113,10 +113,10 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
         if render_mode is not None:
             choice("render_mode", render_mode, PICTURES)
-        self.options, opponent = game_of(options, given)
+        self.options, opponent = self._game_of(options, given)
         limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
         self.render_mode = render_mode
-        self.tables = tables_of(self.options, opponent, self.num_envs, limit)
+        self.tables = self._tables_of(opponent, limit)
         self._one = SnookerEnv._of(self.options, self.tables.view(0), render_mode, render_size)
         self.single_action_space: Any = self._one.action_space
         self.single_observation_space: Any = self._one.observation_space
@@ -130,6 +130,15 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         self._done = np.zeros(self.num_envs, np.bool_)
         self._recent = Recent(self.tables)
         self._crew = Threads(threads, watch=None if render_mode is None else self._recent.saw)
+
+    _both: dict[str, Any] = {}  # noqa: RUF012 - {"either": True} where both sides are played by the caller
+
+    def _game_of(self, options: Options | None, given: dict[str, Any]) -> tuple[Options, Any]:
+        """The options, and who sits opposite the agent."""
+        return game_of(options, given)
+
+    def _tables_of(self, opponent: Any, limit: int) -> Tables:
+        return tables_of(self.options, opponent, self.num_envs, limit)
 
     # Gymnasium's interface -------------------------------------------------------------------------------------------------
 
@@ -164,9 +173,9 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         """
         options = given_of(options, MANY)
         seeds, wanted = seeds_of(seed, self.num_envs), mask_of(options, self.num_envs)
-        check = lambda state: self.tables.checked(state, self.np_random[0], to_play=True)  # noqa: E731
+        check = lambda state: self.tables.checked(state, self.np_random[0], to_play=True, **self._both)  # noqa: E731
         starts = starts_of(options, self.num_envs, self.tables, check)
-        breakers = breakers_of(options, self.num_envs, self.options)
+        breakers = breakers_of(options, self.num_envs, self.options, two_players=bool(self._both))
         if not (wanted | self._begun).all():
             raise gymnasium.error.ResetNeeded(f"table {int(np.argmin(wanted | self._begun))} has no visit yet: reset all tables first")
         given = self._given(out, ("observations",))

@@ -66,7 +66,7 @@ class Service:
 
     @contextmanager
     def acting(self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False) -> Iterator[Session]:
-        """The game, for changing it; StaleError for an old revision. ``pause``: an agent to play then waits; ``any_turn``: in its turn, too."""
+        """The game, for changing it; StaleError for an old revision. ``pause``: an agent to play then waits; ``any_turn``: in its turn."""
         with self._changed:
             if revision not in (None, self.revision):
                 raise StaleError

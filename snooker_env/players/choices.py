@@ -5,10 +5,12 @@ from typing import Any
 import numpy as np
 
 from .._types import Floats, Ints
-from ..planning import Planner, Positions, action_masks
+from ..planning import Planner, Positions, action_masks, pots
+from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS, choice_of
+from ..tasks.ghost_ball import geometric_strokes
 from ..tasks.options import Options
 from .player import Ranked, Strokes, seeds_of
-from .simple import BoundPlayer, placed
+from .simple import BoundPlayer, placed, streams_of
 
 MOST = 100
 """Most strokes of a ranking."""
@@ -76,3 +78,50 @@ class Random(ChoicePlayer):
 
     def figures(self, scores: Floats) -> None:
         """None: its scores mean nothing."""
+
+
+class GhostBall(ChoicePlayer):
+    """``ghost_ball``: the widest direct pot, aim solved, in the middle at 2.3 m/s; without one, the geometric player's stroke.
+
+    It places the cue ball, breaks off, nominates and decides after a foul as the kernels of ``tasks.ghost_ball`` do. The
+    opponent of that name plays these kernels alone, at the straight line of the pot, for speed.
+    """
+
+    name, training_shots = "ghost_ball", 0
+
+    def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
+        """The stroke that it plays, then the same at the other direct pots, with the tolerance of each pot [mrad]."""
+        at = Positions.of(positions)
+        strokes, start = self._played(at, seeds)
+        found = pots(start)
+        ranked = []
+        for k, many in enumerate((found.ball >= 0).sum(axis=1).tolist()):
+            if many < 2:
+                ranked.append(Ranked(strokes[k : k + 1], None))
+                continue
+            values = self._planner.strokes_of(start, np.full(many, k), STROKES * np.arange(many) + _PLAIN)[0]
+            others = Strokes(values, np.repeat(strokes.place[k : k + 1], many, 0))
+            ranked.append(Ranked(Strokes.join([strokes[k : k + 1], others[1:]]), 1e3 * found.tolerance[k, :many]))
+        return ranked
+
+    def play(self, positions: Any, seeds: Any) -> Strokes:
+        """See ``Player.play``."""
+        return self._played(Positions.of(positions), seeds)[0]
+
+    def _played(self, at: Positions, seeds: Any) -> tuple[Strokes, Positions]:
+        """What it plays, and from where: visits with placed cue balls."""
+        n, code, moved = len(at), self.options.rules.rule_set.code, at.copy()
+        values, (nominate, decision) = np.empty((n, 5)), np.empty((2, n), np.int64)
+        racks = at.in_hand & (at.on_table[:, 1:16].sum(axis=1) == 15)
+        streams = streams_of(seeds_of(seeds, n))
+        geometric_strokes(moved.positions, moved.on_table, moved.game, code, streams, values, nominate, decision)
+        start = moved.as_visits()
+        again = at.of_frames and at.miss_called
+        rows = np.flatnonzero((pots(start, most=1).ball[:, 0] >= 0) & ~racks & ~np.broadcast_to(again, n))
+        values[rows] = self._planner.strokes_of(start, rows, np.full(len(rows), _PLAIN))[0]
+        place = np.where(moved.in_hand[:, None], moved.positions[:, 0], np.nan)
+        return Strokes(values, place, nominate, decision), start
+
+
+_PLAIN = choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))
+"""The choice of the widest pot at 2.3 m/s without spin."""

@@ -24,9 +24,7 @@ from ..tasks.options import Options
 
 RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]
 """What ``Player.at`` takes: an environment, an ``Options``, or a dict of its fields."""
-PositionsLike: TypeAlias = (
-    Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
-)
+PositionsLike: TypeAlias = Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
 """What ``Player.play`` takes: anything that ``Positions.of`` accepts."""
 (SPEED, SIDE, TOP, AIM, ELEVATION) = range(5)
 """Columns of a stroke."""
@@ -75,9 +73,7 @@ class Strokes:
     def __post_init__(self) -> None:
         values = np.asarray(self.values, np.float64)
         if values.ndim != 2 or values.shape[1] != 5:
-            raise refuse_what(
-                "values", f"array of shape {values.shape}", "must be (n, 5): speed, side, top, aim, elevation"
-            )
+            raise refuse_what("values", f"array of shape {values.shape}", "must be (n, 5): speed, side, top, aim, elevation")
         n = len(values)
         most = np.array([MAX_SPEED, 0.5, 0.5, np.inf, MAX_ELEVATION]) + 1e-9
         least = np.array([MIN_SPEED, -0.5, -0.5, -np.inf, 0.0]) - 1e-9
@@ -85,9 +81,7 @@ class Strokes:
         if not fine.all():
             k, c = np.argwhere(~fine)[0].tolist()
             name = ("speed", "side", "top", "aim", "elevation")[c]
-            raise refuse(
-                f"{name}[{k}]", float(values[k, c]), f"must be finite and in [{least[c]:.3g}, {most[c]:.3g}]"
-            )
+            raise refuse(f"{name}[{k}]", float(values[k, c]), f"must be finite and in [{least[c]:.3g}, {most[c]:.3g}]")
         usual: dict[str, Any] = {
             "place": np.full((n, 2), np.nan),
             "nominate": np.full(n, AUTO, np.int64),
@@ -106,9 +100,7 @@ class Strokes:
 
     def __getitem__(self, rows: Any) -> "Strokes":
         """Some of the strokes: ``rows`` is a slice, a mask or an array of rows."""
-        return Strokes(
-            *(getattr(self, name)[rows] for name in ("values", "place", "nominate", "decision", "declare"))
-        )
+        return Strokes(*(getattr(self, name)[rows] for name in ("values", "place", "nominate", "decision", "declare")))
 
     @classmethod
     def join(cls, parts: "Sequence[Strokes]") -> "Strokes":
@@ -188,9 +180,7 @@ class Strokes:
         if box.nominate:
             parts.append(self._nominated(at))
         if box.decision:
-            parts.append(
-                np.where(self.decision == PLAY, 0.0, np.where(self.decision == PLAY_AGAIN, -1.0, 1.0))
-            )
+            parts.append(np.where(self.decision == PLAY, 0.0, np.where(self.decision == PLAY_AGAIN, -1.0, 1.0)))
         elif (self.decision != PLAY).any():
             raise refuse(
                 "decision",
@@ -198,9 +188,7 @@ class Strokes:
                 "must be PLAY: the environment's actions hold no decision",
             )
         if box.declares:
-            parts.append(
-                np.where(self.declare == SAYS_NOTHING, 0.0, np.where(self.declare == CLAIMS, 1.0, -1.0))
-            )
+            parts.append(np.where(self.declare == SAYS_NOTHING, 0.0, np.where(self.declare == CLAIMS, 1.0, -1.0)))
         elif (self.declare != SAYS_NOTHING).any():
             raise refuse(
                 "declare",
@@ -305,7 +293,5 @@ def seeds_of(seeds: Integers, n: int) -> Ints:
     """``seeds`` as int64 (n,) in [0, 2**32); ValueError unless they are n integers."""
     a = np.asarray(seeds)
     if a.shape != (n,) or (a.dtype.kind not in "iu" and n):
-        raise refuse_what(
-            "seeds", f"{a.dtype} array of shape {a.shape}", f"must be {n} integers, one for each position"
-        )
+        raise refuse_what("seeds", f"{a.dtype} array of shape {a.shape}", f"must be {n} integers, one for each position")
     return (a.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)

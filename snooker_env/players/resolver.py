@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from .._check import refuse, refuse_what, truth
-from .choices import Random
+from .choices import GhostBall, Random
 from .player import Player
 from .search import BUDGET, SearchPlayer
-from .simple import GhostBall
 
 GROUP = "snooker_env.players"
 """Entry points of this group name players of other packages: NAME = MODULE:MAKER, called without arguments."""
@@ -26,9 +25,7 @@ RENAMED = {"lookahead": "search"}
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")
 """MODULE:CLASS."""
 PROGRAM = "program:"
-_SEARCHING = re.compile(
-    r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d{1,7}))?(?:@(.+))?"
-)
+_SEARCHING = re.compile(r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d{1,7}))?(?:@(.+))?")
 
 
 def players() -> list[str]:
@@ -128,9 +125,7 @@ def _built_in(name: str) -> Player | None:
         return None
     kind, budget, model = form.groups()
     if kind in RENAMED:
-        warnings.warn(
-            f"the player {kind!r} is called {RENAMED[kind]!r} now", DeprecationWarning, stacklevel=3
-        )
+        warnings.warn(f"the player {kind!r} is called {RENAMED[kind]!r} now", DeprecationWarning, stacklevel=3)
         kind = RENAMED[kind]
     if model is not None and not kind.startswith("planner"):
         raise refuse("player", name, f"must not name a model: {kind} has learned nothing")
@@ -156,9 +151,7 @@ def _made(name: str, maker: Callable[[], Any]) -> Any:
     try:
         return maker()()
     except Exception as error:
-        raise refuse(
-            "player", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})"
-        ) from error
+        raise refuse("player", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})") from error
 
 
 def _of_object(thing: Any) -> Player:

@@ -8,13 +8,12 @@ import numpy as np
 
 from .._check import refuse
 from .._types import Bools, Ints, Observation, ObservationKind
+from ..tasks.declarations import SAYS
 from ..tasks.observations import OBSERVATIONS, space
 from ..tasks.options import Options
 from ..tasks.saved_models import SavedModel, by_train, entries, one_thread, outline
 from .seen import SeenPlayer
 
-SAYS = ("decision", "nominate", "concede", "claim", "lot")
-"""Options of what is said beside a stroke; a model of visits says nothing."""
 _VIEW = "must be a model trained on the observation of a visit or a frame, flat, balls or masked, and nothing else"
 
 

@@ -22,6 +22,7 @@ from ..game.frame_columns import (
 )
 from ..planning import Positions
 from ..planning.trials import decoded
+from ..tasks.declarations import SAYS
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
 from ..tasks.observations import shaped
@@ -31,13 +32,7 @@ from ..tasks.visit import Visits
 from .player import Strokes, seeds_of
 from .simple import BoundPlayer, placed
 
-SHARED = ("physics", "table", "fidelity", "noise")
-"""Options of where a player is bound that hold for what it sees, too."""
-OF_FRAMES = ("game", "miss", "time_to_play")
-"""Those of frames alone."""
-OPTIONS = (
-    "action", "aim", "observation", "elevation", "placement", "decision", "nominate", "concede", "claim", "lot", "miss",
-)  # fmt: skip
+OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")
 """Options that say how a network sees and acts; with a miss rule it sees the layout that "replace" restores."""
 
 
@@ -104,10 +99,10 @@ class SeenPlayer(BoundPlayer):
 
     def _bound_sees(self, options: Options) -> None:
         """Read its options with the physics of ``options``; ValueError if they are not those of an environment."""
-        same: dict[str, Any] = {name: getattr(options, name) for name in SHARED}
+        same: dict[str, Any] = {name: getattr(options, name) for name in Options.group("shot")}
         if self.frames:
             match = {"task": "match", "frames": options.frames} if options.task == "match" else {"task": "frame"}
-            same |= match | {name: getattr(options, name) for name in OF_FRAMES}
+            same |= match | {name: getattr(options, name) for name in Options.group("frame")}
         self._rules = Options(**same | self.sees).rules
 
     def play(self, positions: Any, seeds: Any) -> Strokes:

@@ -1,4 +1,4 @@
-"""What do all built-in players share? They are bound to options and place cue balls in hand; and ``ghost_ball``, by geometry alone."""
+"""What do all built-in players share? They are bound to options, and place cue balls in hand."""
 
 import copy
 from typing import Any
@@ -8,9 +8,9 @@ import numpy as np
 from .._check import refuse
 from ..planning import Positions
 from ..planning.planner import options_in
-from ..tasks.ghost_ball import geometric_strokes, put_in_hand
+from ..tasks.ghost_ball import put_in_hand
 from ..tasks.options import Options
-from .player import RulesLike, Strokes, seeds_of
+from .player import RulesLike
 
 
 class BoundPlayer:
@@ -56,21 +56,3 @@ def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
     hand = at.in_hand
     places[hand] = moved.positions[hand, 0]
     return moved.as_visits(), places
-
-
-class GhostBall(BoundPlayer):
-    """The geometric player ``ghost_ball``: see ``tasks.ghost_ball``, whose kernels play it."""
-
-    name, training_shots = "ghost_ball", 0
-
-    def play(self, positions: Any, seeds: Any) -> Strokes:
-        """See ``Player.play``."""
-        at = Positions.of(positions)
-        n, code = len(at), self.options.rules.rule_set.code
-        moved, values = at.copy(), np.empty((n, 5))
-        nominate, decision = np.empty(n, np.int64), np.empty(n, np.int64)
-        streams = streams_of(seeds_of(seeds, n))
-        geometric_strokes(moved.positions, moved.on_table, moved.game, code, streams, values, nominate, decision)
-        hand = moved.in_hand
-        place = np.where(hand[:, None], moved.positions[:, 0], np.nan)
-        return Strokes(values, place, nominate, decision)

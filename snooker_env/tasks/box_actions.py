@@ -1,5 +1,6 @@
 """What shot does an action mean? The vector in [-1, 1]^k as cue speed, tip offset, aim, elevation, place in the D."""
 
+from collections.abc import Collection
 from math import atan2, hypot, pi, radians, sqrt
 from typing import Any
 
@@ -14,7 +15,7 @@ from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
 from ..physics.parameters import Physics
 from .arrays import CueLaw
-from .declarations import A_ELEVATION, A_END_MASS, A_MAX_OFFSET, A_TARGET
+from .declarations import A_ELEVATION, A_END_MASS, A_MAX_OFFSET, A_TARGET, SAYS
 from .lines import LINE_ROWS, aim_along, find_lines, line_of, new_work
 
 AIMS = ("absolute", "target")
@@ -94,14 +95,14 @@ class Actions:
     4    elevation    only with ``elevation=True``: 0 to 30 deg, linear
     next place in     only with ``placement=True``: across the D, then from the baulk line (-1)
     two  the D        to the edge of the D (+1). Ignored unless the cue ball is in hand
-    next nomination   only with ``nominate=True``. After a red the range is cut in six equal
+    next nomination   only if it says "nominate". After a red the range is cut in six equal
                       parts, yellow to black; with a free ball in seven: the ball on itself,
                       then yellow to black. At other times ignored
-    next decision     only with ``decision=True``: what to do after a foul of the opponent, else
+    next decision     only if it says "decision": what to do after a foul of the opponent, else
                       ignored. Below -1/3: the offender plays again from here. Above 1/3: the
                       balls are replaced and he plays again, if a miss was called. In between,
                       or without a miss: play, with this same action
-    last declaration  only with ``concede``, ``claim`` or ``lot``. Below -2/3: concede. Above 2/3:
+    last declaration  only if it says "concede", "claim" or "lot". Below -2/3: concede. Above 2/3:
                       claim the frame, where the rules allow it. At the lot, below 0: the other
                       player begins. Else: play, with this same action
     ==== ============ =======================================================================
@@ -120,15 +121,10 @@ class Actions:
     size: int
     """Number of components of an action."""
 
-    def __init__(
-        self, aim: str, elevation: bool, placement: bool, physics: Physics, decision: bool = False, *, nominate: bool = False,
-        concede: bool = False, claim: bool = False, lot: bool = False,
-    ):  # fmt: skip
+    def __init__(self, aim: str, elevation: bool, placement: bool, physics: Physics, says: Collection[str] = ()):
         self.aim = choice("aim", aim, AIMS)
         self.elevation, self.placement = truth("elevation", elevation), truth("placement", placement)
-        self.decision = truth("decision", decision)
-        self.nominate, self.concede = truth("nominate", nominate), truth("concede", concede)
-        self.claim, self.lot = truth("claim", claim), truth("lot", lot)
+        self.nominate, self.decision, self.concede, self.claim, self.lot = (name in says for name in SAYS)
         self.physics = physics
         self.size = 4 + self.elevation + 2 * self.placement + self.nominate + self.decision + self.declares
         self.space = spaces.Box(-1.0, 1.0, (self.size,), np.float32)

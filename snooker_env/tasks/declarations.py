@@ -25,6 +25,8 @@ from ..game.ruling import AUTO
     A_LOT,
 ) = range(12)
 
+SAYS = ("nominate", "decision", "concede", "claim", "lot")
+"""What an action can say beside the stroke."""
 (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)
 """Declarations."""
 COLOURS = 6

@@ -5,12 +5,13 @@ the table has no direct pot, the other lines of the cue ball stand in their plac
 ``action_masks`` says how many there are.
 """
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 from gymnasium import spaces
 
-from .._check import refuse, refuse_what, truth
+from .._check import refuse, refuse_what
 from .._jit import entry, kernel
 from .._types import Action, Floats
 from ..game.balls import bits
@@ -28,6 +29,7 @@ from .declarations import (
     COLOURS,
     CONCEDES,
     OTHER_BEGINS,
+    SAYS,
     may_declare,
     may_nominate,
     nominated_ball,
@@ -135,10 +137,9 @@ class Choices:
     """Number of choices in all."""
     space: spaces.Discrete
 
-    def __init__(self, physics: Physics, *, nominate: bool = False, concede: bool = False, claim: bool = False, lot: bool = False):
+    def __init__(self, physics: Physics, says: Collection[str] = ()):
         self.physics = physics
-        self.nominate, self.concede = truth("nominate", nominate), truth("concede", concede)
-        self.claim, self.lot = truth("claim", claim), truth("lot", lot)
+        self.nominate, _, self.concede, self.claim, self.lot = (name in says for name in SAYS)
         self.choices = SIZE * (1 + COLOURS * self.nominate) + self.concede + self.claim + self.lot
         self.space = spaces.Discrete(self.choices)
 

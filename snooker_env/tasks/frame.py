@@ -16,6 +16,7 @@ so those fouls never occur.
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,7 @@ from ..game.frame_columns import (
     FREE_BALL,
     IN_HAND,
     OPPONENT,
+    OVER,
     PAID,
     PHASE,
     POINTS,
@@ -197,17 +199,33 @@ class Frames(Tables):
         played = self._played if own else self._replies
         frame_kernels.conclude(which, self.arrays, b.played, self._setting, own, alone, played, out.arrays)
 
-    def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew) -> Bools:
-        """One turn of the striker on each table, of two players. ``out`` gets the infos; returns where there was a stroke, (n,) bool.
+    def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew, which: Ints | None = None) -> Bools:
+        """One turn of the striker on the tables ``which`` (those that go on), of two players. Returns where there was a stroke, (n,) bool.
 
         ``prepare(which, buffers)``: takes decisions and carries strokes out up to the strike, as the method ``prepare``; the tables with a
-        stroke.
+        stroke. ``out`` gets the infos.
         """
-        self._played[:] = 0
-        playing = np.flatnonzero(~self.ended())
-        crew(np.arange(self.n), lambda which, b: self.complete(prepare(which, b), out, b, crew, own=True))
+        playing = np.flatnonzero(~self.ended()) if which is None else which
+        self._played[playing] = 0
+        crew(playing, lambda which, b: self.complete(prepare(which, b), out, b, crew, own=True))
         self.go_on(playing)
         return self._played > 0
+
+    def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> None:
+        """One turn on each table that goes on, of two players, into ``out`` as player 0 sees it; ``actions``: of each side (n, k)."""
+        going, striker = ~self.ended(), self.game[:, STRIKER].copy()
+        self._played[:] = 0
+        for side, its in enumerate(actions):
+            prepare = partial(self._prepared, its, side)
+            self.turn(prepare, out, crew, np.flatnonzero(going & (striker == side)))
+        self._replies[:] = self._played * (striker != AGENT)
+        crew(np.flatnonzero(going), lambda which, _: self._finish(which, out))
+        out.terminated[~going] = self.game[~going, OVER]
+        out.truncated[~going] = ~out.terminated[~going]
+        crew(np.flatnonzero(~going), lambda which, _: self._show(which, out, fresh=False))
+
+    def _prepared(self, actions, side, which, buffers):
+        return self.prepare(which, actions, buffers, side)
 
     def go_on(self, which: Ints) -> None:
         """After each turn on the tables ``which``: the next frame of a match, where one has ended. Here there is none."""
@@ -277,7 +295,7 @@ class Frames(Tables):
         alone = len(self.seats) == 1
         self._replies[which] = 0
         crew(which, lambda part, _: self.deal(part, drawn=not alone, breakers=breakers))
-        if not alone:
+        if not alone and self.seats[1].player is not None:
             try:
                 self._reply(which, out, crew)
             except BaseException:

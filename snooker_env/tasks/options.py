@@ -4,8 +4,8 @@
 keywords.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import InitVar, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -23,6 +23,7 @@ from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
 from . import observations
 from .box_actions import AIMS, Actions
+from .declarations import SAYS
 from .discrete_actions import Choices
 from .noise import Noise, NoiseLike
 from .rewards import FRAME_REWARDS, MATCH_REWARDS, REWARDS
@@ -43,6 +44,14 @@ on average, and never more than 560 in 2,000 frames (``benchmarks.frames``). Pla
 """
 FRAMES = 7
 """Default length of a match: best of 7."""
+OPPONENTS = (
+    "must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an object: a callable(observation, rng) "
+    "-> action, a player, one with act(observations, masks, seeds), an OpponentPool"
+)
+"""What may be the opponent, for messages."""
+GROUPS = ("task", "action", "view", "shot", "frame")
+"""Groups of options, see ``Options.group``."""
+_UNSAID: Any = object()
 OBJECT = "object"
 """As the option ``opponent``: whoever was passed to the environment as an object."""
 NEVER = 2**62
@@ -92,6 +101,22 @@ class Rules:
         return self.actions.pack(), self.noise.pack(BALL_RADIUS), self.physics.pack()
 
 
+def _about(group: str, values: str, *, only: str | None = None) -> dict[str, Any]:
+    """The metadata of an option: its group, the values that it may have (Markdown), and the only task that has it."""
+    return {"group": group, "values": values, "only": only}
+
+
+def _said(says: Any, flags: Mapping[str, Any]) -> tuple[str, ...]:
+    """The option ``says`` with the flags that are its other spelling, in the order of ``SAYS``."""
+    if isinstance(says, str) or not isinstance(says, Collection):
+        raise refuse("says", says, f"must be a sequence of some of {', '.join(map(repr, SAYS))}")
+    said = {choice("says", name, SAYS) for name in says}
+    for name, flag in flags.items():
+        if flag is not _UNSAID:
+            said = said | {name} if truth(name, flag) else said - {name}
+    return tuple(name for name in SAYS if name in said)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together. An ``Options`` is immutable.
@@ -131,21 +156,19 @@ class Options:
         also take objects as their keyword ``opponent`` (docs/environment/opponents.md); their options then say "object".
     miss : {"off", "clear_path", "attempt"}, optional
         In a frame: the rule for a foul and a miss (docs/environment/rules.md). Default "off".
-    decision : bool, optional
-        In a frame: whether a box action holds the decision after a foul of the opponent; default False.
     max_strokes : int or None, optional
         In a frame: number of strokes of both players after which the referee stops it; default 1000, None for never. A match stops with it.
     one_stroke : bool, optional
         In a visit: whether it ends after its first stroke; default False.
     trust : bool, optional
         In a frame: whether code in an opponent's ``.zip`` may run; default False.
-    nominate : bool, optional
-        In a frame: whether an action names the colour after a red, and a free ball. Default False: the colour struck first is taken as the
-        one nominated.
-    concede, claim : bool, optional
-        In a frame: whether the striker's action may concede the frame, or claim it where the rules allow it. Default False.
-    lot : bool, optional
-        In a frame: whether the winner of the lot for a re-spotted black may let the other player begin. Default False: he begins.
+    says : sequence of str, optional
+        In a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a free ball; else the colour
+        struck first is taken as the one nominated), "decision" (after a foul of the opponent, of box actions only), "concede" (the frame),
+        "claim" (the frame, where the rules allow it) and "lot" (whether the winner of the lot for a re-spotted black lets the other
+        player begin; else it begins). Default: nothing.
+    nominate, decision, concede, claim, lot : bool, optional
+        Whether ``says`` has them: ``decision=True`` adds "decision" to it. To be read as attributes, too.
     game : {"snooker", "six_red", "shoot_out"}, optional
         In a frame: the rules of the game (``snooker_env.game.rule_sets``). Default "snooker".
     time_to_play : float, optional
@@ -171,34 +194,67 @@ class Options:
     ('club', 'none')
     """
 
-    task: Literal["visit", "frame", "match"] = "visit"
-    layout: str = "default"
-    action: Literal["box", "discrete"] = "box"
-    aim: Literal["absolute", "target"] = "absolute"
-    observation: ObservationKind = "flat"
-    noise: NoiseLike = "none"
-    reward: Literal["points", "points_and_fouls", "pots", "legal", "win", "frames"] = "points"
-    elevation: bool = False
-    placement: bool = False
-    physics: PhysicsLike = "paper"
-    table: TableLike = "match"
-    fidelity: Fidelity = "standard"
-    opponent: str | Path = "none"
-    miss: MissRule = "off"
-    decision: bool = False
-    max_strokes: int | None = MAX_STROKES
-    one_stroke: bool = False
-    trust: bool = False
-    nominate: bool = False
-    concede: bool = False
-    claim: bool = False
-    lot: bool = False
-    game: RulesName = "snooker"
-    time_to_play: float = TIME_TO_PLAY
-    frames: int = FRAMES
+    task: Literal["visit", "frame", "match"] = field(
+        default="visit", metadata=_about("task", '"visit", "frame", "match" (all that is of a frame is of a match, too)')
+    )
+    layout: str = field(default="default", metadata=_about("task", '"opened", of a frame "break_off"; see Layouts'))
+    action: Literal["box", "discrete"] = field(default="box", metadata=_about("action", '"box", "discrete"'))
+    aim: Literal["absolute", "target"] = field(default="absolute", metadata=_about("action", '"absolute", "target"'))
+    observation: ObservationKind = field(default="flat", metadata=_about("view", '"flat", "balls"; with discrete actions "masked"'))
+    noise: NoiseLike = field(
+        default="none",
+        metadata=_about("shot", '"none", "professional", "amateur", "club", "robot", "olympiad", or a dict of `snooker_env.tasks.Noise`'),
+    )
+    reward: Literal["points", "points_and_fouls", "pots", "legal", "win", "frames"] = field(
+        default="points",
+        metadata=_about("task", '"points"; of a visit "points_and_fouls", "pots", "legal"; of a frame "win"; of a match "frames", too'),
+    )
+    elevation: bool = field(default=False, metadata=_about("action", "whether box actions hold the elevation of the cue"))
+    placement: bool = field(default=False, metadata=_about("action", "whether box actions hold the place of a cue ball in hand"))
+    physics: PhysicsLike = field(
+        default="paper", metadata=_about("shot", '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)')
+    )
+    table: TableLike = field(
+        default="match", metadata=_about("shot", '"match", "tight", or a `Table` whose noses are where snooker\'s are')
+    )
+    fidelity: Fidelity = field(default="standard", metadata=_about("shot", '"fast", "standard", "reference", "euler:N"'))
+    one_stroke: bool = field(default=False, metadata=_about("task", "whether it ends with its first stroke", only="visit"))
+    opponent: str | Path = field(
+        default="none",
+        metadata=_about(
+            "task", '"none", "random", "ghost_ball", another name of a player, a `.zip`; or an object: see Opponents', only="frame"
+        ),
+    )
+    trust: bool = field(default=False, metadata=_about("task", "whether the code in an opponent's `.zip` may run", only="frame"))
+    miss: MissRule = field(
+        default="off", metadata=_about("frame", '"off", "clear_path", "attempt": the rule for a foul and a miss', only="frame")
+    )
+    max_strokes: int | None = field(
+        default=MAX_STROKES, metadata=_about("frame", "strokes after which the frame is stopped; None for never", only="frame")
+    )
+    says: Sequence[str] = field(
+        default=(),
+        metadata=_about(
+            "action", 'some of "nominate", "decision", "concede", "claim", "lot": what actions say beside the stroke', only="frame"
+        ),
+    )
+    game: RulesName = field(
+        default="snooker", metadata=_about("frame", '"snooker", "six_red", "shoot_out": the rules of the game', only="frame")
+    )
+    time_to_play: float = field(
+        default=TIME_TO_PLAY,
+        metadata=_about("frame", "the time from the rest of the balls to the next stroke in the Shoot Out [s], at most 15", only="frame"),
+    )
+    frames: int = field(default=FRAMES, metadata=_about("task", "an odd number: the best of so many", only="match"))
+    nominate: InitVar[bool] = _UNSAID
+    decision: InitVar[bool] = _UNSAID
+    concede: InitVar[bool] = _UNSAID
+    claim: InitVar[bool] = _UNSAID
+    lot: InitVar[bool] = _UNSAID
     rules: Rules = field(init=False, repr=False, compare=False)
 
-    def __post_init__(self) -> None:
+    def __post_init__(self, *flags: Any) -> None:
+        object.__setattr__(self, "says", _said(self.says, dict(zip(SAYS, flags, strict=True))))
         frame = choice("task", self.task, TASKS) != "visit"
         physics, table = self._physics(), table_of(self.table)
         fidelity, noise = parse_fidelity(self.fidelity), Noise.of(self.noise)
@@ -217,7 +273,10 @@ class Options:
         choice("reward", self.reward, {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}[self.task])
         one_stroke = truth("one_stroke", self.one_stroke)
         limit = NEVER
-        frames = self._frames()
+        self._check_task()
+        frames = self.frames if self.task == "match" else 0
+        if frames and integer("frames", frames, 1, 999) % 2 == 0:
+            raise refuse("frames", frames, "must be odd, so that one player wins")
         if frame:
             choice("miss", self.miss, MISS_RULES)
             choice("game", self.game, RULES)
@@ -227,27 +286,13 @@ class Options:
                 raise refuse("time_to_play", self.time_to_play, f'must be {TIME_TO_PLAY} with game="{self.game}", which has no clock')
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
             if not isinstance(self.opponent, str | Path) or not str(self.opponent):
-                raise refuse("opponent", self.opponent, "must be text in Options; pass an object to the environment, beside them")
+                raise refuse("opponent", self.opponent, f"{OPPONENTS}; Options hold text: pass an object to the environment, beside them")
             object.__setattr__(self, "opponent", str(self.opponent))
-            if one_stroke:
-                raise refuse("one_stroke", True, f'must be False with task="{self.task}"; it belongs to task="visit"')
-        else:
-            self._check_visit()
         read = Rules(
             actions, noise, physics, table, fidelity, plan, self.reward, self.observation, self.miss, limit, one_stroke, frames,
             self.game, round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME)),
         )  # fmt: skip
         object.__setattr__(self, "rules", read)
-
-    def _frames(self) -> int:
-        """The length of a match; 0 for another task."""
-        if self.task != "match":
-            if type(self.frames) is not int or self.frames != FRAMES:
-                raise refuse("frames", self.frames, f'must be {FRAMES} with task="{self.task}"; it belongs to task="match"')
-            return 0
-        if integer("frames", self.frames, 1, 999) % 2 == 0:
-            raise refuse("frames", self.frames, "must be odd, so that one player wins")
-        return int(self.frames)
 
     def _physics(self) -> Physics:
         physics = Physics.of(self.physics)
@@ -257,22 +302,55 @@ class Options:
         return physics
 
     def _actions(self, physics: Physics) -> Actions | Choices:
-        said = {"nominate": self.nominate, "concede": self.concede, "claim": self.claim, "lot": self.lot}
         if choice("action", self.action, ACTIONS) == "box":
-            return Actions(self.aim, self.elevation, self.placement, physics, self.decision, **said)
+            return Actions(self.aim, self.elevation, self.placement, physics, self.says)
         for name in ("elevation", "placement", "decision"):
             if getattr(self, name) is not False:
                 raise refuse(name, getattr(self, name), 'must be False with action="discrete"')
         choice("aim", self.aim, AIMS)  # checked but unused: the aim is solved
-        return Choices(physics, **said)
+        return Choices(physics, self.says)
 
-    def _check_visit(self) -> None:
-        """Raise ValueError if an option of frames is changed in a visit."""
-        usual = {f.name: f.default for f in fields(self)}
-        for name in FRAME_ONLY:
-            value = getattr(self, name)
-            if not isinstance(value, (type(usual[name]), np.bool_)) or value != usual[name]:
-                raise refuse(name, value, f'must be {usual[name]!r} with task="visit"; it belongs to task="frame"')
+    def _check_task(self) -> None:
+        """Raise ValueError if an option of another task is changed."""
+        for f in _FIELDS:
+            only, value = f.metadata["only"], getattr(self, f.name)
+            if only is None or self.task == only or (self.task == "match" and only == "frame"):
+                continue
+            if not isinstance(value, (type(f.default), np.bool_)) or value != f.default:
+                name, value, usual = (self.says[0], True, False) if f.name == "says" else (f.name, value, f.default)
+                raise refuse(name, value, f'must be {usual!r} with task="{self.task}"; it belongs to task="{only}"')
+
+    @classmethod
+    def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
+        """Return the options of a group, with their defaults.
+
+        Parameters
+        ----------
+        name : {"task", "action", "view", "shot", "frame"}
+            "task": what is played, how it begins and what it pays. "action", "view": how the agent acts and sees. "shot": what decides the
+            outcome of a shot. "frame": the rules of frames.
+        task : {"visit", "frame", "match"}, optional
+            Leaves out the options that this task does not have; default None: none of them.
+
+        Returns
+        -------
+        dict
+            Name and default of each.
+
+        Raises
+        ------
+        ValueError
+            If there is no such group or task.
+
+        Examples
+        --------
+        >>> from snooker_env import Options
+        >>> list(Options.group("shot"))
+        ['noise', 'physics', 'table', 'fidelity']
+        """
+        choice("name", name, GROUPS)
+        own = TASKS if task is None else {"match": ("frame", "match")}.get(choice("task", task, TASKS), (task,))
+        return {f.name: f.default for f in _FIELDS if f.metadata["group"] == name and f.metadata["only"] in (None, *own)}
 
     def but(self, **changes: Any) -> "Options":
         """Return a copy with some options changed.
@@ -298,12 +376,24 @@ class Options:
         >>> Options().but(layout="line_up").layout
         'line_up'
         """
-        return replace(self, **changes)
+        flags = {} if "says" not in changes else dict.fromkeys(SAYS, _UNSAID)  # else they are those of this one
+        return replace(self, **flags | changes)
 
 
-FRAME_ONLY = ("opponent", "trust", "miss", "decision", "max_strokes", "nominate", "concede", "claim", "lot", "game", "time_to_play")
-"""Options that have a meaning in the frame task only."""
-NAMES = tuple(f.name for f in fields(Options) if f.init)
+_FIELDS = tuple(f for f in fields(Options) if f.init)
+NAMES = (*(f.name for f in _FIELDS), *SAYS)
+for _name in SAYS:
+    setattr(Options, _name, property(lambda self, name=_name: name in self.says))
+
+
+def options_table() -> str:
+    """All options, their defaults and values: a Markdown table, from the fields' metadata."""
+    rows = ["| name | default | values |", "|---|---|---|"]
+    for f in _FIELDS:
+        default = f'"{f.default}"' if isinstance(f.default, str) else repr(f.default)
+        only = "" if f.metadata["only"] is None else f"of a {f.metadata['only']}: "
+        rows.append(f"| `{f.name}` | `{default}` | {only}{f.metadata['values']} |")
+    return "\n".join(rows) + "\n"
 
 
 def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:

@@ -15,7 +15,7 @@ from snooker_env.tasks import box_actions
 
 def test_a_stroke_is_its_action():
     stroke = CueStroke(speed=3.1, aim=2.5, side=-0.2, top=0.3, elevation=0.2, place=(0.1, -1.2))
-    actions = box_actions.Actions("absolute", True, True, sn.Physics(), True)
+    actions = box_actions.Actions("absolute", True, True, sn.Physics(), ("decision",))
     a = stroke.action(elevation=True, placement=True, decision=True).astype(float)
     places, on_table, _ = OPEN.arrays()
     speed, side, top, cue, elevation = actions.shot(a, places, on_table, 2)

@@ -7,6 +7,7 @@ import re
 
 import snooker_env as sn
 from snooker_env.tasks import LEVELS, Noise
+from snooker_env.tasks.options import options_table
 from tests.docs.pages import ROOT
 
 PAGE = (ROOT / "docs/environment/specification.md").read_text(encoding="utf-8")
@@ -28,7 +29,7 @@ def defaults(table):
 def test_options_have_the_defaults_that_are_printed():
     of_all, of_one = map(defaults, tables("Options"))
     fields = {field.name: field.default for field in dataclasses.fields(sn.Options) if field.init}
-    assert of_all == fields
+    assert of_all == fields and options_table() in PAGE and options_table() in str(sn.SnookerEnv.__doc__)
     signature = inspect.signature(sn.SnookerEnv).parameters
     assert of_one == {name: signature[name].default for name in ("options", "render_mode", "render_size")}
 

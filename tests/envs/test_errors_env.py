@@ -33,6 +33,9 @@ ENV = [
         for field in ("elevation", "placement", "decision", "trust", "nominate", "concede", "claim", "lot")
         for wrong in (0, 1, None, "yes", 0.5, [True])
     ],
+    *[case(make(task="frame", says=w), "says", repr(w), "must be a sequence of some of", f"says={w!r}") for w in ("lot", 3, None)],
+    case(make(task="frame", says=["shout"]), "says", "'shout'", "must be one of 'nominate', 'decision'"),
+    case(make(says=["lot"]), "lot", "True", 'must be False with task="visit"', "visit-says"),
     *[
         case(make(render_mode=wrong), "render_mode", repr(wrong), "must be one of 'human', 'rgb_array', 'ansi'", f"render_mode={wrong!r}")
         for wrong in ("", "Human", "depth_array", 3, True, ["ansi"])

@@ -13,6 +13,7 @@ from snooker_env.tasks.escapes import _REBOUND
 from snooker_env.tasks.frame import Frames
 from snooker_env.tasks.ghost_ball import GhostBallOpponent
 from snooker_env.tasks.options import Options
+from snooker_env.tasks.seats import Seat
 from snooker_env.tasks.stroke import AIM, CUE_SPEED, ShotBuffers
 from snooker_env.tasks.tables import I_FOULS, I_POINTS, Crew
 
@@ -21,7 +22,8 @@ PLAYER = GhostBallOpponent()
 
 def dealt(n, **options):
     """New frames at which player 0 is to play."""
-    tables = Frames(Options(task="frame", aim="target", placement=True, decision=True, **options).rules, n)
+    game = Options(task="frame", aim="target", placement=True, decision=True, **options)
+    tables = Frames(game, n, seats=[Seat.of(game.rules)] * 2)
     for k in range(n):
         tables.seed(k, np.random.default_rng(k))
     tables.deal(np.arange(n), drawn=False)

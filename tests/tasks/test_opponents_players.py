@@ -268,7 +268,7 @@ def test_what_is_no_player_is_refused():
     for wrong, says in (
         (Soft, r"opponent = <class '.*Soft'>: must be an instance and not the class: Soft\(...\)"),
         (OpponentPool, r"opponent = <class '.*OpponentPool'>: must be an instance"),
-        (7, "opponent = 7: must be 'none', the name of a player"),
+        (7, "opponent = 7: must be one of 'none', 'random', 'ghost_ball', the name of another player"),
         (Sees(noise="club"), "key of the options of player Sees = 'noise': must be one of 'action'"),
     ):
         with pytest.raises(ValueError, match=f"^{says}"):
@@ -276,7 +276,7 @@ def test_what_is_no_player_is_refused():
 
 
 def test_options_hold_text_and_objects_come_beside_them():
-    with pytest.raises(ValueError, match=r"^opponent = .*: must be text in Options"):
+    with pytest.raises(ValueError, match=r"^opponent = .*: must be one of .*Options hold text"):
         sn.Options(task="frame", opponent=Soft())
     env = sn.SnookerEnv(task="frame", opponent=Soft())
     assert env.options.opponent == "object"
@@ -292,3 +292,18 @@ def test_copies_of_an_environment_play_on_alike():
     copies = copy.deepcopy(env), pickle.loads(pickle.dumps(env))
     first = env.step(MISS)
     assert all(data_equivalence(one.step(MISS)[:4], first[:4], exact=True) for one in copies)
+
+
+def test_says_and_the_flags_are_two_spellings():
+    options = sn.Options(task="frame", decision=True, says=["lot"])
+    assert options.says == ("decision", "lot") and options.decision and not options.nominate
+    assert options == sn.Options(task="frame", lot=True, says=("decision",)) and options.but(decision=False).says == ("lot",)
+    assert options.but(says=("claim",)).says == ("claim",) and options.but(noise="club").says == options.says
+    assert sn.SnookerEnv(options).action_space == sn.SnookerEnv(task="frame", decision=True, lot=True).action_space
+
+
+def test_groups_hold_every_option_once():
+    groups = [sn.Options.group(name) for name in ("task", "action", "view", "shot", "frame")]
+    names = [name for group in groups for name in group]
+    assert len(names) == len(set(names)) == 21 and set(sn.Options.group("action", "visit")) == {"action", "aim", "elevation", "placement"}
+    assert all(getattr(sn.Options(), name) == default for group in groups for name, default in group.items())

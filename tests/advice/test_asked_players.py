@@ -121,7 +121,7 @@ def test_a_choice_in_a_frame_is_asked_as_the_stroke_to_come():
     assert len(sn.advise(sn.planning.Positions.of(session), agent="search", **QUICK)) >= 1
 
 
-@pytest.mark.parametrize("name", ["geometric", "planner", "foresight_rule", "test_players:Soft"])
+@pytest.mark.parametrize("name", ["geometric", "planner", "foresight_rule", "test_asked_players:Soft"])
 @pytest.mark.parametrize("position", [OPEN, RESPOTTED, ALL["snookered"]], ids=["open", "respotted", "snookered"])
 def test_players_are_asked_by_their_names(name, position):
     advice = sn.advise(position, agent=name, n=2, **QUICK)
