@@ -39,9 +39,18 @@ def parser() -> argparse.ArgumentParser:
     add("--label", help="name in the tables (default: from the agent)")
     add("--episodes", type=int, help="fewer episodes, for a first try; such a result is not official")
     add("--training-shots", type=int, metavar="N", help="all simulated shots of its training; 0: not trained")
-    add("--simulated-shots", type=int, metavar="N", help="declare simulated shots a decision that are not counted here")
+    add(
+        "--simulated-shots",
+        type=int,
+        metavar="N",
+        help="declare simulated shots a decision that are not counted here",
+    )
     add("--out", metavar="PATH", help="result file, or folder for several tasks (default: TASK.LABEL.json)")
-    add("--resume", action="store_true", help="go on with an incomplete result file; leave a complete one as it is")
+    add(
+        "--resume",
+        action="store_true",
+        help="go on with an incomplete result file; leave a complete one as it is",
+    )
     add("--force", action="store_true", help="replace result files that are there")
     check = commands.add_parser("check", help="verify result files; exit code 1 if one is wrong")
     check.add_argument("files", nargs="+", metavar="FILE")
@@ -93,7 +102,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _tasks(args: Any) -> int:
     """List the tasks."""
-    rows = [[task.id, task.title, task.judged_layout, str(task.frozen["noise"]), f"{task.episodes:,}"] for task in TASKS.values()]
+    every = TASKS.values()
+    rows = [[one.id, one.title, one.judged_layout, str(one.frozen["noise"]), f"{one.episodes:,}"] for one in every]
     print("\n".join(text_table(["task", "what", "judged on", "noise", "episodes"], rows, 4)))
     print(f"\nFree options: {', '.join(FREE)}. All others are frozen.")
     return 0
@@ -129,22 +139,25 @@ def _run(args: Any) -> int:
     warmup()
     worst = 0
     for task, file in zip(tasks, files, strict=True):
-        with ExitStack() as ending:
-            shown_by: list[Progress] = []
-
-            def tick(played: int, total: int) -> None:
-                """Say how far it is."""
-                if not shown_by:  # noqa: B023
-                    progress = Progress(task.id, total, "episodes", done=played)  # noqa: B023 - called in this round
-                    shown_by.append(ending.enter_context(progress))  # noqa: B023
-                shown_by[0].at(played)  # noqa: B023
-
-            keywords: Any = {"episodes": args.episodes, "resume": args.resume, "threads": args.threads}
-            result = judge(task, agent, out=file, command=args.line, tick=tick, **keywords)
-        worst = max(worst, _told(result, task, file))
+        worst = max(worst, _told(_judged(task, agent, file, args), task, file))
         if worst == 130:
             break
     return worst
+
+
+def _judged(task: Task, agent: Agent, file: Path, args: Any) -> dict[str, Any]:
+    """Play a task and say how far it is."""
+    with ExitStack() as ending:
+        shown_by: list[Progress] = []
+
+        def tick(played: int, total: int) -> None:
+            """Show the progress, from the first call on."""
+            if not shown_by:
+                shown_by.append(ending.enter_context(Progress(task.id, total, "episodes", done=played)))
+            shown_by[0].at(played)
+
+        more: Any = {"episodes": args.episodes, "resume": args.resume, "threads": args.threads}
+        return judge(task, agent, out=file, command=args.line, tick=tick, **more)
 
 
 def _told(result: dict[str, Any], task: Task, file: Path) -> int:

@@ -8,22 +8,23 @@ from .._check import refuse
 from ..players import FRAMES, VISITS
 from ..simulation import SimulationError
 from ..tasks.options import MAX_STROKES
+from . import schema
 from .agents import Agent, is_known, is_reserved, seated
 from .figures import figures_of
-from .playing import BATCH, COLUMNS, Decider, Kept, PlayedEpisodes, Repeater, play_episodes, rows_of, tables_for
+from .playing import (
+    BATCH,
+    COLUMNS,
+    Decider,
+    Kept,
+    PlayedEpisodes,
+    Repeater,
+    play_episodes,
+    rows_of,
+    tables_for,
+)
 from .provenance import arithmetic
 from .results import budget_of, missing, of_decisions
-from .schema import (
-    LONG_LINE,
-    MOST_SOURCES,
-    MOST_WHOLE,
-    NAME,
-    PACKAGES,
-    PROTOCOL,
-    VERSION,
-    faults_of_fields,
-    shortened,
-)
+from .schema import LONG_LINE, MOST_WHOLE, faults_of_fields, shortened
 from .strokes import unpacked
 from .tasks import TASKS, Task
 
@@ -96,11 +97,11 @@ def _of_versions(result: dict[str, Any]) -> list[str]:
     """Names and versions by which results compare."""
     wrong = []
     for name, value, allowed in (
-        ("schema.name", result["schema"]["name"], (NAME,)),
-        ("schema.version", result["schema"]["version"], (VERSION,)),
-        ("protocol.version", result["protocol"]["version"], (PROTOCOL,)),
+        ("schema.name", result["schema"]["name"], (schema.NAME,)),
+        ("schema.version", result["schema"]["version"], (schema.VERSION,)),
+        ("protocol.version", result["protocol"]["version"], (schema.PROTOCOL,)),
         ("task", result["task"], tuple(TASKS)),
-        ("software.snooker_env", result["software"]["snooker_env"], PACKAGES),
+        ("software.snooker_env", result["software"]["snooker_env"], schema.PACKAGES),
         ("columns", result["columns"], (list(COLUMNS),)),
     ):
         if value not in allowed:
@@ -113,7 +114,7 @@ def _of_agent(result: dict[str, Any]) -> list[str]:
     """Do the fields of the agent fit each other?"""
     agent, sources, wrong = result["agent"], result["agent"]["sources"], []
     texts = all(isinstance(one, str) and one and LONG_LINE[0].fullmatch(one) for one in sources)
-    if not 0 < len(sources) <= MOST_SOURCES or not texts:
+    if not 0 < len(sources) <= schema.MOST_SOURCES or not texts:
         return ["agent.sources: must be texts, one for each training seed"]
     if len(set(sources)) < len(sources):
         return ["agent.sources: must be different: the same one twice makes nothing surer"]
@@ -276,7 +277,13 @@ def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | 
     return wrong
 
 
-def afresh(found: dict[str, Any], agent: Agent, episodes: int, seed: int, threads: int | None = None) -> tuple[float, float, list[str]]:
+def afresh(
+    found: dict[str, Any],
+    agent: Agent,
+    episodes: int,
+    seed: int,
+    threads: int | None = None,
+) -> tuple[float, float, list[str]]:
     """Have the agent play a task on seeds that it cannot know, and compare its mean score and its class with those of the result.
 
     Parameters
@@ -314,9 +321,16 @@ def afresh(found: dict[str, Any], agent: Agent, episodes: int, seed: int, thread
     """
     if found["figures"] is None:
         raise refuse("incomplete", found["incomplete"], "must be null to compare means")
-    played, runs, column = _by(agent, found, range(seed, seed + episodes), threads), len(agent.sources), COLUMNS.index("score")
+    played, runs, column = (
+        _by(agent, found, range(seed, seed + episodes), threads),
+        len(agent.sources),
+        COLUMNS.index("score"),
+    )
     each = [np.reshape([row[column] for row in rows], (runs, -1)).mean(0) for rows in (found["rows"], played.rows)]
-    (old, mean), error = (one.mean() for one in each), float(np.sqrt(sum(one.var(ddof=1) / len(one) for one in each)))
+    (old, mean), error = (
+        (one.mean() for one in each),
+        float(np.sqrt(sum(one.var(ddof=1) / len(one) for one in each))),
+    )
     wrong = []
     if abs(mean - old) > SURE * error:
         near = f"must be within {SURE * error:.2g} of {mean:g}, as on fresh seeds"

@@ -41,7 +41,11 @@ class TaskVectorEnv(SnookerVectorEnv):
 def _classes(name: str) -> tuple[type[TaskEnv], type[TaskVectorEnv]]:
     """The two classes of a task."""
     task = TASKS[f"Snooker{name}-v0"]
-    what = {"TASK": task.id, "__module__": __name__, "__doc__": f"``{task.id}``: {task.title}. Free: {', '.join(FREE)}."}
+    what = {
+        "TASK": task.id,
+        "__module__": __name__,
+        "__doc__": f"``{task.id}``: {task.title}. Free: {', '.join(FREE)}.",
+    }
     return type(f"{name}Env", (TaskEnv,), what), type(f"{name}VectorEnv", (TaskVectorEnv,), what)
 
 

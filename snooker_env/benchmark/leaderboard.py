@@ -44,9 +44,23 @@ def board(results: Iterable[dict[str, Any]], task: Task) -> Table:
 
     def order(result: dict[str, Any]) -> tuple[Any, ...]:
         agent, score = result["agent"], result["figures"]["score"]["value"]
-        return list(CLASSES).index(agent["class"]), list(TRAINED).index(agent["budget"]), -score, agent["label"]
+        return (
+            list(CLASSES).index(agent["class"]),
+            list(TRAINED).index(agent["budget"]),
+            -score,
+            agent["label"],
+        )
 
-    head = ["class, training", "agent", "score" if task.counts else "share %", "IQM", "seeds", "shots", "ms", "ms 1"]
+    head = [
+        "class, training",
+        "agent",
+        "score" if task.counts else "share %",
+        "IQM",
+        "seeds",
+        "shots",
+        "ms",
+        "ms 1",
+    ]
     rows = [_row(result, task) for result in sorted(_of(results, task), key=order)]
     keep = [c for c, name in enumerate(head) if task.counts or name != "IQM"]
     return [head[c] for c in keep], [[row[c] for c in keep] for row in rows]
@@ -96,7 +110,7 @@ def _share(figure: dict[str, Any]) -> str:
     return f"<= {100 * figure['high']:.1f}" if figure["value"] == 0.0 else f">= {100 * figure['low']:.1f}"
 
 
-def lines(results: Sequence[dict[str, Any]], *, markdown: bool = False, awaited: Sequence[str] = ()) -> list[str]:
+def lines(results: Sequence[Any], *, markdown: bool = False, awaited: Sequence[str] = ()) -> list[str]:
     """Leaderboard and profiles of all tasks with results; labels ``awaited`` are named where their result is missing."""
 
     def table(head: list[str], rows: list[list[str]], label: int, left: int = 1) -> list[str]:
@@ -118,7 +132,12 @@ def lines(results: Sequence[dict[str, Any]], *, markdown: bool = False, awaited:
         made += [*table(head, rows, 1, 2), ""] if rows else []
         made += [*wrap(f"Missing: {', '.join(lacking)}.", WIDTH), ""] if lacking else []
         if task.counts and rows:
-            made += ["Share of visits [%] with at least so many points:", "", *table(*profile(results, task), 0), ""]
+            made += [
+                "Share of visits [%] with at least so many points:",
+                "",
+                *table(*profile(results, task), 0),
+                "",
+            ]
     return [*made, *wrap(LEGEND, WIDTH)]
 
 

@@ -22,7 +22,18 @@ from .tasks import Task
 
 BATCH = 100
 """Episodes that are played side by side."""
-COLUMNS = ("run", "table", "score", "strokes", "points", "pots", "fouls", "cleared", "opponent_points", "ended")
+COLUMNS = (
+    "run",
+    "table",
+    "score",
+    "strokes",
+    "points",
+    "pots",
+    "fouls",
+    "cleared",
+    "opponent_points",
+    "ended",
+)
 """Columns of a row: index of the training seed, seed of the table, then integers that docs/benchmark.md explains."""
 Kept = list[NDArray[np.float32]]
 """The strokes of each episode: its actions, one row each."""
@@ -151,7 +162,13 @@ def tables_for(task: Task, n: int, threads: int | None = None) -> SnookerVectorE
     return SnookerVectorEnv(n, task.judged(**(FRAMES if task.frame else VISITS)), threads=threads)
 
 
-def play_episodes(task: Task, player: Any, seeds: list[int], run: int = 0, threads: int | None = None) -> PlayedEpisodes:
+def play_episodes(
+    task: Task,
+    player: Any,
+    seeds: list[int],
+    run: int = 0,
+    threads: int | None = None,
+) -> PlayedEpisodes:
     """Play one episode on each of the judged tables with these seeds, side by side.
 
     Parameters

@@ -66,7 +66,13 @@ def missing(result: dict[str, Any], task: Task) -> list[str]:
 
 
 def result_of(
-    task: Task, agent: Agent, episodes: int, played: PlayedEpisodes, alone: PlayedEpisodes, why: str | None, about: Any
+    task: Task,
+    agent: Agent,
+    episodes: int,
+    played: PlayedEpisodes,
+    alone: PlayedEpisodes,
+    why: str | None,
+    about: Any,
 ) -> dict[str, Any]:
     """The object of a result file.
 

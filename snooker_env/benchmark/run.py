@@ -106,7 +106,10 @@ def judge(
         why = f"interrupted after {len(played.rows)} of {total} episodes"
     except AgentError as error:
         why = f"{error} (after {len(played.rows)} of {total} episodes)"
-    except (Exception, SystemExit) as error:  # of the agent's own code: its traceback is for its author, what was played is kept
+    except (
+        Exception,
+        SystemExit,
+    ) as error:  # of the agent's own code: its traceback is for its author, what was played is kept
         kept_as(f"{type(error).__name__}: {error} (after {len(played.rows)} of {total} episodes)")
         if isinstance(error, SystemExit):
             raise RuntimeError(f"the agent ended the program: SystemExit({error})") from error
@@ -119,7 +122,12 @@ def _kept(path: Path, task: Task, agent: Agent, episodes: int) -> tuple[dict[str
     result = read_result(path)
     if wrong := faults(result):
         raise refuse("out", str(path), f"must be a sound result to go on with ({wrong[0]})")
-    same = (result["task"], result["agent"]["label"], result["agent"]["sources"], result["protocol"]["episodes"])
+    same = (
+        result["task"],
+        result["agent"]["label"],
+        result["agent"]["sources"],
+        result["protocol"]["episodes"],
+    )
     if same != (task.id, agent.label, agent.texts, episodes):
         what = f"{agent.label} on {task.id} with {episodes} episodes"
         raise refuse("out", str(path), f"must be a result of {what} to go on with")

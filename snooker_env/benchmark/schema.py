@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from datetime import datetime, timedelta, timezone
 from typing import Any
 
+from .provenance import LIBRARIES
+
 NAME, VERSION = "snooker_env.benchmark.result", 3
 PROTOCOL = 1
 """Version of the rules: tables, episodes, figures. Results of different versions are never put into one table."""
@@ -14,6 +16,7 @@ BEGUN = "2026-11-21T00:00:00Z"
 """No result is older than the project."""
 DATE = "%Y-%m-%dT%H:%M:%SZ"
 NUMBER = (int, float)
+_ALIKE = "machines with the same one play strokes alike, bit for bit"
 
 FIELDS: dict[str, tuple[Any, bool, str]] = {
     "schema.name": (str, False, f'"{NAME}"'),
@@ -29,23 +32,21 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "agent.training_shots": (int, True, "all simulated shots of its training; null: not known"),
     "agent.simulated_shots": (NUMBER, True, "simulated shots a decision, mean; null: not known"),
     "agent.declared": (bool, False, "true: that number was declared; false: this process counted it"),
-    "software.snooker_env": (str, False, "version"),
-    "software.python": (str, False, "version"),
-    **{f"software.{name}": (str, True, "version") for name in ("numpy", "numba", "gymnasium")},
-    **{f"software.{name}": (str, True, "version; null: not installed") for name in ("torch", "stable_baselines3", "sb3_contrib")},
+    **{f"software.{name}": (str, False, "version") for name in ("snooker_env", "python")},
+    **{f"software.{name}": (str, True, "version; null: not installed") for name in LIBRARIES},
     "machine.platform": (str, False, "operating system and processor architecture"),
     "machine.cpu": (str, False, "the processor's name"),
     "machine.cores": (int, False, "logical processors"),
     "machine.load": (NUMBER, True, "load average of the minute before the first episode"),
     "machine.load_at_end": (NUMBER, True, "load average of the minute before the last one ended"),
-    "machine.arithmetic": (
-        str,
-        False,
-        "digest of 128 strokes: machines with the same one play strokes alike, bit for bit",
-    ),
+    "machine.arithmetic": (str, False, f"digest of 128 strokes: {_ALIKE}"),
     "timing.seconds": (NUMBER, False, "what all decisions took together"),
     "timing.simulated_shots": (int, False, "shots that this process simulated for them"),
-    "timing.one_table_ms": (NUMBER, True, "milliseconds a decision on one table, measured alone; null: not measured"),
+    "timing.one_table_ms": (
+        NUMBER,
+        True,
+        "milliseconds a decision on one table, measured alone; null: not measured",
+    ),
     "command": (str, False, "how this file was made"),
     "commit": (str, True, "of the checkout, with -dirty if files were changed; null outside one"),
     "date": (str, False, "when, in UTC: 2026-11-22T19:00:00Z"),
@@ -57,26 +58,28 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "strokes.data": (str, False, "every stroke that was played, see below"),
 }
 """Dotted name: type, whether it may be null, meaning."""
-_PROVED = ("schema", "protocol", "task", "agent.class", "agent.budget", "columns", "rows", "figures", "strokes")
+_PROVED = (
+    "schema",
+    "protocol",
+    "task",
+    "agent.class",
+    "agent.budget",
+    "columns",
+    "rows",
+    "figures",
+    "strokes",
+)
 UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED) and name != "software.snooker_env")
 """Fields that a replay cannot prove: their form is checked, and that they fit the others. Class and budget follow from them."""
 
 LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,20}")
 MOST_WHOLE = 2**53
 """Whole numbers up to here are exact in every reader of JSON."""
-_COUNT, _AMOUNT = (0, MOST_WHOLE), (0.0, 1e12)
 RANGES: dict[str, tuple[float, float]] = {
-    "schema.version": _COUNT,
-    "protocol.version": _COUNT,
+    **{name: (0.0, 1e12) if kind is NUMBER else (0, MOST_WHOLE) for name, (kind, _, _) in FIELDS.items() if kind in (int, NUMBER)},
+    "agent.simulated_shots": (0, MOST_WHOLE),
     "protocol.episodes": (1, 2**20),
-    "agent.training_shots": _COUNT,
-    "agent.simulated_shots": _COUNT,
     "machine.cores": (1, 2**20),
-    "machine.load": _AMOUNT,
-    "machine.load_at_end": _AMOUNT,
-    "timing.seconds": _AMOUNT,
-    "timing.simulated_shots": _COUNT,
-    "timing.one_table_ms": _AMOUNT,
 }
 """Lowest and highest value of every field that is a number."""
 _CONTROL = r"\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff"

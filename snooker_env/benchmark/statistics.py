@@ -84,7 +84,10 @@ class Resamples:
     """
 
     def __init__(self, runs: int, visits: int, n: int = RESAMPLES, seed: int = 0):
-        self._runs, self._visits = _drawn(runs, max(1, runs - 1), n, (1, seed)), _drawn(visits, visits, n, (0, 0))
+        self._runs, self._visits = (
+            _drawn(runs, max(1, runs - 1), n, (1, seed)),
+            _drawn(visits, visits, n, (0, 0)),
+        )
 
     def sums(self, scores: Any) -> Floats:
         """The sum of a matrix in each sample.

@@ -14,7 +14,10 @@ def packed(strokes: Kept) -> dict[str, str]:
     """The field ``strokes`` of a file: float32, little-endian, compressed by zlib, in base64, with a digest."""
     rows = [np.ascontiguousarray(one, "<f4") for one in strokes if len(one)]
     raw = np.concatenate(rows).view(np.uint8).T.tobytes() if rows else b""
-    return {"sha256": hashlib.sha256(raw).hexdigest(), "data": base64.b64encode(zlib.compress(raw, 9)).decode()}
+    return {
+        "sha256": hashlib.sha256(raw).hexdigest(),
+        "data": base64.b64encode(zlib.compress(raw, 9)).decode(),
+    }
 
 
 def unpacked(field: dict[str, str], lengths: list[int], size: int) -> Kept:

@@ -94,16 +94,15 @@ class Task:
         >>> options.layout, options.noise, options.aim
         ('opened', 'professional', 'target')
         """
-        for name, value in free.items():
-            if name in FREE:
-                continue
+        frees = ", ".join(FREE)
+        for name in (name for name in free if name not in FREE):
             if name == "options":
-                allowed = f"must be left out: {self.id} makes its own; give the free options themselves ({', '.join(FREE)})"
-                raise refuse_what("options", f"a {type(value).__name__}", allowed)
+                allowed = f"must be left out: {self.id} makes its own; give the free options themselves ({frees})"
+                raise refuse_what("options", f"a {type(free[name]).__name__}", allowed)
             if name not in _USUAL:
-                raise TypeError(f"got an unexpected keyword argument {name!r}; the free options of {self.id} are {', '.join(FREE)}")
-            frozen = self.frozen[name]
-            raise refuse(name, value, f"must be left out: {self.id} freezes it at {frozen!r}; only Snooker-v0 lets you choose it")
+                raise TypeError(f"got an unexpected keyword argument {name!r}; the free options of {self.id} are {frees}")
+            why = f"{self.id} freezes it at {self.frozen[name]!r}; only Snooker-v0 lets you choose it"
+            raise refuse(name, free[name], f"must be left out: {why}")
         return Options(**{**self.changes, **free})
 
     def judged(self, **free: Any) -> Options:
@@ -172,61 +171,44 @@ _FRAME = (
 )
 
 
-def _task(name: str, title: str, layout: str, score: str, measure: str, episodes: int, **more: Any) -> Task:
-    """A task played with a professional's errors, unless ``more`` says otherwise."""
-    changes = {"layout": layout, "noise": "professional"} | more.pop("changes", {})
-    more = {"judged_layout": layout, "thresholds": (1,)} | more
-    more |= {"title": title, "score": score, "measure": measure, "episodes": episodes}
-    return Task(id=f"Snooker{name}-v0", changes=MappingProxyType(changes), **more)
-
-
-_POINTS: tuple[Any, ...] = ("points", "points a visit", 500)
-_HELD_OUT: dict[str, Any] = {"judged_layout": "held_out", "thresholds": _BREAK}
-TASKS: dict[str, Task] = {
-    task.id: task
-    for task in (
-        _task("Break", "build a break on an opened table", "opened", *_POINTS, **_HELD_OUT),
-        _task(
-            "BreakClub",
-            "the same with a club player's errors",
-            "opened",
-            *_POINTS,
-            **_HELD_OUT,
-            changes={"noise": "club"},
-        ),
-        _task("LineUp", "clear the line-up", "line_up", *_POINTS, thresholds=_BREAK),
-        _task("Colours", "clear the six colours", "colours", *_POINTS, thresholds=(2, 5, 9, 14, 20, 27)),
-        _task(
-            "PotHard",
-            "pot one hard ball",
-            "pots:hard",
-            "pots",
-            "share of balls potted",
-            1000,
-            changes={"reward": "pots"},
-        ),
-        _task(
-            "Escape",
-            "one stroke out of a snooker, without a foul",
-            "snookered",
-            "legal",
-            "share of escapes",
-            1000,
-            changes={"reward": "legal", "one_stroke": True},
-            note=_ESCAPE,
-        ),
-        _task(
-            "Frame",
-            "win a frame against ghost_ball",
-            "break_off",
-            "won",
-            "share of frames won",
-            200,
-            changes={"task": "frame", "opponent": "ghost_ball", "reward": "win"},
-            note=_FRAME,
-        ),
-    )
+_MEASURES = {
+    "points": ("points a visit", 500),
+    "pots": ("share of balls potted", 1000),
+    "legal": ("share of escapes", 1000),
+    "won": ("share of frames won", 200),
 }
+"""Of each score: the name of its mean, and the number of episodes."""
+
+
+def _task(name: str, title: str, layout: str, score: str, judged: str = "", **more: Any) -> Task:
+    """A task with a professional's errors, judged on its own layout, unless it is said otherwise."""
+    changes = MappingProxyType({"layout": layout, "noise": "professional"} | more.pop("changes", {}))
+    measure, episodes = _MEASURES[score]
+    more |= {"judged_layout": judged or layout, "measure": measure, "episodes": episodes, "changes": changes}
+    return Task(id=f"Snooker{name}-v0", title=title, score=score, **more)
+
+
+_LEGAL = {"reward": "legal", "one_stroke": True}
+_WIN = {"task": "frame", "opponent": "ghost_ball", "reward": "win"}
+_CLUB = {"changes": {"noise": "club"}, "thresholds": _BREAK}
+_COLOURS = (2, 5, 9, 14, 20, 27)
+_ALL = (
+    _task("Break", "build a break on an opened table", "opened", "points", "held_out", thresholds=_BREAK),
+    _task("BreakClub", "the same with a club player's errors", "opened", "points", "held_out", **_CLUB),
+    _task("LineUp", "clear the line-up", "line_up", "points", thresholds=_BREAK),
+    _task("Colours", "clear the six colours", "colours", "points", thresholds=_COLOURS),
+    _task("PotHard", "pot one hard ball", "pots:hard", "pots", changes={"reward": "pots"}),
+    _task(
+        "Escape",
+        "one stroke out of a snooker, without a foul",
+        "snookered",
+        "legal",
+        changes=_LEGAL,
+        note=_ESCAPE,
+    ),
+    _task("Frame", "win a frame against ghost_ball", "break_off", "won", changes=_WIN, note=_FRAME),
+)
+TASKS: dict[str, Task] = {task.id: task for task in _ALL}
 """The tasks of the benchmark by id."""
 
 

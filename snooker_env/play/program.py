@@ -85,7 +85,25 @@ class ProgramPlayer(BoundPlayer):
         self._noise = choice("noise", options.noise, tuple(LEVELS))
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """See ``Player.play``; ``AgentError`` if the program ends, is too slow, or its answer is no stroke."""
+        """Return what the program answers in each of n positions.
+
+        Parameters
+        ----------
+        positions : PositionsLike
+            The n positions.
+        seeds : array_like
+            int (n,). The program is told them.
+
+        Returns
+        -------
+        Strokes
+            n strokes and what is said with them.
+
+        Raises
+        ------
+        AgentError
+            If the program ends, is too slow, or its answer is no stroke.
+        """
         _ = self.options  # it must be bound
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at)).tolist()
@@ -128,7 +146,11 @@ class ProgramPlayer(BoundPlayer):
             for kept, layout in zip(table.saved, at.saved or (), strict=False):
                 kept[0] = layout[k]
             state = table.get_state(0)
-            game = {"practice": False, "noise": [self._noise] * 2, "state": {name: state[name] for name in STATE}}
+            game = {
+                "practice": False,
+                "noise": [self._noise] * 2,
+                "state": {name: state[name] for name in STATE},
+            }
             session.load({"format": "snooker-game", "version": 1, **game})
         else:
             position = at[k]
