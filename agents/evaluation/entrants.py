@@ -124,7 +124,7 @@ class Foreign(SeenPlayer):
 @cache
 def _model(path, trust, options):
     file = file_of(Path(path), "agent")
-    ours = read_model(file)
+    ours = read_model(file, "agent")
     if ours is not None:
         return ours
     made = saved_player(file, dict(options), trust)

@@ -99,16 +99,16 @@ def player_of_model(trained):
     return PolicyPlayer(trained) if discrete else BoxPlayer(trained)
 
 
-def load_player(path, field="player"):
+def load_player(path, field="agent"):
     """The player of a model's .zip or .npz or a run's folder. ValueError, naming ``field``, if train.py did not make it."""
     file = file_of(Path(path), field)
     return player_of_model(read_policy(file, field) if file.suffix == ".npz" else load_trained(file, field))
 
 
-def read_model(path):
-    """As ``load_player``; None for a file that others made."""
+def read_model(path, field="player"):
+    """As ``load_player``, naming ``field`` in errors; None for a file that others made."""
     path = Path(path)
-    file = file_of(path, "player") if path.is_dir() else path
+    file = file_of(path, field) if path.is_dir() else path
     if file.suffix != ".npz":
         try:
             ours = by_train(entries(file))
@@ -116,4 +116,4 @@ def read_model(path):
             return None
         if not ours:
             return None
-    return load_player(file)
+    return load_player(file, field)
