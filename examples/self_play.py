@@ -74,16 +74,14 @@ class FramePolicy(TablePolicy):
 class SelfPlayed:
     """The trained agent as a player of frames, for example with ``--agent examples.self_play:SelfPlayed``."""
 
-    options = {"action": "discrete"}  # noqa: RUF012 - a player's options are read, never changed
-    frames = True
+    options = {"task": "frame", "action": "discrete"}  # noqa: RUF012 - how it sees and acts: read, never changed
 
     def __init__(self, weights=MODEL):
         self.policy = policy_of(torch.load(weights, weights_only=True))
 
-    def act(self, tables, observations, going):
+    def act(self, observations, masks, seeds):
         """The most probable choice on each table."""
-        seen = observations[:, :OBSERVATION_SIZE]
-        return self.policy.predict(seen, action_masks=tables.action_masks(), deterministic=True)[0]
+        return self.policy.predict(observations[:, :OBSERVATION_SIZE], action_masks=masks, deterministic=True)[0]
 
 
 def weights(policy):

@@ -35,7 +35,7 @@ class PlayerOpponent(Opponent):
         """The arrays of its ``Strokes``, with a row for each table of ``frames``."""
         numbers = np.empty(len(which))
         drawn(which, frames.streams, numbers)
-        saved = Layouts(*(each[which] for each in frames.saved))
+        saved = Layouts(frames.saved.positions[which], frames.saved.on_table[which])
         at = Positions(frames.positions[which], frames.on_table[which], strikers_own(frames.game[which]), saved)
         try:
             strokes = self.player.play(at, (numbers * 2**32).astype(np.int64))

@@ -48,7 +48,8 @@ class FittingModel:
     @property
     def actions(self) -> Any:
         """The space of its actions."""
-        return Options(**self.options | {"observation": "flat"}).rules.actions.space
+        flat: Any = self.options | {"observation": "flat"}
+        return Options(**flat).rules.actions.space
 
     @property
     def other_actions(self) -> ValueError:

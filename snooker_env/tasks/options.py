@@ -383,7 +383,7 @@ class Options:
 _FIELDS = tuple(f for f in fields(Options) if f.init)
 NAMES = (*(f.name for f in _FIELDS), *SAYS)
 for _name in SAYS:
-    setattr(Options, _name, property(lambda self, name=_name: name in self.says))
+    setattr(Options, _name, property(lambda self, name=_name: name in self.says, doc=f'Whether ``says`` has "{_name}", a bool.'))
 
 
 def options_table() -> str:
