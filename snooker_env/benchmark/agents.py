@@ -80,21 +80,22 @@ class Agent:
         ValueError
             If nothing has that name, or an argument is wrong.
         """
-        sources: tuple[Any, ...] = (agent,)
+        agent = str(agent) if isinstance(agent, Path) else agent
+        sources: list[Any] = [agent]
         if isinstance(agent, str) and not agent.startswith(PROGRAM) and not Path(agent).exists():
             name, equals, text = agent.rpartition("=")
-            label, sources = label or name if equals else label, tuple(text.split(","))
-        if len(set(sources)) < len(sources) or not all(sources):
+            label, sources = label or name if equals else label, text.split(",")
+        if len(sources) > 1 and len(set(sources)) < len(sources):
             raise refuse("agent", agent, "must be different players or models, one for each training seed")
         for source in sources:
-            if isinstance(source, str) and not is_name(source) and not Path(source).exists():
+            if isinstance(source, str) and not is_name(source) and not (source and Path(source).exists()):
                 player_named(source)  # says what is allowed
             if len(sources) > 1 and str(source).startswith(PROGRAM):
                 raise refuse("agent", agent, "must be one program")
         label = label or _label(sources[0])
         if not LABEL.fullmatch(label):
             raise refuse("label", label, "must be 1 to 20 letters, digits or . + - _: give --label")
-        made = cls(label=label, sources=sources, training_shots=training_shots, **more)
+        made = cls(label=label, sources=tuple(sources), training_shots=training_shots, **more)
         if is_reserved(label, made.texts):
             raise refuse("label", label, "must not be the name of another player: give --label")
         for name, shots in (("training_shots", training_shots), ("simulated_shots", made.shots_declared)):
@@ -111,7 +112,8 @@ class Agent:
     @property
     def texts(self) -> list[str]:
         """The sources as a file names them."""
-        return [text_of(source) for source in self.sources]
+        texts = [text_of(source) for source in self.sources]
+        return [text if texts.count(text) == 1 else f"{text} {k}" for k, text in enumerate(texts)]
 
     @property
     def program(self) -> bool:

@@ -218,7 +218,8 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
             continue
         kept = strokes[run * many : run * many + first]
         tables = tables_for(task, first, threads)
-        tables.reset(seed=(seeds := task.seeds(first)))
+        seeds: Any = task.seeds(first)
+        tables.reset(seed=seeds)
         decide = Decider(source, tables, seeds, run)
         actions = decide(np.array([len(one) > 0 for one in kept]), 0)
         tables.close()

@@ -53,7 +53,7 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
     if columns is None:
         return None
     score, counted = columns["score"], task.counts
-    samples = Resamples(*score.shape, RESAMPLES, zlib.crc32(label.encode()))
+    samples = Resamples(len(score), score.shape[1], RESAMPLES, zlib.crc32(label.encode()))
     count = samples.sums(np.ones(score.shape))
 
     def mean(values: Floats, *, share: bool = False) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from .._check import choice, integer, refuse, refuse_what
 from ..game.balls import VALUES
 from ..game.layouts import layout as deal
 from ..game.layouts import plan_of
-from ..tasks.options import Options
+from ..tasks.options import SAYS, Options
 
 HELD_OUT_SEED = 1_000_000
 """Seed of the first judged table. Seeds from here on are for judging alone, not for training."""
@@ -162,9 +162,9 @@ class Task:
         return most_points(self.judged_layout) if self.counts else 1
 
 
-_USUAL = {f.name: f.default for f in fields(Options) if f.init}
+_USUAL = {f.name: f.default for f in fields(Options) if f.init} | dict.fromkeys(SAYS, False)
 _BREAK = (1, 10, 25, 50, 75, 100, 147)
-_ESCAPE = "ghost_ball escapes from 96.3 % of these tables: a share below that is no achievement."
+_ESCAPE = "ghost_ball escapes from 96.2 % of these tables: a share below that is no achievement."
 _FRAME = (
     "A constant choice wins 86.0 % of these frames: the widest pot at 2.3 m/s with a little top, whatever lies on the "
     "table. A share near that shows no skill."

@@ -82,7 +82,7 @@ class ProgramPlayer(BoundPlayer):
         self._service = Service(self._session, Seats({}))
 
     def _bind(self, options: Options) -> None:
-        self._noise = choice("noise", options.noise, tuple(LEVELS))
+        self._noise: Any = choice("noise", options.noise, tuple(LEVELS))
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """Return what the program answers in each of n positions.
@@ -173,7 +173,8 @@ class _Lines:
 
     def __init__(self, command: str, words: list[str], timeout: float):
         self.command, self.timeout = command, timeout
-        self._words, self._process = words, None
+        self._words = words
+        self._process: Any = None
 
     def _start(self):
         try:
@@ -211,8 +212,9 @@ class _Lines:
         if len(answer) > LONGEST:
             raise self._failed(f"answered a line of more than {LONGEST:,} bytes")
         if not answer:
+            process: Any = self._process
             try:
-                code = self._process.wait(2.0)
+                code = process.wait(2.0)
             except subprocess.TimeoutExpired:
                 raise self._failed("closed its output") from None
             raise self._failed(f"ended with exit code {code} instead of a stroke")
@@ -263,7 +265,7 @@ class _Lines:
 
 def _struck(values: Any = (MIN_SPEED, 0.0, 0.0, 0.0, 0.0), place: Any = None, decision: int = PLAY) -> Strokes:
     """One stroke."""
-    places = None if place is None else np.array([place])
+    places: Any = None if place is None else np.array([place])
     return Strokes(np.array([values]), places, decision=np.array([decision]))
 
 

@@ -228,19 +228,20 @@ def test_decisions_do_not_depend_on_batches(monkeypatch):
     """And each training seed draws its own."""
     from snooker_env.benchmark import run
 
-    agent = Agent(label="two", sources=(Softly(), Careless()), training_shots=0)
-    Careless.asked = 9
+    agent = Agent(label="two", sources=(Softly(), Softly()), training_shots=0)
     whole = judge(HARD, agent, episodes=10)
     monkeypatch.setattr(run, "BATCH", 4)
     parts = judge(HARD, agent, episodes=10)
     assert whole["rows"] == parts["rows"] and whole["strokes"] == parts["strokes"]
     strokes = strokes_of(whole)
+    assert faults(whole) == []
     assert len({one.tobytes() for one in strokes}) == 20
 
 
 def test_wrong_agents_are_refused_in_one_line(tmp_path, capsys):
     (tmp_path / "bad.zip").write_text("no zip")
     for agent, line in (
+        ("", "must be one of 'random'"),
         ("nobody", "player = 'nobody': must be one of 'random', 'ghost_ball'"),
         ("a=b,examples.own_player:Softly", "must be one of"),
         (f"{__name__}:Nobody", "must be MODULE:CLASS of a player"),
