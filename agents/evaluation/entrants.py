@@ -127,7 +127,7 @@ def _model(path, trust, options):
     ours = read_model(file, "agent")
     if ours is not None:
         return ours
-    made = saved_player(file, dict(options), trust)
+    made = saved_player(file, dict(options), trust, "agent")
     return Foreign(made.seen, path, _told(made.seen.model.saved, dict(options)))
 
 

@@ -107,7 +107,7 @@ def agents_tables(report):
     for agent in report["agents"]:
         runs, label = agent["runs"], agent["label"]
         if "recipe" not in runs[0]:
-            by_noise = re.match(r"planner(_|$)", runs[0]["from"]) and "@" not in runs[0]["from"]
+            by_noise = re.fullmatch(r"planner(_value|_policy)?(_\d+)?", runs[0]["from"])
             trained.append([label, "pre-trained, by the noise played" if by_noise else "not trained", "", "", "", ""])
             continue
         words = [", ".join(sorted({str(run[key]) for run in runs})) for key in ("recipe", "noise", "fidelity", "physics")]

@@ -58,7 +58,7 @@ def quality(player, visits, layout, noise):
     recording = Recording(player)
     strokes = play_visits(recording, visits, layout=layout, noise=noise, first_seed=tables_of(layout, visits))
     so_far, value, rule = np.concatenate(recording.rows).T
-    visit = strokes.visit  # in the order of play, as it was asked
+    visit = strokes.visit  # strokes are in the order of play, as the planner was asked
     followed = strokes.a_visit(strokes.points)[visit] - so_far
     figures = {"layout": layout, "noise": noise, "visits": visits, "positions": len(visit), "followed": float(followed.mean())}
     for name, of in (("value", value), ("rule", rule)):

@@ -92,16 +92,16 @@ class SavedNetwork:
         return np.clip(answer, -1.0, 1.0) if space.shape else answer
 
 
-def saved_player(path: Path, options: dict[str, Any], trust: bool) -> SeenPlayer:
+def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = "player") -> SeenPlayer:
     """The player of a model's ``.zip``; ValueError if it is none, or for the files of ``train.py`` without their reader."""
     try:
         ours = path.is_dir() or by_train(entries(path))
     except Exception as error:
-        raise refuse("player", str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
+        raise refuse(field, str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
     if ours:
         raise refuse(
-            "player",
+            field,
             str(path),
             "must be read in a clone of the repository, without options: it is a model or a run of train.py",
         )
-    return SeenPlayer(SavedNetwork(FittingModel.of(path, options), trust), name=str(path))
+    return SeenPlayer(SavedNetwork(FittingModel.of(path, options, field), trust), name=str(path))

@@ -26,13 +26,13 @@ def test_every_position_is_compared_with_what_followed(monkeypatch):
     ((strokes, rows),) = seen
     assert found["positions"] == len(strokes.points) == len(rows)
     followed = []
-    for visit, so_far in rows[:, :2]:
+    for visit, so_far in zip(strokes.visit, rows[:, 0], strict=True):
         own = strokes.points[strokes.visit == visit]
         assert so_far in np.concatenate([[0], np.cumsum(own)])
         followed.append(own.sum() - so_far)
     assert found["followed"] == pytest.approx(np.mean(followed))
-    assert found["rule"]["correlation"] == pytest.approx(np.corrcoef(rows[:, 3], followed)[0, 1])
-    assert np.array_equal(rows[:, 2], rows[:, 3])  # its value is the rule of thumb
+    assert found["rule"]["correlation"] == pytest.approx(np.corrcoef(rows[:, 2], followed)[0, 1])
+    assert np.array_equal(rows[:, 1], rows[:, 2])  # its value is the rule of thumb
     assert np.mean([g["followed"] for g in found["groups"]]) == pytest.approx(np.mean(followed), rel=0.1)
     assert (np.diff([g["value"] for g in found["groups"]]) >= 0).all() and len(found["groups"]) == 10
 

@@ -58,8 +58,8 @@ def test_each_epoch_uses_every_shot_once_in_minibatches(monkeypatch):
     model, met = with_rollout(made(batch_size=10)), []
     advantages = model.rollout_buffer.advantages.reshape(-1).copy()
 
-    def watch(rows, seen, masks, actions, before, scaled, returns, *rest):
-        met.append((rows, scaled[rows]))
+    def watch(rows, rollout, *rest):
+        met.append((rows, rollout.advantages[rows]))
         return np.zeros(5)
 
     monkeypatch.setattr(model.policy.fused, "ppo_gradient", watch)
