@@ -14,7 +14,6 @@ from snooker_env.game import BallOn
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning import RULE_OF_THUMB, Planner, action_masks, prospects_of, spread_of
 from snooker_env.planning.learned.pot_view import SHOWN, with_pots
-from snooker_env.planning.planner import options_in
 from snooker_env.planning.sobol import EVEN_SAMPLES
 from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
 
@@ -47,7 +46,7 @@ class ForesightView:
     def at(self, options):
         """The view under the rules and the noise of ``options``."""
         bound = ForesightView(self._threads)
-        choices = options_in(options).but(action="discrete", elevation=False, placement=False, decision=False)
+        choices = options.but(action="discrete", elevation=False, placement=False, decision=False)
         bound._planner = planner = Planner(choices, threads=self._threads)
         bound._samples = np.array(EVEN_SAMPLES[:1] if planner.noise.silent else EVEN_SAMPLES, np.uint64)
         bound._spread = spread_of(planner.noise, planner.physics)

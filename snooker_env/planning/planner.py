@@ -205,7 +205,7 @@ class Planner:
         >>> planner.play(position, [0, 0], strokes=[stroke] * 2, errors=[[0, 0, 0, 0, 0], [0, 0, 0, 2.0, 0]]).points.tolist()
         [7.0, 0.0]
         """
-        after, out = self.played(positions, rows, actions, keys, strokes=strokes, errors=errors)
+        after, out = self._played(positions, rows, actions, keys, strokes=strokes, errors=errors)
         return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
 
     def stops(
@@ -250,11 +250,11 @@ class Planner:
         (21, 3)
         """
         visits = copy.copy(self._watched)
-        after, out = self.played(positions, rows, actions, keys, strokes=strokes, errors=errors, visits=visits)
+        after, out = self._played(positions, rows, actions, keys, strokes=strokes, errors=errors, visits=visits)
         first, penalty = out.counts[:, I_FIRST].copy(), out.counts[:, I_PENALTY].copy()
         return Stops(visits.places, visits.potted, first, out.reals[:, 0].copy(), penalty, ~after.over, after)
 
-    def played(
+    def _played(
         self,
         positions: Any,
         rows: Any,

@@ -318,7 +318,7 @@ class StrokeSearch:
         n, m, s = strokes.shape[:3]
         every = np.broadcast_to(errors[:, None], (n, m, s, DIMENSIONS)).reshape(-1, DIMENSIONS)
         rows = np.repeat(np.arange(n), m * s)
-        after, out = self.planner.played(at, rows, strokes=strokes.reshape(-1, COLUMNS), errors=every)
+        after, out = self.planner._played(at, rows, strokes=strokes.reshape(-1, COLUMNS), errors=every)
         gains, penalty, careful = out.reals[:, I_POINTS].copy(), out.counts[:, I_PENALTY], safe[rows]
         if self.pots_only:
             return ((gains > 0).astype(np.float64) - (careful & (penalty > 0))).reshape(n, m, s)

@@ -17,7 +17,19 @@ MOST = 100
 
 
 class ChoicePlayer(BoundPlayer):
-    """Base class of players that score the choices of ``action="discrete"``. Subclasses implement ``scores``."""
+    """Base class of players that score the choices of ``action="discrete"``. Subclasses implement ``scores``.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> from snooker_env.players import ChoicePlayer
+    >>> class First(ChoicePlayer):
+    ...     def scores(self, at, seeds):
+    ...         return np.where(sn.planning.action_masks(at), -np.arange(540.0), -np.inf)
+    >>> First().at({}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0]).speed.tolist()
+    [0.9]
+    """
 
     _planner: Any = None
 
@@ -26,20 +38,70 @@ class ChoicePlayer(BoundPlayer):
         self._planner = Planner(Options(action="discrete", **same), threads=1)
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
-        """Scores of all choices in n positions of visits: (n, CHOICES), -inf for those that are not available."""
+        """Score all choices in n positions.
+
+        Parameters
+        ----------
+        at : Positions
+            The n positions, of visits.
+        seeds : numpy.ndarray
+            int64 (n,).
+
+        Returns
+        -------
+        numpy.ndarray
+            float (n, 540); -inf for choices that are not available.
+        """
         raise NotImplementedError
 
     def figures(self, scores: Floats) -> Floats | None:
-        """What a ranking shows of the sorted scores (m,) of one position; None for nothing."""
+        """Return what a ranking shows of the scores of one position.
+
+        Parameters
+        ----------
+        scores : numpy.ndarray
+            float (m,), highest first.
+
+        Returns
+        -------
+        numpy.ndarray or None
+            float64 (m,); None for nothing.
+        """
         return scores.astype(np.float64)
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """See ``Player.play``."""
+        """Return what the player does, see ``Player.play``.
+
+        Parameters
+        ----------
+        positions : PositionsLike
+            The n positions.
+        seeds : array_like
+            int (n,).
+
+        Returns
+        -------
+        Strokes
+            n strokes.
+        """
         visits, places, scores = self._scored(positions, seeds)
         return Strokes(self._planner.strokes_of(visits, np.arange(len(visits)), scores.argmax(axis=1))[0], places)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """The choices of each position, highest score first, at most ``MOST``."""
+        """Rank the choices of each position.
+
+        Parameters
+        ----------
+        positions : PositionsLike
+            The n positions.
+        seeds : array_like
+            int (n,).
+
+        Returns
+        -------
+        list of Ranked
+            One for each position: at most 100 strokes, highest score first.
+        """
         visits, places, scores = self._scored(positions, seeds)
         ranked = []
         for k, row in enumerate(scores):

@@ -104,7 +104,18 @@ class Strokes:
 
     @classmethod
     def join(cls, parts: "Sequence[Strokes]") -> "Strokes":
-        """All strokes of several ``Strokes``, in their order."""
+        """Join several ``Strokes``.
+
+        Parameters
+        ----------
+        parts : sequence of Strokes
+            The parts.
+
+        Returns
+        -------
+        Strokes
+            All strokes, in their order.
+        """
         names = ("values", "place", "nominate", "decision", "declare")
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
@@ -224,6 +235,13 @@ class Ranked(NamedTuple):
         m strokes.
     scores : numpy.ndarray or None
         float64 (m,). The player's own scores, or None if it has none.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> (one,) = sn.player("search_30").at({}).rank(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [7])
+    >>> len(one.strokes) == len(one.scores)
+    True
     """
 
     strokes: Strokes

@@ -16,7 +16,28 @@ _ODD = np.uint64(0x9E3779B97F4A7C15)
 
 
 def decision_seeds(seed: int, tables: Ints, decision: int | Ints) -> Ints:
-    """A seed in [0, 2**32) for each table and decision: int64 (n,), the same whichever tables are asked beside it."""
+    """Return a seed for each table and decision, the same whichever tables are asked beside it.
+
+    Parameters
+    ----------
+    seed : int
+        Of the player.
+    tables : array_like
+        int (n,). A number for each table, such as the seed that it was dealt from.
+    decision : int or array_like
+        Number of the decision, of all tables or of each.
+
+    Returns
+    -------
+    numpy.ndarray
+        int64 (n,), in [0, 2**32).
+
+    Examples
+    --------
+    >>> from snooker_env.players import decision_seeds
+    >>> bool(decision_seeds(0, [5, 6], 3)[1] == decision_seeds(0, [6], 3)[0])
+    True
+    """
     state = np.uint64(seed & 0xFFFFFFFFFFFFFFFF) + np.zeros(len(tables), np.uint64)
     for part in (np.asarray(tables), np.broadcast_to(np.asarray(decision), len(tables))):
         state = _mixed(state + _ODD * (part.astype(np.uint64) + np.uint64(1)))
@@ -31,9 +52,34 @@ def _mixed(x: Any) -> Any:
 
 
 def decided(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats:
-    """The actions of a bound player on the tables ``going`` (n,) of a ``SnookerVectorEnv``; 0 on the others: float64 (n, k).
+    """Ask a bound player on tables.
 
-    ``seeds`` (n,): of the decision on each table.
+    Parameters
+    ----------
+    player : Player
+        The player, bound.
+    tables : SnookerVectorEnv
+        n tables, made with ``VISITS`` or ``FRAMES``.
+    going : numpy.ndarray
+        bool (n,). The tables on which it is asked.
+    seeds : numpy.ndarray
+        int64 (n,). Of the decision on each table.
+
+    Returns
+    -------
+    numpy.ndarray
+        float64 (n, k). Actions; 0 on the other tables.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> from snooker_env.players import VISITS, decided, decision_seeds
+    >>> tables = sn.SnookerVectorEnv(2, **VISITS)
+    >>> _ = tables.reset(seed=0)
+    >>> player = sn.player("ghost_ball").at(tables)
+    >>> decided(player, tables, np.array([True, False]), decision_seeds(0, np.arange(2), 0)).shape
+    (2, 7)
     """
     rows = np.flatnonzero(going)
     actions = np.zeros((len(going), tables.options.rules.actions.size))

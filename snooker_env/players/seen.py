@@ -42,6 +42,15 @@ class Seen(Protocol):
 
     It may have ``options``, a dict: how its observations look and its actions are read ("action", "aim", "observation",
     "elevation", "placement", "decision", ... of ``Options``), and "task", "visit" (default) or "frame".
+
+    Examples
+    --------
+    >>> from snooker_env.players import Seen
+    >>> class First:
+    ...     def act(self, observations, masks, seeds):
+    ...         return masks.argmax(axis=1)
+    >>> isinstance(First(), Seen)
+    True
     """
 
     def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
@@ -78,6 +87,17 @@ class SeenPlayer(BoundPlayer):
         How it sees and acts, see ``Seen``; default: its own attribute ``options``, or none.
     name : str, optional
         What errors call it.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.players import SeenPlayer
+    >>> class First:
+    ...     options = {"action": "discrete"}
+    ...     def act(self, observations, masks, seeds):
+    ...         return masks.argmax(axis=1)
+    >>> SeenPlayer(First()).at({}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0]).speed.tolist()
+    [0.9]
     """
 
     def __init__(self, seen: Any, options: Mapping[str, Any] | None = None, name: str | None = None):
@@ -106,7 +126,20 @@ class SeenPlayer(BoundPlayer):
         self._rules = Options(**same | self.sees).rules
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """See ``Player.play``."""
+        """Return what the player does, see ``Player.play``.
+
+        Parameters
+        ----------
+        positions : PositionsLike
+            The n positions.
+        seeds : array_like
+            int (n,).
+
+        Returns
+        -------
+        Strokes
+            n strokes.
+        """
         _ = self.options  # it must be bound
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at))

@@ -14,7 +14,14 @@ from .player import RulesLike
 
 
 class BoundPlayer:
-    """What built-in players share: ``at`` returns a copy bound to options, and ``play`` refuses before that."""
+    """Base class of players: ``at`` returns a copy bound to options; subclasses make what they need in ``_bind(options)``.
+
+    Examples
+    --------
+    >>> from snooker_env.players import BoundPlayer
+    >>> BoundPlayer().at({"noise": "club"}).options.noise
+    'club'
+    """
 
     name: str = ""
     training_shots: int | None = None
@@ -22,7 +29,18 @@ class BoundPlayer:
     _options: Options | None = None
 
     def at(self, rules: RulesLike) -> Any:
-        """A copy bound to where it plays, see ``Player.at``."""
+        """Return a copy bound to where it plays, see ``Player.at``.
+
+        Parameters
+        ----------
+        rules : Env, VectorEnv, AECEnv, Options or dict
+            Where it plays.
+
+        Returns
+        -------
+        player
+            A copy of this player, which may be asked.
+        """
         bound = copy.copy(self)
         bound._options = options_in(rules)
         bound._bind(bound._options)

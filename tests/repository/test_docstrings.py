@@ -87,7 +87,7 @@ def class_faults(thing):
     elif dataclasses.is_dataclass(thing) or hasattr(thing, "_fields"):
         fields = [f.name for f in dataclasses.fields(thing)] if dataclasses.is_dataclass(thing) else thing._fields
         wanted = [*parameters(thing), *(name for name in fields if not name.startswith("_"))]
-    elif "__init__" in vars(thing) and not issubclass(thing, BaseException):
+    elif "__init__" in vars(thing) and not issubclass(thing, BaseException) and not getattr(thing, "_is_protocol", False):
         wanted = parameters(thing.__init__)
     if missing := set(wanted) - set(described):
         yield f"does not describe {sorted(missing)}"

@@ -64,10 +64,10 @@ def tried(aimer, places, shot, ball_on=BallOn.RED):
     return aimer.widest(batch(places, ball_on=ball_on), shot[None])
 
 
-def simulated(places, action, turn=0.0):
-    """The ``Shot`` of an action, turned by an angle, by the simulation alone."""
+def simulated(places, stroke, turn=0.0):
+    """The ``Shot`` of a stroke, turned by an angle, by the simulation alone."""
     positions, on_table = table(places)
-    speed, aim = 0.2 + 3.4 * (float(action[0]) + 1.0), pi * float(action[3]) + turn
+    speed, aim = float(stroke[0]), float(stroke[3]) + turn
     v, w = sn.strike(speed, aim)
     velocities, spins = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
     velocities[CUE], spins[CUE] = v[:2], w
@@ -93,11 +93,11 @@ def test_a_bank_is_the_mirror_image_and_goes_in(aimer):
     assert before[1] / before[0] == pytest.approx(-after[1] / after[0], rel=1e-12)
     ghost = shot[[GHOST_X, GHOST_Y]]
     assert ghost == pytest.approx(red - 2 * R * before / np.hypot(*before), abs=1e-12)
-    action, half, _, _ = tried(aimer, BANKED, shot)
-    played = simulated(BANKED, action)
+    stroke, half, _, _ = tried(aimer, BANKED, shot)
+    played = simulated(BANKED, stroke)
     assert played.potted[1] == TOP_RIGHT and played.potted[CUE] < 0
     assert met(played, EventKind.CUSHION, 1) == 1 and met(played, EventKind.BALL_BALL, CUE, 1) == 1
-    good = [simulated(BANKED, action, turn * half).potted[1] == TOP_RIGHT for turn in (-2.0, -0.8, 0.8, 2.0)]
+    good = [simulated(BANKED, stroke, turn * half).potted[1] == TOP_RIGHT for turn in (-2.0, -0.8, 0.8, 2.0)]
     assert good == [False, True, True, False]  # the width is the true one, and the aim its middle
 
 
@@ -180,11 +180,11 @@ def test_a_plant_drives_the_second_red_in(aimer):
     meets = second - 2 * R * d
     assert shot[[AIM_X, AIM_Y]] == pytest.approx(meets, abs=1e-12)
     assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(first - 2 * R * (meets - first) / np.hypot(*(meets - first)), abs=1e-12)
-    action, half, _, _ = tried(aimer, PLANTED, shot)
-    played = simulated(PLANTED, action)
+    stroke, half, _, _ = tried(aimer, PLANTED, shot)
+    played = simulated(PLANTED, stroke)
     assert played.potted[2] == TOP_RIGHT and played.potted[CUE] < 0
     assert met(played, EventKind.BALL_BALL, CUE, 1) >= 1 and met(played, EventKind.BALL_BALL, CUE, 2) == 0
-    good = [simulated(PLANTED, action, turn * half).potted[2] == TOP_RIGHT for turn in (-2.0, -0.8, 0.8, 2.0)]
+    good = [simulated(PLANTED, stroke, turn * half).potted[2] == TOP_RIGHT for turn in (-2.0, -0.8, 0.8, 2.0)]
     assert good == [False, True, True, False]
 
 
@@ -196,8 +196,8 @@ def test_a_set_plant_is_aimed_along_the_line_of_the_two_reds(aimer):
     places = {CUE: (0.3, 0.3), 1: tuple(first), 2: tuple(second)}
     shot = one(found(places), KIND=PLANT, BALL=1, OTHER=2, POCKET=TOP_RIGHT)
     assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(first - 2 * R * np.array((cos(angle), sin(angle))), abs=1e-9)
-    action, half, _, _ = tried(aimer, places, shot)
-    assert simulated(places, action).potted[2] == TOP_RIGHT and half > 5e-3
+    stroke, half, _, _ = tried(aimer, places, shot)
+    assert simulated(places, stroke).potted[2] == TOP_RIGHT and half > 5e-3
     first = second - 2 * R * np.array((cos(angle + 0.2), sin(angle + 0.2)))
     shots = found({CUE: (0.3, 0.3), 1: tuple(first), 2: tuple(second)})
     assert not ((shots[:, KIND] == PLANT) & (shots[:, POCKET] == TOP_RIGHT)).any()
@@ -216,8 +216,8 @@ def test_a_cannon_goes_off_the_other_ball(aimer):
     hits = [(shot, tried(aimer, OFF, shot)) for shot in shots if shot[KIND] == CANNON]
     hits = [(shot, hit[0]) for shot, hit in hits if hit is not None]
     assert hits
-    for shot, action in hits:
-        played = simulated(OFF, action)
+    for shot, stroke in hits:
+        played = simulated(OFF, stroke)
         assert played.potted[1] == shot[POCKET] and met(played, EventKind.BALL_BALL, 1, BLUE) >= 1 and played.potted[BLUE] < 0
 
 
@@ -310,7 +310,7 @@ def test_where_the_plain_line_pots_it_is_played():
     """Where the widest pot goes in along its solved line, that stroke is the one; elsewhere others are found."""
     env = SnookerVectorEnv(60, layout="held_out")
     env.reset(seed=3)
-    at, planner = Positions.of(env), Planner({"action": "discrete"})
+    at, planner = Positions.of(env), Planner({"stroke": "discrete"})
     plain = planner.strokes_of(at, np.arange(60), np.full(60, choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))))[0]
     searched = sn.player("geometric").at(env).play(at, np.zeros(60, int)).values
     made = planner.play(at, np.arange(60), strokes=plain).points > 0
@@ -321,8 +321,8 @@ def test_where_the_plain_line_pots_it_is_played():
 def test_the_nearest_ball_on_is_struck_where_nothing_goes_in(aimer):
     tables = no_direct(8, lambda shots: len(shots) == 0)
     at = batch(*tables)
-    for p, on, action in zip(at.positions, at.on_table, aimer.strokes(at), strict=True):
-        off = float(action[3]) - line(p, on, mask_of(range(1, 5)))
+    for p, on, stroke in zip(at.positions, at.on_table, aimer.strokes(at), strict=True):
+        off = float(stroke[3]) - line(p, on, mask_of(range(1, 5)))
         assert abs(sin(off)) < 1e-6 and cos(off) > 0.0
 
 
@@ -345,9 +345,9 @@ def test_the_widest_of_several_is_taken(aimer):
     places = {**PLANTED, **{3: (-0.5, 0.9), GREEN: (-0.3, -1.0), YELLOW: (0.3, -1.0)}}
     shots = found(places, most=3)
     each = [tried(aimer, places, shot) for shot in shots]
-    action, half, which, _ = aimer.widest(batch(places), shots)
+    stroke, half, which, _ = aimer.widest(batch(places), shots)
     widths = [hit[1] if hit else 0.0 for hit in each]
-    assert half == max(widths) and which == int(np.argmax(widths)) and (action == each[which][0]).all()
+    assert half == max(widths) and which == int(np.argmax(widths)) and (stroke == each[which][0]).all()
 
 
 def test_a_visit_is_longer_than_the_plain_players():
