@@ -70,8 +70,9 @@ def tried(practice: Practice, at: Positions, ranked: Rankings) -> list[Tried]:
 
 
 def _joined(positions: list[Positions]) -> Positions:
-    """Several positions as the rows of one."""
-    return Positions(*(np.concatenate([getattr(one, name) for one in positions]) for name in ("positions", "on_table", "game")))
+    """Several positions of visits as the rows of one."""
+    places, present, game = zip(*((one.positions, one.on_table, one.game) for one in positions), strict=True)
+    return Positions(np.concatenate(places), np.concatenate(present), np.concatenate(game))
 
 
 def _trial(practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool) -> tuple[str, int, int, int, str]:

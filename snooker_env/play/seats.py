@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from .._check import choice, refuse, refuse_what
 from ..advice.ask import AGENT
 from ..game.frame_columns import STROKES
-from ..planning import Positions
 from ..players import Player, Strokes, player
 from .session import Session
 
@@ -64,7 +63,7 @@ class Seats:
     def decided(self, name: str, session: Session) -> Strokes:
         """What an agent does in the current frame: a decision after a foul, a declaration, or a stroke. ``session`` is not changed."""
         options = session.options_with(session.noise[session.frame.striker])
-        decided = self.players[name].at(options).play(Positions.of(session), session.tables.game[:, STROKES])
+        decided = self.players[name].at(options).play(session.position, session.tables.game[:, STROKES])
         if not isinstance(decided, Strokes) or len(decided) != 1:
             raise refuse_what("strokes", f"a {type(decided).__name__}", "must be Strokes of one stroke")
         return decided

@@ -12,7 +12,6 @@ from time import monotonic
 from ..advice.strokes import cue_strokes
 from ..game.frame_columns import PLAY_AGAIN, REPLACE
 from ..game.ruling import AUTO
-from ..planning import Positions
 from ..players import Strokes
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
@@ -66,7 +65,7 @@ class Service:
 
     @contextmanager
     def acting(self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False) -> Iterator[Session]:
-        """The game, for changing it; StaleError for an old revision. ``pause``: an agent to play then waits; ``any_turn``: in its turn."""
+        """The game, for changing it. ``pause``: an agent to play then waits; ``any_turn``: not refused in an agent's turn."""
         with self._changed:
             if revision not in (None, self.revision):
                 raise StaleError
@@ -163,7 +162,7 @@ class Service:
         session = self.session
         if session.frame.phase == "choice":
             session.choose("play")
-        (stroke,) = cue_strokes(decided, Positions.of(session))
+        (stroke,) = cue_strokes(decided, session.position)
         if stroke.place is not None:
             session.place(*stroke.place)
         nominated = int(decided.nominate[0])

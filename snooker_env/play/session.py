@@ -6,7 +6,7 @@ a stroke that is undone and played again meets the same execution errors.
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -102,6 +102,11 @@ class Session:
         on = frame.ball_on + 14 if frame.ball_on > BallOn.RED else 0
         return tuple(i for i in ids_of(frame.on_table) if i > 15 and i != on) if frame.free_ball else ()
 
+    @property
+    def position(self) -> Positions:
+        """The frame as its striker sees it."""
+        return Positions.of(cast(Any, self))  # it has tables, as environments have
+
     def planned(self, *, free_ball: bool = False) -> Positions:
         """The position of the next stroke for planning, as one of a visit; with ``free_ball`` every colour is on instead of the ball on."""
         frame, tables = self.frame, self.tables
@@ -161,7 +166,7 @@ class Session:
         striker = self.frame.striker
         tables.rules = self.options_with(self.noise[striker]).rules
         tables.packed = tables.rules.packed()
-        actions = Strokes(stroke.numbers()[None]).actions(self._options, Positions.of(self))
+        actions = Strokes(stroke.numbers()[None]).actions(self._options, self.position)
         tables.nominated[0] = nominated
         self._played = None
         try:

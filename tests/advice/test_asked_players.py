@@ -117,8 +117,8 @@ def test_a_choice_in_a_frame_is_asked_as_the_stroke_to_come():
     session.set_up(Position(cue=(0.0, -0.5), reds=[(0.6, 1.4)], blue=(0.3, -0.5)), scores=(0, 0), striker=0, free_ball=False)
     session.play(sn.advice.CueStroke(speed=0.3, aim=-1.0))
     assert session.frame.phase == "choice"
-    assert stroke_of(OfFrames(), sn.planning.Positions.of(session)).aim == pytest.approx(np.pi / 2)
-    assert len(sn.advise(sn.planning.Positions.of(session), agent="search", **QUICK)) >= 1
+    assert stroke_of(OfFrames(), session.position).aim == pytest.approx(np.pi / 2)
+    assert len(sn.advise(session.position, agent="search", **QUICK)) >= 1
 
 
 @pytest.mark.parametrize("name", ["geometric", "planner", "foresight_rule", "test_asked_players:Soft"])
