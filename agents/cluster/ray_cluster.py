@@ -6,6 +6,7 @@ whose worker or node died.
 
 import os
 import re
+import socket
 import subprocess
 import sys
 from contextlib import contextmanager
@@ -87,9 +88,11 @@ def connected(address, cores=None):
 
 def _is_head(address):
     command = [sys.executable, "-m", "ray.scripts.scripts", "health-check", "--skip-version-check", "--address", address]
+    host, _, port = address.rpartition(":")
     try:
+        socket.create_connection((host, int(port)), ANSWER / 6).close()
         return subprocess.run(command, capture_output=True, timeout=ANSWER, check=False).returncode == 0
-    except subprocess.TimeoutExpired:
+    except (OSError, subprocess.TimeoutExpired):
         return False
 
 
