@@ -3,6 +3,8 @@
 Value and policy of the pre-trained ``ppo_value`` models as plain arrays, see ``snooker_env.players.weights``.
 """
 
+from typing import Any
+
 import numpy as np
 
 from snooker_env.planning.learned.stroke_policy import LAYERS
@@ -37,7 +39,8 @@ def main():
         if model.is_file():
             path = FOLDER / f"{level}.npz"
             with path.open("wb") as file:
-                np.savez(file, **arrays_of(load_trained(model, "agent").policy))
+                arrays: Any = arrays_of(load_trained(model, "agent").policy)
+                np.savez(file, **arrays)
             print(f"{path}  {path.stat().st_size / 1e6:.2f} MB")
 
 

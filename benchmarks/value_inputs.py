@@ -73,8 +73,8 @@ def examples(many, seed):
             tables.append(running)
             goes_on = out.goes_on[::SAMPLES]  # the first sample is played
             now, running = out.afterstates[np.flatnonzero(goes_on) * SAMPLES], running[goes_on]
-    parts = (np.concatenate([getattr(one, name) for one in at]) for name in ("positions", "on_table", "game"))
-    return Positions(*parts), np.concatenate(targets).astype(np.float32), np.concatenate(tables), search.spread
+    positions, on_table, game = (np.concatenate([getattr(one, name) for one in at]) for name in ("positions", "on_table", "game"))
+    return Positions(positions, on_table, game), np.concatenate(targets).astype(np.float32), np.concatenate(tables), search.spread
 
 
 def fitted(network, seen, targets, steps, rng):

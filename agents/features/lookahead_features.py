@@ -7,6 +7,8 @@ only these strokes. A decision costs 120 simulated shots: slower than an agent t
 Several noise samples a stroke are needed: one outcome does not show how execution errors affect the next pot.
 """
 
+from typing import Any
+
 import numpy as np
 from gymnasium import spaces
 
@@ -42,6 +44,9 @@ class ForesightView:
 
     def __init__(self, threads=None):
         self._threads = threads
+        self._planner: Any = None
+        self._samples: Any = None
+        self._spread = 0.0
 
     def at(self, options):
         """The view under the rules and the noise of ``options``."""

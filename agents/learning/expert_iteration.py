@@ -56,7 +56,8 @@ class Starts:
         which = rng.choice(len(STARTS), n, p=[share for _, share in STARTS])
         rows = (rng.random(n) * [len(self._pools[k]) for k in which]).astype(np.int64)
         parts = [self._pools[k][row : row + 1] for k, row in zip(which.tolist(), rows.tolist(), strict=True)]
-        return Positions(*(np.concatenate([getattr(one, name) for one in parts]) for name in ("positions", "on_table", "game")))
+        positions, on_table, game = (np.concatenate([getattr(one, name) for one in parts]) for name in ("positions", "on_table", "game"))
+        return Positions(positions, on_table, game)
 
 
 class ExpertIteration:

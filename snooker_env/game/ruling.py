@@ -11,7 +11,7 @@ flight and the tip's contact.
 
 from collections import namedtuple
 from enum import IntEnum, IntFlag
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .._jit import kernel
 from .balls import BLACK, COLOURS_MASK, CUE_BIT, N_BALLS, PINK, VALUES, balls_on_kernel, count, next_on_kernel
@@ -174,7 +174,7 @@ class Facts(NamedTuple):
     """The balls in pockets, bit 0 the cue ball."""
     off: int
     """The balls off the table, bit 0 the cue ball."""
-    nominated: int
+    nominated: Any
     """The id of the ball nominated, 0 for none, or AUTO."""
 
 

@@ -167,7 +167,8 @@ class Positions:
         taken = object.__new__(Positions)
         for name in ("positions", "on_table", "game"):
             setattr(taken, name, np.ascontiguousarray(getattr(self, name)[rows]))  # the kernels are compiled for contiguous arrays
-        taken.saved = None if self.saved is None else Layouts(*(np.ascontiguousarray(each[rows]) for each in self.saved))
+        saved = self.saved
+        taken.saved = saved and Layouts(np.ascontiguousarray(saved.positions[rows]), np.ascontiguousarray(saved.on_table[rows]))
         return taken
 
     def __repr__(self) -> str:

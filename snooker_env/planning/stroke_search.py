@@ -305,7 +305,7 @@ class StrokeSearch:
         """Strokes of the generators in turn, in each position of those that have any; chances; which generator each is of."""
         made = [Proposals(*generate(self, at, m, seeds)) for generate in generators]
         if len(made) == 1:
-            return *made[0], np.zeros((len(at), m), np.int64)
+            return made[0].strokes, made[0].chances, np.zeros((len(at), m), np.int64)
         has = np.stack([each.chances.any(axis=1) for each in made])
         turn = np.arange(m) % np.maximum(1, has.sum(axis=0))[:, None]
         which = np.minimum((np.cumsum(has, axis=0)[:, :, None] <= turn).sum(axis=0), len(made) - 1)

@@ -134,14 +134,15 @@ def encoded(actions: Actions, strokes: Floats, places: Vectors | None = None, li
     ``places`` (n, 2) [m]: of a cue ball in hand in the D, by default the middle of the baulk line. ``lines`` (n,) [rad]: with
     ``aim="target"``, the direction that each aim is measured from. What else an action says is left at 0: play.
     """
-    out, turned = np.zeros((len(strokes), actions.size)), strokes[:, AIM] if lines is None else strokes[:, AIM] - lines
+    line = np.zeros(len(strokes)) if lines is None else np.asarray(lines, np.float64)
+    out, turned = np.zeros((len(strokes), actions.size)), strokes[:, AIM] - line
     turned = turned - 2.0 * pi * np.round(turned / (2.0 * pi))
     out[:, 0] = 2.0 * (strokes[:, SPEED] - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0
     out[:, 1], out[:, 2] = 2.0 * strokes[:, SIDE], 2.0 * strokes[:, TOP]
     out[:, 3] = turned / (pi if lines is None else TARGET_SPAN)
     if (np.abs(out[:, 3]) > 1.0 + 1e-9).any():
         k = int(np.argmax(np.abs(out[:, 3])))
-        raise refuse(f"strokes[{k}], aim", float(strokes[k, AIM]), f"must be within 3 degrees of the target line, {lines[k]:.6g} rad")
+        raise refuse(f"strokes[{k}], aim", float(strokes[k, AIM]), f"must be within 3 degrees of the target line, {line[k]:.6g} rad")
     if actions.elevation:
         out[:, 4] = 2.0 * strokes[:, ELEVATION] / MAX_ELEVATION - 1.0
     elif strokes[:, ELEVATION].any():

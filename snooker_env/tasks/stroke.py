@@ -246,8 +246,8 @@ class ShotBuffers:
         self.status, self.n_events, self.n_segments = (np.zeros(m, np.int64) for _ in range(3))
         self.duration = np.zeros(m)
         self.struck = self.r, self.v, self.w, self.here, self.shots
-        log = self.event_time, self.event_what, self.n_events
-        self.played = self.r, self.shots, self.seen, self.potted, self.status, self.duration, *log
+        events = self.event_time, self.event_what, self.n_events
+        self.played = self.r, self.shots, self.seen, self.potted, self.status, self.duration, *events
         self.enlarged = {}
 
     def __len__(self) -> int:

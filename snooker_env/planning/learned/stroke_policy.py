@@ -9,7 +9,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ..._types import Floats, Ints
+from ..._types import Bools, Ints, Singles
 from ...game.balls import N_BALLS
 from ...tasks.discrete_actions import POTS, STROKES
 from ...tasks.discrete_actions import SIZE as CHOICES
@@ -46,7 +46,7 @@ class StrokePolicy:
             self._score(rows, seen, masks, scores[rows[0] : rows[-1] + 1])
         return scores
 
-    def _score(self, rows: Ints, seen: Floats, masks: NDArray[np.bool_], out: Floats) -> None:
+    def _score(self, rows: Ints, seen: Singles, masks: Bools, out: Singles) -> None:
         """The scores of one block of tables."""
         n, width = len(rows), len(self._layers["ball_2"][1])
         state_at = 3 * width + len(self._layers["pot_2"][1])
@@ -64,13 +64,13 @@ class StrokePolicy:
         table_kernels.mask_scores(rows, masks, sides, self._linear("scores", joint), out)
         table_kernels.as_seen(out, sides)
 
-    def _codes(self, name: str, rows: Floats) -> Floats:
+    def _codes(self, name: str, rows: Singles) -> Singles:
         """The results of two layers with a ReLU between them."""
         between = self._linear(f"{name}_1", rows)
         relu(between)
         return self._linear(f"{name}_2", between)
 
-    def _linear(self, name: str, rows: Floats) -> Floats:
+    def _linear(self, name: str, rows: Singles) -> Singles:
         weight, bias = self._layers[name]
         out = np.empty((len(rows), len(bias)), np.float32)
         linear(rows, weight, bias, out)
