@@ -3,6 +3,7 @@
 The public names are those in ``__all__`` of this package and of these modules. Everything else may change in any version:
 
 * ``snooker_env.planning``: strokes played on copies of positions, and the geometry that finds them
+* ``snooker_env.players``: functions of positions and a seed; the only place where a name becomes one
 * ``snooker_env.advice``: the strokes that a player would play in a position, and their outcomes
 * ``snooker_env.geometry``: where everything on a table is, and how large
 * ``snooker_env.game``: balls, values, balls on, layouts and the tables that they deal

@@ -36,6 +36,7 @@ def warmup() -> None:
     from .envs.snooker import SnookerEnv
     from .game.apply_ruling import settle_table
     from .game.balls import REDS_MASK
+    from .game.frame import Frame
     from .game.in_hand import place_cue
     from .game.paths import paths
     from .game.pots import pots
@@ -44,6 +45,7 @@ def warmup() -> None:
     from .game.spotting import spot_colours
     from .planning import Planner, Position, Positions, StrokeSearch, at_balls, clear_paths, obstructions, over_cushions, prospects_of
     from .planning import pots as direct_pots
+    from .players import player
     from .tasks.box_actions import Actions, line
 
     with warming_up([kernel for kernel in ENTRIES if kernel.__module__.startswith(f"{__package__}.")]):
@@ -66,6 +68,9 @@ def warmup() -> None:
         env = SnookerEnv(task="frame", game="shoot_out")
         env.reset(seed=0)
         env.step([0.0] * 4)
+        frame = Frame.start()
+        frame.play(Stroke())
+        frame.concede(0)
         opponents: list[tuple[Any, Any]] = [(lambda observation, rng: [0.0] * 4, [0.0] * 4), (_Still(), [0.0] * 4)]
         for opponent, action in (*opponents, ("random", 0), ("random", [0.0] * 4)):
             env = SnookerEnv(task="frame", opponent=opponent, action="discrete" if action == 0 else "box")
@@ -93,6 +98,8 @@ def warmup() -> None:
         planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
         obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
         prospects_of(at, 1e-3)
+        for name in ("planner_30", "planner_policy"):
+            player(name).at({"noise": "club"}).play(at, [0])
         search = StrokeSearch({"noise": "club"}, budget=30)
         search.rank(at, seeds=[0])
         search.planner.play(at, [0], strokes=[[1.0, 0.0, 0.0, 0.0, 0.0]], keys=[0])

@@ -12,6 +12,7 @@ from snooker_env.checks import integer, number, refuse
 from snooker_env.players import SeenPlayer
 from snooker_env.players.resolver import is_name
 from snooker_env.players.saved import saved_player
+from snooker_env.tasks.saved_models import SavedModel
 
 from ..learning.hyperparameters import ACTION_OPTIONS, value_of
 from ..learning.model_files import Trained
@@ -127,8 +128,8 @@ def _model(path, trust, options):
     ours = read_model(file, "agent")
     if ours is not None:
         return ours
-    made = saved_player(file, dict(options), trust, "agent")
-    return Foreign(made.seen, path, _told(made.seen.model.saved, dict(options)))
+    told = _told(SavedModel.of(file, "agent"), dict(options))  # before anything in it runs
+    return Foreign(saved_player(file, dict(options), trust, "agent").seen, path, told)
 
 
 def _told(saved, options):

@@ -79,6 +79,7 @@ class Encounter:
         self.sums = {name: np.zeros((n, 2), int) for name in COUNTED}
         self.visit, self.fresh = np.zeros(n, int), np.ones(n, bool)  # the agent's visit, and whether its next stroke begins another
         self.played = np.zeros(n, int)  # strokes of both
+        self.decision = np.zeros(n, int)  # the agent's, in this match
         for k in range(n):
             self.unit[k] = self.queue.pop(0)
 
@@ -151,13 +152,13 @@ class Encounter:
             self.won[k] += 0.5 if winner < 0 else [winner == 0, winner == 1]
             self.frame[k] += 1
             if self.frame[k] == self.best_of or self.won[k].max() > 0.5 * self.best_of:
-                self.frame[k], self.won[k] = 0, 0.0
+                self.frame[k], self.won[k], self.decision[k] = 0, 0.0, 0
                 self.unit[k] = self.queue.pop(0) if self.queue else -1
 
     def keep(self, which):
         """Go on with the tables ``which`` (n,) bool only."""
         self.sums = {name: values[which] for name, values in self.sums.items()}
-        for name in ("unit", "frame", "won", "visit", "fresh", "played"):
+        for name in ("unit", "frame", "won", "visit", "fresh", "played", "decision"):
             setattr(self, name, getattr(self, name)[which])
 
 
@@ -184,7 +185,7 @@ def _after(tick, before):
 def _play(meeting, agent, opponent, game, threads, tick):
     """Play all matches of an encounter."""
     options = Options(task="frame", **FRAMES, **game)
-    agent, decision = agent.at(options), 0
+    agent = agent.at(options)
     matches, ended = len(meeting.queue) + meeting.n, 0
     tables = _tables(meeting.n, options, opponent, threads)
     _, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
@@ -193,8 +194,8 @@ def _play(meeting, agent, opponent, game, threads, tick):
     over = info["winner"] >= 0  # won by the opponent in his first visit: the next step plays nothing
     while (going := meeting.going).any():
         to_play = going & ~over
-        actions = decided(agent, tables, to_play, decision_seeds(0, meeting.unit[:, 0], decision))
-        decision += 1
+        actions = decided(agent, tables, to_play, decision_seeds(0, meeting.unit[:, 0], meeting.decision))
+        meeting.decision += 1
         _, _, terminated, truncated, info = tables.step(actions.astype(np.float32))
         meeting.stepped(going, info)
         done = terminated | truncated

@@ -149,6 +149,8 @@ class Agent:
         if self.program and isinstance(source, str):
             return ProgramPlayer(source.removeprefix(PROGRAM), timeout=self.timeout)
         made = saved_player(Path(source), self.options, self.trust) if self.options else player_named(source, trust=self.trust)
+        if getattr(made, "frames", False) and not task.frame:
+            raise refuse("player", source, "must see visits to play them: it sees frames")
         made.at(task.judged())
         return made
 

@@ -202,7 +202,7 @@ class Planner:
         >>> planner.play(position, [0, 0, 0], [67, 67, 67], keys=[1, 2, 3]).points.shape
         (3,)
         >>> stroke = [2.0, 0.0, 0.0, 0.785, 0.0]  # 2 m/s, in the middle of the ball
-        >>> planner.play(position, [0, 0], strokes=[stroke] * 2, errors=[[0, 0, 0, 0, 0], [0, 0, 0, 2.0, 0]]).points.tolist()
+        >>> planner.play(position, [0, 0], strokes=[stroke] * 2, errors=[[0, 0, 0, 0, 0], [0, 0, 0, 9.0, 0]]).points.tolist()
         [7.0, 0.0]
         """
         after, out = self._played(positions, rows, actions, keys, strokes=strokes, errors=errors)

@@ -6,7 +6,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import choice, refuse, refuse_what
+from .._check import choice, refuse_what
 from .._types import Bools, Ints, Observation
 from ..game.balls import mask_of_present
 from ..game.frame_columns import (
@@ -110,14 +110,9 @@ class SeenPlayer(BoundPlayer):
             given.pop("decision", None)  # there is none in a visit
         self.sees = given
         self._rules: Any = None
-        self._bound_sees(Options())
+        self._bind(Options())
 
     def _bind(self, options: Options) -> None:
-        if self.frames and options.task == "visit":
-            raise refuse("player", self.name, "must see visits to play them: it sees frames")
-        self._bound_sees(options)
-
-    def _bound_sees(self, options: Options) -> None:
         """Read its options with the physics of ``options``; ValueError if they are not those of an environment."""
         same: dict[str, Any] = {name: getattr(options, name) for name in Options.group("shot")}
         if self.frames:

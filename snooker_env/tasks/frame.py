@@ -84,7 +84,7 @@ class Frames(Tables):
         super().__init__(rules, n, limit=limit)
         self.seats = (Seat.of(rules),) if seats is None else tuple(seats)
         self.packs = tuple(seat.packed(rules) for seat in self.seats)
-        self.packed = self.packs[AGENT]
+        self.packed: tuple[Floats, Floats, Floats] = self.packs[AGENT]
         self._lot = self.packed[0].copy()  # the winner of the lot is asked if either player can say who begins
         self._lot[A_LOT] = any(pack[0][A_LOT] for pack in self.packs)
         self._saved_positions, self._saved_on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)

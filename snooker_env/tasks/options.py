@@ -275,7 +275,7 @@ class Options:
         limit = NEVER
         self._check_task()
         frames = self.frames if self.task == "match" else 0
-        if frames and integer("frames", frames, 1, 999) % 2 == 0:
+        if self.task == "match" and integer("frames", frames, 1, 999) % 2 == 0:
             raise refuse("frames", frames, "must be odd, so that one player wins")
         if frame:
             choice("miss", self.miss, MISS_RULES)
@@ -380,10 +380,20 @@ class Options:
         return replace(self, **flags | changes)
 
 
+
+def _saying(name: str) -> Any:
+    """Whether options say this."""
+
+    def said(self: Options) -> bool:
+        return name in self.says
+
+    return said
+
+
 _FIELDS = tuple(f for f in fields(Options) if f.init)
 NAMES = (*(f.name for f in _FIELDS), *SAYS)
 for _name in SAYS:
-    setattr(Options, _name, property(lambda self, name=_name: name in self.says, doc=f'Whether ``says`` has "{_name}", a bool.'))
+    setattr(Options, _name, property(_saying(_name), doc=f'Whether ``says`` has "{_name}", a bool.'))
 
 
 def options_table() -> str:

@@ -143,7 +143,7 @@ def test_where_nothing_can_be_potted_a_ball_on_is_hit():
 
 
 def test_where_no_ball_can_be_potted_directly_a_plant_is_found():
-    one = sn.advise(ALL["hidden"], n=1, **QUICK)[0]
+    one = sn.advise(ALL["hidden"], n=1, agent="search_2000", **QUICK)[0]
     assert one.kind == "pot" and " by a plant, " in one.words and one.chance > 0.6
 
 

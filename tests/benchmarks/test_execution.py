@@ -9,6 +9,7 @@ import snooker_env as sn
 from benchmarks.execution import in_play, pot_shots, published
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.geometry import POCKET_AIMS
+from snooker_env.planning import Positions
 from snooker_env.tasks.noise import LEVELS, Noise
 
 PHYSICS, TABLE = sn.Physics(), "match"
@@ -43,9 +44,9 @@ def test_rates_by_geometry_are_those_that_were_published_with_the_aim_errors():
 def test_without_errors_every_pot_goes_in_and_stays_so_just_within_its_window():
     for shot in shots_of(pot_shots.POTS):
         edges = np.array([-0.97, -0.5, 0.0, 0.5, 0.97]) * shot.half
-        assert pot_shots.played(shot.pot, shot.stroke, 5, PHYSICS, TABLE, aims=edges)[0].all()
+        assert pot_shots.played(shot.pot, shot.stroke, edges, PHYSICS, TABLE)[0].all()
         beyond = np.array([-1.0, 1.0]) * (shot.half + 2e-5)
-        assert not pot_shots.played(shot.pot, shot.stroke, 2, PHYSICS, TABLE, aims=beyond)[0].any()
+        assert not pot_shots.played(shot.pot, shot.stroke, beyond, PHYSICS, TABLE)[0].any()
         still = pot_shots.rolls(shot, "none", 3, 0, PHYSICS, TABLE)
         assert still.rate == 1.0 and still.placement == (0.0, 0.0, 0.0)
 
@@ -75,7 +76,7 @@ def test_placement_of_speed_errors_alone():
         ends = []
         for share in (0.99, 1.01):
             stroke = shot.stroke * [share, 1.0, 1.0, 1.0]
-            ends.append(pot_shots.played(shot.pot, stroke, 1, PHYSICS, TABLE)[1][0])
+            ends.append(pot_shots.played(shot.pot, stroke, np.zeros(1), PHYSICS, TABLE)[1][0])
         way = (shot.stops - shot.meets) / math.dist(shot.stops, shot.meets)
         shift = 0.5 * (ends[1] - ends[0])  # of one percent
         found = pot_shots.rolls(shot, Noise(speed_rel=0.01), 1500, 3, PHYSICS, TABLE)
@@ -112,6 +113,7 @@ def test_professionals_pot_in_play_about_what_they_do():
 def test_the_likeliest_pot_is_one_that_is_there():
     tables = SnookerVectorEnv(5, layout="random:3", noise="professional", action="discrete")
     tables.reset(seed=4)
-    going, player = np.array([True, False, True, True, True]), in_play.Likeliest()
-    picks = player.act(tables, None, going)
-    assert tables.action_masks()[np.flatnonzero(going), picks[going]].all() and len(player.chances[0]) == 4
+    going, player = np.array([True, False, True, True, True]), in_play.Likeliest().at(tables)
+    strokes = player.play(Positions.of(tables)[going], np.arange(4))
+    (chances,) = player.chances
+    assert len(strokes) == len(chances) == 4 and (chances >= 0.0).all() and chances.max() > 0.3

@@ -76,7 +76,7 @@ def test_what_is_missing_is_installed_as_the_package_was(tmp_path):
 def test_public_names_are_all_in_all():
     assert all(hasattr(sn, name) for name in sn.__all__)  # most are loaded when they are asked for
     public = {n for n, v in vars(sn).items() if not n.startswith("_") and not inspect.ismodule(v)}
-    assert public | {"planning"} == set(sn.__all__)
+    assert public | {"planning", "players"} == set(sn.__all__)
     promised = {"Physics", "collide_balls", "collide_cushion", "strike", "Table", "simulate", "simulate_batch", "EventKind", "warmup"}
     assert promised <= set(sn.__all__)
 
@@ -279,7 +279,7 @@ def test_a_pickled_shot_and_physics_stay_what_they_are():
 
 def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_package(tmp_path):
     """A column number baked into a kernel of agents/ comes from another folder of agents/."""
-    code = "from snooker_env.planning.learned.pot_view import _add_pots as k\nfrom snooker_env import _jit\n"
+    code = "from agents.features.indirect_pots import _first_leg as k\nfrom snooker_env import _jit\n"
     code += "print(_jit.CACHE_FOLDER, k._cache.cache_path)"
     copy_of_package(tmp_path)
     shutil.copytree(ROOT / "agents", tmp_path / "agents", ignore=shutil.ignore_patterns("__pycache__", "*.zip"))

@@ -53,7 +53,7 @@ GOOD = (
     "env.reset(options={'state': env.get_state()})",
     "best: float = env.step(np.zeros(4, np.float32))[1]",
     "is_red: bool = env.ball_on == BallOn.RED and not env.in_hand",
-    "options = sn.Options(task='frame', opponent=lambda seen, rng: rng.uniform(-1, 1, 4), noise={'aim_deg': 0.1}, layout='random:3')",
+    "options = sn.Options(task='frame', opponent='ghost_ball', noise={'aim_deg': 0.1}, layout='random:3')",
     "played = sn.SnookerEnv(options.but(miss='clear_path'))",
     "choosing = sn.SnookerEnv(action='discrete')",
     "masks = choosing.action_masks() if choosing.reset(seed=1) else None",

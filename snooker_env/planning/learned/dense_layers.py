@@ -4,6 +4,9 @@ The matrix products of NumPy and torch wake a thread for each core. For networks
 compute, and the last bits depend on the number of rows and of threads. Here a row's result depends on that row alone.
 """
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from ..._jit import entry
@@ -51,23 +54,23 @@ def relu(rows):
             row[c] = np.float32(0.0) if row[c] < 0 else row[c]
 
 
-ACTIVATIONS = {"tanh": lambda x: np.tanh(x, out=x), "relu": relu}
+ACTIVATIONS: dict[str, Any] = {"tanh": lambda x: np.tanh(x, out=x), "relu": relu}
 """Between two layers, in place; after the last one there is none."""
 
 
 class Layers:
     """A multilayer perceptron of layers (out, in) and (out,), which are copied, with "tanh" or "relu" between two of them."""
 
-    def __init__(self, weights, activation):
+    def __init__(self, weights: Sequence[tuple[Any, Any]], activation: str):
         self._layers = [(np.array(weight.T, np.float32, order="C"), np.array(bias, np.float32)) for weight, bias in weights]
         self._between = ACTIVATIONS[activation]
 
     @property
-    def weights(self):
+    def weights(self) -> list[tuple[Any, Any]]:
         """(out, in) and (out,) of each layer, as they were given: float32."""
         return [(np.ascontiguousarray(weight.T), bias) for weight, bias in self._layers]
 
-    def __call__(self, rows):
+    def __call__(self, rows: Any) -> Any:
         """The last layer's results (n, out) for rows (n, in): float32."""
         for k, (weight, bias) in enumerate(self._layers):
             if k:

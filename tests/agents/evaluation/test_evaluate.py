@@ -92,7 +92,7 @@ def test_figures_do_not_depend_on_the_company(models, tmp_path):
     ("options", "says"),
     [
         (["--agent", "nobody"], "agent = 'nobody': must be random, "),
-        (["--agent", str(Path(__file__))], "agent = .*test_evaluate.py': must be a model's .zip"),
+        (["--agent", str(Path(__file__))], "agent = .*test_evaluate.py': must be a model saved by Stable-Baselines3"),
         (["--agent", "x=nowhere-*"], "agent = 'nowhere-\\*': must be"),
         (["--agent", "random", "random"], "agent = 'random': must be another"),
         (["--agent", "random", "--against", "me"], "against = 'me': must be one of random, ghost_ball"),
@@ -127,8 +127,8 @@ def test_bad_input_ends_with_one_clear_line(options, says, capsys):
 OWN = """
 class Soft:
     options = {"action": "discrete"}
-    def act(self, tables, observations, going):
-        return [30] * len(going)
+    def act(self, observations, masks, seeds):
+        return [30] * len(seeds)
 
 class Mute:
     options, act = {}, None
@@ -152,15 +152,15 @@ def test_a_player_of_ones_own_is_compared(tmp_path, monkeypatch):
     rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in found["results"]}
     assert rows.keys() == {"Soft", "me", "ghost_ball"} and rows["Soft"] == rows["me"] != rows["ghost_ball"]
     for name, why in (
-        ("Mute", "TypeError: act cannot"),
-        ("silent", "TypeError"),
-        ("Nobody", "AttributeError"),
-        ("Worldly", "'noise'"),
-        ("Discreet", "'discreet'"),
+        ("Mute", "player = a Mute: must be a player"),
+        ("silent", "player = 'mine:silent': must be MODULE:CLASS of a player .TypeError"),
+        ("Nobody", "player = 'mine:Nobody': must be MODULE:CLASS of a player .AttributeError"),
+        ("Worldly", "key of the options of player Worldly = 'noise'"),
+        ("Discreet", "action = 'discreet'"),
     ):
-        with pytest.raises(ValueError, match=f"agent = 'mine:{name}': must be MODULE:CLASS of a player .*{why}"):
+        with pytest.raises(ValueError, match=why):
             protocol.Entrant.of(f"mine:{name}").trained()
-    with pytest.raises(ValueError, match=r"agent = 'nothere:Soft': .*ModuleNotFoundError"):
+    with pytest.raises(ValueError, match=r"player = 'nothere:Soft': .*ModuleNotFoundError"):
         protocol.Entrant.of("nothere:Soft").trained()
 
 
@@ -181,9 +181,9 @@ def test_players_and_models_under_one_label_are_refused(which, models):
 @pytest.mark.parametrize(
     ("file", "text", "says"),
     [
-        ("model.zip", "junk", "agent = '.*': must be a model's .zip"),
-        ("model.zip", {"data": "junk"}, "agent = '.*': must be a model that train.py saved"),
-        ("model.zip", {}, "agent = '.*': must be a model that train.py saved"),
+        ("model.zip", "junk", "agent = '.*': must be a model saved by Stable-Baselines3"),
+        ("model.zip", {"data": "junk"}, "agent = '.*': must be a model saved by Stable-Baselines3"),
+        ("model.zip", {}, "agent = '.*': must be a model saved by Stable-Baselines3"),
         ("results.json", '{"seconds": 2.0', "agent = '.*results.json': must be JSON"),
         ("results.json", "[2.0]", "agent = '.*results.json': must hold seconds"),
         ("results.json", '{"seconds": "2 h"}', "results.json: seconds = '2 h': must be a finite number"),

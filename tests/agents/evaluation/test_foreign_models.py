@@ -120,13 +120,13 @@ def test_nothing_of_a_foreign_model_runs_without_consent_or_if_it_does_not_fit(f
     with pytest.raises(SystemExit) as stop:
         protocol.main(["--agent", str(file), *options, *QUICK])
     assert stop.value.code == 2 and not (tmp_path / "mark").exists()
-    assert f"player = {str(file)!r}: {says}" in capsys.readouterr().err.strip().splitlines()[-1]
+    assert f"agent = {str(file)!r}: {says}" in capsys.readouterr().err.strip().splitlines()[-1]
 
 
 @pytest.mark.parametrize("change", [{"gamma": None}, {"gamma": "1"}, {"num_timesteps": -1}, {"seed": [1]}, {"action_space": None}])
 def test_wrong_figures_of_a_foreign_model_are_refused(foreign, tmp_path, change):
     file = bombed(foreign / "ppo.zip", tmp_path / "model.zip", tmp_path / "mark", change=lambda found: found.update(change))
-    with pytest.raises(ValueError, match=r"^player = '.*model.zip': must be a model saved by Stable-Baselines3 \("):
+    with pytest.raises(ValueError, match=r"^agent = '.*model.zip': must be a model saved by Stable-Baselines3 \("):
         Entrant.of(str(file), True, (("aim", "target"),)).trained()
     assert not (tmp_path / "mark").exists()
 

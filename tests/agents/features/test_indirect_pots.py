@@ -310,7 +310,7 @@ def test_where_the_plain_line_pots_it_is_played():
     """Where the widest pot goes in along its solved line, that stroke is the one; elsewhere others are found."""
     env = SnookerVectorEnv(60, layout="held_out")
     env.reset(seed=3)
-    at, planner = Positions.of(env), Planner({"stroke": "discrete"})
+    at, planner = Positions.of(env), Planner({"action": "discrete"})
     plain = planner.strokes_of(at, np.arange(60), np.full(60, choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))))[0]
     searched = sn.player("geometric").at(env).play(at, np.zeros(60, int)).values
     made = planner.play(at, np.arange(60), strokes=plain).points > 0

@@ -65,17 +65,18 @@ def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, capsys)
     """A planner wants a value, a training the whole network: by the file and by its folder."""
     file = tmp_path / POLICY
     write_policy(file, WEIGHTS, **ABOUT)
-    wanted = "must be a model that train.py saved, its .zip or a run's folder: an .npz holds plain weights alone"
+    whole = "must be a model that train.py saved, its .zip or a run's folder: an .npz holds plain weights alone"
+    both = "must name a model with policy and value: none, professional, amateur, club or its file"
     quick = ["--visits", "2", "--layouts", "held_out", "--noise", "none"]
     for path in (file, tmp_path):
-        for name, main, command in (
-            ("agent", protocol.main, [*quick, "--agent", f"planner@{path}"]),
-            ("start", train.main, ["--start", str(path), "--out", str(tmp_path / "run")]),
+        for says, main, command in (
+            (f"player = {f'planner@{path}'!r}: {both}", protocol.main, [*quick, "--agent", f"planner@{path}"]),
+            (f"start = {str(file)!r}: {whole}", train.main, ["--start", str(path), "--out", str(tmp_path / "run")]),
         ):
             with pytest.raises(SystemExit) as stop:
                 main(command)
             line = capsys.readouterr().err.strip().splitlines()[-1]
-            assert stop.value.code == 2 and line.endswith(f"error: {name} = {str(file)!r}: {wanted}"), line
+            assert stop.value.code == 2 and line.endswith(f"error: {says}"), line
 
 
 def test_the_help_of_evaluations_names_it(capsys):
