@@ -18,6 +18,16 @@ class _Still:
         return [[0.0] * 4] * len(seeds)
 
 
+class _Saying:
+    """Sees frames, and says something beside its stroke."""
+
+    options: ClassVar[dict[str, Any]] = {"task": "frame", "decision": True}
+
+    def act(self, observations: Any, masks: Any, seeds: Any) -> list[list[float]]:
+        """The same for each observation."""
+        return [[0.0] * 5] * len(seeds)
+
+
 def warmup() -> None:
     """Compile every kernel of the package, or load it from the cache.
 
@@ -98,6 +108,9 @@ def warmup() -> None:
         planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
         obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
         prospects_of(at, 1e-3)
+        both = Positions.of(match)
+        player("ghost_ball").at({"task": "frame"}).play(both, [0])
+        player(_Saying()).at({"task": "frame"}).play(both, [0])
         for name in ("planner_30", "planner_policy"):
             player(name).at({"noise": "club"}).play(at, [0])
         search = StrokeSearch({"noise": "club"}, budget=30)

@@ -380,7 +380,6 @@ class Options:
         return replace(self, **flags | changes)
 
 
-
 def _saying(name: str) -> Any:
     """Whether options say this."""
 
