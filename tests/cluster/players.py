@@ -5,7 +5,8 @@ import time
 from pathlib import Path
 
 import numpy as np
-from agents.players.stroke_players import StrokePlayer
+
+from snooker_env.players.search import SearchPlayer
 
 
 def note(decision, n):
@@ -32,46 +33,48 @@ class Noted:
     def __init__(self):
         self._decisions = 0
 
-    def act(self, tables, observations, going):
-        note(self._decisions, len(going))
+    def act(self, observations, masks, seeds):
+        note(self._decisions, len(seeds))
         self._decisions += 1
-        return np.full(len(going), 20)
+        return np.full(len(seeds), 20)
 
 
-class Thinking(StrokePlayer):
+class Thinking(SearchPlayer):
     """Searches, slowly, and notes each decision."""
 
     def __init__(self):
-        super().__init__("lookahead", 30)
+        super().__init__("search", 30)
+        self._decisions = 0
 
-    def rank(self, tables, observations, going):
-        note(self._decisions, len(going))
-        return super().rank(tables, observations, going)
+    def play(self, positions, seeds):
+        note(self._decisions, len(seeds))
+        self._decisions += 1
+        return super().play(positions, seeds)
 
 
 class Failing(Noted):
     """Has an error of its own."""
 
-    def act(self, tables, observations, going):
+    def act(self, observations, masks, seeds):
         raise RuntimeError("a fault of mine")
 
 
 class Greedy(Noted):
     """Its memory is at an end."""
 
-    def act(self, tables, observations, going):
+    def act(self, observations, masks, seeds):
         raise MemoryError
 
 
 class Deadly(Noted):
     """Ends its process, as the kernel does with one that takes too much memory."""
 
-    def act(self, tables, observations, going):
+    def act(self, observations, masks, seeds):
         os.kill(os.getpid(), 9)
 
 
 class Full(Noted):
     """Finds the disk full."""
 
-    def act(self, tables, observations, going):
+    def act(self, observations, masks, seeds):
         raise OSError(28, "No space left on device", "/scratch/x")

@@ -279,7 +279,7 @@ def test_a_pickled_shot_and_physics_stay_what_they_are():
 
 def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_package(tmp_path):
     """A column number baked into a kernel of agents/ comes from another folder of agents/."""
-    code = "from agents.features.indirect_pots import _first_leg as k\nfrom snooker_env import _jit\n"
+    code = "from agents.features.indirect_pots import _indirect as k\nfrom snooker_env import _jit\n"
     code += "print(_jit.CACHE_FOLDER, k._cache.cache_path)"
     copy_of_package(tmp_path)
     shutil.copytree(ROOT / "agents", tmp_path / "agents", ignore=shutil.ignore_patterns("__pycache__", "*.zip"))

@@ -16,7 +16,7 @@ import snooker_env as sn
 from snooker_env import checks, game, geometry, planning, render, tasks
 
 ROOT = Path(sn.__file__).resolve().parent.parent
-LEAST = 0.98
+LEAST = 0.965
 
 HEAD = """
 import gymnasium
