@@ -15,24 +15,18 @@ import threading
 import time
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
 from .._check import refuse
 from ..simulation import SimulationError
+from ..web import WEB, table_js
 from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
 
-WEB = Path(__file__).resolve().parent.parent / "web"
-FILES = {
-    "": ("play.html", "text/html"), "play.css": ("play.css", "text/css"),
-    **{
-        name: (name, "text/javascript")
-        for name in ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_first.js", "play_setup.js", "play_parts.js")
-    },
-}  # fmt: skip
-"""Files that are served besides the protocol: path -> file in ``WEB`` and its type. No other file is ever read."""
+SCRIPTS = ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_first.js", "play_setup.js", "play_parts.js")
+FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
+"""What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_HEAD = 16_384
 MOST_BODY = 65_536
 """Largest head and body of a request [bytes]; a saved game has about 3,000."""
@@ -246,8 +240,8 @@ class PlayHandler(BaseHTTPRequestHandler):
         return refused
 
     def _file(self, name):
-        file, kind = FILES[name]
-        self._send(200, (WEB / file).read_bytes(), f"{kind}; charset=utf-8")
+        text = table_js() if name == "table.js" else (WEB / (name or "play.html")).read_text("utf-8")
+        self._send(200, text.encode(), f"{FILES[name]}; charset=utf-8")
 
     def _refuse(self, refused: RefusedError) -> None:
         body = json.dumps({"error": refused.body}, allow_nan=False, default=str).encode()
