@@ -1,4 +1,5 @@
-"""How is an agent trained to play Snooker-v0? Train one, evaluate it on held-out tables beside simple players, and report the result.
+"""How is an agent trained to play Snooker-v0? Train one, evaluate it on held-out tables beside simple
+players, and report the result.
 
     python train.py                                    about 25 minutes on one busy core: a value and a policy by expert iteration, then PPO
     python train.py --steps 1 --imitate 4096           the same, shortened to a few minutes
@@ -7,15 +8,16 @@
 
 Files of a run folder:
 
-* ``checkpoint.pkl``: everything that a resumed run needs. It is a pickle, and loading a pickle runs code: --resume only your own runs.
-* ``model.zip``: the trained model. ``python -m agents.evaluate`` and --start read it as plain data; ``PPO.load`` of Stable-Baselines3
-  unpickles it.
+* ``checkpoint.pkl``: everything that a resumed run needs. It is a pickle, and loading a pickle runs code:
+  --resume only your own runs.
+* ``model.zip``: the trained model. ``python -m agents.evaluate`` and --start read it as plain data;
+  ``PPO.load`` of Stable-Baselines3 unpickles it.
 * ``results.json``: every figure. ``tb/``: the curves (``tensorboard --logdir runs``).
 * ``train.lock``, while the run goes on: two runs cannot share a folder (``commands/lock.py``).
 
-Where to read on: ``agents/features/`` has the observations, ``agents/hyperparams/`` the settings of each agent, ``agents/learning/`` the
-networks, the expert iteration, the imitation and the files of a run, ``agents/evaluation/`` the evaluation. This file has the settings and
-the run.
+Where to read on: ``agents/features/`` has the observations, ``agents/hyperparams/`` the settings of each
+agent, ``agents/learning/`` the networks, the expert iteration, the imitation and the files of a run,
+``agents/evaluation/`` the evaluation. This file has the settings and the run.
 """
 
 import argparse
@@ -55,7 +57,8 @@ with needs("train.py"):
     from snooker_env.planning import processors
     from snooker_env.progress import Progress
 
-# settings ------------------------------------------------------------------------------------------------------------------------
+# settings
+# ------------------------------------------------------------------------------------------------------------------------
 
 
 def option(default, text, **more):
@@ -67,28 +70,46 @@ def option(default, text, **more):
 class Settings:
     """The settings of a run."""
 
-    agent: str = option("ppo_value", "the agent to train: a file of agents/hyperparams", choices=tuple(names()))
+    agent: str = option(
+        "ppo_value", "the agent to train: a file of agents/hyperparams", choices=tuple(names())
+    )
     steps: int = option(0, "total number of shots, rounded up to whole rollouts; 0: the recipe's")
     envs: int = option(0, "number of parallel tables; 0: the recipe's")
     parallel: str = option(
-        "auto", "threads for the tables: auto is one for each processor; results do not depend on it", choices=("auto", "one")
+        "auto",
+        "threads for the tables: auto is one for each processor; results do not depend on it",
+        choices=("auto", "one"),
     )
     seed: int = option(0, "random seed of tables, weights and exploration")
     layout: str = option("", "layout of the training tables [the recipe's]")
-    noise: str = option("", "execution noise: none, professional, amateur, club, robot or olympiad [the recipe's]")
+    noise: str = option(
+        "", "execution noise: none, professional, amateur, club, robot or olympiad [the recipe's]"
+    )
     fidelity: str = option("", "of the simulation: fast, standard, reference or euler:N [the recipe's]")
-    physics: str = option("", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]")
-    imitate: int = option(-1, "positions of pre-training, by expert iteration or imitation; -1: the recipe's number")
-    start: str = option("", "initial weights: a model with the same network, its .zip or run folder (read as plain data)")
+    physics: str = option(
+        "", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]"
+    )
+    imitate: int = option(
+        -1, "positions of pre-training, by expert iteration or imitation; -1: the recipe's number"
+    )
+    start: str = option(
+        "", "initial weights: a model with the same network, its .zip or run folder (read as plain data)"
+    )
     set: tuple = option((), "change hyperparameters, for example gamma=0", nargs="+")
-    eval_visits: int = option(500, f"visits of the final evaluation, each on a held-out table of its own, at most {HELD_OUT}")
+    eval_visits: int = option(
+        500, f"visits of the final evaluation, each on a held-out table of its own, at most {HELD_OUT}"
+    )
     checkpoint_every: int = option(100_000, "shots between two checkpoints")
 
 
 BOUNDS = {
-    "steps": (0, 10**12), "envs": (0, 2**24), "seed": (0, 2**32 - 1), "imitate": (-1, 10**9), "eval_visits": (2, HELD_OUT),
+    "steps": (0, 10**12),
+    "envs": (0, 2**24),
+    "seed": (0, 2**32 - 1),
+    "imitate": (-1, 10**9),
+    "eval_visits": (2, HELD_OUT),
     "checkpoint_every": (1, 10**12),
-}  # fmt: skip
+}
 FREE_ON_RESUME = (
     "steps",
     "parallel",
@@ -99,26 +120,46 @@ FREE_ON_RESUME = (
 
 def parse(argv):
     """(parser, options given on the command line, the rest)."""
-    parser = argparse.ArgumentParser("train.py", "python train.py [options]", (__doc__ or "").partition("\n")[0])
+    parser = argparse.ArgumentParser(
+        "train.py", "python train.py [options]", (__doc__ or "").partition("\n")[0]
+    )
     for f in fields(Settings):
         parser.add_argument(
-            "--" + f.name.replace("_", "-"), type=str if f.name == "set" else type(f.default), choices=f.metadata.get("choices"),
-            default=argparse.SUPPRESS, metavar=None if "choices" in f.metadata else f.name.split("_")[-1].upper(),
-            nargs=f.metadata.get("nargs"), help=f.metadata["help"] + (f" [{f.default}]" if f.default not in ("", (), 0) else ""),
-        )  # fmt: skip
+            "--" + f.name.replace("_", "-"),
+            type=str if f.name == "set" else type(f.default),
+            choices=f.metadata.get("choices"),
+            default=argparse.SUPPRESS,
+            metavar=None if "choices" in f.metadata else f.name.split("_")[-1].upper(),
+            nargs=f.metadata.get("nargs"),
+            help=f.metadata["help"] + (f" [{f.default}]" if f.default not in ("", (), 0) else ""),
+        )
     parser.add_argument("--out", type=Path, help="the run's folder [runs/AGENT-SEED]")
-    parser.add_argument("--resume", action="store_true", help="continue the run in that folder; options left out keep their values")
+    parser.add_argument(
+        "--resume",
+        action="store_true",
+        help="continue the run in that folder; options left out keep their values",
+    )
     add_ray(parser)
-    parser.add_argument("--mirror", metavar="URL", help="copy each checkpoint to this folder or fsspec URL; --resume goes on from there")
-    parser.add_argument("--no-progress", action="store_true", help="do not say every few seconds how far it is")
+    parser.add_argument(
+        "--mirror",
+        metavar="URL",
+        help="copy each checkpoint to this folder or fsspec URL; --resume goes on from there",
+    )
+    parser.add_argument(
+        "--no-progress", action="store_true", help="do not say every few seconds how far it is"
+    )
     given = vars(parser.parse_args(argv))
     rest = {name: given.pop(name) for name in ("out", "resume", "no_progress", "ray", "mirror")}
     for name, (low, high) in BOUNDS.items():
         if not low <= given.get(name, low) <= high:
-            parser.error(f"--{name.replace('_', '-')} is {given[name]}, must be an integer in [{low}, {high}]")
+            parser.error(
+                f"--{name.replace('_', '-')} is {given[name]}, must be an integer in [{low}, {high}]"
+            )
     if "set" in given:
         given["set"] = tuple(given["set"])
-    rest["out"] = rest["out"] or Path("runs", f"{given.get('agent', Settings.agent)}-{given.get('seed', Settings.seed)}")
+    rest["out"] = rest["out"] or Path(
+        "runs", f"{given.get('agent', Settings.agent)}-{given.get('seed', Settings.seed)}"
+    )
     return parser, given, argparse.Namespace(**rest)
 
 
@@ -130,19 +171,34 @@ def recipe_of(settings):
     given = {key: value for key, value in numbers.items() if value}
     if settings.start:
         if settings.imitate > 0:
-            raise refuse("imitate", settings.imitate, "must be 0 or left out with --start: the weights given there are already trained")
+            raise refuse(
+                "imitate",
+                settings.imitate,
+                "must be 0 or left out with --start: the weights given there are already trained",
+            )
         given["imitation"] = 0
     elif settings.imitate >= 0:
         given["imitation"] = settings.imitate
-    recipe = Recipe.of(settings.agent, settings.set, {key: value for key, value in chosen.items() if value}, **given)
+    recipe = Recipe.of(
+        settings.agent, settings.set, {key: value for key, value in chosen.items() if value}, **given
+    )
     if recipe.imitation and recipe.algo != "ppo_mask":
-        raise refuse("imitate", recipe.imitation, f"must be 0 for {recipe.name}: only agents with masks can imitate the search")
+        raise refuse(
+            "imitate",
+            recipe.imitation,
+            f"must be 0 for {recipe.name}: only agents with masks can imitate the search",
+        )
     if recipe.expert and not recipe.imitation and not settings.start:
-        raise refuse("imitate", 0, f"must be 1 or more for {recipe.name} without --start: PPO needs the value that is learned there")
+        raise refuse(
+            "imitate",
+            0,
+            f"must be 1 or more for {recipe.name} without --start: PPO needs the value that is learned there",
+        )
     return recipe
 
 
-# the run -------------------------------------------------------------------------------------------------------------------------
+# the run
+# -------------------------------------------------------------------------------------------------------------------------
 
 
 def command_of(settings):
@@ -150,7 +206,9 @@ def command_of(settings):
     words = ["python", "train.py"]
     for f in fields(Settings):
         value = getattr(settings, f.name)
-        if f.name == "agent" or (value != f.default and f.name not in ("parallel", "eval_visits", "checkpoint_every")):
+        if f.name == "agent" or (
+            value != f.default and f.name not in ("parallel", "eval_visits", "checkpoint_every")
+        ):
             words += [f"--{f.name}", *map(str, value if f.name == "set" else [value])]
     return shlex.join(words)
 
@@ -163,12 +221,15 @@ def open_run(parser, given, out, resume):
     for name, value in given.items():
         if value != getattr(was, name) and name not in FREE_ON_RESUME:
             before = f"the run in {out} has {getattr(was, name)!r}"
-            parser.error(f"--{name.replace('_', '-')} is {value!r} but {before}: give the same or leave it out")
+            parser.error(
+                f"--{name.replace('_', '-')} is {value!r} but {before}: give the same or leave it out"
+            )
     return replace(was, **given), state
 
 
 def prepared(parser, given, rest, ending):
-    """(settings, recipe, checkpoint or None, tables, model). Every error of input is found here, before anything is compiled or played.
+    """(settings, recipe, checkpoint or None, tables, model). Every error of input is found here, before
+    anything is compiled or played.
 
     ``ending`` releases the folder and the tables.
     """
@@ -185,9 +246,18 @@ def prepared(parser, given, rest, ending):
             recipe = replace(recipe, env_kwargs=options_of(out, state))
         checked_ray(ray)
         if ray and not recipe.imitation:
-            raise refuse("ray", ray, f"must be left out for {recipe.name}: only expert iteration and imitation are played on a cluster")
+            raise refuse(
+                "ray",
+                ray,
+                f"must be left out for {recipe.name}: only expert iteration and imitation are played on a cluster",
+            )
         settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs, imitate=recipe.imitation)
-        tables = training_tables(recipe.n_envs, threads=1 if settings.parallel == "one" else None, view=recipe.view, **recipe.env_kwargs)
+        tables = training_tables(
+            recipe.n_envs,
+            threads=1 if settings.parallel == "one" else None,
+            view=recipe.view,
+            **recipe.env_kwargs,
+        )
         ending.callback(tables.close)
         if state:
             model = load_model(out, state, recipe.algo, tables)
@@ -209,7 +279,8 @@ def prepared(parser, given, rest, ending):
 
 
 def speaker(settings, recipe, quiet):
-    """``said(number, what, total, unit, done)``: the ``Progress`` of a part of this run; number 0 is before PPO, 2 the evaluation."""
+    """``said(number, what, total, unit, done)``: the ``Progress`` of a part of this run; number 0 is before
+    PPO, 2 the evaluation."""
     before = int(recipe.imitation > 0)
 
     def said(number, what, total, unit, done=0):
@@ -220,11 +291,15 @@ def speaker(settings, recipe, quiet):
 
 
 def train(out, settings, recipe, state, tables, model, said, ray=None):
-    """Imitate, then train, to the end or to a signal. Simulations of the imitation are played by the cluster at ``ray``, if it is given.
+    """Imitate, then train, to the end or to a signal. Simulations of the imitation are played by the cluster
+    at ``ray``, if it is given.
 
     Returns (``RunCallback``, or None if stopped before it; the curve of the imitation; the signal or None).
     """
-    threads, imitation = 1 if settings.parallel == "one" else processors(), state["imitation"] if state else []
+    threads, imitation = (
+        1 if settings.parallel == "one" else processors(),
+        state["imitation"] if state else [],
+    )
     begun = state["imitating"] if state else None
     model.tensorboard_log = str(out / "tb")
     with Stop() as stop:
@@ -234,7 +309,9 @@ def train(out, settings, recipe, state, tables, model, said, ray=None):
                 imitated = teacher(model, tables, recipe.imitation, settings.seed, threads, begun, where)
                 of_all = f"{imitated.done:,} of {imitated.states:,} positions"
                 print(f"{settings.agent} in {out}: {recipe.pretraining}{where.says}, {of_all}", flush=True)
-                with said(0, f"{recipe.pretraining}{where.says}", imitated.states, "positions", imitated.done) as progress:
+                with said(
+                    0, f"{recipe.pretraining}{where.says}", imitated.states, "positions", imitated.done
+                ) as progress:
                     completed = imitate(imitated, out, settings, model, stop, progress)
             if not completed:
                 print(f"Saved at {imitated.done:,} of {imitated.states:,} positions. {go_on(out)}")
@@ -250,26 +327,51 @@ def train(out, settings, recipe, state, tables, model, said, ray=None):
         goal, asked = goal_of(model, settings.steps), settings.steps
         progress = said(1, recipe.method, goal, "shots", model.num_timesteps)
         callback = RunCallback(out, settings, seconds, curve, imitation, running, stop, progress)
-        whole = f" ({asked:,} asked for; whole rollouts of {rollout_of(model):,})" if goal > asked > model.num_timesteps else ""
-        print(f"{settings.agent} in {out}: {model.num_timesteps:,} of {goal:,} shots played{whole}", flush=True)
+        whole = (
+            f" ({asked:,} asked for; whole rollouts of {rollout_of(model):,})"
+            if goal > asked > model.num_timesteps
+            else ""
+        )
+        print(
+            f"{settings.agent} in {out}: {model.num_timesteps:,} of {goal:,} shots played{whole}", flush=True
+        )
         if model.num_timesteps >= settings.steps:
             print("All steps are done: nothing left to train.", flush=True)
         else:
             fresh = state is None or begun is not None
             with progress:
-                model.learn(settings.steps - model.num_timesteps, callback, tb_log_name=settings.agent, reset_num_timesteps=fresh)
+                model.learn(
+                    settings.steps - model.num_timesteps,
+                    callback,
+                    tb_log_name=settings.agent,
+                    reset_num_timesteps=fresh,
+                )
         if stop.signal:
-            done = "; training is complete, the evaluation is left" if model.num_timesteps >= settings.steps else ""
+            done = (
+                "; training is complete, the evaluation is left"
+                if model.num_timesteps >= settings.steps
+                else ""
+            )
             print(f"Saved at {callback.saved or model.num_timesteps:,} shots{done}. {go_on(out)}")
         return callback, imitation, stop.signal
 
 
 def trained_parts(recipe, model, seconds, imitation):
     """What was learned from, part by part: how much of what, in how many seconds, and how much a second."""
-    parts = [(recipe.pretraining, "positions", imitation[-1]["states"], imitation[-1]["seconds"])] if imitation else []
+    parts = (
+        [(recipe.pretraining, "positions", imitation[-1]["states"], imitation[-1]["seconds"])]
+        if imitation
+        else []
+    )
     parts.append((recipe.method, "shots", model.num_timesteps, seconds))
     return [
-        {"part": name, "unit": unit, "amount": amount, "seconds": took, "per_second": amount / max(took, 1e-9)}
+        {
+            "part": name,
+            "unit": unit,
+            "amount": amount,
+            "seconds": took,
+            "per_second": amount / max(took, 1e-9),
+        }
         for name, unit, amount, took in parts
     ]
 
@@ -277,18 +379,32 @@ def trained_parts(recipe, model, seconds, imitation):
 def judge(out, settings, recipe, model, callback, imitation, said):
     """Play held-out visits, write the model and every figure, print the conclusion."""
     steps, parts = model.num_timesteps, trained_parts(recipe, model, callback.seconds_before, imitation)
-    lines = [f"{p['part']}: {p['amount']:,} {p['unit']} in {p['seconds']:.0f} s, {p['per_second']:,.0f} a second" for p in parts]
+    lines = [
+        f"{p['part']}: {p['amount']:,} {p['unit']} in {p['seconds']:.0f} s, {p['per_second']:,.0f} a second"
+        for p in parts
+    ]
     print("\n".join(lines) + " (learning included)", flush=True)
     write_atomic(out / "model.zip", made := zipped(model))
     copied(out, made, "model.zip")
-    figures = evaluate(recipe, model, settings.eval_visits, lambda total: said(2, "evaluation", total, "visits"))
+    figures = evaluate(
+        recipe, model, settings.eval_visits, lambda total: said(2, "evaluation", total, "visits")
+    )
     learned = conclusion(settings.agent, steps, model.imitated, figures, model.start)
     results = {
-        "command": command_of(settings), "settings": asdict(settings), "steps": steps,
-        "seconds": sum(part["seconds"] for part in parts), "parts": parts, "start": model.start, "learned": learned,
-        "evaluation": figures, "curve": callback.curve, "imitation": imitation, "versions": software(),
-        "git_commit": commit(), "processors": os.cpu_count(),
-    }  # fmt: skip
+        "command": command_of(settings),
+        "settings": asdict(settings),
+        "steps": steps,
+        "seconds": sum(part["seconds"] for part in parts),
+        "parts": parts,
+        "start": model.start,
+        "learned": learned,
+        "evaluation": figures,
+        "curve": callback.curve,
+        "imitation": imitation,
+        "versions": software(),
+        "git_commit": commit(),
+        "processors": os.cpu_count(),
+    }
     write_atomic(out / "results.json", text := json.dumps(results, indent=1).encode())
     copied(out, text, "results.json")
     show(figures)
@@ -300,8 +416,10 @@ def main(argv=None):
     """Train, evaluate, save. Exit code 0, or 128 + the signal that stopped it."""
     parser, given, rest = parse(argv)
     out = rest.out
-    torch.set_num_threads(1)  # more threads do not speed up a network this small, and the tables use the processors
-    torch.distributions.Distribution.set_default_validate_args(False)  # these checks cost a twentieth of the time
+    # more threads do not speed up a network this small, and the tables use the processors
+    torch.set_num_threads(1)
+    # these checks cost a twentieth of the time
+    torch.distributions.Distribution.set_default_validate_args(False)
     with ExitStack() as ending:
         settings, recipe, state, tables, model = prepared(parser, given, rest, ending)
         try:

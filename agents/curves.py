@@ -1,4 +1,5 @@
-"""How fast do agents learn? The command ``python -m agents.curves``, which is in ``agents/evaluation/learning_curves.py``."""
+"""How fast do agents learn? The command ``python -m agents.curves``, which is in
+``agents/evaluation/learning_curves.py``."""
 
 import sys
 

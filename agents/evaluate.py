@@ -1,4 +1,5 @@
-"""How well do agents play? The command ``python -m agents.evaluate``, which is in ``agents/evaluation/protocol.py``."""
+"""How well do agents play? The command ``python -m agents.evaluate``, which is in
+``agents/evaluation/protocol.py``."""
 
 import sys
 

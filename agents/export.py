@@ -21,7 +21,8 @@ def arrays_of(policy):
     """The arrays of a ``JudgedPolicy`` by name: {name: float32 array}."""
     parameters = [p.detach().numpy() for p in policy.fused.parameters]
     arrays = {}
-    for name, weight, bias in zip(LAYERS, parameters[::2], parameters[1::2], strict=False):  # the critic's own come last
+    # the critic's own come last
+    for name, weight, bias in zip(LAYERS, parameters[::2], parameters[1::2], strict=False):
         arrays |= {f"policy/{name}/weight": weight, f"policy/{name}/bias": bias}
     value = policy.position_value
     for k, (weight, bias) in enumerate(zip(value.weights, value.biases, strict=True)):

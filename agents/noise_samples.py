@@ -1,4 +1,5 @@
-"""Which noise samples does the lookahead use? The command ``python -m agents.noise_samples``, in ``agents/features/noise_samples.py``."""
+"""Which noise samples does the lookahead use? The command ``python -m agents.noise_samples``, in
+``agents/features/noise_samples.py``."""
 
 import sys
 

@@ -1,4 +1,5 @@
-"""How is a trained model published? The command ``python -m agents.publish``, which is in ``agents/evaluation/publish.py``."""
+"""How is a trained model published? The command ``python -m agents.publish``, which is in
+``agents/evaluation/publish.py``."""
 
 import sys
 

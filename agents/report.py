@@ -1,4 +1,5 @@
-"""How are stored figures reported again? The command ``python -m agents.report``, which is in ``agents/evaluation/report.py``."""
+"""How are stored figures reported again? The command ``python -m agents.report``, which is in
+``agents/evaluation/report.py``."""
 
 import sys
 

@@ -1,4 +1,5 @@
-"""How are positions searched to learn from? The command ``python -m agents.search``, which is in ``agents/evaluation/search_data.py``."""
+"""How are positions searched to learn from? The command ``python -m agents.search``, which is in
+``agents/evaluation/search_data.py``."""
 
 import sys
 

@@ -1,4 +1,5 @@
-"""Who is the better player of frames? The command ``python -m agents.tournament``, which is in ``agents/evaluation/tournament.py``."""
+"""Who is the better player of frames? The command ``python -m agents.tournament``, which is in
+``agents/evaluation/tournament.py``."""
 
 import sys
 

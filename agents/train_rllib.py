@@ -1,4 +1,5 @@
-"""How is an agent trained with RLlib? The command ``python -m agents.train_rllib``, which is in ``agents/trainers/rllib_run.py``."""
+"""How is an agent trained with RLlib? The command ``python -m agents.train_rllib``, which is in
+``agents/trainers/rllib_run.py``."""
 
 import sys
 

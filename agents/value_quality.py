@@ -1,4 +1,5 @@
-"""How good is a learned value? The command ``python -m agents.value_quality``, which is in ``agents/evaluation/value_quality.py``."""
+"""How good is a learned value? The command ``python -m agents.value_quality``, which is in
+``agents/evaluation/value_quality.py``."""
 
 import sys
 

@@ -1,4 +1,5 @@
-"""How does an agent play? The command ``python -m agents.watch``, which is in ``agents/evaluation/watch.py``."""
+"""How does an agent play? The command ``python -m agents.watch``, which is in
+``agents/evaluation/watch.py``."""
 
 import sys
 

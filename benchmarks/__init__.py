@@ -1,4 +1,5 @@
-"""Commands that measure snooker_env, a file or a folder each: ``python -m benchmarks.NAME --help``. ``_common`` holds what they share."""
+"""Commands that measure snooker_env, a file or a folder each: ``python -m benchmarks.NAME --help``.
+``_common`` holds what they share."""
 
 import sys
 

@@ -1,11 +1,14 @@
-"""What does a cluster give, and how long must a part last? Shots a second of one and two workers, and the cost of a part, on this machine.
+"""What does a cluster give, and how long must a part last? Shots a second of one and two workers, and the
+cost of a part, on this machine.
 
-    python -m benchmarks.cluster [--shots N] [--parts N] [--positions N] [--repeats 3] [--seed 0] [--json FILE] [--out FOLDER]
+    python -m benchmarks.cluster [--shots N] [--parts N] [--positions N] [--repeats 3] [--seed 0] [--json
+    FILE] [--out FOLDER]
 
-Needs Ray: ``pip install -e ".[cluster]"``. Parts are choices at opened tables under a professional's errors, judged by a constant. The
-same parts are played by this process with one thread, by a cluster of one worker and by one of two. The cost of a part is what a worker
-spends beside playing it: from parts of one shot, sent as fast as the driver can. Figures are medians over the repeats; what 100 and 1,000
-cores would do is computed from them.
+Needs Ray: ``pip install -e ".[cluster]"``. Parts are choices at opened tables under a professional's errors,
+judged by a constant. The same parts are played by this process with one thread, by a cluster of one worker
+and by one of two. The cost of a part is what a worker spends beside playing it: from parts of one shot, sent
+as fast as the driver can. Figures are medians over the repeats; what 100 and 1,000 cores would do is computed
+from them.
 """
 
 import os
@@ -41,9 +44,14 @@ def parts_of(shots, many, seed):
     rows = np.sort(rng.integers(len(at), size=shots))
     picks = np.array([rng.choice(np.flatnonzero(masks[row])) for row in rows])
     given = [
-        {"at": positions_given(at), "rows": rows, "picks": picks, "keys": rng.integers(0, 2**63, shots, dtype=np.uint64)}
+        {
+            "at": positions_given(at),
+            "rows": rows,
+            "picks": picks,
+            "keys": rng.integers(0, 2**63, shots, dtype=np.uint64),
+        }
         for _ in range(many)
-    ]  # fmt: skip
+    ]
     return {"run": f"{shots} {seed}", "options": {"noise": "professional"}, "value": None}, given
 
 
@@ -78,7 +86,8 @@ def measured(args):
             for shared, given in (long, short):
                 seconds(cluster, shared, given[: 2 * workers])  # its workers have started and compiled
             found[f"{workers} joined"] = [joined]
-            for name, given in (("long", long), ("short", short)):  # in turns: a busy machine slows both alike
+            # in turns: a busy machine slows both alike
+            for name, given in (("long", long), ("short", short)):
                 pairs = [(seconds(here, *given), seconds(cluster, *given)) for _ in range(args.repeats)]
                 found[f"{workers}, {name}"] = [two for _, two in pairs]
                 found[f"{workers} times as fast, {name}"] = [one / two for one, two in pairs]
@@ -92,7 +101,12 @@ def main():
     """Measure and print."""
     parser = Command("cluster", __doc__, seed=0)
     parser.add_argument("--shots", type=at_least(1), default=20_000, help="shots of a long part [20,000]")
-    parser.add_argument("--parts", type=at_least(1), default=20, help="long parts; of the short ones, fifty times as many [20]")
+    parser.add_argument(
+        "--parts",
+        type=at_least(1),
+        default=20,
+        help="long parts; of the short ones, fifty times as many [20]",
+    )
     parser.add_argument("--positions", type=at_least(1), default=20, help="positions of the search [20]")
     parser.add_argument("--repeats", type=at_least(1), default=3, help="of each measurement [3]")
     args = parser.options()
@@ -127,7 +141,10 @@ def main():
     for cores in CORES:
         share = 1.0 / (1.0 + cost)
         limited = min(1.0, sent / cores)
-        rate, hours = cores * shots / middle["here, long"] * share * limited, 1e6 * position / 3600 / cores / limited / share
+        rate, hours = (
+            cores * shots / middle["here, long"] * share * limited,
+            1e6 * position / 3600 / cores / limited / share,
+        )
         print(f"  {cores:5,} cores {rate:14,.0f} shots a second; a million positions in {hours:,.2f} hours")
     save_json(args.json, {"seconds": found, "rates": rates, "cost": cost, "sent": sent, "search": position})
     return 0

@@ -1,9 +1,11 @@
 """How long does a player take to decide, on one table and on many at once?
 
-    python -m benchmarks.decisions [--agents planner search ...] [--tables 1 256] [--repeats 9] [--seed 0] [--json FILE] [--out FOLDER]
+    python -m benchmarks.decisions [--agents planner search ...] [--tables 1 256] [--repeats 9] [--seed 0]
+    [--json FILE] [--out FOLDER]
 
-Opened tables, a professional's errors. Milliseconds a decision, on the clock and of all processors together: medians over the repeats,
-each on new tables; on several tables the time of all divided by their number. The first decision is not timed.
+Opened tables, a professional's errors. Milliseconds a decision, on the clock and of all processors together:
+medians over the repeats, each on new tables; on several tables the time of all divided by their number. The
+first decision is not timed.
 """
 
 import time
@@ -17,8 +19,17 @@ from snooker_env.players import VISITS
 from ._common.command import Command, at_least, run, save_json
 
 AGENTS = (
-    "ghost_ball", "ppo_mask", "ppo_value", "search", "planner_30", "planner_60", "planner", "planner_500", "planner_2000", "search_2000",
-)  # fmt: skip
+    "ghost_ball",
+    "ppo_mask",
+    "ppo_value",
+    "search",
+    "planner_30",
+    "planner_60",
+    "planner",
+    "planner_500",
+    "planner_2000",
+    "search_2000",
+)
 
 
 def milliseconds(player, tables, repeats, seed):
@@ -40,12 +51,16 @@ def main():
     """Measure and print."""
     parser = Command("decisions", __doc__, seed=0)
     parser.add_argument("--agents", nargs="+", default=AGENTS, help=f"names of players [{' '.join(AGENTS)}]")
-    parser.add_argument("--tables", nargs="+", type=at_least(1), default=(1, 256), help="numbers of tables at once [1 256]")
+    parser.add_argument(
+        "--tables", nargs="+", type=at_least(1), default=(1, 256), help="numbers of tables at once [1 256]"
+    )
     parser.add_argument("--repeats", type=at_least(1), default=9, help="decisions of each [9]")
     args = parser.options()
     players = {name: sn.player(name) for name in args.agents}
     sn.warmup()
-    print(f"{'ms a decision':20s}" + "".join(f"{f'{n:,} tables':>13s}{'processors':>13s}" for n in args.tables))
+    print(
+        f"{'ms a decision':20s}" + "".join(f"{f'{n:,} tables':>13s}{'processors':>13s}" for n in args.tables)
+    )
     found = {}
     for name, player in players.items():
         found[name] = {n: milliseconds(player, n, args.repeats, args.seed) for n in args.tables}

@@ -1,9 +1,12 @@
-"""Which diagrams are there? One of each kind: a shot, two ways to play it, a fan over top and side, and where the cue ball stops.
+"""Which diagrams are there? One of each kind: a shot, two ways to play it, a fan over top and side, and where
+the cue ball stops.
 
-    python -m benchmarks.diagrams [--noise amateur] [--shots 2000] [--seed 0] [--no-pictures] [--json FILE] [--out FOLDER]
+    python -m benchmarks.diagrams [--noise amateur] [--shots 2000] [--seed 0] [--no-pictures] [--json FILE]
+    [--out FOLDER]
 
-A red is potted into the corner, and the stroke is meant to leave the cue ball for the blue. Every aim is solved, so that side and throw are
-made up for. The density is that of the same stroke, played with the errors of a player; a cue ball that is potted stops nowhere.
+A red is potted into the corner, and the stroke is meant to leave the cue ball for the blue. Every aim is
+solved, so that side and throw are made up for. The density is that of the same stroke, played with the errors
+of a player; a cue ball that is potted stops nowhere.
 """
 
 from typing import Any
@@ -17,11 +20,22 @@ from snooker_env.tasks import LEVELS, Noise
 
 from ._common.command import Command, at_least, run, save_figure, save_json
 
-SHOT, COMPARE, FAN, DENSITY = FILES = ("diagram_shot.png", "diagram_compare.png", "diagram_fan.png", "diagram_density.png")
+SHOT, COMPARE, FAN, DENSITY = FILES = (
+    "diagram_shot.png",
+    "diagram_compare.png",
+    "diagram_fan.png",
+    "diagram_density.png",
+)
 PLACES: Any = dict(
-    cue=(0.30, 0.62), reds=[(0.52, 1.30), (-0.34, 1.12), (-0.20, 1.32), (-0.30, 1.58), (-0.52, 0.74), (-0.12, 0.55)],
-    yellow=(0.292, -1.0475), green=(-0.292, -1.0475), brown=(0.0, -1.0475), blue=(0.0, 0.0), pink=(0.0, 0.89225), black=(0.0, 1.4605),
-)  # fmt: skip
+    cue=(0.30, 0.62),
+    reds=[(0.52, 1.30), (-0.34, 1.12), (-0.20, 1.32), (-0.30, 1.58), (-0.52, 0.74), (-0.12, 0.55)],
+    yellow=(0.292, -1.0475),
+    green=(-0.292, -1.0475),
+    brown=(0.0, -1.0475),
+    blue=(0.0, 0.0),
+    pink=(0.0, 0.89225),
+    black=(0.0, 1.4605),
+)
 """What ``Position`` is made of; made late, since its checks compile."""
 BALL, POCKET, SPEED = 1, 3, 3.0
 PLAYED, OTHER = (0.30, 0.30), (-0.35, 0.0)
@@ -32,11 +46,14 @@ TABLE, PHYSICS = "match", sn.Physics.preset("match")
 def option(top, side):
     """The stroke that pots the ball with this top and side, solved as ``fan`` does."""
     places, there, _ = sn.Position(**PLACES).arrays()
-    return fan_options(places, there, BALL, POCKET, Strokes(SPEED, [top], [side]), sn.Table.preset(TABLE), PHYSICS)[0]
+    return fan_options(
+        places, there, BALL, POCKET, Strokes(SPEED, [top], [side]), sn.Table.preset(TABLE), PHYSICS
+    )[0]
 
 
 def stops(stroke, noise, n, seed):
-    """(n, 2): where the cue ball stops when a player plays the stroke, NaN where it is potted; and how often the ball is potted."""
+    """(n, 2): where the cue ball stops when a player plays the stroke, NaN where it is potted; and how often
+    the ball is potted."""
     rng = np.random.default_rng(seed)
     speed = SPEED + rng.normal(size=n) * np.hypot(noise.speed_abs, noise.speed_rel * SPEED)
     tips = np.array([stroke.side, stroke.top]) + rng.normal(size=(n, 2)) * noise.offset_mm / 1e3 / PHYSICS.R
@@ -46,30 +63,56 @@ def stops(stroke, noise, n, seed):
     for k in range(n):
         struck = sn.strike(max(0.0, speed[k]), aim[k], *tips[k], physics=PHYSICS)
         v[k, 0], w[k, 0] = struck[0][:2], struck[1]
-    batch = sn.simulate_batch(np.tile(places, (n, 1, 1)), v, w, TABLE, PHYSICS, on_table=np.tile(there, (n, 1)))
-    return np.where(batch.on_table[:, :1], batch.positions[:, 0], np.nan), float((batch.potted[:, BALL] >= 0).mean())
+    batch = sn.simulate_batch(
+        np.tile(places, (n, 1, 1)), v, w, TABLE, PHYSICS, on_table=np.tile(there, (n, 1))
+    )
+    return np.where(batch.on_table[:, :1], batch.positions[:, 0], np.nan), float(
+        (batch.potted[:, BALL] >= 0).mean()
+    )
 
 
 def main():
     """Command line."""
     command = Command("diagrams", __doc__, pictures=FILES, seed=0)
-    command.add_argument("--noise", choices=sorted(LEVELS), default="amateur", help="whose errors the density shows [amateur]")
-    command.add_argument("--shots", type=at_least(10), default=2000, metavar="N", help="strokes of the density [2000]")
+    command.add_argument(
+        "--noise", choices=sorted(LEVELS), default="amateur", help="whose errors the density shows [amateur]"
+    )
+    command.add_argument(
+        "--shots", type=at_least(10), default=2000, metavar="N", help="strokes of the density [2000]"
+    )
     options = command.options()
     played, other = option(*PLAYED), option(*OTHER)
     points, potted = stops(played, Noise.of(options.noise), options.shots, options.seed)
     there = points[~np.isnan(points[:, 0])]
     spread = float(np.sqrt(there.var(axis=0).sum()))
-    print(f"{options.shots} strokes of a player ({options.noise}): the red goes in {100 * potted:.1f} % of the time;")
-    print(f"the cue ball stops {1e3 * spread:.0f} mm (rms) about ({there[:, 0].mean():.3f}, {there[:, 1].mean():.3f}) m")
-    figures = {"noise": options.noise, "shots": options.shots, "potted": potted, "spread_m": spread, "mean_m": there.mean(axis=0).tolist()}
+    print(
+        f"{options.shots} strokes of a player ({options.noise}): the red goes in {100 * potted:.1f} % of the time;"
+    )
+    print(
+        f"the cue ball stops {1e3 * spread:.0f} mm (rms) about ({there[:, 0].mean():.3f}, {there[:, 1].mean():.3f}) m"
+    )
+    figures = {
+        "noise": options.noise,
+        "shots": options.shots,
+        "potted": potted,
+        "spread_m": spread,
+        "mean_m": there.mean(axis=0).tolist(),
+    }
     save_json(options.json, figures)
     if options.pictures:
         said = f"Where it stops: {options.shots:,} strokes, {options.noise}"
         drawn = {
             SHOT: played.shot.plot(title="A red, and on to the blue"),
             COMPARE: compare([played.shot, other.shot], ["A: follow with right side", "B: screw"])[0],
-            FAN: fan(sn.Position(**PLACES), BALL, POCKET, speed=SPEED, table=TABLE, physics=PHYSICS, title="One pot, fifteen tips"),
+            FAN: fan(
+                sn.Position(**PLACES),
+                BALL,
+                POCKET,
+                speed=SPEED,
+                table=TABLE,
+                physics=PHYSICS,
+                title="One pot, fifteen tips",
+            ),
             DENSITY: density(points, played.shot.plot(speeds=False, title=said)),
         }
         for name, ax in drawn.items():

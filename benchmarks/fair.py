@@ -1,11 +1,14 @@
-"""Is there a fair stroke where there is no direct pot? All choices of ``action="discrete"``, and ``aim="target"`` at offset 0.
+"""Is there a fair stroke where there is no direct pot? All choices of ``action="discrete"``, and
+``aim="target"`` at offset 0.
 
-    python -m benchmarks.fair [--tables 100] [--kinds break_off snookered ...] [--seed 0] [--json FILE] [--out FOLDER]
+    python -m benchmarks.fair [--tables 100] [--kinds break_off snookered ...] [--seed 0] [--json FILE] [--out
+    FOLDER]
 
-On each table every choice that the masks offer is played without execution errors and judged by the referee of frames; so is the target
-line, struck in the middle at nine speeds. "frames": positions without a direct pot from frames that the built-in opponent plays against
-itself with a professional's errors. Printed: tables with a fair choice, share of the choices that are fair, mean number of lines, and
-tables whose target line is fair at the best speed, at 2.3 and at 3.6 m/s.
+On each table every choice that the masks offer is played without execution errors and judged by the referee
+of frames; so is the target line, struck in the middle at nine speeds. "frames": positions without a direct
+pot from frames that the built-in opponent plays against itself with a professional's errors. Printed: tables
+with a fair choice, share of the choices that are fair, mean number of lines, and tables whose target line is
+fair at the best speed, at 2.3 and at 3.6 m/s.
 """
 
 import numpy as np
@@ -23,9 +26,13 @@ from snooker_env.tasks.tables import I_FOULS, Crew
 from ._common.command import Command, at_least, run, save_json
 
 KINDS = {
-    "break_off": {}, "break_off_six_red": {"game": "six_red"}, "break_off_shoot_out": {"game": "shoot_out"},
-    "snookered": {"layout": "snookered"}, "snookered_match": {"layout": "snookered", "physics": "match"}, "frames": {},
-}  # fmt: skip
+    "break_off": {},
+    "break_off_six_red": {"game": "six_red"},
+    "break_off_shoot_out": {"game": "shoot_out"},
+    "snookered": {"layout": "snookered"},
+    "snookered_match": {"layout": "snookered", "physics": "match"},
+    "frames": {},
+}
 """Where the tables come from: the options of the frames."""
 SHOWN = (2.3, 3.6)
 """The speeds of the target line that are printed [m/s]."""
@@ -52,14 +59,22 @@ def has_pot(tables, k):
 
 
 def from_frames(n, seed):
-    """n positions without a direct pot, the cue ball not in hand, from frames of the built-in opponent against itself."""
+    """n positions without a direct pot, the cue ball not in hand, from frames of the built-in opponent
+    against itself."""
     found, player = [], GhostBallOpponent()
     while len(found) < n:
-        tables, which = dealt(20, seed, aim="target", placement=True, decision=True, noise="professional"), np.arange(20)
+        tables, which = (
+            dealt(20, seed, aim="target", placement=True, decision=True, noise="professional"),
+            np.arange(20),
+        )
         while len(which):
-            found += states(tables, [k for k in which if not tables.game[k, IN_HAND] and not has_pot(tables, k)])
+            found += states(
+                tables, [k for k in which if not tables.game[k, IN_HAND] and not has_pot(tables, k)]
+            )
             buffers, out = ShotBuffers(len(which)), tables.output()
-            tables.complete(player.prepare(tables, which, None, buffers), out, buffers, Crew(buffers), own=True)
+            tables.complete(
+                player.prepare(tables, which, None, buffers), out, buffers, Crew(buffers), own=True
+            )
             which = which[~tables.ended()[which]]
         seed += 1
     return [found[k] for k in np.random.default_rng(seed).permutation(len(found))[:n]]
@@ -78,7 +93,10 @@ def fouls(tables, state, actions):
 def measured(kind, n, seed):
     """The figures of n tables of a kind without a direct pot."""
     options = KINDS[kind]
-    choosing, aiming = dealt(CHOICES, 0, action="discrete", **options), dealt(len(SPEEDS), 0, aim="target", **options)
+    choosing, aiming = (
+        dealt(CHOICES, 0, action="discrete", **options),
+        dealt(len(SPEEDS), 0, aim="target", **options),
+    )
     if kind == "frames":
         found = from_frames(n, seed)
     else:
@@ -94,17 +112,31 @@ def measured(kind, n, seed):
         lines.append(len(offered) // STROKES)
         aimed.append(fouls(aiming, state, target) == 0)
     return {
-        "tables": len(found), "with_a_fair_choice": float(np.mean(np.array(shares) > 0.0)), "fair_choices": float(np.mean(shares)),
-        "lines": float(np.mean(lines)), "target": float(np.mean(np.any(aimed, axis=1))),
-        "target_at": {str(speed): float(share) for speed, share in zip(SPEEDS, np.mean(aimed, axis=0), strict=True)},
-    }  # fmt: skip
+        "tables": len(found),
+        "with_a_fair_choice": float(np.mean(np.array(shares) > 0.0)),
+        "fair_choices": float(np.mean(shares)),
+        "lines": float(np.mean(lines)),
+        "target": float(np.mean(np.any(aimed, axis=1))),
+        "target_at": {
+            str(speed): float(share) for speed, share in zip(SPEEDS, np.mean(aimed, axis=0), strict=True)
+        },
+    }
 
 
 def main():
     """Measure and print."""
     parser = Command("fair", __doc__, seed=0)
-    parser.add_argument("--tables", type=at_least(1), default=100, metavar="N", help="tables of each kind [100]")
-    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS), metavar="KIND", help=f"of {', '.join(KINDS)} [all]")
+    parser.add_argument(
+        "--tables", type=at_least(1), default=100, metavar="N", help="tables of each kind [100]"
+    )
+    parser.add_argument(
+        "--kinds",
+        nargs="+",
+        choices=KINDS,
+        default=list(KINDS),
+        metavar="KIND",
+        help=f"of {', '.join(KINDS)} [all]",
+    )
     options = parser.options()
     figures = {}
     print(f"{'':20s}  tables  fair choice  choices fair  lines  target: best  2.3 m/s  3.6 m/s")

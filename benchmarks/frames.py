@@ -1,17 +1,22 @@
-"""Do whole frames end by the rules, and is every point and ball accounted for? Random and ghost-ball players, each stroke checked.
+"""Do whole frames end by the rules, and is every point and ball accounted for? Random and ghost-ball players,
+each stroke checked.
 
-    python -m benchmarks.frames [--frames 2000] [--nomination | --attempt] [--jobs N] [--seed 0] [--json FILE] [--out FOLDER]
+    python -m benchmarks.frames [--frames 2000] [--nomination | --attempt] [--jobs N] [--seed 0] [--json FILE]
+    [--out FOLDER]
 
-Checked at every stroke: the scores against a count of its own of what was potted and given, no visit above 155, no ball lost, doubled,
-overlapping or off the table; and once a frame, that the state written as JSON and read again plays on identically, bit for bit.
-No player concedes or is stopped: a frame ends by its last black, by a re-spotted black, by a third miss ("clear_path"), or, where
-players nominate and declare ("said"), by a claim.
+Checked at every stroke: the scores against a count of its own of what was potted and given, no visit above
+155, no ball lost, doubled, overlapping or off the table; and once a frame, that the state written as JSON and
+read again plays on identically, bit for bit. No player concedes or is stopped: a frame ends by its last
+black, by a re-spotted black, by a third miss ("clear_path"), or, where players nominate and declare ("said"),
+by a claim.
 
-``--nomination``: instead, how many strokes at a colour after a red are judged otherwise where the player must name it. Each of ghost_ball's
-strokes at a club player's errors is judged twice, with the colour that it aims at and with the one that it strikes first.
+``--nomination``: instead, how many strokes at a colour after a red are judged otherwise where the player must
+name it. Each of ghost_ball's strokes at a club player's errors is judged twice, with the colour that it aims
+at and with the one that it strikes first.
 
-``--attempt``: instead, what miss="attempt" decides: of the failures of snookered strikers, the share that was no attempt, and the share
-called a miss (the scores keep the others from being called). Nobody has the balls replaced, so that each position counts once.
+``--attempt``: instead, what miss="attempt" decides: of the failures of snookered strikers, the share that was
+no attempt, and the share called a miss (the scores keep the others from being called). Nobody has the balls
+replaced, so that each position counts once.
 """
 
 import json
@@ -47,7 +52,13 @@ REPLAYED = 20
 """Strokes played again from the JSON."""
 PLAYERS = {"random": UniformOpponent(), "ghost_ball": GhostBallOpponent()}
 SAID = {"nominate": True, "concede": True, "claim": True, "lot": True}
-KINDS = (("random", "off"), ("random", "clear_path"), ("ghost_ball", "off"), ("ghost_ball", "clear_path"), ("random", "said"))
+KINDS = (
+    ("random", "off"),
+    ("random", "clear_path"),
+    ("ghost_ball", "off"),
+    ("ghost_ball", "clear_path"),
+    ("random", "said"),
+)
 """Who plays, and the miss rule; "said": without misses, but with everything that a player may say."""
 
 
@@ -82,11 +93,18 @@ class Turn(NamedTuple):
 
 
 class FrameTable:
-    """One frame in progress, played turn by turn by the same player on both sides, the rules' own arrays behind it."""
+    """One frame in progress, played turn by turn by the same player on both sides, the rules' own arrays
+    behind it."""
 
     def __init__(self, kind, **more):
         rules = SAID if kind == "said" else {"miss": kind}
-        given: dict[str, Any] = {"task": "frame", "aim": "target", "placement": True, "decision": True, "max_strokes": None}
+        given: dict[str, Any] = {
+            "task": "frame",
+            "aim": "target",
+            "placement": True,
+            "decision": True,
+            "max_strokes": None,
+        }
         options = Options(**given | rules | more)
         self.tables = Frames(options, seats=[Seat.of(options.rules)] * 2)
         self.buffers, self.generator = ShotBuffers(1), np.random.default_rng()
@@ -118,7 +136,14 @@ class FrameTable:
         if not self.tables.turn(prepare, out, crew)[0]:
             return None
         counts, potted = out.counts[0].tolist(), int(self.buffers.enlarged.get(0, self.buffers).seen[0, DOWN])
-        return Turn(striker, counts[I_BALL_ON], potted, int(out.reals[0, I_POINTS]), counts[I_PENALTY], counts[I_FOULS])
+        return Turn(
+            striker,
+            counts[I_BALL_ON],
+            potted,
+            int(out.reals[0, I_POINTS]),
+            counts[I_PENALTY],
+            counts[I_FOULS],
+        )
 
     def as_json(self):
         """Everything that decides how the frame goes on."""
@@ -130,7 +155,8 @@ class FrameTable:
 
 
 def fair_points(played, free_ball):
-    """What a fair stroke scores, counted from the balls that went down: reds 1 each, else the ball on once; a free ball for the ball on."""
+    """What a fair stroke scores, counted from the balls that went down: reds 1 each, else the ball on once; a
+    free ball for the ball on."""
     potted = played.potted & ~CUE_BIT
     if played.ball_on == BallOn.RED:
         reds, others = bin(potted & REDS_MASK).count("1"), bin(potted & COLOURS_MASK).count("1")
@@ -146,7 +172,12 @@ def check_stroke(table, before, played):
     frame, me = table.frame, played.striker
     gained = frame.scores[me] - before.scores[me], frame.scores[1 - me] - before.scores[1 - me]
     if played.fouls:
-        check(gained[0] == 0 and gained[1] == played.penalty and 4 <= played.penalty <= 7, "a foul", gained, played)
+        check(
+            gained[0] == 0 and gained[1] == played.penalty and 4 <= played.penalty <= 7,
+            "a foul",
+            gained,
+            played,
+        )
     else:
         check(gained == (fair_points(played, before.free_ball), 0), "a fair stroke", gained, played)
     reds = before.on_table & REDS_MASK & ~played.potted
@@ -156,7 +187,8 @@ def check_stroke(table, before, played):
 
 
 def check_table(table):
-    """No ball lost or doubled: the balls on the table are those of the frame, apart from each other and between the cushions."""
+    """No ball lost or doubled: the balls on the table are those of the frame, apart from each other and
+    between the cushions."""
     frame, positions, on_table = table.frame, table.tables.positions[0], table.tables.on_table[0]
     here = mask_of_present(on_table)
     check(here == frame.on_table | CUE_BIT, "balls", ids_of(here), ids_of(frame.on_table))
@@ -193,7 +225,8 @@ def ending(before, played, frame):
 
 
 def play_frame(seed, kind, miss):
-    """One frame from the break to its end, everything checked; returns its ``Tally``. Raises AssertionError."""
+    """One frame from the break to its end, everything checked; returns its ``Tally``. Raises
+    AssertionError."""
     player, rng, tally, table = PLAYERS[kind], np.random.default_rng(seed), Tally(), FrameTable(miss)
     table.start(seed)
     save_at, saved, following, visit, given = int(rng.integers(5, 50)), None, [], 0, [0, 0]
@@ -228,15 +261,24 @@ def play_frame(seed, kind, miss):
     frame = table.frame
     check(tuple(given) == frame.scores, "the scores", given, frame.scores)
     leader = int(given[1] > given[0])
-    check(tally.ending == "third miss" or (given[0] != given[1] and frame.winner == leader), "the winner", frame.winner)
+    check(
+        tally.ending == "third miss" or (given[0] != given[1] and frame.winner == leader),
+        "the winner",
+        frame.winner,
+    )
     if saved is not None:
         check_replay(saved, following, player, miss)
     return tally
 
 
 def judged_otherwise(seed):
-    """One frame of ghost_ball against itself at club noise: strokes at a colour after a red, and those judged otherwise by nomination."""
-    player, named, plain = PLAYERS["ghost_ball"], FrameTable("off", noise="club", nominate=True), FrameTable("off", noise="club")
+    """One frame of ghost_ball against itself at club noise: strokes at a colour after a red, and those judged
+    otherwise by nomination."""
+    player, named, plain = (
+        PLAYERS["ghost_ball"],
+        FrameTable("off", noise="club", nominate=True),
+        FrameTable("off", noise="club"),
+    )
     named.start(seed)
     strokes = other = 0
     while not named.over:
@@ -244,14 +286,22 @@ def judged_otherwise(seed):
         asked = named.frame.ball_on == BallOn.ANY_COLOUR
         one, two = named.turn(player), plain.turn(player)
         if asked:
-            check((one is None, one and one.potted) == (two is None, two and two.potted), "another stroke", one, two)
+            check(
+                (one is None, one and one.potted) == (two is None, two and two.potted),
+                "another stroke",
+                one,
+                two,
+            )
             strokes += 1
-            other += one is not None and two is not None and (one.points, one.penalty) != (two.points, two.penalty)
+            other += (
+                one is not None and two is not None and (one.points, one.penalty) != (two.points, two.penalty)
+            )
     return strokes, other
 
 
 def escapes(seed, kind, noise):
-    """One frame with miss="attempt": failures of snookered strikers, those that were no attempt, and those called a miss."""
+    """One frame with miss="attempt": failures of snookered strikers, those that were no attempt, and those
+    called a miss."""
     player, table = PLAYERS[kind], FrameTable("attempt", noise=noise, decision=False)
     table.start(seed)
     failed = poor = called = 0
@@ -272,8 +322,19 @@ def print_escapes(frames, seed):
     print("players    noise          frames  failures of snookered strikers   no attempt   called a miss")
     for kind in PLAYERS:
         for noise in ("club", "professional"):
-            failed, poor, called = np.sum([escapes(seed + k, kind, noise) for k in range(frames)], axis=0).tolist()
-            rows.append({"player": kind, "noise": noise, "frames": frames, "failures": failed, "no_attempt": poor, "misses": called})
+            failed, poor, called = np.sum(
+                [escapes(seed + k, kind, noise) for k in range(frames)], axis=0
+            ).tolist()
+            rows.append(
+                {
+                    "player": kind,
+                    "noise": noise,
+                    "frames": frames,
+                    "failures": failed,
+                    "no_attempt": poor,
+                    "misses": called,
+                }
+            )
             shares = [f"{100 * part / max(failed, 1):>11.0f} %" for part in (poor, called)]
             print(f"{kind:<11}{noise:<13}{frames:>8}{failed:>32}{shares[0]}{shares[1]:>16}", flush=True)
     return rows
@@ -283,10 +344,17 @@ def figures_of(kind, miss, tallies, seconds):
     """A row of the table."""
     strokes, breaks = [t.strokes for t in tallies], [b for t in tallies for b in t.breaks]
     return {
-        "player": kind, "miss": miss, "frames": len(tallies), "strokes": float(np.mean(strokes)), "most_strokes": max(strokes),
-        "fouls_percent": 100 * sum(t.fouls for t in tallies) / sum(strokes), "break": float(np.mean(breaks)), "best_break": max(breaks),
-        "seconds": seconds, "endings": dict(Counter(t.ending for t in tallies).most_common()),
-    }  # fmt: skip
+        "player": kind,
+        "miss": miss,
+        "frames": len(tallies),
+        "strokes": float(np.mean(strokes)),
+        "most_strokes": max(strokes),
+        "fouls_percent": 100 * sum(t.fouls for t in tallies) / sum(strokes),
+        "break": float(np.mean(breaks)),
+        "best_break": max(breaks),
+        "seconds": seconds,
+        "endings": dict(Counter(t.ending for t in tallies).most_common()),
+    }
 
 
 def line(row):
@@ -311,19 +379,35 @@ def main():
         save_json(args.json, {"seed": args.seed, "escapes": print_escapes(args.frames, args.seed)})
         return
     if args.nomination:
-        strokes, other = np.sum([judged_otherwise(seed) for seed in range(args.seed, args.seed + args.frames)], axis=0).tolist()
-        print(f"{other} of {strokes} strokes at a colour after a red ({100 * other / strokes:.2f} %) are judged otherwise by nomination")
-        save_json(args.json, {"seed": args.seed, "frames": args.frames, "strokes": strokes, "judged_otherwise": other})
+        strokes, other = np.sum(
+            [judged_otherwise(seed) for seed in range(args.seed, args.seed + args.frames)], axis=0
+        ).tolist()
+        print(
+            f"{other} of {strokes} strokes at a colour after a red ({100 * other / strokes:.2f} %) are judged otherwise by nomination"
+        )
+        save_json(
+            args.json,
+            {"seed": args.seed, "frames": args.frames, "strokes": strokes, "judged_otherwise": other},
+        )
         return
     print("players    miss rule   frames  strokes   most  fouls %  break  best seconds   endings")
-    quiet = {"initializer": signal.signal, "initargs": (signal.SIGINT, signal.SIG_DFL)}  # Ctrl-C ends them without a word
+    # Ctrl-C ends them without a word
+    quiet = {"initializer": signal.signal, "initargs": (signal.SIGINT, signal.SIG_DFL)}
     with ProcessPoolExecutor(args.jobs, mp_context=get_context("spawn"), **quiet) as pool:
         for kind, miss in KINDS:
             start = time.perf_counter()
-            tallies = list(pool.map(partial(play_frame, kind=kind, miss=miss), range(args.seed, args.seed + args.frames), chunksize=10))
+            tallies = list(
+                pool.map(
+                    partial(play_frame, kind=kind, miss=miss),
+                    range(args.seed, args.seed + args.frames),
+                    chunksize=10,
+                )
+            )
             rows.append(figures_of(kind, miss, tallies, time.perf_counter() - start))
             print(line(rows[-1]), flush=True)
-    print("every stroke checked: points, balls, breaks; every frame that lasted so long played on from its JSON identically")
+    print(
+        "every stroke checked: points, balls, breaks; every frame that lasted so long played on from its JSON identically"
+    )
     save_json(args.json, {"seed": args.seed, "frames": rows})
 
 

@@ -1,12 +1,15 @@
-"""Does any shot break? Random shots on every table, checked against every invariant of ``_common/invariants.py``.
+"""Does any shot break? Random shots on every table, checked against every invariant of
+``_common/invariants.py``.
 
-Every kind of scene, fidelity and physics; the preset tables, rectangles with pockets of any size, and unbounded cloth.
+Every kind of scene, fidelity and physics; the preset tables, rectangles with pockets of any size, and
+unbounded cloth.
 
     python -m benchmarks.fuzz [--shots 1000000] [--seed 0] [--threads 2]
     python -m benchmarks.fuzz --replay SEED BATCH INDEX
 
-``python -m benchmarks.stability`` does the same after its extremes. A batch is made of nothing but its seed and its number, so that a
-failure, named by seed, batch and index, can be played again. Exit code 1 if an invariant fails.
+``python -m benchmarks.stability`` does the same after its extremes. A batch is made of nothing but its seed
+and its number, so that a failure, named by seed, batch and index, can be played again. Exit code 1 if an
+invariant fails.
 """
 
 import dataclasses
@@ -77,7 +80,8 @@ def legal(p, table, R=R):
 
 
 def put(p, placed, todo, draw, anywhere, table, R):
-    """Give ball ``placed`` of every table in ``todo`` a place from ``draw(todo)`` that is legal and clear of the balls before it.
+    """Give ball ``placed`` of every table in ``todo`` a place from ``draw(todo)`` that is legal and clear of
+    the balls before it.
 
     Where that finds no room, ``anywhere(todo)`` takes its place."""
     for attempt in range(1000):
@@ -97,15 +101,23 @@ def rectangle(rng):
     pockets: Literal[6, 4, 0] = kinds[rng.integers(3)]
 
     def pocket(kind, least, most):
-        sizes = {"mouth": rng.uniform(3, 6) * R, "shelf": rng.uniform(-0.5, 2) * R, "fall_radius": rng.uniform(2, 4) * R}
-        return kind(**sizes, cut=rng.uniform(least, most), jaw_radius=float(rng.choice([0.0, rng.uniform(0, 4)])) * R)
+        sizes = {
+            "mouth": rng.uniform(3, 6) * R,
+            "shelf": rng.uniform(-0.5, 2) * R,
+            "fall_radius": rng.uniform(2, 4) * R,
+        }
+        return kind(
+            **sizes, cut=rng.uniform(least, most), jaw_radius=float(rng.choice([0.0, rng.uniform(0, 4)])) * R
+        )
 
     while True:
         length, width = rng.uniform(30, 70) * R, rng.uniform(20, 40) * R
         try:
             corner = pocket(Pocket.corner, 135, 150) if pockets else None
             middle = pocket(Pocket.middle, 90, 120) if pockets == 6 else None
-            return Table.rectangular(length, width, pockets=pockets, corner=corner, middle=middle, ball_radius=R)
+            return Table.rectangular(
+                length, width, pockets=pockets, corner=corner, middle=middle, ball_radius=R
+            )
         except ValueError:
             pass
 
@@ -116,7 +128,8 @@ def _anywhere(rng, table):
 
 
 def _at_cushion(rng, table, R, seams=0.0):
-    """Touching a nose, an arc or a facing, with a gap of ``GAPS``; a share ``seams`` of them 1 nm to 1 cm from its end."""
+    """Touching a nose, an arc or a facing, with a gap of ``GAPS``; a share ``seams`` of them 1 nm to 1 cm
+    from its end."""
 
     def draw(todo):
         b = len(todo)
@@ -130,7 +143,9 @@ def _at_cushion(rng, table, R, seams=0.0):
             return out
         jaw = table.jaws[rng.integers(len(table.jaws), size=b)]
         half, far = np.arccos(jaw[:, 5]), jaw[:, 2] + R + gap
-        turn = np.arctan2(jaw[:, 4], jaw[:, 3]) + np.where(near, np.sign(share) * np.maximum(half - end / far, 0.0), share * half)
+        turn = np.arctan2(jaw[:, 4], jaw[:, 3]) + np.where(
+            near, np.sign(share) * np.maximum(half - end / far, 0.0), share * half
+        )
         at_jaw = jaw[:, :2] + far[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
         return np.where(rng.random((b, 1)) < 0.3 + 0.4 * seams, at_jaw, out)
 
@@ -138,13 +153,18 @@ def _at_cushion(rng, table, R, seams=0.0):
 
 
 def _at_ball(rng, p, placed, lattice, R):
-    """Touching one of the balls before it, with a gap of ``GAPS``; half of them in the lattice, so that loops close."""
+    """Touching one of the balls before it, with a gap of ``GAPS``; half of them in the lattice, so that loops
+    close."""
 
     def draw(todo):
         turn = rng.uniform(-np.pi, np.pi, len(todo))
-        turn = np.where(rng.random(len(todo)) < 0.6, lattice[todo] + np.pi / 3 * rng.integers(6, size=len(todo)), turn)
+        turn = np.where(
+            rng.random(len(todo)) < 0.6, lattice[todo] + np.pi / 3 * rng.integers(6, size=len(todo)), turn
+        )
         far = 2 * R + rng.choice(GAPS, len(todo))
-        return p[todo, rng.integers(placed, size=len(todo))] + far[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+        return p[todo, rng.integers(placed, size=len(todo))] + far[:, None] * np.column_stack(
+            [np.cos(turn), np.sin(turn)]
+        )
 
     return draw
 
@@ -157,7 +177,9 @@ def layouts(rng, scene, n, table, b=BATCH, R=R):
         p[:, 0] = np.column_stack([rng.uniform(-0.29, 0.29, b), rng.uniform(-1.6, -1.1, b)])
         near = rng.random(b) < 0.1  # a cue ball that touches the pack
         turn = rng.uniform(-1.7, -1.4, near.sum())
-        p[near, 0] = p[near, 1] + (D + rng.choice(GAPS, near.sum()))[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
+        p[near, 0] = p[near, 1] + (D + rng.choice(GAPS, near.sum()))[:, None] * np.column_stack(
+            [np.cos(turn), np.sin(turn)]
+        )
         clear = np.hypot(*(p[:, 1:] - p[:, :1]).transpose(2, 0, 1)).min(1) >= D * (1 - 1e-15)
         p[~clear, 0] = 0.1, -1.3
         return p
@@ -176,17 +198,25 @@ def layouts(rng, scene, n, table, b=BATCH, R=R):
 
 
 def motions(rng, scene, p, R):
-    """Velocities (b, n, 2) and spins (b, n, 3): a struck ball; in a melee all of them with any spin; held balls slow, with any spin."""
+    """Velocities (b, n, 2) and spins (b, n, 3): a struck ball; in a melee all of them with any spin; held
+    balls slow, with any spin."""
     b, n = p.shape[:2]
     v, w = np.zeros((b, n, 2)), np.zeros((b, n, 3))
     if scene in ("melee", "held"):
         fastest, most = (50, 5000) if scene == "melee" else (1, 500)
-        speed, spin = 10 ** rng.uniform(-9, np.log10(fastest), (b, n)), 10 ** rng.uniform(-3, np.log10(most), (b, n))
+        speed, spin = (
+            10 ** rng.uniform(-9, np.log10(fastest), (b, n)),
+            10 ** rng.uniform(-3, np.log10(most), (b, n)),
+        )
         turn, axis = rng.uniform(-np.pi, np.pi, (b, n)), rng.normal(size=(b, n, 3))
         if scene == "held":  # some along the sides of the table
             turn = np.where(rng.random((b, n)) < 0.5, np.pi / 2 * rng.integers(4, size=(b, n)), turn)
         v[:] = (speed * (rng.random((b, n)) < 0.7))[..., None] * np.stack([np.cos(turn), np.sin(turn)], -1)
-        w[:] = (spin * (rng.random((b, n)) < 0.7))[..., None] * axis / np.linalg.norm(axis, axis=-1, keepdims=True)
+        w[:] = (
+            (spin * (rng.random((b, n)) < 0.7))[..., None]
+            * axis
+            / np.linalg.norm(axis, axis=-1, keepdims=True)
+        )
         return v, w
     to = p[np.arange(b), rng.integers(min(1, n - 1), n, b)] - p[:, 0]
     far = np.maximum(np.hypot(*to.T), 2 * R)
@@ -197,7 +227,9 @@ def motions(rng, scene, p, R):
     side, top, lean = rng.uniform(-0.5, 0.5, b), rng.uniform(-0.5, 0.5, b), rng.uniform(-0.3, 0.3, b)
     q = 2.5 * speed / R
     v[:, 0] = speed[:, None] * np.column_stack([np.cos(aim), np.sin(aim)])
-    w[:, 0] = np.column_stack([q * (lean * np.cos(aim) - top * np.sin(aim)), q * (lean * np.sin(aim) + top * np.cos(aim)), q * side])
+    w[:, 0] = np.column_stack(
+        [q * (lean * np.cos(aim) - top * np.sin(aim)), q * (lean * np.sin(aim) + top * np.cos(aim)), q * side]
+    )
     return v, w
 
 
@@ -207,16 +239,31 @@ def physics_of(rng, name, R):
         return sn.Physics.preset(name, R=R)
     if name == "random":
         return sn.Physics(
-            R=R, mu_s=rng.uniform(0.02, 0.5), mu_r=10 ** rng.uniform(-2.5, -1), spin_decel=rng.uniform(1, 60), e_b=rng.uniform(0, 1),
-            mu_bb=rng.uniform(0, 0.3), e_c=rng.uniform(0, 1), mu_c=rng.uniform(0, 0.4), sin_theta=rng.uniform(0, 0.6),
-            e_j=rng.uniform(0, 1), e_c_knee=rng.uniform(0.1, 3.0), e_c_power=rng.uniform(0, 0.8),
-        )  # fmt: skip
+            R=R,
+            mu_s=rng.uniform(0.02, 0.5),
+            mu_r=10 ** rng.uniform(-2.5, -1),
+            spin_decel=rng.uniform(1, 60),
+            e_b=rng.uniform(0, 1),
+            mu_bb=rng.uniform(0, 0.3),
+            e_c=rng.uniform(0, 1),
+            mu_c=rng.uniform(0, 0.4),
+            sin_theta=rng.uniform(0, 0.6),
+            e_j=rng.uniform(0, 1),
+            e_c_knee=rng.uniform(0.1, 3.0),
+            e_c_power=rng.uniform(0, 0.8),
+        )
     pick = lambda *values: float(rng.choice(values))  # noqa: E731
     return sn.Physics(
         R=R,
-        mu_s=pick(1e-3, 0.21, 0.5, 0.8), mu_r=pick(1e-3, 0.0127, 0.1, 1.0), spin_decel=pick(0.0, 2.0, 22.0, 500.0), e_b=pick(0.0, 0.5, 1.0),
-        mu_bb=pick(0.0, 0.05, 0.5, 1.0), e_c=pick(0.0, 0.5, 1.0), mu_c=pick(0.0, 0.14, 0.5, 1.0), sin_theta=pick(0.0, 0.4, 0.9),
-    )  # fmt: skip
+        mu_s=pick(1e-3, 0.21, 0.5, 0.8),
+        mu_r=pick(1e-3, 0.0127, 0.1, 1.0),
+        spin_decel=pick(0.0, 2.0, 22.0, 500.0),
+        e_b=pick(0.0, 0.5, 1.0),
+        mu_bb=pick(0.0, 0.05, 0.5, 1.0),
+        e_c=pick(0.0, 0.5, 1.0),
+        mu_c=pick(0.0, 0.14, 0.5, 1.0),
+        sin_theta=pick(0.0, 0.4, 0.9),
+    )
 
 
 def batch(seed, number):
@@ -230,9 +277,14 @@ def batch(seed, number):
     kind = kinds[int(rng.integers(len(kinds)))]
     table = rectangle(rng) if kind == "rectangle" else Table.of(kind)
     physics = physics_of(rng, name, table.ball.get("R", R))
-    if fidelity.startswith("euler"):  # near e = 1 its last step gains energy without end, see the table of the scheme
+    # near e = 1 its last step gains energy without end, see the table of the scheme
+    if fidelity.startswith("euler"):
         physics = dataclasses.replace(physics, e_b=min(physics.e_b, 0.95), e_c=min(physics.e_c, 0.98))
-    n = 22 if scene == "rack" else int(rng.choice([1, 2, 3, 4] if scene == "held" else [1, 2, 3, 4, 6, 10, 16, 22]))
+    n = (
+        22
+        if scene == "rack"
+        else int(rng.choice([1, 2, 3, 4] if scene == "held" else [1, 2, 3, 4, 6, 10, 16, 22]))
+    )
     p = layouts(rng, scene, n, table, R=physics.R)
     return Batch(scene, name, fidelity, physics, table, p, *motions(rng, scene, p, physics.R))
 
@@ -240,17 +292,33 @@ def batch(seed, number):
 def allowed(fidelity, constants="match"):
     """The bound of each invariant, in the order of ``invariants.NAMES``.
 
-    Euler's steps are not located: its energy may err by 5/N. "fast" takes steps in cushions to 1e-4: a ball may still close at 1e-2 of its
-    speed. At the ends of the ranges an impact may lose nothing at all (no friction, restitution 1); what "standard" errs by then shows.
+    Euler's steps are not located: its energy may err by 5/N. "fast" takes steps in cushions to 1e-4: a ball
+    may still close at 1e-2 of its speed. At the ends of the ranges an impact may lose nothing at all (no
+    friction, restitution 1); what "standard" errs by then shows.
     """
     code, n = contact.parse_fidelity(fidelity)
-    gain = 5 / n if n else 5e-3 if code == contact.FAST else 1e-5 if constants == "extreme" and code == contact.STANDARD else 1e-9
+    gain = (
+        5 / n
+        if n
+        else 5e-3
+        if code == contact.FAST
+        else 1e-5
+        if constants == "extreme" and code == contact.STANDARD
+        else 1e-9
+    )
     parting = 1 / n if n else 1e-2 if code == contact.FAST else 1e-5
     bounds = dict.fromkeys(invariants.NAMES, 0.0)
     bounds |= {
-        "jump": 1e-12, "energy at impact": gain, "energy between": 1e-12, "energy of all": gain, "momentum": 1e-6, "parting": parting,
-        "overlap": 1e-9, "in cushion": 1e-9, "rest": 1e-9,
-    }  # fmt: skip
+        "jump": 1e-12,
+        "energy at impact": gain,
+        "energy between": 1e-12,
+        "energy of all": gain,
+        "momentum": 1e-6,
+        "parting": parting,
+        "overlap": 1e-9,
+        "in cushion": 1e-9,
+        "rest": 1e-9,
+    }
     return np.array([bounds[name] for name in invariants.NAMES])
 
 
@@ -280,8 +348,14 @@ class Fuzzed:
 
 def compare_public(one, found, threads):
     """Does ``simulate_batch`` give the same bits? It also checks every layout."""
-    batch = sn.simulate_batch(one.positions, one.velocities, one.spins, one.table, one.physics, one.fidelity, threads=threads)
-    same = (batch.positions == found.positions).all((1, 2)) & (batch.duration == found.duration) & (batch.event_count == found.n_events)
+    batch = sn.simulate_batch(
+        one.positions, one.velocities, one.spins, one.table, one.physics, one.fidelity, threads=threads
+    )
+    same = (
+        (batch.positions == found.positions).all((1, 2))
+        & (batch.duration == found.duration)
+        & (batch.event_count == found.n_events)
+    )
     return same & (batch.potted == found.potted).all(1) & (batch.on_table == found.on_table).all(1)
 
 
@@ -312,7 +386,10 @@ def _take(out, number, drawn, found, threads):
     worst = found.worst[ok].max(0, initial=-np.inf)
     out.worst[drawn.fidelity] = np.maximum(out.worst.get(drawn.fidelity, worst), worst)
     out.events[drawn.scene] = max(out.events.get(drawn.scene, 0), int(found.n_events[ok].max(initial=0)))
-    out.failures += [(number, int(k), Status(found.status[k]).name, float(found.n_events[k]), *labels) for k in np.flatnonzero(~ok)]
+    out.failures += [
+        (number, int(k), Status(found.status[k]).name, float(found.n_events[k]), *labels)
+        for k in np.flatnonzero(~ok)
+    ]
     for k, c in np.argwhere((found.worst > allowed(drawn.fidelity, drawn.constants)) & ok[:, None]):
         out.failures.append((number, int(k), invariants.NAMES[c], float(found.worst[k, c]), *labels))
     if number % PUBLIC == 0 and ok.all():
@@ -327,38 +404,56 @@ def lines(found, seed):
     names = invariants.NAMES
     text.append(f"{'worst of':14}" + "".join(f"{name:>17}" for name in names))
     for fidelity in sorted(found.worst):
-        text.append(f"{fidelity:14}" + "".join(f"{'-' if x == -np.inf else f'{x:.1e}':>17}" for x in found.worst[fidelity]))
+        text.append(
+            f"{fidelity:14}"
+            + "".join(f"{'-' if x == -np.inf else f'{x:.1e}':>17}" for x in found.worst[fidelity])
+        )
     text.append(f"{'(standard may)':14}" + "".join(f"{x:>17.0e}" for x in allowed("standard")))
     kinds = Counter((what, constants, fidelity) for _, _, what, _, _, constants, fidelity in found.failures)
     text.append(f"{len(found.failures)} failures")
     for kind, n in kinds.most_common():
         number, index, _, figure, scene, _, _ = next(f for f in found.failures if (f[2], f[5], f[6]) == kind)
         what, constants, fidelity = kind
-        text.append(f"  {n:>6} {what} ({fidelity}, physics {constants}), as --replay {seed} {number} {index} ({scene}, {figure:.3g})")
+        text.append(
+            f"  {n:>6} {what} ({fidelity}, physics {constants}), as --replay {seed} {number} {index} ({scene}, {figure:.3g})"
+        )
     return text
 
 
 def figures_of(found, seed):
     """What was found, JSON-able."""
-    worst = {fidelity: dict(zip(invariants.NAMES, x.tolist(), strict=True)) for fidelity, x in found.worst.items()}
+    worst = {
+        fidelity: dict(zip(invariants.NAMES, x.tolist(), strict=True)) for fidelity, x in found.worst.items()
+    }
     return {
-        "shots": found.shots, "seconds": found.seconds, "seed": seed, "worst": worst, "events": found.events, "failures": found.failures,
-    }  # fmt: skip
+        "shots": found.shots,
+        "seconds": found.seconds,
+        "seed": seed,
+        "worst": worst,
+        "events": found.events,
+        "failures": found.failures,
+    }
 
 
 def replay(seed, number, index):
     """Play one shot of the fuzz again and print what it breaks; True if nothing."""
     drawn = batch(seed, number)
     found = play(drawn)
-    print(f"seed {seed}, batch {number}, shot {index}: {drawn.scene}, {drawn.fidelity}, table {drawn.table.name}, {drawn.physics}")
+    print(
+        f"seed {seed}, batch {number}, shot {index}: {drawn.scene}, {drawn.fidelity}, table {drawn.table.name}, {drawn.physics}"
+    )
     print(
         f"positions {drawn.positions[index].tolist()}\nvelocities {drawn.velocities[index].tolist()}\nspins {drawn.spins[index].tolist()}"
     )
-    print(f"{Status(found.status[index]).name} after {found.n_events[index]} events, {found.duration[index]:.6f} s")
+    print(
+        f"{Status(found.status[index]).name} after {found.n_events[index]} events, {found.duration[index]:.6f} s"
+    )
     limits = allowed(drawn.fidelity, drawn.constants)
     broken = found.worst[index] > limits
     for name, x, limit, bad in zip(invariants.NAMES, found.worst[index], limits, broken, strict=True):
-        print(f"  {name:18}{x:>12.3g}  allowed {limit:.1g}  {'FAIL' if bad else 'pass'}   {invariants.WHAT[name]}")
+        print(
+            f"  {name:18}{x:>12.3g}  allowed {limit:.1g}  {'FAIL' if bad else 'pass'}   {invariants.WHAT[name]}"
+        )
     return found.status[index] == Status.OK and not broken.any()
 
 
@@ -367,7 +462,9 @@ def main():
     parser = Command("fuzz", __doc__, seed=0)
     parser.add_argument("--shots", type=at_least(1), default=1_000_000, help="so many [1000000]")
     parser.add_argument("--threads", type=at_least(1), default=2, help="[2]")
-    parser.add_argument("--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="play one shot again")
+    parser.add_argument(
+        "--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="play one shot again"
+    )
     options = parser.options()
     if options.replay:
         return int(not replay(*options.replay))

@@ -38,7 +38,8 @@ SHOWN = {
 
 
 def table(ax, name, seed):
-    """Draw one layout; a single pot with its line and ghost ball, a snooker with the lines to the red's edges."""
+    """Draw one layout; a single pot with its line and ghost ball, a snooker with the lines to the red's
+    edges."""
     positions, on_table = layout(name, np.random.default_rng(seed))
     rim = Region(-HALF_WIDTH - RIM, HALF_WIDTH + RIM, -HALF_LENGTH - RIM, HALF_LENGTH + RIM)
     sketch = Sketch(Table.preset("match"), LARGER * BALL_RADIUS, rim, ax)
@@ -75,12 +76,21 @@ def draw(seed, file):
     note = f"Balls are drawn {LARGER} times their size. Lines: the pot that is dealt; the ways to the edges of a red."
     with picture_style.drawing() as plt:
         rows = -(-len(SHOWN) // COLUMNS)
-        figure, axes = picture_style.page(plt, 0.95 + 2.5 * rows, "Ten ways to lay out a table", note, rows=rows, columns=COLUMNS)
+        figure, axes = picture_style.page(
+            plt, 0.95 + 2.5 * rows, "Ten ways to lay out a table", note, rows=rows, columns=COLUMNS
+        )
         figure.get_layout_engine().set(w_pad=0.06, h_pad=0.05, hspace=0.02, wspace=0.02)
         for ax, name in zip(axes.flat, SHOWN, strict=False):
             table(ax, name, seed)
             ax.set_title(f'layout="{name}"', pad=5)
-            ax.set_title(SHOWN[name], loc="right", size=picture_style.TEXT, weight="normal", color=picture_style.QUIET, pad=5)
+            ax.set_title(
+                SHOWN[name],
+                loc="right",
+                size=picture_style.TEXT,
+                weight="normal",
+                color=picture_style.QUIET,
+                pad=5,
+            )
         for ax in axes.flat[len(SHOWN) :]:
             ax.set_axis_off()
         picture_style.save(figure, file)
@@ -89,7 +99,9 @@ def draw(seed, file):
 def main():
     """Command line."""
     options = Command("layouts_picture", __doc__, pictures=(FILE,), seed=4).options()
-    save_json(options.json, {"seed": options.seed, "layouts": {name: placed(name, options.seed) for name in SHOWN}})
+    save_json(
+        options.json, {"seed": options.seed, "layouts": {name: placed(name, options.seed) for name in SHOWN}}
+    )
     if options.pictures:
         draw(options.seed, options.folder / FILE)
         print(options.folder / FILE)

@@ -1,10 +1,13 @@
-"""How many shots a second does PPO play and learn from, on one core? Of this tree and, with --against, of another commit in turns with it.
+"""How many shots a second does PPO play and learn from, on one core? Of this tree and, with --against, of
+another commit in turns with it.
 
-    python -m benchmarks.learner [--agents ppo_mask ppo_foresight] [--against COMMIT] [--rounds 9] [--steps N] [--seed 0] [--json FILE]
+    python -m benchmarks.learner [--agents ppo_mask ppo_foresight] [--against COMMIT] [--rounds 9] [--steps N]
+    [--seed 0] [--json FILE]
 
-Each agent begins with the weights of the pre-trained model of its name, and each tree uses its own recipe. A round is one rollout of all
-tables and the update from it. Both trees take turns, round by round, each in a process of its own with one thread, so that a busy machine
-slows both alike. The times are processor times: what other processes take is not counted. Medians over the rounds.
+Each agent begins with the weights of the pre-trained model of its name, and each tree uses its own recipe. A
+round is one rollout of all tables and the update from it. Both trees take turns, round by round, each in a
+process of its own with one thread, so that a busy machine slows both alike. The times are processor times:
+what other processes take is not counted. Medians over the rounds.
 """
 
 import json
@@ -29,7 +32,9 @@ AGENTS = {"ppo_mask": 0, "ppo_foresight": 8}
 
 def tree_of(commit):
     """A folder with the files of a commit, kept for the next time. SystemExit if git has no such commit."""
-    found = subprocess.run(["git", "rev-parse", "--verify", f"{commit}^{{commit}}"], cwd=ROOT, capture_output=True, text=True)
+    found = subprocess.run(
+        ["git", "rev-parse", "--verify", f"{commit}^{{commit}}"], cwd=ROOT, capture_output=True, text=True
+    )
     if found.returncode:
         raise SystemExit(f"--against = {commit!r}: must be a commit that git finds in {ROOT}")
     name = found.stdout.strip()
@@ -46,9 +51,13 @@ def started(tree, agent, steps, seed):
     """The worker of a tree, once it is ready. SystemExit if it does not start."""
     weights = ROOT / "agents" / "pretrained" / f"{agent}.zip"
     worker = subprocess.Popen(
-        [sys.executable, str(WORKER), agent, str(weights), str(steps), str(seed)], cwd=tree, text=True, stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE, env=os.environ | {"PYTHONPATH": str(tree), "OMP_NUM_THREADS": "1"},
-    )  # fmt: skip
+        [sys.executable, str(WORKER), agent, str(weights), str(steps), str(seed)],
+        cwd=tree,
+        text=True,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env=os.environ | {"PYTHONPATH": str(tree), "OMP_NUM_THREADS": "1"},
+    )
     answer(worker, tree, wanted="ready")
     return worker
 
@@ -80,25 +89,35 @@ def measured(trees, agent, steps, rounds, seed):
 def main():
     """Measure and print."""
     parser = Command("learner", __doc__, seed=0)
-    parser.add_argument("--agents", nargs="+", choices=tuple(AGENTS), default=tuple(AGENTS), help=f"[{' '.join(AGENTS)}]")
+    parser.add_argument(
+        "--agents", nargs="+", choices=tuple(AGENTS), default=tuple(AGENTS), help=f"[{' '.join(AGENTS)}]"
+    )
     parser.add_argument("--against", metavar="COMMIT", help="measure this commit too, in turns")
     parser.add_argument("--rounds", type=at_least(1), default=9, help="rollouts of each [9]")
-    parser.add_argument("--steps", type=at_least(2), help="steps of a rollout [the recipe's; ppo_foresight: 8]")
+    parser.add_argument(
+        "--steps", type=at_least(2), help="steps of a rollout [the recipe's; ppo_foresight: 8]"
+    )
     args = parser.options()
     trees = ({args.against: tree_of(args.against)} if args.against else {}) | {"this tree": ROOT}
     kept = {}
-    print(f"{'us of processor time a shot':30s}{'tables':>10s}{'network':>10s}{'update':>10s}{'all':>10s}{'shots/s':>10s}")
+    print(
+        f"{'us of processor time a shot':30s}{'tables':>10s}{'network':>10s}{'update':>10s}{'all':>10s}{'shots/s':>10s}"
+    )
     for agent in args.agents:
         kept[agent] = found = measured(trees, agent, args.steps or AGENTS[agent], args.rounds, args.seed)
         for name, rounds in found.items():
             tables, update, everything = (
-                float(np.median([1e6 * one[part] / one["shots"] for one in rounds])) for part in ("tables", "update", "all")
+                float(np.median([1e6 * one[part] / one["shots"] for one in rounds]))
+                for part in ("tables", "update", "all")
             )
             parts = f"{tables:10.1f}{everything - tables - update:10.1f}{update:10.1f}{everything:10.1f}{1e6 / everything:10,.0f}"
             print(f"{f'{agent}, {name}':30s}{parts}", flush=True)
         if args.against:
             each = [[one["all"] / one["shots"] for one in found[name]] for name in trees]
-            print(f"{'':30s}{np.median(np.array(each[0]) / each[1]):.2f} times as fast, the median of {args.rounds} pairs", flush=True)
+            print(
+                f"{'':30s}{np.median(np.array(each[0]) / each[1]):.2f} times as fast, the median of {args.rounds} pairs",
+                flush=True,
+            )
     save_json(args.json, kept)
     return 0
 

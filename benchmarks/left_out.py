@@ -2,9 +2,10 @@
 
     python -m benchmarks.left_out [--json FILE] [--out FOLDER]
 
-Each is a closed form or one impact, with its inputs in the line above its figures. What these are set beside: the rolling resistance, and a
-professional whose direction errs by 0.035 deg in all: with the cue ball 0.5 m from contact the object ball's direction errs by 0.33
-deg, so much that whatever is below 0.03 deg there is below a tenth of it. The nap has a command of its own: ``python -m benchmarks.nap``.
+Each is a closed form or one impact, with its inputs in the line above its figures. What these are set beside:
+the rolling resistance, and a professional whose direction errs by 0.035 deg in all: with the cue ball 0.5 m
+from contact the object ball's direction errs by 0.33 deg, so much that whatever is below 0.03 deg there is
+below a tenth of it. The nap has a command of its own: ``python -m benchmarks.nap``.
 """
 
 from math import asin, cos, degrees, log, pi, radians, sin, sqrt
@@ -19,11 +20,13 @@ SLOWS = PAPER.mu_r * G
 LENGTH = 2 * (1.7845 - R)
 """From cushion to cushion along the table [m], for a ball's centre."""
 AIR, VISCOSITY, DRAG = 1.2, 1.5e-5, 0.45
-"""Density [kg/m^3], kinematic viscosity [m^2/s]; drag coefficient of a sphere at Reynolds numbers of 1e3 to 1e5: 0.4 to 0.5."""
+"""Density [kg/m^3], kinematic viscosity [m^2/s]; drag coefficient of a sphere at Reynolds numbers of 1e3 to
+1e5: 0.4 to 0.5."""
 BOUNCE = 0.5
 """Restitution of a ball that falls on cloth over slate: an assumption."""
 TIP_TIME = 1.5e-3
-"""s that the tip stays on the ball: 1 to 2 ms (Alciatore, billiards.colostate.edu/faq/cue-tip/contact-time)."""
+"""s that the tip stays on the ball: 1 to 2 ms (Alciatore,
+billiards.colostate.edu/faq/cue-tip/contact-time)."""
 
 
 def air():
@@ -63,20 +66,31 @@ def unequal():
     turned = {}
     for cut in (15, 30, 60):
         turned[cut] = degrees(asin(2 * R * sin(radians(cut)) / (2 * R - smaller / 2))) - cut
-        print(f"cue ball {1e3 * smaller:g} mm smaller in diameter, cut {cut} deg: object ball turned by {turned[cut]:.3f} deg")
-    return {"object ball faster by": light / full - 1, "cue ball keeps": back, "keeps if equal": on, "turned by cut [deg]": turned}
+        print(
+            f"cue ball {1e3 * smaller:g} mm smaller in diameter, cut {cut} deg: object ball turned by {turned[cut]:.3f} deg"
+        )
+    return {
+        "object ball faster by": light / full - 1,
+        "cue ball keeps": back,
+        "keeps if equal": on,
+        "turned by cut [deg]": turned,
+    }
 
 
 def kicks():
     """A contact of far more friction than usual."""
-    print("\nKICKS: object ball's throw [deg] and speed by the friction at the contact; stun at 2 m/s, constants of the preset paper")
+    print(
+        "\nKICKS: object ball's throw [deg] and speed by the friction at the contact; stun at 2 m/s, constants of the preset paper"
+    )
     print("friction   cut 15  speed   cut 30  speed   cut 45  speed")
     found = {}
     for mu in (PAPER.mu_bb, 0.1, 0.2, 0.5):
         row, throws = "", []
         for cut in (15, 30, 45):
             turn = radians(cut)
-            _, _, v, _ = sn.collide_balls((2, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (cos(turn), sin(turn), 0), {"mu_bb": mu})
+            _, _, v, _ = sn.collide_balls(
+                (2, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (cos(turn), sin(turn), 0), {"mu_bb": mu}
+            )
             across, along = v[0] * sin(turn) - v[1] * cos(turn), v[0] * cos(turn) + v[1] * sin(turn)
             speed = sqrt(across**2 + along**2)
             throws.append({"cut": cut, "throw [deg]": degrees(asin(across / speed)), "speed": speed})
@@ -88,25 +102,40 @@ def kicks():
 
 def airborne():
     """The cue drives the ball into the bed, from where it hops."""
-    print(f"\nAIRBORNE: height and length [mm] of the cue ball's first hop, by elevation of the cue; rebound from the bed {BOUNCE}")
+    print(
+        f"\nAIRBORNE: height and length [mm] of the cue ball's first hop, by elevation of the cue; rebound from the bed {BOUNCE}"
+    )
     print("ball at m/s" + "".join(f"{e:14d} deg" for e in (2, 5, 10, 20)))
     hops = []
     for v in (1, 2, 4, 7):
         row = ""
         for elevation in (2, 5, 10, 20):
             up, on = BOUNCE * v * sin(radians(elevation)), v * cos(radians(elevation))
-            hops.append({"speed": v, "elevation": elevation, "height [mm]": 1e3 * up * up / (2 * G), "length [mm]": 2e3 * up * on / G})
+            hops.append(
+                {
+                    "speed": v,
+                    "elevation": elevation,
+                    "height [mm]": 1e3 * up * up / (2 * G),
+                    "length [mm]": 2e3 * up * on / G,
+                }
+            )
             row += f"{hops[-1]['height [mm]']:9.2f}{hops[-1]['length [mm]']:9.1f}"
         print(f"{v:11g}{row}")
     most = 0.0
     for cut in range(0, 90, 5):
         turn = radians(cut)
-        v1, _, v2, _ = sn.collide_balls((2, 0, 0), (0, 2 / R, 0), (0, 0, 0), (0, 0, 0), (cos(turn), sin(turn), 0))
+        v1, _, v2, _ = sn.collide_balls(
+            (2, 0, 0), (0, 2 / R, 0), (0, 0, 0), (0, 0, 0), (cos(turn), sin(turn), 0)
+        )
         most = max(most, v1[2], v2[2])
     hop = f"{1e3 * most * most / (2 * G):.2f} mm and {2e3 * most / G:.0f} ms"
-    print(f"Friction at the contact throws the upper ball up: after a ball that rolls at 2 m/s by {hop} at the most, over all cuts.")
+    print(
+        f"Friction at the contact throws the upper ball up: after a ball that rolls at 2 m/s by {hop} at the most, over all cuts."
+    )
     up = sqrt(2 * G * 2 * R)
-    print(f"To clear a ball the cue ball must leave the bed at {up:.2f} m/s: struck at {up / BOUNCE:.2f} m/s downwards.")
+    print(
+        f"To clear a ball the cue ball must leave the bed at {up:.2f} m/s: struck at {up / BOUNCE:.2f} m/s downwards."
+    )
     return {"hops": hops, "thrown up at most": most, "speed to clear a ball": up}
 
 
@@ -115,20 +144,31 @@ def double_hits():
     cue, tip = 0.5, 0.73
     ball, left = (1 + tip) * cue / (cue + M), (cue - tip * M) / (cue + M)
     after = (1 - PAPER.e_b) / 2 * ball
-    print(f"\nDOUBLE HITS: cue of {cue} kg, tip restitution {tip}: ball at {ball:.2f} of the cue's speed, cue at {left:.2f} after it")
-    print("gap [mm]: how long after the ball ahead is hit full the tip arrives [ms], if nothing stops the cue, by the ball's speed [m/s]")
+    print(
+        f"\nDOUBLE HITS: cue of {cue} kg, tip restitution {tip}: ball at {ball:.2f} of the cue's speed, cue at {left:.2f} after it"
+    )
+    print(
+        "gap [mm]: how long after the ball ahead is hit full the tip arrives [ms], if nothing stops the cue, by the ball's speed [m/s]"
+    )
     found = {}
     for gap in (2e-3, 10e-3, 50e-3):
         found[gap] = {v: gap * (1 - left / ball) / ((left - after) * v / ball) for v in (1, 2, 4)}
-        print(f"{1e3 * gap:8.0f}" + "".join(f"{v:6d}: {1e3 * seconds:6.2f}" for v, seconds in found[gap].items()))
-    print(f"In {1e3 * TIP_TIME} ms on the tip the ball goes {', '.join(f'{500 * TIP_TIME * v:.2f} mm at {v} m/s' for v in (1, 2, 4))}.")
+        print(
+            f"{1e3 * gap:8.0f}"
+            + "".join(f"{v:6d}: {1e3 * seconds:6.2f}" for v, seconds in found[gap].items())
+        )
+    print(
+        f"In {1e3 * TIP_TIME} ms on the tip the ball goes {', '.join(f'{500 * TIP_TIME * v:.2f} mm at {v} m/s' for v in (1, 2, 4))}."
+    )
     return {"ball over cue": ball, "cue after": left, "seconds by gap [m] and speed": found}
 
 
 def main():
     """Command line: print the sizes."""
     options = Command("left_out", __doc__).options()
-    save_json(options.json, {part.__name__: part() for part in (air, level, unequal, kicks, airborne, double_hits)})
+    save_json(
+        options.json, {part.__name__: part() for part in (air, level, unequal, kicks, airborne, double_hits)}
+    )
 
 
 if __name__ == "__main__":

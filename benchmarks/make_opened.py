@@ -1,4 +1,5 @@
-"""How were the opened tables made? Plays frames open with the project's own engine and referee and writes ``game/opened.npz``.
+"""How were the opened tables made? Plays frames open with the project's own engine and referee and writes
+``game/opened.npz``.
 
 python -m benchmarks.make_opened [--tables 10240] [--seed 0] [--json FILE] [--out FOLDER]
 """
@@ -82,7 +83,8 @@ def main():
         frames += 1
         table = opened_table(rng)
         if table is not None:
-            tables.append(table.astype(np.float32))  # to a tenth of a micrometre: within what the engine accepts as touching
+            # to a tenth of a micrometre: within what the engine accepts as touching
+            tables.append(table.astype(np.float32))
     packed = io.BytesIO()
     np.savez_compressed(packed, positions=np.array(tables))
     save_bytes(options.folder / FILE.name, packed.getvalue())

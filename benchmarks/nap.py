@@ -2,17 +2,21 @@
 
     python -m benchmarks.nap [--json FILE] [--out FOLDER]
 
-The equation is dv/dt = -mu_r g v/|v| + nap y (snooker_env/physics/cloth.py). It is integrated here by SciPy, apart from the engine; the
-last column of the first table says how far the engine's ball is from that. No drift was found published, in mm or otherwise. What bounds
-the nap: rolling decelerations were measured as 0.124 to 0.126 m/s^2. If the nap alone made that range, rolling with it and against it, it
-would be 0.001 m/s^2.
+The equation is dv/dt = -mu_r g v/|v| + nap y (snooker_env/physics/cloth.py). It is integrated here by SciPy,
+apart from the engine; the last column of the first table says how far the engine's ball is from that. No
+drift was found published, in mm or otherwise. What bounds the nap: rolling decelerations were measured as
+0.124 to 0.126 m/s^2. If the nap alone made that range, rolling with it and against it, it would be 0.001
+m/s^2.
 
-The player is ``noise="professional"``: his direction errs by 0.035 deg in all (aim, and squirt of the tip's error), his speed by 1.75 %.
+The player is ``noise="professional"``: his direction errs by 0.035 deg in all (aim, and squirt of the tip's
+error), his speed by 1.75 %.
 
-* Pots: a ball rolls from rest at the start to a pocket and arrives there at the speed given. ``drift``: how far to the side of its line it
-  is at the pocket. ``scatter``: the standard deviation of the same by his errors, for a straight pot with the cue ball 0.5 m from contact
-  (an error of the cue ball's direction is 0.5 m / 2R times as large in the object ball's).
-* Positions: a ball rolls to rest across the table and along it. ``scatter``: the direction's error to the side, the speed's along the way.
+* Pots: a ball rolls from rest at the start to a pocket and arrives there at the speed given. ``drift``: how
+  far to the side of its line it is at the pocket. ``scatter``: the standard deviation of the same by his
+  errors, for a straight pot with the cue ball 0.5 m from contact (an error of the cue ball's direction is 0.5
+  m / 2R times as large in the object ball's).
+* Positions: a ball rolls to rest across the table and along it. ``scatter``: the direction's error to the
+  side, the speed's along the way.
 """
 
 from math import atan2, cos, hypot, pi, radians, sin, sqrt
@@ -46,7 +50,8 @@ ARRIVALS = (0.1, 0.5, 1.0)
 
 
 def integrated(v, nap, length=np.inf):
-    """A ball rolls from the origin at v until it has gone ``length`` [m] in v's first direction, or stopped: its place by DOP853."""
+    """A ball rolls from the origin at v until it has gone ``length`` [m] in v's first direction, or stopped:
+    its place by DOP853."""
     along = np.divide(v, hypot(*v))
 
     def rate(_, z):
@@ -76,7 +81,8 @@ def played(v, nap):
 
 
 def pots():
-    """Rows: scene, speed on arrival, drifts, nap for ``SEEN``, scatter, the engine's largest distance from the integrated path."""
+    """Rows: scene, speed on arrival, drifts, nap for ``SEEN``, scatter, the engine's largest distance from
+    the integrated path."""
     for name, (start, pocket) in POTS.items():
         way = np.subtract(pocket, start)
         length, angle = hypot(*way), atan2(*way[::-1])
@@ -113,7 +119,9 @@ def main():
     options = Command("nap", __doc__).options()
     found = {"naps": NAPS, "pots": [], "positions": []}
     naps = "".join(f"{nap:8g}" for nap in NAPS)
-    print("POTS: drift to the side at the pocket [mm] by nap [m/s^2]; the nap for 10 mm; a professional's scatter there [mm]")
+    print(
+        "POTS: drift to the side at the pocket [mm] by nap [m/s^2]; the nap for 10 mm; a professional's scatter there [mm]"
+    )
     print(f"{'':28s} at m/s{naps}   10 mm at scatter  drift/scatter at {BOUND:g}   engine off [mm]")
     over = []
     for name, arrives, drifts, seen, scatter, off in pots():
@@ -121,18 +129,33 @@ def main():
         share = drifts[NAPS.index(BOUND)] / scatter
         over.append(share > 0.1)
         found["pots"].append(
-            {"pot": name, "arrives": arrives, "drifts": drifts, "nap for 10 mm": seen, "scatter": scatter, "engine off": off}
+            {
+                "pot": name,
+                "arrives": arrives,
+                "drifts": drifts,
+                "nap for 10 mm": seen,
+                "scatter": scatter,
+                "engine off": off,
+            }
         )
-        print(f"{name:28s} {arrives:6.1f}{values}{seen:11.4f}{1e3 * scatter:8.2f}{share:24.2f}{1e3 * off:18.4f}")
-    print(f"{sum(over)} of {len(over)} of them drift by more than a tenth of a professional's scatter at nap {BOUND:g}.")
-    print("\nPOSITIONS: place at rest less that without a nap [mm], to the side (across) or along the way; a professional's scatter")
+        print(
+            f"{name:28s} {arrives:6.1f}{values}{seen:11.4f}{1e3 * scatter:8.2f}{share:24.2f}{1e3 * off:18.4f}"
+        )
+    print(
+        f"{sum(over)} of {len(over)} of them drift by more than a tenth of a professional's scatter at nap {BOUND:g}."
+    )
+    print(
+        "\nPOSITIONS: place at rest less that without a nap [mm], to the side (across) or along the way; a professional's scatter"
+    )
     print(f"{'':14s}  m of way{naps} scatter  shift/scatter at {BOUND:g}  pieces")
     for name, length, shifts, scatter in positions():
         values = "".join(f"{1e3 * d:8.2f}" for d in shifts)
         v = sqrt(2 * SLOWS * length) * np.array([(1.0, 0.0), (0.0, 1.0)][name != "across"])
         pieces = len(played(v, BOUND).events)
         found["positions"].append({"way": name, "length": length, "shifts": shifts, "scatter": scatter})
-        print(f"{name:14s}{length:10.1f}{values}{1e3 * scatter:8.2f}{abs(shifts[NAPS.index(BOUND)]) / scatter:23.2f}{pieces:8d}")
+        print(
+            f"{name:14s}{length:10.1f}{values}{1e3 * scatter:8.2f}{abs(shifts[NAPS.index(BOUND)]) / scatter:23.2f}{pieces:8d}"
+        )
     save_json(options.json, found)
 
 

@@ -25,7 +25,8 @@ STRIP = 0.36
 
 
 def pot(seed):
-    """The first table from ``seed`` on with a red that goes in with screw and side, the cue ball coming back; the ball and the shot."""
+    """The first table from ``seed`` on with a red that goes in with screw and side, the cue ball coming back;
+    the ball and the shot."""
     while True:
         positions, on_table = opened(np.random.default_rng(seed))
         for candidate in pots(positions, on_table, 0xFFFE, most=3):
@@ -37,7 +38,13 @@ def pot(seed):
                 shot = sn.simulate(positions, velocities, spins)
                 back = (shot.positions[0] - positions[0] - ghost) @ ghost / np.hypot(*ghost)
                 hits = shot.events["kind"] == sn.EventKind.BALL_BALL
-                if shot.potted[ball] >= 0 and shot.potted[0] < 0 and back < -0.5 and hits.sum() == 1 and 0.3 < np.hypot(*ghost) < 1.0:
+                if (
+                    shot.potted[ball] >= 0
+                    and shot.potted[0] < 0
+                    and back < -0.5
+                    and hits.sum() == 1
+                    and 0.3 < np.hypot(*ghost) < 1.0
+                ):
                     return positions, ball, shot
         seed += 1
 
@@ -55,7 +62,9 @@ def draw(positions, ball, shot, file):
         axes = figure.add_axes((0, STRIP / (inches + STRIP), 1, inches / (inches + STRIP)))
         axes.imshow(image[top:bottom, left:right], interpolation="lanczos", aspect="auto")
         axes.set_axis_off()
-        figure.text(0.016, 0.5 * STRIP / (inches + STRIP), words, size=picture_style.PANEL, va="center_baseline")
+        figure.text(
+            0.016, 0.5 * STRIP / (inches + STRIP), words, size=picture_style.PANEL, va="center_baseline"
+        )
         picture_style.save(figure, file)
 
 
@@ -63,7 +72,10 @@ def main():
     """Command line."""
     options = Command("pictures", __doc__, pictures=(FILE,), seed=6).options()
     positions, ball, shot = pot(options.seed)
-    save_json(options.json, {"seed": options.seed, "ball": ball, "before": positions.tolist(), "after": shot.positions.tolist()})
+    save_json(
+        options.json,
+        {"seed": options.seed, "ball": ball, "before": positions.tolist(), "after": shot.positions.tolist()},
+    )
     if options.pictures:
         draw(positions, ball, shot, options.folder / FILE)
         print(options.folder / FILE)

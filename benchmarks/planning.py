@@ -1,10 +1,12 @@
-"""What does planning cost beside the kernels? ``Planner.play`` against the same kernel calls alone, on arrays that are there already.
+"""What does planning cost beside the kernels? ``Planner.play`` against the same kernel calls alone, on arrays
+that are there already.
 
     python -m benchmarks.planning [--strokes 1000] [--repeats 15] [--seed 0] [--json FILE] [--out FOLDER]
 
-Strokes on opened 22-ball tables under professional noise, one thread. The calls that ``play`` makes of compiled kernels (address, engine,
-referee) are noted, and then repeated from the same state without anything in between. Both take turns; the overhead is the median of the
-ratios of neighbours. One position: all strokes are played on it, as a search does; many: each on its own.
+Strokes on opened 22-ball tables under professional noise, one thread. The calls that ``play`` makes of
+compiled kernels (address, engine, referee) are noted, and then repeated from the same state without anything
+in between. Both take turns; the overhead is the median of the ratios of neighbours. One position: all strokes
+are played on it, as a search does; many: each on its own.
 """
 
 import time
@@ -21,7 +23,8 @@ from ._common.command import Command, at_least, run, save_json
 
 
 class Noted:
-    """Notes which kernels are called from Python while it lasts, with what; ``again`` repeats the calls from where they began."""
+    """Notes which kernels are called from Python while it lasts, with what; ``again`` repeats the calls from
+    where they began."""
 
     def __init__(self):
         self._calls, self._before, self._kernels = [], {}, []
@@ -63,7 +66,8 @@ class Noted:
 def measured(planner, at, rows, actions, keys, repeats):
     """Median microseconds a stroke by ``play`` and by the kernels alone, and the median overhead."""
     with Noted() as noted:
-        first = planner.play(at, rows, actions, keys).observations.copy()  # the kernels repeated write over it
+        # the kernels repeated write over it
+        first = planner.play(at, rows, actions, keys).observations.copy()
     pairs = []
     for _ in range(repeats):
         alone = noted.again()
@@ -74,9 +78,10 @@ def measured(planner, at, rows, actions, keys, repeats):
     whole, alone = np.array(pairs).T
     us = 1e6 / len(rows)
     return {
-        "play_us": us * float(np.median(whole)), "kernels_us": us * float(np.median(alone)),
+        "play_us": us * float(np.median(whole)),
+        "kernels_us": us * float(np.median(alone)),
         "overhead": float(np.median(whole / alone)) - 1.0,
-    }  # fmt: skip
+    }
 
 
 def figures(strokes, repeats, seed=0):
@@ -88,7 +93,10 @@ def figures(strokes, repeats, seed=0):
         planner, at = Planner(env, threads=1), Positions.of(env)
         keys = rng.integers(0, 2**64 - 1, strokes, dtype=np.uint64)
         actions = rng.uniform(-1.0, 1.0, (strokes, 4)) if kind == "box" else rng.integers(0, 135, strokes)
-        for where, rows in (("many positions", np.arange(strokes)), ("one position", np.zeros(strokes, np.int64))):
+        for where, rows in (
+            ("many positions", np.arange(strokes)),
+            ("one position", np.zeros(strokes, np.int64)),
+        ):
             found[f"{kind} actions, {where}"] = measured(planner, at, rows, actions, keys, repeats)
     return found
 
@@ -102,7 +110,9 @@ def main():
     found = figures(args.strokes, args.repeats, args.seed)
     print(f"{args.strokes} strokes a call, one thread; us a stroke")
     for name, f in found.items():
-        print(f"{name:32s} play {f['play_us']:6.1f}   kernels {f['kernels_us']:6.1f}   overhead {100 * f['overhead']:+5.1f} %")
+        print(
+            f"{name:32s} play {f['play_us']:6.1f}   kernels {f['kernels_us']:6.1f}   overhead {100 * f['overhead']:+5.1f} %"
+        )
     save_json(args.json, found)
     return 0
 

@@ -1,11 +1,14 @@
-"""How long does the page of ``snooker_env.play`` take from a drag to the picture that shows where the balls would stop?
+"""How long does the page of ``snooker_env.play`` take from a drag to the picture that shows where the balls
+would stop?
 
-    python -m benchmarks.play [--width 1600] [--height 900] [--inputs 60] [--seed 1] [--json FILE] [--out FOLDER]
+    python -m benchmarks.play [--width 1600] [--height 900] [--inputs 60] [--seed 1] [--json FILE] [--out
+    FOLDER]
 
-A real server and a headless Chromium without a graphics card, on one machine. The aim is dragged by the mouse, and speed and tip are
-changed by keys, one input every 25 ms; each question is 500 strokes with a professional's errors. Measured in the browser, by its own
-clock: from the time stamp of the input event to the end of the drawing of the picture with the clouds of exactly that stroke. An input
-that was overtaken by a later one has no picture of its own; ``pictures`` says how many had one.
+A real server and a headless Chromium without a graphics card, on one machine. The aim is dragged by the
+mouse, and speed and tip are changed by keys, one input every 25 ms; each question is 500 strokes with a
+professional's errors. Measured in the browser, by its own clock: from the time stamp of the input event to
+the end of the drawing of the picture with the clouds of exactly that stroke. An input that was overtaken by a
+later one has no picture of its own; ``pictures`` says how many had one.
 """
 
 import re
@@ -56,10 +59,14 @@ def measured(page, inputs):
     middle = (box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
     page.mouse.move(*middle)
     page.mouse.down()
-    figures = {"aim, dragged": times(page, lambda k: page.mouse.move(middle[0] + 4 * k, middle[1] + 2 * k), inputs)}
+    figures = {
+        "aim, dragged": times(page, lambda k: page.mouse.move(middle[0] + 4 * k, middle[1] + 2 * k), inputs)
+    }
     page.mouse.up()
     page.locator("#table").focus()
-    figures["speed, by key"] = times(page, lambda k: page.keyboard.press("ArrowUp" if k % 2 else "ArrowDown"), inputs)
+    figures["speed, by key"] = times(
+        page, lambda k: page.keyboard.press("ArrowUp" if k % 2 else "ArrowDown"), inputs
+    )
     figures["tip, by key"] = times(page, lambda k: page.keyboard.press("w" if k % 4 < 2 else "s"), inputs)
     return figures
 
@@ -75,7 +82,16 @@ def main():
         from playwright.sync_api import sync_playwright
     except ImportError:
         raise ImportError("benchmarks.play needs playwright:  pip install playwright") from None
-    command = [sys.executable, "-m", "snooker_env.play", "--no-browser", "--layout", "opened", "--seed", str(options.seed)]
+    command = [
+        sys.executable,
+        "-m",
+        "snooker_env.play",
+        "--no-browser",
+        "--layout",
+        "opened",
+        "--seed",
+        str(options.seed),
+    ]
     server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
         assert server.stdout is not None
@@ -88,12 +104,19 @@ def main():
             page.locator("summary").click()
             page.get_by_label("Errors").first.select_option("professional")
             until(page, "page.advisor.found?.samples === 500")
-            figures = {"machine": provenance.line(), "width": options.width, "height": options.height, **measured(page, options.inputs)}
+            figures = {
+                "machine": provenance.line(),
+                "width": options.width,
+                "height": options.height,
+                **measured(page, options.inputs),
+            }
             browser.close()
     finally:
         server.terminate()
         server.wait()
-    print(f"From an input to the picture of where the balls would stop, 500 strokes each, {options.width} x {options.height} pixels:\n")
+    print(
+        f"From an input to the picture of where the balls would stop, 500 strokes each, {options.width} x {options.height} pixels:\n"
+    )
     for name, row in figures.items():
         if isinstance(row, dict):
             spread = f"median {row['median_ms']:4.0f} ms   95 % {row['95_ms']:4.0f} ms   most {row['most_ms']:4.0f} ms"

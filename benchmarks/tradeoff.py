@@ -1,12 +1,15 @@
-"""What does each fidelity cost and how large is its error? Impacts, then whole pots; a picture; which fidelity for which use.
+"""What does each fidelity cost and how large is its error? Impacts, then whole pots; a picture; which
+fidelity for which use.
 
-    python -m benchmarks.tradeoff [--impacts 2000] [--shots 1000] [--repeats 3] [--physics paper] [--seed 0] [--json FILE]
+    python -m benchmarks.tradeoff [--impacts 2000] [--shots 1000] [--repeats 3] [--physics paper] [--seed 0]
+    [--json FILE]
         [--out FOLDER]
 
-Truth is ``reference``. Impacts: errors of direction and speed, the worse of the two balls, just after the impact and once both roll (the
-direction a player sees; where a ball is all but stopped by its own spin, its direction means little). Shots: how far from the truth the
-cue ball and the object ball stop, if they stay on the table, and how often the pot's outcome changes. The scale is what
-a professional's errors do: the same intended stroke, played twice by the truth with the execution errors of ``tasks.noise``.
+Truth is ``reference``. Impacts: errors of direction and speed, the worse of the two balls, just after the
+impact and once both roll (the direction a player sees; where a ball is all but stopped by its own spin, its
+direction means little). Shots: how far from the truth the cue ball and the object ball stop, if they stay on
+the table, and how often the pot's outcome changes. The scale is what a professional's errors do: the same
+intended stroke, played twice by the truth with the execution errors of ``tasks.noise``.
 """
 
 import numpy as np
@@ -28,7 +31,8 @@ SETS = {"two-ball pots": shot_sets.two_ball, "full tables": shot_sets.full_table
 CONTACTS = ((1, 1), (2, 2), (3, 5), (6, 999))
 ERRORS = "a professional's errors"
 SHARE = 0.1
-"""A fidelity is good enough for play if it moves balls and changes pots at most this share of what a professional's errors do."""
+"""A fidelity is good enough for play if it moves balls and changes pots at most this share of what a
+professional's errors do."""
 STORED = 1e-3
 """... and for results that are kept and compared if it changes at most this share of pots."""
 FILE = "tradeoff.png"
@@ -40,14 +44,17 @@ def spread(values):
 
 
 def impact_errors(found, truth):
-    """Of each impact the worse ball's error, just after it and once both roll: direction [deg], speed [m/s]; the object ball's alone."""
+    """Of each impact the worse ball's error, just after it and once both roll: direction [deg], speed [m/s];
+    the object ball's alone."""
     errors, object_angle = [], np.zeros(0)
     for rolling in (False, True):
         angle, speed = np.zeros(len(truth)), np.zeros(len(truth))
         for ball in (0, 6):
             a, b = ((x[:, ball : ball + 2], x[:, ball + 3 : ball + 5]) for x in (found, truth))
             # once the slip is over: v - (2/7) u with u = v + R (-w_y, w_x)
-            a, b = ((5 * v + 2 * np.column_stack([w[:, 1], -w[:, 0]])) / 7 if rolling else v for v, w in (a, b))
+            a, b = (
+                (5 * v + 2 * np.column_stack([w[:, 1], -w[:, 0]])) / 7 if rolling else v for v, w in (a, b)
+            )
             turn = np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(1))
             object_angle = np.degrees(np.abs(turn))
             angle = np.maximum(angle, object_angle)
@@ -65,12 +72,16 @@ def play_impacts(n, seed):
         code, steps = contact.parse_fidelity(fidelity)
         guess = median_impact(x[:50], normals[:50], phys, code, steps, 2)
         errors = impact_errors(results(x, normals, fidelity), truth)
-        rows[fidelity] = {"us": median_impact(x, normals, phys, code, steps, max(2, int(30 / guess))), **errors}
+        rows[fidelity] = {
+            "us": median_impact(x, normals, phys, code, steps, max(2, int(30 / guess))),
+            **errors,
+        }
     return rows
 
 
 def compare(end, truth, ball):
-    """Shots that end in ``end`` against ``truth``: shifts of cue ball and object ball [mm], nan if off the table; has the pot changed?"""
+    """Shots that end in ``end`` against ``truth``: shifts of cue ball and object ball [mm], nan if off the
+    table; has the pot changed?"""
     rows = np.arange(len(ball))
     shifts = []
     for b in (0 * ball, ball):
@@ -99,9 +110,13 @@ def play_shots(make, n, repeats, physics, seed):
         groups = [(c, (hits >= c[0]) & (hits <= c[1]) & ~np.isnan(cue)) for c in CONTACTS]
         rows[name] = {
             "us": None if errors else float(one_by_one(shots.positions, v, w, name, repeats, physics).mean()),
-            "cue_mm": spread(cue[~np.isnan(cue)]), "ball_mm": spread(ball[~np.isnan(ball)]), "changed": float(changed.mean()),
-            "by_contacts": [{"contacts": c, "shots": int(g.sum()), "cue_mm": spread(cue[g])} for c, g in groups],
-        }  # fmt: skip
+            "cue_mm": spread(cue[~np.isnan(cue)]),
+            "ball_mm": spread(ball[~np.isnan(ball)]),
+            "changed": float(changed.mean()),
+            "by_contacts": [
+                {"contacts": c, "shots": int(g.sum()), "cue_mm": spread(cue[g])} for c, g in groups
+            ],
+        }
     potted = float((truth.potted[np.arange(n), shots.ball] >= 0).mean())
     return {"potted": potted, "contacts": float(hits.mean()), "rows": rows}
 
@@ -138,17 +153,31 @@ def recommendation(impact_rows, sets):
         return max(shares(row, errors).values()) <= SHARE
 
     says = []
-    play, kept = cheapest(for_play), cheapest(lambda row, errors: for_play(row, errors) and row["changed"] <= STORED)
+    play, kept = (
+        cheapest(for_play),
+        cheapest(lambda row, errors: for_play(row, errors) and row["changed"] <= STORED),
+    )
     rule = f"Learning, search, play: at most {SHARE:.0%} of what a professional's errors do, in pots changed and in the cue ball's place."
-    says.append(f"{rule} The cheapest that keeps to it: {play}. {figures(play)}." if play else f"{rule} None of these keeps to it.")
+    says.append(
+        f"{rule} The cheapest that keeps to it: {play}. {figures(play)}."
+        if play
+        else f"{rule} None of these keeps to it."
+    )
     rule = f"Results that are kept and compared: besides, at most {STORED:.1%} of pots changed."
-    says.append(f"{rule} None of these keeps to it." if kept is None else f"{rule} The same: {kept}." if kept == play else
-                f"{rule} The cheapest that keeps to it: {kept}. {figures(kept)}.")  # fmt: skip
+    says.append(
+        f"{rule} None of these keeps to it."
+        if kept is None
+        else f"{rule} The same: {kept}."
+        if kept == play
+        else f"{rule} The cheapest that keeps to it: {kept}. {figures(kept)}."
+    )
     saved = [1 - s["rows"]["fast"]["us"] / s["rows"]["standard"]["us"] for s in sets.values()]
     over = [
         f"{what} on {name} {share:.1%} of the errors'"
-        for name, s in sets.items() for what, share in shares(s["rows"]["fast"], s["rows"][ERRORS]).items() if share > SHARE
-    ]  # fmt: skip
+        for name, s in sets.items()
+        for what, share in shares(s["rows"]["fast"], s["rows"][ERRORS]).items()
+        if share > SHARE
+    ]
     fit = f"breaks the rule for play ({'; '.join(over)})" if over else "keeps to the rule for play"
     says.append(
         f"fast {fit} and saves {min(saved):.0%} to {max(saved):.0%} of the time of standard. {figures('fast')}. In one impact it turns"
@@ -168,12 +197,15 @@ def recommendation(impact_rows, sets):
     order = -np.polyfit(np.log(steps), np.log([impact_rows[f]["angle_deg"][0] for f in euler]), 1)[0]
     says.append(
         f"euler:N, the paper's scheme, comes nearer the truth as N^-{order:.2f} (median angle): an independent check of reference. "
-        + ("It is for reproducing the paper: every N here has a fidelity that is both faster and nearer (99 % of angles)" if not free else
-           f"Of these N, {', '.join(free)} are not beaten by a fidelity both faster and nearer (99 % of angles), the others are")
+        + (
+            "It is for reproducing the paper: every N here has a fidelity that is both faster and nearer (99 % of angles)"
+            if not free
+            else f"Of these N, {', '.join(free)} are not beaten by a fidelity both faster and nearer (99 % of angles), the others are"
+        )
         + f"; euler:10000 errs by {impact_rows['euler:10000']['angle_deg'][1]:.1g} deg and takes"
         f" {impact_rows['euler:10000']['us'] / impact_rows['standard']['us']:.0f} times as long as standard, which errs by"
         f" {impact_rows['standard']['angle_deg'][1]:.1g} deg."
-    )  # fmt: skip
+    )
     return says
 
 
@@ -181,8 +213,20 @@ def draw(figures, out):
     """Time against error: impacts (angle, speed), then where the cue ball stops in each set of shots."""
     impact_rows = figures["impacts"]
     panels = [
-        (impact_rows, "angle_deg", "One impact: direction of the worse ball", "error [degrees]", "time of an impact [µs]"),
-        (impact_rows, "speed_m_s", "One impact: speed of the worse ball", "error [m/s]", "time of an impact [µs]"),
+        (
+            impact_rows,
+            "angle_deg",
+            "One impact: direction of the worse ball",
+            "error [degrees]",
+            "time of an impact [µs]",
+        ),
+        (
+            impact_rows,
+            "speed_m_s",
+            "One impact: speed of the worse ball",
+            "error [m/s]",
+            "time of an impact [µs]",
+        ),
     ]
     for name, s in figures["shots"].items():
         title = f"{name[0].upper()}{name[1:]}: where the cue ball stops"
@@ -193,7 +237,15 @@ def draw(figures, out):
             "Below and left is better. The bar across: what a professional's execution errors do to the same shots, median to 99 %."
         )
         foot = f"python -m benchmarks.tradeoff, physics {figures['physics']!r}; {provenance.line(figures['machine'])}"
-        fig, axes = picture_style.page(plt, 8.6, "What each fidelity costs, and how large its error is", note, foot=foot, rows=2, columns=2)
+        fig, axes = picture_style.page(
+            plt,
+            8.6,
+            "What each fidelity costs, and how large its error is",
+            note,
+            foot=foot,
+            rows=2,
+            columns=2,
+        )
         labels = [label for ax, panel in zip(axes.flat, panels, strict=True) for label in _panel(ax, *panel)]
         _legend(axes[0, 1])
         picture_style.label_points(fig, labels)
@@ -211,8 +263,15 @@ def _panel(ax, rows, key, title, error, cost):
             continue
         if fidelity == "reference":
             ax.axvline(row["us"], color=picture_style.QUIET, ls=(0, (2, 2)), lw=1.1)
-            ax.annotate("reference", (row["us"], 0.11), xycoords=("data", "axes fraction"), xytext=(4, 0), textcoords="offset points",
-                        size=picture_style.SMALL, color=picture_style.QUIET)  # fmt: skip
+            ax.annotate(
+                "reference",
+                (row["us"], 0.11),
+                xycoords=("data", "axes fraction"),
+                xytext=(4, 0),
+                textcoords="offset points",
+                size=picture_style.SMALL,
+                color=picture_style.QUIET,
+            )
             continue
         own = fidelity in OWN
         colour = picture_style.BLUE if own else picture_style.ORANGE
@@ -223,9 +282,18 @@ def _panel(ax, rows, key, title, error, cost):
         if own or fidelity in ("euler:10", "euler:100", "euler:1000", "euler:10000"):
             text = fidelity if own else f"{int(fidelity[6:]):,}"
             style = {"color": colour, "weight": "bold" if own else "normal"}
-            if 1 < rows["reference"]["us"] / row["us"] < 1.8:  # below the mark, the line of reference would strike it through
-                ax.annotate(text, (row["us"], middle), xytext=(-7, 0), textcoords="offset points", ha="right", va="center",
-                            size=picture_style.SMALL, **style)  # fmt: skip
+            # below the mark, the line of reference would strike it through
+            if 1 < rows["reference"]["us"] / row["us"] < 1.8:
+                ax.annotate(
+                    text,
+                    (row["us"], middle),
+                    xytext=(-7, 0),
+                    textcoords="offset points",
+                    ha="right",
+                    va="center",
+                    size=picture_style.SMALL,
+                    **style,
+                )
             else:
                 labels.append((ax, (row["us"], middle), text, style))
     picture_style.log_axis(ax.xaxis)
@@ -256,7 +324,9 @@ def main():
     parser = Command("tradeoff", __doc__, pictures=(FILE,), seed=0, redraws=True)
     parser.add_argument("--impacts", type=at_least(2), default=2000, help="impacts in the set")
     parser.add_argument("--shots", type=at_least(2), default=1000, help="shots in each set")
-    parser.add_argument("--repeats", type=at_least(1), default=3, help="timed runs of every shot; the best counts")
+    parser.add_argument(
+        "--repeats", type=at_least(1), default=3, help="timed runs of every shot; the best counts"
+    )
     parser.add_argument("--physics", default="paper", help="of the shots: paper or match [paper]")
     options = parser.options()
     if options.figures is None:
@@ -270,33 +340,58 @@ def measure(options):
     """Measure and print everything; the figures."""
     print(provenance.line())
     impact_rows = play_impacts(options.impacts, options.seed)
-    print(f"\n{options.impacts} impacts: median us; then median, 99 %, worst of: direction [deg], speed [m/s]; once both roll: the same")
+    print(
+        f"\n{options.impacts} impacts: median us; then median, 99 %, worst of: direction [deg], speed [m/s]; once both roll: the same"
+    )
     for fidelity, row in impact_rows.items():
         errors = "   ".join(" ".join(f"{e:7.1e}" for e in row[k]) for k in list(row)[1:5])
         print(f"  {fidelity:12s} {row['us']:8.3f}   {errors}")
     sets = {}
     for name, make in SETS.items():
         s = sets[name] = play_shots(make, options.shots, options.repeats, options.physics, options.seed)
-        print(f'\n{options.shots} {name}, physics "{options.physics}": {s["potted"]:.0%} potted, {s["contacts"]:.1f} ball-ball hits a shot')
-        print("                          us a shot   pots changed   cue ball off by [mm]: median, 99 %, worst   object ball: the same")
+        print(
+            f'\n{options.shots} {name}, physics "{options.physics}": {s["potted"]:.0%} potted, {s["contacts"]:.1f} ball-ball hits a shot'
+        )
+        print(
+            "                          us a shot   pots changed   cue ball off by [mm]: median, 99 %, worst   object ball: the same"
+        )
         for fidelity, row in s["rows"].items():
             us = "        -" if row["us"] is None else f"{row['us']:9.1f}"
-            mm = "      ".join(" ".join(f"{e:9.2g}" if e < 100 else f"{e:9.0f}" for e in row[k]) for k in ("cue_mm", "ball_mm"))
+            mm = "      ".join(
+                " ".join(f"{e:9.2g}" if e < 100 else f"{e:9.0f}" for e in row[k])
+                for k in ("cue_mm", "ball_mm")
+            )
             print(f"  {fidelity:22s}  {us}      {row['changed']:7.2%}      {mm}")
-    print("\nfull tables, cue ball off by [mm] (median, 99 %, worst), by the number of ball-ball contacts in the shot")
+    print(
+        "\nfull tables, cue ball off by [mm] (median, 99 %, worst), by the number of ball-ball contacts in the shot"
+    )
     heads = [f"{a} or more" if b == 999 else f"{a}" if a == b else f"{a} to {b}" for a, b in CONTACTS]
     groups = sets["full tables"]["rows"]
     counts = [g["shots"] for g in groups["standard"]["by_contacts"]]
     rows = [
-        [fidelity, *(" ".join(f"{e:7.2g}" if e < 100 else f"{e:7.0f}" for e in g["cue_mm"]) for g in row["by_contacts"])]
+        [
+            fidelity,
+            *(
+                " ".join(f"{e:7.2g}" if e < 100 else f"{e:7.0f}" for e in g["cue_mm"])
+                for g in row["by_contacts"]
+            ),
+        ]
         for fidelity, row in groups.items()
     ]
-    print("\n".join(text_table(["", *(f"{h} ({c} shots)" for h, c in zip(heads, counts, strict=True))], rows)))
+    print(
+        "\n".join(text_table(["", *(f"{h} ({c} shots)" for h, c in zip(heads, counts, strict=True))], rows))
+    )
     says = recommendation(impact_rows, sets)
     print("\nWhich fidelity for which use")
     for sentence in says:
         print(f"* {sentence}")
-    figures = {"machine": provenance.machine(), "physics": options.physics, "impacts": impact_rows, "shots": sets, "recommendation": says}
+    figures = {
+        "machine": provenance.machine(),
+        "physics": options.physics,
+        "impacts": impact_rows,
+        "shots": sets,
+        "recommendation": says,
+    }
     save_json(options.json, figures)
     return figures
 

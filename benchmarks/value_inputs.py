@@ -1,12 +1,14 @@
 """What should a value of positions see: features of the pots, or every ball, read by a network of sets?
 
-    python -m benchmarks.value_inputs [--positions 40000] [--steps 3000] [--seed 0] [--json FILE] [--out FOLDER]
+    python -m benchmarks.value_inputs [--positions 40000] [--steps 3000] [--seed 0] [--json FILE] [--out
+    FOLDER]
 
-Both learn the same numbers: for positions of visits by ``lookahead_60`` under a professional's errors, the mean over 16 fresh noise samples
-of the points of its stroke plus the rule of thumb's value of what it leaves. So neither helps to make its own targets. Equal positions,
-batches and steps; visits of the last fifth of the tables are kept out. ``features`` is one of the networks of the planner's value; ``sets``
-is the encoder of ``ppo_mask`` with a layer for the value. R2: the share of the targets' variance on the visits kept out that the value
-explains.
+Both learn the same numbers: for positions of visits by ``lookahead_60`` under a professional's errors, the
+mean over 16 fresh noise samples of the points of its stroke plus the rule of thumb's value of what it leaves.
+So neither helps to make its own targets. Equal positions, batches and steps; visits of the last fifth of the
+tables are kept out. ``features`` is one of the networks of the planner's value; ``sets`` is the encoder of
+``ppo_mask`` with a layer for the value. R2: the share of the targets' variance on the visits kept out that
+the value explains.
 """
 
 import time
@@ -73,8 +75,15 @@ def examples(many, seed):
             tables.append(running)
             goes_on = out.goes_on[::SAMPLES]  # the first sample is played
             now, running = out.afterstates[np.flatnonzero(goes_on) * SAMPLES], running[goes_on]
-    positions, on_table, game = (np.concatenate([getattr(one, name) for one in at]) for name in ("positions", "on_table", "game"))
-    return Positions(positions, on_table, game), np.concatenate(targets).astype(np.float32), np.concatenate(tables), search.spread
+    positions, on_table, game = (
+        np.concatenate([getattr(one, name) for one in at]) for name in ("positions", "on_table", "game")
+    )
+    return (
+        Positions(positions, on_table, game),
+        np.concatenate(targets).astype(np.float32),
+        np.concatenate(tables),
+        search.spread,
+    )
 
 
 def fitted(network, seen, targets, steps, rng):
@@ -94,7 +103,9 @@ def fitted(network, seen, targets, steps, rng):
 def main():
     """Measure and print."""
     parser = Command("value_inputs", __doc__, seed=0)
-    parser.add_argument("--positions", type=at_least(1000), default=40_000, help="positions, at least [40000]")
+    parser.add_argument(
+        "--positions", type=at_least(1000), default=40_000, help="positions, at least [40000]"
+    )
     parser.add_argument("--steps", type=at_least(1), default=3000, help="gradient steps of each [3000]")
     args = parser.options()
     torch.set_num_threads(1)
@@ -102,7 +113,9 @@ def main():
     at, targets, tables, spread = examples(args.positions, args.seed)
     visits = tables.max() + 1
     learned = tables < 0.8 * visits
-    print(f"{len(at):,} positions of {visits:,} visits; targets {targets.mean():.1f} points, standard deviation {targets.std():.1f}")
+    print(
+        f"{len(at):,} positions of {visits:,} visits; targets {targets.mean():.1f} points, standard deviation {targets.std():.1f}"
+    )
     found = {}
     for name, make, inputs in (
         ("features", Features, lambda at: value_features(at, spread)),
@@ -112,18 +125,25 @@ def main():
         started = time.perf_counter()
         seen = inputs(at)
         reading = time.perf_counter() - started
-        network, seconds = fitted(make(), seen[learned], targets[learned], args.steps, np.random.default_rng(args.seed))
+        network, seconds = fitted(
+            make(), seen[learned], targets[learned], args.steps, np.random.default_rng(args.seed)
+        )
         kept, truth, started = torch.from_numpy(seen[~learned]), targets[~learned], time.perf_counter()
         with torch.no_grad():
             said = np.concatenate([network(part).numpy() for part in kept.split(1024)])
         forward = time.perf_counter() - started
         error = said - truth
         figures = {
-            "r2": 1.0 - float(np.mean(error**2) / truth.var()), "rms": float(np.sqrt(np.mean(error**2))),
-            "us": 1e6 * (reading / len(seen) + forward / len(kept)), "seconds": seconds,
-        }  # fmt: skip
+            "r2": 1.0 - float(np.mean(error**2) / truth.var()),
+            "rms": float(np.sqrt(np.mean(error**2))),
+            "us": 1e6 * (reading / len(seen) + forward / len(kept)),
+            "seconds": seconds,
+        }
         print(
-            name.ljust(10), "R2 {r2:.3f}   error {rms:5.2f} points   {us:6.1f} us a position   fitted in {seconds:4.0f} s".format(**figures)
+            name.ljust(10),
+            "R2 {r2:.3f}   error {rms:5.2f} points   {us:6.1f} us a position   fitted in {seconds:4.0f} s".format(
+                **figures
+            ),
         )
         found[name] = figures
     save_json(args.json, found)

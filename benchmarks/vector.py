@@ -1,12 +1,15 @@
-"""How fast are whole steps, and what are they spent on? The vector environment on one and two threads, single tables, and PPO's split.
+"""How fast are whole steps, and what are they spent on? The vector environment on one and two threads, single
+tables, and PPO's split.
 
-    python -m benchmarks.vector [--seconds 2] [--repeats 5] [--tables 1024] [--seed 0] [--json FILE] [--out FOLDER]
+    python -m benchmarks.vector [--seconds 2] [--repeats 5] [--tables 1024] [--seed 0] [--json FILE] [--out
+    FOLDER]
 
-Random actions on opened 22-ball tables; a step is one shot with everything around it (SAME_STEP: a visit that ends is followed by a new
-one within the step, so every step holds a shot). Frames: the agent plays alone, from the same tables. Steps a second are medians over
-``--repeats`` rounds in which the kinds take turns, so that a busy machine slows all alike. Outside the engine: the same shots, from the
-same strikes, by the engine's kernel alone, and what is left of the step. Threads: what two threads give must be read against the control,
-plain arithmetic on two threads at the same time.
+Random actions on opened 22-ball tables; a step is one shot with everything around it (SAME_STEP: a visit that
+ends is followed by a new one within the step, so every step holds a shot). Frames: the agent plays alone,
+from the same tables. Steps a second are medians over ``--repeats`` rounds in which the kinds take turns, so
+that a busy machine slows all alike. Outside the engine: the same shots, from the same strikes, by the
+engine's kernel alone, and what is left of the step. Threads: what two threads give must be read against the
+control, plain arithmetic on two threads at the same time.
 """
 
 import threading
@@ -26,7 +29,11 @@ from snooker_env.tasks.stroke import ShotBuffers
 
 from ._common.command import Command, at_least, run, save_json
 
-FRAMES, SINGLE_FRAME, GHOST = "frames, one thread", "frames, single table", "frames against ghost_ball, one thread"
+FRAMES, SINGLE_FRAME, GHOST = (
+    "frames, one thread",
+    "frames, single table",
+    "frames against ghost_ball, one thread",
+)
 SLOWER, SINGLE_SLOWER = "a frame's step over a visit's", "the same on a single table"
 SIZES = (1, 4, 16, 64, 256, 1024, 4096)
 
@@ -101,12 +108,18 @@ def rates(tables, seconds, repeats, seed):
     mode = {"autoreset_mode": AutoresetMode.SAME_STEP}
     sync = gymnasium.make_vec("Snooker-v0", 16, vectorization_mode="sync", vector_kwargs=mode)
     kinds = {
-        "one thread": (stepper(native(tables, 1), seed), tables), "two threads": (stepper(native(tables, 2), seed), tables),
-        "SyncVectorEnv, 16 tables": (stepper(sync, seed), 16), "single table": (single(seed), 1),
-        FRAMES: (stepper(native(tables, 1, **FRAME), seed), tables), SINGLE_FRAME: (single(seed, **FRAME), 1),
+        "one thread": (stepper(native(tables, 1), seed), tables),
+        "two threads": (stepper(native(tables, 2), seed), tables),
+        "SyncVectorEnv, 16 tables": (stepper(sync, seed), 16),
+        "single table": (single(seed), 1),
+        FRAMES: (stepper(native(tables, 1, **FRAME), seed), tables),
+        SINGLE_FRAME: (single(seed, **FRAME), 1),
         GHOST: (stepper(native(tables, 1, opponent="ghost_ball", **FRAME), seed), tables),
-    }  # fmt: skip
-    rounds = [{name: rate(step, n, seconds) for name, (step, n) in kinds.items()} | {"control": control()} for _ in range(repeats)]
+    }
+    rounds = [
+        {name: rate(step, n, seconds) for name, (step, n) in kinds.items()} | {"control": control()}
+        for _ in range(repeats)
+    ]
     out = {name: float(np.median([r[name] for r in rounds])) for name in rounds[0]}
     for name, one, other in ((SLOWER, FRAMES, "one thread"), (SINGLE_SLOWER, SINGLE_FRAME, "single table")):
         out[name] = float(np.median([r[other] / r[one] for r in rounds]))
@@ -133,7 +146,8 @@ class Recorded:
 
 
 def outside(tables, repeats, seed):
-    """Microseconds of a step, of the same shots by the engine alone, and the share outside it; medians of neighbouring timings."""
+    """Microseconds of a step, of the same shots by the engine alone, and the share outside it; medians of
+    neighbouring timings."""
     env = native(tables, 1)
     step, pairs = stepper(env, seed), []
     for k in range(1, repeats + 1):
@@ -141,7 +155,9 @@ def outside(tables, repeats, seed):
         before = [a.copy() for a in (visits.positions, visits.on_table, visits.game, visits.streams)]
         with Recorded() as recorded:
             step(k)
-        for a, old in zip((visits.positions, visits.on_table, visits.game, visits.streams), before, strict=True):
+        for a, old in zip(
+            (visits.positions, visits.on_table, visits.game, visits.streams), before, strict=True
+        ):
             a[:] = old
         work = ShotBuffers(len(recorded.shots[0][0]))
         engine = 0.0
@@ -165,7 +181,8 @@ def sizes(seconds, seed):
 
 
 def ppo(steps, envs, seed):
-    """Seconds that PPO spends in the environment, in its updates and in the rest, for ``steps`` shots; None without SB3."""
+    """Seconds that PPO spends in the environment, in its updates and in the rest, for ``steps`` shots; None
+    without SB3."""
     try:
         import torch
         from stable_baselines3 import PPO
@@ -190,7 +207,15 @@ def ppo(steps, envs, seed):
             spent["update"] += time.perf_counter() - start
 
     tables = Timed(envs, aim="target", threads=1)
-    model = TimedPPO("MlpPolicy", tables, n_steps=max(8, 2048 // envs), batch_size=256, n_epochs=10, seed=seed, device="cpu")
+    model = TimedPPO(
+        "MlpPolicy",
+        tables,
+        n_steps=max(8, 2048 // envs),
+        batch_size=256,
+        n_epochs=10,
+        seed=seed,
+        device="cpu",
+    )
     start = time.perf_counter()
     model.learn(steps)
     spent["whole"] = time.perf_counter() - start
@@ -202,16 +227,33 @@ def show(found):
     """Print the figures."""
     r, o = found["rates"], found["outside"]
     print(f"\nrandom actions, opened 22-ball tables, {found['tables']} tables           steps/s")
-    for name in ("one thread", "two threads", "SyncVectorEnv, 16 tables", "single table", FRAMES, SINGLE_FRAME, GHOST):
+    for name in (
+        "one thread",
+        "two threads",
+        "SyncVectorEnv, 16 tables",
+        "single table",
+        FRAMES,
+        SINGLE_FRAME,
+        GHOST,
+    ):
         print(f"  {name:<58}{r[name]:>9,.0f}")
-    print(f"  two threads over one {r['two threads over one']:.2f} (plain arithmetic on two threads over one: {r['control']:.2f})")
-    print(f"  time of a frame's step, the agent alone, over a visit's: {r[SLOWER]:.2f}, on a single table {r[SINGLE_SLOWER]:.2f}")
+    print(
+        f"  two threads over one {r['two threads over one']:.2f} (plain arithmetic on two threads over one: {r['control']:.2f})"
+    )
+    print(
+        f"  time of a frame's step, the agent alone, over a visit's: {r[SLOWER]:.2f}, on a single table {r[SINGLE_SLOWER]:.2f}"
+    )
     share = 100 * o["outside the engine"]
-    print(f"a step {o['step [us]']:.1f} us, the engine alone {o['engine alone [us]']:.1f} us: {share:.1f} % outside it")
+    print(
+        f"a step {o['step [us]']:.1f} us, the engine alone {o['engine alone [us]']:.1f} us: {share:.1f} % outside it"
+    )
     print("tables:  " + "".join(f"{n:>9}" for n in found["sizes"]))
     print("steps/s: " + "".join(f"{x:>9,.0f}" for x in found["sizes"].values()))
     for p in found["ppo"] or ():
-        parts = ", ".join(f"{name} {100 * p[name] / p['whole']:.0f} %" for name in ("environment", "policy and bookkeeping", "update"))
+        parts = ", ".join(
+            f"{name} {100 * p[name] / p['whole']:.0f} %"
+            for name in ("environment", "policy and bookkeeping", "update")
+        )
         print(f"PPO, {p['tables']:>3} tables, one thread: {p['shots'] / p['whole']:,.0f} shots/s: {parts}")
 
 
@@ -225,11 +267,13 @@ def main():
     args = parser.options()
     snooker_env.warmup()
     found = {
-        "machine": provenance.machine(), "tables": args.tables,
+        "machine": provenance.machine(),
+        "tables": args.tables,
         "rates": rates(args.tables, args.seconds, args.repeats, args.seed),
         "outside": outside(args.tables, 4 * args.repeats, args.seed),
-        "sizes": sizes(args.seconds, args.seed), "ppo": [p for p in (ppo(args.ppo_steps, n, args.seed) for n in (16, 64)) if p],
-    }  # fmt: skip
+        "sizes": sizes(args.seconds, args.seed),
+        "ppo": [p for p in (ppo(args.ppo_steps, n, args.seed) for n in (16, 64)) if p],
+    }
     show(found)
     save_json(args.json, found)
 

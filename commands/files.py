@@ -11,7 +11,8 @@ __all__ = ["UNFINISHED", "save_figure", "writable", "write_atomic", "write_json"
 
 
 def writable(name, file):
-    """Make the folders of an output; ValueError if it could not be written. Tried: access bits are wrong for root."""
+    """Make the folders of an output; ValueError if it could not be written. Tried: access bits are wrong for
+    root."""
     if file is None:
         return
     try:

@@ -1,4 +1,5 @@
-"""How does a command of this project start and stop? It writes to any terminal, and an outside cause that stops it is reported in one line.
+"""How does a command of this project start and stop? It writes to any terminal, and an outside cause that
+stops it is reported in one line.
 
 Only the standard library is imported here: missing packages are reported before they are needed.
 """
@@ -33,7 +34,8 @@ def what_is_missing(error):
 
 
 class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import torch
-    """Around the imports of the command ``name``: one line if a package is missing, no traceback after Ctrl-C."""
+    """Around the imports of the command ``name``: one line if a package is missing, no traceback after
+    Ctrl-C."""
 
     def __init__(self, name):
         self._name = name
@@ -56,7 +58,8 @@ def any_terminal():
 
 
 def of_disk(error, file="the output"):
-    """The error of a full or failing disk in words; any other ``OSError`` is raised again. ``file``: used if the error names none."""
+    """The error of a full or failing disk in words; any other ``OSError`` is raised again. ``file``: used if
+    the error names none."""
     if error.errno not in DISK:
         raise error
     return f"{error.filename or file} cannot be written: {error.strerror}"
@@ -69,7 +72,8 @@ def _of_thread(uncaught):
 
 
 def command(name):
-    """A decorator for ``main(argv)`` of the command ``name``: outside causes end it with one line and an exit code other than 0."""
+    """A decorator for ``main(argv)`` of the command ``name``: outside causes end it with one line and an exit
+    code other than 0."""
 
     def made(main):
         @functools.wraps(main)

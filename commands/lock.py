@@ -1,4 +1,5 @@
-"""Which process owns a folder? The one that holds its lock; no process once that one has ended, however it ended."""
+"""Which process owns a folder? The one that holds its lock; no process once that one has ended, however it
+ended."""
 
 import os
 import platform
@@ -14,7 +15,8 @@ NAME = "train.lock"
 
 
 class Lock:
-    """Holds a folder until ``release`` or the end of the process. Raises ValueError, naming the holder, if another does."""
+    """Holds a folder until ``release`` or the end of the process. Raises ValueError, naming the holder, if
+    another does."""
 
     def __init__(self, folder, field="out"):
         self._path = folder / NAME
@@ -24,11 +26,14 @@ class Lock:
         except Timeout:
             raise _taken(folder, field, self._path) from None
         with suppress(OSError):  # Windows lets nobody write or read a locked file
-            self._path.write_text(f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n")
+            self._path.write_text(
+                f"process {os.getpid()} on {platform.node()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n"
+            )
         self._file = self._path.stat()
 
     def release(self):
-        """Release the folder. If it was moved, and another run has begun at its old path, that one's lock stays."""
+        """Release the folder. If it was moved, and another run has begun at its old path, that one's lock
+        stays."""
         with suppress(OSError):
             if os.path.samestat(self._file, self._path.stat()):
                 self._path.unlink()

@@ -1,4 +1,5 @@
-"""How is physics given on the command line? As PRESET or PRESET,FIELD=VALUE,... for example ``paper,mu_bb=marlow``."""
+"""How is physics given on the command line? As PRESET or PRESET,FIELD=VALUE,... for example
+``paper,mu_bb=marlow``."""
 
 from snooker_env import Physics
 from snooker_env.checks import refuse

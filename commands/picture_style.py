@@ -1,8 +1,10 @@
-"""How are the charts of this repository drawn? One page, typeface, set of sizes and palette for all that matplotlib draws.
+"""How are the charts of this repository drawn? One page, typeface, set of sizes and palette for all that
+matplotlib draws.
 
-A chart is ``WIDTH`` inches wide, which is 880 pixels where a README shows it: one inch is 100 pixels there, and the least size of a text,
-``SMALL`` points, is 11 pixels high (7.6 on a page 600 pixels wide). The page is opaque and almost white, so that a chart reads the same
-in light and dark surroundings. ``tests/pictures.py`` checks every chart: sizes, overlaps, and that nothing is cut off.
+A chart is ``WIDTH`` inches wide, which is 880 pixels where a README shows it: one inch is 100 pixels there,
+and the least size of a text, ``SMALL`` points, is 11 pixels high (7.6 on a page 600 pixels wide). The page is
+opaque and almost white, so that a chart reads the same in light and dark surroundings. ``tests/pictures.py``
+checks every chart: sizes, overlaps, and that nothing is cut off.
 """
 
 from collections.abc import Iterator
@@ -22,7 +24,15 @@ DPI = 200
 SMALL, TEXT, PANEL, TITLE = 8.0, 9.0, 10.0, 13.0
 """Sizes of text [points]: of what is least, of the rest, of a panel's title, of the chart's title."""
 PAGE, PANEL_GROUND, INK, QUIET, GRID = "#f4f5f7", "#ffffff", "#1c2230", "#596273", "#e2e5ea"
-BLUE, ORANGE, GREEN, PURPLE, SKY, AMBER, GREY = "#0072b2", "#d55e00", "#00805d", "#a64d84", "#56b4e9", "#e69f00", "#8a93a3"
+BLUE, ORANGE, GREEN, PURPLE, SKY, AMBER, GREY = (
+    "#0072b2",
+    "#d55e00",
+    "#00805d",
+    "#a64d84",
+    "#56b4e9",
+    "#e69f00",
+    "#8a93a3",
+)
 """After Okabe and Ito: they differ for colour-blind readers as well."""
 SERIES = (BLUE, ORANGE, GREEN, PURPLE, AMBER, SKY, GREY)
 HEAT, BALANCE = "YlGnBu", "PuOr_r"
@@ -31,9 +41,11 @@ FAMILY = "Inter of snooker_env"
 
 _FONTS = Path(snooker_env.render.__file__).parent / "fonts"
 _SIDES = (
-    {"xytext": (0, -8), "ha": "center", "va": "top"}, {"xytext": (8, 0), "ha": "left", "va": "center"},
-    {"xytext": (-8, 0), "ha": "right", "va": "center"}, {"xytext": (0, 8), "ha": "center", "va": "bottom"},
-)  # fmt: skip
+    {"xytext": (0, -8), "ha": "center", "va": "top"},
+    {"xytext": (8, 0), "ha": "left", "va": "center"},
+    {"xytext": (-8, 0), "ha": "right", "va": "center"},
+    {"xytext": (0, 8), "ha": "center", "va": "bottom"},
+)
 _EDGE = 0.14  # around everything on the page [inches]
 
 
@@ -52,19 +64,52 @@ def _settings() -> Any:
     from cycler import cycler
 
     return {
-        "font.family": [_typeface(), "DejaVu Sans"], "font.size": TEXT, "mathtext.fontset": "custom",
+        "font.family": [_typeface(), "DejaVu Sans"],
+        "font.size": TEXT,
+        "mathtext.fontset": "custom",
         **{f"mathtext.{style}": _typeface() for style in ("rm", "it", "bf", "sf", "tt", "cal", "bfit")},
-        "figure.facecolor": PAGE, "savefig.facecolor": PAGE, "axes.facecolor": PANEL_GROUND, "text.color": INK,
-        "axes.edgecolor": GREY, "axes.linewidth": 0.8, "axes.labelcolor": INK, "axes.labelsize": TEXT, "axes.titlesize": PANEL,
-        "axes.titleweight": "bold", "axes.titlelocation": "left", "axes.titlepad": 7.0, "axes.titlecolor": INK,
-        "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True, "grid.color": GRID,
-        "grid.linewidth": 0.8, "axes.prop_cycle": cycler(color=SERIES), "axes.formatter.use_mathtext": True,
-        "xtick.labelsize": SMALL, "ytick.labelsize": SMALL, "xtick.color": GREY, "ytick.color": GREY, "xtick.labelcolor": QUIET,
-        "ytick.labelcolor": QUIET, "xtick.major.width": 0.8, "ytick.major.width": 0.8, "xtick.minor.visible": False,
-        "legend.frameon": False, "legend.fontsize": SMALL, "legend.handlelength": 1.6, "legend.columnspacing": 1.4,
-        "legend.borderaxespad": 0.4, "lines.linewidth": 1.8, "lines.markersize": 5.0, "lines.solid_capstyle": "round",
-        "errorbar.capsize": 0.0, "figure.dpi": DPI, "savefig.dpi": DPI,
-    }  # fmt: skip
+        "figure.facecolor": PAGE,
+        "savefig.facecolor": PAGE,
+        "axes.facecolor": PANEL_GROUND,
+        "text.color": INK,
+        "axes.edgecolor": GREY,
+        "axes.linewidth": 0.8,
+        "axes.labelcolor": INK,
+        "axes.labelsize": TEXT,
+        "axes.titlesize": PANEL,
+        "axes.titleweight": "bold",
+        "axes.titlelocation": "left",
+        "axes.titlepad": 7.0,
+        "axes.titlecolor": INK,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.grid": True,
+        "axes.axisbelow": True,
+        "grid.color": GRID,
+        "grid.linewidth": 0.8,
+        "axes.prop_cycle": cycler(color=SERIES),
+        "axes.formatter.use_mathtext": True,
+        "xtick.labelsize": SMALL,
+        "ytick.labelsize": SMALL,
+        "xtick.color": GREY,
+        "ytick.color": GREY,
+        "xtick.labelcolor": QUIET,
+        "ytick.labelcolor": QUIET,
+        "xtick.major.width": 0.8,
+        "ytick.major.width": 0.8,
+        "xtick.minor.visible": False,
+        "legend.frameon": False,
+        "legend.fontsize": SMALL,
+        "legend.handlelength": 1.6,
+        "legend.columnspacing": 1.4,
+        "legend.borderaxespad": 0.4,
+        "lines.linewidth": 1.8,
+        "lines.markersize": 5.0,
+        "lines.solid_capstyle": "round",
+        "errorbar.capsize": 0.0,
+        "figure.dpi": DPI,
+        "savefig.dpi": DPI,
+    }
 
 
 @contextmanager
@@ -85,7 +130,9 @@ def drawing() -> Iterator[Any]:
         yield plt
 
 
-def page(plt: Any, height: float, title: str, note: str = "", *, foot: str = "", **grid: Any) -> tuple[Any, Any]:
+def page(
+    plt: Any, height: float, title: str, note: str = "", *, foot: str = "", **grid: Any
+) -> tuple[Any, Any]:
     """A figure with its title, a note below it, a line at the foot, and room for panels between.
 
     Parameters
@@ -108,17 +155,31 @@ def page(plt: Any, height: float, title: str, note: str = "", *, foot: str = "",
     top = _EDGE
     for text, size, weight, colour in ((title, TITLE, "bold", INK), (note, TEXT, "normal", QUIET)):
         if text:
-            figure.text(_EDGE / WIDTH, 1 - top / height, text, size=size, weight=weight, color=colour, va="top", linespacing=1.3)
+            figure.text(
+                _EDGE / WIDTH,
+                1 - top / height,
+                text,
+                size=size,
+                weight=weight,
+                color=colour,
+                va="top",
+                linespacing=1.3,
+            )
             top += size * line * (text.count("\n") + 1) + 0.02
     bottom = _EDGE
     if foot:
-        figure.text(_EDGE / WIDTH, bottom / height, foot, size=SMALL, color=QUIET, va="bottom", linespacing=1.3)
+        figure.text(
+            _EDGE / WIDTH, bottom / height, foot, size=SMALL, color=QUIET, va="bottom", linespacing=1.3
+        )
         bottom += SMALL * line * (foot.count("\n") + 1) + 0.05
     top += 0.08
     figure.get_layout_engine().set(
-        rect=(_EDGE / WIDTH, bottom / height, 1 - 2 * _EDGE / WIDTH, 1 - (top + bottom) / height), w_pad=0.12, h_pad=0.12, wspace=0.05,
+        rect=(_EDGE / WIDTH, bottom / height, 1 - 2 * _EDGE / WIDTH, 1 - (top + bottom) / height),
+        w_pad=0.12,
+        h_pad=0.12,
+        wspace=0.05,
         hspace=0.05,
-    )  # fmt: skip
+    )
     if not grid:
         return figure, None
     rows, columns = grid.pop("rows", 1), grid.pop("columns", 1)
@@ -126,7 +187,8 @@ def page(plt: Any, height: float, title: str, note: str = "", *, foot: str = "",
 
 
 def number(value: float, _position: int | None = None) -> str:
-    """A number as an axis shows it: 0.001, 0.5, 20, 1,000; a power of ten where it is smaller or greater than that.
+    """A number as an axis shows it: 0.001, 0.5, 20, 1,000; a power of ten where it is smaller or greater than
+    that.
 
     Examples
     --------
@@ -145,7 +207,8 @@ def number(value: float, _position: int | None = None) -> str:
 
 
 def log_axis(axis: Any, *, subs: tuple[float, ...] = (1.0,), decades: int = 1) -> None:
-    """Make an axis (``axes.xaxis``) logarithmic, with plain numbers at ``subs`` times each power of ten, or at every ``decades``-th."""
+    """Make an axis (``axes.xaxis``) logarithmic, with plain numbers at ``subs`` times each power of ten, or
+    at every ``decades``-th."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
     getattr(axis.axes, f"set_{axis.axis_name}scale")("log")
@@ -166,7 +229,8 @@ def colour_bar(figure: Any, shown: Any, axes: Any, label: str, ticks: Any = None
 
 
 def label_points(figure: Any, labels: list[tuple[Any, tuple[float, float], str, dict[str, Any]]]) -> None:
-    """Write labels beside points, each where it lies on no other text: below its point, else right, left or above.
+    """Write labels beside points, each where it lies on no other text: below its point, else right, left or
+    above.
 
     Parameters
     ----------
@@ -180,7 +244,11 @@ def label_points(figure: Any, labels: list[tuple[Any, tuple[float, float], str, 
     figure.canvas.draw()  # the layout is made here
     figure.set_layout_engine("none")
     renderer = figure.canvas.get_renderer()
-    placed = [text.get_window_extent(renderer) for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
+    placed = [
+        text.get_window_extent(renderer)
+        for text in figure.findobj(Text)
+        if text.get_visible() and text.get_text()
+    ]
     for axes, point, text, how in labels:
         for dx, dy, across, up in (
             (0, -8, "center", "top"),
@@ -188,13 +256,24 @@ def label_points(figure: Any, labels: list[tuple[Any, tuple[float, float], str, 
             (-8, 0, "right", "center"),
             (0, 8, "center", "bottom"),
         ):
-            note = axes.annotate(text, point, xytext=(dx, dy), textcoords="offset points", ha=across, va=up, size=SMALL, **how)
+            note = axes.annotate(
+                text, point, xytext=(dx, dy), textcoords="offset points", ha=across, va=up, size=SMALL, **how
+            )
             box = note.get_window_extent(renderer)
             if not any(box.overlaps(other) for other in placed):
                 break
             note.remove()
         else:
-            note = axes.annotate(text, point, xytext=(0, -8), textcoords="offset points", ha="center", va="top", size=SMALL, **how)
+            note = axes.annotate(
+                text,
+                point,
+                xytext=(0, -8),
+                textcoords="offset points",
+                ha="center",
+                va="top",
+                size=SMALL,
+                **how,
+            )
         placed.append(note.get_window_extent(renderer))
 
 

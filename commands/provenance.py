@@ -22,4 +22,10 @@ def provenance():
     """What computed the figures of a report: version, commit, machine in words, and versions."""
     m = machine()
     words = f"{m['cpu']}, {m['cores']} cores, {m['platform']}"
-    return {"version": m["snooker_env"], "commit": commit() or "unknown", "machine": words, "python": m["python"], "numpy": m["numpy"]}
+    return {
+        "version": m["snooker_env"],
+        "commit": commit() or "unknown",
+        "machine": words,
+        "python": m["python"],
+        "numpy": m["numpy"],
+    }

@@ -13,7 +13,8 @@ WIDTH = 100
 
 @dataclass
 class TextTable:
-    """Cells as text: ``keys`` columns say what a row is about, the first ``left`` are words, the others numbers."""
+    """Cells as text: ``keys`` columns say what a row is about, the first ``left`` are words, the others
+    numbers."""
 
     title: str
     header: list
@@ -31,7 +32,8 @@ class TextTable:
         return replace(self, header=[self.header[k] for k in columns], rows=rows, left=left)
 
     def narrow(self):
-        """The same as tables that are no wider than ``WIDTH``, each with the key columns; none if it is empty."""
+        """The same as tables that are no wider than ``WIDTH``, each with the key columns; none if it is
+        empty."""
         widths = [2 + max(len(row[k]) for row in (self.header, *self.rows)) for k in range(len(self.header))]
         groups, room = [], 0
         for k in range(self.keys, len(widths)):
@@ -69,4 +71,9 @@ def show(parts):
 def page(title, command, made, parts):
     """A Markdown page of tables and paragraphs; ``made``: with what."""
     head = [f"# {title}", "", "Made by", "", "```bash", command, "```", "", f"with {made}.", ""]
-    return "\n".join([*head, *(line for part in parts for line in (part if isinstance(part, str) else part.markdown(), ""))])
+    return "\n".join(
+        [
+            *head,
+            *(line for part in parts for line in (part if isinstance(part, str) else part.markdown(), "")),
+        ]
+    )

@@ -1,6 +1,8 @@
-"""How is the documentation built? Sphinx with furo and MyST-NB; ``python -m sphinx -W --keep-going -b html docs build/docs`` in a clone.
+"""How is the documentation built? Sphinx with furo and MyST-NB;
+``python -m sphinx -W --keep-going -b html docs build/docs`` in a clone.
 
-Everything that a page needs is served with it (MathJax too), notebooks are run while it is built, and no network is used.
+Everything that a page needs is served with it (MathJax too), notebooks are run while it is built, and no
+network is used.
 """
 
 import os
@@ -11,7 +13,8 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 sys.path.insert(0, str(ROOT / "docs"))
 os.environ["SNOOKER_ENV_QUIET"] = "1"  # what is said of compiling belongs to no page
-os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])  # for the kernels of notebooks
+# for the kernels of notebooks
+os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 
 import snooker_env  # noqa: E402 - after the path
@@ -36,7 +39,15 @@ exclude_patterns = ["_build", "_extensions", "films/README.md", "pictures/README
 suppress_warnings = ["myst-nb.lexer"]  # of notebooks, where they are not run
 
 # pages
-myst_enable_extensions = ["amsmath", "attrs_block", "attrs_inline", "colon_fence", "deflist", "dollarmath", "fieldlist"]
+myst_enable_extensions = [
+    "amsmath",
+    "attrs_block",
+    "attrs_inline",
+    "colon_fence",
+    "deflist",
+    "dollarmath",
+    "fieldlist",
+]
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
 math_number_all = False

@@ -1,10 +1,12 @@
-"""How do I fit the physics to my own measurements? A CSV file of throws, rebounds or roll-outs in; constants with intervals out.
+"""How do I fit the physics to my own measurements? A CSV file of throws, rebounds or roll-outs in; constants
+with intervals out.
 
-    python examples/fit_your_data.py throw benchmarks/data/throw_domenech2023.csv --column speed_m_s=0.8 --fix R=0.0305 e_b=0.968
-    python examples/fit_your_data.py cushion benchmarks/data/cushion_rebound.csv --fix e_c=0.98
-    python examples/fit_your_data.py cloth my_rolls.csv
+    python examples/fit_your_data.py throw benchmarks/data/throw_domenech2023.csv --column speed_m_s=0.8 --fix
+    R=0.0305 e_b=0.968 python examples/fit_your_data.py cushion benchmarks/data/cushion_rebound.csv --fix
+    e_c=0.98 python examples/fit_your_data.py cloth my_rolls.csv
 
-Needs scipy: pip install -e ".[test]". ``docs/physics/fit_your_data.md`` describes the columns and the results.
+Needs scipy: pip install -e ".[test]". ``docs/physics/fit_your_data.md`` describes the columns and the
+results.
 """
 
 import argparse
@@ -72,11 +74,14 @@ def _topspin(columns, speed, radius):
 
 
 def predict_throw(columns, physics):
-    """Throw [deg] and speed of the object ball [m/s] just after the impact, of a cue ball that moves along +x."""
+    """Throw [deg] and speed of the object ball [m/s] just after the impact, of a cue ball that moves along
+    +x."""
     cut, speed = np.radians(columns["cut_deg"]), columns["speed_m_s"]
     topspin, side = _topspin(columns, speed, physics.R), columns.get("side_rad_s", 0.0 * speed)
     after = [
-        sn.collide_balls((v, 0, 0), (0, w, s), (0, 0, 0), (0, 0, 0), (math.cos(c), math.sin(c), 0), physics)[2]
+        sn.collide_balls((v, 0, 0), (0, w, s), (0, 0, 0), (0, 0, 0), (math.cos(c), math.sin(c), 0), physics)[
+            2
+        ]
         for c, v, w, s in zip(cut, speed, topspin, side, strict=True)
     ]
     x, y, _ = np.array(after).T
@@ -84,11 +89,17 @@ def predict_throw(columns, physics):
 
 
 def predict_rebound(columns, physics):
-    """Speed [m/s] and angle from the normal [deg] just after a cushion along x; the ball comes from -y and, at an angle, from -x."""
-    angle, speed = np.radians(columns.get("incident_deg", 0.0 * columns["incident_m_s"])), columns["incident_m_s"]
+    """Speed [m/s] and angle from the normal [deg] just after a cushion along x; the ball comes from -y and,
+    at an angle, from -x."""
+    angle, speed = (
+        np.radians(columns.get("incident_deg", 0.0 * columns["incident_m_s"])),
+        columns["incident_m_s"],
+    )
     topspin, side = _topspin(columns, speed, physics.R), columns.get("side_rad_s", 0.0 * speed)
     after = [
-        sn.collide_cushion((v * math.sin(a), v * math.cos(a), 0), (-w * math.cos(a), w * math.sin(a), s), (0, 1, 0), physics)[0]
+        sn.collide_cushion(
+            (v * math.sin(a), v * math.cos(a), 0), (-w * math.cos(a), w * math.sin(a), s), (0, 1, 0), physics
+        )[0]
         for a, v, w, s in zip(angle, speed, topspin, side, strict=True)
     ]
     x, y, _ = np.array(after).T
@@ -96,12 +107,15 @@ def predict_rebound(columns, physics):
 
 
 def predict_roll_out(columns, physics):
-    """Distance [m] and time [s] to rest on the cloth: the ball slides until it rolls, then it rolls out (docs/physics/model.md)."""
+    """Distance [m] and time [s] to rest on the cloth: the ball slides until it rolls, then it rolls out
+    (docs/physics/model.md)."""
     speed = columns["speed_m_s"]
     slip = speed - physics.R * _topspin(columns, speed, physics.R)
     sliding = 2.0 * np.abs(slip) / (7.0 * physics.mu_s * physics.g)
     rolling = speed - slip * 2.0 / 7.0
-    distance = 0.5 * (speed + rolling) * sliding + rolling * np.abs(rolling) / (2.0 * physics.mu_r * physics.g)
+    distance = 0.5 * (speed + rolling) * sliding + rolling * np.abs(rolling) / (
+        2.0 * physics.mu_r * physics.g
+    )
     return {"distance_m": distance, "time_s": sliding + np.abs(rolling) / (physics.mu_r * physics.g)}
 
 
@@ -111,17 +125,27 @@ KINDS = {
         {"cut_deg": Column(0.0, 89.9), "speed_m_s": SPEED, "topspin_rad_s": SPIN, "side_rad_s": SPIN},
         {"throw_deg": Column(-45.0, 45.0, 0.5), "object_speed_m_s": Column(0.0, 20.0, 0.01)},
         {
-            "mu_bb": Constant(0.0, 1.0, (0.06,)), "a": Constant(0.0, 0.5, (0.02,)), "b": Constant(0.0, 0.5, (0.08,)),
-            "c": Constant(0.0, 20.0, (0.5, 2.0)), "e_b": Constant(0.0, 1.0, (0.92,)),
+            "mu_bb": Constant(0.0, 1.0, (0.06,)),
+            "a": Constant(0.0, 0.5, (0.02,)),
+            "b": Constant(0.0, 0.5, (0.08,)),
+            "c": Constant(0.0, 20.0, (0.5, 2.0)),
+            "e_b": Constant(0.0, 1.0, (0.92,)),
         },
         predict_throw,
     ),
     "cushion": Kind(
-        {"incident_m_s": SPEED, "incident_deg": Column(-89.0, 89.0), "topspin_rad_s": SPIN, "side_rad_s": SPIN},
+        {
+            "incident_m_s": SPEED,
+            "incident_deg": Column(-89.0, 89.0),
+            "topspin_rad_s": SPIN,
+            "side_rad_s": SPIN,
+        },
         {"rebound_m_s": Column(0.0, 20.0, 0.02), "rebound_deg": Column(-89.9, 89.9, 0.5)},
         {
-            "e_c": Constant(0.0, 1.0, (0.95,)), "e_c_knee": Constant(0.1, 10.0, (1.0, 1.5, 2.0, 2.5)),
-            "e_c_power": Constant(0.0, 0.8, (0.2,)), "mu_c": Constant(0.0, 1.0, (0.15,)),
+            "e_c": Constant(0.0, 1.0, (0.95,)),
+            "e_c_knee": Constant(0.1, 10.0, (1.0, 1.5, 2.0, 2.5)),
+            "e_c_power": Constant(0.0, 0.8, (0.2,)),
+            "mu_c": Constant(0.0, 1.0, (0.15,)),
         },
         predict_rebound,
     ),
@@ -131,19 +155,26 @@ KINDS = {
         {"mu_r": Constant(1e-4, 0.2, (0.012,)), "mu_s": Constant(0.01, 1.0, (0.2,))},
         predict_roll_out,
     ),
-}  # fmt: skip
+}
 
 
 def read(file, kind, filled=None):
-    """The columns of a CSV file as arrays. ``filled``: columns that have one value in every row. ValueError for a bad file."""
+    """The columns of a CSV file as arrays. ``filled``: columns that have one value in every row. ValueError
+    for a bad file."""
     known = {**KINDS[kind].given, **KINDS[kind].measured}
     try:
         text = Path(file).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise refuse("file", str(file), f"must be a CSV file in UTF-8 ({error})") from None
-    lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and not line.lstrip().startswith("#")]
+    lines = [
+        (n, line)
+        for n, line in enumerate(text.splitlines(), 1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
     if not lines:
-        raise refuse_what(f"{file}", "no line", f"must have a line of names ({', '.join(known)}) and then numbers")
+        raise refuse_what(
+            f"{file}", "no line", f"must have a line of names ({', '.join(known)}) and then numbers"
+        )
     names = [name.strip() for name in next(csv.reader([lines[0][1]]))]
     for name in names:
         choice(f"{file}, line {lines[0][0]}, column", name, known)
@@ -153,7 +184,9 @@ def read(file, kind, filled=None):
     for n, line in lines[1:]:
         row = next(csv.reader([line]))
         if len(row) != len(names):
-            raise refuse_what(f"{file}, line {n}", f"{len(row)} values", f"must be {len(names)}: {', '.join(names)}")
+            raise refuse_what(
+                f"{file}, line {n}", f"{len(row)} values", f"must be {len(names)}: {', '.join(names)}"
+            )
         for name, value in zip(names, row, strict=True):
             field = f"{file}, line {n}, {name}"
             try:
@@ -164,14 +197,25 @@ def read(file, kind, filled=None):
     for name, value in (filled or {}).items():
         if name in columns:
             raise refuse("--column", name, "must not be a column of the file")
-        columns[name] = [number(f"--column {name}", value, known[name].low, known[name].high)] * (len(lines) - 1)
+        columns[name] = [number(f"--column {name}", value, known[name].low, known[name].high)] * (
+            len(lines) - 1
+        )
     for name in needed(kind):
         if name not in columns:
-            raise refuse_what(f"{file}, columns", ", ".join(columns), f"must hold {name}, or --column {name}=VALUE")
+            raise refuse_what(
+                f"{file}, columns", ", ".join(columns), f"must hold {name}, or --column {name}=VALUE"
+            )
     if not any(name in columns for name in KINDS[kind].measured):
-        raise refuse_what(f"{file}, columns", ", ".join(columns), f"must hold one of {', '.join(KINDS[kind].measured)}")
+        raise refuse_what(
+            f"{file}, columns", ", ".join(columns), f"must hold one of {', '.join(KINDS[kind].measured)}"
+        )
     arrays = {name: np.array(values) for name, values in columns.items()}
-    if "throw_deg" in arrays and "side_rad_s" not in arrays and len(lines) > 1 and np.median(arrays["throw_deg"]) < 0:
+    if (
+        "throw_deg" in arrays
+        and "side_rad_s" not in arrays
+        and len(lines) > 1
+        and np.median(arrays["throw_deg"]) < 0
+    ):
         allowed = "must be positive for most rows without side: it counts towards the direction in which the cue ball moved"
         raise refuse(f"{file}, median of throw_deg", float(np.median(arrays["throw_deg"])), allowed)
     return arrays
@@ -225,7 +269,9 @@ def fit(kind, columns, preset="match", fixed=None, law="constant", bootstrap=0, 
     low, high = (np.array([getattr(what.constants[name], end) for name in names]) for end in ("low", "high"))
 
     def best(starts, *args):
-        fits = [least_squares(residuals, start, bounds=(low, high), diff_step=1e-4, args=args) for start in starts]
+        fits = [
+            least_squares(residuals, start, bounds=(low, high), diff_step=1e-4, args=args) for start in starts
+        ]
         return min(fits, key=lambda found: found.cost)
 
     grid = np.array(np.meshgrid(*(what.constants[name].starts for name in names))).reshape(len(names), -1).T
@@ -239,11 +285,14 @@ def fit(kind, columns, preset="match", fixed=None, law="constant", bootstrap=0, 
         ends = _by_covariance(found, low, high)
     apart = np.split(found.fun, len(measured))
     off = {name: part * what.measured[name].error for name, part in zip(measured, apart, strict=True)}
-    return Fit(dict(zip(names, x.tolist(), strict=True)), dict(zip(names, ends, strict=True)), off, physics(x))
+    return Fit(
+        dict(zip(names, x.tolist(), strict=True)), dict(zip(names, ends, strict=True)), off, physics(x)
+    )
 
 
 def _by_covariance(found, low, high):
-    """95 % intervals from the Jacobian, cut at the bounds; None for a constant at a bound or that the data do not determine."""
+    """95 % intervals from the Jacobian, cut at the bounds; None for a constant at a bound or that the data do
+    not determine."""
     inside = ~(np.isclose(found.x, low, atol=1e-4) | np.isclose(found.x, high, atol=1e-4))
     jacobian, freedom = found.jac[:, inside], len(found.fun) - int(inside.sum())
     lengths = np.linalg.norm(jacobian, axis=0)
@@ -268,12 +317,18 @@ def report(found, preset, fixed):
     """What is printed."""
     for name, value in found.values.items():
         ends = found.intervals[name]
-        says = f"95 %: {ends[0]:.4g} to {ends[1]:.4g}" if ends else "not determined by these data, or at the end of its range: fix it"
+        says = (
+            f"95 %: {ends[0]:.4g} to {ends[1]:.4g}"
+            if ends
+            else "not determined by these data, or at the end of its range: fix it"
+        )
         print(f"{name:10s} {value:9.4g}   {says}")
     print(f"\n{'model less measurement':24s}{'mean':>10s}{'rms':>10s}{'largest':>10s}  in row")
     for name, off in found.residuals.items():
         worst = int(np.abs(off).argmax())
-        print(f"{name:24s}{off.mean():10.3g}{np.sqrt(np.mean(off**2)):10.3g}{abs(off[worst]):10.3g}  {worst + 1}")
+        print(
+            f"{name:24s}{off.mean():10.3g}{np.sqrt(np.mean(off**2)):10.3g}{abs(off[worst]):10.3g}  {worst + 1}"
+        )
     print(f"\n{preset_line(found, preset, fixed)}")
 
 
@@ -294,11 +349,36 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(description="Fit the physics of snooker_env to measurements.")
     parser.add_argument("kind", choices=KINDS, help="what was measured")
     parser.add_argument("file", help="a CSV file")
-    parser.add_argument("--preset", default="match", help="the constants that are not fitted: paper or match [match]")
-    parser.add_argument("--fix", nargs="+", default=[], metavar="NAME=VALUE", help="fields of Physics to keep at a value of your own")
-    parser.add_argument("--column", nargs="+", default=[], metavar="NAME=VALUE", help="columns that have one value in every row")
-    parser.add_argument("--law", default="constant", choices=("constant", "marlow"), help="throw: mu_bb, or mu(s) = a + b exp(-c s)")
-    parser.add_argument("--bootstrap", type=int, default=0, metavar="N", help="intervals by N draws of the rows [0: by the covariance]")
+    parser.add_argument(
+        "--preset", default="match", help="the constants that are not fitted: paper or match [match]"
+    )
+    parser.add_argument(
+        "--fix",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="fields of Physics to keep at a value of your own",
+    )
+    parser.add_argument(
+        "--column",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="columns that have one value in every row",
+    )
+    parser.add_argument(
+        "--law",
+        default="constant",
+        choices=("constant", "marlow"),
+        help="throw: mu_bb, or mu(s) = a + b exp(-c s)",
+    )
+    parser.add_argument(
+        "--bootstrap",
+        type=int,
+        default=0,
+        metavar="N",
+        help="intervals by N draws of the rows [0: by the covariance]",
+    )
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the draws [0]")
     given = parser.parse_args(arguments)
     try:
@@ -306,8 +386,14 @@ def main(arguments=None):
         for name in filled:
             choice("--column", name, KINDS[given.kind].given)
         for name in fixed:
-            choice("--fix", name, [f.name for f in dataclasses.fields(sn.Physics)] + list("abc") * (given.law == "marlow"))
-        draws, seed = (integer(f"--{name}", getattr(given, name), 0, 100_000) for name in ("bootstrap", "seed"))
+            choice(
+                "--fix",
+                name,
+                [f.name for f in dataclasses.fields(sn.Physics)] + list("abc") * (given.law == "marlow"),
+            )
+        draws, seed = (
+            integer(f"--{name}", getattr(given, name), 0, 100_000) for name in ("bootstrap", "seed")
+        )
         columns = read(given.file, given.kind, filled)
         found = fit(given.kind, columns, given.preset, fixed, given.law, draws, seed)
     except ValueError as error:

@@ -1,8 +1,11 @@
-"""How does a player of one's own play the benchmark? A class with ``at`` and ``play``: the widest pot, the softer the nearer.
+"""How does a player of one's own play the benchmark? A class with ``at`` and ``play``: the widest pot, the
+softer the nearer.
 
-    python -m snooker_env.benchmark run SnookerBreak-v0 --agent examples.own_player:Softly --training-shots 0 --episodes 50
+    python -m snooker_env.benchmark run SnookerBreak-v0 --agent examples.own_player:Softly --training-shots 0
+    --episodes 50
 
-``at`` binds it to where it plays; ``play`` gives a stroke for each position. The same position and seed give the same one.
+``at`` binds it to where it plays; ``play`` gives a stroke for each position. The same position and seed give
+the same one.
 """
 
 import numpy as np
@@ -13,7 +16,8 @@ from snooker_env.players import Strokes
 
 
 class Softly:
-    """The widest direct pot, without spin, at a speed that grows with the way of the cue ball; else full at a ball on."""
+    """The widest direct pot, without spin, at a speed that grows with the way of the cue ball; else full at a
+    ball on."""
 
     def at(self, rules):
         """It plays alike everywhere."""

@@ -1,12 +1,13 @@
-"""How does a program play over the text protocol? It requests the state, sends strokes, and plays its visit to the end.
+"""How does a program play over the text protocol? It requests the state, sends strokes, and plays its visit
+to the end.
 
 It uses the standard library alone.
 
     python -m snooker_env.play --no-browser --layout colours      # prints an address
     python examples/play_client.py http://127.0.0.1:41234/TOKEN/
 
-The strategy is simple: the open line to a pocket with the largest tolerance, at a speed that carries the ball there; without an open line,
-full at the nearest ball on. ``docs/play/protocol.md`` describes every field.
+The strategy is simple: the open line to a pocket with the largest tolerance, at a speed that carries the ball
+there; without an open line, full at the nearest ball on. ``docs/play/protocol.md`` describes every field.
 """
 
 import argparse
@@ -19,10 +20,13 @@ import urllib.request
 
 
 def ask(address, name, fields=None):
-    """The answer to a GET, or to a POST with ``fields``. If the server refuses, the program ends with the server's message."""
+    """The answer to a GET, or to a POST with ``fields``. If the server refuses, the program ends with the
+    server's message."""
     body = None if fields is None else json.dumps(fields).encode()
     try:
-        request = urllib.request.Request(f"{address.rstrip('/')}/api/{name}", body, {"Content-Type": "application/json"})
+        request = urllib.request.Request(
+            f"{address.rstrip('/')}/api/{name}", body, {"Content-Type": "application/json"}
+        )
         with urllib.request.urlopen(request, timeout=60) as reply:
             return json.load(reply)
     except urllib.error.HTTPError as error:
@@ -37,7 +41,9 @@ def ask(address, name, fields=None):
             f"{address}: no answer ({getattr(error, 'reason', error)}); is python -m snooker_env.play running there?"
         ) from None
     except ValueError:
-        raise SystemExit(f"{address}: this is no address of python -m snooker_env.play, as http://127.0.0.1:41234/TOKEN/") from None
+        raise SystemExit(
+            f"{address}: this is no address of python -m snooker_env.play, as http://127.0.0.1:41234/TOKEN/"
+        ) from None
 
 
 def chosen(state):
@@ -46,7 +52,10 @@ def chosen(state):
     if ways:
         best = max(ways, key=lambda line: line["tolerance"])
         run = best["to_ball"] + 0.6 + best["to_pocket"] / max(0.2, math.cos(best["cut"])) ** 2
-        return {"speed": min(6.0, 0.6 + 1.1 * math.sqrt(run)), "aim_at": {"pot": [best["ball"], best["pocket"]]}}
+        return {
+            "speed": min(6.0, 0.6 + 1.1 * math.sqrt(run)),
+            "aim_at": {"pot": [best["ball"], best["pocket"]]},
+        }
     x, y = state["positions"]["cue"]
     places = [state["positions"][name] for name in state["balls_on"]]
     bx, by = min(places, key=lambda place: math.dist(place, (x, y)))
@@ -55,7 +64,9 @@ def chosen(state):
 
 def main(argv=None):
     """Play one visit of the player whose turn it is, and print its strokes."""
-    parser = argparse.ArgumentParser(description="Play a visit over the text protocol of python -m snooker_env.play.")
+    parser = argparse.ArgumentParser(
+        description="Play a visit over the text protocol of python -m snooker_env.play."
+    )
     parser.add_argument("address", help="the address that the server printed")
     parser.add_argument("--text", action="store_true", help="print the table in words before each stroke")
     given = parser.parse_args(argv)

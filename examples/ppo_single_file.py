@@ -1,10 +1,12 @@
-"""How is PPO written in one file? Masked PPO on the native vector environment, top to bottom, with Gymnasium, NumPy and PyTorch alone.
+"""How is PPO written in one file? Masked PPO on the native vector environment, top to bottom, with Gymnasium,
+NumPy and PyTorch alone.
 
     python -m examples.ppo_single_file --steps 300000 --out runs/single.npz
     python -m agents.evaluate --agent runs/single.npz
 
-The masks come from ``envs.call("action_masks")``. The tables are made with ``autoreset_mode="SameStep"``: the observation after the end of
-a visit is the first one of the next visit, so that every step is a shot, and only the value after the end must be left out.
+The masks come from ``envs.call("action_masks")``. The tables are made with ``autoreset_mode="SameStep"``: the
+observation after the end of a visit is the first one of the next visit, so that every step is a shot, and
+only the value after the end must be left out.
 """
 
 import argparse
@@ -37,9 +39,12 @@ class Agent(nn.Module):
         self.critic = mlp(numbers, 256, 256, 1)
 
     def policy(self, observations, masks):
-        """The distribution of the available choices. The least float in place of -inf: 0 times it is 0, and not NaN, in the entropy."""
+        """The distribution of the available choices. The least float in place of -inf: 0 times it is 0, and
+        not NaN, in the entropy."""
         scores = self.actor(observations)
-        return Categorical(logits=scores.masked_fill(~masks, torch.finfo(scores.dtype).min), validate_args=False)
+        return Categorical(
+            logits=scores.masked_fill(~masks, torch.finfo(scores.dtype).min), validate_args=False
+        )
 
     def value(self, observations):
         """The expected sum of discounted rewards."""
@@ -55,7 +60,8 @@ def mlp(*sizes):
 
 
 def advantages_of(rewards, values, ends, last):
-    """Generalised advantages: (steps, tables) each; ``ends``: the visit ended in this step; ``last``: the values after the last step."""
+    """Generalised advantages: (steps, tables) each; ``ends``: the visit ended in this step; ``last``: the
+    values after the last step."""
     found, running = torch.zeros_like(rewards), torch.zeros_like(last)
     for t in reversed(range(len(rewards))):
         goes_on = 1.0 - ends[t]
@@ -76,9 +82,13 @@ def save(path, actor, about):
 def main(argv=None):
     """Train; returns the mean points of the last 1,000 visits."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--steps", type=int, default=300_000, help="shots, rounded up to whole rollouts [300000]")
+    parser.add_argument(
+        "--steps", type=int, default=300_000, help="shots, rounded up to whole rollouts [300000]"
+    )
     parser.add_argument("--seed", type=int, default=0, help="of tables, weights and exploration [0]")
-    parser.add_argument("--noise", default="professional", choices=tuple(LEVELS), help="execution noise [professional]")
+    parser.add_argument(
+        "--noise", default="professional", choices=tuple(LEVELS), help="execution noise [professional]"
+    )
     parser.add_argument("--out", default="policy.npz", help="where the policy is written [policy.npz]")
     given = parser.parse_args(argv)
     if given.steps < 1:
@@ -88,9 +98,13 @@ def main(argv=None):
     torch.set_num_threads(1)
 
     envs = gymnasium.make_vec(
-        "Snooker-v0", num_envs=TABLES, vectorization_mode="vector_entry_point", autoreset_mode="SameStep", action="discrete",
+        "Snooker-v0",
+        num_envs=TABLES,
+        vectorization_mode="vector_entry_point",
+        autoreset_mode="SameStep",
+        action="discrete",
         noise=given.noise,
-    )  # fmt: skip
+    )
     envs = RecordEpisodeStatistics(envs, buffer_length=1000)
     numbers, choices = envs.single_observation_space.shape[0], int(envs.single_action_space.n)
     agent = Agent(numbers, choices)
@@ -139,11 +153,21 @@ def main(argv=None):
                 optimiser.step()
 
         points = float(np.mean(envs.return_queue))
-        print(f"{played:,} shots, {points:.2f} points a visit, {played / (time.perf_counter() - began):.0f} shots/s", flush=True)
+        print(
+            f"{played:,} shots, {points:.2f} points a visit, {played / (time.perf_counter() - began):.0f} shots/s",
+            flush=True,
+        )
 
     envs.close()
     options = {"noise": given.noise, "layout": "opened"}
-    about = {"trainer": "single file", "activation": "tanh", "shots": played, "seed": given.seed, "gamma": GAMMA, "env_options": options}
+    about = {
+        "trainer": "single file",
+        "activation": "tanh",
+        "shots": played,
+        "seed": given.seed,
+        "gamma": GAMMA,
+        "env_options": options,
+    }
     save(given.out, agent.actor, about)
     return points
 

@@ -1,11 +1,13 @@
-"""How does TorchRL train on this environment? PPO in one file: its collector, advantage and loss on the native vector environment.
+"""How does TorchRL train on this environment? PPO in one file: its collector, advantage and loss on the
+native vector environment.
 
     pip install -e ".[torchrl]"
     python -m examples.ppo_torchrl --steps 300000 --out runs/torchrl.npz
     python -m agents.evaluate --agent runs/torchrl.npz
 
-``observation="masked"`` gives the masks that ``MaskedCategorical`` reads. TorchRL takes a vector environment only with
-``autoreset_mode="SameStep"``: it keeps the first observation of the next visit and puts ``final_obs`` in its place.
+``observation="masked"`` gives the masks that ``MaskedCategorical`` reads. TorchRL takes a vector environment
+only with ``autoreset_mode="SameStep"``: it keeps the first observation of the next visit and puts
+``final_obs`` in its place.
 """
 
 import argparse
@@ -42,11 +44,17 @@ def mlp(*sizes):
 
 
 def tables(noise, seed):
-    """The tables as an environment of TorchRL: int8 masks become bool, and ``episode_reward`` counts the points of the visit."""
+    """The tables as an environment of TorchRL: int8 masks become bool, and ``episode_reward`` counts the
+    points of the visit."""
     envs = gymnasium.make_vec(
-        "snooker_env:Snooker-v0", num_envs=TABLES, vectorization_mode="vector_entry_point", autoreset_mode="SameStep", action="discrete",
-        observation="masked", noise=noise,
-    )  # fmt: skip
+        "snooker_env:Snooker-v0",
+        num_envs=TABLES,
+        vectorization_mode="vector_entry_point",
+        autoreset_mode="SameStep",
+        action="discrete",
+        observation="masked",
+        noise=noise,
+    )
     made = GymWrapper(envs, categorical_action_encoding=True)
     made.append_transform(RewardSum())
     made.append_transform(DTypeCastTransform(torch.int8, torch.bool, in_keys=["action_mask"]))
@@ -65,9 +73,13 @@ def save(path, actor, about):
 def main(argv=None):
     """Train; returns the mean points of the visits of the last rollout."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--steps", type=int, default=300_000, help="shots, rounded up to whole rollouts [300000]")
+    parser.add_argument(
+        "--steps", type=int, default=300_000, help="shots, rounded up to whole rollouts [300000]"
+    )
     parser.add_argument("--seed", type=int, default=0, help="of tables, weights and exploration [0]")
-    parser.add_argument("--noise", default="professional", choices=tuple(LEVELS), help="execution noise [professional]")
+    parser.add_argument(
+        "--noise", default="professional", choices=tuple(LEVELS), help="execution noise [professional]"
+    )
     parser.add_argument("--out", default="policy.npz", help="where the policy is written [policy.npz]")
     given = parser.parse_args(argv)
     if given.steps < 1:
@@ -77,23 +89,40 @@ def main(argv=None):
     torch.set_num_threads(1)
 
     envs = tables(given.noise, given.seed)
-    numbers, choices = envs.observation_spec["observations"].shape[-1], envs.observation_spec["action_mask"].shape[-1]
+    numbers, choices = (
+        envs.observation_spec["observations"].shape[-1],
+        envs.observation_spec["action_mask"].shape[-1],
+    )
     network, critic = mlp(numbers, 256, 256, choices), mlp(numbers, 256, 256, 1)
     actor = ProbabilisticActor(
-        TensorDictModule(network, ["observations"], ["logits"]), in_keys={"logits": "logits", "mask": "action_mask"}, out_keys=["action"],
-        distribution_class=MaskedCategorical, distribution_kwargs={"neg_inf": torch.finfo(torch.float32).min}, return_log_prob=True,
-    )  # fmt: skip
+        TensorDictModule(network, ["observations"], ["logits"]),
+        in_keys={"logits": "logits", "mask": "action_mask"},
+        out_keys=["action"],
+        distribution_class=MaskedCategorical,
+        distribution_kwargs={"neg_inf": torch.finfo(torch.float32).min},
+        return_log_prob=True,
+    )
     value = ValueOperator(critic, in_keys=["observations"])
     advantage = GAE(gamma=GAMMA, lmbda=LAMBDA, value_network=value, average_gae=False)
     loss = ClipPPOLoss(
-        actor, value, clip_epsilon=CLIP, entropy_bonus=True, entropy_coeff=ENTROPY, critic_coeff=VALUE, loss_critic_type="l2",
+        actor,
+        value,
+        clip_epsilon=CLIP,
+        entropy_bonus=True,
+        entropy_coeff=ENTROPY,
+        critic_coeff=VALUE,
+        loss_critic_type="l2",
         normalize_advantage=True,
-    )  # fmt: skip
+    )
     optimiser = torch.optim.Adam(loss.parameters(), lr=LEARNING_RATE)
 
     updates, played, points, began = -(-given.steps // (STEPS * TABLES)), 0, 0.0, time.perf_counter()
     collector = Collector(
-        envs, actor, frames_per_batch=STEPS * TABLES, total_frames=updates * STEPS * TABLES, auto_register_policy_transforms=True
+        envs,
+        actor,
+        frames_per_batch=STEPS * TABLES,
+        total_frames=updates * STEPS * TABLES,
+        auto_register_policy_transforms=True,
     )
     for update, rollout in enumerate(collector):
         for group in optimiser.param_groups:  # falls to nearly 0
@@ -112,11 +141,21 @@ def main(argv=None):
         played += len(rows)
         ended = rows["next", "done"].squeeze(-1)
         points = rows["next", "episode_reward"][ended].mean().item()
-        print(f"{played:,} shots, {points:.2f} points a visit, {played / (time.perf_counter() - began):.0f} shots/s", flush=True)
+        print(
+            f"{played:,} shots, {points:.2f} points a visit, {played / (time.perf_counter() - began):.0f} shots/s",
+            flush=True,
+        )
 
     collector.shutdown()
     options = {"noise": given.noise, "layout": "opened"}
-    about = {"trainer": "TorchRL", "activation": "tanh", "shots": played, "seed": given.seed, "gamma": GAMMA, "env_options": options}
+    about = {
+        "trainer": "TorchRL",
+        "activation": "tanh",
+        "shots": played,
+        "seed": given.seed,
+        "gamma": GAMMA,
+        "env_options": options,
+    }
     save(given.out, network, about)
     return points
 

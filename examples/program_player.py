@@ -1,10 +1,12 @@
-"""How does an external program play the benchmark? It reads a state a line and writes a stroke a line: standard library alone.
+"""How does an external program play the benchmark? It reads a state a line and writes a stroke a line:
+standard library alone.
 
     python -m snooker_env.benchmark run SnookerBreak-v0 --agent program:"python examples/program_player.py" \\
         --training-shots 0 --simulated-shots 0 --episodes 20
 
-The strategy is the simplest: of the open lines to pockets the one with the most room, at a speed that carries the ball there; without one,
-full at the nearest ball on. The protocol page of the documentation (docs/play/protocol.md) describes every field.
+The strategy is the simplest: of the open lines to pockets the one with the most room, at a speed that carries
+the ball there; without one, full at the nearest ball on. The protocol page of the documentation
+(docs/play/protocol.md) describes every field.
 """
 
 import json

@@ -1,11 +1,13 @@
-"""How does an agent learn to play frames from itself alone? MaskablePPO on native tables, against a pool of its past selves.
+"""How does an agent learn to play frames from itself alone? MaskablePPO on native tables, against a pool of
+its past selves.
 
     pip install -e ".[train]"
     python -m examples.self_play --out runs/self_play        # trains, then judges 1,000 frames against each built-in opponent
     python -m examples.self_play --out runs/self_play        # the same command continues an interrupted run, bit for bit
 
-A choice is one of 540: a pot, a speed, a side and a top; without a direct pot another line of the cue ball stands for it. The networks are
-those of ``train.py`` (``agents.learning.networks``). The reward is the growth of the lead. The built-in opponents are not trained against.
+A choice is one of 540: a pot, a speed, a side and a top; without a direct pot another line of the cue ball
+stands for it. The networks are those of ``train.py`` (``agents.learning.networks``). The reward is the growth
+of the lead. The built-in opponents are not trained against.
 """
 
 import argparse
@@ -33,10 +35,26 @@ from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.planning.learned.pot_view import with_pots
 from snooker_env.progress import Progress
 from snooker_env.sb3 import SnookerVecEnv
-from snooker_env.tasks import CHOICES, OBSERVATION_SIZE, SIDES, SPEEDS, TOPS, OpponentPool, choice_of, observation_space
+from snooker_env.tasks import (
+    CHOICES,
+    OBSERVATION_SIZE,
+    SIDES,
+    SPEEDS,
+    TOPS,
+    OpponentPool,
+    choice_of,
+    observation_space,
+)
 
 GAME: dict[str, Any] = {"task": "frame", "action": "discrete", "noise": "professional", "reward": "points"}
-LEARNING: dict[str, Any] = {"n_steps": 64, "n_epochs": 2, "gamma": 0.95, "gae_lambda": 0.5, "vf_coef": 0.01, "ent_coef": 0.003}
+LEARNING: dict[str, Any] = {
+    "n_steps": 64,
+    "n_epochs": 2,
+    "gamma": 0.95,
+    "gae_lambda": 0.5,
+    "vf_coef": 0.01,
+    "ent_coef": 0.003,
+}
 """As ``agents/hyperparams/ppo_mask.yml``, which gives the reasons."""
 SELVES = 20
 """Size of the pool at the end: one more past self for every twentieth of the shots."""
@@ -44,7 +62,8 @@ MODEL = Path(__file__).with_suffix(".pt")
 
 
 def view(observations):
-    """What the network reads: the table and its four widest pots; without a pot, the way to the nearest ball on as the first."""
+    """What the network reads: the table and its four widest pots; without a pot, the way to the nearest ball
+    on as the first."""
     shown = with_pots(observations[:, :OBSERVATION_SIZE])
     balls = shown[:, :110].reshape(-1, 22, 5)  # x, y, on the table, value, on
     way = (balls[:, 1:, :2] - balls[:, :1, :2]) * (HALF_WIDTH, HALF_LENGTH)
@@ -81,12 +100,19 @@ class SelfPlayed:
 
     def act(self, observations, masks, seeds):
         """The most probable choice on each table."""
-        return self.policy.predict(observations[:, :OBSERVATION_SIZE], action_masks=masks, deterministic=True)[0]
+        return self.policy.predict(
+            observations[:, :OBSERVATION_SIZE], action_masks=masks, deterministic=True
+        )[0]
 
 
 def weights(policy):
     """A copy of the weights of a policy."""
-    return {name: part.clone() for name, part in policy.state_dict().items() if not name.startswith(("pi_", "vf_"))}  # the same again
+    # the same again
+    return {
+        name: part.clone()
+        for name, part in policy.state_dict().items()
+        if not name.startswith(("pi_", "vf_"))
+    }
 
 
 def load(policy, given):
@@ -95,7 +121,8 @@ def load(policy, given):
 
 
 def policy_of(given):
-    """A policy with these weights, for the entries of the observation that frames share with visits: the network reads no others."""
+    """A policy with these weights, for the entries of the observation that frames share with visits: the
+    network reads no others."""
     policy = FramePolicy(observation_space("flat"), Discrete(CHOICES), lambda _: 0.0)
     load(policy, given)
     return policy
@@ -113,18 +140,25 @@ class PastSelf:
 
 
 def add(pool, given):
-    """Add the self with these weights to the pool. The newest plays half of the frames that begin now; the others share the rest."""
+    """Add the self with these weights to the pool. The newest plays half of the frames that begin now; the
+    others share the rest."""
     for k in range(len(pool.members)):
         pool.set_weight(k, 1.0)
     pool.add(PastSelf(given), max(1, len(pool.members)))
 
 
 def judge(policy, opponent, frames, threads):
-    """Frames won against a built-in opponent by the most probable choices. The agent breaks in every other frame."""
+    """Frames won against a built-in opponent by the most probable choices. The agent breaks in every other
+    frame."""
     tables = snooker_env.SnookerVectorEnv(frames, opponent=opponent, threads=threads, **GAME)
     breaker = np.arange(frames) % 2
     observations, _ = tables.reset(seed=10**9, options={"breaker": breaker})
-    going, won, lead, strokes = np.ones(frames, bool), np.zeros(frames, int), np.zeros(frames), np.zeros(frames)
+    going, won, lead, strokes = (
+        np.ones(frames, bool),
+        np.zeros(frames, int),
+        np.zeros(frames),
+        np.zeros(frames),
+    )
     while going.any():
         choices, _ = policy.predict(observations, action_masks=tables.action_masks(), deterministic=True)
         observations, _, terminated, truncated, info = tables.step(choices)
@@ -133,38 +167,59 @@ def judge(policy, opponent, frames, threads):
         strokes[ended], going = info["strokes"][ended], going & ~ended
     tables.close()
     return {
-        "frames": frames, "won": won.mean(), "interval": wilson(won.sum(), frames), "won_breaking": won[breaker == 0].mean(),
-        "won_otherwise": won[breaker == 1].mean(), "lead": lead.mean(), "strokes": strokes.mean(),
-    }  # fmt: skip
+        "frames": frames,
+        "won": won.mean(),
+        "interval": wilson(won.sum(), frames),
+        "won_breaking": won[breaker == 0].mean(),
+        "won_otherwise": won[breaker == 1].mean(),
+        "lead": lead.mean(),
+        "strokes": strokes.mean(),
+    }
 
 
 def wilson(won, n, z=1.96):
     """The 95 % interval of a share [Wilson 1927]."""
-    middle, half = (won + z * z / 2) / (n + z * z), z * math.sqrt(won * (n - won) / n + z * z / 4) / (n + z * z)
+    middle, half = (
+        (won + z * z / 2) / (n + z * z),
+        z * math.sqrt(won * (n - won) / n + z * z / 4) / (n + z * z),
+    )
     return middle - half, middle + half
 
 
 class Softly:
-    """For comparison: the widest pot at 2.3 m/s, whatever the table looks like. The environment solves the aim for it, too."""
+    """For comparison: the widest pot at 2.3 m/s, whatever the table looks like. The environment solves the
+    aim for it, too."""
 
     def predict(self, observations, action_masks, deterministic):
         """The same choice on each table."""
-        return np.full(len(observations), choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))), None
+        return np.full(
+            len(observations), choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))
+        ), None
 
 
 class Run(BaseCallback):
-    """Between two rollouts, from time to time: the pool grows, some frames are judged, and everything is saved."""
+    """Between two rollouts, from time to time: the pool grows, some frames are judged, and everything is
+    saved."""
 
     def __init__(self, args, pool, curve, seconds, progress):
         super().__init__()
-        self.args, self.pool, self.curve, self.progress, self.began = args, pool, curve, progress, time.perf_counter() - seconds
+        self.args, self.pool, self.curve, self.progress, self.began = (
+            args,
+            pool,
+            curve,
+            progress,
+            time.perf_counter() - seconds,
+        )
 
     def _on_rollout_start(self):
         policy, shots, args = self.model.policy, self.num_timesteps, self.args
         if not self.curve or shots - self.curve[-1]["shots"] >= args.shots / SELVES:
             if self.curve:
                 add(self.pool, weights(policy))
-            won = {name: judge(policy, name, args.checked, args.threads)["won"] for name in ("random", "ghost_ball")}
+            won = {
+                name: judge(policy, name, args.checked, args.threads)["won"]
+                for name in ("random", "ghost_ball")
+            }
             self.curve.append({"shots": shots, "seconds": round(time.perf_counter() - self.began), **won})
             self.save()
 
@@ -172,11 +227,16 @@ class Run(BaseCallback):
         """Write the checkpoint: between two rollouts it loses nothing."""
         policy, args = self.model.policy, self.args
         state = {
-            "shots": self.num_timesteps, "policy": weights(policy), "optimizer": policy.optimizer.state_dict(),
+            "shots": self.num_timesteps,
+            "policy": weights(policy),
+            "optimizer": policy.optimizer.state_dict(),
             "pool": [past.weights for past in self.pool.members],
-            "tables": self.training_env.env_method("get_state"), "random": (np.random.get_state(), torch.get_rng_state()),  # noqa: NPY002
-            "curve": self.curve, "seconds": time.perf_counter() - self.began, "asked": (args.shots, args.tables, args.seed),
-        }  # fmt: skip
+            "tables": self.training_env.env_method("get_state"),
+            "random": (np.random.get_state(), torch.get_rng_state()),  # noqa: NPY002
+            "curve": self.curve,
+            "seconds": time.perf_counter() - self.began,
+            "asked": (args.shots, args.tables, args.seed),
+        }
         write_atomic(args.out / "checkpoint.pkl", pickle.dumps(state))
 
     def _on_step(self):
@@ -190,13 +250,21 @@ def train(args):
     file = args.out / "checkpoint.pkl"
     state = pickle.loads(file.read_bytes()) if file.is_file() else None
     if state and state["asked"] != (args.shots, args.tables, args.seed):
-        raise SystemExit(f"{file} was made with --shots, --tables and --seed {state['asked']}: give these, or another --out")
+        raise SystemExit(
+            f"{file} was made with --shots, --tables and --seed {state['asked']}: give these, or another --out"
+        )
     pool = OpponentPool()
     tables = SnookerVecEnv(args.tables, opponent=pool, threads=args.threads, **GAME)
     rollout = args.tables * LEARNING["n_steps"]
     rate = LinearSchedule(args.rate, 1e-5, 1.0)
     model = MaskablePPO(
-        FramePolicy, tables, seed=None if state else args.seed, device="cpu", batch_size=min(2048, rollout), learning_rate=rate, **LEARNING
+        FramePolicy,
+        tables,
+        seed=None if state else args.seed,
+        device="cpu",
+        batch_size=min(2048, rollout),
+        learning_rate=rate,
+        **LEARNING,
     )
     for past in state["pool"] if state else [weights(model.policy)]:
         add(pool, past)
@@ -217,19 +285,38 @@ def train(args):
 
 def main(argv=None):
     """Train, judge, write results.json and the weights."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--shots", type=int, default=800_000, help="the agent's shots [800000: about 10 minutes on one idle core]")
-    parser.add_argument("--frames", type=int, default=1000, help="frames to judge against each opponent [1000]")
-    parser.add_argument("--checked", type=int, default=200, help="frames for each point of the learning curve [200]")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "--shots",
+        type=int,
+        default=800_000,
+        help="the agent's shots [800000: about 10 minutes on one idle core]",
+    )
+    parser.add_argument(
+        "--frames", type=int, default=1000, help="frames to judge against each opponent [1000]"
+    )
+    parser.add_argument(
+        "--checked", type=int, default=200, help="frames for each point of the learning curve [200]"
+    )
     parser.add_argument("--tables", type=int, default=256, help="tables side by side [256]")
-    parser.add_argument("--rate", type=float, default=2e-3, help="learning rate at the beginning; it falls to nearly 0 [0.002]")
+    parser.add_argument(
+        "--rate",
+        type=float,
+        default=2e-3,
+        help="learning rate at the beginning; it falls to nearly 0 [0.002]",
+    )
     parser.add_argument("--threads", type=int, help="threads of the tables [all processors]")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--out", type=Path, default=Path("runs", "self_play"), help="folder of the run [runs/self_play]")
+    parser.add_argument(
+        "--out", type=Path, default=Path("runs", "self_play"), help="folder of the run [runs/self_play]"
+    )
     args = parser.parse_args(argv)
     args.out.mkdir(parents=True, exist_ok=True)
     torch.set_num_threads(1)
-    torch.distributions.Distribution.set_default_validate_args(False)  # these checks cost a twentieth of the time
+    # these checks cost a twentieth of the time
+    torch.distributions.Distribution.set_default_validate_args(False)
     model, curve, seconds = train(args)
     judged = {
         name: {other: judge(policy, other, args.frames, args.threads) for other in ("random", "ghost_ball")}
@@ -238,13 +325,25 @@ def main(argv=None):
     for name, against in judged.items():
         for other, found in against.items():
             share, (low, high) = found["won"], found["interval"]
-            print(f"{name}: won {share:.1%} [{low:.1%}, {high:.1%}] of {args.frames} frames against {other}, mean lead {found['lead']:.1f}")
+            print(
+                f"{name}: won {share:.1%} [{low:.1%}, {high:.1%}] of {args.frames} frames against {other}, mean lead {found['lead']:.1f}"
+            )
     command = ["python", "-m", "examples.self_play", *(sys.argv[1:] if argv is None else argv)]
     results = {
-        "command": shlex.join(command), "shots": model.num_timesteps, "seconds": round(seconds), "judged": judged, "curve": curve,
-        "game": GAME, "learning": LEARNING | {"rate": args.rate, "tables": args.tables, "selves": SELVES, "seed": args.seed},
-        "versions": {"snooker_env": snooker_env.__version__, "torch": torch.__version__, "python": platform.python_version()},
-    }  # fmt: skip
+        "command": shlex.join(command),
+        "shots": model.num_timesteps,
+        "seconds": round(seconds),
+        "judged": judged,
+        "curve": curve,
+        "game": GAME,
+        "learning": LEARNING
+        | {"rate": args.rate, "tables": args.tables, "selves": SELVES, "seed": args.seed},
+        "versions": {
+            "snooker_env": snooker_env.__version__,
+            "torch": torch.__version__,
+            "python": platform.python_version(),
+        },
+    }
     file = io.BytesIO()
     torch.save(weights(model.policy), file)
     write_atomic(args.out / "weights.pt", file.getvalue())

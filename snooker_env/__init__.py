@@ -1,6 +1,8 @@
-"""snooker_env: whole snooker shots, frictional impacts, and the Gymnasium environment ``Snooker-v0`` built on them.
+"""snooker_env: whole snooker shots, frictional impacts, and the Gymnasium environment ``Snooker-v0`` built on
+them.
 
-The public names are those in ``__all__`` of this package and of these modules. Everything else may change in any version:
+The public names are those in ``__all__`` of this package and of these modules. Everything else may change in
+any version:
 
 * ``snooker_env.planning``: strokes played on copies of positions, and the geometry that finds them
 * ``snooker_env.players``: functions of positions and a seed; the only place where a name becomes one
@@ -8,7 +10,8 @@ The public names are those in ``__all__`` of this package and of these modules. 
 * ``snooker_env.geometry``: where everything on a table is, and how large
 * ``snooker_env.game``: balls, values, balls on, layouts and the tables that they deal
 * ``snooker_env.tasks``: what actions, observations and execution errors mean, in numbers
-* ``snooker_env.kernels``: for your own kernels: how they are compiled, and the inner kernels that they may call
+* ``snooker_env.kernels``: for your own kernels: how they are compiled, and the inner kernels that they may
+  call
 * ``snooker_env.checks``: reporting bad input as the package does
 * ``snooker_env.progress``: how far a long command is, for your own commands too
 * ``snooker_env.render``: the scene of a table, and its pictures
@@ -49,18 +52,51 @@ if _typing.TYPE_CHECKING:
 __version__ = "0.3.0.dev0"
 
 __all__ = [
-    "POCKETS", "EventKind", "MatchVectorEnv", "Options", "Physics", "Planner", "Pocket", "Position",
-    "Positions", "RecordReplay", "Replay", "Shot", "ShotBatch", "SimulationError", "SnookerEnv",
-    "SnookerVectorEnv", "Table", "advise", "collide_balls", "collide_cushion", "match_env", "planning",
-    "player", "players", "replay", "simulate", "simulate_batch", "strike", "warmup",
-]  # fmt: skip
+    "POCKETS",
+    "EventKind",
+    "MatchVectorEnv",
+    "Options",
+    "Physics",
+    "Planner",
+    "Pocket",
+    "Position",
+    "Positions",
+    "RecordReplay",
+    "Replay",
+    "Shot",
+    "ShotBatch",
+    "SimulationError",
+    "SnookerEnv",
+    "SnookerVectorEnv",
+    "Table",
+    "advise",
+    "collide_balls",
+    "collide_cushion",
+    "match_env",
+    "planning",
+    "player",
+    "players",
+    "replay",
+    "simulate",
+    "simulate_batch",
+    "strike",
+    "warmup",
+]
 
 _LATER = {
     "MatchVectorEnv": "envs.match_vector",
-    "Options": "tasks.options", "SnookerEnv": "envs.snooker", "SnookerVectorEnv": "envs.vector", "Planner": "planning",
-    "Position": "planning", "Positions": "planning", "RecordReplay": "replays", "Replay": "replays", "replay": "replays",
-    "advise": "advice", "player": "players",
-}  # fmt: skip
+    "Options": "tasks.options",
+    "SnookerEnv": "envs.snooker",
+    "SnookerVectorEnv": "envs.vector",
+    "Planner": "planning",
+    "Position": "planning",
+    "Positions": "planning",
+    "RecordReplay": "replays",
+    "Replay": "replays",
+    "replay": "replays",
+    "advise": "advice",
+    "player": "players",
+}
 """Modules of the names that are imported at their first use: simulating shots alone needs no environment."""
 
 _register(_gymnasium)

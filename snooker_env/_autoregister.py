@@ -1,9 +1,11 @@
-"""How does ``gymnasium.make("Snooker-v0")`` work without importing snooker_env? The ids are registered as soon as Gymnasium is imported.
+"""How does ``gymnasium.make("Snooker-v0")`` work without importing snooker_env? The ids are registered as
+soon as Gymnasium is imported.
 
-Gymnasium 1.x reads no entry points of other packages, and many worker processes import nothing but Gymnasium. So an installation holds
-this file beside the package, as ``_snooker_env_autoregister.py``, and a ``.pth`` file whose one line calls its ``wait`` when an interpreter
-starts. That only puts a finder into ``sys.meta_path``, which steps aside once Gymnasium's registration is imported; snooker_env itself
-and numba are imported when an environment is made. ``SNOOKER_ENV_AUTOREGISTER=0`` switches it off.
+Gymnasium 1.x reads no entry points of other packages, and many worker processes import nothing but Gymnasium.
+So an installation holds this file beside the package, as ``_snooker_env_autoregister.py``, and a ``.pth``
+file whose one line calls its ``wait`` when an interpreter starts. That only puts a finder into
+``sys.meta_path``, which steps aside once Gymnasium's registration is imported; snooker_env itself and numba
+are imported when an environment is made. ``SNOOKER_ENV_AUTOREGISTER=0`` switches it off.
 """
 
 import os
@@ -13,7 +15,8 @@ _REGISTRATION = "gymnasium.envs.registration"
 
 
 def _register(registration):
-    """What ``_registration.py`` of the package does, without importing the package. Gymnasium must work whatever happens here."""
+    """What ``_registration.py`` of the package does, without importing the package. Gymnasium must work
+    whatever happens here."""
     from importlib import util  # not at the top: interpreters that never import Gymnasium do not pay for it
 
     try:
@@ -26,14 +29,18 @@ def _register(registration):
             exec(compile(file.read(), path, "exec"), names)
         names["register"](registration)
     except Exception as error:
-        print(f"snooker_env: its environments are not registered: {type(error).__name__}: {error}", file=sys.stderr)
+        print(
+            f"snooker_env: its environments are not registered: {type(error).__name__}: {error}",
+            file=sys.stderr,
+        )
 
 
 class _Finder:
     """Waits for the import of Gymnasium's registration."""
 
     def find_spec(self, name, path=None, target=None):
-        """The module's own spec, its loader extended to register the ids at the end; None for all other modules."""
+        """The module's own spec, its loader extended to register the ids at the end; None for all other
+        modules."""
         if name != _REGISTRATION:
             return None
         sys.meta_path.remove(self)
@@ -57,5 +64,6 @@ def wait():
         return
     if _REGISTRATION in sys.modules:
         _register(sys.modules[_REGISTRATION])
-    elif not any(isinstance(finder, _Finder) for finder in sys.meta_path):  # Python may read a .pth file twice
+    # Python may read a .pth file twice
+    elif not any(isinstance(finder, _Finder) for finder in sys.meta_path):
         sys.meta_path.insert(0, _Finder())

@@ -1,12 +1,16 @@
-"""Where is machine code kept, and which of it is loaded? In a folder of the user's own; nothing of others, nothing old, nothing damaged.
+"""Where is machine code kept, and which of it is loaded? In a folder of the user's own; nothing of others,
+nothing old, nothing damaged.
 
-* The files are pickles: whoever can write there can run code here. So the folders are made for the user alone, and a folder that belongs
-  to somebody else, or that others can write to, is not used. root is trusted, because it can do anything anyway.
-* numba notices a change only in the file that *defines* a cached function. After a change of a callee or a constant in another file it
-  would silently run old machine code. So the name of the cache folder is a hash of all source in the rooms of the package that kernels are
-  made from. Kernels defined elsewhere (a view, agents, benchmarks) have a folder in it, named by a hash of the whole package that they come
-  from. The place of the source does not matter: equal copies share their machine code.
-* Each file ends with a checksum: unpickling a truncated file would raise, but damaged machine code would crash the process.
+* The files are pickles: whoever can write there can run code here. So the folders are made for the user
+  alone, and a folder that belongs to somebody else, or that others can write to, is not used. root is
+  trusted, because it can do anything anyway.
+* numba notices a change only in the file that *defines* a cached function. After a change of a callee or a
+  constant in another file it would silently run old machine code. So the name of the cache folder is a hash
+  of all source in the rooms of the package that kernels are made from. Kernels defined elsewhere (a view,
+  agents, benchmarks) have a folder in it, named by a hash of the whole package that they come from. The place
+  of the source does not matter: equal copies share their machine code.
+* Each file ends with a checksum: unpickling a truncated file would raise, but damaged machine code would
+  crash the process.
 * Whatever goes wrong, the kernel is compiled again, and the process warns once.
 """
 
@@ -27,12 +31,25 @@ _WRITE_GROUP, _WRITE_OTHERS, _STICKY = 0o020, 0o002, 0o1000
 _DIGEST = hashlib.sha256().digest_size
 
 
-KERNEL_ROOMS = ("_inner.py", "_jit.py", "_lanes.py", "game", "geometry.py", "impacts.py", "physics", "planning", "simulation.py", "tasks")
-"""Files and folders of the package that hold kernels, and all that their kernels take from (tests/repository/test_kernel_rooms.py)."""
+KERNEL_ROOMS = (
+    "_inner.py",
+    "_jit.py",
+    "_lanes.py",
+    "game",
+    "geometry.py",
+    "impacts.py",
+    "physics",
+    "planning",
+    "simulation.py",
+    "tasks",
+)
+"""Files and folders of the package that hold kernels, and all that their kernels take from
+(tests/repository/test_kernel_rooms.py)."""
 
 
 def source_hash(root: Path, rooms: tuple[str, ...] = ()) -> str:
-    """A hash of the Python files of a package and their names (16 hex digits); with ``rooms``, of what is in these files and folders."""
+    """A hash of the Python files of a package and their names (16 hex digits); with ``rooms``, of what is in
+    these files and folders."""
     h = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):
         inside = path.relative_to(root)
@@ -48,7 +65,8 @@ def kernel_hash(root: Path = _PACKAGE) -> str:
 
 @cache  # the modules imported from there do not change in this process
 def _hash_of(folder: Path) -> str:
-    """The hash of the whole package that a folder outside the rooms belongs to; of the folder alone if it is in no package."""
+    """The hash of the whole package that a folder outside the rooms belongs to; of the folder alone if it is
+    in no package."""
     while (folder / "__init__.py").is_file() and (folder.parent / "__init__.py").is_file():
         folder = folder.parent
     return source_hash(folder)
@@ -62,10 +80,12 @@ class UnsafeFolderError(OSError):
 
 
 def _check_own(folder: Path, *, home: bool = False) -> None:
-    """Raise UnsafeFolderError unless only this user (and root) can change what is in ``folder`` and, for a link, in its target.
+    """Raise UnsafeFolderError unless only this user (and root) can change what is in ``folder`` and, for a
+    link, in its target.
 
-    ``home``: whether this is the folder that the user has chosen. There, others may write if the sticky bit keeps them from replacing the
-    files of others (as in /tmp), and so may its group, which on many systems is the user alone.
+    ``home``: whether this is the folder that the user has chosen. There, others may write if the sticky bit
+    keeps them from replacing the files of others (as in /tmp), and so may its group, which on many systems is
+    the user alone.
     """
     if not hasattr(os, "geteuid"):  # Windows: no such numbers, and a user's folders are closed to others
         return
@@ -78,8 +98,8 @@ def _check_own(folder: Path, *, home: bool = False) -> None:
 
 
 def _claim(home: Path, folder: Path) -> None:
-    """Make ``folder``, which is below ``home``, and the folders between for this user alone. UnsafeFolderError if one is there already and
-    others can write to it."""
+    """Make ``folder``, which is below ``home``, and the folders between for this user alone.
+    UnsafeFolderError if one is there already and others can write to it."""
     for part in (*reversed(folder.parents), folder):
         part.mkdir(0o700, exist_ok=True)
         if part == home or part.is_relative_to(home):
@@ -89,19 +109,28 @@ def _claim(home: Path, folder: Path) -> None:
 def cache_folder() -> Path | None:
     """The folder for compiled entry kernels, or None if they can be kept in memory only.
 
-    ``$NUMBA_CACHE_DIR`` if set, else ``$XDG_CACHE_HOME`` or ``~/.cache``; below it ``snooker_env/<kernel hash>``.
+    ``$NUMBA_CACHE_DIR`` if set, else ``$XDG_CACHE_HOME`` or ``~/.cache``; below it
+    ``snooker_env/<kernel hash>``.
     """
-    chosen = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    chosen = (
+        os.environ.get("NUMBA_CACHE_DIR")
+        or os.environ.get("XDG_CACHE_HOME")
+        or os.path.expanduser("~/.cache")
+    )
     home = Path(chosen).absolute()
     folder = home / "snooker_env" / kernel_hash()
     try:
-        if chosen == "~/.cache":  # expanduser found no home; this would be a folder below the working directory
+        # expanduser found no home; this would be a folder below the working directory
+        if chosen == "~/.cache":
             raise UnsafeFolderError("there is no home folder")
         _claim(home, folder)
-        with tempfile.TemporaryFile(dir=folder):  # a trial: access bits are wrong on read-only mounts and for root
+        # a trial: access bits are wrong on read-only mounts and for root
+        with tempfile.TemporaryFile(dir=folder):
             return folder
     except UnsafeFolderError as error:
-        why = f"{error}: no machine code is loaded from there or kept there; every process compiles for itself"
+        why = (
+            f"{error}: no machine code is loaded from there or kept there; every process compiles for itself"
+        )
         advice = "set NUMBA_CACHE_DIR to a folder of your own, or remove this one"
     except OSError:
         why, advice = f"{folder} is not writable: every process compiles for itself", "set NUMBA_CACHE_DIR"
@@ -132,7 +161,9 @@ class _Place(_CacheLocator):
         folder = Path(file).resolve().parent
         path = Path(file).resolve()
         inside = path.is_relative_to(_PACKAGE) and path.relative_to(_PACKAGE).parts[0] in KERNEL_ROOMS
-        self._folder = CACHE_FOLDER / (".".join(folder.relative_to(_PACKAGE.parent).parts) if inside else _hash_of(folder))
+        self._folder = CACHE_FOLDER / (
+            ".".join(folder.relative_to(_PACKAGE.parent).parts) if inside else _hash_of(folder)
+        )
 
     @classmethod
     def from_function(cls, py_func, py_file):
@@ -163,7 +194,8 @@ def _check_whole(path):
 
 
 class _Files(IndexDataCacheFile):
-    """numba's index and data files of one kernel, with checksums: ``pickle.loads`` ignores what follows a pickle."""
+    """numba's index and data files of one kernel, with checksums: ``pickle.loads`` ignores what follows a
+    pickle."""
 
     def _load_index(self):
         with suppress(FileNotFoundError):
@@ -198,19 +230,23 @@ class _Files(IndexDataCacheFile):
 def may_be_kept(py_func: Any) -> bool:
     """Whether a function is defined in a file, whose folder's hash then changes with it.
 
-    Code from a prompt, ``python -c``, a notebook or a doctest is in no file: another version of it would be given the old machine code.
+    Code from a prompt, ``python -c``, a notebook or a doctest is in no file: another version of it would be
+    given the old machine code.
     """
     return Path(py_func.__code__.co_filename).is_file()
 
 
 class Kept(FunctionCache):
-    """The machine code of one entry kernel on disk. What cannot be read is compiled; what cannot be written stays in memory."""
+    """The machine code of one entry kernel on disk. What cannot be read is compiled; what cannot be written
+    stays in memory."""
 
     _impl_class = _Implementation
 
     def __init__(self, py_func: Any):
         super().__init__(py_func)
-        self._cache_file = _Files(self.cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp())
+        self._cache_file = _Files(
+            self.cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp()
+        )
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The machine code for this signature, or None."""
@@ -218,11 +254,17 @@ class Kept(FunctionCache):
             self._impl.locator.ensure_cache_path()
             return super().load_overload(sig, target_context)
         except OSError as error:
-            _warn_once("place", f"machine code is not read from {self.cache_path} ({error}): every process compiles for itself")
+            _warn_once(
+                "place",
+                f"machine code is not read from {self.cache_path} ({error}): every process compiles for itself",
+            )
         except Exception as error:  # a damaged file can make pickle, numba or LLVM raise anything
             self._cache_file.discard()
             what = f"{type(error).__name__}: {error}"
-            _warn_once("broken", f"machine code kept in {self.cache_path} cannot be used ({what}): it is compiled and kept anew")
+            _warn_once(
+                "broken",
+                f"machine code kept in {self.cache_path} cannot be used ({what}): it is compiled and kept anew",
+            )
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -230,4 +272,7 @@ class Kept(FunctionCache):
         try:
             super().save_overload(sig, data)
         except Exception as error:  # for instance a full disk, or an index that was damaged in the meantime
-            _warn_once("place", f"machine code cannot be kept in {self.cache_path} ({error}): every process compiles for itself")
+            _warn_once(
+                "place",
+                f"machine code cannot be kept in {self.cache_path} ({error}): every process compiles for itself",
+            )

@@ -64,7 +64,9 @@ def refuse_what(field: str, what: str, allowed: str) -> ValueError:
     return ValueError(f"{field} = {what}: {allowed}")
 
 
-def number(field: str, value: Any, low: float = -np.inf, high: float = np.inf, *, open_low: bool = False) -> float:
+def number(
+    field: str, value: Any, low: float = -np.inf, high: float = np.inf, *, open_low: bool = False
+) -> float:
     """Check that a value is a finite real number in a range.
 
     Parameters
@@ -110,11 +112,17 @@ def number(field: str, value: Any, low: float = -np.inf, high: float = np.inf, *
 def _wanted(shape):
     """A shape as text, with letters for the lengths that are free."""
     free = iter("bn" if shape.count(-1) == 2 else "n")
-    return "(" + ", ".join(next(free) if s == -1 else str(s) for s in shape) + ("," if len(shape) == 1 else "") + ")"
+    return (
+        "("
+        + ", ".join(next(free) if s == -1 else str(s) for s in shape)
+        + ("," if len(shape) == 1 else "")
+        + ")"
+    )
 
 
 def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, unit: str = "") -> Floats:
-    """A finite float64 array of the given shape (-1: any length), no number beyond ``most`` [unit]; always a new C-ordered copy."""
+    """A finite float64 array of the given shape (-1: any length), no number beyond ``most`` [unit]; always a
+    new C-ordered copy."""
     try:
         raw = np.asarray(value)
     except (TypeError, ValueError):
@@ -125,12 +133,18 @@ def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, 
         with np.errstate(over="ignore"):  # a wider number may become infinite, which is refused below
             raw = raw.astype(np.float64)
     a = np.array(raw, dtype=np.float64, order="C")
-    if a.shape != shape and (a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True))):
+    if a.shape != shape and (
+        a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True))
+    ):
         raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {_wanted(shape)}")
     sound = np.isfinite(a) if most == np.inf else np.abs(a) <= most
     if not sound.all():
         at = tuple(int(k) for k in np.argwhere(~sound)[0])
-        raise refuse(f"{field}{list(at)}", float(a[at]), "must be finite" + (f", within {most:,g} {unit} of zero" if most < np.inf else ""))
+        raise refuse(
+            f"{field}{list(at)}",
+            float(a[at]),
+            "must be finite" + (f", within {most:,g} {unit} of zero" if most < np.inf else ""),
+        )
     return a
 
 

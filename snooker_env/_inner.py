@@ -1,14 +1,17 @@
-"""How is an inner kernel compiled? To LLVM's intermediate code, which its callers take in: no machine code is made of it alone.
+"""How is an inner kernel compiled? To LLVM's intermediate code, which its callers take in: no machine code is
+made of it alone.
 
-numba makes machine code of every function that it compiles, together with all that the function calls. For kernels that only kernels call
-it is never run, and it takes a quarter of the time of a first shot. So an inner kernel has a library that is complete when it has been
-optimised, and a caller finds it under an entry point that is only a name.
+numba makes machine code of every function that it compiles, together with all that the function calls. For
+kernels that only kernels call it is never run, and it takes a quarter of the time of a first shot. So an
+inner kernel has a library that is complete when it has been optimised, and a caller finds it under an entry
+point that is only a name.
 
-And numba works out anew, wherever an operator or a function stands, what it gives for the types at hand, out of about ten candidates: a
-seventh of the time. While inner kernels are compiled, the answer for the same types is that of the first time.
+And numba works out anew, wherever an operator or a function stands, what it gives for the types at hand, out
+of about ten candidates: a seventh of the time. While inner kernels are compiled, the answer for the same
+types is that of the first time.
 
-This uses parts of numba that are not public. With a numba that lacks them, inner kernels are compiled as numba does it: the results are
-the same, later.
+This uses parts of numba that are not public. With a numba that lacks them, inner kernels are compiled as
+numba does it: the results are the same, later.
 """
 
 from contextlib import contextmanager
@@ -21,7 +24,10 @@ from numba.core.types.functions import BaseFunction, Function
 FIND = "get_call_type"
 """The method of numba's functions that finds what they give for some types."""
 _PARTS = (
-    (codegen.JITCodeLibrary, ("_finalize_final_module", "_finalize_dynamic_globals", "_verify_declare_only_symbols")),
+    (
+        codegen.JITCodeLibrary,
+        ("_finalize_final_module", "_finalize_dynamic_globals", "_verify_declare_only_symbols"),
+    ),
     (compiler.CompileResult, ("_replace", "entry_point")),
     (CPUDispatcher, ("add_overload",)),
     (compiler.Compiler, ("compile_extra",)),
@@ -45,21 +51,24 @@ _find: Any = getattr(BaseFunction, FIND, None)
 
 
 def _find_once(function, context, args, kws):
-    """What ``function`` gives for these types: found before, if that depends on the types alone, or by ``_find``."""
+    """What ``function`` gives for these types: found before, if that depends on the types alone, or by
+    ``_find``."""
     if type(function) is not Function or kws:
         return _find(function, context, args, kws)
     called, known = getattr(function, "typing_key", None), getattr(function, "_impl_keys", {})
     signature = _found.get((called, args))
     if signature is None or signature.args not in known:
         signature = _find(function, context, args, kws)
-        if called is not None and known.get(signature.args) is called:  # else it was compiled for its caller's options
+        # else it was compiled for its caller's options
+        if called is not None and known.get(signature.args) is called:
             _found[called, args] = signature
     return signature
 
 
 @contextmanager
 def _finding_once():
-    """Let numba use ``_find_once``. Whoever compiles holds numba's lock: no other thread compiles meanwhile."""
+    """Let numba use ``_find_once``. Whoever compiles holds numba's lock: no other thread compiles
+    meanwhile."""
     before = getattr(BaseFunction, FIND)
     setattr(BaseFunction, FIND, _find_once)
     try:
@@ -75,7 +84,9 @@ class _Compiler(compiler.Compiler):
         made = targetctx.codegen()
         flags = flags.copy()
         flags.no_compile = True
-        super().__init__(typingctx, targetctx, _Library(made, "inner kernel"), args, return_type, flags, locals)
+        super().__init__(
+            typingctx, targetctx, _Library(made, "inner kernel"), args, return_type, flags, locals
+        )
 
     def compile_extra(self, func):
         with _finding_once():
@@ -103,7 +114,7 @@ class Inner(CPUDispatcher):
 
 
 OPTIONS: dict[str, Any] = {"_nrt": False, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
-"""Options of ``numba.njit`` for inner kernels. Without ``_nrt`` they must not make arrays, and need not count references to the arrays that
-they are given, which would take a fifth of the time of a shot."""
+"""Options of ``numba.njit`` for inner kernels. Without ``_nrt`` they must not make arrays, and need not count
+references to the arrays that they are given, which would take a fifth of the time of a shot."""
 if KNOWN:
     OPTIONS["pipeline_class"] = _Compiler

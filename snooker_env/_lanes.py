@@ -1,9 +1,11 @@
-"""How does a kernel compute with four numbers at once? A type for four float64 side by side: one instruction where the processor has AVX.
+"""How does a kernel compute with four numbers at once? A type for four float64 side by side: one instruction
+where the processor has AVX.
 
-``lanes(a, b, c, d)`` makes it, ``lanes_at(array, i)`` loads it, ``put_lanes(array, i, x)`` stores it and ``lane(x, k)`` takes one number,
-with k a constant; ``+`` and ``*`` work on each of the four. Every operation is the IEEE one of its lane, so the results are those of four
-separate numbers, on any processor. (The compiler finds such sums itself if asked, ``NUMBA_SLP_VECTORIZE``, but it stores the numbers one by
-one, and a load of four waits for that: nothing is gained.)
+``lanes(a, b, c, d)`` makes it, ``lanes_at(array, i)`` loads it, ``put_lanes(array, i, x)`` stores it and
+``lane(x, k)`` takes one number, with k a constant; ``+`` and ``*`` work on each of the four. Every operation
+is the IEEE one of its lane, so the results are those of four separate numbers, on any processor. (The
+compiler finds such sums itself if asked, ``NUMBA_SLP_VECTORIZE``, but it stores the numbers one by one, and a
+load of four waits for that: nothing is gained.)
 
 Without numba (``NUMBA_DISABLE_JIT``) the same source works on small numpy arrays.
 """
@@ -74,7 +76,9 @@ def _take(typing_context, x, k):
     if not isinstance(k, types.IntegerLiteral):
         return None
     which = ir.Constant(_INT32, k.literal_value)
-    return types.float64(_LANES, k), lambda context, builder, signature, arguments: builder.extract_element(arguments[0], which)
+    return types.float64(_LANES, k), lambda context, builder, signature, arguments: builder.extract_element(
+        arguments[0], which
+    )
 
 
 class _Both(ConcreteTemplate):
@@ -84,8 +88,12 @@ class _Both(ConcreteTemplate):
 infer_global: Any = templates.infer_global
 infer_global(operator.add)(_Both)
 infer_global(operator.mul)(_Both)
-lower_builtin(operator.add, _Lanes, _Lanes)(lambda context, builder, signature, arguments: builder.fadd(*arguments))
-lower_builtin(operator.mul, _Lanes, _Lanes)(lambda context, builder, signature, arguments: builder.fmul(*arguments))
+lower_builtin(operator.add, _Lanes, _Lanes)(
+    lambda context, builder, signature, arguments: builder.fadd(*arguments)
+)
+lower_builtin(operator.mul, _Lanes, _Lanes)(
+    lambda context, builder, signature, arguments: builder.fmul(*arguments)
+)
 
 # Intrinsics, not overloads: numba would compile a function for each use of those.
 lanes: Any = intrinsic(_make)

@@ -1,4 +1,5 @@
-"""What is reported of compiling? One line on stderr before each compile that takes over a second, and the progress of a warm-up.
+"""What is reported of compiling? One line on stderr before each compile that takes over a second, and the
+progress of a warm-up.
 
 ``SNOOKER_ENV_QUIET=1`` silences both. Machine code that is loaded from the cache is not reported.
 """
@@ -30,7 +31,8 @@ class Cost(NamedTuple):
     uses: tuple[Any, ...]
 
     def total(self) -> int:
-        """Time that it will take [s], with the large kernels that it uses and that this process has not compiled yet."""
+        """Time that it will take [s], with the large kernels that it uses and that this process has not
+        compiled yet."""
         return self.seconds + sum(kernel.cost.seconds for kernel in self._missing())
 
     def _missing(self):
@@ -62,7 +64,9 @@ def warming_up(kernels: Iterable[Any]) -> Iterator[None]:
     try:
         yield
         if _running[-1].spoke:
-            say(f"warm-up: {len(_running[-1].kernels)} kernels ready after {time.perf_counter() - start:.0f} s")
+            say(
+                f"warm-up: {len(_running[-1].kernels)} kernels ready after {time.perf_counter() - start:.0f} s"
+            )
     finally:
         _running.pop()
 

@@ -1,4 +1,5 @@
-"""Under which names does Gymnasium know the environments? Read by the package, or alone by ``_autoregister.py``; it imports nothing."""
+"""Under which names does Gymnasium know the environments? Read by the package, or alone by
+``_autoregister.py``; it imports nothing."""
 
 from typing import Any
 
@@ -21,7 +22,8 @@ ENTRY_POINTS = {
 
 
 def register(registration: Any) -> None:
-    """Register the ids with Gymnasium's module ``registration``, but for those that are there already: a second import stays silent.
+    """Register the ids with Gymnasium's module ``registration``, but for those that are there already: a
+    second import stays silent.
 
     String entry points keep the import light and the spec JSON-able.
     """

@@ -1,4 +1,5 @@
-"""Which types do the annotations share? Arrays by what they hold, what callers may pass for them, and closed sets of names.
+"""Which types do the annotations share? Arrays by what they hold, what callers may pass for them, and closed
+sets of names.
 
 An annotation says what an array holds; the docstring says its shape and units.
 """
@@ -18,7 +19,8 @@ Bools: TypeAlias = NDArray[np.bool_]
 Masks: TypeAlias = NDArray[np.int8]
 """Available choices as observations hold them: 1 or 0."""
 
-# What callers may pass: arrays, or nested sequences with as many levels as the array would have dimensions. A str is none of these.
+# What callers may pass: arrays, or nested sequences with as many levels as the array would have dimensions. A
+# str is none of these.
 Real: TypeAlias = float | np.floating[Any] | np.integer[Any]
 RealArray: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]
 Vector: TypeAlias = RealArray | Sequence[Real]
@@ -38,7 +40,8 @@ Place: TypeAlias = tuple[float, float]
 
 # Names.
 Fidelity: TypeAlias = Literal["fast", "standard", "reference"] | str
-"""How impacts are solved. Any str is allowed because of ``"euler:N"``, the paper's own scheme with N steps."""
+"""How impacts are solved. Any str is allowed because of ``"euler:N"``, the paper's own scheme with N
+steps."""
 Solver: TypeAlias = tuple[int, int]
 """A fidelity as the kernels read it: a code, and the N of ``"euler:N"`` or 0."""
 PhysicsName: TypeAlias = Literal["paper", "match"]
@@ -52,8 +55,8 @@ MissRule: TypeAlias = Literal["off", "clear_path", "attempt"]
 Action: TypeAlias = Any
 """For a Box space an array or sequence of numbers (k,), for ``action="discrete"`` an int."""
 Observation: TypeAlias = Any
-"""float32 (k,) with ``observation="flat"``; with "balls" a dict of float32 arrays, "balls" (22, 5) and "state" (k,);
-with "masked" a dict of "observations", float32 (k,), and "action_mask", int8 (choices,)."""
+"""float32 (k,) with ``observation="flat"``; with "balls" a dict of float32 arrays, "balls" (22, 5) and
+"state" (k,); with "masked" a dict of "observations", float32 (k,), and "action_mask", int8 (choices,)."""
 
 
 class Environment(Protocol):

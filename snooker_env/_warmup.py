@@ -31,8 +31,8 @@ class _Saying:
 def warmup() -> None:
     """Compile every kernel of the package, or load it from the cache.
 
-    Call it in the parent process before worker processes start; otherwise each worker compiles for itself. Progress is reported on
-    stderr, unless everything comes from the cache or ``SNOOKER_ENV_QUIET=1`` is set.
+    Call it in the parent process before worker processes start; otherwise each worker compiles for itself.
+    Progress is reported on stderr, unless everything comes from the cache or ``SNOOKER_ENV_QUIET=1`` is set.
 
     Returns
     -------
@@ -53,7 +53,17 @@ def warmup() -> None:
     from .game.referee import Situation, Stroke, judge
     from .game.snookered import is_snookered
     from .game.spotting import spot_colours
-    from .planning import Planner, Position, Positions, StrokeSearch, at_balls, clear_paths, obstructions, over_cushions, prospects_of
+    from .planning import (
+        Planner,
+        Position,
+        Positions,
+        StrokeSearch,
+        at_balls,
+        clear_paths,
+        obstructions,
+        over_cushions,
+        prospects_of,
+    )
     from .planning import pots as direct_pots
     from .players import player
     from .tasks.box_actions import Actions, line
@@ -67,7 +77,13 @@ def warmup() -> None:
         env.reset(seed=0)
         env.action_masks()
         env.step(0)
-        frames = {"task": "frame", "placement": True, "decision": True, "miss": "attempt", "opponent": "ghost_ball"}
+        frames = {
+            "task": "frame",
+            "placement": True,
+            "decision": True,
+            "miss": "attempt",
+            "opponent": "ghost_ball",
+        }
         env = SnookerEnv(**frames)
         for seed in range(3):  # in one of them the opponent breaks off
             env.reset(seed=seed)
@@ -81,7 +97,10 @@ def warmup() -> None:
         frame = Frame.start()
         frame.play(Stroke())
         frame.concede(0)
-        opponents: list[tuple[Any, Any]] = [(lambda observation, rng: [0.0] * 4, [0.0] * 4), (_Still(), [0.0] * 4)]
+        opponents: list[tuple[Any, Any]] = [
+            (lambda observation, rng: [0.0] * 4, [0.0] * 4),
+            (_Still(), [0.0] * 4),
+        ]
         for opponent, action in (*opponents, ("random", 0), ("random", [0.0] * 4)):
             env = SnookerEnv(task="frame", opponent=opponent, action="discrete" if action == 0 else "box")
             for seed in range(3):

@@ -1,11 +1,14 @@
-"""Where is everything on a table, and how large is it? Beds, pockets, spots and balls as data: the one source for every layer.
+"""Where is everything on a table, and how large is it? Beds, pockets, spots and balls as data: the one source
+for every layer.
 
-Table frame: origin at the table's centre, +x to the yellow side, +y to the black end; metres. A preset is a ``Bed``; ``parts`` makes
-the arrays from it that the kernels read (``physics.table``). Pockets are numbered in one order everywhere: ``POCKETS``.
+Table frame: origin at the table's centre, +x to the yellow side, +y to the black end; metres. A preset is a
+``Bed``; ``parts`` makes the arrays from it that the kernels read (``physics.table``). Pockets are numbered in
+one order everywhere: ``POCKETS``.
 
-Sources. Snooker: WPBSA, playing area 3569 x 1778 mm, spots and D as in the rules; the official pocket templates are secret, and this set
-agrees with the quoted openings (3.5 in corner, 4 in middle at the fall of the slate: ``python -m benchmarks.pockets`` prints ours).
-Pool: WPA equipment specifications; Alciatore, TP 3.5 and TP 3.6. UK 8-ball: WEPF specifications. Carom: UMB regulations.
+Sources. Snooker: WPBSA, playing area 3569 x 1778 mm, spots and D as in the rules; the official pocket
+templates are secret, and this set agrees with the quoted openings (3.5 in corner, 4 in middle at the fall of
+the slate: ``python -m benchmarks.pockets`` prints ours). Pool: WPA equipment specifications; Alciatore, TP
+3.5 and TP 3.6. UK 8-ball: WEPF specifications. Carom: UMB regulations.
 """
 
 from collections.abc import Mapping
@@ -19,76 +22,114 @@ from ._check import number, refuse, truth
 from ._types import Floats
 
 __all__ = [
-    "AIM_X", "AIM_Y", "AXIS_X", "AXIS_Y", "BALL_RADIUS", "BAULK_Y", "COLOUR_SPOTS", "D_RADIUS", "HALF_LENGTH", "HALF_WIDTH", "IS_MIDDLE",
-    "POCKETS", "POCKET_AIMS", "POCKET_PLACES", "PRESETS", "SIDES", "Bed", "Pocket",
-]  # fmt: skip
+    "AIM_X",
+    "AIM_Y",
+    "AXIS_X",
+    "AXIS_Y",
+    "BALL_RADIUS",
+    "BAULK_Y",
+    "COLOUR_SPOTS",
+    "D_RADIUS",
+    "HALF_LENGTH",
+    "HALF_WIDTH",
+    "IS_MIDDLE",
+    "POCKETS",
+    "POCKET_AIMS",
+    "POCKET_PLACES",
+    "PRESETS",
+    "SIDES",
+    "Bed",
+    "Pocket",
+]
 
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
-"""Names of the pockets by index, 0 to 5, anticlockwise from (-x, -y): bottom is the baulk end, right is the yellow side."""
+"""Names of the pockets by index, 0 to 5, anticlockwise from (-x, -y): bottom is the baulk end, right is the
+yellow side."""
 SIDES = ((-1, -1), (1, -1), (1, 0), (1, 1), (-1, 1), (-1, 0))
-"""The side of the table on which each pocket of ``POCKETS`` lies: the signs of its x and y, 0 for y at a middle pocket."""
+"""The side of the table on which each pocket of ``POCKETS`` lies: the signs of its x and y, 0 for y at a
+middle pocket."""
 
 # Snooker's table: the rules, the layouts and the observations use these.
 BALL_RADIUS = 0.02625
 """Radius of a snooker ball [m]."""
 HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
-"""Half the playing area of a snooker table [m]: the noses lie at x = -+``HALF_WIDTH`` and y = -+``HALF_LENGTH``."""
+"""Half the playing area of a snooker table [m]: the noses lie at x = -+``HALF_WIDTH`` and y =
+-+``HALF_LENGTH``."""
 BAULK_Y = -1.0475
 """The y of the baulk line [m]."""
 D_RADIUS = 0.292
 """Radius of the D [m]; its centre is the brown spot, (0, ``BAULK_Y``)."""
-COLOUR_SPOTS = np.array([
-    (D_RADIUS, BAULK_Y), (-D_RADIUS, BAULK_Y), (0.0, BAULK_Y), (0.0, 0.0), (0.0, HALF_LENGTH / 2), (0.0, 1.4605),
-])  # fmt: skip
+COLOUR_SPOTS = np.array(
+    [
+        (D_RADIUS, BAULK_Y),
+        (-D_RADIUS, BAULK_Y),
+        (0.0, BAULK_Y),
+        (0.0, 0.0),
+        (0.0, HALF_LENGTH / 2),
+        (0.0, 1.4605),
+    ]
+)
 """The spots of yellow, green, brown, blue, pink and black: float64 (6, 2) [m], read-only."""
 
 POCKET_PLACES = np.array([(sx * HALF_WIDTH, sy * HALF_LENGTH) for sx, sy in SIDES])
-"""Nominal places of the pockets: float64 (6, 2) [m], read-only. A corner pocket's is where two nose lines meet, a middle pocket's is the
-middle of its nose line. Layouts use them to keep balls away from the pockets."""
+"""Nominal places of the pockets: float64 (6, 2) [m], read-only. A corner pocket's is where two nose lines
+meet, a middle pocket's is the middle of its nose line. Layouts use them to keep balls away from the
+pockets."""
 
 AIM_X, AIM_Y, AXIS_X, AXIS_Y, IS_MIDDLE = range(5)
-"""Columns of ``POCKET_AIMS``: the aim point [m], the pocket's axis as an outward unit vector, 1 for a middle pocket."""
-_CORNER_AIM, _MIDDLE_AIM = 0.01524, 0.0016  # distance from each nose line to the point where the fall meets the pocket's axis [m]
+"""Columns of ``POCKET_AIMS``: the aim point [m], the pocket's axis as an outward unit vector, 1 for a middle
+pocket."""
+# distance from each nose line to the point where the fall meets the pocket's axis [m]
+_CORNER_AIM, _MIDDLE_AIM = 0.01524, 0.0016
 
 
 def _aim(sx, sy):
     if not sy:
         return sx * (HALF_WIDTH - _MIDDLE_AIM), 0.0, sx, 0.0, 1.0
-    return sx * (HALF_WIDTH - _CORNER_AIM), sy * (HALF_LENGTH - _CORNER_AIM), sx * sqrt(0.5), sy * sqrt(0.5), 0.0
+    return (
+        sx * (HALF_WIDTH - _CORNER_AIM),
+        sy * (HALF_LENGTH - _CORNER_AIM),
+        sx * sqrt(0.5),
+        sy * sqrt(0.5),
+        0.0,
+    )
 
 
 POCKET_AIMS = np.array([_aim(sx, sy) for sx, sy in SIDES])
-"""The point to aim a ball at, for each of snooker's pockets: float64 (6, 5), read-only; columns ``AIM_X`` to ``IS_MIDDLE``."""
+"""The point to aim a ball at, for each of snooker's pockets: float64 (6, 5), read-only; columns ``AIM_X`` to
+``IS_MIDDLE``."""
 
 for _constant in (COLOUR_SPOTS, POCKET_PLACES, POCKET_AIMS):
     _constant.setflags(write=False)
 
 FLAT = 100.0
-"""A straight facing is an arc of this radius [m]: over the 0.1 m of a facing it is 0.013 mm off a straight line."""
+"""A straight facing is an arc of this radius [m]: over the 0.1 m of a facing it is 0.013 mm off a straight
+line."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pocket:
     """The shape of one kind of pocket, the same at all four corners or at both middles.
 
-    ``Pocket.corner`` and ``Pocket.middle`` make one from published sizes. A jaw leaves the straight nose at its ``start``, turns away from
-    it on an arc, and then goes on straight (its facing). There is no facing where the arc ends over the fall, because a ball that reaches
-    that point is lost.
+    ``Pocket.corner`` and ``Pocket.middle`` make one from published sizes. A jaw leaves the straight nose at
+    its ``start``, turns away from it on an arc, and then goes on straight (its facing). There is no facing
+    where the arc ends over the fall, because a ball that reaches that point is lost.
 
     Parameters
     ----------
     is_middle : bool
         True for the middles of the long sides, False for the corners.
     start : float
-        Where the jaws leave the nose [m], in (0, 1]: the distance along the rail from the corner (where the nose lines meet), or from
-        the middle.
+        Where the jaws leave the nose [m], in (0, 1]: the distance along the rail from the corner (where the
+        nose lines meet), or from the middle.
     jaw_radius : float
         Radius of the arc [m], in [0, 1]; 0 is a sharp point, as in pool.
     turn : float
-        Angle by which a jaw turns from the nose [degrees], in (0, 45] at a corner and (0, 90] in the middle. The largest value makes the
-        two facings parallel.
+        Angle by which a jaw turns from the nose [degrees], in (0, 45] at a corner and (0, 90] in the middle.
+        The largest value makes the two facings parallel.
     fall_depth : float
-        Distance from the nose line to the centre of the slate's circle [m], in [-1, 1]; at a corner, from each of the two nose lines.
+        Distance from the nose line to the centre of the slate's circle [m], in [-1, 1]; at a corner, from
+        each of the two nose lines.
     fall_radius : float
         Radius of that circle [m], in (0, 1]. A ball begins to drop where its centre crosses the circle.
 
@@ -115,19 +156,44 @@ class Pocket:
     def __post_init__(self) -> None:
         name = "pocket." + ("middle" if truth("pocket.is_middle", self.is_middle) else "corner")
         straight = 90.0 if self.is_middle else 45.0
-        limits = {"start": (0, 1), "jaw_radius": (0, 1), "turn": (0, straight), "fall_depth": (-1, 1), "fall_radius": (0, 1)}
+        limits = {
+            "start": (0, 1),
+            "jaw_radius": (0, 1),
+            "turn": (0, straight),
+            "fall_depth": (-1, 1),
+            "fall_radius": (0, 1),
+        }
         for field, (low, high) in limits.items():
             open_low = field in ("start", "turn", "fall_radius")
-            object.__setattr__(self, field, number(f"{name}.{field}", getattr(self, field), low, high, open_low=open_low))
+            object.__setattr__(
+                self, field, number(f"{name}.{field}", getattr(self, field), low, high, open_low=open_low)
+            )
         if not self.throat > 0.0:
-            raise refuse(name, self, "must leave an opening between its jaws: a wider mouth, less turn or a smaller jaw_radius")
-        if self.shelf + self.mouth_depth + self.fall_radius <= self._arc_end[1] and not self._ends_over_the_fall:
-            raise refuse(name, self, "must have the centre of its fall behind the ends of its jaws' arcs, or those ends over the fall")
+            raise refuse(
+                name,
+                self,
+                "must leave an opening between its jaws: a wider mouth, less turn or a smaller jaw_radius",
+            )
+        if (
+            self.shelf + self.mouth_depth + self.fall_radius <= self._arc_end[1]
+            and not self._ends_over_the_fall
+        ):
+            raise refuse(
+                name,
+                self,
+                "must have the centre of its fall behind the ends of its jaws' arcs, or those ends over the fall",
+            )
         if self.fall_radius < self.throat / 2:
-            raise refuse(name, self, "must have a fall at least as wide as the throat, so that no ball passes beside it")
+            raise refuse(
+                name,
+                self,
+                "must have a fall at least as wide as the throat, so that no ball passes beside it",
+            )
 
     @classmethod
-    def corner(cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 135.0, jaw_radius: float = 0.0) -> "Pocket":
+    def corner(
+        cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 135.0, jaw_radius: float = 0.0
+    ) -> "Pocket":
         """Make a corner pocket from its published sizes.
 
         Parameters
@@ -135,11 +201,13 @@ class Pocket:
         mouth : float
             Distance from jaw to jaw where they leave the noses [m], in (0, 1].
         shelf : float
-            Distance from the middle of the mouth to the slate's edge [m], in [-1, 1]; negative where the hole begins before the mouth.
+            Distance from the middle of the mouth to the slate's edge [m], in [-1, 1]; negative where the hole
+            begins before the mouth.
         fall_radius : float
             Radius of the slate's circle [m], in (0, 1].
         cut : float
-            Angle between nose and facing [degrees], in [135, 180). 135 makes the facings parallel; the WPA's value is 142.
+            Angle between nose and facing [degrees], in [135, 180). 135 makes the facings parallel; the WPA's
+            value is 142.
         jaw_radius : float
             Radius of the arc on which a jaw leaves the nose [m], in [0, 1]; 0 is a sharp point.
 
@@ -164,11 +232,18 @@ class Pocket:
         depth = (fall_radius + shelf) / sqrt(2.0) - mouth / (2.0 * sqrt(2.0))
         turn = 180.0 - number("pocket.corner.cut", cut, 135, 180)
         return cls(
-            is_middle=False, start=mouth / sqrt(2.0), jaw_radius=jaw_radius, turn=turn, fall_depth=depth, fall_radius=fall_radius,
-        )  # fmt: skip
+            is_middle=False,
+            start=mouth / sqrt(2.0),
+            jaw_radius=jaw_radius,
+            turn=turn,
+            fall_depth=depth,
+            fall_radius=fall_radius,
+        )
 
     @classmethod
-    def middle(cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 90.0, jaw_radius: float = 0.0) -> "Pocket":
+    def middle(
+        cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 90.0, jaw_radius: float = 0.0
+    ) -> "Pocket":
         """Make a middle (side) pocket from its published sizes.
 
         Parameters
@@ -176,11 +251,13 @@ class Pocket:
         mouth : float
             Distance from jaw to jaw where they leave the noses [m], in (0, 1].
         shelf : float
-            Distance from the middle of the mouth to the slate's edge [m], in [-1, 1]; negative where the hole begins before the mouth.
+            Distance from the middle of the mouth to the slate's edge [m], in [-1, 1]; negative where the hole
+            begins before the mouth.
         fall_radius : float
             Radius of the slate's circle [m], in (0, 1].
         cut : float
-            Angle between nose and facing [degrees], in [90, 180). 90 makes the facings parallel; the WPA's value is 104.
+            Angle between nose and facing [degrees], in [90, 180). 90 makes the facings parallel; the WPA's
+            value is 104.
         jaw_radius : float
             Radius of the arc on which a jaw leaves the nose [m], in [0, 1]; 0 is a sharp point.
 
@@ -204,10 +281,16 @@ class Pocket:
         mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
         turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
         return cls(
-            is_middle=True, start=mouth / 2.0, jaw_radius=jaw_radius, turn=turn, fall_depth=fall_radius + shelf, fall_radius=fall_radius,
-        )  # fmt: skip
+            is_middle=True,
+            start=mouth / 2.0,
+            jaw_radius=jaw_radius,
+            turn=turn,
+            fall_depth=fall_radius + shelf,
+            fall_radius=fall_radius,
+        )
 
-    # Coordinates from the pocket's origin (the corner, or the middle on the nose line): depth outwards along the axis, offset across it.
+    # Coordinates from the pocket's origin (the corner, or the middle on the nose line): depth outwards along
+    # the axis, offset across it.
 
     @property
     def mouth(self) -> float:
@@ -216,12 +299,14 @@ class Pocket:
 
     @property
     def mouth_depth(self) -> float:
-        """Depth of the line of the mouth [m]: 0 in the middle, negative at a corner (in front of the point where the nose lines meet)."""
+        """Depth of the line of the mouth [m]: 0 in the middle, negative at a corner (in front of the point
+        where the nose lines meet)."""
         return 0.0 if self.is_middle else -self.start / sqrt(2.0)
 
     @property
     def shelf(self) -> float:
-        """Distance from the middle of the mouth to the slate's edge [m]; negative where the hole begins before the mouth."""
+        """Distance from the middle of the mouth to the slate's edge [m]; negative where the hole begins
+        before the mouth."""
         depth = self.fall_depth if self.is_middle else sqrt(2.0) * self.fall_depth
         return depth - self.fall_radius - self.mouth_depth
 
@@ -234,7 +319,8 @@ class Pocket:
     def _arc_end(self) -> tuple[float, float]:
         """Offset and depth of the end of a jaw's arc [m]."""
         angle = radians(self.turn)
-        on, in_ = self.jaw_radius * sin(angle), self.jaw_radius * (1.0 - cos(angle))  # along the nose, and away from its line
+        # along the nose, and away from its line
+        on, in_ = self.jaw_radius * sin(angle), self.jaw_radius * (1.0 - cos(angle))
         if self.is_middle:
             return self.start - on, in_
         return (self.start - on + in_) / sqrt(2.0), (in_ - self.start + on) / sqrt(2.0)
@@ -242,11 +328,14 @@ class Pocket:
     @property
     def _ends_over_the_fall(self) -> bool:
         offset, depth = self._arc_end
-        return offset**2 + (depth - self.mouth_depth - self.shelf - self.fall_radius) ** 2 < self.fall_radius**2
+        return (
+            offset**2 + (depth - self.mouth_depth - self.shelf - self.fall_radius) ** 2 < self.fall_radius**2
+        )
 
     @property
     def facing(self) -> float:
-        """Length of a facing [m], down to the depth of the fall's centre; 0 where the arc already ends over the fall."""
+        """Length of a facing [m], down to the depth of the fall's centre; 0 where the arc already ends over
+        the fall."""
         if self._ends_over_the_fall:
             return 0.0
         return (self.mouth_depth + self.shelf + self.fall_radius - self._arc_end[1]) / cos(self.taper)
@@ -259,9 +348,10 @@ class Pocket:
 
 def _sizes(name, mouth, shelf, fall_radius):
     return (
-        number(f"{name}.mouth", mouth, 0, 1, open_low=True), number(f"{name}.shelf", shelf, -1, 1),
+        number(f"{name}.mouth", mouth, 0, 1, open_low=True),
+        number(f"{name}.shelf", shelf, -1, 1),
         number(f"{name}.fall_radius", fall_radius, 0, 1, open_low=True),
-    )  # fmt: skip
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -273,9 +363,11 @@ class Bed:
     length, width : float
         Distance between facing noses [m], along y and along x.
     corner, middle : Pocket or None
-        Shape of the pockets in the corners, and of those in the middles of the sides along y. None: there are none.
+        Shape of the pockets in the corners, and of those in the middles of the sides along y. None: there are
+        none.
     ball : mapping of str to float
-        Fields of ``Physics`` that belong to the balls and noses of this game: R [m], M [kg], sin_theta. Empty: any ball.
+        Fields of ``Physics`` that belong to the balls and noses of this game: R [m], M [kg], sin_theta.
+        Empty: any ball.
 
     Examples
     --------
@@ -294,11 +386,14 @@ class Bed:
     @property
     def pockets(self) -> tuple[str, ...]:
         """Names of its pockets by index: those of ``POCKETS`` that the table has, in that order."""
-        return tuple(name for name, (_, sy) in zip(POCKETS, SIDES, strict=True) if (self.corner if sy else self.middle))
+        return tuple(
+            name for name, (_, sy) in zip(POCKETS, SIDES, strict=True) if (self.corner if sy else self.middle)
+        )
 
 
 def parts(bed: Bed) -> tuple[Floats, Floats, Floats]:
-    """Noses (k, 5), jaws (m, 6) and falls (p, 3) of a ``Bed``; columns as in ``physics.table.Table``. The index of a fall is its pocket."""
+    """Noses (k, 5), jaws (m, 6) and falls (p, 3) of a ``Bed``; columns as in ``physics.table.Table``. The
+    index of a fall is its pocket."""
     X, Y = bed.width / 2, bed.length / 2
     end = bed.corner.start if bed.corner else 0.0
     noses = []
@@ -315,25 +410,34 @@ def parts(bed: Bed) -> tuple[Floats, Floats, Floats]:
             continue
         a, depth = pocket.start, pocket.fall_depth
         if sy:  # one jaw on the short rail, one on the long rail
-            jaws += _jaw(pocket, (sx * (X - a), sy * Y), (sx, 0), (0, sy)) + _jaw(pocket, (sx * X, sy * (Y - a)), (0, sy), (sx, 0))
+            jaws += _jaw(pocket, (sx * (X - a), sy * Y), (sx, 0), (0, sy)) + _jaw(
+                pocket, (sx * X, sy * (Y - a)), (0, sy), (sx, 0)
+            )
             falls.append((sx * (X + depth), sy * (Y + depth), pocket.fall_radius))
         else:
             for way in (-1, 1):
                 jaws += _jaw(pocket, (sx * X, way * a), (0, -way), (sx, 0))
             falls.append((sx * (X + depth), 0.0, pocket.fall_radius))
-    return np.array(noses, np.float64), np.array(jaws, np.float64).reshape(-1, 6), np.array(falls, np.float64).reshape(-1, 3)
+    return (
+        np.array(noses, np.float64),
+        np.array(jaws, np.float64).reshape(-1, 6),
+        np.array(falls, np.float64).reshape(-1, 3),
+    )
 
 
 def _jaw(pocket, start, onward, outward):
-    """The arcs of one jaw. It leaves the nose at ``start``; ``onward`` (along the nose, to the pocket) and ``outward`` are unit vectors."""
+    """The arcs of one jaw. It leaves the nose at ``start``; ``onward`` (along the nose, to the pocket) and
+    ``outward`` are unit vectors."""
     (x, y), (tx, ty), (ox, oy), radius = start, onward, outward, pocket.jaw_radius
     turn = radians(pocket.turn)
     # at 45 degrees sine and cosine are equal, but rounding would make them differ
     away, toward = (sqrt(0.5), sqrt(0.5)) if pocket.turn == 90.0 else (cos(turn / 2), sin(turn / 2))
     cx, cy = x + radius * ox, y + radius * oy
-    arcs = [(cx, cy, radius, -ox * away + tx * toward, -oy * away + ty * toward, away if radius else -1.0)]  # a point: a whole circle
+    # a point: a whole circle
+    arcs = [(cx, cy, radius, -ox * away + tx * toward, -oy * away + ty * toward, away if radius else -1.0)]
     if length := pocket.facing:
-        nx, ny = ox * cos(turn) - tx * sin(turn), oy * cos(turn) - ty * sin(turn)  # from the facing into the rubber
+        # from the facing into the rubber
+        nx, ny = ox * cos(turn) - tx * sin(turn), oy * cos(turn) - ty * sin(turn)
         fx, fy = tx * cos(turn) + ox * sin(turn), ty * cos(turn) + oy * sin(turn)  # along it, into the pocket
         rise = sqrt(FLAT**2 - length**2 / 4)
         mx, my = cx - radius * nx + length / 2 * fx, cy - radius * ny + length / 2 * fy
@@ -346,39 +450,69 @@ def _ball(**fields: float) -> Mapping[str, float]:
 
 
 _INCH = 0.0254
-_CORNER = Pocket(is_middle=False, start=0.0976352, jaw_radius=0.0889, turn=45.0, fall_depth=0.047625, fall_radius=0.0889)
-_TIGHT = Pocket(is_middle=False, start=0.0934916, jaw_radius=0.0889, turn=45.0, fall_depth=0.047625, fall_radius=0.0889)
-_MIDDLE = Pocket(is_middle=True, start=0.109185, jaw_radius=0.0669, turn=90.0, fall_depth=0.05159, fall_radius=0.05319)
+_CORNER = Pocket(
+    is_middle=False, start=0.0976352, jaw_radius=0.0889, turn=45.0, fall_depth=0.047625, fall_radius=0.0889
+)
+_TIGHT = Pocket(
+    is_middle=False, start=0.0934916, jaw_radius=0.0889, turn=45.0, fall_depth=0.047625, fall_radius=0.0889
+)
+_MIDDLE = Pocket(
+    is_middle=True, start=0.109185, jaw_radius=0.0669, turn=90.0, fall_depth=0.05159, fall_radius=0.05319
+)
 _SNOOKER = _ball(R=BALL_RADIUS, M=0.1406, sin_theta=0.4)
 
 
 def scaled(pocket: Pocket, factor: float) -> Pocket:
     """A pocket of the same shape, ``factor`` times as large."""
-    lengths = {name: factor * getattr(pocket, name) for name in ("start", "jaw_radius", "fall_depth", "fall_radius")}
+    lengths = {
+        name: factor * getattr(pocket, name) for name in ("start", "jaw_radius", "fall_depth", "fall_radius")
+    }
     return Pocket(is_middle=pocket.is_middle, turn=pocket.turn, **lengths)
 
 
-PRESETS = MappingProxyType({
-    # Throats of the corners 86.0 and 80.14 mm.
-    "match": Bed(length=2 * HALF_LENGTH, width=2 * HALF_WIDTH, corner=_CORNER, middle=_MIDDLE, ball=_SNOOKER),
-    "tight": Bed(length=2 * HALF_LENGTH, width=2 * HALF_WIDTH, corner=_TIGHT, middle=_MIDDLE, ball=_SNOOKER),
-    # WEPF: playing area 7 ft x 3 ft 6 in at most, balls of 2 in and 116 g (the cue ball's 1 7/8 in is left out: all balls are equal). Its
-    # pocket templates are not published. Makers say that pockets are to the balls as in snooker, so ours, an estimate, are snooker's,
-    # scaled by the balls; the nose height is snooker's, too.
-    "uk8": Bed(
-        length=84 * _INCH, width=42 * _INCH, corner=scaled(_CORNER, _INCH / BALL_RADIUS), middle=scaled(_MIDDLE, _INCH / BALL_RADIUS),
-        ball=_ball(R=_INCH, M=0.116, sin_theta=0.4),
-    ),
-    # WPA: 100 x 50 in, balls of 2 1/4 in and 5.5 to 6 oz, noses at 63.5 % of the ball, corner mouths 4.5 to 4.625 in cut at 142 degrees,
-    # side mouths 5 to 5.125 in at 104, shelves 1 to 2.25 and 0 to 0.375 in. In these ranges: the mouths and shelves of Alciatore's
-    # TP 3.6 and 3.5, and his radii of the falls, which the WPA leaves open.
-    "pool9": Bed(
-        length=100 * _INCH, width=50 * _INCH,
-        corner=Pocket.corner(mouth=4.5875 * _INCH, shelf=1.125 * _INCH, fall_radius=2.75 * _INCH, cut=142.0),
-        middle=Pocket.middle(mouth=5.0625 * _INCH, shelf=0.1875 * _INCH, fall_radius=3.0 * _INCH, cut=104.0),
-        ball=_ball(R=1.125 * _INCH, M=0.163, sin_theta=0.27),
-    ),
-    # UMB: 2.84 x 1.42 m, balls of 61 to 61.5 mm and 205 to 220 g, noses 37 mm high.
-    "carom": Bed(length=2.84, width=1.42, corner=None, middle=None, ball=_ball(R=0.03075, M=0.2125, sin_theta=37.0 / 30.75 - 1.0)),
-})  # fmt: skip
+PRESETS = MappingProxyType(
+    {
+        # Throats of the corners 86.0 and 80.14 mm.
+        "match": Bed(
+            length=2 * HALF_LENGTH, width=2 * HALF_WIDTH, corner=_CORNER, middle=_MIDDLE, ball=_SNOOKER
+        ),
+        "tight": Bed(
+            length=2 * HALF_LENGTH, width=2 * HALF_WIDTH, corner=_TIGHT, middle=_MIDDLE, ball=_SNOOKER
+        ),
+        # WEPF: playing area 7 ft x 3 ft 6 in at most, balls of 2 in and 116 g (the cue ball's 1 7/8 in is
+        # left out: all balls are equal). Its pocket templates are not published. Makers say that pockets are
+        # to the balls as in snooker, so ours, an estimate, are snooker's, scaled by the balls; the nose
+        # height is snooker's, too.
+        "uk8": Bed(
+            length=84 * _INCH,
+            width=42 * _INCH,
+            corner=scaled(_CORNER, _INCH / BALL_RADIUS),
+            middle=scaled(_MIDDLE, _INCH / BALL_RADIUS),
+            ball=_ball(R=_INCH, M=0.116, sin_theta=0.4),
+        ),
+        # WPA: 100 x 50 in, balls of 2 1/4 in and 5.5 to 6 oz, noses at 63.5 % of the ball, corner mouths 4.5
+        # to 4.625 in cut at 142 degrees, side mouths 5 to 5.125 in at 104, shelves 1 to 2.25 and 0 to 0.375
+        # in. In these ranges: the mouths and shelves of Alciatore's TP 3.6 and 3.5, and his radii of the
+        # falls, which the WPA leaves open.
+        "pool9": Bed(
+            length=100 * _INCH,
+            width=50 * _INCH,
+            corner=Pocket.corner(
+                mouth=4.5875 * _INCH, shelf=1.125 * _INCH, fall_radius=2.75 * _INCH, cut=142.0
+            ),
+            middle=Pocket.middle(
+                mouth=5.0625 * _INCH, shelf=0.1875 * _INCH, fall_radius=3.0 * _INCH, cut=104.0
+            ),
+            ball=_ball(R=1.125 * _INCH, M=0.163, sin_theta=0.27),
+        ),
+        # UMB: 2.84 x 1.42 m, balls of 61 to 61.5 mm and 205 to 220 g, noses 37 mm high.
+        "carom": Bed(
+            length=2.84,
+            width=1.42,
+            corner=None,
+            middle=None,
+            ball=_ball(R=0.03075, M=0.2125, sin_theta=37.0 / 30.75 - 1.0),
+        ),
+    }
+)
 """The preset tables by name, each a ``Bed``: "match", "tight", "uk8", "pool9" and "carom". Read-only."""

@@ -1,4 +1,5 @@
-"""How does one compute a single impact, or one strike of the cue? Two balls, or ball and cushion: checked input in, plain arrays out."""
+"""How does one compute a single impact, or one strike of the cue? Two balls, or ball and cushion: checked
+input in, plain arrays out."""
 
 import numpy as np
 
@@ -15,7 +16,9 @@ from .shot import SimulationError
 
 @entry(what="the impact of two balls", uses=(contact.collide_balls,))
 def _collide_balls(v1, w1, v2, w2, normal, phys, fidelity, n_steps):
-    return contact.collide_balls(v1, w1, v2, w2, normal, Law(phys, fidelity, n_steps), phys[P_E_B], np.empty(WORK))
+    return contact.collide_balls(
+        v1, w1, v2, w2, normal, Law(phys, fidelity, n_steps), phys[P_E_B], np.empty(WORK)
+    )
 
 
 @entry(what="the impact with a cushion", uses=(contact.collide_cushion,))
@@ -28,7 +31,11 @@ def _unit_normal(normal):
     nx, ny, nz = array("normal", normal, (3,)).tolist()
     if abs(nz) > 1e-9 or abs(np.hypot(nx, ny) - 1.0) > 1e-6:
         length = (nx * nx + ny * ny + nz * nz) ** 0.5
-        raise refuse("normal", (nx, ny, nz), f"must be a horizontal unit vector: z = 0, length 1 to 1e-6 (it is {length:.7g})")
+        raise refuse(
+            "normal",
+            (nx, ny, nz),
+            f"must be a horizontal unit vector: z = 0, length 1 to 1e-6 (it is {length:.7g})",
+        )
     size = float(np.hypot(nx, ny))
     return nx / size, ny / size
 
@@ -42,33 +49,40 @@ def _spin(name, value):
 
 
 def collide_balls(
-    v1: Vector, w1: Vector, v2: Vector, w2: Vector, normal: Vector, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
+    v1: Vector,
+    w1: Vector,
+    v2: Vector,
+    w2: Vector,
+    normal: Vector,
+    physics: PhysicsLike = None,
+    fidelity: Fidelity = "standard",
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """The frictional impact of two balls on the cloth (Mathavan, Jackson & Parkin 2014, 2.1 to 2.4).
 
     Parameters
     ----------
     v1, w1, v2, w2 : array_like, float (3,)
-        Velocities [m/s] and spins [rad/s] of ball 1 and ball 2, components within 1e6 m/s and 1e9 rad/s of zero.
+        Velocities [m/s] and spins [rad/s] of ball 1 and ball 2, components within 1e6 m/s and 1e9 rad/s of
+        zero.
     normal : array_like, float (3,)
         Horizontal unit vector from ball 1 to ball 2.
     physics : None, str, dict or Physics
         The constants, as ``Physics.of`` takes them; None is "paper".
     fidelity : str
-        How the impact is solved: "fast" (closed form for free spheres), "standard" (default), "reference" (tightest tolerance), or
-        "euler:N" (the paper's own scheme with N of eq. 14).
+        How the impact is solved: "fast" (closed form for free spheres), "standard" (default), "reference"
+        (tightest tolerance), or "euler:N" (the paper's own scheme with N of eq. 14).
 
     Returns
     -------
     v1, w1, v2, w2 : float64 (3,)
-        Velocities [m/s] and spins [rad/s] after the impact, including the vertical velocity of a ball that is lifted. Balls that do not
-        approach each other come back unchanged.
+        Velocities [m/s] and spins [rad/s] after the impact, including the vertical velocity of a ball that is
+        lifted. Balls that do not approach each other come back unchanged.
 
     Raises
     ------
     ValueError
-        For wrong shapes, numbers that are not finite or out of range, a normal that is not a horizontal unit vector, and an unknown
-        fidelity or physics.
+        For wrong shapes, numbers that are not finite or out of range, a normal that is not a horizontal unit
+        vector, and an unknown fidelity or physics.
     SimulationError
         If the computation of the impact does not end.
 
@@ -81,16 +95,21 @@ def collide_balls(
     """
     physics, solver = Physics.of(physics), contact.parse_fidelity(fidelity)
     args = _velocity("v1", v1), _spin("w1", w1), _velocity("v2", v2), _spin("w2", w2)
-    v1_after, w1_after, v2_after, w2_after, solved = _collide_balls(*args, _unit_normal(normal), physics.pack(), *solver)
+    v1_after, w1_after, v2_after, w2_after, solved = _collide_balls(
+        *args, _unit_normal(normal), physics.pack(), *solver
+    )
     if not solved:
-        raise SimulationError(f"the impact of v1, w1, v2, w2 = {args} did not end at fidelity {fidelity!r}; try another fidelity")
+        raise SimulationError(
+            f"the impact of v1, w1, v2, w2 = {args} did not end at fidelity {fidelity!r}; try another fidelity"
+        )
     return np.array(v1_after), np.array(w1_after), np.array(v2_after), np.array(w2_after)
 
 
 def collide_cushion(
     v: Vector, w: Vector, normal: Vector, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
 ) -> tuple[Floats, Floats]:
-    """The impact of a ball with the nose of a cushion (Mathavan, Jackson & Parkin 2010, with Coulomb's law at zero slip).
+    """The impact of a ball with the nose of a cushion (Mathavan, Jackson & Parkin 2010, with Coulomb's law at
+    zero slip).
 
     Parameters
     ----------
@@ -101,19 +120,20 @@ def collide_cushion(
     physics : None, str, dict or Physics
         The constants, as ``Physics.of`` takes them; None is "paper".
     fidelity : str
-        As in ``collide_balls``, except that "fast" integrates with a loose tolerance: no closed form includes the cloth's reaction, which
-        is worth 7 % of the rebound.
+        As in ``collide_balls``, except that "fast" integrates with a loose tolerance: no closed form includes
+        the cloth's reaction, which is worth 7 % of the rebound.
 
     Returns
     -------
     v, w : float64 (3,)
-        Velocity [m/s] and spin [rad/s] after the impact. A ball that does not move into the cushion comes back unchanged.
+        Velocity [m/s] and spin [rad/s] after the impact. A ball that does not move into the cushion comes
+        back unchanged.
 
     Raises
     ------
     ValueError
-        For wrong shapes, numbers that are not finite or out of range, a normal that is not a horizontal unit vector, and an unknown
-        fidelity or physics.
+        For wrong shapes, numbers that are not finite or out of range, a normal that is not a horizontal unit
+        vector, and an unknown fidelity or physics.
     SimulationError
         If the computation of the impact does not end.
 
@@ -128,17 +148,25 @@ def collide_cushion(
     args = _velocity("v", v), _spin("w", w)
     v_after, w_after, solved = _collide_cushion(*args, _unit_normal(normal), physics.pack(), *solver)
     if not solved:
-        raise SimulationError(f"the cushion impact of v, w = {args} did not end at fidelity {fidelity!r}; try another fidelity")
+        raise SimulationError(
+            f"the cushion impact of v, w = {args} did not end at fidelity {fidelity!r}; try another fidelity"
+        )
     return np.array(v_after), np.array(w_after)
 
 
 def strike(
-    speed: Real, aim: Real, side: Real = 0.0, top: Real = 0.0, elevation: Real = 0.0, physics: PhysicsLike = None
+    speed: Real,
+    aim: Real,
+    side: Real = 0.0,
+    top: Real = 0.0,
+    elevation: Real = 0.0,
+    physics: PhysicsLike = None,
 ) -> tuple[Floats, Floats]:
     """The cue ball's velocity and spin just after the strike of the cue.
 
-    Side spin deflects the ball from the aim (squirt: to the left for right side). An elevated cue with side gives the spin of a swerve or
-    masse shot. The cloth takes the downward part of the speed: the ball leaves along the cloth at speed cos(elevation).
+    Side spin deflects the ball from the aim (squirt: to the left for right side). An elevated cue with side
+    gives the spin of a swerve or masse shot. The cloth takes the downward part of the speed: the ball leaves
+    along the cloth at speed cos(elevation).
 
     Parameters
     ----------
@@ -147,7 +175,8 @@ def strike(
     aim : float
         Direction of the cue [rad], anticlockwise from +x, in [-2 pi, 2 pi].
     side, top : float
-        Offset of the tip over R, + right and + up as the player sees the ball; the two together at most ``Physics.max_offset``.
+        Offset of the tip over R, + right and + up as the player sees the ball; the two together at most
+        ``Physics.max_offset``.
     elevation : float
         Angle between the cue and the cloth, butt raised [rad], in [0, 1.5].
     physics : None, str, dict or Physics
@@ -163,8 +192,8 @@ def strike(
     Raises
     ------
     ValueError
-        For a miscue (an offset beyond ``Physics.max_offset``, 0.5 by default), a speed, aim or elevation out of range, and numbers that
-        are not finite.
+        For a miscue (an offset beyond ``Physics.max_offset``, 0.5 by default), a speed, aim or elevation out
+        of range, and numbers that are not finite.
 
     Examples
     --------

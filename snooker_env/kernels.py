@@ -1,9 +1,11 @@
-"""How does one write kernels that run beside those of the package? Its two decorators, and the inner kernels that others may call.
+"""How does one write kernels that run beside those of the package? Its two decorators, and the inner kernels
+that others may call.
 
-``entry`` compiles a kernel that Python calls, and keeps its machine code on disk as the package keeps its own. ``kernel`` compiles an
-inner kernel, which only kernels can call. Both use strict IEEE arithmetic and release the GIL. In a mask of balls, bit i stands for
-ball i. The functions ``balls_on``, ``bits``, ``clear_segment``, ``executed``, ``find_pots``, ``line_of`` and ``window`` are inner
-kernels: call them from an ``entry`` of your own.
+``entry`` compiles a kernel that Python calls, and keeps its machine code on disk as the package keeps its
+own. ``kernel`` compiles an inner kernel, which only kernels can call. Both use strict IEEE arithmetic and
+release the GIL. In a mask of balls, bit i stands for ball i. The functions ``balls_on``, ``bits``,
+``clear_segment``, ``executed``, ``find_pots``, ``line_of`` and ``window`` are inner kernels: call them from
+an ``entry`` of your own.
 """
 
 from ._jit import entry, kernel
@@ -25,6 +27,21 @@ from .tasks.lines import LINE_ROWS, line_of
 from .tasks.noise import executed
 
 __all__ = [
-    "COS_CUT", "GHOST_X", "GHOST_Y", "LINE_ROWS", "POT_BALL", "POT_COLUMNS", "POT_POCKET", "TOLERANCE", "balls_on", "bits", "clear_segment",
-    "entry", "executed", "find_pots", "kernel", "line_of", "window",
-]  # fmt: skip
+    "COS_CUT",
+    "GHOST_X",
+    "GHOST_Y",
+    "LINE_ROWS",
+    "POT_BALL",
+    "POT_COLUMNS",
+    "POT_POCKET",
+    "TOLERANCE",
+    "balls_on",
+    "bits",
+    "clear_segment",
+    "entry",
+    "executed",
+    "find_pots",
+    "kernel",
+    "line_of",
+    "window",
+]

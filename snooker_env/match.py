@@ -1,4 +1,5 @@
-"""How is a match of two players made? ``match_env`` returns the PettingZoo environment, and loads PettingZoo only when it is called."""
+"""How is a match of two players made? ``match_env`` returns the PettingZoo environment, and loads PettingZoo
+only when it is called."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -12,21 +13,24 @@ else:  # PettingZoo and the environments are loaded at their first use
     _MatchEnv = Options = Any
 
 
-def match_env(options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any) -> "_MatchEnv":
+def match_env(
+    options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any
+) -> "_MatchEnv":
     """Make a frame or match of snooker between "player_0" and "player_1", as a PettingZoo AEC environment.
 
     Parameters
     ----------
     options : Options, optional
-        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the keywords, with the task
-        "match" if ``frames`` is among them, else "frame".
+        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the
+        keywords, with the task "match" if ``frames`` is among them, else "frame".
     render_mode : {"human", "rgb_array", "ansi"}, optional
         How ``render`` shows the table; default None: not at all.
     **given
-        ``seats`` (two dicts: what differs in the actions and the noise of each player), ``render_size``, and the keywords of
-        ``Options`` in place of ``options``. Box actions hold the place in the D and the decision after
-        a foul, unless ``placement=False`` or ``decision=False``. After ``max_strokes`` strokes of both players together (default 1000,
-        None for never) the referee stops the frame, and both players are truncated.
+        ``seats`` (two dicts: what differs in the actions and the noise of each player), ``render_size``, and
+        the keywords of ``Options`` in place of ``options``. Box actions hold the place in the D and the
+        decision after a foul, unless ``placement=False`` or ``decision=False``. After ``max_strokes`` strokes
+        of both players together (default 1000, None for never) the referee stops the frame, and both players
+        are truncated.
 
     Returns
     -------

@@ -1,4 +1,5 @@
-"""How far is a long command? ``Progress`` says it every few seconds: in lines of a file or pipe, in one rewritten line on a terminal."""
+"""How far is a long command? ``Progress`` says it every few seconds: in lines of a file or pipe, in one
+rewritten line on a terminal."""
 
 import shutil
 import sys
@@ -21,10 +22,11 @@ RECENT = 5.0
 
 
 class Progress:
-    """What a part of a long command does, how far it is, how fast, and how long it still takes. A context: it speaks inside it.
+    """What a part of a long command does, how far it is, how fast, and how long it still takes. A context: it
+    speaks inside it.
 
-    A thread speaks at the start, every ten seconds (on a terminal twice a second) and at the end, also while one step of the work takes
-    long. The time left follows from the rate in the later half of the time so far.
+    A thread speaks at the start, every ten seconds (on a terminal twice a second) and at the end, also while
+    one step of the work takes long. The time left follows from the rate in the later half of the time so far.
 
     Parameters
     ----------
@@ -55,7 +57,16 @@ class Progress:
     done: int
     total: int
 
-    def __init__(self, what: str, total: int, unit: str, *, done: int = 0, to: TextIO | None = None, quiet: bool = False):
+    def __init__(
+        self,
+        what: str,
+        total: int,
+        unit: str,
+        *,
+        done: int = 0,
+        to: TextIO | None = None,
+        quiet: bool = False,
+    ):
         self.done, self.total = done, total
         self._what, self._unit, self._figures = what, unit, ""
         self._to: Any = None if quiet else to or sys.stderr
@@ -73,7 +84,9 @@ class Progress:
             self._speaker.start()
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         if self._to is None:
             return
         self._ended.set()
@@ -126,10 +139,15 @@ class Progress:
         while self._error is None and not self._ended.wait(REDRAWN if self._terminal else EVERY):
             left = self.left
             still = "" if left == float("inf") else f"{_clock(left)} left"
-            self._write(self._state(self._speed(self.rate), f"{_clock(time.perf_counter() - self._began)} elapsed", still))
+            self._write(
+                self._state(
+                    self._speed(self.rate), f"{_clock(time.perf_counter() - self._began)} elapsed", still
+                )
+            )
 
     def _state(self, *times):
-        """The line: how much is done, the figures, and what is known of the time; that first on a terminal, which may cut the line."""
+        """The line: how much is done, the figures, and what is known of the time; that first on a terminal,
+        which may cut the line."""
         work = f"{self._what}: {self.done:,} of {self.total:,} {self._unit}"
         parts = (work, self._figures, *times)
         if self._terminal and not self._ended.is_set() and times:
@@ -138,7 +156,9 @@ class Progress:
         return ", ".join(part for part in parts if part)
 
     def _speed(self, rate):
-        return f"{rate:,.{0 if rate >= 10.0 else 1 if rate >= 1.0 else 2}f} {self._unit}/s" if rate > 0.0 else ""
+        return (
+            f"{rate:,.{0 if rate >= 10.0 else 1 if rate >= 1.0 else 2}f} {self._unit}/s" if rate > 0.0 else ""
+        )
 
     def _write(self, text, last=False):
         """Write a line; the error of an output that takes no more is kept for ``at`` to raise."""

@@ -1,4 +1,5 @@
-"""How does Stable-Baselines3 train on many tables at once? ``SnookerVecEnv``: its ``VecEnv`` on the native vector environment.
+"""How does Stable-Baselines3 train on many tables at once? ``SnookerVecEnv``: its ``VecEnv`` on the native
+vector environment.
 
 from snooker_env.sb3 import SnookerVecEnv
 MaskablePPO("MlpPolicy", SnookerVecEnv(64, action="discrete")).learn(100_000)
@@ -33,9 +34,9 @@ __all__ = ["SnookerVecEnv"]
 class SnookerVecEnv(VecEnv):
     """Many tables as a ``VecEnv`` of Stable-Baselines3.
 
-    A step that ends an episode starts the next one. Its info holds ``terminal_observation``, ``TimeLimit.truncated`` and, as from a
-    ``Monitor`` around each table, ``episode`` with the return "r", the length "l" and the time "t" [s]. Other entries are left out for
-    speed, unless ``info_keys`` names them.
+    A step that ends an episode starts the next one. Its info holds ``terminal_observation``,
+    ``TimeLimit.truncated`` and, as from a ``Monitor`` around each table, ``episode`` with the return "r", the
+    length "l" and the time "t" [s]. Other entries are left out for speed, unless ``info_keys`` names them.
 
     Parameters
     ----------
@@ -70,11 +71,17 @@ class SnookerVecEnv(VecEnv):
     info_keys: tuple[str, ...]
     reset_infos: list[dict[str, Any]]
 
-    def __init__(self, num_envs: int, *, seed: int | None = None, info_keys: Sequence[str] = (), **kwargs: Any):
+    def __init__(
+        self, num_envs: int, *, seed: int | None = None, info_keys: Sequence[str] = (), **kwargs: Any
+    ):
         if seed is not None:
             seed = integer("seed", seed, 0, 2**63 - 1)
         if "autoreset_mode" in kwargs:
-            raise refuse("autoreset_mode", kwargs["autoreset_mode"], "must be left out: Stable-Baselines3 needs SAME_STEP")
+            raise refuse(
+                "autoreset_mode",
+                kwargs["autoreset_mode"],
+                "must be left out: Stable-Baselines3 needs SAME_STEP",
+            )
         self.tables = SnookerVectorEnv(num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **kwargs)
         known = (*self.tables.tables.REALS, *self.tables.tables.COUNTS, "foul")
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
@@ -82,7 +89,8 @@ class SnookerVecEnv(VecEnv):
         self._actions = None
         self.episode_returns: NDArray[np.float64] = np.zeros(num_envs)
         self.episode_lengths: NDArray[np.int64] = np.zeros(num_envs, np.int64)
-        """Rewards and steps so far of the episodes going on: (n,) each. No state of a table holds them: save them with its state."""
+        """Rewards and steps so far of the episodes going on: (n,) each. No state of a table holds them: save
+        them with its state."""
         self._start = time.time()
         if seed is not None:
             self.seed(seed)
@@ -90,9 +98,9 @@ class SnookerVecEnv(VecEnv):
     def reset(self) -> Observation:
         """Begin new episodes on all tables, with the seeds and options set before.
 
-        ``set_options([{"state": ...}, ...])`` starts from states, ``set_options([{"position": ...}, ...])`` from positions, one for each
-        table; ``set_options([{"breaker": 0}, ...])`` says who breaks. States hold their random
-        streams; after a call of ``seed`` too, those of the seeds replace them.
+        ``set_options([{"state": ...}, ...])`` starts from states, ``set_options([{"position": ...}, ...])``
+        from positions, one for each table; ``set_options([{"breaker": 0}, ...])`` says who breaks. States
+        hold their random streams; after a call of ``seed`` too, those of the seeds replace them.
 
         Returns
         -------
@@ -109,7 +117,9 @@ class SnookerVecEnv(VecEnv):
             key = next((key for key in ("position", "breaker") if key in self._options[0]), "state")
             for k, own in enumerate(self._options):
                 if set(own) != {key}:
-                    wanted = '"state", "position" or "breaker" alone, the same for each table, or nothing for all'
+                    wanted = (
+                        '"state", "position" or "breaker" alone, the same for each table, or nothing for all'
+                    )
                     raise refuse(f"keys of options[{k}]", list(own), f"must be {wanted}")
             options = {key if key == "breaker" else f"{key}s": [own[key] for own in self._options]}
         observation, info = self.tables.reset(seed=self._seeds, options=options)
@@ -154,7 +164,11 @@ class SnookerVecEnv(VecEnv):
                 own[key] = value
         now = round(time.time() - self._start, 6)
         for k in np.flatnonzero(done).tolist():
-            episode = {"r": round(float(self.episode_returns[k]), 6), "l": int(self.episode_lengths[k]), "t": now}
+            episode = {
+                "r": round(float(self.episode_returns[k]), 6),
+                "l": int(self.episode_lengths[k]),
+                "t": now,
+            }
             infos[k]["episode"], infos[k]["terminal_observation"] = episode, info["final_obs"][k]
             infos[k]["TimeLimit.truncated"] = bool(truncated[k] and not terminated[k])
         self.episode_returns[done], self.episode_lengths[done] = 0.0, 0
@@ -221,9 +235,13 @@ class SnookerVecEnv(VecEnv):
         AttributeError
             Always.
         """
-        raise AttributeError(f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv")
+        raise AttributeError(
+            f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv"
+        )
 
-    def env_method(self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any) -> list[Any]:
+    def env_method(
+        self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
+    ) -> list[Any]:
         """Call ``get_state`` or ``action_masks`` for some tables. No other method belongs to one table.
 
         Parameters

@@ -1,4 +1,5 @@
-"""What is the result of a simulated shot? ``Shot`` and ``ShotBatch``: final positions, the log of events, and the state at any time."""
+"""What is the result of a simulated shot? ``Shot`` and ``ShotBatch``: final positions, the log of events, and
+the state at any time."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,7 +14,8 @@ from .physics.parameters import Physics
 from .physics.table import Table
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
-"""Data type of one logged event: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (explained there)."""
+"""Data type of one logged event: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (explained
+there)."""
 
 
 class SimulationError(RuntimeError):
@@ -32,16 +34,18 @@ class Shot:
     Attributes
     ----------
     positions : float64 (n, 2)
-        Centres of the balls at rest [m]. For a potted ball: where its centre crossed the fall, or where its flight over the pocket ended.
+        Centres of the balls at rest [m]. For a potted ball: where its centre crossed the fall, or where its
+        flight over the pocket ended.
     potted : int64 (n,)
         Pocket of each ball, an index of ``snooker_env.POCKETS``; -1 if it was not potted in this shot.
     on_table : bool (n,)
         True for the balls that are still in play.
     duration : float
-        Time until everything is at rest, spin included [s]. With ``Physics.spin_decel`` 0, spin never ends: then the time until no ball
-        moves across the table.
+        Time until everything is at rest, spin included [s]. With ``Physics.spin_decel`` 0, spin never ends:
+        then the time until no ball moves across the table.
     events : structured array (k,)
-        Log of the events in order of time: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (explained there).
+        Log of the events in order of time: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j``
+        (explained there).
     segments : float64 (s, columns)
         The paths in pieces, which ``at`` evaluates.
     physics : Physics
@@ -71,10 +75,11 @@ class Shot:
     def at(self, t: Real | Vector) -> tuple[Floats, Floats, Floats]:
         """Positions, velocities and spins of all balls at one time, or at many.
 
-        At the time of an impact, the state is that just after it. From ``duration`` on everything is at rest: the positions are
-        ``positions``, velocities and spins are zero (with ``spin_decel`` 0 a spin about the vertical stays as it is). A potted ball lies
-        still in its place of ``positions`` from its pot on; a ball that was not on the table stays where it was given. A ball in the air
-        over a pocket has its mean velocity from event to event.
+        At the time of an impact, the state is that just after it. From ``duration`` on everything is at rest:
+        the positions are ``positions``, velocities and spins are zero (with ``spin_decel`` 0 a spin about the
+        vertical stays as it is). A potted ball lies still in its place of ``positions`` from its pot on; a
+        ball that was not on the table stays where it was given. A ball in the air over a pocket has its mean
+        velocity from event to event.
 
         Parameters
         ----------
@@ -109,7 +114,8 @@ class Shot:
         check_path(self)
         n, m = len(self.positions), len(times)
         out = np.zeros((m, n, 2)), np.zeros((m, n, 2)), np.zeros((m, n, 3))
-        segments = np.require(self.segments, np.float64, ["C", "W"])  # the compiled type; an unpickled shot may be read-only
+        # the compiled type; an unpickled shot may be read-only
+        segments = np.require(self.segments, np.float64, ["C", "W"])
         trajectory.states_at(segments, n, times, self.physics.pack(), *out)
         if self.physics.spin_decel > 0:
             out[2][times >= self.duration] = 0.0  # at exactly that time rounding may leave 1e-14 of a spin
@@ -153,12 +159,17 @@ class Shot:
 def check_path(shot: Shot) -> None:
     """Raise ValueError unless the shot has its path."""
     if not len(shot.segments):
-        raise refuse("shot.segments", "none", "must be there: simulate() keeps them, environments with keep_history = True")
+        raise refuse(
+            "shot.segments",
+            "none",
+            "must be there: simulate() keeps them, environments with keep_history = True",
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class ShotBatch:
-    """Many simulated shots, as ``simulate_batch`` returns them: the attributes of ``Shot`` with a leading axis b.
+    """Many simulated shots, as ``simulate_batch`` returns them: the attributes of ``Shot`` with a leading
+    axis b.
 
     Attributes
     ----------

@@ -1,4 +1,5 @@
-"""How does one simulate shots? One shot or many: checked input in, ``Shot`` and ``ShotBatch`` out. Single impacts are in ``impacts``."""
+"""How does one simulate shots? One shot or many: checked input in, ``Shot`` and ``ShotBatch`` out. Single
+impacts are in ``impacts``."""
 
 import os
 import threading
@@ -34,7 +35,9 @@ def _balls(positions, velocities, spins, on_table, batch):
     v = array("velocities", velocities, (*shape, 2), FASTEST, "m/s")
     w = array("spins", spins, (*shape, 3), MOST_SPIN, "rad/s")
     if not 1 <= shape[-1] <= MAX_BALLS:
-        raise refuse_what("positions", f"array of shape {r.shape}", f"must hold at least one ball and at most {MAX_BALLS}")
+        raise refuse_what(
+            "positions", f"array of shape {r.shape}", f"must hold at least one ball and at most {MAX_BALLS}"
+        )
     here = np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)
     return r, v, w, here
 
@@ -57,15 +60,17 @@ def simulate(
     Parameters
     ----------
     positions : array_like, float (n, 2)
-        Centres of the balls [m] in the table frame: origin at the table's centre, +x to the yellow side, +y to the black end. Balls may
-        touch each other and the cushions, and overlap by at most 1e-6 m. All balls are equal; n is 1 to 4096.
+        Centres of the balls [m] in the table frame: origin at the table's centre, +x to the yellow side, +y
+        to the black end. Balls may touch each other and the cushions, and overlap by at most 1e-6 m. All
+        balls are equal; n is 1 to 4096.
     velocities : array_like, float (n, 2)
         Velocities [m/s], each component within 1,000 of zero.
     spins : array_like, float (n, 3)
         Angular velocities [rad/s], each component within 100,000 of zero.
     table : str, Table or None
-        Name of a preset ("match", "tight", "uk8", "pool9", "carom"), a ``Table``, or None for unbounded cloth. A preset is made for the
-        balls of its game: ``physics.R`` must be ``Table.preset(name).ball_radius``.
+        Name of a preset ("match", "tight", "uk8", "pool9", "carom"), a ``Table``, or None for unbounded
+        cloth. A preset is made for the balls of its game: ``physics.R`` must be
+        ``Table.preset(name).ball_radius``.
     physics : None, str, dict or Physics
         The constants, as ``Physics.of`` takes them; None is "paper".
     fidelity : str
@@ -115,8 +120,8 @@ def play(
 ) -> Shot:
     """``simulate`` without its checks, for layouts that have been checked before; the shot is not counted.
 
-    ``balls``: positions, velocities, spins and on_table, which are not changed. ``fidelity``: as ``parse_fidelity`` returns it. ``path``
-    False leaves out the paths that ``Shot.at`` needs.
+    ``balls``: positions, velocities, spins and on_table, which are not changed. ``fidelity``: as
+    ``parse_fidelity`` returns it. ``path`` False leaves out the paths that ``Shot.at`` needs.
     """
     capacity = min(_FIRST_LOG, max_events)
     while True:
@@ -131,7 +136,9 @@ def play(
         _KEPT.log = log
     if out.status[0] != OK:
         raise _failure(out, 0, events)
-    return Shot(state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, segments, physics, table)
+    return Shot(
+        state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, segments, physics, table
+    )
 
 
 def simulate_batch(
@@ -182,7 +189,8 @@ def simulate_batch(
     ValueError
         For bad input; the message names the shot, the field, its value and what is allowed.
     SimulationError
-        If a shot does not come to rest within ``max_events`` events, or an impact of it does not end; the message names the shot.
+        If a shot does not come to rest within ``max_events`` events, or an impact of it does not end; the
+        message names the shot.
 
     Examples
     --------
@@ -201,12 +209,26 @@ def simulate_batch(
     max_events = integer("max_events", max_events, 1, 2**31)
     start = r.copy(), v.copy(), w.copy(), here.copy()
     count(len(r))
-    out = _run((r, v, w, here), physics, table, solver, max_events, log_space(len(r), _FIRST_LOG if events else 0, 0), threads)
+    out = _run(
+        (r, v, w, here),
+        physics,
+        table,
+        solver,
+        max_events,
+        log_space(len(r), _FIRST_LOG if events else 0, 0),
+        threads,
+    )
     logs = [out.log(k) for k in range(len(r))] if events else None
     for k in np.flatnonzero(out.status != OK).tolist():
-        if out.status[k] == LOG_FULL:  # rare: the log is longer than the first guess, so the shot is simulated again with more room
+        # rare: the log is longer than the first guess, so the shot is simulated again with more room
+        if out.status[k] == LOG_FULL:
             one = play(tuple(part[k] for part in start), physics, table, solver, max_events, path=False)
-            r[k], here[k], out.potted[k], out.duration[k] = one.positions, one.on_table, one.potted, one.duration
+            r[k], here[k], out.potted[k], out.duration[k] = (
+                one.positions,
+                one.on_table,
+                one.potted,
+                one.duration,
+            )
             out.n_events[k] = len(one.events)
             if logs is not None:
                 logs[k] = one.events
@@ -229,21 +251,29 @@ class _Run:
     def log(self, k):
         m = min(int(self.n_events[k]), self.event_time.shape[1])
         events, what = np.empty(m, EVENT), self.event_what[k, :m]
-        events["time"], events["kind"], events["i"], events["j"] = self.event_time[k, :m], what[:, 0], what[:, 1], what[:, 2]
+        events["time"], events["kind"], events["i"], events["j"] = (
+            self.event_time[k, :m],
+            what[:, 0],
+            what[:, 1],
+            what[:, 2],
+        )
         return events
 
 
 def log_space(b, log_size, path_size):
     """A ``Log`` of b shots."""
-    return Log(np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT)))
+    return Log(
+        np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT))
+    )
 
 
 _KEPT = threading.local()
 
 
 def _take_log(log_size, path_size):
-    """``log_space`` of one shot: that of the last one in this thread if the sizes are the same, because making it takes longer than most
-    shots. It is taken out until the results are copied: a shot inside a shot (a signal, a trace function) makes its own."""
+    """``log_space`` of one shot: that of the last one in this thread if the sizes are the same, because
+    making it takes longer than most shots. It is taken out until the results are copied: a shot inside a shot
+    (a signal, a trace function) makes its own."""
     log = _KEPT.__dict__.pop("log", None)
     if log is None or (log.time.shape[1], log.segments.shape[1]) != (log_size, path_size):
         return log_space(1, log_size, path_size)
@@ -251,7 +281,8 @@ def _take_log(log_size, path_size):
 
 
 def _run(state, physics, table, fidelity, max_events, log=None, threads=1):
-    """Run the engine on ``state`` = positions, velocities, spins, on_table (batched, changed in place), with a ``Log`` or without."""
+    """Run the engine on ``state`` = positions, velocities, spins, on_table (batched, changed in place), with
+    a ``Log`` or without."""
     b, n = state[0].shape[:2]
     log = log or log_space(b, 0, 0)
     ends = Ends(np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b))
@@ -266,7 +297,8 @@ def _run(state, physics, table, fidelity, max_events, log=None, threads=1):
     if threads <= 1:
         run(0, b)
     else:
-        cuts = np.linspace(0, b, 4 * threads + 1).astype(int)  # more slices than threads, because shots differ in length
+        # more slices than threads, because shots differ in length
+        cuts = np.linspace(0, b, 4 * threads + 1).astype(int)
         with ThreadPoolExecutor(threads) as pool:
             list(pool.map(run, cuts[:-1], cuts[1:]))
     return out

@@ -1,7 +1,8 @@
-"""How does a replay play in a notebook? As a widget of anywidget: the module of the page, with its time synchronised to Python and back.
+"""How does a replay play in a notebook? As a widget of anywidget: the module of the page, with its time
+synchronised to Python and back.
 
-It runs in JupyterLab, notebooks of VS Code, Colab and marimo. A result of ``sn.replay`` shows itself without this module, but in a frame
-that Python cannot control.
+It runs in JupyterLab, notebooks of VS Code, Colab and marimo. A result of ``sn.replay`` shows itself without
+this module, but in a frame that Python cannot control.
 """
 
 from functools import cache
@@ -30,9 +31,9 @@ def replay_widget(
 ) -> Any:
     """Make a widget that plays a replay in a notebook.
 
-    Its traits are synchronised in both directions: ``stroke`` (from 0), ``time`` within it [s] (below 0 before the strike), and
-    ``playing``. While it plays, ``time`` is not updated; it is when the replay stops, or when the viewer moves it. Setting ``stroke`` alone
-    goes to its beginning.
+    Its traits are synchronised in both directions: ``stroke`` (from 0), ``time`` within it [s] (below 0
+    before the strike), and ``playing``. While it plays, ``time`` is not updated; it is when the replay stops,
+    or when the viewer moves it. Setting ``stroke`` alone goes to its beginning.
 
     Parameters
     ----------
@@ -43,7 +44,8 @@ def replay_widget(
     playing : bool, optional
         Whether it starts at once; default False.
     paths, ghosts, labels : bool, optional
-        Whether paths (default True), balls at their impacts (default True) and letters on balls (default False) are shown at first.
+        Whether paths (default True), balls at their impacts (default True) and letters on balls (default
+        False) are shown at first.
     spin : {"off", "cue", "all"}, optional
         The balls whose rotation is shown at first; default "cue".
 
@@ -70,7 +72,9 @@ def replay_widget(
     (0, False)
     """
     options = {"speed": number("speed", speed, 0.1, 8.0), "spin": choice("spin", spin, SPINS)}
-    options |= {name: truth(name, value) for name, value in (("paths", paths), ("ghosts", ghosts), ("labels", labels))}
+    options |= {
+        name: truth(name, value) for name, value in (("paths", paths), ("ghosts", ghosts), ("labels", labels))
+    }
     return _widget_class()(data=replay(source).to_dict(), options=options, playing=truth("playing", playing))
 
 
@@ -104,5 +108,6 @@ def _widget_class():
 
 
 def module() -> str:
-    """The JavaScript of the widget: the module that draws and plays, and the function that a notebook's host calls."""
+    """The JavaScript of the widget: the module that draws and plays, and the function that a notebook's host
+    calls."""
     return table_js() + (WEB / "widget.js").read_text("utf-8")

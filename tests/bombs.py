@@ -1,4 +1,5 @@
-"""How does a test see that nothing of a model's file was run? A sound file in which every pickle leaves a mark when it is loaded."""
+"""How does a test see that nothing of a model's file was run? A sound file in which every pickle leaves a
+mark when it is loaded."""
 
 import base64
 import io
@@ -19,7 +20,8 @@ class Bomb:
 
 
 def rezipped(source, target, **parts):
-    """Copy a zip with some of its parts changed: name (with _ for .) -> a function of the old bytes, or None to leave it out."""
+    """Copy a zip with some of its parts changed: name (with _ for .) -> a function of the old bytes, or None
+    to leave it out."""
     with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
         for name in old.namelist():
             change = parts.get(name.replace(".", "_"), lambda data: data)
@@ -40,7 +42,8 @@ def edited(change):
 
 
 def bombed(source, target, mark, weights=False, change=lambda found: None):
-    """A copy of an SB3 file whose pickles are bombs, those of policy.pth too if ``weights``; ``change(data)`` changes the rest."""
+    """A copy of an SB3 file whose pickles are bombs, those of policy.pth too if ``weights``; ``change(data)``
+    changes the rest."""
     bomb = pickle.dumps(Bomb(mark), protocol=2)
 
     def fill(found):

@@ -1,15 +1,18 @@
-"""Which fixtures and settings do all tests share? A window that needs no display; drawn cases that are the same in every run."""
+"""Which fixtures and settings do all tests share? A window that needs no display; drawn cases that are the
+same in every run."""
 
 import os
 
 import pytest
 from hypothesis import settings
 
-# A change is judged by what it changes: new cases are drawn weekly (--hypothesis-profile=default), not in every run.
+# A change is judged by what it changes: new cases are drawn weekly (--hypothesis-profile=default), not in
+# every run.
 settings.register_profile("same_cases", derandomize=True)
 settings.load_profile("same_cases")
 
-os.environ.setdefault("SNOOKER_ENV_QUIET", "1")  # what tests read on stderr must not depend on what was compiled before
+# what tests read on stderr must not depend on what was compiled before
+os.environ.setdefault("SNOOKER_ENV_QUIET", "1")
 
 
 @pytest.fixture

@@ -1,4 +1,5 @@
-"""When is a ball in the air over a pocket? Between its DROP and the RETURN or POT that follows; its energy is then not all in the plane."""
+"""When is a ball in the air over a pocket? Between its DROP and the RETURN or POT that follows; its energy is
+then not all in the plane."""
 
 import numpy as np
 

@@ -1,9 +1,11 @@
-"""What did everything give before it was moved? One digest a set of results, kept in ``golden.json``; a redesign changes none of them.
+"""What did everything give before it was moved? One digest a set of results, kept in ``golden.json``; a
+redesign changes none of them.
 
     python -m tests.golden            compare
     python -m tests.golden --make     keep what comes out now, on purpose: the physics, the rules or what a step returns has changed
 
-A digest is the SHA-256 of all numbers of its set, rounded to 1e-9. The sets use public names only, and none depends on another.
+A digest is the SHA-256 of all numbers of its set, rounded to 1e-9. The sets use public names only, and none
+depends on another.
 """
 
 import argparse
@@ -19,7 +21,12 @@ import snooker_env as sn
 
 KEPT = Path(__file__).with_name("golden.json")
 FIDELITIES = ("fast", "standard", "reference", "euler:300")
-PHYSICS = {"paper": "paper", "match": "match", "marlow": {"preset": "paper", "mu_bb": "marlow"}, "nap": {"preset": "match", "nap": 0.01}}
+PHYSICS = {
+    "paper": "paper",
+    "match": "match",
+    "marlow": {"preset": "paper", "mu_bb": "marlow"},
+    "nap": {"preset": "match", "nap": 0.01},
+}
 
 
 class Digest:
@@ -57,7 +64,17 @@ def ball_impacts(physics, fidelity):
         v1, v2 = rng.normal(0, 1.5, 3) * (1, 1, 0), rng.normal(0, 1.5, 3) * (1, 1, 0) * (k % 2)
         if k % 3 == 0:
             v1, v2 = 2.0 * normal, 0.0 * normal
-        out.add(*sn.collide_balls(v1, rng.normal(0, 60, 3) * (k % 5 > 0), v2, rng.normal(0, 60, 3) * (k % 2), normal, physics, fidelity))
+        out.add(
+            *sn.collide_balls(
+                v1,
+                rng.normal(0, 60, 3) * (k % 5 > 0),
+                v2,
+                rng.normal(0, 60, 3) * (k % 2),
+                normal,
+                physics,
+                fidelity,
+            )
+        )
     return out.text()
 
 
@@ -72,7 +89,8 @@ def cushion_impacts(physics, fidelity):
 
 
 def shots(physics, fidelity):
-    """Whole shots: end states, logs and a moment in between, on three tables, of 1 to 22 balls, with spin; in threads the same."""
+    """Whole shots: end states, logs and a moment in between, on three tables, of 1 to 22 balls, with spin; in
+    threads the same."""
     out, rng = Digest(), np.random.default_rng(3)
     env = gymnasium.make("Snooker-v0").unwrapped
     for k in range(8 if fidelity.startswith("euler") else 24):
@@ -81,27 +99,54 @@ def shots(physics, fidelity):
         here[22 - k % 15 :] = False
         v, w = np.zeros((22, 2)), np.zeros((22, 3))
         speed, spin = sn.strike(
-            rng.uniform(0.3, 6.5), rng.uniform(-np.pi, np.pi), *rng.uniform(-0.3, 0.3, 2), elevation=0.1, physics=physics
+            rng.uniform(0.3, 6.5),
+            rng.uniform(-np.pi, np.pi),
+            *rng.uniform(-0.3, 0.3, 2),
+            elevation=0.1,
+            physics=physics,
         )
         v[0], w[0] = speed[:2], spin
         if k % 4 == 3:
             v[5], w[5] = (0.7, -0.4), (10.0, 20.0, 30.0)
         table = ("match", "tight", None)[k % 3]
         shot = sn.simulate(r, v, w, table, physics, fidelity, on_table=here)
-        out.add(shot.positions, shot.potted, shot.on_table, shot.duration, *(shot.events[name] for name in ("time", "kind", "i", "j")))
+        out.add(
+            shot.positions,
+            shot.potted,
+            shot.on_table,
+            shot.duration,
+            *(shot.events[name] for name in ("time", "kind", "i", "j")),
+        )
         out.add(*shot.at(0.37 * shot.duration))
-        both = sn.simulate_batch(np.stack([r, r]), np.stack([v, 0.5 * v]), np.stack([w, w]), table, physics, fidelity, on_table=np.stack([here, here]), threads=2)  # fmt: skip # noqa: E501
+        both = sn.simulate_batch(
+            np.stack([r, r]),
+            np.stack([v, 0.5 * v]),
+            np.stack([w, w]),
+            table,
+            physics,
+            fidelity,
+            on_table=np.stack([here, here]),
+            threads=2,
+        )
         out.add(both.positions, both.potted, both.duration, both.event_count)
     return out.text()
 
 
 VISITS = {
-    "plain": {}, "target": {"aim": "target", "noise": "professional", "elevation": True},
-    "discrete": {"action": "discrete", "noise": "club", "layout": "random:6"}, "break_off": {"layout": "break_off", "placement": True},
-    "balls": {"observation": "balls", "layout": "line_up", "reward": "points_and_fouls", "aim": "target", "physics": "match"},
+    "plain": {},
+    "target": {"aim": "target", "noise": "professional", "elevation": True},
+    "discrete": {"action": "discrete", "noise": "club", "layout": "random:6"},
+    "break_off": {"layout": "break_off", "placement": True},
+    "balls": {
+        "observation": "balls",
+        "layout": "line_up",
+        "reward": "points_and_fouls",
+        "aim": "target",
+        "physics": "match",
+    },
     "fast": {"fidelity": "fast", "table": "tight", "layout": "colours", "aim": "target", "reward": "pots"},
     "reference": {"fidelity": "reference", "aim": "target", "layout": "pots:easy", "noise": "olympiad"},
-}  # fmt: skip
+}
 
 
 def visits(options):
@@ -115,7 +160,9 @@ def visits(options):
             a = rng.uniform(-1, 1, 7).astype(np.float32)
             masks = env.unwrapped.action_masks() if options.get("action") == "discrete" else None
             action = (
-                a[: env.action_space.shape[0]] if masks is None else int(np.flatnonzero(masks)[int((a[0] + 1) * 0.5 * (masks.sum() - 1))])
+                a[: env.action_space.shape[0]]
+                if masks is None
+                else int(np.flatnonzero(masks)[int((a[0] + 1) * 0.5 * (masks.sum() - 1))])
             )
             observation, reward, ended, cut, info = env.step(action)
             out.add(observation, reward, ended, cut, info)
@@ -128,9 +175,16 @@ def many_visits(mode):
     """Visits side by side in the native vector environment, on two threads."""
     out, rng = Digest(), np.random.default_rng(5)
     env = gymnasium.make_vec(
-        "Snooker-v0", 24, vectorization_mode="vector_entry_point", aim="target", noise="amateur", layout="random:4", threads=2,
-        autoreset_mode=mode, max_episode_steps=4,
-    )  # fmt: skip
+        "Snooker-v0",
+        24,
+        vectorization_mode="vector_entry_point",
+        aim="target",
+        noise="amateur",
+        layout="random:4",
+        threads=2,
+        autoreset_mode=mode,
+        max_episode_steps=4,
+    )
     observation, info = env.reset(seed=7)
     out.add(observation, info)
     for _ in range(12):
@@ -144,12 +198,20 @@ def many_visits(mode):
 
 
 FRAMES = {
-    "plain": {"aim": "target"}, "placed": {"aim": "target", "placement": True, "decision": True},
+    "plain": {"aim": "target"},
+    "placed": {"aim": "target", "placement": True, "decision": True},
     "missed": {"aim": "target", "placement": True, "decision": True, "miss": "clear_path", "reward": "win"},
-    "absolute": {"elevation": True, "observation": "balls", "miss": "clear_path", "max_strokes": 60, "physics": "match"},
-}  # fmt: skip
+    "absolute": {
+        "elevation": True,
+        "observation": "balls",
+        "miss": "clear_path",
+        "max_strokes": 60,
+        "physics": "match",
+    },
+}
 GIVEN = {"layout": "break_off", "noise": "none"}
-"""Frames without chance: nothing is drawn but who breaks, which changes no figure here, and where the first cue ball lies."""
+"""Frames without chance: nothing is drawn but who breaks, which changes no figure here, and where the first
+cue ball lies."""
 
 
 def _first_place(env, options):
@@ -168,7 +230,9 @@ def frames(options):
         observation, info = env.reset(options=_first_place(env.unwrapped, {}))
         out.add(observation, info)
         for _ in range(150):
-            observation, reward, ended, cut, info = env.step(rng.uniform(-1, 1, env.action_space.shape).astype(np.float32))
+            observation, reward, ended, cut, info = env.step(
+                rng.uniform(-1, 1, env.action_space.shape).astype(np.float32)
+            )
             out.add(observation, reward, ended, cut, info)
             if ended or cut:
                 break
@@ -189,7 +253,19 @@ def matches(options):
                 break
             name = env.agent_selection
             observation, reward, ended, cut, info = env.last()
-            shared = {key: info[key] for key in ("points", "penalty", "fouls", "score", "opponent_score", "strokes", "break", "choice")}
+            shared = {
+                key: info[key]
+                for key in (
+                    "points",
+                    "penalty",
+                    "fouls",
+                    "score",
+                    "opponent_score",
+                    "strokes",
+                    "break",
+                    "choice",
+                )
+            }
             out.add(float(name == first), observation, reward, ended, cut, shared)
             size = env.action_space(name).shape
             env.step(None if ended or cut else rng.uniform(-1, 1, size).astype(np.float32))
@@ -217,7 +293,9 @@ SETS = dict(_sets())
 
 def main(argv=None):
     """Compare or keep; exit code 1 if a set differs."""
-    parser = argparse.ArgumentParser("python -m tests.golden", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        "python -m tests.golden", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--make", action="store_true", help="keep what comes out now")
     made = parser.parse_args(argv).make
     now = {name: compute() for name, compute in SETS.items()}

@@ -1,4 +1,5 @@
-"""How does a test spoil a saved state? Every field in it, one at a time, in every way that a file or a slip of the keyboard might."""
+"""How does a test spoil a saved state? Every field in it, one at a time, in every way that a file or a slip
+of the keyboard might."""
 
 import copy
 import json
@@ -28,7 +29,26 @@ def at(state, path):
 
 def spoilt(value):
     """Other things to stand in the place of a value, None among them where it was not."""
-    wrong = [None, NAN, INF, -INF, -1, 2**70, 10**400, 1e300, 1.5, "x", "", True, False, [], {}, [value], {"a": 1}, 3]
+    wrong = [
+        None,
+        NAN,
+        INF,
+        -INF,
+        -1,
+        2**70,
+        10**400,
+        1e300,
+        1.5,
+        "x",
+        "",
+        True,
+        False,
+        [],
+        {},
+        [value],
+        {"a": 1},
+        3,
+    ]
     if isinstance(value, str):
         wrong += ["over", "stroke", "choice", "lot", "off", "clear_path"]
     elif isinstance(value, bool):
@@ -45,7 +65,11 @@ def spoilt(value):
             dict.fromkeys(map(str, range(len(value)))),
         ]
     elif isinstance(value, dict):
-        wrong += [{k: v for k, v in value.items() if k != key} for key in value] + [value | {"more": 1}, value | {7: 1}, list(value)]
+        wrong += [{k: v for k, v in value.items() if k != key} for key in value] + [
+            value | {"more": 1},
+            value | {7: 1},
+            list(value),
+        ]
     as_text = repr(value)
     return [other for other in wrong if repr(other) != as_text]
 
@@ -62,7 +86,16 @@ def mutations(state):
 
 def kind_of(value):
     """What JSON calls the type of a value; a tuple is as good as a list."""
-    names = {bool: "truth", int: "integer", float: "number", str: "text", list: "list", tuple: "list", dict: "dict", type(None): "null"}
+    names = {
+        bool: "truth",
+        int: "integer",
+        float: "number",
+        str: "text",
+        list: "list",
+        tuple: "list",
+        dict: "dict",
+        type(None): "null",
+    }
     return names[type(value)]
 
 
@@ -72,7 +105,8 @@ def keys_of(field):
 
 
 def layout(keys):
-    """Where balls lie and which are there is one layout, and a ball that cannot lie there may be either's fault: one name for both."""
+    """Where balls lie and which are there is one layout, and a ball that cannot lie there may be either's
+    fault: one name for both."""
     if keys[:2] in (("state", "positions"), ("state", "on_table")):
         return ("state", "layout", *keys[2:])
     return tuple(key for k, key in enumerate(keys) if k == 0 or keys[k - 1] != "layout")
@@ -81,7 +115,8 @@ def layout(keys):
 def names_it(message, root, path):
     """Does a complaint name the part that was spoilt?
 
-    It names that part, what it is a part of, or a part of it; or another that does not fit it, and then its text says which it is.
+    It names that part, what it is a part of, or a part of it; or another that does not fit it, and then its
+    text says which it is.
     """
     field = message.split(" = ")[0]
     field_way, way = layout(keys_of(field)), layout((root, *path))

@@ -1,6 +1,8 @@
-"""Can a chart be read? Sizes of its text where a README shows it, texts that overlap or are cut off, and whether it has a title.
+"""Can a chart be read? Sizes of its text where a README shows it, texts that overlap or are cut off, and
+whether it has a title.
 
-``unreadable(figure)`` names what is wrong with a matplotlib figure; ``saved_figures`` catches those that a command saves.
+``unreadable(figure)`` names what is wrong with a matplotlib figure; ``saved_figures`` catches those that a
+command saves.
 """
 
 from collections.abc import Iterator
@@ -14,7 +16,8 @@ from matplotlib.text import Text
 README = 880
 """Pixels of a page's width."""
 LEAST = 10.5
-"""Pixels from line to line of the smallest text there: 9 and more from the top of a capital to the foot of a g."""
+"""Pixels from line to line of the smallest text there: 9 and more from the top of a capital to the foot of a
+g."""
 
 
 @contextmanager
@@ -53,14 +56,17 @@ def _is_drawn(text, figure):
             for minor in (False, True):
                 labels = axis.get_ticklabels(minor=minor)
                 if text in labels:
-                    place = (axis.get_minorticklocs() if minor else axis.get_majorticklocs())[labels.index(text)]
+                    place = (axis.get_minorticklocs() if minor else axis.get_majorticklocs())[
+                        labels.index(text)
+                    ]
                     low, high = sorted(axis.get_view_interval())
                     return axes.axison and axes.get_visible() and axis.get_visible() and low <= place <= high
     return text.axes is None or text.axes.get_visible()
 
 
 def overlap(a, b, room=1.0):
-    """Do two rectangles (4, 2), each ``room`` pixels smaller all around, lie on each other? By the separating axes of both."""
+    """Do two rectangles (4, 2), each ``room`` pixels smaller all around, lie on each other? By the separating
+    axes of both."""
     for edges in (a, b):
         for k in (0, 1):
             way = edges[k + 1] - edges[k]

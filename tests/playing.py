@@ -1,4 +1,5 @@
-"""What do tests of play share? Positions, a game called as a request calls it, and a connection to its server."""
+"""What do tests of play share? Positions, a game called as a request calls it, and a connection to its
+server."""
 
 import http.client
 import json
@@ -9,11 +10,23 @@ from snooker_env.play.seats import Seats
 from snooker_env.play.service import Service
 from snooker_env.play.session import Session
 
-EASY = {"cue": [0.326, 1.031], "reds": [[0.6, 1.4], [-0.5, 0.2]], "pink": [0.0, 0.89225], "black": [0.0, 1.4605]}
+EASY = {
+    "cue": [0.326, 1.031],
+    "reds": [[0.6, 1.4], [-0.5, 0.2]],
+    "pink": [0.0, 0.89225],
+    "black": [0.0, 1.4605],
+}
 """Red 1 lies straight before the top right pocket, red 2 out of the way."""
 STRAIGHT = atan2(0.369, 0.274)
 """The aim [rad] that pots it."""
-COVERED = {"cue": [0.0, -0.5], "reds": [[0.6, 1.4]], "blue": [0.3, -0.5], "pink": [0.6, -0.5], "black": [-0.6, -0.9], "on": "any_colour"}
+COVERED = {
+    "cue": [0.0, -0.5],
+    "reds": [[0.6, 1.4]],
+    "blue": [0.3, -0.5],
+    "pink": [0.6, -0.5],
+    "black": [-0.6, -0.9],
+    "on": "any_colour",
+}
 """Along +x the blue lies before the pink; the black is in sight."""
 
 
@@ -25,7 +38,12 @@ class Asked:
 
     def __call__(self, name, **fields):
         """A POST."""
-        return json.loads(json.dumps(routes.answer(self.service, routes.POST[name], json.loads(json.dumps(fields))), allow_nan=False))
+        return json.loads(
+            json.dumps(
+                routes.answer(self.service, routes.POST[name], json.loads(json.dumps(fields))),
+                allow_nan=False,
+            )
+        )
 
     def get(self, name, **fields):
         return json.loads(json.dumps(routes.answer(self.service, routes.GET[name], fields), allow_nan=False))
@@ -51,7 +69,9 @@ class Line:
         head = {key: value for key, value in (head | (headers or {})).items() if value is not None}
         path = path or f"/{self.server.token if token is None else token}/{name}"
         try:
-            connection.putrequest(method or ("GET" if body is None else "POST"), path, skip_host=True, skip_accept_encoding=True)
+            connection.putrequest(
+                method or ("GET" if body is None else "POST"), path, skip_host=True, skip_accept_encoding=True
+            )
             for key, value in head.items():
                 connection.putheader(key, value)
             connection.endheaders(raw)

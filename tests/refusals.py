@@ -1,4 +1,5 @@
-"""How does a test see that wrong input is refused? A call with one wrong argument, and what its ValueError must name."""
+"""How does a test see that wrong input is refused? A call with one wrong argument, and what its ValueError
+must name."""
 
 import re
 import warnings
@@ -13,9 +14,26 @@ Z = (0.0, 0.0, 0.0)
 NAN, INF = float("nan"), float("inf")
 FIDELITY = 'must be "fast", "standard", "reference" or "euler:N" with N in [1, 10000000]'
 WRONG_FIDELITIES = (
-    "euler:0", "euler:-1", "euler:x", "Euler:10", "", None, 3, "euler", "euler:", "euler:1.5", "euler: 5", "euler:10000001",
-    "euler:\u0663", "fast ", "FAST", ("fast",), ["fast"], b"fast", True,
-)  # fmt: skip
+    "euler:0",
+    "euler:-1",
+    "euler:x",
+    "Euler:10",
+    "",
+    None,
+    3,
+    "euler",
+    "euler:",
+    "euler:1.5",
+    "euler: 5",
+    "euler:10000001",
+    "euler:\u0663",
+    "fast ",
+    "FAST",
+    ("fast",),
+    ["fast"],
+    b"fast",
+    True,
+)
 
 
 def case(call, field, value, allowed, name=None):
@@ -24,7 +42,8 @@ def case(call, field, value, allowed, name=None):
 
 
 def refused(call, field, value, allowed):
-    """The call raises ValueError whose message names all three; a warning would be a half repair, so it counts as one."""
+    """The call raises ValueError whose message names all three; a warning would be a half repair, so it
+    counts as one."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         with pytest.raises(ValueError) as info:
@@ -52,14 +71,20 @@ def cushion(**changes):
 
 
 def shot(**changes):
-    args = {"positions": [(0.0, 0.0), (0.3, 0.0)], "velocities": [(1.0, 0.0), (0.0, 0.0)], "spins": np.zeros((2, 3))} | changes
+    args = {
+        "positions": [(0.0, 0.0), (0.3, 0.0)],
+        "velocities": [(1.0, 0.0), (0.0, 0.0)],
+        "spins": np.zeros((2, 3)),
+    } | changes
     return lambda: sn.simulate(**args)
 
 
 def batch(**changes):
     args = {
-        "positions": [[(0.0, 0.0), (0.3, 0.0)]] * 3, "velocities": [[(1.0, 0.0), (0.0, 0.0)]] * 3, "spins": np.zeros((3, 2, 3)),
-    } | changes  # fmt: skip
+        "positions": [[(0.0, 0.0), (0.3, 0.0)]] * 3,
+        "velocities": [[(1.0, 0.0), (0.0, 0.0)]] * 3,
+        "spins": np.zeros((3, 2, 3)),
+    } | changes
     return lambda: sn.simulate_batch(**args)
 
 

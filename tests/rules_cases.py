@@ -1,15 +1,29 @@
-"""Does the referee agree with a file of cases? ``python -m tests.rules_cases FILE`` runs any file of that schema through the real code.
+"""Does the referee agree with a file of cases? ``python -m tests.rules_cases FILE`` runs any file of that
+schema through the real code.
 
-Prints a line a case and last ``N passed, N failed``; the exit status is 1 if any failed. A case is judged by its kind: "shot",
-"option", "claim", "concede", "stalemate", "arithmetic", "spotting" or "snooker_geometry". Every key of ``expect`` is compared with what
-the code answers; a key, a field or a kind that is not understood makes the case fail, so that nothing passes unread.
+Prints a line a case and last ``N passed, N failed``; the exit status is 1 if any failed. A case is judged by
+its kind: "shot", "option", "claim", "concede", "stalemate", "arithmetic", "spotting" or "snooker_geometry".
+Every key of ``expect`` is compared with what the code answers; a key, a field or a kind that is not
+understood makes the case fail, so that nothing passes unread.
 """
 
 import ast
 import json
 import sys
 
-from snooker_env.game.balls import BLACK, CUE, CUE_BIT, N_BALLS, NAMES, YELLOW, BallOn, balls_on, colour, ids_of, mask_of
+from snooker_env.game.balls import (
+    BLACK,
+    CUE,
+    CUE_BIT,
+    N_BALLS,
+    NAMES,
+    YELLOW,
+    BallOn,
+    balls_on,
+    colour,
+    ids_of,
+    mask_of,
+)
 from snooker_env.game.frame import Frame
 from snooker_env.game.referee import Stroke
 from snooker_env.game.ruling import AUTO
@@ -67,7 +81,8 @@ def frame_before(before, miss):
 
 
 def stroke_of(shot, free_ball):
-    """The stroke. Reds have no names in a file: those that leave the table are the first ones, and so are those struck."""
+    """The stroke. Reds have no names in a file: those that leave the table are the first ones, and so are
+    those struck."""
     reds = iter(range(1, 16))
 
     def ids(names):
@@ -98,8 +113,25 @@ def stroke_of(shot, free_ball):
 
 
 SHOT_FIELDS = (
-    *("nominated", "free_ball_nominated", "first_contact", "touching", "touching_ball_moved", "potted", "cue_potted", "forced_off"),
-    *("jump_shot", "push_stroke", "double_hit", "played_from_outside_D", "clear_path_to_ball_on", "clear_full_ball_path", "after"),
+    *(
+        "nominated",
+        "free_ball_nominated",
+        "first_contact",
+        "touching",
+        "touching_ball_moved",
+        "potted",
+        "cue_potted",
+        "forced_off",
+    ),
+    *(
+        "jump_shot",
+        "push_stroke",
+        "double_hit",
+        "played_from_outside_D",
+        "clear_path_to_ball_on",
+        "clear_full_ball_path",
+        "after",
+    ),
     *("attempt", "no_cushion", "time_to_play", "duration"),
 )
 BEFORE_FIELDS = (
@@ -124,8 +156,15 @@ def run_shot(case):
     if problem:
         return problem
     frame = frame_before(before, "clear_path" if "foul_and_a_miss" in case["expect"] else "off")
-    paths = {"clear_path": bool(shot["clear_path_to_ball_on"]), "full_ball_path": bool(shot["clear_full_ball_path"])}
-    more = {"attempt": shot.get("attempt", True), "time_to_play": shot.get("time_to_play", 0), "duration": shot.get("duration", 0)}
+    paths = {
+        "clear_path": bool(shot["clear_path_to_ball_on"]),
+        "full_ball_path": bool(shot["clear_full_ball_path"]),
+    }
+    more = {
+        "attempt": shot.get("attempt", True),
+        "time_to_play": shot.get("time_to_play", 0),
+        "duration": shot.get("duration", 0),
+    }
     after, verdict = frame.play(stroke_of(shot, frame.free_ball), **paths, **more)
     over = after.phase == "over"
     answers = {
@@ -191,14 +230,22 @@ def frame_answers(frame):
 
 
 def fouled(before):
-    """A frame just after a foul by hitting nothing, in the state of ``before``: (before the stroke, after it)."""
+    """A frame just after a foul by hitting nothing, in the state of ``before``: (before the stroke, after
+    it)."""
     ball_on = ball_on_of(before.get("ball_on_before_foul", before.get("ball_on", "red")))
     low = max(ball_on, BallOn.YELLOW)
     on_table = mask_of(range(14 + low, N_BALLS)) | (mask_of(range(1, 16)) if ball_on <= BallOn.RED else 0)
     offender = PLAYERS.index(before["foul_by"])
     scores = tuple(before.get("scores", {"A": 0, "B": 0})[p] for p in PLAYERS)
     miss = bool(before.get("miss"))
-    start = Frame(scores=scores, striker=offender, on_table=on_table, ball_on=ball_on, in_hand=False, miss="clear_path" if miss else "off")
+    start = Frame(
+        scores=scores,
+        striker=offender,
+        on_table=on_table,
+        ball_on=ball_on,
+        in_hand=False,
+        miss="clear_path" if miss else "off",
+    )
     # On any colour, the nomination that costs the case's penalty.
     nominated = 14 + max(2, before.get("penalty", 4)) if ball_on == BallOn.ANY_COLOUR else AUTO
     stroke = Stroke(nominated=nominated, snookered=bool(before.get("free_ball")))
@@ -208,7 +255,9 @@ def fouled(before):
 def fair_strokes(frame):
     """Strokes at each ball on, which is potted."""
     for ball in ids_of(balls_on(frame.ball_on, frame.on_table)):
-        yield Stroke(first=1 << ball, potted=1 << ball, nominated=ball if frame.ball_on == BallOn.ANY_COLOUR else AUTO)
+        yield Stroke(
+            first=1 << ball, potted=1 << ball, nominated=ball if frame.ball_on == BallOn.ANY_COLOUR else AUTO
+        )
 
 
 def run_option(case):
@@ -218,9 +267,18 @@ def run_option(case):
         if problem:
             return problem
         failures = before["consecutive_misses_from_same_position_full_ball"]
-        frame = Frame(striker=PLAYERS.index(before["offender"]), miss="clear_path", failures=failures, warned=before["warned"])
-        return compare(case["expect"], frame_answers(frame.play(Stroke(), clear_path=True, full_ball_path=True)[0]))
-    problem = unknown(before, ["foul_by", "ball_on", "ball_on_before_foul", "free_ball", "miss", "scores", "penalty"])
+        frame = Frame(
+            striker=PLAYERS.index(before["offender"]),
+            miss="clear_path",
+            failures=failures,
+            warned=before["warned"],
+        )
+        return compare(
+            case["expect"], frame_answers(frame.play(Stroke(), clear_path=True, full_ball_path=True)[0])
+        )
+    problem = unknown(
+        before, ["foul_by", "ball_on", "ball_on_before_foul", "free_ball", "miss", "scores", "penalty"]
+    )
     if problem or what not in CHOICES:
         return problem or f"not understood: choice {what}"
     start, foul = fouled(before)
@@ -231,7 +289,9 @@ def run_option(case):
     after = foul.choose(CHOICES[what])
     played = [after.play(stroke)[1] for stroke in fair_strokes(after)]
     free_choice = not any(verdict.fouls for verdict in played)
-    restored = (after.on_table, after.saved.layout) == (start.on_table, ("the position",)) if after.saved else False
+    restored = (
+        (after.on_table, after.saved.layout) == (start.on_table, ("the position",)) if after.saved else False
+    )
     answers = frame_answers(after) | {
         "may_change_intended_ball": free_choice,
         "may_score": all(v.points > 0 for v in played),
@@ -254,7 +314,10 @@ def run_end(case):
         can = player == frame.striker and not refused(frame.claim)
         return compare(case["expect"], frame_answers(frame.claim() if can else frame))
     if action["choice"] == "concede":
-        return compare(case["expect"], frame_answers(frame if refused(lambda: frame.concede(player)) else frame.concede(player)))
+        return compare(
+            case["expect"],
+            frame_answers(frame if refused(lambda: frame.concede(player)) else frame.concede(player)),
+        )
     return f"not understood: choice {action['choice']}"
 
 
@@ -264,7 +327,12 @@ def run_stalemate(case):
     if problem or case["action"]["choice"] != "restart":
         return problem or f"not understood: choice {case['action']['choice']}"
     breaker = PLAYERS.index(before["breaker"])
-    frame = Frame(scores=tuple(before["scores"][p] for p in PLAYERS), striker=1 - breaker, breaker=breaker, in_hand=False)
+    frame = Frame(
+        scores=tuple(before["scores"][p] for p in PLAYERS),
+        striker=1 - breaker,
+        breaker=breaker,
+        in_hand=False,
+    )
     return compare(case["expect"], frame_answers(frame.restart()))
 
 
@@ -275,7 +343,9 @@ def best_break(free_ball):
         choosing = frame.free_ball or frame.ball_on == BallOn.ANY_COLOUR
         ball = BLACK if choosing else ids_of(balls_on(frame.ball_on, frame.on_table))[0]
         total = frame.scores[0]
-        frame, verdict = frame.play(Stroke(first=1 << ball, potted=1 << ball, nominated=BLACK if choosing else AUTO))
+        frame, verdict = frame.play(
+            Stroke(first=1 << ball, potted=1 << ball, nominated=BLACK if choosing else AUTO)
+        )
         assert frame.scores[0] == total + verdict.points
     return frame.scores[0]
 
@@ -293,13 +363,16 @@ def value_of(formula):
 
 
 def run_arithmetic(case):
-    """The best break that the code allows, with or without a free ball first: there is no other arithmetic in the schema."""
+    """The best break that the code allows, with or without a free ball first: there is no other arithmetic in
+    the schema."""
     title = case["title"].lower()
     if "maximum" not in title:
         return "not understood: " + title
     answers = {"value": best_break("free ball" in title and "without" not in title)}
     if "formula" in case["expect"]:
-        answers["formula"] = case["expect"]["formula"] if value_of(case["expect"]["formula"]) == answers["value"] else "other"
+        answers["formula"] = (
+            case["expect"]["formula"] if value_of(case["expect"]["formula"]) == answers["value"] else "other"
+        )
     return compare(case["expect"], answers)
 
 
@@ -335,7 +408,10 @@ def main(arguments):
     for case in cases:
         problem = run(case)
         failed += problem is not None
-        print(f"{'FAIL' if problem else 'pass'} {case['id']} {case['kind']}: {case['title']}" + (f"\n     {problem}" if problem else ""))
+        print(
+            f"{'FAIL' if problem else 'pass'} {case['id']} {case['kind']}: {case['title']}"
+            + (f"\n     {problem}" if problem else "")
+        )
     print(f"{len(cases) - failed} passed, {failed} failed")
     return 1 if failed else 0
 

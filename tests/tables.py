@@ -9,9 +9,17 @@ from snooker_env.tasks.box_actions import MAX_SPEED, MIN_SPEED
 
 LAYOUTS = ("opened", "held_out", "break_off", "line_up", "colours", "random:0", "random:1", "random:15")
 INFO = {
-    "points": float, "break": float, "foul": bool, "penalty": int, "pots": int, "fouls": int, "first_ball": int, "ball_on": int,
-    "events": int, "seconds": float,
-}  # fmt: skip
+    "points": float,
+    "break": float,
+    "foul": bool,
+    "penalty": int,
+    "pots": int,
+    "fouls": int,
+    "first_ball": int,
+    "ball_on": int,
+    "events": int,
+    "seconds": float,
+}
 PLACES = {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], PINK: SPOTS[PINK]}
 """Red 1 can be potted along the target line, red 2 is out of the way."""
 
@@ -23,7 +31,12 @@ def table_state(env, places, ball_on, points=0, **fields):
         positions[ball], on_table[ball] = place, True
     if not env.np_random_seed:
         env.reset(seed=1)
-    state = env.get_state() | {"positions": positions.tolist(), "on_table": on_table, "ball_on": int(ball_on), "points": points}
+    state = env.get_state() | {
+        "positions": positions.tolist(),
+        "on_table": on_table,
+        "ball_on": int(ball_on),
+        "points": points,
+    }
     env.set_state(state | {"in_hand": False, "over": False} | fields)
 
 
@@ -44,7 +57,8 @@ def frame_env(**options):
 
 
 def frame_state(env, places, frame, **state):
-    """Put balls {id: (x, y)} and nothing else on the table, in the middle of a ``Frame`` given by its fields."""
+    """Put balls {id: (x, y)} and nothing else on the table, in the middle of a ``Frame`` given by its
+    fields."""
     positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
     for ball, place in places.items():
         positions[ball], on_table[ball] = place, True
@@ -52,7 +66,13 @@ def frame_state(env, places, frame, **state):
     mask = sum(1 << ball for ball in places if ball)
     fields = {"on_table": mask, "in_hand": False, "miss": env.options.miss} | frame
     plain = Frame(**fields).to_dict()
-    saved = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": plain, "unpaid": 0, "due": False}
+    saved = {
+        "positions": positions.tolist(),
+        "on_table": on_table.tolist(),
+        "frame": plain,
+        "unpaid": 0,
+        "due": False,
+    }
     env.reset(options={"state": env.get_state() | saved | state})
     return env
 

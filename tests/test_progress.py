@@ -1,4 +1,5 @@
-"""Does a long command say how far it is? In lines every few seconds where it is read later, in one line that is rewritten on a terminal."""
+"""Does a long command say how far it is? In lines every few seconds where it is read later, in one line that
+is rewritten on a terminal."""
 
 import io
 import re
@@ -36,7 +37,10 @@ def test_a_pipe_gets_a_line_at_the_start_every_few_seconds_and_at_the_end(quick)
     assert len(lines) >= 6 and "\r" not in out.getvalue()
     pattern = r"part 1 of 2, play: \d{3} of 1,000 shots, round \d, loss \d\.\d\d, [\d,.]+ shots/s, 0:0\d elapsed, 0:0\d left"
     assert [line for line in lines[2:-1] if re.fullmatch(pattern, line)] == lines[2:-1]
-    assert re.fullmatch(r"part 1 of 2, play: 400 of 1,000 shots, round 4, loss 2\.00, [\d,.]+ shots/s, 0:0\d elapsed", lines[-1])
+    assert re.fullmatch(
+        r"part 1 of 2, play: 400 of 1,000 shots, round 4, loss 2\.00, [\d,.]+ shots/s, 0:0\d elapsed",
+        lines[-1],
+    )
 
 
 def test_nothing_is_said_that_is_not_known():

@@ -1,4 +1,5 @@
-"""On how many threads of PyTorch does a network decide? For tests of those who play with networks of Stable-Baselines3."""
+"""On how many threads of PyTorch does a network decide? For tests of those who play with networks of
+Stable-Baselines3."""
 
 from contextlib import contextmanager
 
@@ -8,7 +9,8 @@ import torch
 
 @contextmanager
 def deciding_on_one_thread(network):
-    """Fails unless the network is asked meanwhile, each time on one thread; the three threads from before are there again afterwards."""
+    """Fails unless the network is asked meanwhile, each time on one thread; the three threads from before are
+    there again afterwards."""
     found, usual, predict = [], torch.get_num_threads(), network.predict
 
     def counted(*arguments, **options):

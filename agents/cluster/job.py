@@ -1,8 +1,8 @@
 """How is a job of many parts played, here or on a cluster? Each part once, with the same results bit for bit.
 
-A part is a task by name, data that it shares with others (an agent's weights) and its own arguments. Its result
-is a dict of arrays that depends on these alone: not on where it is played, nor on which parts end before it, nor on
-how often a machine died over it.
+A part is a task by name, data that it shares with others (an agent's weights) and its own arguments. Its
+result is a dict of arrays that depends on these alone: not on where it is played, nor on which parts end
+before it, nor on how often a machine died over it.
 """
 
 import importlib
@@ -49,7 +49,8 @@ class Here:
 
 
 def ended(parts, shared, where, store=None):
-    """Yield the number and the result of each part: first of those that the store keeps, then of the others as they end.
+    """Yield the number and the result of each part: first of those that the store keeps, then of the others
+    as they end.
 
     These are kept at once.
     """

@@ -1,4 +1,5 @@
-"""Where is kept what a job has played? In a folder or at a URL of fsspec, without pickles: reading runs no code."""
+"""Where is kept what a job has played? In a folder or at a URL of fsspec, without pickles: reading runs no
+code."""
 
 import errno
 import hashlib
@@ -20,7 +21,8 @@ KEPT = Path("runs/kept")
 
 
 class Store:
-    """Files in a folder or at a URL (s3://, gs://), each whole or not at all. Raises ValueError, naming ``field``."""
+    """Files in a folder or at a URL (s3://, gs://), each whole or not at all. Raises ValueError, naming
+    ``field``."""
 
     def __init__(self, url, field="keep", only_read=False):
         from fsspec.core import url_to_fs
@@ -67,7 +69,9 @@ class Store:
             self._files.pipe_file(beside, data)
             self._files.mv(beside, path)
         except Exception as error:
-            raise OSError(getattr(error, "errno", None) or errno.EIO, _why(error), f"{self.url}/{name}") from None
+            raise OSError(
+                getattr(error, "errno", None) or errno.EIO, _why(error), f"{self.url}/{name}"
+            ) from None
 
     def clear(self):
         """Remove the folder and all that is in it."""
@@ -80,11 +84,14 @@ class Store:
             return None if data is None else unpacked(data)
 
     def join(self, job):
-        """Make this the store of a ``job``, a dict. Raises ValueError, naming what differs, if it is another's."""
+        """Make this the store of a ``job``, a dict. Raises ValueError, naming what differs, if it is
+        another's."""
         before = self.read("job.json")
         if before is None:
             if self.names("parts"):
-                raise self._refused("be a new folder, or that of the same job: it holds parts and no job.json")
+                raise self._refused(
+                    "be a new folder, or that of the same job: it holds parts and no job.json"
+                )
             self.write("job.json", (json.dumps(job, indent=1) + "\n").encode())
             return
         try:
@@ -94,7 +101,9 @@ class Store:
         for name in {**now, **was}:
             if was.get(name) != now.get(name):
                 before, asked = (f"{json.dumps(one.get(name)):.200}" for one in (was, now))
-                raise self._refused(f"be a new folder, or that of the same job: its {name} is {before}, and {asked} is asked for")
+                raise self._refused(
+                    f"be a new folder, or that of the same job: its {name} is {before}, and {asked} is asked for"
+                )
 
     def _refused(self, wanted):
         return refuse(self._field, self.url, f"must {wanted}")
@@ -125,7 +134,8 @@ def digest_of(data):
 
 
 class Keep:
-    """Where the parts of the job ``about`` are kept: at ``--keep``; with ``--ray`` alone in its own folder until it is complete.
+    """Where the parts of the job ``about`` are kept: at ``--keep``; with ``--ray`` alone in its own folder
+    until it is complete.
 
     That folder belongs to one process at a time. ``store`` is None if nothing is kept. Raises ValueError.
     """
@@ -149,7 +159,11 @@ class Keep:
     @property
     def ends(self):
         """What becomes of the parts that were not used, in words."""
-        return f"what was played is kept in {self.store}, the same command goes on" if self.store else "the others are lost"
+        return (
+            f"what was played is kept in {self.store}, the same command goes on"
+            if self.store
+            else "the others are lost"
+        )
 
     def done(self):
         """The job is complete, its results are written: a folder of its own goes."""

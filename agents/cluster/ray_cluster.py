@@ -1,7 +1,7 @@
 """How are parts played by a Ray cluster? The one file that imports Ray, and only when ``--ray`` asks for it.
 
-Each part is a task of one core. Ray itself queues them, keeps shared data on each node, and plays a part again
-whose worker or node died.
+Each part is a task of one core. Ray itself queues them, keeps shared data on each node, and plays a part
+again whose worker or node died.
 """
 
 import os
@@ -33,14 +33,22 @@ def add_ray(p, keep=False):
     p.add_argument("--ray", metavar="ADDRESS", help=text)
     if keep:
         text = "keep each part that was played in this folder or fsspec URL: after an interruption the same command goes on there"
-        p.add_argument("--keep", metavar="URL", help=f"{text} [with --ray: a folder in {KEPT}, until the job is complete]")
+        p.add_argument(
+            "--keep",
+            metavar="URL",
+            help=f"{text} [with --ray: a folder in {KEPT}, until the job is complete]",
+        )
 
 
 def checked_ray(address):
     """Raise ValueError unless it is None, local or HOST:PORT."""
     port = re.fullmatch(r"[^/\s]+:(\d{1,5})", address or "head:6379")
     if address != "local" and (port is None or not 0 < int(port[1]) < 2**16):
-        raise refuse("ray", address, "must be local, or HOST:PORT of the head of a Ray cluster that this machine is part of")
+        raise refuse(
+            "ray",
+            address,
+            "must be local, or HOST:PORT of the head of a Ray cluster that this machine is part of",
+        )
 
 
 @contextmanager
@@ -72,11 +80,19 @@ def connected(address, cores=None):
     ray = ray_of()
     quiet = {"log_to_driver": False, "logging_level": "ERROR", "configure_logging": True}
     if address == "local":
-        ray.init("local", num_cpus=cores or processors(), include_dashboard=False, object_store_memory=LOCAL_STORE, **quiet)
+        ray.init(
+            "local",
+            num_cpus=cores or processors(),
+            include_dashboard=False,
+            object_store_memory=LOCAL_STORE,
+            **quiet,
+        )
         return Cluster(ray)
     if not _is_head(address):  # ray.init would wait for minutes
         start = f"start one with  ray start --head --port={address.rpartition(':')[2]}"
-        raise ClusterError(str(refuse("ray", address, f"must be the head of a Ray cluster that runs: {start}")))
+        raise ClusterError(
+            str(refuse("ray", address, f"must be the head of a Ray cluster that runs: {start}"))
+        )
     try:
         ray.init(address=address, **quiet)
     except (RuntimeError, ConnectionError, ValueError, TimeoutError, AssertionError) as error:
@@ -87,7 +103,15 @@ def connected(address, cores=None):
 
 
 def _is_head(address):
-    command = [sys.executable, "-m", "ray.scripts.scripts", "health-check", "--skip-version-check", "--address", address]
+    command = [
+        sys.executable,
+        "-m",
+        "ray.scripts.scripts",
+        "health-check",
+        "--skip-version-check",
+        "--address",
+        address,
+    ]
     host, _, port = address.rpartition(":")
     try:
         socket.create_connection((host, int(port)), ANSWER / 6).close()
@@ -131,7 +155,8 @@ class Cluster(Here):
             yield running.pop(one), self._result(one)
 
     def _result(self, one):
-        """The result of a part. Raises ClusterError for what befell its machine, else the part's own error."""
+        """The result of a part. Raises ClusterError for what befell its machine, else the part's own
+        error."""
         exceptions = self._ray.exceptions
         try:
             result, processor = self._ray.get(one)
@@ -139,10 +164,15 @@ class Cluster(Here):
             where = re.search(r"\bip=([^,)\s]+)", str(error))
             raise fault_of(error.cause, where[1] if where else "another machine") from None
         except exceptions.RayError as error:
-            raise ClusterError(f"a part was given up, its worker died {RETRIES + 1} times ({_line(error)})") from None
+            raise ClusterError(
+                f"a part was given up, its worker died {RETRIES + 1} times ({_line(error)})"
+            ) from None
         if self._processors and processor not in self._processors:
             differ = "the last bits of a network's results may differ from those of one machine"
-            print(f"the nodes have different processors ({processor}, {', '.join(self._processors)}): {differ}", file=sys.stderr)
+            print(
+                f"the nodes have different processors ({processor}, {', '.join(self._processors)}): {differ}",
+                file=sys.stderr,
+            )
         self._processors.add(processor)
         return result
 
@@ -168,7 +198,8 @@ def fault_of(cause, node):
 
 
 def _task():
-    """What a worker does. Made inside another function, it is sent as code: the node may lack this package."""
+    """What a worker does. Made inside another function, it is sent as code: the node may lack this
+    package."""
 
     def play(task, shared, args, wanted):
         from agents.cluster.job import ClusterError, run

@@ -1,1 +1,2 @@
-"""How well agents play: rollouts on held-out tables, metrics with intervals, reports, pictures, and the publishing of models."""
+"""How well agents play: rollouts on held-out tables, metrics with intervals, reports, pictures, and the
+publishing of models."""

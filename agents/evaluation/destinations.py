@@ -1,9 +1,11 @@
-"""Where does the cue ball stop after a red, and what does that bring? A picture of agents side by side, on the same tables.
+"""Where does the cue ball stop after a red, and what does that bring? A picture of agents side by side, on
+the same tables.
 
-    python -m agents.evaluate --agent ppo_foresight ghost_ball --layouts held_out --noise professional --picture
+    python -m agents.evaluate --agent ppo_foresight ghost_ball --layouts held_out --noise professional
+    --picture
 
-Maps: how densely the cue ball came to rest after first strokes that potted a red. Only first strokes count, since all agents play these
-from the same positions. Bars: what followed any pot, with 95 % intervals.
+Maps: how densely the cue ball came to rest after first strokes that potted a red. Only first strokes count,
+since all agents play these from the same positions. Bars: what followed any pot, with 95 % intervals.
 """
 
 import numpy as np
@@ -38,26 +40,33 @@ def formats():
 
 
 def first_reds(strokes):
-    """Where the cue ball lay after first strokes that potted a red, (n, 2) [m], and whether the next stroke scored, (n,)."""
+    """Where the cue ball lay after first strokes that potted a red, (n, 2) [m], and whether the next stroke
+    scored, (n,)."""
     chosen = (strokes.number == 0) & strokes.made & (strokes.ball_on == BallOn.RED)
     return strokes.cue[chosen], strokes.made[strokes.following[chosen]]
 
 
 def figures_of(report, strokes):
-    """What is drawn, JSON-able, of the first agents of a report; ``strokes``: label -> list of the ``Strokes`` of each run."""
+    """What is drawn, JSON-able, of the first agents of a report; ``strokes``: label -> list of the
+    ``Strokes`` of each run."""
     at = main_condition(report)
     rows = {r["agent"]: r for r in report["results"] if all(r[key] == value for key, value in at.items())}
     agents = {}
     for agent in report["agents"][:MOST]:
         places, scored = first_reds(strokes[agent["label"]][0])  # of one run each: the same chances
         figures = {name: rows[agent["label"]]["figures"][name] for name, *_ in FIGURES}
-        agents[agent["label"]] = {"places": np.round(places, 3).tolist(), "next_scores": scored.tolist(), "figures": figures}
+        agents[agent["label"]] = {
+            "places": np.round(places, 3).tolist(),
+            "next_scores": scored.tolist(),
+            "figures": figures,
+        }
     visits = next(iter(rows.values()))["visits"]
     return {"version": report["version"], "visits": visits, "noise": at["noise"], "agents": agents}
 
 
 def draw(report, strokes, file):
-    """Draw the first agents of the report; ``strokes``: label -> list of the ``Strokes`` of each run in the main condition."""
+    """Draw the first agents of the report; ``strokes``: label -> list of the ``Strokes`` of each run in the
+    main condition."""
     draw_figures(figures_of(report, strokes), file)
 
 
@@ -71,14 +80,20 @@ def draw_figures(found, file):
     )
     foot = f"python -m agents.evaluate --picture, snooker_env {found['version']}"
     with picture_style.drawing() as plt:
-        figure, _ = picture_style.page(plt, 8.6, "Where the cue ball stops after a potted red", note, foot=foot)
+        figure, _ = picture_style.page(
+            plt, 8.6, "Where the cue ball stops after a potted red", note, foot=foot
+        )
         upper, lower = figure.subfigures(2, 1, height_ratios=(4.9, 1.1 + 0.22 * len(agents)))
         axes, shown = upper.subplots(1, len(agents), squeeze=False)[0], None
         for ax, (label, of) in zip(axes, agents.items(), strict=True):
             shown = table(ax, label, np.array(of["places"]).reshape(-1, 2), np.array(of["next_scores"], bool))
         ticks = range(int(DENSEST) + 1)
-        picture_style.colour_bar(upper, shown, list(axes), "times the density of an even spread", ticks, extend="max")
-        for k, (ax, (name, title, scale, form)) in enumerate(zip(lower.subplots(1, len(FIGURES)), FIGURES, strict=True)):
+        picture_style.colour_bar(
+            upper, shown, list(axes), "times the density of an even spread", ticks, extend="max"
+        )
+        for k, (ax, (name, title, scale, form)) in enumerate(
+            zip(lower.subplots(1, len(FIGURES)), FIGURES, strict=True)
+        ):
             names = list(agents) if k == 0 else [""] * len(agents)
             bars(ax, names, [of["figures"][name] for of in agents.values()], title, scale, form)
         picture_style.save(figure, file)
@@ -90,7 +105,15 @@ def table(axes, label, places, went_in):
     from matplotlib.patches import Circle, Polygon, Rectangle
 
     parts, high = outline(Table.preset("match")), np.array([HALF_WIDTH, HALF_LENGTH])
-    axes.add_patch(Rectangle(tuple(-high - CUSHION), *(2 * (high + CUSHION)), fc=picture_style.GRID, ec=picture_style.GREY, lw=1.0))
+    axes.add_patch(
+        Rectangle(
+            tuple(-high - CUSHION),
+            *(2 * (high + CUSHION)),
+            fc=picture_style.GRID,
+            ec=picture_style.GREY,
+            lw=1.0,
+        )
+    )
     axes.add_patch(Rectangle(tuple(-high), *(2 * high), fc="white", lw=0))
     inner, shown = high - BALL_RADIUS, None
     if len(places):
@@ -99,9 +122,25 @@ def table(axes, label, places, went_in):
     else:
         times = np.zeros((2, 2))
     edges = (-inner[0], inner[0], -inner[1], inner[1])
-    shown = axes.imshow(times.T, extent=edges, origin="lower", vmin=0, vmax=DENSEST, cmap=picture_style.HEAT, zorder=1, aspect="equal")
+    shown = axes.imshow(
+        times.T,
+        extent=edges,
+        origin="lower",
+        vmin=0,
+        vmax=DENSEST,
+        cmap=picture_style.HEAT,
+        zorder=1,
+        aspect="equal",
+    )
     if len(places):
-        axes.contour(times.T, levels=[level_of(times, 0.5)], extent=edges, colors=[picture_style.INK], linewidths=1.0, zorder=2)
+        axes.contour(
+            times.T,
+            levels=[level_of(times, 0.5)],
+            extent=edges,
+            colors=[picture_style.INK],
+            linewidths=1.0,
+            zorder=2,
+        )
     for polygon in parts.cushions:
         axes.add_patch(Polygon(polygon, fc=picture_style.GREY, lw=0, zorder=3))
     for x, y, radius in parts.falls:
@@ -115,7 +154,15 @@ def table(axes, label, places, went_in):
     axes.axis("off")
     axes.set_title(label, loc="center")
     share = f"{100 * went_in.mean():.0f} %" if len(went_in) else "none"
-    axes.text(0.5, -0.01, f"the next stroke scores: {share}", transform=axes.transAxes, ha="center", va="top", size=picture_style.TEXT)
+    axes.text(
+        0.5,
+        -0.01,
+        f"the next stroke scores: {share}",
+        transform=axes.transAxes,
+        ha="center",
+        va="top",
+        size=picture_style.TEXT,
+    )
     return shown
 
 
@@ -129,7 +176,9 @@ def bars(axes, labels, figures, title, scale, form):
         if f["low"] is not None:
             axes.plot([scale * f["low"], scale * f["high"]], [-k, -k], color=picture_style.INK, lw=1.4)
         high = scale * (f["high"] if f["high"] is not None else f["value"])
-        axes.text(high + 0.05 * largest, -k, form.format(scale * f["value"]), va="center", size=picture_style.SMALL)
+        axes.text(
+            high + 0.05 * largest, -k, form.format(scale * f["value"]), va="center", size=picture_style.SMALL
+        )
     axes.set_title(title, size=picture_style.TEXT)
     axes.set_xlim(0, 1.6 * largest)
     axes.set_ylim(-len(figures) + 0.4, 0.6)

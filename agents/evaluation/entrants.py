@@ -1,4 +1,5 @@
-"""Who is compared? Players by name and trained models, one for each training seed, and how each was trained."""
+"""Who is compared? Players by name and trained models, one for each training seed, and how each was
+trained."""
 
 import glob
 import json
@@ -48,7 +49,9 @@ class Entrant:
             some = [path] if Path(path).exists() else _names(path) or sorted(glob.glob(path))
             if not some:
                 known = ", ".join(players())
-                allowed = f"must be {known}, MODULE:CLASS, or name existing models: a .zip, a run folder, a pattern"
+                allowed = (
+                    f"must be {known}, MODULE:CLASS, or name existing models: a .zip, a run folder, a pattern"
+                )
                 raise refuse("agent", path, allowed)
             runs += some
         if equals and not label:
@@ -58,20 +61,30 @@ class Entrant:
         if is_name(runs[0]):
             return cls(label or runs[0].rpartition(":")[2], tuple(runs))
         path = Path(runs[0])
-        return cls(label or (path.parent if path.name in ("model.zip", POLICY) else path).stem, tuple(runs), trust, options)
+        return cls(
+            label or (path.parent if path.name in ("model.zip", POLICY) else path).stem,
+            tuple(runs),
+            trust,
+            options,
+        )
 
     def trained(self):
-        """How each run was trained, as far as its files say: a dict a run, {} for a player that was not trained."""
+        """How each run was trained, as far as its files say: a dict a run, {} for a player that was not
+        trained."""
         return [self._training(run) for run in self.runs]
 
     @property
     def foreign(self):
         """Whether a model is among them that train.py did not make."""
-        return not is_name(self.runs[0]) and any(isinstance(_model(run, self.trust, self.options), Foreign) for run in self.runs)
+        return not is_name(self.runs[0]) and any(
+            isinstance(_model(run, self.trust, self.options), Foreign) for run in self.runs
+        )
 
     def player(self, k):
         """The player of its run k; a model is read once."""
-        return player(self.runs[k]) if is_name(self.runs[k]) else _model(self.runs[k], self.trust, self.options)
+        return (
+            player(self.runs[k]) if is_name(self.runs[k]) else _model(self.runs[k], self.trust, self.options)
+        )
 
     def _training(self, run):
         if is_name(run):
@@ -88,10 +101,15 @@ class Entrant:
             seconds, imitated = _number_in(results, "seconds"), model.imitated
         usual = {"layout": Options().layout, "noise": "none", "fidelity": "standard"}
         return {
-            "recipe": model.recipe, "shots": model.num_timesteps, "imitated": imitated, "seconds": seconds, "seed": model.seed,
-            "gamma": model.gamma, **{key: model.env_options.get(key, value) for key, value in usual.items()},
+            "recipe": model.recipe,
+            "shots": model.num_timesteps,
+            "imitated": imitated,
+            "seconds": seconds,
+            "seed": model.seed,
+            "gamma": model.gamma,
+            **{key: model.env_options.get(key, value) for key, value in usual.items()},
             "physics": physics_text(model.env_options.get("physics", "paper")),
-        }  # fmt: skip
+        }
 
 
 def options_of(changes):
@@ -100,14 +118,17 @@ def options_of(changes):
     for change in changes:
         key, equals, value = change.partition("=")
         if not equals or key not in ACTION_OPTIONS or key in chosen:
-            raise refuse("options", change, f"must be KEY=VALUE, KEY once each of {', '.join(ACTION_OPTIONS)}")
+            raise refuse(
+                "options", change, f"must be KEY=VALUE, KEY once each of {', '.join(ACTION_OPTIONS)}"
+            )
         chosen[key] = value_of(value)
     Options(**chosen)  # makes sure of the values
     return tuple(chosen.items())
 
 
 def _names(name):
-    """The player of that name in a list; several for a planner whose model is a pattern; [] if it is not a player's name."""
+    """The player of that name in a list; several for a planner whose model is a pattern; [] if it is not a
+    player's name."""
     kind, at, pattern = name.partition("@")
     if at and is_name(name):
         return [f"{kind}@{model}" for model in sorted(glob.glob(pattern))] or [name]

@@ -1,15 +1,18 @@
-"""How fast do agents learn? A chart of the points a visit in training, over the time they have trained and over their shots.
+"""How fast do agents learn? A chart of the points a visit in training, over the time they have trained and
+over their shots.
 
     python -m agents.curves "ppo_mask=runs/mask-?" "pots only=runs/gamma0-?" [--json FILE] [--out agents/pictures/curves.png]
     python -m agents.curves --from                    the chart again, from agents/pictures/curves.json
 
-Read from the ``results.json`` of finished runs (train.py). Thin lines: one training seed each, points a visit of the last 1,000 visits on
-the tables of training, exploring. Discs, and the line of ``ghost_ball``: held-out tables, a run at its end, without exploration,
-with two standard errors. A run that imitated first starts its line where it begins to play; what a run with --start brought along is not
-counted. Shots are taken to be spread evenly over the time, and the machine was shared: minutes say a factor, not a percentage.
+Read from the ``results.json`` of finished runs (train.py). Thin lines: one training seed each, points a visit
+of the last 1,000 visits on the tables of training, exploring. Discs, and the line of ``ghost_ball``: held-out
+tables, a run at its end, without exploration, with two standard errors. A run that imitated first starts its
+line where it begins to play; what a run with --start brought along is not counted. Shots are taken to be
+spread evenly over the time, and the machine was shared: minutes say a factor, not a percentage.
 
-The runs of version 0.1.0 were not kept. In their place agents/pictures/curves.json holds, for each agent, the range of its seeds' lines,
-read off the chart of that version, and the ends with 95 % intervals from agents/results.
+The runs of version 0.1.0 were not kept. In their place agents/pictures/curves.json holds, for each agent, the
+range of its seeds' lines, read off the chart of that version, and the ends with 95 % intervals from
+agents/results.
 """
 
 import argparse
@@ -50,8 +53,17 @@ def run_of(path):
         points = np.array([at["points"] for at in run["curve"]], float)
         minutes = (imitating + (run["seconds"] - imitating) * shots / run["steps"]) / 60.0
         ends = {name: run["evaluation"][name] for name in LEVELS}
-        levels = {name: (float(end["points_a_visit"]), float(end["points_a_visit_se"])) for name, end in ends.items()}
-        return {"shots": shots, "minutes": minutes, "points": points, "end": (run["steps"], run["seconds"] / 60.0), "levels": levels}
+        levels = {
+            name: (float(end["points_a_visit"]), float(end["points_a_visit_se"]))
+            for name, end in ends.items()
+        }
+        return {
+            "shots": shots,
+            "minutes": minutes,
+            "points": points,
+            "end": (run["steps"], run["seconds"] / 60.0),
+            "levels": levels,
+        }
     except (ValueError, KeyError, TypeError, IndexError, AttributeError):
         raise refuse("run", str(file), "must be what today's train.py writes") from None
 
@@ -62,9 +74,17 @@ def figures_of(agents):
     for label, runs in agents.items():
         lines, ends = [], []
         for run in runs:
-            seen, (score, error), (shots, minutes) = run["points"] >= LEAST, run["levels"]["trained"], run["end"]
+            seen, (score, error), (shots, minutes) = (
+                run["points"] >= LEAST,
+                run["levels"]["trained"],
+                run["end"],
+            )
             lines.append({name: run[name][seen].tolist() for name in ("minutes", "shots", "points")})
-            interval = {"points": max(score, LEAST), "low": max(score - 2 * error, LEAST), "high": max(score + 2 * error, LEAST)}
+            interval = {
+                "points": max(score, LEAST),
+                "low": max(score - 2 * error, LEAST),
+                "high": max(score + 2 * error, LEAST),
+            }
             ends.append({"shots": shots, "minutes": minutes, **interval})
         found[label] = {"lines": lines, "ends": ends}
     level = next(iter(agents.values()))[0]["levels"]["ghost_ball"][0]
@@ -79,7 +99,9 @@ def draw(found, file):
     )
     with picture_style.drawing() as plt:
         foot = f"python -m agents.curves, snooker_env {found['version']}, professional execution errors"
-        figure, sides = picture_style.page(plt, 5.4, "How fast the agents learn: points a visit", note, foot=foot, columns=2, sharey=True)
+        figure, sides = picture_style.page(
+            plt, 5.4, "How fast the agents learn: points a visit", note, foot=foot, columns=2, sharey=True
+        )
         for (label, of), colour in zip(found["agents"].items(), _cycle(picture_style.SERIES), strict=False):
             for axes, (name, _) in zip(sides, PANELS, strict=True):
                 for line in of.get("lines", ()):
@@ -89,15 +111,31 @@ def draw(found, file):
                     axes.fill_between(band["x"], band["low"], band["high"], color=colour, alpha=0.55, lw=1.0)
                 for i, end in enumerate(of["ends"]):
                     reach = [[end["points"] - end["low"]], [end["high"] - end["points"]]]
-                    axes.errorbar(end[name], end["points"], reach, fmt="o", ms=6, color=colour, mec="white", mew=0.8, elinewidth=1.4,
-                                  label=label if i == 0 else None)  # fmt: skip
+                    axes.errorbar(
+                        end[name],
+                        end["points"],
+                        reach,
+                        fmt="o",
+                        ms=6,
+                        color=colour,
+                        mec="white",
+                        mew=0.8,
+                        elinewidth=1.4,
+                        label=label if i == 0 else None,
+                    )
         for axes, (_, name) in zip(sides, PANELS, strict=True):
             axes.axhline(found["ghost_ball"], color=picture_style.INK, lw=1.1, ls=":")
             picture_style.log_axis(axes.xaxis)
             picture_style.log_axis(axes.yaxis, subs=(1, 2, 5))
             axes.set_xlabel(name)
-        sides[0].annotate("ghost_ball", (0.01, found["ghost_ball"]), xycoords=("axes fraction", "data"), va="bottom",
-                          size=picture_style.SMALL, color=picture_style.INK)  # fmt: skip
+        sides[0].annotate(
+            "ghost_ball",
+            (0.01, found["ghost_ball"]),
+            xycoords=("axes fraction", "data"),
+            va="bottom",
+            size=picture_style.SMALL,
+            color=picture_style.INK,
+        )
         sides[0].set_ylabel("points a visit")
         sides[1].legend(loc="lower right")
         picture_style.save(figure, file)
@@ -112,10 +150,21 @@ def _cycle(colours):
 @command("agents.curves")
 def main(argv=None):
     """Check, draw. Exit code 0."""
-    p = argparse.ArgumentParser("python -m agents.curves", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("agents", nargs="*", metavar="AGENT", help="a run folder, or LABEL=FOLDER,FOLDER,... or patterns")
-    p.add_argument("--from", dest="kept", type=Path, nargs="?", const=KEPT, metavar="FILE",
-                   help="no runs: draw the figures that --json wrote [agents/pictures/curves.json]")  # fmt: skip
+    p = argparse.ArgumentParser(
+        "python -m agents.curves", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    p.add_argument(
+        "agents", nargs="*", metavar="AGENT", help="a run folder, or LABEL=FOLDER,FOLDER,... or patterns"
+    )
+    p.add_argument(
+        "--from",
+        dest="kept",
+        type=Path,
+        nargs="?",
+        const=KEPT,
+        metavar="FILE",
+        help="no runs: draw the figures that --json wrote [agents/pictures/curves.json]",
+    )
     p.add_argument("--json", type=Path, metavar="FILE", help="write what is drawn into this file")
     p.add_argument("--out", type=Path, default=PICTURE, help="the picture [agents/pictures/curves.png]")
     args = p.parse_args(argv)
@@ -148,5 +197,7 @@ def _runs(texts):
     if len(agents) < len(texts):
         raise refuse("agents", " ".join(texts), "must have another label each")
     if len({run["levels"]["ghost_ball"] for runs in agents.values() for run in runs}) > 1:
-        raise refuse("agents", " ".join(texts), "must have been judged on the same tables: ghost_ball's score differs")
+        raise refuse(
+            "agents", " ".join(texts), "must have been judged on the same tables: ghost_ball's score differs"
+        )
     return agents

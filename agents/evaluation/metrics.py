@@ -1,4 +1,5 @@
-"""How good is an agent under one condition? Its figures with intervals, and its scores relative to those of other agents."""
+"""How good is an agent under one condition? Its figures with intervals, and its scores relative to those of
+other agents."""
 
 import zlib
 from dataclasses import dataclass
@@ -20,7 +21,8 @@ def _quotient(above, below):
 
 
 def bounded(share, trials):
-    """A share with its interval; one that was never or always seen, which has none, with the exact bound of so many trials."""
+    """A share with its interval; one that was never or always seen, which has none, with the exact bound of
+    so many trials."""
     if share["low"] is not None or share["value"] not in (0.0, 1.0) or not trials:
         return share
     most = unseen(trials)
@@ -46,8 +48,9 @@ class EntrantMetrics:
         """All figures of this agent alone."""
         samples, c = self._samples, self.counted
         found = {
-            name: figure(_quotient(c[a].sum(), c[b].sum()), samples.ratios(c[a], c[b])) for name, (a, b) in FIGURES.items()
-        }  # fmt: skip
+            name: figure(_quotient(c[a].sum(), c[b].sum()), samples.ratios(c[a], c[b]))
+            for name, (a, b) in FIGURES.items()
+        }
         for name in SCORES:
             found[f"{name}_a_visit_iqm"] = figure(iqm(c[name]), samples.iqms(c[name]))
         return found
@@ -66,9 +69,11 @@ class EntrantMetrics:
         """Everything for the JSON file; ``others``: whom to compare with."""
         strokes = sum(len(s.points) for s in self.strokes)
         return {
-            "figures": self.figures(), "ratios": {other.agent.label: self.ratios(other) for other in others},
+            "figures": self.figures(),
+            "ratios": {other.agent.label: self.ratios(other) for other in others},
             "counted": {name: float(self.counted[name].sum(axis=1).mean()) for name in BELOW},
             "longest_break": int(self.counted["points"].max()),
             "by_run": {f"{name}_a_visit": self.counted[name].mean(axis=1).tolist() for name in SCORES},
-            "strokes": strokes, "ms_a_decision": 1e3 * sum(s.decision_seconds for s in self.strokes) / strokes,
-        }  # fmt: skip
+            "strokes": strokes,
+            "ms_a_decision": 1e3 * sum(s.decision_seconds for s in self.strokes) / strokes,
+        }

@@ -1,23 +1,26 @@
-"""How well do agents play, and is it positional play? A research tool: held-out tables, all noise levels, several training seeds.
+"""How well do agents play, and is it positional play? A research tool: held-out tables, all noise levels,
+several training seeds.
 
-    python -m agents.evaluate --agent ghost_ball runs/ppo_mask-0
-    python -m agents.evaluate --agent "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against ghost_ball "pots only" \\
+    python -m agents.evaluate --agent ghost_ball runs/ppo_mask-0 python -m agents.evaluate --agent
+    "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against ghost_ball "pots only" \\
         --json agents/results/main.json --markdown agents/results/main.md --picture
-    python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/reference-*" --fidelity fast reference --noise professional
-    python -m agents.evaluate --agent search_2000 --visits 50 --layouts held_out --noise professional
+    python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/reference-*" --fidelity fast
+    reference --noise professional python -m agents.evaluate --agent search_2000 --visits 50 --layouts
+    held_out --noise professional
 
-Every agent plays the same tables with the same execution errors (stroke by stroke): 2,000 opened tables that are never used in
-training, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every agent plays under every value of --noise,
---fidelity and --physics, so agents that were trained under A and B make a table of A against B. (The aim of a discrete choice is solved
-with the physics that is played.) Results for the leaderboard are made by ``python -m snooker_env.benchmark`` instead.
+Every agent plays the same tables with the same execution errors (stroke by stroke): 2,000 opened tables that
+are never used in training, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every
+agent plays under every value of --noise, --fidelity and --physics, so agents that were trained under A and B
+make a table of A against B. (The aim of a discrete choice is solved with the physics that is played.) Results
+for the leaderboard are made by ``python -m snooker_env.benchmark`` instead.
 
 An agent is a ``NAME`` (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH,PATH,... with
-one PATH for each training seed (a PATH may be a pattern), or MODULE:CLASS for a player of your own, whose module is imported. Models of
-train.py and agents/pretrained are read as plain data. Any other model of Stable-Baselines3 or sb3-contrib that was trained on a visit
-with the environment's own observation holds pickled Python code, which runs when it is loaded: it needs --trust and, if its actions are
-not the default ones, --options, for example aim=target.
-Intervals are 95 % bootstrap intervals over training seeds and visits (snooker_env/benchmark/statistics.py); the ratios are paired: same
-tables above and below.
+one PATH for each training seed (a PATH may be a pattern), or MODULE:CLASS for a player of your own, whose
+module is imported. Models of train.py and agents/pretrained are read as plain data. Any other model of
+Stable-Baselines3 or sb3-contrib that was trained on a visit with the environment's own observation holds
+pickled Python code, which runs when it is loaded: it needs --trust and, if its actions are not the default
+ones, --options, for example aim=target. Intervals are 95 % bootstrap intervals over training seeds and visits
+(snooker_env/benchmark/statistics.py); the ratios are paired: same tables above and below.
 """
 
 import argparse
@@ -75,7 +78,9 @@ def play_agent(agent, condition, seeds, resamples, rekey=False, results=None):
         results = in_order(ended([part for run in each for part in run], _shared([agent]), Here()))
     runs = [joined(list(islice(results, len(run))), len(seeds)) for run in each]
     counted = [counts(strokes) for strokes in runs]
-    return EntrantMetrics(agent, {name: np.stack([one[name] for one in counted]) for name in counted[0]}, runs, resamples)
+    return EntrantMetrics(
+        agent, {name: np.stack([one[name] for one in counted]) for name in counted[0]}, runs, resamples
+    )
 
 
 def _name(agent, k):
@@ -94,7 +99,8 @@ def _conditions(report, seeds):
 
 
 def all_parts(report, agents, seeds):
-    """The parts of everything that the report's protocol says, in the order in which ``evaluate`` takes their results."""
+    """The parts of everything that the report's protocol says, in the order in which ``evaluate`` takes their
+    results."""
     p = report["protocol"]
     return [
         part
@@ -108,12 +114,18 @@ def all_parts(report, agents, seeds):
 def about(report, shared):
     """What is played, for a ``Keep``: two evaluations with the same share their parts."""
     played = {name: report["protocol"][name] for name in ("layouts", "first_seed", *AXES, "rekey")}
-    return {"command": "agents.evaluate", **played, "agents": {name: digest_of(one) for name, one in shared.items()}} | software()
+    return {
+        "command": "agents.evaluate",
+        **played,
+        "agents": {name: digest_of(one) for name, one in shared.items()},
+    } | software()
 
 
 def parser():
     """The command line."""
-    p = argparse.ArgumentParser("python -m agents.evaluate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(
+        "python -m agents.evaluate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     p.add_argument(
         "--agent",
         nargs="+",
@@ -122,19 +134,46 @@ def parser():
         help="NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... or MODULE:CLASS; NAME: "
         + ", ".join(snooker_env.players()),
     )
-    p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
     p.add_argument(
-        "--options", nargs="+", default=[], metavar="KEY=VALUE", help="how the actions of such models are read, for example aim=target"
+        "--trust",
+        action="store_true",
+        help="run the pickled code in models of Stable-Baselines3 that train.py did not make",
     )
-    p.add_argument("--against", nargs="+", default=[REFERENCE], metavar="LABEL", help=f"agents to compare the others with [{REFERENCE}]")
-    usual = [f"{name}={n}" for name, n in PROTOCOL.items()]
-    p.add_argument("--layouts", nargs="+", default=usual, metavar="LAYOUT", help=f"LAYOUT=VISITS [{' '.join(usual)}]")
-    p.add_argument("--visits", type=int, help="so many on every layout, for a quick trial or a slow player")
-    p.add_argument("--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]")
-    p.add_argument("--fidelity", nargs="+", default=["standard"], help="fast, standard, reference or euler:N [standard]")
-    p.add_argument("--physics", nargs="+", default=["paper"], help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
     p.add_argument(
-        "--rekey", action="store_true", help="new execution errors after every decision: a control that no agent has seen them beforehand"
+        "--options",
+        nargs="+",
+        default=[],
+        metavar="KEY=VALUE",
+        help="how the actions of such models are read, for example aim=target",
+    )
+    p.add_argument(
+        "--against",
+        nargs="+",
+        default=[REFERENCE],
+        metavar="LABEL",
+        help=f"agents to compare the others with [{REFERENCE}]",
+    )
+    usual = [f"{name}={n}" for name, n in PROTOCOL.items()]
+    p.add_argument(
+        "--layouts", nargs="+", default=usual, metavar="LAYOUT", help=f"LAYOUT=VISITS [{' '.join(usual)}]"
+    )
+    p.add_argument("--visits", type=int, help="so many on every layout, for a quick trial or a slow player")
+    p.add_argument(
+        "--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]"
+    )
+    p.add_argument(
+        "--fidelity", nargs="+", default=["standard"], help="fast, standard, reference or euler:N [standard]"
+    )
+    p.add_argument(
+        "--physics",
+        nargs="+",
+        default=["paper"],
+        help="paper, match, or one with changes: paper,mu_bb=marlow [paper]",
+    )
+    p.add_argument(
+        "--rekey",
+        action="store_true",
+        help="new execution errors after every decision: a control that no agent has seen them beforehand",
     )
     add_ray(p, keep=True)
     p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
@@ -151,7 +190,8 @@ def parser():
 
 
 def checked(args):
-    """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError before anything is played."""
+    """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError before
+    anything is played."""
     options = options_of(args.options)
     agents = [Entrant.of(text, args.trust, options) for text in args.agent]
     labels = [agent.label for agent in agents]
@@ -183,11 +223,17 @@ def checked(args):
     for agent in agents:
         agent.trained()  # reads its models
     if options and not any(agent.foreign for agent in agents):
-        raise refuse("options", " ".join(args.options), "must be left out: it is for models that train.py did not make")
+        raise refuse(
+            "options", " ".join(args.options), "must be left out: it is for models that train.py did not make"
+        )
     checked_ray(args.ray)
     for name in ("json", "markdown", "picture"):
         writable(name, getattr(args, name))
-    return agents, list(dict.fromkeys(args.against)), {name: tables_of(name, visits) for name, visits in sizes.items()}
+    return (
+        agents,
+        list(dict.fromkeys(args.against)),
+        {name: tables_of(name, visits) for name, visits in sizes.items()},
+    )
 
 
 def evaluate(report, agents, seeds, shown, results):
@@ -199,10 +245,17 @@ def evaluate(report, agents, seeds, shown, results):
     for condition in _conditions(report, seeds):
         layout, metrics = condition["layout"], {}
         for agent in agents:
-            metrics[agent.label] = play_agent(agent, condition, seeds[layout], p["resamples"], p["rekey"], results)
+            metrics[agent.label] = play_agent(
+                agent, condition, seeds[layout], p["resamples"], p["rekey"], results
+            )
         others, rows = [metrics[label] for label in p["against"]], []
         for one in metrics.values():
-            row = {"agent": one.agent.label, **condition, "visits": len(seeds[layout]), "runs": len(one.agent.runs)}
+            row = {
+                "agent": one.agent.label,
+                **condition,
+                "visits": len(seeds[layout]),
+                "runs": len(one.agent.runs),
+            }
             rows.append(row | one.result([other for other in others if other is not one]))
         report["results"] += rows
         if condition == main_condition(report):
@@ -232,18 +285,25 @@ def main(argv=None):
     for agent in agents:  # compiled before the clock runs
         play_visits(agent.player(0), 2)
     report = {
-        "command": "python -m agents.evaluate " + shlex.join(argv), **provenance(),
+        "command": "python -m agents.evaluate " + shlex.join(argv),
+        **provenance(),
         "protocol": {
-            "layouts": {name: len(s) for name, s in seeds.items()}, "first_seed": HELD_OUT_SEED, "against": references,
-            **{axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}, "resamples": args.resamples,
+            "layouts": {name: len(s) for name, s in seeds.items()},
+            "first_seed": HELD_OUT_SEED,
+            "against": references,
+            **{axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES},
+            "resamples": args.resamples,
             "rekey": args.rekey,
         },
         "agents": [
-            {"label": agent.label, "runs": [{"from": run, **how} for run, how in zip(agent.runs, agent.trained(), strict=True)]}
+            {
+                "label": agent.label,
+                "runs": [{"from": run, **how} for run, how in zip(agent.runs, agent.trained(), strict=True)],
+            }
             for agent in agents
         ],
         "results": [],
-    }  # fmt: skip
+    }
     shown, why, code = {}, "", 0
     job, shared = all_parts(report, agents, seeds), _shared(agents)
     try:
@@ -252,11 +312,17 @@ def main(argv=None):
         p.error(str(error))
     with keep:
         try:
-            with place(args.ray) as where, Progress("evaluation", sum(len(one.args["seeds"]) for one in job), "visits") as progress:
+            with (
+                place(args.ray) as where,
+                Progress("evaluation", sum(len(one.args["seeds"]) for one in job), "visits") as progress,
+            ):
 
                 def counted():
                     for k, result in ended(job, shared, where, keep.store):
-                        progress.at(progress.done + len(job[k].args["seeds"]), job[k].args["condition"]["layout"] + where.says)
+                        progress.at(
+                            progress.done + len(job[k].args["seeds"]),
+                            job[k].args["condition"]["layout"] + where.says,
+                        )
                         yield k, result
 
                 evaluate(report, agents, seeds, shown, in_order(counted()))
@@ -265,9 +331,14 @@ def main(argv=None):
         except ClusterError as error:
             why, code = str(error), 1
         if code:
-            complete, conditions = len(report["results"]) // len(agents), len(list(_conditions(report, seeds)))
+            complete, conditions = (
+                len(report["results"]) // len(agents),
+                len(list(_conditions(report, seeds))),
+            )
             kept = keep.ends if complete or keep.store else "nothing is kept"
-            report["incomplete"] = f"{why} when {complete} of {conditions} parts (layouts under one noise) were complete: {kept}"
+            report["incomplete"] = (
+                f"{why} when {complete} of {conditions} parts (layouts under one noise) were complete: {kept}"
+            )
             print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
         if report["results"]:
             write(report, shown, args)
@@ -277,7 +348,8 @@ def main(argv=None):
 
 
 def write(report, shown, args):
-    """Write what was asked for and print the tables. A file that cannot be written is named at the end, and the others are there."""
+    """Write what was asked for and print the tables. A file that cannot be written is named at the end, and
+    the others are there."""
     files, failed = {name: getattr(args, name) for name in ("json", "markdown", "picture")}, []
     if "incomplete" in report:
         files = {name: spared(file) for name, file in files.items()}

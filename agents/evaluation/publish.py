@@ -2,8 +2,9 @@
 
     python -m agents.publish runs/ppo_foresight-0 --limits "what it cannot do"
 
-writes ``agents/pretrained/AGENT.zip`` and ``AGENT.json``; ``python -m agents.evaluate --agent AGENT`` plays it. The zip holds figures as
-JSON and weights, no pickled code as a run's own model.zip does, so that nobody needs to trust it (agents/learning/model_files.py).
+writes ``agents/pretrained/AGENT.zip`` and ``AGENT.json``; ``python -m agents.evaluate --agent AGENT`` plays
+it. The zip holds figures as JSON and weights, no pickled code as a run's own model.zip does, so that nobody
+needs to trust it (agents/learning/model_files.py).
 """
 
 import argparse
@@ -22,7 +23,8 @@ with needs("agents.publish"):
     from ..learning.models import PRETRAINED, load_trained, pretrained
 
 AS_IT_STANDS = {"layout": "", "noise": "", "fidelity": "", "physics": "", "start": "", "set": []}
-"""What these settings are in a run of its recipe as it stands. A fidelity that was given is also that of its final evaluation."""
+"""What these settings are in a run of its recipe as it stands. A fidelity that was given is also that of its
+final evaluation."""
 
 
 def results_of(run):
@@ -32,7 +34,9 @@ def results_of(run):
         card_of(found, "")
         name_of(found, "any")
     except (OSError, ValueError, KeyError, TypeError, IndexError):
-        raise refuse("run", str(run), "must be the folder of a finished run, with a whole results.json") from None
+        raise refuse(
+            "run", str(run), "must be the folder of a finished run, with a whole results.json"
+        ) from None
     return found, load_trained(run, "run")
 
 
@@ -40,11 +44,18 @@ def card_of(found, limits):
     """The card of the model of a run with these results: where it comes from, and how well it plays."""
     imitated = found["imitation"][-1]["states"] if found["imitation"] else 0
     return {
-        "command": found["command"], "seed": found["settings"]["seed"], "commit": found["git_commit"],
-        "hours": round(found["seconds"] / 3600.0, 3), "shots": found["steps"], "imitated": imitated,
+        "command": found["command"],
+        "seed": found["settings"]["seed"],
+        "commit": found["git_commit"],
+        "hours": round(found["seconds"] / 3600.0, 3),
+        "shots": found["steps"],
+        "imitated": imitated,
         "start": found["settings"]["start"] or None,
-        "scores": found["evaluation"], "learned": found["learned"], "versions": found["versions"], "limits": limits,
-    }  # fmt: skip
+        "scores": found["evaluation"],
+        "learned": found["learned"],
+        "versions": found["versions"],
+        "limits": limits,
+    }
 
 
 def name_of(found, name):
@@ -53,7 +64,9 @@ def name_of(found, name):
     other = [key for key, usual in AS_IT_STANDS.items() if settings[key] != usual]
     if name is None and other:
         raise refuse(
-            "name", name, f"must be given: the run is not one of {agent} as its recipe stands ({', '.join(other)} is not the same)"
+            "name",
+            name,
+            f"must be given: the run is not one of {agent} as its recipe stands ({', '.join(other)} is not the same)",
         )
     name = agent if name is None else name
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", name):
@@ -64,12 +77,17 @@ def name_of(found, name):
 
 
 def publish(run, name, limits, replace=False):
-    """Write the model and its card; (path without ending, card). Raises ValueError before anything is written."""
+    """Write the model and its card; (path without ending, card). Raises ValueError before anything is
+    written."""
     if not limits.strip():
         raise refuse("limits", limits, "must say what a user should know that it cannot do")
     found, trained = results_of(run)
     path = PRETRAINED / name_of(found, name)
-    card, model, about = card_of(found, limits), path.with_name(f"{path.name}.zip"), path.with_name(f"{path.name}.json")
+    card, model, about = (
+        card_of(found, limits),
+        path.with_name(f"{path.name}.zip"),
+        path.with_name(f"{path.name}.json"),
+    )
     if not replace and (model.exists() or about.exists()):
         raise refuse("name", path.name, "must be new: there is such a model; --replace overwrites it")
     PRETRAINED.mkdir(exist_ok=True)
@@ -81,7 +99,9 @@ def publish(run, name, limits, replace=False):
 @command("agents.publish")
 def main(argv=None):
     """Command line."""
-    parser = argparse.ArgumentParser("python -m agents.publish", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        "python -m agents.publish", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("run", type=Path, help="a run's folder")
     parser.add_argument("--name", help="of the model [the agent's]")
     parser.add_argument("--limits", required=True, help="what the model cannot do, for its card")

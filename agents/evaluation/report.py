@@ -1,6 +1,8 @@
-"""How is an evaluation reported? Its tables and sentences, for a terminal and as Markdown; every word follows from the figures.
+"""How is an evaluation reported? Its tables and sentences, for a terminal and as Markdown; every word follows
+from the figures.
 
-``report`` is what agents/evaluation/protocol.py writes as JSON. The Markdown is made again from it, without playing, by
+``report`` is what agents/evaluation/protocol.py writes as JSON. The Markdown is made again from it, without
+playing, by
 
     python -m agents.report agents/results/*.json
 
@@ -38,7 +40,8 @@ _pm = partial(shown, form="{:.2f}")
 
 
 def _trials(row, below):
-    """How often a run could have done it: the entry ``below`` of what snooker_env/benchmark/counts.py counts. None if that was not kept."""
+    """How often a run could have done it: the entry ``below`` of what snooker_env/benchmark/counts.py counts.
+    None if that was not kept."""
     f, visits = row["figures"], row["visits"]
     known = {"visits": visits, "strokes": row["strokes"] / row["runs"]}
     if f["pots_a_visit"]["value"] is not None and f["clearances"]["value"] is not None:
@@ -47,9 +50,16 @@ def _trials(row, below):
 
 
 SHARES = {
-    "centuries": "visits", "maximums": "visits", "clearances": "visits", "fouls_a_visit": "visits", "pot_rate": "strokes",
-    "next_pot_after_a_pot": "goes_on", "easy_pot_left_by_a_pot": "goes_on", "high_colours": "colours", "high_colour_after_a_red": "reds",
-}  # fmt: skip
+    "centuries": "visits",
+    "maximums": "visits",
+    "clearances": "visits",
+    "fouls_a_visit": "visits",
+    "pot_rate": "strokes",
+    "next_pot_after_a_pot": "goes_on",
+    "easy_pot_left_by_a_pot": "goes_on",
+    "high_colours": "colours",
+    "high_colour_after_a_red": "reds",
+}
 """Figures that are shares, and of what. A visit ends with its first foul: those a visit are a share, too."""
 
 
@@ -72,7 +82,8 @@ def _picked(report, **condition):
 
 
 def main_condition(report):
-    """Where the comparison in words, and the picture, are taken: the usual of everything that was played, else its first value."""
+    """Where the comparison in words, and the picture, are taken: the usual of everything that was played,
+    else its first value."""
     p = report["protocol"]
     return {
         name: USUAL[name] if USUAL[name] in p[key] else next(iter(p[key]))
@@ -87,14 +98,20 @@ def _listed(words):
 
 
 def title(report):
-    """What is compared: an axis under whose values agents were trained and play, or agents and where they play; or who met."""
+    """What is compared: an axis under whose values agents were trained and play, or agents and where they
+    play; or who met."""
     if tournament_report.is_tournament(report):
         return tournament_report.title(report)
     p, layouts = report["protocol"], _listed(report["protocol"]["layouts"])
     for axis in AXES:
         made = {str(run[axis]) for agent in report["agents"] for run in agent["runs"] if axis in run}
         if len(made) > 1 and len(p[axis]) > 1:
-            planners = all(run["from"].startswith("planner") for agent in report["agents"] for run in agent["runs"] if axis in run)
+            planners = all(
+                run["from"].startswith("planner")
+                for agent in report["agents"]
+                for run in agent["runs"]
+                if axis in run
+            )
             who = "planners" if planners else "agents"
             return f"How {who} trained under one {axis} play under another, on {layouts}: {_listed(p[axis])}"
     under = "" if len(p["noise"]) > 1 or p["noise"] == [USUAL["noise"]] else f", noise {p['noise'][0]}"
@@ -108,9 +125,14 @@ def agents_tables(report):
         runs, label = agent["runs"], agent["label"]
         if "recipe" not in runs[0]:
             by_noise = re.fullmatch(r"planner(_value|_policy)?(_\d+)?", runs[0]["from"])
-            trained.append([label, "pre-trained, by the noise played" if by_noise else "not trained", "", "", "", ""])
+            trained.append(
+                [label, "pre-trained, by the noise played" if by_noise else "not trained", "", "", "", ""]
+            )
             continue
-        words = [", ".join(sorted({str(run[key]) for run in runs})) for key in ("recipe", "noise", "fidelity", "physics")]
+        words = [
+            ", ".join(sorted({str(run[key]) for run in runs}))
+            for key in ("recipe", "noise", "fidelity", "physics")
+        ]
         rates = [run["shots"] / run["seconds"] if run["seconds"] else None for run in runs]
         numbers = [_between([run[key] for run in runs]) for key in ("imitated", "shots", "seconds")]
         gammas = ", ".join(sorted({f"{run['gamma']:g}" for run in runs}))
@@ -119,7 +141,13 @@ def agents_tables(report):
     header = ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
     return [
         TextTable("The agents", header, trained, 1, 5),
-        TextTable("How long they were trained", ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"], long, 1, 1),
+        TextTable(
+            "How long they were trained",
+            ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"],
+            long,
+            1,
+            1,
+        ),
     ]
 
 
@@ -128,8 +156,13 @@ def _seeds(runs):
     return len({run["seed"] for run in runs})
 
 
-GIVEN = (("imitated", "positions imitated", 0.0), ("shots", "shots", 0.0), ("seconds", "seconds of training", SAME))
-"""What agents are given: how it is kept, how it is called, and by what share it may differ to be called equal."""
+GIVEN = (
+    ("imitated", "positions imitated", 0.0),
+    ("shots", "shots", 0.0),
+    ("seconds", "seconds of training", SAME),
+)
+"""What agents are given: how it is kept, how it is called, and by what share it may differ to be called
+equal."""
 
 
 def fairness(report):
@@ -139,17 +172,26 @@ def fairness(report):
     for agent in trained:
         n = _seeds(agent["runs"])
         if n < SEEDS:
-            few = "1 training seed: its intervals say nothing about other seeds" if n == 1 else f"{n} training seeds, fewer than {SEEDS}"
+            few = (
+                "1 training seed: its intervals say nothing about other seeds"
+                if n == 1
+                else f"{n} training seeds, fewer than {SEEDS}"
+            )
             said.append(f"{agent['label']} has {few}.")
         known = {run["layout"] for run in agent["runs"]} & {*report["protocol"]["layouts"], USUAL["layout"]}
-        said += [f"{agent['label']} was trained on layout {layout}: its tables are not new to it." for layout in sorted(known)]
+        said += [
+            f"{agent['label']} was trained on layout {layout}: its tables are not new to it."
+            for layout in sorted(known)
+        ]
     if len(trained) > 1:
         for key, name, share in GIVEN:
             given = {agent["label"]: [run[key] for run in agent["runs"]] for agent in trained}
             unknown = [label for label, values in given.items() if None in values]
             values = [value for some in given.values() for value in some]
             if unknown:
-                said.append(f"Whether the trained agents had equal {name} is not known: no record for {', '.join(unknown)}.")
+                said.append(
+                    f"Whether the trained agents had equal {name} is not known: no record for {', '.join(unknown)}."
+                )
             elif max(values) <= (1 + share) * min(values):
                 said.append(f"The trained agents had equal {name} ({_between(values)}).")
             else:
@@ -175,10 +217,12 @@ def comparison(report):
             shares = [
                 f"{words} {100 * mine[key]['value']:.1f} against {100 * its[key]['value']:.1f} %"
                 for key, words in (
-                    ("next_pot_after_a_pot", "after a pot it pots again:"), ("easy_pot_left_by_a_pot", "an easy pot is left:"),
+                    ("next_pot_after_a_pot", "after a pot it pots again:"),
+                    ("easy_pot_left_by_a_pot", "an easy pot is left:"),
                     ("high_colour_after_a_red", "after a red it pots pink or black:"),
-                ) if mine[key]["value"] is not None and its[key]["value"] is not None
-            ]  # fmt: skip
+                )
+                if mine[key]["value"] is not None and its[key]["value"] is not None
+            ]
             said.append(f"{start}; {'; '.join(shares)}." if shares else f"{start}.")
     where = ", ".join(f"{key} {value}" for key, value in at.items())
     return [f"On {where}:", *said] if said else []
@@ -197,7 +241,13 @@ def crossed(report):
             for agent in report["agents"]:
                 made = ", ".join(sorted({str(run[axis]) for run in agent["runs"] if axis in run}))
                 found = [_picked(report, agent=agent["label"], **rest, **{axis: value}) for value in p[axis]]
-                rows.append([agent["label"], made, *(_pm(some[0]["figures"]["points_a_visit"]) if some else "" for some in found)])
+                rows.append(
+                    [
+                        agent["label"],
+                        made,
+                        *(_pm(some[0]["figures"]["points_a_visit"]) if some else "" for some in found),
+                    ]
+                )
             under = ", ".join(f"{key} {value}" for key, value in rest.items() if key != "layout")
             title = f"{layout}: points a visit, played under {axis} ..., {under}"
             tables.append(TextTable(title, ["agent", "trained under", *p[axis]], rows, 2, 2))
@@ -215,12 +265,15 @@ def conditions(report):
                 where = f"{layout}, {visits:,} visits, physics {physics}, fidelity {fidelity}"
                 for name, columns in _columns(p["against"], most).items():
                     cells = [[r["noise"], r["agent"], *(cell(r) for cell in columns.values())] for r in rows]
-                    tables.append(TextTable(f"{where}: {name}", ["noise", "agent", *columns], cells, 2, 2, True))
+                    tables.append(
+                        TextTable(f"{where}: {name}", ["noise", "agent", *columns], cells, 2, 2, True)
+                    )
     return tables
 
 
 def _columns(against, most):
-    """The tables of a condition: name -> {heading: cell of a result}, without breaks of more than ``most`` points, which cannot be."""
+    """The tables of a condition: name -> {heading: cell of a result}, without breaks of more than ``most``
+    points, which cannot be."""
 
     def figure(name):
         return lambda r: _pm(r["figures"][name])
@@ -231,25 +284,38 @@ def _columns(against, most):
     def times(other):
         return lambda r: _pm(r["ratios"][other]["points_a_visit"]) if other in r["ratios"] else ""
 
-    breaks = {"centuries %": ("centuries", CENTURY), "147s %": ("maximums", MAXIMUM), "clearances %": ("clearances", 0)}
+    breaks = {
+        "centuries %": ("centuries", CENTURY),
+        "147s %": ("maximums", MAXIMUM),
+        "clearances %": ("clearances", 0),
+    }
     return {
         "points": {
-            "points a visit": figure("points_a_visit"), "IQM": figure("points_a_visit_iqm"), "best": lambda r: str(r["longest_break"]),
+            "points a visit": figure("points_a_visit"),
+            "IQM": figure("points_a_visit_iqm"),
+            "best": lambda r: str(r["longest_break"]),
         },
         "points against others": {f"times {other}": times(other) for other in against},
         "pots": {
-            "pots a visit": figure("pots_a_visit"), "IQM": figure("pots_a_visit_iqm"),
+            "pots a visit": figure("pots_a_visit"),
+            "IQM": figure("pots_a_visit_iqm"),
         },
         "breaks": {heading: share(name) for heading, (name, least) in breaks.items() if least <= most},
         "potting and position": {
-            "pot rate %": share("pot_rate"), "next pot %": share("next_pot_after_a_pot"), "easy left %": share("easy_pot_left_by_a_pot"),
+            "pot rate %": share("pot_rate"),
+            "next pot %": share("next_pot_after_a_pot"),
+            "easy left %": share("easy_pot_left_by_a_pot"),
         },
-        "fouls and time": {"fouls a visit": share("fouls_a_visit", "{:.2f}", 1.0), "ms": lambda r: f"{r['ms_a_decision']:.2f}"},
+        "fouls and time": {
+            "fouls a visit": share("fouls_a_visit", "{:.2f}", 1.0),
+            "ms": lambda r: f"{r['ms_a_decision']:.2f}",
+        },
         "colours": {
-            "colour's value": figure("colour_value"), "high colours %": share("high_colours"),
+            "colour's value": figure("colour_value"),
+            "high colours %": share("high_colours"),
             "high after red %": share("high_colour_after_a_red"),
         },
-    }  # fmt: skip
+    }
 
 
 LEGEND = (
@@ -268,7 +334,14 @@ def parts(report):
     if tournament_report.is_tournament(report):
         yield from tournament_report.parts(report)
         return
-    all_parts = [*agents_tables(report), *fairness(report), *comparison(report), *crossed(report), *conditions(report), LEGEND]
+    all_parts = [
+        *agents_tables(report),
+        *fairness(report),
+        *comparison(report),
+        *crossed(report),
+        *conditions(report),
+        LEGEND,
+    ]
     if "incomplete" in report:
         all_parts.insert(0, f"INCOMPLETE: {report['incomplete']}.")
     for part in all_parts:
@@ -291,7 +364,11 @@ def picture_of(report, folder):
     if "--picture" not in words:
         return None
     named = words[words.index("--picture") + 1 :][:1]
-    file = Path(named[0]) if named and not named[0].startswith("--") else Path(__file__).parents[1] / "pictures" / "destinations.png"
+    file = (
+        Path(named[0])
+        if named and not named[0].startswith("--")
+        else Path(__file__).parents[1] / "pictures" / "destinations.png"
+    )
     return Path(os.path.relpath(file, folder)).as_posix()
 
 
@@ -302,16 +379,26 @@ def read(file):
         list(parts(report))
         title(report)
     except (OSError, ValueError, KeyError, TypeError, IndexError, AttributeError):
-        raise refuse("file", str(file), "must be what agents.evaluate writes with --json, or agents.tournament with --out") from None
+        raise refuse(
+            "file",
+            str(file),
+            "must be what agents.evaluate writes with --json, or agents.tournament with --out",
+        ) from None
     return report
 
 
 @command("agents.report")
 def main(argv=None):
     """Make the Markdown again from kept figures, or print them. Exit code 0."""
-    p = argparse.ArgumentParser("python -m agents.report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(
+        "python -m agents.report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     p.add_argument(
-        "files", nargs="+", type=Path, metavar="FILE.json", help="what agents.evaluate wrote with --json, or agents.tournament with --out"
+        "files",
+        nargs="+",
+        type=Path,
+        metavar="FILE.json",
+        help="what agents.evaluate wrote with --json, or agents.tournament with --out",
     )
     p.add_argument("--show", action="store_true", help="print the tables, write nothing")
     args = p.parse_args(argv)

@@ -1,11 +1,12 @@
 """How are positions searched to learn from? The command ``python -m agents.search``.
 
-    python -m agents.search --positions 10000 --out runs/searched
-    python -m agents.search --agent search_2000 --positions 1000000 --noise club --out s3://bucket/club --ray 10.0.0.1:6379
+    python -m agents.search --positions 10000 --out runs/searched python -m agents.search --agent search_2000
+    --positions 1000000 --noise club --out s3://bucket/club --ray 10.0.0.1:6379
 
-A search plays visits, and what it thinks of each position is kept: the strokes that met most noise samples, best first, with their scores.
-Data are written in parts as they are played; after an interruption the same command goes on, and with other options it is refused. One
-machine and a cluster write the same data, bit for bit. ``read`` gives them as arrays.
+A search plays visits, and what it thinks of each position is kept: the strokes that met most noise samples,
+best first, with their scores. Data are written in parts as they are played; after an interruption the same
+command goes on, and with other options it is refused. One machine and a cluster write the same data, bit for
+bit. ``read`` gives them as arrays.
 """
 
 import argparse
@@ -39,14 +40,28 @@ INDEX = "index.json"
 
 def parser():
     """The command line."""
-    p = argparse.ArgumentParser("python -m agents.search", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("--agent", default="search_2000", help="who searches: search_2000, planner_500, planner@MODEL [search_2000]")
-    p.add_argument("--positions", type=int, required=True, metavar="N", help=f"rounded up to whole parts of {TABLES * ROUNDS}")
+    p = argparse.ArgumentParser(
+        "python -m agents.search", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    p.add_argument(
+        "--agent",
+        default="search_2000",
+        help="who searches: search_2000, planner_500, planner@MODEL [search_2000]",
+    )
+    p.add_argument(
+        "--positions",
+        type=int,
+        required=True,
+        metavar="N",
+        help=f"rounded up to whole parts of {TABLES * ROUNDS}",
+    )
     p.add_argument("--out", required=True, metavar="URL", help="a folder or fsspec URL for these data alone")
     p.add_argument("--layout", default="opened", help="layout of the tables [opened]")
     p.add_argument("--noise", default="professional", help="level of execution noise [professional]")
     p.add_argument("--fidelity", default="standard", help="fast, standard, reference or euler:N [standard]")
-    p.add_argument("--physics", default="paper", help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
+    p.add_argument(
+        "--physics", default="paper", help="paper, match, or one with changes: paper,mu_bb=marlow [paper]"
+    )
     p.add_argument("--seed", type=int, default=0, help="seed of tables and search [0]")
     add_ray(p)
     return p
@@ -65,12 +80,17 @@ def checked(args):
     agent = Entrant.of(args.agent)
     runs = list(agent.runs)
     if len(runs) > 1 or not isinstance(agent.player(0), SearchPlayer):
-        raise refuse("agent", args.agent, "must be one player that searches: search, planner, with _SHOTS and @MODEL if you wish")
+        raise refuse(
+            "agent",
+            args.agent,
+            "must be one player that searches: search, planner, with _SHOTS and @MODEL if you wish",
+        )
     return sent(agent, 0), {name: getattr(args, name) for name in ("layout", "noise", "fidelity", "physics")}
 
 
 def read(url):
-    """The data of a folder or URL: a dict of arrays as of ``agents.evaluation.searched.play``. Raises ValueError if they are incomplete."""
+    """The data of a folder or URL: a dict of arrays as of ``agents.evaluation.searched.play``. Raises
+    ValueError if they are incomplete."""
     store = Store(url, "out", only_read=True)
     index = store.read(INDEX)
     keys = [] if index is None else json.loads(index)["parts"]
@@ -82,7 +102,8 @@ def read(url):
 
 @command("agents.search")
 def main(argv=None):
-    """Check, search, write. Exit code 0; 130 if it was interrupted, 1 if the cluster could not play on: what was searched is kept."""
+    """Check, search, write. Exit code 0; 130 if it was interrupted, 1 if the cluster could not play on: what
+    was searched is kept."""
     p = parser()
     args = p.parse_args(argv)
     try:
@@ -108,6 +129,8 @@ def main(argv=None):
         kept = f"{each * len(store.names('parts')):,} of {total:,} positions are kept in {store}, the same command goes on"
         print(f"agents.search: {why}; {kept}", file=sys.stderr)
         return code
-    store.write(INDEX, (json.dumps({"positions": total, "parts": keys_of(parts, shared)}, indent=1) + "\n").encode())
+    store.write(
+        INDEX, (json.dumps({"positions": total, "parts": keys_of(parts, shared)}, indent=1) + "\n").encode()
+    )
     print(f"{total:,} positions: {store}")
     return 0

@@ -1,4 +1,5 @@
-"""What does a search do in positions of its own visits? A task: some tables are played for some rounds, each decision is written down."""
+"""What does a search do in positions of its own visits? A task: some tables are played for some rounds, each
+decision is written down."""
 
 from typing import Any
 
@@ -19,7 +20,8 @@ KEPT = 10
 
 
 def parts_of(positions, seed, condition):
-    """Parts with so many positions, rounded up to whole ones. ``condition``: layout, noise, fidelity and physics."""
+    """Parts with so many positions, rounded up to whole ones. ``condition``: layout, noise, fidelity and
+    physics."""
     many = -(-positions // (TABLES * ROUNDS))
     same = {"condition": condition, "seed": seed}
     return [Part(f"{__name__}:play", "search", same | {"first": k * TABLES}) for k in range(many)]
@@ -28,8 +30,9 @@ def parts_of(positions, seed, condition):
 def play(shared, args, threads):
     """The task.
 
-    Returns of n positions "positions" float64 (n, 22, 2) [m], "on_table" bool (n, 22) and "game" int64, as of ``Positions``; "strokes"
-    float32 (n, KEPT, 5), as of ``Strokes.values``, and "scores" float32 (n, KEPT) [points].
+    Returns of n positions "positions" float64 (n, 22, 2) [m], "on_table" bool (n, 22) and "game" int64, as of
+    ``Positions``; "strokes" float32 (n, KEPT, 5), as of ``Strokes.values``, and "scores" float32 (n, KEPT)
+    [points].
     """
     first: int = args["first"]
     options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}
@@ -42,11 +45,22 @@ def play(shared, args, threads):
     for decision in range(ROUNDS):
         at = Positions.of(tables)
         ranked = player.rank(at, decision_seeds(args["seed"], first + np.arange(TABLES), decision))
-        strokes, scores = np.full((TABLES, KEPT, 5), np.nan, np.float32), np.full((TABLES, KEPT), np.nan, np.float32)
+        strokes, scores = (
+            np.full((TABLES, KEPT, 5), np.nan, np.float32),
+            np.full((TABLES, KEPT), np.nan, np.float32),
+        )
         for k, one in enumerate(ranked):
             m = min(KEPT, len(one.strokes))
             strokes[k, :m], scores[k, :m] = one.strokes.values[:m], one.scores[:m]
-        rounds.append({"positions": at.positions, "on_table": at.on_table, "game": at.game, "strokes": strokes, "scores": scores})
+        rounds.append(
+            {
+                "positions": at.positions,
+                "on_table": at.on_table,
+                "game": at.game,
+                "strokes": strokes,
+                "scores": scores,
+            }
+        )
         played = Strokes.join([one.strokes[:1] for one in ranked]).actions(tables.options, at)
         _, _, ended, stopped, _ = tables.step(played.astype(np.float32))
         if (done := ended | stopped).any():

@@ -1,14 +1,14 @@
-"""Who is the better player of whole frames? A round robin: every player against every other, each seed twice, both colours of the break.
+"""Who is the better player of whole frames? A round robin: every player against every other, each seed twice,
+both colours of the break.
 
-    python -m agents.tournament random ghost_ball ppo_mask --frames 200
-    python -m agents.tournament "mine=runs/ppo_mask-0" search search_2000 --frames 200 --fewer search_2000=20 --out ladder.json --resume
-    python -m agents.tournament ppo_mask search --match 7 --frames 40 --noise amateur
-    python -m agents.tournament --check ladder.json
-    python -m agents.tournament --show ladder.json --markdown ladder.md
+    python -m agents.tournament random ghost_ball ppo_mask --frames 200 python -m agents.tournament
+    "mine=runs/ppo_mask-0" search search_2000 --frames 200 --fewer search_2000=20 --out ladder.json --resume
+    python -m agents.tournament ppo_mask search --match 7 --frames 40 --noise amateur python -m
+    agents.tournament --check ladder.json python -m agents.tournament --show ladder.json --markdown ladder.md
 
-A player is a NAME (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH, or MODULE:CLASS for
-a player of your own, whose module is imported. --trust and --options are those of ``python -m agents.evaluate``.
-What is played and what the figures mean: docs/agents/tournament.md.
+A player is a NAME (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH, or MODULE:CLASS
+for a player of your own, whose module is imported. --trust and --options are those of
+``python -m agents.evaluate``. What is played and what the figures mean: docs/agents/tournament.md.
 """
 
 import argparse
@@ -50,32 +50,83 @@ SAVED = 60.0
 
 def parser():
     """The command line."""
-    p = argparse.ArgumentParser("python -m agents.tournament", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p = argparse.ArgumentParser(
+        "python -m agents.tournament",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     names = ", ".join(snooker_env.players())
-    p.add_argument("players", nargs="*", metavar="PLAYER", help=f"NAME, MODEL, LABEL=PATH or MODULE:CLASS; NAME: {names}")
-    p.add_argument("--frames", type=int, default=100, metavar="N", help="frames of each pair, or matches with --match; even [100]")
-    p.add_argument("--fewer", nargs="+", default=[], metavar="LABEL=N", help="only so many of each pair with a slow player")
-    p.add_argument("--match", type=int, default=1, metavar="BEST_OF", help="play matches, each the best of so many frames; odd [1]")
+    p.add_argument(
+        "players", nargs="*", metavar="PLAYER", help=f"NAME, MODEL, LABEL=PATH or MODULE:CLASS; NAME: {names}"
+    )
+    p.add_argument(
+        "--frames",
+        type=int,
+        default=100,
+        metavar="N",
+        help="frames of each pair, or matches with --match; even [100]",
+    )
+    p.add_argument(
+        "--fewer",
+        nargs="+",
+        default=[],
+        metavar="LABEL=N",
+        help="only so many of each pair with a slow player",
+    )
+    p.add_argument(
+        "--match",
+        type=int,
+        default=1,
+        metavar="BEST_OF",
+        help="play matches, each the best of so many frames; odd [1]",
+    )
     p.add_argument("--noise", default="professional", help="level of execution noise [professional]")
-    p.add_argument("--physics", default="paper", help="paper, match, or one with changes: paper,mu_bb=marlow [paper]")
+    p.add_argument(
+        "--physics", default="paper", help="paper, match, or one with changes: paper,mu_bb=marlow [paper]"
+    )
     p.add_argument("--miss", default="off", help="rule for a foul and a miss [off]")
     p.add_argument("--rules", default="snooker", help="the option game of frames: which rules [snooker]")
-    p.add_argument("--max-strokes", type=int, default=1000, help="strokes after which a frame is stopped, half a win for each [1000]")
-    p.add_argument("--seed", type=int, default=0, help="seed of the first match of each pair [0]")
-    p.add_argument("--anchor", metavar="LABEL", help=f"the player whose Elo is {ANCHOR_ELO:.0f} [{ANCHOR}, else the first]")
-    p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
-    p.add_argument("--trust", action="store_true", help="run the pickled code in models of Stable-Baselines3 that train.py did not make")
     p.add_argument(
-        "--options", nargs="+", default=[], metavar="KEY=VALUE", help="how the actions of such models are read, for example aim=target"
+        "--max-strokes",
+        type=int,
+        default=1000,
+        help="strokes after which a frame is stopped, half a win for each [1000]",
+    )
+    p.add_argument("--seed", type=int, default=0, help="seed of the first match of each pair [0]")
+    p.add_argument(
+        "--anchor",
+        metavar="LABEL",
+        help=f"the player whose Elo is {ANCHOR_ELO:.0f} [{ANCHOR}, else the first]",
+    )
+    p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
+    p.add_argument(
+        "--trust",
+        action="store_true",
+        help="run the pickled code in models of Stable-Baselines3 that train.py did not make",
+    )
+    p.add_argument(
+        "--options",
+        nargs="+",
+        default=[],
+        metavar="KEY=VALUE",
+        help="how the actions of such models are read, for example aim=target",
     )
     p.add_argument("--threads", type=int, help="threads that play the tables [one for each core]")
     add_ray(p)
     p.add_argument("--out", type=Path, metavar="FILE", help="write every frame and figure here, as JSON")
     p.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here")
-    p.add_argument("--resume", action="store_true", help="go on with an incomplete --out; leave a complete one as it is")
+    p.add_argument(
+        "--resume", action="store_true", help="go on with an incomplete --out; leave a complete one as it is"
+    )
     p.add_argument("--force", action="store_true", help="replace --out if it is there")
     p.add_argument("--quiet", action="store_true", help="show no progress")
-    p.add_argument("--check", nargs="+", type=Path, metavar="FILE", help="verify files of tournaments instead; exit code 1 if one is wrong")
+    p.add_argument(
+        "--check",
+        nargs="+",
+        type=Path,
+        metavar="FILE",
+        help="verify files of tournaments instead; exit code 1 if one is wrong",
+    )
     p.add_argument("--show", type=Path, metavar="FILE", help="show a file of a tournament instead")
     return p
 
@@ -97,18 +148,27 @@ def checked(args):
         if labels.count(entrant.label) > 1:
             raise refuse("player", entrant.label, "must be another for each player: give LABEL=PATH")
         if len(entrant.runs) > 1:
-            raise refuse("player", text, "must be one player or model: give each training seed a label of its own")
+            raise refuse(
+                "player", text, "must be one player or model: give each training seed a label of its own"
+            )
         entrant.trained()  # reads its model
     if options and not any(entrant.foreign for entrant in entrants):
-        raise refuse("options", " ".join(args.options), "must be left out: it is for models that train.py did not make")
+        raise refuse(
+            "options", " ".join(args.options), "must be left out: it is for models that train.py did not make"
+        )
     anchor = args.anchor or (ANCHOR if ANCHOR in labels else labels[0])
     protocol = {
-        "first_seed": integer("seed", args.seed, 0, 2**53), "matches": _even("frames", args.frames, 2**20),
-        "fewer": dict(_fewer(text, labels, args.frames) for text in args.fewer), "best_of": integer("match", args.match, 1, 99),
-        "tables": TABLES, "chunk": CHUNK,
-        "resamples": integer("resamples", args.resamples, 100, 10**6), "prior": PRIOR, "anchor": choice("anchor", anchor, tuple(labels)),
+        "first_seed": integer("seed", args.seed, 0, 2**53),
+        "matches": _even("frames", args.frames, 2**20),
+        "fewer": dict(_fewer(text, labels, args.frames) for text in args.fewer),
+        "best_of": integer("match", args.match, 1, 99),
+        "tables": TABLES,
+        "chunk": CHUNK,
+        "resamples": integer("resamples", args.resamples, 100, 10**6),
+        "prior": PRIOR,
+        "anchor": choice("anchor", anchor, tuple(labels)),
         "anchor_elo": ANCHOR_ELO,
-    }  # fmt: skip
+    }
     if args.match % 2 == 0:
         raise refuse("match", args.match, "must be odd: the best of so many frames")
     game = game_of(args)
@@ -121,7 +181,11 @@ def checked(args):
     if args.threads is not None:
         integer("threads", args.threads, 1, 1024)
     if args.out and args.out.exists() and not (args.resume or args.force):
-        raise refuse("out", str(args.out), "must be a new file; --resume goes on with an incomplete one, --force replaces it")
+        raise refuse(
+            "out",
+            str(args.out),
+            "must be a new file; --resume goes on with an incomplete one, --force replaces it",
+        )
     if args.resume and not args.out:
         raise refuse("resume", True, "must be given together with --out")
     for name in ("out", "markdown"):
@@ -143,13 +207,18 @@ def _fewer(text, labels, most):
 
 
 class Tournament:
-    """The round robin as far as it was played; ``before``: the content of an incomplete file to go on with."""
+    """The round robin as far as it was played; ``before``: the content of an incomplete file to go on
+    with."""
 
     def __init__(self, entrants, protocol, game, command, before=None):
         self.entrants, self.protocol, self.game, self.command = entrants, protocol, game, command
         self.labels, self.load = [entrant.label for entrant in entrants], machine()
         self.rows = list(before["rows"]) if before else []
-        self.times = [[p["decisions"], p["seconds"]] for p in before["players"]] if before else [[0, 0.0] for _ in entrants]
+        self.times = (
+            [[p["decisions"], p["seconds"]] for p in before["players"]]
+            if before
+            else [[0, 0.0] for _ in entrants]
+        )
 
     @property
     def parts(self):
@@ -158,8 +227,17 @@ class Tournament:
         for pair in schedule(self.labels):
             seeds = seeds_of(p, self.labels, pair)
             for some in (seeds[k : k + CHUNK] for k in range(0, len(seeds), CHUNK)):
-                draws = [encounters.drawn(self.labels[k], self.labels[other], some[0]) for k, other in (pair, pair[::-1])]
-                args = {"pair": list(pair), "seeds": some, "draws": draws, "game": self.game, "best_of": p["best_of"]}
+                draws = [
+                    encounters.drawn(self.labels[k], self.labels[other], some[0])
+                    for k, other in (pair, pair[::-1])
+                ]
+                args = {
+                    "pair": list(pair),
+                    "seeds": some,
+                    "draws": draws,
+                    "game": self.game,
+                    "best_of": p["best_of"],
+                }
                 parts.append(Part("agents.evaluation.encounters:play", "players", args))
         return parts
 
@@ -174,12 +252,20 @@ class Tournament:
         ``tick`` is called with the number of matches that have ended, ``saved`` after each part.
         """
         done = {tuple(row[:3]) for row in self.rows}
-        parts = [part for part in self.parts if not all((*part.args["pair"], seed) in done for seed in part.args["seeds"])]
+        parts = [
+            part
+            for part in self.parts
+            if not all((*part.args["pair"], seed) in done for seed in part.args["seeds"])
+        ]
         shared = {"players": {"players": [sent(entrant, 0) for entrant in self.entrants]}}
-        results = self._here(parts, shared["players"], threads, tick) if where.here else ended(parts, shared, where)
+        results = (
+            self._here(parts, shared["players"], threads, tick) if where.here else ended(parts, shared, where)
+        )
         for k, result in results:
             self.rows = sorted([*self.rows, *result["rows"].tolist()], key=lambda row: row[:5])
-            for player, decisions, seconds in zip(parts[k].args["pair"], result["decisions"], result["seconds"], strict=True):
+            for player, decisions, seconds in zip(
+                parts[k].args["pair"], result["decisions"], result["seconds"], strict=True
+            ):
                 self.times[player][0] += int(decisions)
                 self.times[player][1] += float(seconds)
             tick(self.ended)
@@ -188,7 +274,10 @@ class Tournament:
     def _here(self, parts, shared, threads, tick):
         """In this process each match is counted as it ends."""
         for k, part in enumerate(parts):
-            yield k, encounters.play(shared, part.args, threads, lambda n, before=self.ended: tick(before + n))
+            yield (
+                k,
+                encounters.play(shared, part.args, threads, lambda n, before=self.ended: tick(before + n)),
+            )
 
     def result(self, incomplete=None):
         """The content of the file; ``incomplete``: why frames are missing."""
@@ -202,13 +291,21 @@ class Tournament:
             }
             for entrant, (decisions, seconds) in zip(self.entrants, self.times, strict=True)
         ]
-        return result_of(self.protocol, self.game, players, self.rows, command=self.command, load=self.load, incomplete=incomplete)
+        return result_of(
+            self.protocol,
+            self.game,
+            players,
+            self.rows,
+            command=self.command,
+            load=self.load,
+            incomplete=incomplete,
+        )
 
 
 @command("agents.tournament")
 def main(argv=None):
-    """Check, play, report. Exit code 0; 1 if a checked file is wrong; 2 for wrong arguments; 130 if it was interrupted: what was played
-    is kept.
+    """Check, play, report. Exit code 0; 1 if a checked file is wrong; 2 for wrong arguments; 130 if it was
+    interrupted: what was played is kept.
     """
     p = parser()
     argv = sys.argv[1:] if argv is None else argv
@@ -226,7 +323,9 @@ def main(argv=None):
         p.error(str(error))
     if before is not None and before["incomplete"] is None:
         return _shown(before, args.markdown)
-    tournament = Tournament(entrants, protocol, game, "python -m agents.tournament " + shlex.join(argv), before)
+    tournament = Tournament(
+        entrants, protocol, game, "python -m agents.tournament " + shlex.join(argv), before
+    )
     snooker_env.warmup()
     why, code = _play(tournament, args)
     if why is not None:
@@ -251,19 +350,28 @@ def _play(tournament, args):
             write_result(args.out, tournament.result("it was still running"))
             last[0] = time.monotonic()
 
-    total, units = sum(2 * len(part.args["seeds"]) for part in tournament.parts), "frames" if args.match == 1 else "matches"
+    total, units = (
+        sum(2 * len(part.args["seeds"]) for part in tournament.parts),
+        "frames" if args.match == 1 else "matches",
+    )
     try:
         with (
             place(args.ray) as where,
-            Progress(f"tournament{where.says}", total, units, done=tournament.ended, quiet=args.quiet) as progress,
+            Progress(
+                f"tournament{where.says}", total, units, done=tournament.ended, quiet=args.quiet
+            ) as progress,
         ):
             tournament.play(where, args.threads, progress.at, saved)
     except (KeyboardInterrupt, ClusterError) as error:
         stopped, number = isinstance(error, KeyboardInterrupt), tournament.ended
         kept = "these are kept" if number else "nothing is kept"
-        return f"{'interrupted' if stopped else error} after {number:,} of {total:,} {units}: {kept}", 130 if stopped else 1
+        return (
+            f"{'interrupted' if stopped else error} after {number:,} of {total:,} {units}: {kept}",
+            130 if stopped else 1,
+        )
     except BaseException as error:
-        if args.out and tournament.rows:  # of a player's own code: its traceback is for its author, what was played is kept
+        # of a player's own code: its traceback is for its author, what was played is kept
+        if args.out and tournament.rows:
             write_result(args.out, tournament.result(f"{type(error).__name__}: {error}"))
         raise
     return None, 0

@@ -1,8 +1,10 @@
-"""Which figures follow from the frames of a tournament? Shares of wins, breaks, fouls and strengths, each with its interval.
+"""Which figures follow from the frames of a tournament? Shares of wins, breaks, fouls and strengths, each
+with its interval.
 
-Everything is computed from the rows alone. What is resampled are the seeds: the two matches on one seed, one opened by each player, stay
-together, and all pairs with the same number of seeds have the same seeds in each bootstrap sample. Intervals are 95 % percentile intervals
-(``snooker_env.benchmark``). A share of 0 % or 100 % has the exact one-sided bound instead, by which each seed counts once.
+Everything is computed from the rows alone. What is resampled are the seeds: the two matches on one seed, one
+opened by each player, stay together, and all pairs with the same number of seeds have the same seeds in each
+bootstrap sample. Intervals are 95 % percentile intervals (``snooker_env.benchmark``). A share of 0 % or 100 %
+has the exact one-sided bound instead, by which each seed counts once.
 """
 
 from dataclasses import dataclass
@@ -16,23 +18,27 @@ from .metrics import bounded
 from .tournament_strengths import ELO, PRIOR, bound, compared, linked, strengths
 
 KEYS = ("first", "second", "seed", "opener", "frame", "winner")
-"""Of a row: indices of the two players; seed of the match; who of them (0 or 1) broke in its first frame; the frame's index in the match;
-who won it, -1 if it was stopped."""
+"""Of a row: indices of the two players; seed of the match; who of them (0 or 1) broke in its first frame; the
+frame's index in the match; who won it, -1 if it was stopped."""
 COUNTED = ("points", "scored", "visits", "strokes", "fouls", "best")
-"""What is counted for each player: points, those of his own pots, visits to the table, strokes, fouls, points of his best visit."""
+"""What is counted for each player: points, those of his own pots, visits to the table, strokes, fouls, points
+of his best visit."""
 COLUMNS = (*KEYS, *(f"{name}_{side}" for name in COUNTED for side in KEYS[:2]))
 ANCHOR_ELO = 1000.0
 """Elo of the anchor."""
 RATIOS = {
-    "points_a_frame": ("points", "frames"), "average_break": ("scored", "visits"), "fouls_a_frame": ("fouls", "frames"),
+    "points_a_frame": ("points", "frames"),
+    "average_break": ("scored", "visits"),
+    "fouls_a_frame": ("fouls", "frames"),
     "strokes_a_frame": ("strokes", "frames"),
-}  # fmt: skip
+}
 """Figures of a player that are ratios of two sums over all his frames."""
 
 
 @dataclass
 class PlayedPair:
-    """The frames of two players, summed for each seed; ``sums``: name -> float (2, seeds), one row for each player."""
+    """The frames of two players, summed for each seed; ``sums``: name -> float (2, seeds), one row for each
+    player."""
 
     players: tuple
     sums: dict
@@ -52,7 +58,10 @@ class PlayedPair:
         def total(values, where=None):
             return np.bincount(at if where is None else at[where], values, m)
 
-        sides = (column["winner"] == 0) + 0.5 * (column["winner"] < 0), (column["winner"] == 1) + 0.5 * (column["winner"] < 0)
+        sides = (
+            (column["winner"] == 0) + 0.5 * (column["winner"] < 0),
+            (column["winner"] == 1) + 0.5 * (column["winner"] < 0),
+        )
         lead = np.zeros((2, m))  # frames of the match, by its opener
         np.add.at(lead, (column["opener"], at), sides[0] - sides[1])
         won = 0.5 * (1.0 + np.sign(lead))  # of the first player
@@ -90,10 +99,11 @@ def _share(won, matches, drawn, seeds):
 def figures_of(labels, rows, anchor, resamples=RESAMPLES):
     """All figures of a tournament.
 
-    "players": for each label "matches", "frames", "won", "drawn", "win_rate" (the mean over his opponents), "frame_rate",
-    "elo", "elo_by_prior", the ratios of ``RATIOS`` and "highest_break". "pairs": for each pair "first", "second", "matches", "won",
-    "drawn", "win_rate" of the first player and "when_opening", that of each in the matches that he opened. "opener": the share of
-    matches won by the player who opened them; "stopped": frames that were stopped. A figure is {"value", "low", "high"}.
+    "players": for each label "matches", "frames", "won", "drawn", "win_rate" (the mean over his opponents),
+    "frame_rate", "elo", "elo_by_prior", the ratios of ``RATIOS`` and "highest_break". "pairs": for each pair
+    "first", "second", "matches", "won", "drawn", "win_rate" of the first player and "when_opening", that of
+    each in the matches that he opened. "opener": the share of matches won by the player who opened them;
+    "stopped": frames that were stopped. A figure is {"value", "low", "high"}.
     """
     pairs = pairs_of(rows)
     elo = _elo(pairs, len(labels), labels.index(anchor), resamples)
@@ -102,7 +112,12 @@ def figures_of(labels, rows, anchor, resamples=RESAMPLES):
         mine = [(pair, pair.players.index(k)) for pair in pairs if k in pair.players]
         players[label] = _player(mine, resamples) | elo[k] if mine else None
     shares = [_pair(pair, labels, resamples) for pair in pairs]
-    return {"players": players, "pairs": shares, "opener": _opener(pairs, resamples), "stopped": sum(pair.stopped for pair in pairs)}
+    return {
+        "players": players,
+        "pairs": shares,
+        "opener": _opener(pairs, resamples),
+        "stopped": sum(pair.stopped for pair in pairs),
+    }
 
 
 def _player(mine, resamples):
@@ -113,13 +128,25 @@ def _player(mine, resamples):
             sums[name] = sums.get(name, 0.0) + values[side].sum()
             drawn[name] = drawn.get(name, 0.0) + pair.samples(values[side], resamples)
     seeds = sum(pair.seeds for pair, _ in mine)
-    found = {"matches": int(sums["matches"]), "frames": int(sums["frames"]), "won": sums["won"], "drawn": sum(p.draws for p, _ in mine)}
+    found = {
+        "matches": int(sums["matches"]),
+        "frames": int(sums["frames"]),
+        "won": sums["won"],
+        "drawn": sum(p.draws for p, _ in mine),
+    }
     for name, won, many in (("win_rate", "won", "matches"), ("frame_rate", "frames_won", "frames")):
         shares = [pair.sums[won][side].sum() / pair.sums[many][side].sum() for pair, side in mine]
-        samples = [pair.samples(pair.sums[won][side], resamples) / pair.samples(pair.sums[many][side], resamples) for pair, side in mine]
+        samples = [
+            pair.samples(pair.sums[won][side], resamples) / pair.samples(pair.sums[many][side], resamples)
+            for pair, side in mine
+        ]
         found[name] = _share(np.mean(shares), 1.0, np.mean(samples, axis=0), seeds)
     for name, (above, below) in RATIOS.items():
-        found[name] = figure(sums[above] / sums[below], drawn[above] / drawn[below]) if sums[below] else figure(np.nan, [np.nan])
+        found[name] = (
+            figure(sums[above] / sums[below], drawn[above] / drawn[below])
+            if sums[below]
+            else figure(np.nan, [np.nan])
+        )
     return found | {"highest_break": max(pair.best[side] for pair, side in mine)}
 
 
@@ -127,13 +154,23 @@ def _pair(pair, labels, resamples):
     """The figures of two players against each other."""
     won, matches = pair.sums["won"], pair.sums["matches"][0].sum()
     opening = [
-        _share(pair.opened[side].sum(), pair.seeds, pair.samples(pair.opened[side], resamples) / pair.seeds, pair.seeds) for side in (0, 1)
-    ]  # fmt: skip
+        _share(
+            pair.opened[side].sum(),
+            pair.seeds,
+            pair.samples(pair.opened[side], resamples) / pair.seeds,
+            pair.seeds,
+        )
+        for side in (0, 1)
+    ]
     return {
-        "first": labels[pair.players[0]], "second": labels[pair.players[1]], "matches": int(matches), "won": float(won[0].sum()),
-        "drawn": pair.draws, "win_rate": _share(won[0].sum(), matches, pair.samples(won[0], resamples) / matches, pair.seeds),
+        "first": labels[pair.players[0]],
+        "second": labels[pair.players[1]],
+        "matches": int(matches),
+        "won": float(won[0].sum()),
+        "drawn": pair.draws,
+        "win_rate": _share(won[0].sum(), matches, pair.samples(won[0], resamples) / matches, pair.seeds),
         "when_opening": opening,
-    }  # fmt: skip
+    }
 
 
 def _opener(pairs, resamples):
@@ -148,7 +185,11 @@ def _elo(pairs, k, anchor, resamples):
     wins, drawn, seeds = np.zeros((k, k)), np.zeros((resamples, k, k)), np.zeros((k, k))
     for pair in pairs:
         for (i, j), values in zip((pair.players, pair.players[::-1]), pair.sums["won"], strict=True):
-            wins[i, j], drawn[:, i, j], seeds[i, j] = values.sum(), pair.samples(values, resamples), pair.seeds
+            wins[i, j], drawn[:, i, j], seeds[i, j] = (
+                values.sum(),
+                pair.samples(values, resamples),
+                pair.seeds,
+            )
     met = linked(seeds > 0, anchor)
     here = np.flatnonzero(met)
     at = int(np.searchsorted(here, anchor))
@@ -166,7 +207,8 @@ def _elo(pairs, k, anchor, resamples):
 
 
 def _bounds(elo, j, sound, wins, seeds):
-    """ "low" and "high" of a player who won all his matches, or none, against those who can be compared with the anchor."""
+    """ "low" and "high" of a player who won all his matches, or none, against those who can be compared with
+    the anchor."""
     others = np.flatnonzero(sound & (seeds[j] > 0))
     strength, many = elo[others] / ELO, seeds[j, others]
     if not wins[others, j].any():

@@ -1,7 +1,9 @@
-"""What is the file of a tournament? Its fields with their meanings, one row for each frame, and whether it is what it says.
+"""What is the file of a tournament? Its fields with their meanings, one row for each frame, and whether it is
+what it says.
 
-The fields about software, machine, command, commit and date are those of a benchmark's result (``docs/benchmark.md``), written and checked
-by the same code. The rest differs, since a tournament has many players and no frozen task: so the file has a name of its own.
+The fields about software, machine, command, commit and date are those of a benchmark's result
+(``docs/benchmark.md``), written and checked by the same code. The rest differs, since a tournament has many
+players and no frozen task: so the file has a name of its own.
 """
 
 from datetime import datetime, timezone
@@ -32,7 +34,10 @@ FIELDS = {
     "protocol.anchor_elo": (NUMBER, False, "his Elo"),
     "game": (dict, False, "options of the frames: noise, physics, max_strokes and those that were changed"),
     "players": (list, False, "one object for each, see below"),
-    **{f"software.{name}": (str, name not in ("snooker_env", "python"), "version; null: not installed") for name in software()},
+    **{
+        f"software.{name}": (str, name not in ("snooker_env", "python"), "version; null: not installed")
+        for name in software()
+    },
     "machine.platform": (str, False, "operating system and processor architecture"),
     "machine.cpu": (str, False, "the processor's name"),
     "machine.cores": (int, False, "logical processors"),
@@ -56,10 +61,15 @@ PLAYER = {
 }
 """Fields of a player: type, meaning."""
 RANGES = {
-    "protocol.matches": (2, 2**20), "protocol.best_of": (1, 99), "protocol.resamples": (100, 10**6), "protocol.tables": (1, 2**20),
-    "protocol.chunk": (1, 2**20), "protocol.prior": (0, 1000), "protocol.first_seed": (0, 2**53),
+    "protocol.matches": (2, 2**20),
+    "protocol.best_of": (1, 99),
+    "protocol.resamples": (100, 10**6),
+    "protocol.tables": (1, 2**20),
+    "protocol.chunk": (1, 2**20),
+    "protocol.prior": (0, 1000),
+    "protocol.first_seed": (0, 2**53),
     "protocol.anchor_elo": (-(10**6), 10**6),
-}  # fmt: skip
+}
 
 
 def seeds_of(protocol, labels, pair):
@@ -72,15 +82,25 @@ def result_of(protocol, game, players, rows, *, command, load, incomplete):
     """The object of a file."""
     labels = [player["label"] for player in players]
     return {
-        "schema": {"name": NAME, "version": VERSION}, "protocol": protocol, "game": game, "players": players, "software": software(),
-        "machine": load | {"load_at_end": machine()["load"]}, "command": command, "commit": commit(),
-        "date": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"), "columns": list(COLUMNS), "rows": rows,
-        "figures": figures_of(labels, rows, protocol["anchor"], protocol["resamples"]) if rows else None, "incomplete": incomplete,
-    }  # fmt: skip
+        "schema": {"name": NAME, "version": VERSION},
+        "protocol": protocol,
+        "game": game,
+        "players": players,
+        "software": software(),
+        "machine": load | {"load_at_end": machine()["load"]},
+        "command": command,
+        "commit": commit(),
+        "date": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "columns": list(COLUMNS),
+        "rows": rows,
+        "figures": figures_of(labels, rows, protocol["anchor"], protocol["resamples"]) if rows else None,
+        "incomplete": incomplete,
+    }
 
 
 def faults(content):
-    """Check the file of a tournament: a line for each fault of its fields, its players, which frames it holds, and its figures."""
+    """Check the file of a tournament: a line for each fault of its fields, its players, which frames it
+    holds, and its figures."""
     wrong = faults_of_fields(content, FIELDS, RANGES, VERSION)
     if wrong:
         return wrong
@@ -108,7 +128,9 @@ def faults(content):
         return ["players: must be two or more with different labels, the anchor among them"]
     for name, matches in [("matches", protocol["matches"]), *protocol["fewer"].items()]:
         if type(matches) is not int or not 2 <= matches <= protocol["matches"] or matches % 2:
-            wrong.append(f"protocol: {name} = {matches!r}: must be an even number, at least 2 and at most protocol.matches")
+            wrong.append(
+                f"protocol: {name} = {matches!r}: must be an even number, at least 2 and at most protocol.matches"
+            )
     wrong += [f"protocol.fewer: {label!r} is no player" for label in protocol["fewer"] if label not in labels]
     return wrong or _faults_of_rows(content, labels)
 
@@ -116,10 +138,19 @@ def faults(content):
 def _faults_of_rows(content, labels):
     rows, protocol = content["rows"], content["protocol"]
     for k, row in enumerate(rows):
-        if not isinstance(row, list) or len(row) != len(COLUMNS) or any(type(x) is not int or abs(x) > 2**53 for x in row):
+        if (
+            not isinstance(row, list)
+            or len(row) != len(COLUMNS)
+            or any(type(x) is not int or abs(x) > 2**53 for x in row)
+        ):
             return [f"rows[{k}]: must be {len(COLUMNS)} whole numbers"]
     matches = {key: list(frames) for key, frames in groupby(rows, key=lambda row: tuple(row[:4]))}
-    want = [(*pair, seed, opener) for pair in schedule(labels) for seed in seeds_of(protocol, labels, pair) for opener in (0, 1)]
+    want = [
+        (*pair, seed, opener)
+        for pair in schedule(labels)
+        for seed in seeds_of(protocol, labels, pair)
+        for opener in (0, 1)
+    ]
     order = {key: n for n, key in enumerate(want)}
     for key, frames in matches.items():
         where = f"rows: a match of players {key[:2]} on seed {key[2]}, opener {key[3]}"
@@ -157,12 +188,17 @@ def _differences(value, want, name):
         return [line for key in want for line in _differences(value[key], want[key], f"{name}.{key}")]
     if isinstance(want, list) and isinstance(value, list) and len(value) == len(want):
         return [line for k in range(len(want)) for line in _differences(value[k], want[k], f"{name}[{k}]")]
-    close = isinstance(want, float) and isinstance(value, int | float) and abs(value - want) <= 1e-6 * max(1.0, abs(want))
+    close = (
+        isinstance(want, float)
+        and isinstance(value, int | float)
+        and abs(value - want) <= 1e-6 * max(1.0, abs(want))
+    )
     return [] if value == want or close else [f"{name}: must be what follows from the rows"]
 
 
 def kept(path, protocol, game, sources):
-    """The content of an incomplete file of the same tournament; ``sources``: label and source of each player. Raises ValueError."""
+    """The content of an incomplete file of the same tournament; ``sources``: label and source of each player.
+    Raises ValueError."""
     content = read_result(path)
     wrong = faults(content)
     if wrong:

@@ -1,10 +1,13 @@
-"""How do two players meet? Many frames side by side, on the tables of one vector environment; each seed twice, opened once by each.
+"""How do two players meet? Many frames side by side, on the tables of one vector environment; each seed
+twice, opened once by each.
 
-In one of the two matches on a seed the first player is the environment's agent, in the other the second is: the two sides are not quite
-alike, since a cue ball in hand waits for a player without placement at its usual place, or where "ghost_ball" would put it. On even seeds
-the agent opens, on odd ones the opponent. A table whose match has ended takes the next one; when more than half of the tables have nothing
-left to play, the others go on in a smaller environment. The frames of a match follow each other on one table, broken in turn; the best of N
-ends when one player has won more than N / 2, or after N frames. What a table draws depends on its seed only.
+In one of the two matches on a seed the first player is the environment's agent, in the other the second is:
+the two sides are not quite alike, since a cue ball in hand waits for a player without placement at its usual
+place, or where "ghost_ball" would put it. On even seeds the agent opens, on odd ones the opponent. A table
+whose match has ended takes the next one; when more than half of the tables have nothing left to play, the
+others go on in a smaller environment. The frames of a match follow each other on one table, broken in turn;
+the best of N ends when one player has won more than N / 2, or after N frames. What a table draws depends on
+its seed only.
 
 A visit is all strokes of a player in succession: also over the lot at a re-spotted black.
 """
@@ -23,11 +26,13 @@ from .tournament_figures import COUNTED
 TABLES = 128
 """Tables side by side."""
 CHUNK = 100
-"""Seeds that are played in one go. A player is made anew for each, so that a tournament can be resumed between two of them."""
+"""Seeds that are played in one go. A player is made anew for each, so that a tournament can be resumed
+between two of them."""
 
 
 class TimedPlayer:
-    """A player whose ``decisions`` are counted and timed, ``seconds`` together; ``seed``: of what it draws."""
+    """A player whose ``decisions`` are counted and timed, ``seconds`` together; ``seed``: of what it
+    draws."""
 
     def __init__(self, player, seed=0):
         self._player, self.seed = player, seed
@@ -62,8 +67,9 @@ class TimedPlayer:
 class Encounter:
     """Some matches of two players, and how far each table is. Side 0 is the agent, side 1 the opponent.
 
-    ``pair``: indices of the players, ``exchanged`` if the second of them is the agent; ``queue``: seed and opening side of the matches that
-    no table has begun; ``rows``: one for each frame that has ended, columns ``COLUMNS``.
+    ``pair``: indices of the players, ``exchanged`` if the second of them is the agent; ``queue``: seed and
+    opening side of the matches that no table has begun; ``rows``: one for each frame that has ended, columns
+    ``COLUMNS``.
     """
 
     pair: tuple
@@ -77,7 +83,8 @@ class Encounter:
         self.unit = np.full((n, 2), -1)  # seed and opener
         self.frame, self.won = np.zeros(n, int), np.zeros((n, 2))
         self.sums = {name: np.zeros((n, 2), int) for name in COUNTED}
-        self.visit, self.fresh = np.zeros(n, int), np.ones(n, bool)  # the agent's visit, and whether its next stroke begins another
+        # the agent's visit, and whether its next stroke begins another
+        self.visit, self.fresh = np.zeros(n, int), np.ones(n, bool)
         self.played = np.zeros(n, int)  # strokes of both
         self.decision = np.zeros(n, int)  # the agent's, in this match
         for k in range(n):
@@ -109,7 +116,10 @@ class Encounter:
     def stepped(self, which, info):
         """One step was made on the tables ``which`` (n,) bool."""
         own = which & (info["strokes"] - self.played - info["opponent_strokes"] > 0)
-        points, penalty = np.where(own, info["points"], 0).astype(int), np.where(own, info["penalty"], 0).astype(int)
+        points, penalty = (
+            np.where(own, info["points"], 0).astype(int),
+            np.where(own, info["penalty"], 0).astype(int),
+        )
         gained = info["opponent_score"].astype(int) - self.sums["points"][:, 1] - penalty
         given = info["score"].astype(int) - self.sums["points"][:, 0] - points
         self.visit[own & self.fresh] = 0
@@ -143,12 +153,22 @@ class Encounter:
             self.sums["points"][which, side] = info[name][which]
 
     def ended(self, which, info):
-        """The frames on the tables ``which`` (n,) bool have ended: write the rows, and give each table its next frame."""
+        """The frames on the tables ``which`` (n,) bool have ended: write the rows, and give each table its
+        next frame."""
         for k in np.flatnonzero(which).tolist():
             winner, (seed, opener) = int(info["winner"][k]), self.unit[k].tolist()
             sides = (1, 0) if self.exchanged else (0, 1)  # of the pair's first player and of its second
             sums = [int(self.sums[name][k, side]) for name in COUNTED for side in sides]
-            self.rows.append([*self.pair, seed, sides[opener], int(self.frame[k]), -1 if winner < 0 else sides[winner], *sums])
+            self.rows.append(
+                [
+                    *self.pair,
+                    seed,
+                    sides[opener],
+                    int(self.frame[k]),
+                    -1 if winner < 0 else sides[winner],
+                    *sums,
+                ]
+            )
             self.won[k] += 0.5 if winner < 0 else [winner == 0, winner == 1]
             self.frame[k] += 1
             if self.frame[k] == self.best_of or self.won[k].max() > 0.5 * self.best_of:
@@ -163,10 +183,11 @@ class Encounter:
 
 
 def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
-    """Play two matches on each seed: a row for each frame, columns ``tournament_figures.COLUMNS``, by seeds, openers and frames.
+    """Play two matches on each seed: a row for each frame, columns ``tournament_figures.COLUMNS``, by seeds,
+    openers and frames.
 
-    ``players``: those of the ``pair`` of indices; ``game``: options of the frames; ``threads`` change nothing; ``tick`` is called with the
-    number of matches that have ended.
+    ``players``: those of the ``pair`` of indices; ``game``: options of the frames; ``threads`` change
+    nothing; ``tick`` is called with the number of matches that have ended.
     """
     rows = []
     for exchanged in (False, True):
@@ -225,7 +246,8 @@ def _tables(n, options, opponent, threads):
 def _renewed(tables, meeting, done, before):
     """Begin the next frames where frames have ended. Returns where the next frame is over at once.
 
-    A new match is dealt from its seed; in the next frame of a match the table's random numbers go on. Tables without a match: dealt, too.
+    A new match is dealt from its seed; in the next frame of a match the table's random numbers go on. Tables
+    without a match: dealt, too.
     """
     anew = (meeting.unit != before).any(1) & meeting.going
     seeds = [int(seed) if new else None for seed, new in zip(meeting.unit[:, 0], anew, strict=True)]

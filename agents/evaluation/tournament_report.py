@@ -1,4 +1,5 @@
-"""How is a tournament shown? The order of the players, the cross table and what they did, for a terminal and as Markdown."""
+"""How is a tournament shown? The order of the players, the cross table and what they did, for a terminal and
+as Markdown."""
 
 from commands.tables import TextTable, page, shown
 
@@ -29,12 +30,28 @@ def tables_of(found):
         p = players[label]
         elo = shown(p["elo"], form="{:.0f}") + (" *" if p["elo_by_prior"] else "")
         frames = [shown(p["frame_rate"], 100.0)] if best_of > 1 else []
-        standing.append([str(rank), label, elo, shown(p["win_rate"], 100.0), *frames, f"{p['matches']:,}", f"{p['drawn']:,}"])
+        standing.append(
+            [
+                str(rank),
+                label,
+                elo,
+                shown(p["win_rate"], 100.0),
+                *frames,
+                f"{p['matches']:,}",
+                f"{p['drawn']:,}",
+            ]
+        )
         highest = str(p["highest_break"])
         play.append(
-            [label, shown(p["points_a_frame"]), shown(p["average_break"], form="{:.2f}"), highest, shown(p["fouls_a_frame"], form="{:.2f}"),
-             shown(p["strokes_a_frame"])]
-        )  # fmt: skip
+            [
+                label,
+                shown(p["points_a_frame"]),
+                shown(p["average_break"], form="{:.2f}"),
+                highest,
+                shown(p["fouls_a_frame"], form="{:.2f}"),
+                shown(p["strokes_a_frame"]),
+            ]
+        )
     more = ["frames won [%]"] if best_of > 1 else []
     spent = {player["label"]: player for player in found["players"]}
     for row in play:
@@ -44,11 +61,28 @@ def tables_of(found):
     return [
         TextTable("Who wins", ["", "player", "Elo", f"{won} won [%]", *more, won, "draws"], standing, 2, 2),
         TextTable(
-            "How they play", ["player", "points a frame", "average break", "highest", "fouls a frame", "strokes a frame", "ms a decision"],
-            play, 1, 1,
+            "How they play",
+            [
+                "player",
+                "points a frame",
+                "average break",
+                "highest",
+                "fouls a frame",
+                "strokes a frame",
+                "ms a decision",
+            ],
+            play,
+            1,
+            1,
         ),
-        TextTable(f"Share of the {won} that a player (row) won against another (column) [%]", [unit, *order], cross, 1, 1),
-    ]  # fmt: skip
+        TextTable(
+            f"Share of the {won} that a player (row) won against another (column) [%]",
+            [unit, *order],
+            cross,
+            1,
+            1,
+        ),
+    ]
 
 
 def _cell(pairs, label, other):
@@ -64,7 +98,10 @@ def _cell(pairs, label, other):
 def sentences(found):
     """What a reader of the tables must know."""
     p, figures, game = found["protocol"], found["figures"], found["game"]
-    unit, plural = _unit(found), "frames" if p["best_of"] == 1 else f"matches, each the best of {p['best_of']} frames"
+    unit, plural = (
+        _unit(found),
+        "frames" if p["best_of"] == 1 else f"matches, each the best of {p['best_of']} frames",
+    )
     fewer = ", ".join(f"{n:,} with {label}" for label, n in p["fewer"].items())
     said = [
         f"Each pair plays {p['matches']:,} {plural}{f' ({fewer})' if fewer else ''}: two on each seed, each player breaking first in one.",
@@ -93,7 +130,11 @@ def is_tournament(found):
 def title(found):
     """Who met."""
     *others, last = ranked(found)
-    where = "frames" if found["protocol"]["best_of"] == 1 else f"matches, the best of {found['protocol']['best_of']} frames"
+    where = (
+        "frames"
+        if found["protocol"]["best_of"] == 1
+        else f"matches, the best of {found['protocol']['best_of']} frames"
+    )
     return f"Tournament of {', '.join(others)} and {last}: {where}, noise {found['game']['noise']}"
 
 
@@ -109,4 +150,9 @@ def markdown(found):
     made, m = found["software"], found["machine"]
     how = f"snooker_env {made['snooker_env']}, at commit {found['commit'] or 'unknown'} on {m['cpu']}, {m['cores']} cores, "
     how += f"{m['platform']}, Python {made['python']}, {found['date'][:10]}"
-    return page(title(found), found["command"], how, [*tables_of(found), "\n".join(f"* {line}" for line in sentences(found))])
+    return page(
+        title(found),
+        found["command"],
+        how,
+        [*tables_of(found), "\n".join(f"* {line}" for line in sentences(found))],
+    )

@@ -1,9 +1,11 @@
-"""How strong is each player, on one scale? The model of Bradley and Terry, fitted to wins, draws and losses of all pairs.
+"""How strong is each player, on one scale? The model of Bradley and Terry, fitted to wins, draws and losses
+of all pairs.
 
-Player i beats player j with probability p_ij = 1 / (1 + exp(t_j - t_i)) [Bradley & Terry, Biometrika 39 (1952) 324]. A draw is half a win
-for each. The strengths t maximise the sum of w_ij log p_ij over all pairs, w_ij being the wins of i over j. With 0 % or 100 % wins there is
-no maximum: so each pair that met gets ``PRIOR`` drawn matches more, half a win for each. On the scale of Elo a strength counts
-400 / ln 10 points, so that 400 points more mean ten wins for one loss.
+Player i beats player j with probability p_ij = 1 / (1 + exp(t_j - t_i)) [Bradley & Terry, Biometrika 39
+(1952) 324]. A draw is half a win for each. The strengths t maximise the sum of w_ij log p_ij over all pairs,
+w_ij being the wins of i over j. With 0 % or 100 % wins there is no maximum: so each pair that met gets
+``PRIOR`` drawn matches more, half a win for each. On the scale of Elo a strength counts 400 / ln 10 points,
+so that 400 points more mean ten wins for one loss.
 """
 
 import numpy as np
@@ -22,7 +24,8 @@ ROUNDS = 200
 def strengths(wins, prior=PRIOR):
     """The strengths (..., k) of k players, with mean 0, for one or many tables of wins.
 
-    ``wins[..., i, j]``: how often i beat j, draws as halves; every player must be linked to every other by pairs that met.
+    ``wins[..., i, j]``: how often i beat j, draws as halves; every player must be linked to every other by
+    pairs that met.
     """
     w = np.array(wins, np.float64)
     k = w.shape[-1]
@@ -59,15 +62,18 @@ def linked(edges, start):
 
 
 def compared(wins, anchor):
-    """Who (k,) can be compared with the anchor by results alone: who won something of it and lost something, perhaps by way of others."""
+    """Who (k,) can be compared with the anchor by results alone: who won something of it and lost something,
+    perhaps by way of others."""
     won = np.asarray(wins) > 0
     return linked(won, anchor) & linked(won.T, anchor)
 
 
 def bound(others, matches, level=0.95):
-    """The least strength of a player that won all its independent matches (m,) against players of known strengths (m,).
+    """The least strength of a player that won all its independent matches (m,) against players of known
+    strengths (m,).
 
-    At the bound, winning all has the probability 1 - level. For one that lost all: negate the strengths and the bound.
+    At the bound, winning all has the probability 1 - level. For one that lost all: negate the strengths and
+    the bound.
     """
     others, matches = np.asarray(others, np.float64), np.asarray(matches, np.float64)
     if matches.sum() <= 0:

@@ -1,4 +1,5 @@
-"""What did a training run learn? Held-out visits of its agent and of simple players, as a table and one or two sentences."""
+"""What did a training run learn? Held-out visits of its agent and of simple players, as a table and one or
+two sentences."""
 
 from typing import Any
 
@@ -14,18 +15,23 @@ from ..players.trained import player_of_model
 
 
 def evaluate(recipe, model, visits, said):
-    """Figures of held-out visits of the agent, ``ghost_ball`` and ``random``, on the same tables, under the training's noise and physics.
+    """Figures of held-out visits of the agent, ``ghost_ball`` and ``random``, on the same tables, under the
+    training's noise and physics.
 
-    The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also figures of the planner with
-    it and of the search by the rule of thumb (``search``). These are the first tables of ``agents.evaluate``. Raises ValueError if
-    there are not so many tables. ``said(total)``: the ``Progress`` of so many visits.
+    The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also
+    figures of the planner with it and of the search by the rule of thumb (``search``). These are the first
+    tables of ``agents.evaluate``. Raises ValueError if there are not so many tables. ``said(total)``: the
+    ``Progress`` of so many visits.
     """
     trained = player_of_model(model)
     players = {"trained": trained, "ghost_ball": player("ghost_ball"), "random": player("random")}
     if trained.learned is not None:
         players |= {"planner": SearchPlayer("planner", learned=trained.learned), "search": player("search")}
-    shared: dict[str, Any] = {"noise": "none"} | {key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS}
-    if not recipe.fidelity_given:  # some learn on "fast" to save time, and are meant to play on the usual fidelity
+    shared: dict[str, Any] = {"noise": "none"} | {
+        key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS
+    }
+    # some learn on "fast" to save time, and are meant to play on the usual fidelity
+    if not recipe.fidelity_given:
         shared.pop("fidelity", None)
     seeds = tables_of("held_out", visits)
     figures = {}
@@ -40,13 +46,17 @@ def evaluate(recipe, model, visits, said):
 
 
 def _better(a, b):
-    return a["points_a_visit"] - b["points_a_visit"] > 2.0 * np.hypot(a["points_a_visit_se"], b["points_a_visit_se"])
+    return a["points_a_visit"] - b["points_a_visit"] > 2.0 * np.hypot(
+        a["points_a_visit_se"], b["points_a_visit_se"]
+    )
 
 
 def conclusion(agent, steps, imitated, figures, start=None):
-    """The result in one sentence, from the figures; a difference is claimed from two standard errors on. A second one about the planner.
+    """The result in one sentence, from the figures; a difference is claimed from two standard errors on. A
+    second one about the planner.
 
-    ``imitated``: positions of imitation; ``start``: the origin of its initial weights, see ``models.load_weights``, or None.
+    ``imitated``: positions of imitation; ``start``: the origin of its initial weights, see
+    ``models.load_weights``, or None.
     """
     return _of_the_agent(agent, steps, imitated, figures, start) + _of_the_planner(figures)
 
@@ -63,14 +73,22 @@ def _of_the_agent(agent, steps, imitated, figures, start):
         begun = f" on top of the {start['shots']:,} of {start['model']}"
     after, visits = f"With {steps:,} shots of training{begun}, {agent}", f"{trained['visits']} visits"
     if not _better(trained, random):
-        how = "plays worse than" if _better(random, trained) else f"is not shown by {visits} to be better than"
+        how = (
+            "plays worse than" if _better(random, trained) else f"is not shown by {visits} to be better than"
+        )
         return f"{after} {how} random strokes: {made(trained)} against {made(random)}."
     if _better(ghost, trained):
         return f"{after} is better than random strokes but worse than ghost_ball: {made(trained)} against {made(ghost)}."
     if not _better(trained, ghost):
         return f"{after} is not shown by {visits} to be better than ghost_ball: {made(trained)} against {made(ghost)}."
     shares = [player["next_pot_after_a_pot"] for player in (trained, ghost)]
-    again = "" if None in shares else "; after a pot the next one follows in {:.1f} % against {:.1f} %".format(*(100 * x for x in shares))
+    again = (
+        ""
+        if None in shares
+        else "; after a pot the next one follows in {:.1f} % against {:.1f} %".format(
+            *(100 * x for x in shares)
+        )
+    )
     return f"{after} is better than ghost_ball: {made(trained)} against {made(ghost)}{again}."
 
 
@@ -84,7 +102,11 @@ def _of_the_planner(figures):
     if _better(learned, rule):
         times = learned["points_a_visit"] / rule["points_a_visit"]
         return f" Its value and its proposals are worth {times:.2f} times a rule by hand: {shots}."
-    how = "are worth less than" if _better(rule, learned) else f"are not shown by {learned['visits']} visits to be worth more than"
+    how = (
+        "are worth less than"
+        if _better(rule, learned)
+        else f"are not shown by {learned['visits']} visits to be worth more than"
+    )
     return f" Its value and its proposals {how} a rule by hand: {shots}."
 
 
@@ -92,12 +114,25 @@ def show(figures):
     """Print them."""
     rows = []
     for name, f in figures.items():
-        cells = [f"{f[key]:.2f} ± {f[key + '_se']:.2f}" for key in ("pots_a_visit", "points_a_visit", "fouls_a_visit")]
-        cells += ["-" if f[key] is None else f"{100 * f[key]:.1f} %" for key in ("pot_rate", "next_pot_after_a_pot")]
+        cells = [
+            f"{f[key]:.2f} ± {f[key + '_se']:.2f}"
+            for key in ("pots_a_visit", "points_a_visit", "fouls_a_visit")
+        ]
+        cells += [
+            "-" if f[key] is None else f"{100 * f[key]:.1f} %" for key in ("pot_rate", "next_pot_after_a_pot")
+        ]
         rows.append([name, *cells, str(f["longest_break"])])
     title = f"Means of {figures['random']['visits']} held-out visits on the same tables (± standard error)"
-    lines = [title, *text_table(["agent", "pots", "points", "fouls", "pot rate", "next pot", "best"], rows), ""]
-    lines.append("ghost_ball: the widest pot, always softly. random: a random stroke at one of the direct pots.")
+    lines = [
+        title,
+        *text_table(["agent", "pots", "points", "fouls", "pot rate", "next pot", "best"], rows),
+        "",
+    ]
+    lines.append(
+        "ghost_ball: the widest pot, always softly. random: a random stroke at one of the direct pots."
+    )
     if "planner" in figures:
-        lines.append(f"planner: {BUDGET} simulated shots a decision, by what was learned; search: the same by a rule of thumb.")
+        lines.append(
+            f"planner: {BUDGET} simulated shots a decision, by what was learned; search: the same by a rule of thumb."
+        )
     print("\n".join(["", *lines]))

@@ -1,4 +1,5 @@
-"""How does a player travel to another machine? By name, with the bytes of its model; a player of one's own with a digest of its module."""
+"""How does a player travel to another machine? By name, with the bytes of its model; a player of one's own
+with a digest of its module."""
 
 import atexit
 import hashlib
@@ -27,17 +28,22 @@ def sent(entrant, k):
         file, run = file_of(Path(run), "agent"), ""
     own = _module_digest(run) if ":" in run else ""
     return {
-        "run": run, "model": file and file.read_bytes(), "suffix": file and file.suffix,
-        "trust": entrant.trust, "options": [list(pair) for pair in entrant.options],
+        "run": run,
+        "model": file and file.read_bytes(),
+        "suffix": file and file.suffix,
+        "trust": entrant.trust,
+        "options": [list(pair) for pair in entrant.options],
         "module": own,
-    }  # fmt: skip
+    }
 
 
 def arrived(agent):
     """The player of what ``sent`` made."""
     run = agent["run"]
     if ":" in run and _module_digest(run) != agent["module"]:
-        raise ClusterError(f"the module of {run} on this node is another than on the machine that sent it: copy the same to every node")
+        raise ClusterError(
+            f"the module of {run} on this node is another than on the machine that sent it: copy the same to every node"
+        )
     if agent["model"] is not None:
         run += _unpacked(agent["model"], agent["suffix"])
     one_thread(run)
@@ -45,7 +51,8 @@ def arrived(agent):
 
 
 def one_thread(run):
-    """Let a player of one's own compute with one thread of PyTorch, as models do: the last bits of its products depend on their number."""
+    """Let a player of one's own compute with one thread of PyTorch, as models do: the last bits of its
+    products depend on their number."""
     if ":" in run:
         try:
             import torch

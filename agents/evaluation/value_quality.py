@@ -1,11 +1,12 @@
-"""How good is a learned value of positions? What it says before each stroke of a planner, beside the points that really followed.
+"""How good is a learned value of positions? What it says before each stroke of a planner, beside the points
+that really followed.
 
     python -m agents.value_quality --agent planner --visits 500 --noise professional club
     python -m agents.value_quality --agent planner@runs/ppo_value-0 --json quality.json --markdown quality.md
 
-Correlation with what followed: one visit's luck bounds it, so it says which of two values sees more, not how good one is. Calibration:
-positions sorted by the value, in ten equal groups; in each the mean of the value and of what followed. The rule of thumb is judged in the
-same positions. Standard errors are over visits.
+Correlation with what followed: one visit's luck bounds it, so it says which of two values sees more, not how
+good one is. Calibration: positions sorted by the value, in ten equal groups; in each the mean of the value
+and of what followed. The rule of thumb is judged in the same positions. Standard errors are over visits.
 """
 
 import argparse
@@ -60,13 +61,26 @@ def quality(player, visits, layout, noise):
     so_far, value, rule = np.concatenate(recording.rows).T
     visit = strokes.visit  # strokes are in the order of play, as the planner was asked
     followed = strokes.a_visit(strokes.points)[visit] - so_far
-    figures = {"layout": layout, "noise": noise, "visits": visits, "positions": len(visit), "followed": float(followed.mean())}
+    figures = {
+        "layout": layout,
+        "noise": noise,
+        "visits": visits,
+        "positions": len(visit),
+        "followed": float(followed.mean()),
+    }
     for name, of in (("value", value), ("rule", rule)):
         known = of.std() > 0 and followed.std() > 0
-        figures[name] = {"mean": float(of.mean()), "correlation": float(np.corrcoef(of, followed)[0, 1]) if known else 0.0}
+        figures[name] = {
+            "mean": float(of.mean()),
+            "correlation": float(np.corrcoef(of, followed)[0, 1]) if known else 0.0,
+        }
     groups = np.array_split(np.argsort(value, kind="stable"), max(1, min(GROUPS, len(visit) // LEAST)))
     figures["groups"] = [
-        {"value": float(value[rows].mean()), "followed": float(followed[rows].mean()), "se": _standard_error(followed[rows], visit[rows])}
+        {
+            "value": float(value[rows].mean()),
+            "followed": float(followed[rows].mean()),
+            "se": _standard_error(followed[rows], visit[rows]),
+        }
         for rows in groups
     ]
     return figures
@@ -81,13 +95,20 @@ def _standard_error(values, visit):
 def parts(report):
     """The figures as tables."""
     for one in report["results"]:
-        where = f"{one['layout']}, noise {one['noise']}: {one['visits']} visits, {one['positions']:,} positions"
+        where = (
+            f"{one['layout']}, noise {one['noise']}: {one['visits']} visits, {one['positions']:,} positions"
+        )
         rows = [
             [words, f"{one[name]['correlation']:.3f}", f"{one[name]['mean']:.1f}", f"{one['followed']:.1f}"]
             for name, words in (("value", "learned"), ("rule", "rule of thumb"))
         ]
-        yield TextTable(where, ["value", "correlation with what followed", "mean", "really followed"], rows, 1, 1)
-        rows = [[str(k), f"{g['value']:.1f}", f"{g['followed']:.1f} ± {g['se']:.1f}"] for k, g in enumerate(one["groups"], 1)]
+        yield TextTable(
+            where, ["value", "correlation with what followed", "mean", "really followed"], rows, 1, 1
+        )
+        rows = [
+            [str(k), f"{g['value']:.1f}", f"{g['followed']:.1f} ± {g['se']:.1f}"]
+            for k, g in enumerate(one["groups"], 1)
+        ]
         title = "Groups of positions, by the learned value"
         yield TextTable(title, ["group", "mean value", "followed (± s. e.)"], rows, 1, 1)
 
@@ -95,11 +116,19 @@ def parts(report):
 @command("agents.value_quality")
 def main(argv=None):
     """Play, compare, report. Exit code 0."""
-    p = argparse.ArgumentParser("python -m agents.value_quality", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("--agent", default="planner", help="a planner: planner, planner@MODEL, planner_500@MODEL [planner]")
+    p = argparse.ArgumentParser(
+        "python -m agents.value_quality",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    p.add_argument(
+        "--agent", default="planner", help="a planner: planner, planner@MODEL, planner_500@MODEL [planner]"
+    )
     p.add_argument("--visits", type=int, default=500, help="visits under each condition [500]")
     p.add_argument("--layouts", nargs="+", default=["held_out"], help="[held_out]")
-    p.add_argument("--noise", nargs="+", default=["professional"], help="levels of execution noise [professional]")
+    p.add_argument(
+        "--noise", nargs="+", default=["professional"], help="levels of execution noise [professional]"
+    )
     p.add_argument("--json", type=Path, help="write every figure here")
     p.add_argument("--markdown", type=Path, help="write the tables here")
     argv = sys.argv[1:] if argv is None else argv
@@ -118,13 +147,20 @@ def main(argv=None):
     except ValueError as error:
         p.error(str(error))
     snooker_env.warmup()
-    report = {"command": "python -m agents.value_quality " + shlex.join(argv), "agent": args.agent, **provenance()}
+    report = {
+        "command": "python -m agents.value_quality " + shlex.join(argv),
+        "agent": args.agent,
+        **provenance(),
+    }
     conditions = [(layout, noise) for layout in args.layouts for noise in args.noise]
     report["results"] = [quality(snooker_env.player(args.agent), args.visits, *each) for each in conditions]
     if args.json:
         write_json(args.json, report)
     if args.markdown:
         made = f"snooker_env {report['version']}, at commit {report['commit']} on {report['machine']}"
-        write_atomic(args.markdown, page(f"How good the value of {args.agent} is", report["command"], made, parts(report)))
+        write_atomic(
+            args.markdown,
+            page(f"How good the value of {args.agent} is", report["command"], made, parts(report)),
+        )
     show(parts(report))
     return 0

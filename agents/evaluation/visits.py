@@ -1,7 +1,7 @@
 """How are the visits of an evaluation cut into parts, and put together again?
 
-A player's strokes depend on positions and seeds alone, and the seeds on the table and the decision: so the parts together are what one
-machine plays at once.
+A player's strokes depend on positions and seeds alone, and the seeds on the table and the decision: so the
+parts together are what one machine plays at once.
 """
 
 import numpy as np
@@ -20,7 +20,10 @@ COLUMNS = ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "to
 def parts_of(shared, k, condition, seeds, rekey):
     """The parts of the run ``k`` of an agent, whose data are named ``shared``, under a condition."""
     same = {"k": k, "condition": condition, "rekey": rekey}
-    return [Part(f"{__name__}:play", shared, same | {"seeds": list(seeds[n : n + SIZE])}) for n in range(0, len(seeds), SIZE)]
+    return [
+        Part(f"{__name__}:play", shared, same | {"seeds": list(seeds[n : n + SIZE])})
+        for n in range(0, len(seeds), SIZE)
+    ]
 
 
 def play(shared, args, threads):
@@ -28,15 +31,23 @@ def play(shared, args, threads):
     k, seeds = args["k"], args["seeds"]
     options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}
     rekey = k if args["rekey"] else None
-    strokes = play_visits(arrived(shared), len(seeds), first_seed=seeds, seed=k, threads=threads, rekey=rekey, **options)
+    strokes = play_visits(
+        arrived(shared), len(seeds), first_seed=seeds, seed=k, threads=threads, rekey=rekey, **options
+    )
     columns = {name: getattr(strokes, name) for name in COLUMNS}
-    return columns | {"seconds": np.float64(strokes.decision_seconds), "simulated": np.int64(strokes.simulated)}
+    return columns | {
+        "seconds": np.float64(strokes.decision_seconds),
+        "simulated": np.int64(strokes.simulated),
+    }
 
 
 def joined(results, total):
-    """The ``Strokes`` of all visits from the results of their parts, in the order in which one machine plays them at once."""
+    """The ``Strokes`` of all visits from the results of their parts, in the order in which one machine plays
+    them at once."""
     columns = {name: np.concatenate([one[name] for one in results]) for name in COLUMNS}
     columns["visit"] = np.concatenate([one["visit"] + SIZE * n for n, one in enumerate(results)])
     order = np.lexsort((columns["visit"], columns["number"]))
     seconds, simulated = (sum(one[name].item() for one in results) for name in ("seconds", "simulated"))
-    return Strokes(total, *(columns[name][order] for name in COLUMNS), decision_seconds=seconds, simulated=simulated)
+    return Strokes(
+        total, *(columns[name][order] for name in COLUMNS), decision_seconds=seconds, simulated=simulated
+    )

@@ -3,9 +3,10 @@
     python -m agents.watch --agent ppo_foresight --out break.html
     python -m agents.watch --agent search_2000 --at-least 50 --out break.mp4
 
-The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the replay is written to a temporary
-file and opened in the browser. Visits are played on held-out tables, the seeds one after the other; --at-least takes the first of --tries
-visits with so many points. The same seed gives the same visit as ``agents.evaluate`` plays on that table.
+The replay is one HTML file that any browser plays from disk; .mp4 and .gif are films. Without --out the
+replay is written to a temporary file and opened in the browser. Visits are played on held-out tables, the
+seeds one after the other; --at-least takes the first of --tries visits with so many points. The same seed
+gives the same visit as ``agents.evaluate`` plays on that table.
 """
 
 import argparse
@@ -33,7 +34,8 @@ SUFFIXES = (".html", ".json", *FILMS)
 
 
 def visit(player, seed, **options):
-    """A ``SnookerEnv`` after one whole visit of the player, with its history; the same visit as ``play_visits`` gives for that seed."""
+    """A ``SnookerEnv`` after one whole visit of the player, with its history; the same visit as
+    ``play_visits`` gives for that seed."""
     env = sn.SnookerEnv(**VISITS, **options)
     bound, decision = player.at(env), 0
     env.keep_history = True
@@ -58,12 +60,20 @@ def described(replay):
 def parser():
     """The command line."""
     p = argparse.ArgumentParser(prog="python -m agents.watch", description=str(__doc__).split("\n\n")[0])
-    p.add_argument("--agent", default="ppo_foresight", help="a player's name, a pre-trained model, a model's .zip or run folder")
-    p.add_argument("--out", type=Path, help="break.html, .json, .mp4 or .gif; left out: opened in the browser")
+    p.add_argument(
+        "--agent",
+        default="ppo_foresight",
+        help="a player's name, a pre-trained model, a model's .zip or run folder",
+    )
+    p.add_argument(
+        "--out", type=Path, help="break.html, .json, .mp4 or .gif; left out: opened in the browser"
+    )
     p.add_argument("--layout", default="held_out", help="of the tables, as for Snooker-v0")
     p.add_argument("--noise", default="professional", help="execution noise")
     p.add_argument("--seed", type=int, default=HELD_OUT_SEED, help="of the first table")
-    p.add_argument("--at-least", type=int, default=0, metavar="POINTS", help="show the first visit with so many points")
+    p.add_argument(
+        "--at-least", type=int, default=0, metavar="POINTS", help="show the first visit with so many points"
+    )
     p.add_argument("--tries", type=int, default=200, help="most visits played to find it")
     p.add_argument("--speed", type=float, default=1.0, help="of a film, over that of the play")
     p.add_argument("--size", help="of a film, WIDTHxHEIGHT, both even")
@@ -76,13 +86,19 @@ def _film(args):
     """The options of the film that is wanted, {} for a page."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     choice("out", suffix, SUFFIXES)
-    film: dict[str, Any] = {"speed": number("speed", args.speed, 0.0, 100.0, open_low=True)} if args.speed != 1.0 else {}
+    film: dict[str, Any] = (
+        {"speed": number("speed", args.speed, 0.0, 100.0, open_low=True)} if args.speed != 1.0 else {}
+    )
     if args.fps is not None:
         film["fps"] = number("fps", args.fps, 0.0, 240.0, open_low=True)
     if args.size is not None:
         width, _, height = args.size.partition("x")
         if not (width.isdigit() and height.isdigit()) or int(width) % 2 or int(height) % 2:
-            raise refuse("size", args.size, "must be WIDTHxHEIGHT such as 1280x720, both even, as video encoders want them")
+            raise refuse(
+                "size",
+                args.size,
+                "must be WIDTHxHEIGHT such as 1280x720, both even, as video encoders want them",
+            )
         film["size"] = int(width), int(height)
     if film and suffix not in FILMS:
         raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --size, --fps or --speed")
@@ -98,7 +114,9 @@ def found(args):
         if env.points >= args.at_least:
             return env, seed, entrant.label
         longest = max(longest, env.points)
-    raise SystemExit(f"agents.watch: no visit of {args.at_least} points in {args.tries} tries; the longest had {longest}")
+    raise SystemExit(
+        f"agents.watch: no visit of {args.at_least} points in {args.tries} tries; the longest had {longest}"
+    )
 
 
 @command("agents.watch")
@@ -114,10 +132,14 @@ def main(argv=None):
         env, seed, label = found(args)
     except ValueError as error:
         p.error(str(error))
-    replay = sn.replay(env, title=f"{label}: {env.points} points, {args.noise}'s errors, table {seed}", players=[label])
+    replay = sn.replay(
+        env, title=f"{label}: {env.points} points, {args.noise}'s errors, table {seed}", players=[label]
+    )
     for line in described(replay):
         print(line)
-    print(f"{label}: {env.points} points in {len(replay)} strokes (table {seed}, layout {args.layout}, noise {args.noise})")
+    print(
+        f"{label}: {env.points} points in {len(replay)} strokes (table {seed}, layout {args.layout}, noise {args.noise})"
+    )
     if args.out:
         replay.save(args.out, **film)
         print(f"written: {args.out}")

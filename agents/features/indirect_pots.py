@@ -1,17 +1,20 @@
-"""Which indirect pots does a position offer, and where must the cue ball be sent for them? From geometry alone.
+"""Which indirect pots does a position offer, and where must the cue ball be sent for them? From geometry
+alone.
 
-* bank: the object ball goes off one cushion into a pocket. It is aimed at the pocket's mirror image in the line where a ball's centre
-  meets that cushion: the nose less R.
-* plant: the object ball A drives another ball B into a pocket. Both must be on and may go down together: reds with a red on.
-* cannon: the object ball A goes off another ball into a pocket. Rolling, it keeps after the impact 5/7 of the velocity that it then has
-  and 2/7 of the one before.
+* bank: the object ball goes off one cushion into a pocket. It is aimed at the pocket's mirror image in the
+  line where a ball's centre meets that cushion: the nose less R.
+* plant: the object ball A drives another ball B into a pocket. Both must be on and may go down together: reds
+  with a red on.
+* cannon: the object ball A goes off another ball into a pocket. Rolling, it keeps after the impact 5/7 of the
+  velocity that it then has and 2/7 of the one before.
 
-Every shot is a chain of straight legs, and no other ball may be nearer than 2 R to any of them. An error of the cue ball's aim becomes
-one of the object ball's direction, magnified by path / (2 R cos cut) as in ``game.pots``, and again at the next impact. The half window
-of the pocket, divided by all of it, is the shot's geometric tolerance.
+Every shot is a chain of straight legs, and no other ball may be nearer than 2 R to any of them. An error of
+the cue ball's aim becomes one of the object ball's direction, magnified by path / (2 R cos cut) as in
+``game.pots``, and again at the next impact. The half window of the pocket, divided by all of it, is the
+shot's geometric tolerance.
 
-The geometry leaves out throw and the true rebound off a cushion, which change directions by several degrees: ``aim_search`` solves the
-aims in the simulator.
+The geometry leaves out throw and the true rebound off a cushion, which change directions by several degrees:
+``aim_search`` solves the aims in the simulator.
 """
 
 from math import asin, atan2, cos, hypot, sin, sqrt
@@ -43,19 +46,22 @@ from snooker_env.kernels import TOLERANCE as POT_TOLERANCE
 DIRECT, BANK, PLANT, CANNON = range(4)
 """Kinds of shots."""
 (KIND, BALL, OTHER, POCKET, AIM_X, AIM_Y, GHOST_X, GHOST_Y, TOLERANCE, REACH) = range(10)
-"""Columns of a shot: its kind, the ball to strike first, the other ball (-1 if there is none), the pocket, the point that the first ball
-is sent to, where the cue ball meets it, the geometric tolerance [rad], and how far off its line [rad] the right aim may lie."""
+"""Columns of a shot: its kind, the ball to strike first, the other ball (-1 if there is none), the pocket,
+the point that the first ball is sent to, where the cue ball meets it, the geometric tolerance [rad], and how
+far off its line [rad] the right aim may lie."""
 COLUMNS = 10
 
 _RED = int(BallOn.RED)
 _THROW = 0.09
 """How far [rad] friction may throw a ball off the line of centres, about."""
 _BENT = 0.2
-"""How far [rad] the path off a cushion or a ball may lie from the geometric one, as a turn of the ball's direction before it."""
+"""How far [rad] the path off a cushion or a ball may lie from the geometric one, as a turn of the ball's
+direction before it."""
 _THINNEST = 0.05
 """Cosine of the thinnest cut, as ``game.pots`` has it."""
 _CLOSE = 2.5 * BALL_RADIUS
-"""Two balls whose centres are nearer than this [m] make a set plant, if the line through them leads into a pocket."""
+"""Two balls whose centres are nearer than this [m] make a set plant, if the line through them leads into a
+pocket."""
 _FAR = 1.2
 """Longest path [m] of a ball to the one that it goes off."""
 _SAMPLES = 24
@@ -66,7 +72,8 @@ MOST = 3
 
 @kernel
 def _first_leg(positions, present, ball, dx, dy):
-    """The cue ball's way to send ``ball`` along d: (ghost x, ghost y, 2 R cos cut / path); the last is 0 if there is none."""
+    """The cue ball's way to send ``ball`` along d: (ghost x, ghost y, 2 R cos cut / path); the last is 0 if
+    there is none."""
     cx, cy = positions[0, 0], positions[0, 1]
     reach = 2.0 * BALL_RADIUS
     gx, gy = positions[ball, 0] - reach * dx, positions[ball, 1] - reach * dy
@@ -76,14 +83,17 @@ def _first_leg(positions, present, ball, dx, dy):
     if path < 1e-9 or abs(gx) > HALF_WIDTH + room or abs(gy) > HALF_LENGTH + room:
         return gx, gy, 0.0
     cos_cut = (px * dx + py * dy) / path
-    if cos_cut < _THINNEST or not clear_segment(positions, present, cx, cy, gx, gy, ball, 0, reach * (1.0 - 1e-9)):
+    if cos_cut < _THINNEST or not clear_segment(
+        positions, present, cx, cy, gx, gy, ball, 0, reach * (1.0 - 1e-9)
+    ):
         return gx, gy, 0.0
     return gx, gy, reach * cos_cut / path
 
 
 @kernel
 def _keep(shots, count, what, aim, ghost, tolerance, reach):
-    """Put a shot, what = (kind, ball, other, pocket), in its place among the ``count`` widest so far; returns how many there are then."""
+    """Put a shot, what = (kind, ball, other, pocket), in its place among the ``count`` widest so far; returns
+    how many there are then."""
     if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
         return count
     at = min(count, shots.shape[0] - 1)
@@ -93,7 +103,12 @@ def _keep(shots, count, what, aim, ghost, tolerance, reach):
         at -= 1
     row = shots[at]
     row[KIND], row[BALL], row[OTHER], row[POCKET] = what
-    (row[AIM_X], row[AIM_Y]), (row[GHOST_X], row[GHOST_Y]), row[TOLERANCE], row[REACH] = aim, ghost, tolerance, reach
+    (row[AIM_X], row[AIM_Y]), (row[GHOST_X], row[GHOST_Y]), row[TOLERANCE], row[REACH] = (
+        aim,
+        ghost,
+        tolerance,
+        reach,
+    )
     return min(count + 1, shots.shape[0])
 
 
@@ -119,7 +134,9 @@ def _banks(positions, present, ball, noses, shots, count):
             if not noses[j, 3] <= (qy if across_x else qx) <= noses[j, 4]:
                 continue
             ex, ey = (-dx, dy) if across_x else (dx, -dy)
-            width = window(ex * POCKET_AIMS[k, AXIS_X] + ey * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0)
+            width = window(
+                ex * POCKET_AIMS[k, AXIS_X] + ey * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
+            )
             if width <= 0.0:
                 continue
             gx, gy, gain = _first_leg(positions, present, ball, dx, dy)
@@ -151,7 +168,9 @@ def _plants(positions, present, ball, other, shots, count):
         if run < 1e-9:
             continue
         dx, dy = dx / run, dy / run
-        width = window(dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0)
+        width = window(
+            dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
+        )
         if width <= 0.0 or ux * dx + uy * dy < _THINNEST:
             continue
         half = width / (2.0 * run)
@@ -187,8 +206,8 @@ def _plants(positions, present, ball, other, shots, count):
 
 @kernel
 def _off(ax, ay, ux, uy, apart, s, e):
-    """The ball at a, ``apart`` along u from another, meets it with the centres 2 R s beside its path and to the right of the other's:
-    (where x, y, direction before x, y, direction after x, y)."""
+    """The ball at a, ``apart`` along u from another, meets it with the centres 2 R s beside its path and to
+    the right of the other's: (where x, y, direction before x, y, direction after x, y)."""
     reach = 2.0 * BALL_RADIUS
     turn = asin(reach * s / apart)
     c, n = cos(turn), sin(turn)
@@ -241,7 +260,9 @@ def _cannons(positions, present, ball, other, e, shots, count):
                 else:
                     b = middle
             qx, qy, ix, iy, ox, oy = _off(ax, ay, ux, uy, apart, a, e)
-            width = window(ox * POCKET_AIMS[k, AXIS_X] + oy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0)
+            width = window(
+                ox * POCKET_AIMS[k, AXIS_X] + oy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
+            )
             if width <= 0.0:
                 continue
             gx, gy, gain = _first_leg(positions, present, ball, ix, iy)
@@ -256,13 +277,16 @@ def _cannons(positions, present, ball, other, e, shots, count):
                 continue
             if not clear_segment(positions, present, qx, qy, kx, ky, ball, other, reach):
                 continue
-            count = _keep(shots, count, (CANNON, ball, other, k), (qx, qy), (gx, gy), tolerance, _BENT * turn * gain)
+            count = _keep(
+                shots, count, (CANNON, ball, other, k), (qx, qy), (gx, gy), tolerance, _BENT * turn * gain
+            )
     return count
 
 
 @kernel
 def _find(positions, on_table, ball_on, noses, e, present, shots):
-    """Fill ``shots`` (m, COLUMNS) with the indirect ones, widest first; returns how many there are. ``present`` (22,): work space."""
+    """Fill ``shots`` (m, COLUMNS) with the indirect ones, widest first; returns how many there are.
+    ``present`` (22,): work space."""
     count, on = 0, balls_on(ball_on, bits(on_table))
     for i in range(N_BALLS):
         present[i] = on_table[i] and i > 0  # the cue ball leaves its place
@@ -306,7 +330,14 @@ def direct_pots(positions, on_table, ball_on, shots, counts):
             row[TOLERANCE] = row[REACH] = found[j, POT_TOLERANCE]
         if counts[t] == 0:
             row, angle = shots[t, 0], line_of(p, on_table[t], on, space)
-            row[KIND], row[BALL], row[OTHER], row[POCKET], row[TOLERANCE], row[REACH] = DIRECT, -1, -1, -1, 0.0, 0.0
+            row[KIND], row[BALL], row[OTHER], row[POCKET], row[TOLERANCE], row[REACH] = (
+                DIRECT,
+                -1,
+                -1,
+                -1,
+                0.0,
+                0.0,
+            )
             row[AIM_X] = row[GHOST_X] = p[0, 0] + cos(angle)
             row[AIM_Y] = row[GHOST_Y] = p[0, 1] + sin(angle)
 
@@ -319,6 +350,7 @@ def direct(positions, on_table, ball_on, most=MOST):
 
 
 def indirect(positions, on_table, ball_on, table, physics, most=MOST):
-    """The banks, plants and cannons (k, COLUMNS) on a ``Table`` that the geometry offers, widest first, ``most`` at the most."""
+    """The banks, plants and cannons (k, COLUMNS) on a ``Table`` that the geometry offers, widest first,
+    ``most`` at the most."""
     shots = np.empty((most, COLUMNS))
     return shots[: _indirect(positions, on_table, ball_on, table.noses, physics.e_b, shots)]

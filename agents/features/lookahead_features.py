@@ -1,8 +1,10 @@
-"""What does an agent with a one-shot lookahead observe? The simulated outcomes of 12 strokes at each of the two widest pots.
+"""What does an agent with a one-shot lookahead observe? The simulated outcomes of 12 strokes at each of the
+two widest pots.
 
-The observation is ``pot_view.with_pots`` followed by ``STROKES_SEEN`` rows, one for each stroke at each of these pots: means of its
-outcomes over the errors of ``EVEN_SAMPLES``, scaled by the execution noise of the tables (one sample if there is none). The agent may play
-only these strokes. A decision costs 120 simulated shots: slower than an agent that observes the table alone, far quicker than ``search``.
+The observation is ``pot_view.with_pots`` followed by ``STROKES_SEEN`` rows, one for each stroke at each of
+these pots: means of its outcomes over the errors of ``EVEN_SAMPLES``, scaled by the execution noise of the
+tables (one sample if there is none). The agent may play only these strokes. A decision costs 120 simulated
+shots: slower than an agent that observes the table alone, far quicker than ``search``.
 
 Several noise samples a stroke are needed: one outcome does not show how execution errors affect the next pot.
 """
@@ -22,13 +24,32 @@ from snooker_env.tasks import CHOICES, SIDES, SPEEDS, STROKES, TOPS, choice_of
 POTS_SEEN = 2
 SEEN_SPEEDS, SEEN_TOPS = (1, 3, 5, 7), (0, 2, 4)
 """Places in ``SPEEDS`` and ``TOPS``; without side."""
-PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(POTS_SEEN) for s in SEEN_SPEEDS for t in SEEN_TOPS])
+PICKS = np.array(
+    [choice_of(p, s, SIDES.index(0.0), t) for p in range(POTS_SEEN) for s in SEEN_SPEEDS for t in SEEN_TOPS]
+)
 """The choices that are simulated."""
 STROKES_SEEN = len(PICKS)
-(THERE, CHANCE, SCORED, GOES_ON, POINTS, CUE_X, CUE_Y, FIRST, SECOND, THIRD, VALUE, SPREAD, SPEED, TOP, RED_ON) = range(15)
-"""Places in a row: 1 if there is such a pot, its chance by its width; share of samples that score, that go on; mean points / 7; of those
-that go on: where the cue ball stops (x, y), chances of the three likeliest next pots; mean value, by the rule of thumb, of what is left /
-25 (0 for a visit that ended), its standard deviation; speed / 6.3, top / 0.4, 1 if a red was on."""
+(
+    THERE,
+    CHANCE,
+    SCORED,
+    GOES_ON,
+    POINTS,
+    CUE_X,
+    CUE_Y,
+    FIRST,
+    SECOND,
+    THIRD,
+    VALUE,
+    SPREAD,
+    SPEED,
+    TOP,
+    RED_ON,
+) = range(15)
+"""Places in a row: 1 if there is such a pot, its chance by its width; share of samples that score, that go
+on; mean points / 7; of those that go on: where the cue ball stops (x, y), chances of the three likeliest next
+pots; mean value, by the rule of thumb, of what is left / 25 (0 for a visit that ended), its standard
+deviation; speed / 6.3, top / 0.4, 1 if a red was on."""
 ENTRIES = RED_ON + 1
 SPACE = spaces.Box(-10.0, 10.0, (SHOWN + STROKES_SEEN * ENTRIES,), np.float32)
 _CHOSEN = np.zeros(CHOICES, bool)
@@ -58,16 +79,20 @@ class ForesightView:
         return bound
 
     def __call__(self, at, observations):
-        """The view of n ``Positions`` with these flat observations: float32 (n, SHOWN + STROKES_SEEN * ENTRIES)."""
+        """The view of n ``Positions`` with these flat observations: float32 (n, SHOWN + STROKES_SEEN *
+        ENTRIES)."""
         ahead = self.ahead(at, action_masks(at)[:, PICKS])
         return np.concatenate([with_pots(observations), ahead.reshape(len(at), -1)], 1)
 
     def ahead(self, at, masks):
-        """The rows (n, STROKES_SEEN, ENTRIES) of ``Positions``; all 0 where ``masks`` (n, STROKES_SEEN) says that there is no such pot."""
+        """The rows (n, STROKES_SEEN, ENTRIES) of ``Positions``; all 0 where ``masks`` (n, STROKES_SEEN) says
+        that there is no such pot."""
         table, stroke = np.nonzero(masks)
         k, m = len(self._samples), len(table)
         # the samples of a stroke in succession: its aim is solved once for all of them
-        points, goes_on, left, _ = self._planner.play(at, np.repeat(table, k), np.repeat(PICKS[stroke], k), np.tile(self._samples, m))
+        points, goes_on, left, _ = self._planner.play(
+            at, np.repeat(table, k), np.repeat(PICKS[stroke], k), np.tile(self._samples, m)
+        )
         on = np.flatnonzero(goes_on)
         values, chances = np.zeros(k * m), np.zeros((k * m, 3))
         values[on], found = prospects_of(left[on], self._spread, most=8, threads=self._planner.threads)
@@ -75,12 +100,25 @@ class ForesightView:
         values, points, goes_on = values.reshape(m, k), points.reshape(m, k), goes_on.reshape(m, k)
         share = (goes_on / np.maximum(1, goes_on.sum(1))[:, None])[:, :, None]
         row = np.empty((m, ENTRIES), np.float32)
-        row[:, THERE], row[:, CHANCE] = 1.0, prospects_of(at, self._spread)[1][table, PICKS[stroke] // STROKES]
-        row[:, SCORED], row[:, GOES_ON], row[:, POINTS] = (points > 0).mean(1), goes_on.mean(1), points.mean(1) / 7.0
-        row[:, CUE_X : CUE_Y + 1] = (share * (left.positions[:, 0] / (HALF_WIDTH, HALF_LENGTH)).reshape(m, k, 2)).sum(1)
+        row[:, THERE], row[:, CHANCE] = (
+            1.0,
+            prospects_of(at, self._spread)[1][table, PICKS[stroke] // STROKES],
+        )
+        row[:, SCORED], row[:, GOES_ON], row[:, POINTS] = (
+            (points > 0).mean(1),
+            goes_on.mean(1),
+            points.mean(1) / 7.0,
+        )
+        row[:, CUE_X : CUE_Y + 1] = (
+            share * (left.positions[:, 0] / (HALF_WIDTH, HALF_LENGTH)).reshape(m, k, 2)
+        ).sum(1)
         row[:, FIRST : THIRD + 1] = (share * chances.reshape(m, k, 3)).sum(1)
         row[:, VALUE], row[:, SPREAD] = values.mean(1) / RULE_OF_THUMB[0], values.std(1) / RULE_OF_THUMB[0]
-        row[:, SPEED], row[:, TOP], row[:, RED_ON] = _SPEEDS[stroke], _TOPS[stroke], at.ball_on[table] == BallOn.RED
+        row[:, SPEED], row[:, TOP], row[:, RED_ON] = (
+            _SPEEDS[stroke],
+            _TOPS[stroke],
+            at.ball_on[table] == BallOn.RED,
+        )
         seen = np.zeros((*masks.shape, ENTRIES), np.float32)
         seen[table, stroke] = row
         return seen
@@ -91,5 +129,8 @@ class ForesightView:
 
 
 def worth_by_rule(ahead):
-    """Expected points of the strokes of rows (n, STROKES_SEEN, ENTRIES), with the value of the afterstate; -inf where there is no pot."""
-    return np.where(ahead[..., THERE] > 0, 7.0 * ahead[..., POINTS] + RULE_OF_THUMB[0] * ahead[..., VALUE], -np.inf)
+    """Expected points of the strokes of rows (n, STROKES_SEEN, ENTRIES), with the value of the afterstate;
+    -inf where there is no pot."""
+    return np.where(
+        ahead[..., THERE] > 0, 7.0 * ahead[..., POINTS] + RULE_OF_THUMB[0] * ahead[..., VALUE], -np.inf
+    )

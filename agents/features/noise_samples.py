@@ -1,10 +1,12 @@
-"""Which noise samples does the lookahead use? Five representative ones; ``python -m agents.noise_samples`` finds them again.
+"""Which noise samples does the lookahead use? Five representative ones; ``python -m agents.noise_samples``
+finds them again.
 
-The outcome of a shot under execution noise is an expectation over five errors (speed, side, top, aim, elevation). A mean over a few random
-draws is poor when they happen to lie on one side. ``EVEN_SAMPLES`` are keys of random streams (``game.philox``), selected so that the five
-errors of each kind are close to five equally likely values (-1.28, -0.52, 0, 0.52, 1.28 standard deviations) and that different kinds are
-nearly uncorrelated. All positions and strokes use the same samples (common random numbers), so strokes are compared under equal luck. Five
-errors scaled to variance 1 would lie further out and overstate the number of misses.
+The outcome of a shot under execution noise is an expectation over five errors (speed, side, top, aim,
+elevation). A mean over a few random draws is poor when they happen to lie on one side. ``EVEN_SAMPLES`` are
+keys of random streams (``game.philox``), selected so that the five errors of each kind are close to five
+equally likely values (-1.28, -0.52, 0, 0.52, 1.28 standard deviations) and that different kinds are nearly
+uncorrelated. All positions and strokes use the same samples (common random numbers), so strokes are compared
+under equal luck. Five errors scaled to variance 1 would lie further out and overstate the number of misses.
 """
 
 import argparse
@@ -28,17 +30,21 @@ def first_of(keys):
 
 
 def unevenness(errors):
-    """How unevenly sets of errors (..., k, 5) are spread: weighted squares of the distances from k equally likely values, plus weighted
-    squares of the correlations between kinds."""
+    """How unevenly sets of errors (..., k, 5) are spread: weighted squares of the distances from k equally
+    likely values, plus weighted squares of the correlations between kinds."""
     k = errors.shape[-2]
-    apart = np.sort(errors, axis=-2) - np.array([NormalDist().inv_cdf((i + 0.5) / k) for i in range(k)])[:, None]
+    apart = (
+        np.sort(errors, axis=-2) - np.array([NormalDist().inv_cdf((i + 0.5) / k) for i in range(k)])[:, None]
+    )
     products = np.einsum("...ki,...kj->...ij", errors, errors) / k * (1.0 - np.eye(5))
-    return (WEIGHTS * (apart**2).mean(-2)).sum(-1) + 0.5 * (np.outer(WEIGHTS, WEIGHTS) * products**2).sum((-1, -2))
+    return (WEIGHTS * (apart**2).mean(-2)).sum(-1) + 0.5 * (np.outer(WEIGHTS, WEIGHTS) * products**2).sum(
+        (-1, -2)
+    )
 
 
 def find(k, keys=5_000, starts=20, seed=0):
-    """(k of the first ``keys`` keys, their unevenness, the median unevenness of random sets): a search that exchanges one key at a time,
-    the best of ``starts`` random starts."""
+    """(k of the first ``keys`` keys, their unevenness, the median unevenness of random sets): a search that
+    exchanges one key at a time, the best of ``starts`` random starts."""
     errors, rng = errors_of(first_of(np.arange(1, keys + 1))), np.random.default_rng(seed)
     best, least = np.zeros(k, np.int64), np.inf
     for _ in range(starts):
@@ -59,9 +65,13 @@ def find(k, keys=5_000, starts=20, seed=0):
 def main(argv=None):
     """Find the samples and print them; takes seconds. Exit code 0."""
     argparse.ArgumentParser(
-        "python -m agents.noise_samples", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        "python -m agents.noise_samples",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     ).parse_args(argv)
     best, least, median = find(len(EVEN_SAMPLES))
-    print(f"EVEN_SAMPLES = {tuple(map(int, best))}: unevenness {least:.3f}, of a set drawn at random {median:.2f} (median)")
+    print(
+        f"EVEN_SAMPLES = {tuple(map(int, best))}: unevenness {least:.3f}, of a set drawn at random {median:.2f} (median)"
+    )
     print(errors_of(first_of(best)).round(2))
     return 0

@@ -1,4 +1,5 @@
-"""How is a running training saved and stopped? Checkpoints, the learning curve and an orderly stop, by a callback of SB3."""
+"""How is a running training saved and stopped? Checkpoints, the learning curve and an orderly stop, by a
+callback of SB3."""
 
 import signal
 import time
@@ -11,12 +12,18 @@ from stable_baselines3.common.callbacks import BaseCallback
 from .run_folder import save_checkpoint
 
 POINTS_OF_THE_CURVE = 20
-LOSSES = {"policy": "train/policy_gradient_loss", "value": "train/value_loss", "actor": "train/actor_loss", "critic": "train/critic_loss"}
+LOSSES = {
+    "policy": "train/policy_gradient_loss",
+    "value": "train/value_loss",
+    "actor": "train/actor_loss",
+    "critic": "train/critic_loss",
+}
 """The losses that are said, by the names under which SB3 records them: of PPO, of SAC and TQC."""
 
 
 class Stop:
-    """A context that records SIGINT and SIGTERM: the run is saved and ends after the current update. A second signal acts at once."""
+    """A context that records SIGINT and SIGTERM: the run is saved and ends after the current update. A second
+    signal acts at once."""
 
     def __init__(self):
         self.signal = None
@@ -24,7 +31,9 @@ class Stop:
         """The work that is finished before the run is saved, in words."""
 
     def __enter__(self):
-        self._before = {number: signal.signal(number, self._note) for number in (signal.SIGINT, signal.SIGTERM)}
+        self._before = {
+            number: signal.signal(number, self._note) for number in (signal.SIGINT, signal.SIGTERM)
+        }
         return self
 
     def __exit__(self, *error) -> None:
@@ -36,7 +45,9 @@ class Stop:
         signal.signal(signal.SIGINT, signal.default_int_handler)
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         name = signal.Signals(number).name
-        rich.get_console().print(f"\n{name}: saving after {self.running} ... (a second signal stops at once, without saving)")
+        rich.get_console().print(
+            f"\n{name}: saving after {self.running} ... (a second signal stops at once, without saving)"
+        )
 
 
 def rollout_of(model):
@@ -47,7 +58,9 @@ def rollout_of(model):
 
 def goal_of(model, steps):
     """The number of shots at the end of a training to ``steps``."""
-    return model.num_timesteps + rollout_of(model) * -(-max(0, steps - model.num_timesteps) // rollout_of(model))
+    return model.num_timesteps + rollout_of(model) * -(
+        -max(0, steps - model.num_timesteps) // rollout_of(model)
+    )
 
 
 class RunCallback(BaseCallback):
@@ -75,20 +88,28 @@ class RunCallback(BaseCallback):
         # only here is there no rollout that has not been learned from: a checkpoint loses nothing
         recent = [visit["r"] for visit in self.model.ep_info_buffer or ()]
         due = self.num_timesteps >= len(self.curve) * self.settings.steps // POINTS_OF_THE_CURVE
-        if recent and due and self.num_timesteps > (self.curve[-1]["steps"] if self.curve else -1):  # a resume calls this a second time
+        # a resume calls this a second time
+        if recent and due and self.num_timesteps > (self.curve[-1]["steps"] if self.curve else -1):
             self.curve.append({"steps": self.num_timesteps, "points": round(float(np.mean(recent)), 3)})
         rollout, losses = rollout_of(self.model), self.model.logger.name_to_value
-        words = [f"round {self.num_timesteps // rollout + 1:,} of {goal_of(self.model, self.settings.steps) // rollout:,}"]
+        words = [
+            f"round {self.num_timesteps // rollout + 1:,} of {goal_of(self.model, self.settings.steps) // rollout:,}"
+        ]
         words += [f"{name} loss {losses[key]:.3g}" for name, key in LOSSES.items() if key in losses]
         words += [f"{np.mean(recent):.2f} points a visit"] if recent else []
         self.figures = ", ".join(words)
         self.stopping = self.stop.signal is not None
-        if self.stopping or self.saved is None or self.num_timesteps - self.saved >= self.settings.checkpoint_every:
+        if (
+            self.stopping
+            or self.saved is None
+            or self.num_timesteps - self.saved >= self.settings.checkpoint_every
+        ):
             self.save()
 
     def _on_step(self):
         self.progress.at(self.num_timesteps, self.figures)
-        return not self.stopping  # SB3 can stop only here; the one shot since the save is repeated after a resume
+        # SB3 can stop only here; the one shot since the save is repeated after a resume
+        return not self.stopping
 
     def _on_training_end(self):
         self.seconds_before, self.started = self.seconds, time.perf_counter()
@@ -102,10 +123,12 @@ class RunCallback(BaseCallback):
 
 
 LEAST, SHARE = 30.0, 0.01
-"""Seconds of pre-training that a kill may lose, and the largest share of its time for saving: slow saves come less often.
+"""Seconds of pre-training that a kill may lose, and the largest share of its time for saving: slow saves come
+less often.
 
-A checkpoint holds 3.3 kB for each imitated position (of agents with a lookahead): 35 MB for the 10,000 of ``ppo_foresight``, written in
-half a second. One of expert iteration holds at most 41,000 positions with 2.3 kB and 50,000 with 1.2 kB: 155 MB.
+A checkpoint holds 3.3 kB for each imitated position (of agents with a lookahead): 35 MB for the 10,000 of
+``ppo_foresight``, written in half a second. One of expert iteration holds at most 41,000 positions with 2.3
+kB and 50,000 with 1.2 kB: 155 MB.
 """
 
 

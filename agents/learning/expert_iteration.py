@@ -1,11 +1,13 @@
-"""How do a value, a policy and a planner make each other stronger? By expert iteration (Anthony, Tian & Barber 2017).
+"""How do a value, a policy and a planner make each other stronger? By expert iteration (Anthony, Tian &
+Barber 2017).
 
-Visits are played by the planner, which judges strokes by the value and takes its proposals from the policy. From every position the value
-learns by a backup (``value_learning``), and the policy learns the values of choices, each simulated once under execution noise and judged
-by the value (``judged_choices``). So the planner grows stronger, and with it the value and the policy. The first rounds judge by the rule
-of thumb.
+Visits are played by the planner, which judges strokes by the value and takes its proposals from the policy.
+From every position the value learns by a backup (``value_learning``), and the policy learns the values of
+choices, each simulated once under execution noise and judged by the value (``judged_choices``). So the
+planner grows stronger, and with it the value and the policy. The first rounds judge by the rule of thumb.
 
-The simulations of a round, two thirds of its time, are played in slices by ``where``: this process or a cluster. The learner stays here.
+The simulations of a round, two thirds of its time, are played in slices by ``where``: this process or a
+cluster. The learner stays here.
 
 PPO then improves the policy further, with the value as reward-to-go: ``judge_rewards``.
 """
@@ -31,12 +33,21 @@ FRESH = 4
 """Fresh noise samples of the best stroke for a target."""
 EXPLORED, AMONG = 0.2, 12
 """Share of exploratory strokes, each one of the best ``AMONG``."""
-STARTS = (("", 0.6), ("random:12", 0.06), ("random:9", 0.06), ("random:6", 0.06), ("random:3", 0.06), ("line_up", 0.06), ("colours", 0.1))
+STARTS = (
+    ("", 0.6),
+    ("random:12", 0.06),
+    ("random:9", 0.06),
+    ("random:6", 0.06),
+    ("random:3", 0.06),
+    ("line_up", 0.06),
+    ("colours", 0.1),
+)
 """Layouts in which visits begin, and their shares; "" is the layout of the training tables."""
 POOL = 4096
 """Positions in which visits begin, of all layouts."""
 HAND, EVEN = 6_144, 30_720
-"""Positions judged by the rule of thumb, and positions with even proposals; at most an eighth and a fifth of all."""
+"""Positions judged by the rule of thumb, and positions with even proposals; at most an eighth and a fifth of
+all."""
 
 
 class Starts:
@@ -56,15 +67,19 @@ class Starts:
         which = rng.choice(len(STARTS), n, p=[share for _, share in STARTS])
         rows = (rng.random(n) * [len(self._pools[k]) for k in which]).astype(np.int64)
         parts = [self._pools[k][row : row + 1] for k, row in zip(which.tolist(), rows.tolist(), strict=True)]
-        positions, on_table, game = (np.concatenate([getattr(one, name) for one in parts]) for name in ("positions", "on_table", "game"))
+        positions, on_table, game = (
+            np.concatenate([getattr(one, name) for one in parts])
+            for name in ("positions", "on_table", "game")
+        )
         return Positions(positions, on_table, game)
 
 
 class ExpertIteration:
     """Expert iteration in ``states`` positions; it has the interface of ``imitation.Imitation``.
 
-    ``before``: of ``get_state``, with the model restored: the result equals that of an uninterrupted run, bit for bit. ``where``: who plays
-    the slices, ``Here`` by default, or a ``Cluster``; the result does not depend on it.
+    ``before``: of ``get_state``, with the model restored: the result equals that of an uninterrupted run, bit
+    for bit. ``where``: who plays the slices, ``Here`` by default, or a ``Cluster``; the result does not
+    depend on it.
     """
 
     def __init__(self, model, venv, states, seed, threads, before=None, where=None):
@@ -72,7 +87,14 @@ class ExpertIteration:
         options = {name: getattr(tables.options, name) for name in ("noise", "physics", "table", "fidelity")}
         self.states, self._n, self._rng = states, venv.num_envs, np.random.default_rng((seed, 19))
         self._model, self._where = model, where or Here(threads)
-        self._sent = {"run": uuid.uuid4().hex, "options": options, "budget": BUDGET, "fresh": FRESH, "value": None, "policy": None}
+        self._sent = {
+            "run": uuid.uuid4().hex,
+            "options": options,
+            "budget": BUDGET,
+            "fresh": FRESH,
+            "value": None,
+            "policy": None,
+        }
         search = StrokeSearch(options, BUDGET)
         self._looks = search.strokes_tried
         self._starts = Starts(seed, tables.options.layout, options)
@@ -98,16 +120,26 @@ class ExpertIteration:
         return self._seconds + time.perf_counter() - self._began
 
     def get_state(self):
-        """The state, beside the model and the random generators of the process; most of it are the positions that are kept."""
+        """The state, beside the model and the random generators of the process; most of it are the positions
+        that are kept."""
         return {
-            "done": self.done, "curve": self.curve, "seconds": self.seconds, "rng": self._rng.bit_generator.state,
-            "at": (self._at.positions, self._at.on_table, self._at.game), "value": self._value.get_state(),
+            "done": self.done,
+            "curve": self.curve,
+            "seconds": self.seconds,
+            "rng": self._rng.bit_generator.state,
+            "at": (self._at.positions, self._at.on_table, self._at.game),
+            "value": self._value.get_state(),
             "choices": self._choices.get_state(),
-        }  # fmt: skip
+        }
 
     def round(self):
-        """Play a stroke from every position and learn. Every twentieth of all positions gives an entry of ``curve``."""
-        hand, even, remaining = min(HAND, self.states // 8), min(EVEN, self.states // 5), 1.0 - self.done / self.states
+        """Play a stroke from every position and learn. Every twentieth of all positions gives an entry of
+        ``curve``."""
+        hand, even, remaining = (
+            min(HAND, self.states // 8),
+            min(EVEN, self.states // 5),
+            1.0 - self.done / self.states,
+        )
         learned = self.done > hand
         if learned:
             self._sent["value"] = self._value.value()
@@ -122,17 +154,30 @@ class ExpertIteration:
             self.curve.append({"states": self.done, "seconds": round(self.seconds, 1), **self._figures()})
 
     def _figures(self):
-        """Mean losses of the last gradient steps, and the points that the value expects of a position; None before there are any."""
-        losses = [round(float(np.mean(one)), 3) if one else None for one in (self._choices.losses, self._value.losses)]
+        """Mean losses of the last gradient steps, and the points that the value expects of a position; None
+        before there are any."""
+        losses = [
+            round(float(np.mean(one)), 3) if one else None
+            for one in (self._choices.losses, self._value.losses)
+        ]
         value = self._value.mean_target
-        return {"loss": losses[0], "value_loss": losses[1], "value": None if value is None else round(value, 2)}
+        return {
+            "loss": losses[0],
+            "value_loss": losses[1],
+            "value": None if value is None else round(value, 2),
+        }
 
     @property
     def figures(self):
         """The same and the number of the round, in words."""
         found = {name: value for name, value in self._figures().items() if value is not None}
         words = {"loss": "loss {:.1f}", "value_loss": "value loss {:.2f}", "value": "{:.1f} points expected"}
-        return ", ".join([round_of(self.done, self.states, self._n), *(words[name].format(value) for name, value in found.items())])
+        return ", ".join(
+            [
+                round_of(self.done, self.states, self._n),
+                *(words[name].format(value) for name, value in found.items()),
+            ]
+        )
 
     def _play(self):
         """Choose a stroke for each position, keep what its samples lead to, and go on with one of them."""
@@ -142,9 +187,15 @@ class ExpertIteration:
         errors = rng.standard_normal((n * (FRESH + 1), 5))
         errors = np.concatenate([errors[: n * FRESH].reshape(n, FRESH, 5), errors[n * FRESH :, None]], axis=1)
         slices = [
-            {"at": positions_given(at[k]), "seeds": seeds[k], "explored": explored[k], "pick": pick[k], "errors": errors[k]}
+            {
+                "at": positions_given(at[k]),
+                "seeds": seeds[k],
+                "explored": explored[k],
+                "pick": pick[k],
+                "errors": errors[k],
+            }
             for k in in_slices(n)
-        ]  # fmt: skip
+        ]
         played = self._where.map("agents.learning.self_play:strokes", self._sent, slices)
         found = {name: np.concatenate([one[name] for one in played]) for name in played[0]}
         follows = found["follows"]
@@ -159,6 +210,7 @@ class ExpertIteration:
 
 
 def judge_rewards(venv, policy, threads):
-    """Let the training tables add the learned value of the afterstate to each reward: the reward-to-go of PPO with gamma = 0."""
+    """Let the training tables add the learned value of the afterstate to each reward: the reward-to-go of PPO
+    with gamma = 0."""
     rules = venv.unwrapped.tables.options.rules
     venv.judge = value_of(policy.position_value, spread_of(rules.noise, rules.physics), threads)

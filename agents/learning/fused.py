@@ -1,11 +1,12 @@
-"""How are the choices, values and gradients of ``TablePolicy`` computed quickly? In blocks of tables that stay in the processor's cache.
+"""How are the choices, values and gradients of ``TablePolicy`` computed quickly? In blocks of tables that
+stay in the processor's cache.
 
-The plain network (``networks.TableReader`` and its heads) spends most of its time on moving intermediate results
-through memory, and on operations that PyTorch cannot join. Here the same functions are computed for ``BLOCK`` tables at
-a time, in arrays that are made once. Kernels do all that lies between the layers, which PyTorch computes. Where the
-policy plays, the same network is a ``StrokePolicy``, whose scores of a table do not depend on the tables beside it. The
-gradient is written out by hand, layer by layer. tests/agents/learning/test_fused.py compares scores, values and
-gradients with PyTorch's own.
+The plain network (``networks.TableReader`` and its heads) spends most of its time on moving intermediate
+results through memory, and on operations that PyTorch cannot join. Here the same functions are computed for
+``BLOCK`` tables at a time, in arrays that are made once. Kernels do all that lies between the layers, which
+PyTorch computes. Where the policy plays, the same network is a ``StrokePolicy``, whose scores of a table do
+not depend on the tables beside it. The gradient is written out by hand, layer by layer.
+tests/agents/learning/test_fused.py compares scores, values and gradients with PyTorch's own.
 """
 
 from threading import Lock
@@ -50,24 +51,40 @@ class Loss(NamedTuple):
 
 
 class FusedTable:
-    """Passes through the network of a ``TablePolicy`` with its present weights. Several threads may call it; one at a time computes."""
+    """Passes through the network of a ``TablePolicy`` with its present weights. Several threads may call it;
+    one at a time computes."""
 
     def __init__(self, policy):
         reader, value = policy.features_extractor, policy.value_net.value
         layers = {
-            "ball_1": reader.ball[0], "ball_2": reader.ball[2], "pot_1": reader.pot[0], "pot_2": reader.pot[2],
-            "context_1": reader.context[0], "context_2": reader.context[2], "shared": reader.joint[0], "joint": reader.joint[1],
-            "scores": policy.action_net.score, "value_1": value[0], "value_2": value[2],
-        }  # fmt: skip
+            "ball_1": reader.ball[0],
+            "ball_2": reader.ball[2],
+            "pot_1": reader.pot[0],
+            "pot_2": reader.pot[2],
+            "context_1": reader.context[0],
+            "context_2": reader.context[2],
+            "shared": reader.joint[0],
+            "joint": reader.joint[1],
+            "scores": policy.action_net.score,
+            "value_1": value[0],
+            "value_2": value[2],
+        }
         self.parameters = [p for layer in layers.values() for p in (layer.weight, layer.bias)]
         ends = np.cumsum([p.numel() for p in self.parameters]).tolist()
         self.gradient = torch.zeros(ends[-1])
-        """The gradient of all parameters, one after another; ``zero_grad`` makes their ``grad`` views of it."""
-        parts = [self.gradient[end - p.numel() : end].view_as(p) for p, end in zip(self.parameters, ends, strict=True)]
+        """The gradient of all parameters, one after another; ``zero_grad`` makes their ``grad`` views of
+        it."""
+        parts = [
+            self.gradient[end - p.numel() : end].view_as(p)
+            for p, end in zip(self.parameters, ends, strict=True)
+        ]
         self._views = parts
         pairs = zip(layers.items(), parts[::2], parts[1::2], strict=True)
         wider = {"scores": SCORED}
-        self._layers = {name: _Layer(layer, d_weight, d_bias, wider.get(name)) for (name, layer), d_weight, d_bias in pairs}
+        self._layers = {
+            name: _Layer(layer, d_weight, d_bias, wider.get(name))
+            for (name, layer), d_weight, d_bias in pairs
+        }
         self._blocks, self._lock = {}, Lock()
 
     def zero_grad(self):
@@ -80,14 +97,18 @@ class FusedTable:
     def policy(self):
         """The ``StrokePolicy`` with the present weights: how this network plays."""
         parameters = [p.detach().numpy() for p in self.parameters]
-        return StrokePolicy(dict(zip(self._layers, zip(parameters[::2], parameters[1::2], strict=True), strict=True)))
+        return StrokePolicy(
+            dict(zip(self._layers, zip(parameters[::2], parameters[1::2], strict=True), strict=True))
+        )
 
     def scores(self, seen, masks):
-        """The scores of all choices (n, CHOICES) on n tables, ``NEVER`` for those not available. Arguments as in ``act``."""
+        """The scores of all choices (n, CHOICES) on n tables, ``NEVER`` for those not available. Arguments as
+        in ``act``."""
         return self.policy.scores(seen, masks)
 
     def act(self, seen, masks, uniform):
-        """Choices drawn for n tables (int64), the values and the logarithms of the choices' probabilities (float32), each (n,).
+        """Choices drawn for n tables (int64), the values and the logarithms of the choices' probabilities
+        (float32), each (n,).
 
         seen float32 (n, SHOWN), masks bool (n, CHOICES), uniform (n,) in [0, 1): the random numbers.
         """
@@ -103,10 +124,11 @@ class FusedTable:
         return choices, values, logs
 
     def ppo_gradient(self, rows, rollout, loss):
-        """Add the gradient of PPO's loss on the minibatch ``rows`` (int64) of a rollout to the parameters' ``grad``.
+        """Add the gradient of PPO's loss on the minibatch ``rows`` (int64) of a rollout to the parameters'
+        ``grad``.
 
-        Returns the means, over the minibatch, of the policy's loss, the squared error of the values, the entropy, the share of clipped
-        ratios and the approximate KL divergence.
+        Returns the means, over the minibatch, of the policy's loss, the squared error of the values, the
+        entropy, the share of clipped ratios and the approximate KL divergence.
         """
         seen, masks, *played = rollout
         sums, size = np.zeros(5), len(rows)
@@ -115,7 +137,9 @@ class FusedTable:
                 m = self._forward(b, here, seen, masks)
                 torch.sum(torch.mul(b.likely, b.by_table, out=b.d_by_table), 1, out=b.mean)
                 passed = b.by_table_, b.likely_, b.mean_, b.sides, b.value_2_
-                kernels.ppo_gradient(here, passed, tuple(played), tuple(loss), size, (b.d_by_table_, b.d_value_2_), sums)
+                kernels.ppo_gradient(
+                    here, passed, tuple(played), tuple(loss), size, (b.d_by_table_, b.d_value_2_), sums
+                )
                 self._backward(b, m)
         return sums / size
 
@@ -129,13 +153,17 @@ class FusedTable:
 
     def _block(self, n):
         if n not in self._blocks:
-            self._blocks = {k: b for k, b in self._blocks.items() if k == BLOCK} | {n: _Block(n, self._layers)}
+            self._blocks = {k: b for k, b in self._blocks.items() if k == BLOCK} | {
+                n: _Block(n, self._layers)
+            }
         return self._blocks[n]
 
     def _forward(self, b, rows, seen, masks):
         """The results of all layers for the tables seen[rows]; returns their number of object balls."""
         layers = self._layers
-        m = table_kernels.read_tables(rows, seen, (b.balls_, b.group, b.first, b.pots_, b.context_, b.sides), b.at)
+        m = table_kernels.read_tables(
+            rows, seen, (b.balls_, b.group, b.first, b.pots_, b.context_, b.sides), b.at
+        )
         layers["ball_2"](_relu(layers["ball_1"](b.balls_[:m], b.ball_1_[:m])), b.ball_2_[:m])
         table_kernels.sum_balls(b.ball_2_, b.group, b.first, b.context_, b.width)
         layers["pot_2"](_relu(layers["pot_1"](b.pots_, b.pot_1_)), b.pot_2_)
@@ -202,7 +230,11 @@ class _Layer:
     """A linear layer, its weights and their gradients, without autograd."""
 
     def __init__(self, layer, d_weight, d_bias, columns=None):
-        self.weight, self._bias, self.outputs = layer.weight.detach(), layer.bias.detach(), int(layer.out_features)
+        self.weight, self._bias, self.outputs = (
+            layer.weight.detach(),
+            layer.bias.detach(),
+            int(layer.out_features),
+        )
         columns = columns or self.outputs
         self._own = np.zeros((layer.in_features, columns), np.float32), np.zeros(columns, np.float32)
         self._turned, self._bias_turned = map(torch.from_numpy, self._own)
@@ -214,7 +246,8 @@ class _Layer:
         weight[:, : self.outputs], bias[: self.outputs] = self.weight.numpy().T, self._bias.numpy()
 
     def __call__(self, rows, out):
-        """Write the results for each row, on PyTorch's threads; returns them. The last bits depend on the number of rows."""
+        """Write the results for each row, on PyTorch's threads; returns them. The last bits depend on the
+        number of rows."""
         torch.addmm(self._bias_turned, torch.from_numpy(rows), self._turned, out=torch.from_numpy(out))
         return out
 
@@ -225,7 +258,8 @@ def _relu(x):
 
 
 class _Block(SimpleNamespace):
-    """The arrays of a block of n tables: the result of each layer under its name, its gradient with ``d_``, as NumPy arrays with ``_``."""
+    """The arrays of a block of n tables: the result of each layer under its name, its gradient with ``d_``,
+    as NumPy arrays with ``_``."""
 
     def __init__(self, n: int, layers: dict[str, _Layer]):
         most = n * (N_BALLS - 1)
@@ -242,4 +276,8 @@ class _Block(SimpleNamespace):
         made["likely"], made["mean"] = torch.zeros(n, CHOICES), torch.zeros(n)
         super().__init__(**made, **{f"{name}_": array.numpy() for name, array in made.items()})
         self.width, self.at = width, at
-        self.group, self.first, self.sides = np.zeros(most, np.int64), np.zeros(n + 1, np.int64), np.zeros(n, np.float32)
+        self.group, self.first, self.sides = (
+            np.zeros(most, np.int64),
+            np.zeros(n + 1, np.int64),
+            np.zeros(n, np.float32),
+        )

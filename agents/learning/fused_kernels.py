@@ -1,4 +1,5 @@
-"""What does a ``fused.FusedTable`` compute besides matrix products and what a playing policy does? Draws, the loss, gradients.
+"""What does a ``fused.FusedTable`` compute besides matrix products and what a playing policy does? Draws, the
+loss, gradients.
 
 Each kernel goes over n rows once; gradients are of the loss with respect to the name after ``d_``.
 """
@@ -12,7 +13,8 @@ from snooker_env.planning.learned.table_kernels import mirrored
 from snooker_env.tasks import POTS
 
 _LEAST = 1e-30  # smaller ones are too near to what float32 can hold
-_ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)  # literals are float64, and half as many of them fit into a register
+# literals are float64, and half as many of them fit into a register
+_ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)
 
 
 @entry
@@ -33,7 +35,8 @@ def spread_to_balls(d_context, group, first, codes, width, d_codes):
 
 @entry
 def part(d_joint, joint, d_shared):
-    """The gradient before the ReLU of ``join``, in place, and its sums over each table's pots into d_shared (n, width)."""
+    """The gradient before the ReLU of ``join``, in place, and its sums over each table's pots into d_shared
+    (n, width)."""
     width = joint.shape[1]
     for j in range(d_shared.shape[0]):
         sums = d_shared[j]
@@ -48,7 +51,8 @@ def part(d_joint, joint, d_shared):
 
 @entry
 def spread_to_pots(d_codes, codes, d_context, at):
-    """The gradient before the ReLU of ``sum_pots``, in place: of the codes themselves and of their sums in d_context[:, at:]."""
+    """The gradient before the ReLU of ``sum_pots``, in place: of the codes themselves and of their sums in
+    d_context[:, at:]."""
     width = codes.shape[1]
     for j in range(d_context.shape[0]):
         d_sums = d_context[j, at : at + width]
@@ -69,7 +73,8 @@ def cut_off(d, activation, n):
 
 @entry
 def draw(likely, uniform, sides, choices):
-    """A choice for each row of probabilities (n, k), by inversion: ``uniform`` (n,) in [0, 1). None of probability 0."""
+    """A choice for each row of probabilities (n, k), by inversion: ``uniform`` (n,) in [0, 1). None of
+    probability 0."""
     for j in range(likely.shape[0]):
         row = likely[j]
         left, pick = np.float64(uniform[j]), 0
@@ -84,7 +89,8 @@ def draw(likely, uniform, sides, choices):
 
 @kernel
 def scale_of(scores, likely, pick):
-    """Logarithm of the sum of exp(scores), from a choice's score and probability, or from the likeliest one's if that is too small."""
+    """Logarithm of the sum of exp(scores), from a choice's score and probability, or from the likeliest one's
+    if that is too small."""
     if likely[pick] < _LEAST:
         for c in range(likely.shape[0]):
             if likely[c] > likely[pick]:
@@ -104,10 +110,10 @@ def log_probabilities(scores, likely, sides, choices, out):
 def ppo_gradient(rows, passed, played, loss, batch, gradients, sums):
     """The gradients (d_scores, d_values) of PPO's loss, a mean over ``batch`` rows of which these are some.
 
-    passed: (scores, likely, mean, sides, values), with scores and likely as in ``log_probabilities``, mean: sums of likely * scores, and
-    values (n, 1). played: (actions, before, advantages, returns) of a ``fused.Rollout``, read at ``rows``. loss: as ``fused.Loss``. The
-    sums of the rows' policy losses, squared errors of the values, entropies, clipped ratios and approximate KL divergences are added to
-    ``sums``.
+    passed: (scores, likely, mean, sides, values), with scores and likely as in ``log_probabilities``, mean:
+    sums of likely * scores, and values (n, 1). played: (actions, before, advantages, returns) of a
+    ``fused.Rollout``, read at ``rows``. loss: as ``fused.Loss``. The sums of the rows' policy losses, squared
+    errors of the values, entropies, clipped ratios and approximate KL divergences are added to ``sums``.
     """
     scores, likely, mean, sides, values = passed
     actions, before, advantages, returns = played

@@ -1,8 +1,10 @@
-"""How is an agent defined? By its hyperparameters (``hyperparams/NAME.yml``, in the format of RL Baselines3 Zoo), with Stable-Baselines3.
+"""How is an agent defined? By its hyperparameters (``hyperparams/NAME.yml``, in the format of RL Baselines3
+Zoo), with Stable-Baselines3.
 
-Additional keys: ``algo`` (the algorithm; the file is named after the agent), ``view`` (the observation: pots or foresight), ``imitation``
-(positions of pre-training by imitation), ``expert`` (true: expert iteration in its place) and ``first_aim_std`` (exploration of the aim at
-the start). They may stand under ``agent`` instead: the Zoo itself then trains with the same file, if the policy is one of SB3's own.
+Additional keys: ``algo`` (the algorithm; the file is named after the agent), ``view`` (the observation: pots
+or foresight), ``imitation`` (positions of pre-training by imitation), ``expert`` (true: expert iteration in
+its place) and ``first_aim_std`` (exploration of the aim at the start). They may stand under ``agent``
+instead: the Zoo itself then trains with the same file, if the policy is one of SB3's own.
 ``learning_rate: lin_X`` falls linearly from X to nearly 0.
 """
 
@@ -31,21 +33,40 @@ BY_OPTION = ("n_timesteps", "n_envs", "imitation")
 def rate(field, value, low, high):
     """A learning rate: a number, or lin_X."""
     try:
-        number(field, value_of(value[4:]) if isinstance(value, str) and value.startswith("lin_") else value, low, high)
+        number(
+            field,
+            value_of(value[4:]) if isinstance(value, str) and value.startswith("lin_") else value,
+            low,
+            high,
+        )
     except ValueError:
-        raise refuse(field, value, f"must be a number in [{low}, {high}], or lin_X with such a number X") from None
+        raise refuse(
+            field, value, f"must be a number in [{low}, {high}], or lin_X with such a number X"
+        ) from None
     return value
 
 
 MOST = 10**9
 KINDS = {
-    "n_timesteps": (integer, 1, 10**12), "n_envs": (integer, 1, 2**24), "imitation": (integer, 0, MOST), "n_steps": (integer, 2, MOST),
-    "batch_size": (integer, 2, MOST), "n_epochs": (integer, 1, MOST), "buffer_size": (integer, 1, MOST),
-    "learning_starts": (integer, 0, MOST), "train_freq": (integer, 1, MOST), "gradient_steps": (integer, 1, MOST),
-    "gamma": (number, 0, 1), "gae_lambda": (number, 0, 1), "ent_coef": (number, 0, 1), "vf_coef": (number, 0, 10),
-    "learning_rate": (rate, 0, 1), "first_aim_std": (number, 1e-6, 10),
-}  # fmt: skip
-"""Kind, least and largest value of each hyperparameter. Advantages are normalised, so a batch has at least two shots."""
+    "n_timesteps": (integer, 1, 10**12),
+    "n_envs": (integer, 1, 2**24),
+    "imitation": (integer, 0, MOST),
+    "n_steps": (integer, 2, MOST),
+    "batch_size": (integer, 2, MOST),
+    "n_epochs": (integer, 1, MOST),
+    "buffer_size": (integer, 1, MOST),
+    "learning_starts": (integer, 0, MOST),
+    "train_freq": (integer, 1, MOST),
+    "gradient_steps": (integer, 1, MOST),
+    "gamma": (number, 0, 1),
+    "gae_lambda": (number, 0, 1),
+    "ent_coef": (number, 0, 1),
+    "vf_coef": (number, 0, 10),
+    "learning_rate": (rate, 0, 1),
+    "first_aim_std": (number, 1e-6, 10),
+}
+"""Kind, least and largest value of each hyperparameter. Advantages are normalised, so a batch has at least
+two shots."""
 
 
 def names():
@@ -55,9 +76,11 @@ def names():
 
 @dataclass
 class Recipe:
-    """The definition of an agent: the keys named here, and in ``settings`` the algorithm's own hyperparameters.
+    """The definition of an agent: the keys named here, and in ``settings`` the algorithm's own
+    hyperparameters.
 
-    ``fidelity_given``: whether the fidelity of ``env_kwargs`` was asked for; else it is the recipe's, which saves time in training alone.
+    ``fidelity_given``: whether the fidelity of ``env_kwargs`` was asked for; else it is the recipe's, which
+    saves time in training alone.
     """
 
     name: str
@@ -75,22 +98,51 @@ class Recipe:
 
     @classmethod
     def of(cls, name, changes=(), env_kwargs=None, **given):
-        """The recipe of that name with some "key=value" changed, then options of the environment and other keys. Raises ValueError.
+        """The recipe of that name with some "key=value" changed, then options of the environment and other
+        keys. Raises ValueError.
 
-        Algorithm, policy, network, view and action belong together: a change of them needs a recipe of its own.
+        Algorithm, policy, network, view and action belong together: a change of them needs a recipe of its
+        own.
         """
-        written = yaml.safe_load((FOLDER / f"{choice('agent', name, names())}.yml").read_text(encoding="utf-8"))
-        found = {"view": "pots", "imitation": 0, "expert": False, "first_aim_std": None} | written[ENV_ID] | written.get("agent", {})
-        changed = _changes(changes, [key for key, value in found.items() if key == "env_kwargs" or (key in KINDS and value is not None)])
+        written = yaml.safe_load(
+            (FOLDER / f"{choice('agent', name, names())}.yml").read_text(encoding="utf-8")
+        )
+        found = (
+            {"view": "pots", "imitation": 0, "expert": False, "first_aim_std": None}
+            | written[ENV_ID]
+            | written.get("agent", {})
+        )
+        changed = _changes(
+            changes,
+            [
+                key
+                for key, value in found.items()
+                if key == "env_kwargs" or (key in KINDS and value is not None)
+            ],
+        )
         usual = found["env_kwargs"]
         found |= changed | given
         for key, (check, low, high) in KINDS.items():
             if found.get(key) is not None:
                 found[key] = check(key, found[key], low, high)
         found["env_kwargs"] = _options(found["env_kwargs"], env_kwargs or {}, usual, found["policy"])
-        own = ("algo", "policy", "n_timesteps", "n_envs", "env_kwargs", "first_aim_std", "view", "imitation", "expert")
-        fidelity_given = any("fidelity" in options for options in (env_kwargs or {}, changed.get("env_kwargs", {})))
-        return cls(name, **{key: found.pop(key) for key in own}, settings=found, fidelity_given=fidelity_given)
+        own = (
+            "algo",
+            "policy",
+            "n_timesteps",
+            "n_envs",
+            "env_kwargs",
+            "first_aim_std",
+            "view",
+            "imitation",
+            "expert",
+        )
+        fidelity_given = any(
+            "fidelity" in options for options in (env_kwargs or {}, changed.get("env_kwargs", {}))
+        )
+        return cls(
+            name, **{key: found.pop(key) for key in own}, settings=found, fidelity_given=fidelity_given
+        )
 
     @property
     def method(self):
@@ -116,12 +168,15 @@ class Recipe:
             settings["batch_size"] = min(settings["batch_size"], settings["n_steps"] * tables.num_envs)
         if self.algo == "ppo_mask":
             settings["rollout_buffer_class"] = BoolMasks
-        model = algorithm_class(self.algo)(policy(self.policy), tables, seed=seed, device="cpu", stats_window_size=1000, **settings)
+        model = algorithm_class(self.algo)(
+            policy(self.policy), tables, seed=seed, device="cpu", stats_window_size=1000, **settings
+        )
         if self.first_aim_std is not None:
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
         # SB3 saves and restores additional attributes, too
         model.recipe, model.env_options, model.view = self.name, dict(self.env_kwargs), self.view
-        model.start, model.imitated = None, 0  # origin of its weights, see ``models.load_weights``; positions of imitation
+        # origin of its weights, see ``models.load_weights``; positions of imitation
+        model.start, model.imitated = None, 0
         return model
 
     def new_network(self, observation_space, action_space):
@@ -129,7 +184,9 @@ class Recipe:
         network = policy(self.policy)
         if isinstance(network, str):
             network = algorithm_class(self.algo).policy_aliases[network]
-        return network(observation_space, action_space, lambda _: 0.0, **self.settings.get("policy_kwargs", {}))
+        return network(
+            observation_space, action_space, lambda _: 0.0, **self.settings.get("policy_kwargs", {})
+        )
 
 
 def value_of(text):
@@ -155,8 +212,8 @@ def _changes(changes, keys):
 
 
 def _options(options, more, usual, policy):
-    """The environment's options with ``more`` of them; where ``policy`` needs it, actions must be read as ``usual``. The environment checks
-    the values."""
+    """The environment's options with ``more`` of them; where ``policy`` needs it, actions must be read as
+    ``usual``. The environment checks the values."""
     known = (*ACTION_OPTIONS, *SHOT_OPTIONS, *TRAINING_OPTIONS)
     if not isinstance(options, dict):
         raise refuse("env_kwargs", options, f"must be a dict with keys of {', '.join(known)}")
@@ -165,9 +222,15 @@ def _options(options, more, usual, policy):
     options = options | more
     for key in ("action",) if policy == "MlpPolicy" else ACTION_OPTIONS:
         if options.get(key, ACTION_OPTIONS[key]) != usual.get(key, ACTION_OPTIONS[key]):
-            raise refuse(key, options.get(key, ACTION_OPTIONS[key]), f"must be {usual.get(key, ACTION_OPTIONS[key])!r} for this agent")
+            raise refuse(
+                key,
+                options.get(key, ACTION_OPTIONS[key]),
+                f"must be {usual.get(key, ACTION_OPTIONS[key])!r} for this agent",
+            )
     if options.get("layout") == "held_out":
-        raise refuse("layout", "held_out", "must be another for training: the held-out tables are kept for evaluation")
+        raise refuse(
+            "layout", "held_out", "must be another for training: the held-out tables are kept for evaluation"
+        )
     return options
 
 
@@ -178,7 +241,12 @@ def algorithm_class(name):
 
     from .fast_ppo import FastPPO
 
-    classes = {"ppo": stable_baselines3.PPO, "ppo_mask": FastPPO, "sac": stable_baselines3.SAC, "tqc": sb3_contrib.TQC}
+    classes = {
+        "ppo": stable_baselines3.PPO,
+        "ppo_mask": FastPPO,
+        "sac": stable_baselines3.SAC,
+        "tqc": sb3_contrib.TQC,
+    }
     return classes[choice("algo", name, classes)]
 
 

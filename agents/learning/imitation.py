@@ -1,13 +1,16 @@
-"""How is a policy pre-trained by imitation? It is fitted to the one-shot values of the search; PPO continues from there.
+"""How is a policy pre-trained by imitation? It is fitted to the one-shot values of the search; PPO continues
+from there.
 
 ``train.py`` does this for the recipes with ``imitation``, or with ``--imitate POSITIONS``.
 
-The expert: in positions of played visits some of the choices are simulated under execution noise, once each. The value of a choice is its
-points plus, if the visit goes on, the value of its afterstate by the search's rule of thumb (``prospects_of``).
+The expert: in positions of played visits some of the choices are simulated under execution noise, once each.
+The value of a choice is its points plus, if the visit goes on, the value of its afterstate by the search's
+rule of thumb (``prospects_of``).
 
-The learner: state value + TEMPERATURE * (log-probability - its mean) is fitted to these values by least squares, all trials of a position
-at once. The policy becomes the softmax of the values of its choices, and the critic their mean under it. The visits are played by the
-learner, so that it is trained on the states that it will meet (DAgger, Ross et al. 2011); half of the trials are its own best choices.
+The learner: state value + TEMPERATURE * (log-probability - its mean) is fitted to these values by least
+squares, all trials of a position at once. The policy becomes the softmax of the values of its choices, and
+the critic their mean under it. The visits are played by the learner, so that it is trained on the states that
+it will meet (DAgger, Ross et al. 2011); half of the trials are its own best choices.
 """
 
 import time
@@ -23,8 +26,8 @@ from ..cluster.job import Here
 from .worths import worths
 
 TRIES = 48
-"""Trials in each position: half of them the learner's best choices, half random. Where there are at most half as many choices, each is
-tried twice."""
+"""Trials in each position: half of them the learner's best choices, half random. Where there are at most half
+as many choices, each is tried twice."""
 TEMPERATURE = 1.0
 """The difference in points that makes a choice e times as likely."""
 KEPT = 50_000
@@ -37,38 +40,53 @@ USED = ("action", "aim", "elevation", "placement", "noise", "physics", "table", 
 
 
 class Expert:
-    """Evaluates choices on the tables of a ``SnookerVectorEnv``; ``ahead``: with the value of the afterstate; ``where``: who simulates."""
+    """Evaluates choices on the tables of a ``SnookerVectorEnv``; ``ahead``: with the value of the afterstate;
+    ``where``: who simulates."""
 
     def __init__(self, tables, threads, rng, ahead=True, where=None):
         self._tables, self._rng, self._where = tables, rng, where or Here(threads)
         rules, options = tables.options.rules, {name: getattr(tables.options, name) for name in USED}
-        self._sent = {"run": uuid.uuid4().hex, "options": options, "spread": spread_of(rules.noise, rules.physics), "ahead": ahead}
+        self._sent = {
+            "run": uuid.uuid4().hex,
+            "options": options,
+            "spread": spread_of(rules.noise, rules.physics),
+            "ahead": ahead,
+        }
 
     def worth(self, picks, there):
-        """Values [points] of the choices ``picks`` (n, k) from one simulation each: float32 (n, k), 0 where ``there`` (n, k) is False."""
+        """Values [points] of the choices ``picks`` (n, k) from one simulation each: float32 (n, k), 0 where
+        ``there`` (n, k) is False."""
         row, column = np.nonzero(there)
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
         worth = np.zeros(picks.shape, np.float32)
-        worth[row, column] = worths(self._where, self._sent, Positions.of(self._tables), row, picks[row, column], keys)
+        worth[row, column] = worths(
+            self._where, self._sent, Positions.of(self._tables), row, picks[row, column], keys
+        )
         return worth
 
 
 def to_try(scores, masks, rng):
-    """``TRIES`` choices of each row of masks (n, SIZE), half with the highest scores, half random; and which of them are valid.
+    """``TRIES`` choices of each row of masks (n, SIZE), half with the highest scores, half random; and which
+    of them are valid.
 
-    A choice can be in both halves; if there are fewer valid choices than half of ``TRIES``, all of them are in both.
+    A choice can be in both halves; if there are fewer valid choices than half of ``TRIES``, all of them are
+    in both.
     """
     half = TRIES // 2
     best = np.argpartition(np.where(masks, -scores, np.inf), half, axis=1)[:, :half]
-    any_of = np.argpartition(np.where(masks, rng.random(masks.shape), np.inf), TRIES - half, axis=1)[:, : TRIES - half]
+    any_of = np.argpartition(np.where(masks, rng.random(masks.shape), np.inf), TRIES - half, axis=1)[
+        :, : TRIES - half
+    ]
     picks = np.concatenate([best, any_of], axis=1)
     return picks, np.take_along_axis(masks, picks, axis=1)
 
 
 class Imitation:
-    """Imitation in ``states`` positions of visits that ``model.policy`` plays; with gamma = 0 the value is the points alone.
+    """Imitation in ``states`` positions of visits that ``model.policy`` plays; with gamma = 0 the value is
+    the points alone.
 
-    ``before``: of ``get_state``, with the model and its tables restored: the result equals that of an uninterrupted run, bit for bit.
+    ``before``: of ``get_state``, with the model and its tables restored: the result equals that of an
+    uninterrupted run, bit for bit.
     """
 
     def __init__(self, model, venv, states, seed, threads, before=None, where=None):
@@ -82,7 +100,9 @@ class Imitation:
         else:
             self._rng.bit_generator.state = before["rng"]
             self._optimizer.load_state_dict(before["optimizer"])
-            self.done, self.curve, self._kept, self._seconds = (before[name] for name in ("done", "curve", "kept", "seconds"))
+            self.done, self.curve, self._kept, self._seconds = (
+                before[name] for name in ("done", "curve", "kept", "seconds")
+            )
             self._losses.extend(before["losses"])
         self._seen = venv.reset()
         self._began = time.perf_counter()
@@ -93,11 +113,17 @@ class Imitation:
         return self._seconds + time.perf_counter() - self._began
 
     def get_state(self):
-        """The state of the imitation, beside the model, its tables and its random generators; most of it is the buffer of positions."""
+        """The state of the imitation, beside the model, its tables and its random generators; most of it is
+        the buffer of positions."""
         return {
-            "done": self.done, "curve": self.curve, "kept": self._kept, "losses": list(self._losses), "seconds": self.seconds,
-            "rng": self._rng.bit_generator.state, "optimizer": self._optimizer.state_dict(),
-        }  # fmt: skip
+            "done": self.done,
+            "curve": self.curve,
+            "kept": self._kept,
+            "losses": list(self._losses),
+            "seconds": self.seconds,
+            "rng": self._rng.bit_generator.state,
+            "optimizer": self._optimizer.state_dict(),
+        }
 
     @property
     def figures(self):
@@ -108,7 +134,8 @@ class Imitation:
         return ", ".join(words)
 
     def round(self):
-        """Learn from the present position of every table and play on. Every twentieth of all positions gives an entry of ``curve``."""
+        """Learn from the present position of every table and play on. Every twentieth of all positions gives
+        an entry of ``curve``."""
         policy, n = self._model.policy, self._venv.num_envs
         for group in self._optimizer.param_groups:
             group["lr"] = RATE * (1.0 - self.done / self.states) + 1e-5
@@ -127,7 +154,9 @@ class Imitation:
         self.done += n
         if self.done * 20 // self.states > len(self.curve):
             loss = float(np.mean(self._losses))
-            self.curve.append({"states": self.done, "seconds": round(self.seconds, 1), "loss": round(loss, 3)})
+            self.curve.append(
+                {"states": self.done, "seconds": round(self.seconds, 1), "loss": round(loss, 3)}
+            )
 
 
 def round_of(done, total, n):
@@ -136,7 +165,8 @@ def round_of(done, total, n):
 
 
 def fit_values(policy, optimizer, seen, masks, picks, there, worths):
-    """One gradient step towards the values ``worths`` of choices (n, k). Returns the mean square error [points^2]."""
+    """One gradient step towards the values ``worths`` of choices (n, k). Returns the mean square error
+    [points^2]."""
     features = policy.extract_features(torch.as_tensor(seen))
     distribution = policy._get_action_dist_from_latent(features)
     distribution.apply_masking(masks)

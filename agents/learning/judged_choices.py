@@ -1,4 +1,5 @@
-"""How does a policy learn the values of choices from a judge? As in ``imitation``, on positions that the caller plays."""
+"""How does a policy learn the values of choices from a judge? As in ``imitation``, on positions that the
+caller plays."""
 
 import uuid
 from collections import deque
@@ -22,7 +23,8 @@ _PARTS = 4
 
 
 class JudgedChoices:
-    """Fits ``policy`` to the values of choices in rounds of n positions; ``where`` simulates each choice once under execution noise."""
+    """Fits ``policy`` to the values of choices in rounds of n positions; ``where`` simulates each choice once
+    under execution noise."""
 
     def __init__(self, policy, options, threads, n, rng, where=None):
         self._policy, self._rng, self._n, self._where = policy, rng, n, where or Here(threads)
@@ -32,7 +34,8 @@ class JudgedChoices:
         self.losses = deque(maxlen=100)
 
     def round(self, at, value, remaining):
-        """Try choices in n ``Positions``, judge what they leave by ``value``, and learn; ``remaining``: share of the training left."""
+        """Try choices in n ``Positions``, judge what they leave by ``value``, and learn; ``remaining``: share
+        of the training left."""
         seen, masks = with_pots(at.observations()), action_masks(at)
         with torch.no_grad():
             scores = self._policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
@@ -40,9 +43,12 @@ class JudgedChoices:
         row, column = np.nonzero(there)
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
         worths = np.zeros(picks.shape, np.float32)
-        worths[row, column] = judged(self._where, self._sent | {"value": value}, at, row, picks[row, column], keys)
+        worths[row, column] = judged(
+            self._where, self._sent | {"value": value}, at, row, picks[row, column], keys
+        )
         kept = seen, np.packbits(masks, axis=1), picks.astype(np.int16), there, worths
-        self._rounds.append(tuple(map(np.ascontiguousarray, kept)))  # sums depend on the layout, and a saved array comes back in this one
+        # sums depend on the layout, and a saved array comes back in this one
+        self._rounds.append(tuple(map(np.ascontiguousarray, kept)))
         del self._rounds[: -max(1, KEPT // self._n)]
         for group in self._optimizer.param_groups:
             group["lr"] = RATE * max(0.02, remaining)
@@ -53,14 +59,27 @@ class JudgedChoices:
         """Positions of several rounds: seen, masks, picks, there, worths."""
         size = min(self._n, BATCH // _PARTS)
         parts = [
-            (self._rounds[k], self._rng.choice(self._n, size, replace=False)) for k in self._rng.integers(len(self._rounds), size=_PARTS)
+            (self._rounds[k], self._rng.choice(self._n, size, replace=False))
+            for k in self._rng.integers(len(self._rounds), size=_PARTS)
         ]
-        seen, masks, picks, there, worths = (np.concatenate([one[c][rows] for one, rows in parts]) for c in range(5))
-        return seen, np.unpackbits(masks, axis=1, count=choices).astype(bool), picks.astype(np.int64), there, worths
+        seen, masks, picks, there, worths = (
+            np.concatenate([one[c][rows] for one, rows in parts]) for c in range(5)
+        )
+        return (
+            seen,
+            np.unpackbits(masks, axis=1, count=choices).astype(bool),
+            picks.astype(np.int64),
+            there,
+            worths,
+        )
 
     def get_state(self):
         """Everything but the policy."""
-        return {"rounds": self._rounds, "losses": list(self.losses), "optimizer": self._optimizer.state_dict()}
+        return {
+            "rounds": self._rounds,
+            "losses": list(self.losses),
+            "optimizer": self._optimizer.state_dict(),
+        }
 
     def set_state(self, state):
         """Go on from a state of ``get_state``."""

@@ -1,13 +1,16 @@
-"""How can a policy learn an angle of the full circle? By a mixture of strokes, one along the line of each direct pot.
+"""How can a policy learn an angle of the full circle? By a mixture of strokes, one along the line of each
+direct pot.
 
-A plain Gaussian over ``action="box", aim="absolute"`` never learns: a random direction almost never pots. Here the geometry is in the
-policy and the environment sees plain numbers. The density of an action (speed, side, top, aim) is::
+A plain Gaussian over ``action="box", aim="absolute"`` never learns: a random direction almost never pots.
+Here the geometry is in the policy and the environment sees plain numbers. The density of an action (speed,
+side, top, aim) is::
 
     sum over pots k of  weight_k * N(speed, side, top; means_k, stds) * N(aim; line_k + turn_k(speed, side, top), std_k)
 
-The weights are a softmax of the pots' scores. line_k is the direction to the pot's ghost ball, and turn_k moves the ghost ball round the
-object ball by the angle that ``Throw`` has learned for this cut, path and stroke: the aim is drawn after the stroke that it belongs to. It
-is explored in units of each pot's own tolerance. A table without a direct pot has one component: a full hit on the nearest ball on.
+The weights are a softmax of the pots' scores. line_k is the direction to the pot's ghost ball, and turn_k
+moves the ghost ball round the object ball by the angle that ``Throw`` has learned for this cut, path and
+stroke: the aim is drawn after the stroke that it belongs to. It is explored in units of each pot's own
+tolerance. A table without a direct pot has one component: a full hit on the nearest ball on.
 
     python train.py --agent ppo_absolute
 """
@@ -35,15 +38,15 @@ LINE_ENTRIES = 6
 LEAST_TOLERANCE = 5e-4
 """Least scale of the exploration [rad]: about a professional's error of aim (0.03 degrees)."""
 THROW_UNIT = 0.3
-"""Unit of the learned turn of the line of centres [rad]: a few times the largest throw. Adam's steps have one size whatever the unit, and
-the throw is learned from pots and misses alone."""
+"""Unit of the learned turn of the line of centres [rad]: a few times the largest throw. Adam's steps have one
+size whatever the unit, and the throw is learned from pots and misses alone."""
 
 
 def lines_of(seen):
     """(n, SHOWN) of ``pot_view.with_pots`` -> (n, POTS, LINE_ENTRIES), as seen and not in the mirror.
 
-    1 if there is such a pot, direction of its line / pi, sine and cosine of the cut (left positive), path cue ball -> ghost ball [m],
-    tolerance [rad]. Without any pot the first line leads to the nearest ball on.
+    1 if there is such a pot, direction of its line / pi, sine and cosine of the cut (left positive), path cue
+    ball -> ghost ball [m], tolerance [rad]. Without any pot the first line leads to the nearest ball on.
     """
     balls = seen[:, : 5 * N_BALLS].reshape(-1, N_BALLS, 5)
     places = balls[:, :, :2] * seen.new_tensor([HALF_WIDTH, HALF_LENGTH])
@@ -56,7 +59,9 @@ def lines_of(seen):
     direction = torch.cat([first[:, None], pots[:, 1:, 1:3]], 1)
     line = torch.atan2(direction[:, :, 1], direction[:, :, 0]) / pi
     tolerance = tolerance_of(pots[:, :, pot_view.TOLERANCE]).clamp(min=LEAST_TOLERANCE)
-    return torch.stack([offered, line, pots[:, :, 3], pots[:, :, 4], (pots[:, :, 5] + 1.0) * HALF_LENGTH, tolerance], 2)
+    return torch.stack(
+        [offered, line, pots[:, :, 3], pots[:, :, 4], (pots[:, :, 5] + 1.0) * HALF_LENGTH, tolerance], 2
+    )
 
 
 def nearest_image(turn):
@@ -77,16 +82,19 @@ class LineReader(TableReader):
 
 
 class Throw(nn.Module):
-    """Lines (n, POTS, LINE_ENTRIES) and strokes (n, POTS, 3) -> the angle / pi by which to turn each line, at first 0.
+    """Lines (n, POTS, LINE_ENTRIES) and strokes (n, POTS, 3) -> the angle / pi by which to turn each line, at
+    first 0.
 
-    Friction throws the object ball off the line of centres. The angle depends on cut, path and stroke alone, not on the place on the table,
-    and changes its sign in a mirror.
+    Friction throws the object ball off the line of centres. The angle depends on cut, path and stroke alone,
+    not on the place on the table, and changes its sign in a mirror.
     """
 
     def __init__(self, width=32):
         super().__init__()
         self.last = nn.Linear(width, 1)
-        self.net = nn.Sequential(nn.Linear(6, width), nn.Tanh(), nn.Linear(width, width), nn.Tanh(), self.last)
+        self.net = nn.Sequential(
+            nn.Linear(6, width), nn.Tanh(), nn.Linear(width, width), nn.Tanh(), self.last
+        )
         self.mirror: torch.Tensor
         self.register_buffer("mirror", torch.tensor([-1.0, 1.0, 1.0, 1.0, -1.0, 1.0]), persistent=False)
 
@@ -96,11 +104,14 @@ class Throw(nn.Module):
 
     def forward(self, lines, strokes):
         """One pass."""
-        played = strokes.clamp(-1.0, 1.0)  # as the environment reads them: within the box, the tip on the disc of the miscue limit
+        # as the environment reads them: within the box, the tip on the disc of the miscue limit
+        played = strokes.clamp(-1.0, 1.0)
         tip = played[:, :, 1:]
         tip = tip / torch.linalg.vector_norm(tip, dim=2, keepdim=True).clamp(min=1.0)
         sine, cosine, path = lines[:, :, SIN_CUT], lines[:, :, COS_CUT], lines[:, :, PATH]
-        known = torch.cat([torch.stack([sine, cosine, path / HALF_LENGTH - 1.0], 2), played[:, :, :1], tip], 2)
+        known = torch.cat(
+            [torch.stack([sine, cosine, path / HALF_LENGTH - 1.0], 2), played[:, :, :1], tip], 2
+        )
         angle = THROW_UNIT * (self.net(known) - self.net(known * self.mirror)).squeeze(2)
         # the ghost ball, seen along the line, when the line of centres is turned by this angle
         turned_sine = sine * torch.cos(angle) + cosine * torch.sin(angle)
@@ -126,22 +137,30 @@ class MixtureHead(nn.Module):
         self.throw.start()
 
     def forward(self, read):
-        """One pass: logarithms of the weights (n, POTS), means (n, POTS, 3), lines, and a function that gives the aims of strokes."""
+        """One pass: logarithms of the weights (n, POTS), means (n, POTS, 3), lines, and a function that gives
+        the aims of strokes."""
         n = len(read)
-        codes, side = read[:, CONTEXT : CONTEXT + POTS * POT].reshape(n, POTS, POT), read[:, CONTEXT + POTS * POT, None]
+        codes, side = (
+            read[:, CONTEXT : CONTEXT + POTS * POT].reshape(n, POTS, POT),
+            read[:, CONTEXT + POTS * POT, None],
+        )
         lines = read[:, CONTEXT + POTS * POT + 1 :].reshape(n, POTS, LINE_ENTRIES)
         there, first = lines[:, :, OFFERED] > 0.0, torch.arange(POTS, device=read.device) == 0
         none = ~there.any(1, keepdim=True)
         out = self.pot(codes)
-        scores = out[:, :, 0] + torch.log(lines[:, :, TOLERANCE])  # before training: in proportion to the pot's width
+        # before training: in proportion to the pot's width
+        scores = out[:, :, 0] + torch.log(lines[:, :, TOLERANCE])
         log_weights = torch.log_softmax(scores.masked_fill(~there & ~(none & first), -1e8), 1)
-        means = torch.where((none & first)[:, :, None], self.no_pot(read[:, :CONTEXT])[:, None], out[:, :, 1:])
+        means = torch.where(
+            (none & first)[:, :, None], self.no_pot(read[:, :CONTEXT])[:, None], out[:, :, 1:]
+        )
         means = torch.stack([means[:, :, 0], means[:, :, 1] * side, means[:, :, 2]], 2)
         return log_weights, means, lines, lambda strokes: lines[:, :, LINE] + self.throw(lines, strokes)
 
 
 class StrokeMixture(Distribution):
-    """The density of this module's docstring, of actions (n, 4). ``log_std`` (4,): of speed, side, top, and of aim in tolerances."""
+    """The density of this module's docstring, of actions (n, 4). ``log_std`` (4,): of speed, side, top, and
+    of aim in tolerances."""
 
     def proba_distribution_net(self, log_std_init=0.0):
         """The head and the deviations."""
@@ -154,7 +173,8 @@ class StrokeMixture(Distribution):
         return self
 
     def log_prob(self, actions):
-        """Logarithm of the density. An aim counts at its image nearest to the mean: the others are thousands of deviations away."""
+        """Logarithm of the density. An aim counts at its image nearest to the mean: the others are thousands
+        of deviations away."""
         strokes = actions[:, None, :3].expand_as(self.means)
         aside = nearest_image(actions[:, None, 3] - self.aims_of(strokes)) / self.aim_stds
         off = ((strokes - self.means) / self.stds).square().sum(2) + aside.square()
@@ -162,7 +182,8 @@ class StrokeMixture(Distribution):
         return torch.logsumexp(self.log_weights - 0.5 * off - scale, 1)
 
     def entropy(self):
-        """The joint entropy of weight and component: that of the mixture where components do not overlap, else an upper bound."""
+        """The joint entropy of weight and component: that of the mixture where components do not overlap,
+        else an upper bound."""
         own = self.stds.log().sum() + self.aim_stds.log() + 2.0 * log(2.0 * pi) + 2.0
         return (self.log_weights.exp() * (own - self.log_weights)).sum(1)
 
@@ -170,7 +191,9 @@ class StrokeMixture(Distribution):
         """A pot by its weight, a stroke at it, then the aim for this stroke, in [-1, 1]."""
         chosen = torch.multinomial(self.log_weights.exp(), 1)
         strokes = self.means + self.stds * torch.randn_like(self.means)
-        return self._chosen(chosen, strokes, self.aims_of(strokes) + self.aim_stds * torch.randn_like(self.aim_stds))
+        return self._chosen(
+            chosen, strokes, self.aims_of(strokes) + self.aim_stds * torch.randn_like(self.aim_stds)
+        )
 
     def mode(self):
         """The mean stroke at the pot of the largest weight, and the aim for it."""

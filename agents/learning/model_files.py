@@ -1,9 +1,11 @@
-"""How is a trained agent stored in a file and read again? As JSON and weights; nothing in a file is unpickled.
+"""How is a trained agent stored in a file and read again? As JSON and weights; nothing in a file is
+unpickled.
 
-``train.py`` writes zips of Stable-Baselines3, which ``PPO.load`` reads by running the pickles in their ``data``; ``agents.publish`` writes
-zips of ``model.json`` and ``policy.pth`` alone. From either this module reads the entries ``KEPT`` as plain JSON and the tensors of
-``policy.pth`` (``torch.load`` with ``weights_only``). The network is built from the current recipe of that name: a file cannot name any
-other code.
+``train.py`` writes zips of Stable-Baselines3, which ``PPO.load`` reads by running the pickles in their
+``data``; ``agents.publish`` writes zips of ``model.json`` and ``policy.pth`` alone. From either this module
+reads the entries ``KEPT`` as plain JSON and the tensors of ``policy.pth`` (``torch.load`` with
+``weights_only``). The network is built from the current recipe of that name: a file cannot name any other
+code.
 """
 
 import io
@@ -24,7 +26,8 @@ WEIGHTS = "policy.pth"
 
 @dataclass
 class Trained:
-    """A trained agent as described in a file; the names are the attributes that train.py sets on SB3's own models."""
+    """A trained agent as described in a file; the names are the attributes that train.py sets on SB3's own
+    models."""
 
     policy: Any
     """Its network, an SB3 policy."""
@@ -81,21 +84,27 @@ class _MismatchError(Exception):
 
 
 def read(path, field):
-    """The ``Trained`` agent in a file; None if train.py did not make it. Raises ValueError, naming ``field``; ImportError without torch."""
+    """The ``Trained`` agent in a file; None if train.py did not make it. Raises ValueError, naming ``field``;
+    ImportError without torch."""
     try:
         found = entries(path)
         if not by_train(found):
             return None
         described: dict[str, Any] = {
-            key: None if found.get(key) is None and key in MAY_BE_NONE else check(key, found.get(key)) for key, check in KEPT.items()
-        }  # fmt: skip
+            key: None if found.get(key) is None and key in MAY_BE_NONE else check(key, found.get(key))
+            for key, check in KEPT.items()
+        }
         seen = found["seen"] if "seen" in found else found["observation_space"]["_shape"][0]
     except Exception as error:  # any error of zip or JSON on a file of another kind
         raise refuse(field, str(path), f"must be a model that train.py saved ({str(error)[:300]})") from None
     try:
         return Trained(_network(path, described, seen), **described)
     except _MismatchError:
-        raise refuse(field, str(path), f"must be a model of the current {described['recipe']}: this one is older, train it again") from None
+        raise refuse(
+            field,
+            str(path),
+            f"must be a model of the current {described['recipe']}: this one is older, train it again",
+        ) from None
     except ImportError:
         raise
     except Exception as error:  # any error of zip or torch on weights of another kind
@@ -119,7 +128,9 @@ def _network(path, described, seen):
     if network.observation_space.shape != (seen,):
         raise _MismatchError
     own = network.state_dict()
-    weights = _weights(path, 2**16 + sum(4096 + tensor.numel() * tensor.element_size() for tensor in own.values()))
+    weights = _weights(
+        path, 2**16 + sum(4096 + tensor.numel() * tensor.element_size() for tensor in own.values())
+    )
     if _forms(weights) != _forms(own):
         raise _MismatchError
     if not all(torch.isfinite(tensor).all() for tensor in weights.values()):
@@ -129,7 +140,8 @@ def _network(path, described, seen):
 
 
 def _weights(path, most):
-    """The tensors of a file, by name, without running anything; ``_MismatchError`` if they take more than ``most`` bytes."""
+    """The tensors of a file, by name, without running anything; ``_MismatchError`` if they take more than
+    ``most`` bytes."""
     import torch
 
     try:
@@ -148,10 +160,13 @@ def _forms(weights):
 
 
 def packed(trained):
-    """A ``Trained`` agent as the bytes of a zip with ``model.json`` and ``policy.pth`` alone; reproducible."""
+    """A ``Trained`` agent as the bytes of a zip with ``model.json`` and ``policy.pth`` alone;
+    reproducible."""
     import torch
 
-    described = {key: getattr(trained, key) for key in KEPT} | {"seen": trained.policy.observation_space.shape[0]}
+    described = {key: getattr(trained, key) for key in KEPT} | {
+        "seen": trained.policy.observation_space.shape[0]
+    }
     weights, file = io.BytesIO(), io.BytesIO()
     torch.save(dict(trained.policy.state_dict()), weights)
     with zipfile.ZipFile(file, "w") as made:  # ZipInfo: without a time stamp

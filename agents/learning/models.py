@@ -1,4 +1,5 @@
-"""Where are trained models found? Pre-trained ones, the model of a run's folder, and weights to start from."""
+"""Where are trained models found? Pre-trained ones, the model of a run's folder, and weights to start
+from."""
 
 import io
 from pathlib import Path
@@ -26,16 +27,25 @@ def file_of(path, field):
     file = next((file for file in here if file.is_file()), here[0])
     if not file.is_file():
         unfinished = (path / CHECKPOINT).is_file()
-        ends = f"; this run has not ended, continue it with: python train.py --resume --out {path}" if unfinished else ""
+        ends = (
+            f"; this run has not ended, continue it with: python train.py --resume --out {path}"
+            if unfinished
+            else ""
+        )
         raise refuse(field, str(path), f"must be a model's .zip or a folder that holds model.zip{ends}")
     return file
 
 
 def load_trained(path, field):
-    """The ``Trained`` of a model's .zip or a run's folder. Raises ValueError, naming ``field``, if train.py did not make it."""
+    """The ``Trained`` of a model's .zip or a run's folder. Raises ValueError, naming ``field``, if train.py
+    did not make it."""
     file = file_of(path, field)
     if file.suffix == ".npz":
-        raise refuse(field, str(file), "must be a model that train.py saved, its .zip or a run's folder: an .npz holds plain weights alone")
+        raise refuse(
+            field,
+            str(file),
+            "must be a model that train.py saved, its .zip or a run's folder: an .npz holds plain weights alone",
+        )
     trained = read(file, field)
     if trained is None:
         raise refuse(field, str(file), "must be a model that train.py saved")
@@ -43,21 +53,34 @@ def load_trained(path, field):
 
 
 def load_weights(model, path):
-    """Load the weights of another model with the same network and actions into ``model``; ``model.start`` records its origin.
+    """Load the weights of another model with the same network and actions into ``model``; ``model.start``
+    records its origin.
 
-    The other's network may have more: the one of ppo_value holds that of ppo_mask, and beside it the value of positions. Raises
-    ValueError.
+    The other's network may have more: the one of ppo_value holds that of ppo_mask, and beside it the value of
+    positions. Raises ValueError.
     """
     other = load_trained(path, "start")
     if not isinstance(other.policy, type(model.policy)):
-        raise refuse("start", str(path), f"must be a model of {model.recipe}, or of another agent with its network, not of {other.recipe}")
+        raise refuse(
+            "start",
+            str(path),
+            f"must be a model of {model.recipe}, or of another agent with its network, not of {other.recipe}",
+        )
     spaces = other.action_space == model.action_space
     if not spaces or any(other.env_options.get(key) != model.env_options.get(key) for key in ACTION_OPTIONS):
-        told = [{key: m.env_options[key] for key in ACTION_OPTIONS if key in m.env_options} for m in (model, other)]
+        told = [
+            {key: m.env_options[key] for key in ACTION_OPTIONS if key in m.env_options}
+            for m in (model, other)
+        ]
         raise refuse("start", str(path), f"must be a model with actions {told[0]}, not {told[1]}")
     weights = other.policy.state_dict()
     model.policy.load_state_dict({name: weights[name] for name in model.policy.state_dict()})
-    model.start = {"model": str(path), "shots": other.num_timesteps, "imitated": other.imitated, "start": other.start}
+    model.start = {
+        "model": str(path),
+        "shots": other.num_timesteps,
+        "imitated": other.imitated,
+        "start": other.start,
+    }
 
 
 def zipped(model):

@@ -1,10 +1,12 @@
-"""Which networks read a snooker table? Small networks shared by balls and by pots, sums over them, and a head that scores every stroke.
+"""Which networks read a snooker table? Small networks shared by balls and by pots, sums over them, and a head
+that scores every stroke.
 
-The order of balls or pots must not matter: each ball's row goes through one network and each pot's through another (deep sets,
-Zaheer et al. 2017). Masked sums of the balls' codes, of the pots' codes and the game's state make the context. The score of a
-stroke at a pot comes from that pot's code and the context, by the same weights for every pot. The table is nearly symmetric: it is read
-mirrored so that the cue ball is on the right, and the choice of side spin is mirrored back. (Yellow and green break the symmetry: an
-input gives the half that the cue ball was on.)
+The order of balls or pots must not matter: each ball's row goes through one network and each pot's through
+another (deep sets, Zaheer et al. 2017). Masked sums of the balls' codes, of the pots' codes and the game's
+state make the context. The score of a stroke at a pot comes from that pot's code and the context, by the same
+weights for every pot. The table is nearly symmetric: it is read mirrored so that the cue ball is on the
+right, and the choice of side spin is mirrored back. (Yellow and green break the symmetry: an input gives the
+half that the cue ball was on.)
 """
 
 from itertools import pairwise
@@ -36,14 +38,16 @@ def mlp(*sizes):
 
 
 class TableReader(BaseFeaturesExtractor):
-    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, and -1 where the table was mirrored, else 1."""
+    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, and -1 where the table was
+    mirrored, else 1."""
 
     def __init__(self, observation_space, width=32):
         super().__init__(observation_space, CONTEXT + POTS * POT + 1)
         self.ball = mlp(5 + 2, width, BALL)
         self.pot = mlp(POT_ENTRIES, 2 * width, POT)
         self.context = mlp(3 * BALL + POT + _STATE + 3, CONTEXT, CONTEXT)
-        self.joint = nn.ModuleList([nn.Linear(CONTEXT, POT), nn.Linear(POT, POT)])  # one layer from both; the context's part is shared
+        # one layer from both; the context's part is shared
+        self.joint = nn.ModuleList([nn.Linear(CONTEXT, POT), nn.Linear(POT, POT)])
         flips = torch.zeros(SHOWN, dtype=torch.bool)
         flips[torch.arange(N_BALLS) * 5 + BALL_X] = True
         for entry in (*POT_X, CUT):
@@ -90,12 +94,14 @@ class StrokeHead(nn.Module):
 
 
 class ForesightReader(TableReader):
-    """The view ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context and a code for each outcome."""
+    """The view ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context and a code for each
+    outcome."""
 
     def __init__(self, observation_space):
         super().__init__(observation_space)
         self._features_dim = CONTEXT + STROKES_SEEN * OUTCOME
-        self.outcome = nn.ModuleList([nn.Linear(CONTEXT, 64), nn.Linear(POT, 64), nn.Linear(ENTRIES, 64)])  # one layer from the three
+        # one layer from the three
+        self.outcome = nn.ModuleList([nn.Linear(CONTEXT, 64), nn.Linear(POT, 64), nn.Linear(ENTRIES, 64)])
         self.code = nn.Linear(64, OUTCOME)
         self.best = nn.Linear(OUTCOME, CONTEXT)
 
@@ -105,15 +111,23 @@ class ForesightReader(TableReader):
         read = super().forward(seen[:, :SHOWN])
         context, pots, side = read[:, :CONTEXT], read[:, CONTEXT:-1].reshape(n, POTS, POT), read[:, -1:]
         rows = seen[:, SHOWN:].reshape(n, STROKES_SEEN, ENTRIES)
-        rows = torch.cat([rows[..., :CUE_X], rows[..., CUE_X : CUE_X + 1] * side[:, None], rows[..., CUE_X + 1 :]], 2)
+        rows = torch.cat(
+            [rows[..., :CUE_X], rows[..., CUE_X : CUE_X + 1] * side[:, None], rows[..., CUE_X + 1 :]], 2
+        )
         of_pot = self.outcome[1](pots[:, :POTS_SEEN]).repeat_interleave(STROKES_SEEN // POTS_SEEN, 1)
-        codes = torch.relu(self.code(torch.relu(self.outcome[0](context)[:, None] + of_pot + self.outcome[2](rows)))) * rows[..., :1]
+        codes = (
+            torch.relu(
+                self.code(torch.relu(self.outcome[0](context)[:, None] + of_pot + self.outcome[2](rows)))
+            )
+            * rows[..., :1]
+        )
         context = context + self.best(codes.amax(1))
         return torch.cat([context, codes.reshape(n, -1)], 1)
 
 
 class OutcomeHead(nn.Module):
-    """The features of ``ForesightReader`` -> a score for each of all choices; only the simulated ones may be played."""
+    """The features of ``ForesightReader`` -> a score for each of all choices; only the simulated ones may be
+    played."""
 
     def __init__(self):
         super().__init__()
@@ -155,7 +169,9 @@ class _Policy(MaskableActorCriticPolicy):
 
     def _new_optimizer(self, parameters, lr_schedule):
         """Adam in one call for all parameters: their 22 small arrays one by one take ten times as long."""
-        return self.optimizer_class(parameters, **{"fused": True, **self.optimizer_kwargs, "lr": lr_schedule(1)})
+        return self.optimizer_class(
+            parameters, **{"fused": True, **self.optimizer_kwargs, "lr": lr_schedule(1)}
+        )
 
 
 class TablePolicy(_Policy):
@@ -182,7 +198,8 @@ class TablePolicy(_Policy):
         return {name: part for name, part in self.__dict__.items() if name != "_fused"}
 
     def forward(self, obs, deterministic=False, action_masks=None):
-        """As in the base class. Drawing with masks, in a rollout, is quick: one random number a table from PyTorch's generator."""
+        """As in the base class. Drawing with masks, in a rollout, is quick: one random number a table from
+        PyTorch's generator."""
         if deterministic or not self._plays(obs, action_masks):
             return super().forward(obs, deterministic, action_masks)
         choices, values, logs = self.fused.act(*_given(obs, action_masks), torch.rand(len(obs)).numpy())
@@ -193,22 +210,32 @@ class TablePolicy(_Policy):
         if not self._plays(obs, action_masks):
             return super().get_distribution(obs, action_masks)
         seen, masks = _given(obs, action_masks)
-        found = self.action_dist.proba_distribution(action_logits=torch.from_numpy(self.fused.scores(seen, masks)))
+        found = self.action_dist.proba_distribution(
+            action_logits=torch.from_numpy(self.fused.scores(seen, masks))
+        )
         found.apply_masking(masks)
         return found
 
     def _plays(self, obs, action_masks):
         """Whether there are quick passes for these observations."""
-        return self.has_fused and action_masks is not None and not torch.is_grad_enabled() and obs.device.type == "cpu"
+        return (
+            self.has_fused
+            and action_masks is not None
+            and not torch.is_grad_enabled()
+            and obs.device.type == "cpu"
+        )
 
 
 def _given(obs, action_masks):
     """Observations and masks as ``FusedTable`` takes them."""
-    return np.ascontiguousarray(obs.float().numpy()), np.ascontiguousarray(action_masks, np.bool_).reshape(len(obs), -1)
+    return np.ascontiguousarray(obs.float().numpy()), np.ascontiguousarray(action_masks, np.bool_).reshape(
+        len(obs), -1
+    )
 
 
 class JudgedPolicy(TablePolicy):
-    """``TablePolicy`` with the value of positions that judges it; saved together, learned apart (``expert_iteration``)."""
+    """``TablePolicy`` with the value of positions that judges it; saved together, learned apart
+    (``expert_iteration``)."""
 
     def _build(self, lr_schedule):
         super()._build(lr_schedule)

@@ -1,8 +1,10 @@
-"""How is the policy of another trainer stored in a file? As the weights of its layers, an ``.npz`` of NumPy without any code.
+"""How is the policy of another trainer stored in a file? As the weights of its layers, an ``.npz`` of NumPy
+without any code.
 
-RLlib, TorchRL and a loop of one's own each save in a way of their own, most of them as pickles. Where the policy is a plain multilayer
-perceptron from the flat observation to the 540 choices, its weights are all there is to keep: ``weight_0`` (out, in) and ``bias_0`` (out,)
-of the first layer, ``weight_1`` and so on, and ``about``, JSON with the keys ``ABOUT``. ``agents.evaluate`` plays such a file.
+RLlib, TorchRL and a loop of one's own each save in a way of their own, most of them as pickles. Where the
+policy is a plain multilayer perceptron from the flat observation to the 540 choices, its weights are all
+there is to keep: ``weight_0`` (out, in) and ``bias_0`` (out,) of the first layer, ``weight_1`` and so on, and
+``about``, JSON with the keys ``ABOUT``. ``agents.evaluate`` plays such a file.
 """
 
 import io
@@ -28,7 +30,8 @@ ABOUT = {"trainer": "RLlib", "activation": "tanh", "shots": 0, "seed": 0, "gamma
 
 
 def packed_policy(weights, **about):
-    """A policy as the bytes of its file. ``weights``: as in ``dense_layers.Layers``; ``about``: a value for each key of ``ABOUT``."""
+    """A policy as the bytes of its file. ``weights``: as in ``dense_layers.Layers``; ``about``: a value for
+    each key of ``ABOUT``."""
     if set(about) != set(ABOUT):
         raise refuse("about", sorted(about), f"must have the keys {', '.join(ABOUT)}")
     arrays = {}
@@ -45,14 +48,17 @@ def write_policy(path, weights, **about):
 
 
 def read_policy(path, field):
-    """The ``Trained`` policy in a file, its network ``dense_layers.Layers``. Raises ValueError, naming ``field``; nothing is unpickled."""
+    """The ``Trained`` policy in a file, its network ``dense_layers.Layers``. Raises ValueError, naming
+    ``field``; nothing is unpickled."""
     try:
         with zipfile.ZipFile(path) as parts:
             if sum(part.file_size for part in parts.infolist()) > MOST:
                 raise ValueError(f"it holds more than {MOST:,} bytes")
         with np.load(path, allow_pickle=False) as arrays:
             about = json.loads(arrays["about"].item())
-            layers = [(arrays[f"weight_{k}"], arrays[f"bias_{k}"]) for k in range(_number_of_layers(arrays.files))]
+            layers = [
+                (arrays[f"weight_{k}"], arrays[f"bias_{k}"]) for k in range(_number_of_layers(arrays.files))
+            ]
         _check_layers(layers)
         return _described(about, layers)
     except Exception as error:  # any error of zip, NumPy or JSON on a file of another kind
@@ -67,8 +73,15 @@ def _number_of_layers(names):
 def _check_layers(layers):
     size = OBSERVATION_SIZE
     for k, (weight, bias) in enumerate(layers):
-        if weight.dtype != np.float32 or bias.dtype != np.float32 or weight.shape != (len(bias), size) or bias.ndim != 1:
-            raise ValueError(f"weight_{k} {weight.dtype} {weight.shape}, bias_{k} {bias.dtype} {bias.shape} after {size} numbers")
+        if (
+            weight.dtype != np.float32
+            or bias.dtype != np.float32
+            or weight.shape != (len(bias), size)
+            or bias.ndim != 1
+        ):
+            raise ValueError(
+                f"weight_{k} {weight.dtype} {weight.shape}, bias_{k} {bias.dtype} {bias.shape} after {size} numbers"
+            )
         if not (np.isfinite(weight).all() and np.isfinite(bias).all()):
             raise ValueError(f"layer {k} is not finite")
         size = len(bias)
@@ -85,6 +98,13 @@ def _described(about, layers):
         choice("key of about.env_options", key, (*SHOT_OPTIONS, *TRAINING_OPTIONS))
     network = Layers(layers, choice("about.activation", about["activation"], ACTIVATIONS))
     return Trained(
-        network, about["trainer"], "flat", about["env_options"] | {"action": "discrete"}, integer("about.shots", about["shots"], 0, 10**18),
-        number("about.gamma", about["gamma"], 0, 1), integer("about.seed", about["seed"], 0, 2**64), imitated=None, start=None,
-    )  # fmt: skip
+        network,
+        about["trainer"],
+        "flat",
+        about["env_options"] | {"action": "discrete"},
+        integer("about.shots", about["shots"], 0, 10**18),
+        number("about.gamma", about["gamma"], 0, 1),
+        integer("about.seed", about["seed"], 0, 2**64),
+        imitated=None,
+        start=None,
+    )

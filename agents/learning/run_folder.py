@@ -20,7 +20,8 @@ from .models import CHECKPOINT, zipped
 
 
 def claimed(out, resume):
-    """The ``Lock`` on the folder of a new run (made here) or of one to resume. Raises ValueError if the folder is unfit or in use."""
+    """The ``Lock`` on the folder of a new run (made here) or of one to resume. Raises ValueError if the
+    folder is unfit or in use."""
     if not (out / LOCK).exists():
         _check(out, resume)
     out.mkdir(parents=True, exist_ok=True)
@@ -63,16 +64,23 @@ def kept(out):
 
 
 def save_checkpoint(out, settings, model, seconds, curve, imitation, imitating=None):
-    """Save the state of training, with tables and random generators: a resumed run equals an uninterrupted one.
+    """Save the state of training, with tables and random generators: a resumed run equals an uninterrupted
+    one.
 
     ``imitating``: of ``Imitation.get_state`` while the agent imitates the search, else None.
     """
     state = {
-        "settings": asdict(settings), "seconds": seconds, "curve": curve, "imitation": imitation, "imitating": imitating,
-        "model": zipped(model), "replay": getattr(model, "replay_buffer", None), "tables": model.get_env().env_method("get_state"),
+        "settings": asdict(settings),
+        "seconds": seconds,
+        "curve": curve,
+        "imitation": imitation,
+        "imitating": imitating,
+        "model": zipped(model),
+        "replay": getattr(model, "replay_buffer", None),
+        "tables": model.get_env().env_method("get_state"),
         "running": model.get_env().running,
         "random": (np.random.get_state(), torch.get_rng_state(), model.action_space),  # noqa: NPY002 - SB3 draws from the global one
-    }  # fmt: skip
+    }
     data = pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL)
     write_atomic(out / CHECKPOINT, data)
     copied(out, data)
@@ -90,7 +98,16 @@ def read_checkpoint(out, settings):
         state = pickle.loads((out / CHECKPOINT).read_bytes())
         state.setdefault("imitating", state.get("teaching"))  # its name before 0.3, and later than the rest
         was = settings(**state["settings"])
-        if not state.keys() >= {"model", "tables", "random", "replay", "running", "imitation", "curve", "seconds"}:
+        if not state.keys() >= {
+            "model",
+            "tables",
+            "random",
+            "replay",
+            "running",
+            "imitation",
+            "curve",
+            "seconds",
+        }:
             raise KeyError
     except Exception:  # any error of pickle on a file of another kind
         raise stale(out) from None
@@ -118,7 +135,8 @@ def load_model(out, state, algo, envs):
         numpy_state, torch_state, model.action_space = state["random"]
         np.random.set_state(numpy_state)  # noqa: NPY002
         torch.set_rng_state(torch_state)
-        envs.set_options([{"state": table} for table in state["tables"]])  # for the reset at the beginning of learning or imitation
+        # for the reset at the beginning of learning or imitation
+        envs.set_options([{"state": table} for table in state["tables"]])
     except Exception:  # of an older network, or with a part missing
         raise stale(out) from None
     return model

@@ -1,8 +1,9 @@
-"""How is a round of self-play simulated, here or by many workers? In slices of ``SLICE`` positions, by the weights of the learner.
+"""How is a round of self-play simulated, here or by many workers? In slices of ``SLICE`` positions, by the
+weights of the learner.
 
-The learner draws all random numbers and cuts the positions into slices; a slice is computed from these alone, and no position's results
-depend on those beside it (``dense_layers``). So a training does not depend on the number of workers, not even when one dies and its slice
-is computed again.
+The learner draws all random numbers and cuts the positions into slices; a slice is computed from these alone,
+and no position's results depend on those beside it (``dense_layers``). So a training does not depend on the
+number of workers, not even when one dies and its slice is computed again.
 """
 
 from copy import copy
@@ -27,7 +28,8 @@ def positions_given(at):
 
 
 def policy_given(model, where):
-    """The policy of a model for slices: itself in this process, its weights and how to build it for another."""
+    """The policy of a model for slices: itself in this process, its weights and how to build it for
+    another."""
     if where.here:
         return model.policy
     weights = {name: one.numpy() for name, one in model.policy.state_dict().items()}
@@ -37,13 +39,14 @@ def policy_given(model, where):
 def strokes(shared, args, threads):
     """The task: the best stroke of each position under fresh noise samples, and where play goes on.
 
-    ``shared``: "run" (an id), "options", "budget", "fresh", "value" (or None), "policy" (or None, see ``policy_given``). ``args``: "at"
-    (arrays of m positions), "seeds" (m,), "explored" bool (m,), "pick" (m,), "errors" (m, fresh + 1, 5). Returns "seen" (m, SIZE) and
-    "after" (m, fresh, SIZE) float16, "points" and "goes_on" (m, fresh), "follows" (m,), and where play goes on: "positions", "on_table",
-    "game".
+    ``shared``: "run" (an id), "options", "budget", "fresh", "value" (or None), "policy" (or None, see
+    ``policy_given``). ``args``: "at" (arrays of m positions), "seeds" (m,), "explored" bool (m,), "pick"
+    (m,), "errors" (m, fresh + 1, 5). Returns "seen" (m, SIZE) and "after" (m, fresh, SIZE) float16, "points"
+    and "goes_on" (m, fresh), "follows" (m,), and where play goes on: "positions", "on_table", "game".
     """
     at, fresh, every = Positions(*args["at"]), shared["fresh"], np.arange(len(args["seeds"]))
-    search = copy(search_of(shared, threads))  # which keeps its own value, the rule of thumb, and its own proposals
+    # which keeps its own value, the rule of thumb, and its own proposals
+    search = copy(search_of(shared, threads))
     if shared["value"] is not None:
         search.value = shared["value"]
     if shared["policy"] is not None:
@@ -51,7 +54,9 @@ def strokes(shared, args, threads):
     m = len(every)
     ranked = search.rank(at, args["seeds"])
     rows = np.concatenate([np.repeat(every, fresh), every])
-    tried = np.concatenate([np.repeat(ranked.strokes[:, 0], fresh, axis=0), ranked.strokes[every, args["pick"]]])
+    tried = np.concatenate(
+        [np.repeat(ranked.strokes[:, 0], fresh, axis=0), ranked.strokes[every, args["pick"]]]
+    )
     errors = np.concatenate([args["errors"][:, :fresh].reshape(-1, 5), args["errors"][:, fresh]])
     out = search.outcomes(at, rows, tried, errors)
     features = lambda some: value_features(some, search.spread, search.planner.threads)  # noqa: E731
@@ -61,15 +66,20 @@ def strokes(shared, args, threads):
     played = np.where(args["explored"], m * fresh + every, fresh * every)
     left = out.afterstates[played]
     return {
-        "seen": features(at).astype(np.float16), "after": after.reshape(m, fresh, SIZE),
-        "points": out.points[: m * fresh].reshape(m, fresh), "goes_on": goes_on.reshape(m, fresh),
-        "follows": out.goes_on[played], "positions": left.positions, "on_table": left.on_table,
+        "seen": features(at).astype(np.float16),
+        "after": after.reshape(m, fresh, SIZE),
+        "points": out.points[: m * fresh].reshape(m, fresh),
+        "goes_on": goes_on.reshape(m, fresh),
+        "follows": out.goes_on[played],
+        "positions": left.positions,
+        "on_table": left.on_table,
         "game": left.game,
-    }  # fmt: skip
+    }
 
 
 def choices(shared, args, threads):
-    """The task: what discrete choices are worth, each simulated once: points, and the value of what they leave.
+    """The task: what discrete choices are worth, each simulated once: points, and the value of what they
+    leave.
 
     ``args``: "at" (arrays of m positions), "rows", "picks" and "keys" (k,). Returns "gains", float32 (k,).
     """
@@ -92,19 +102,29 @@ def of_choices(at, rows, picks, keys):
     ends = np.searchsorted(rows, [0, *(one.stop for one in cut)]).tolist()
     some = [slice(*pair) for pair in pairwise(ends)]
     return [
-        {"at": positions_given(at[one]), "rows": rows[its] - one.start, "picks": picks[its], "keys": keys[its]}
+        {
+            "at": positions_given(at[one]),
+            "rows": rows[its] - one.start,
+            "picks": picks[its],
+            "keys": keys[its],
+        }
         for one, its in zip(cut, some, strict=True)
-    ]  # fmt: skip
+    ]
 
 
 def judged(where, shared, at, rows, picks, keys):
     """``choices`` of all positions: float32 (k,)."""
-    return np.concatenate([one["gains"] for one in where.map(f"{__name__}:choices", shared, of_choices(at, rows, picks, keys))])
+    return np.concatenate(
+        [one["gains"] for one in where.map(f"{__name__}:choices", shared, of_choices(at, rows, picks, keys))]
+    )
 
 
 def search_of(shared, threads):
     """The ``StrokeSearch`` of a training, made once in a process."""
-    return once(("search", shared["run"], threads), lambda: StrokeSearch(shared["options"], shared["budget"], threads=threads))
+    return once(
+        ("search", shared["run"], threads),
+        lambda: StrokeSearch(shared["options"], shared["budget"], threads=threads),
+    )
 
 
 def planner_of(options, threads):
@@ -130,7 +150,10 @@ def _proposals(shared):
         return PolicyProposals(policy.fused)
     import torch
 
-    network = once(("network", shared["run"]), lambda: _network(**{name: policy[name] for name in ("recipe", "env_options", "view")}))
+    network = once(
+        ("network", shared["run"]),
+        lambda: _network(**{name: policy[name] for name in ("recipe", "env_options", "view")}),
+    )
     network.load_state_dict({name: torch.from_numpy(one.copy()) for name, one in policy["weights"].items()})
     return PolicyProposals(network.fused)
 
@@ -143,4 +166,6 @@ def _network(recipe, env_options, view):
     from .hyperparameters import Recipe
 
     tables = SnookerVectorEnv(1, **env_options)
-    return Recipe.of(recipe, env_kwargs=env_options).new_network(view_of(view).space, tables.single_action_space)
+    return Recipe.of(recipe, env_kwargs=env_options).new_network(
+        view_of(view).space, tables.single_action_space
+    )

@@ -1,9 +1,10 @@
 """How is the value of a position learned? By backups over noise samples, corrected by what really followed.
 
-The target of a position is the mean of points plus the value of the afterstate, over fresh noise samples of the best stroke. (The samples
-that chose the stroke would flatter it.) What really followed corrects it with weight ``LAMBDA``, not beyond an exploratory stroke (Watkins'
-Q(lambda)). Features of afterstates are kept, so that targets follow the network. The returns of single visits are no use as targets: a
-visit's luck drowns what a position is worth.
+The target of a position is the mean of points plus the value of the afterstate, over fresh noise samples of
+the best stroke. (The samples that chose the stroke would flatter it.) What really followed corrects it with
+weight ``LAMBDA``, not beyond an exploratory stroke (Watkins' Q(lambda)). Features of afterstates are kept, so
+that targets follow the network. The returns of single visits are no use as targets: a visit's luck drowns
+what a position is worth.
 """
 
 from collections import deque
@@ -24,7 +25,8 @@ REFRESH = 8
 BATCH, EACH, RATE = 1024, 32, 2e-3
 """Positions in the batch of a gradient step, new positions for each step, and the first learning rate."""
 FIRST_STEPS, FIRST_GUESS = 25, 25.0
-"""The first time, so many times the steps; and the points that follow a visit's last known stroke in its first targets."""
+"""The first time, so many times the steps; and the points that follow a visit's last known stroke in its
+first targets."""
 
 
 class ValueLearning:
@@ -39,8 +41,9 @@ class ValueLearning:
         self.losses = deque(maxlen=100)
 
     def add(self, seen, after, points, goes_on, follows):
-        """Keep a round: features (n, SIZE) of the positions and (n, s, SIZE) of what s samples left, their points and whether the visit
-        went on (n, s), and whether the first sample was really played on (n,)."""
+        """Keep a round: features (n, SIZE) of the positions and (n, s, SIZE) of what s samples left, their
+        points and whether the visit went on (n, s), and whether the first sample was really played on
+        (n,)."""
         self._rounds.append((seen.astype(np.float16), after, points.astype(np.float32), goes_on, follows))
         del self._rounds[: -max(1, KEPT // self._n)]
 
@@ -60,14 +63,16 @@ class ValueLearning:
             group["lr"] = RATE * max(0.02, remaining)
         members = self._network.members
         for _ in range(max(1, self._n // EACH) * (FIRST_STEPS if first else 1)):
-            rows = self._rng.integers(len(self._fitted[0]), size=(members, BATCH))  # each member its own batch
+            # each member its own batch
+            rows = self._rng.integers(len(self._fitted[0]), size=(members, BATCH))
             seen, target, made = (torch.from_numpy(one[rows].astype(np.float32)) for one in self._fitted)
             logit, follows = self._network(seen)
             error = (torch.sigmoid(logit) * follows - target) / 20.0  # points a typical target errs by
             chance = torch.nn.functional.binary_cross_entropy_with_logits(logit, made)
             loss = error.square().mean() + 0.3 * chance
             self._optimizer.zero_grad()
-            (members * loss).backward()  # the sum over the members: the gradient of each is that of its own mean
+            # the sum over the members: the gradient of each is that of its own mean
+            (members * loss).backward()
             torch.nn.utils.clip_grad_norm_(self._network.parameters(), members**0.5)
             self._optimizer.step()
             self.losses.append(loss.item())
@@ -97,7 +102,12 @@ class ValueLearning:
 
     def get_state(self):
         """Everything but the network."""
-        state = {"rounds": self._rounds, "age": self._age, "fitted": self._fitted, "losses": list(self.losses)}
+        state = {
+            "rounds": self._rounds,
+            "age": self._age,
+            "fitted": self._fitted,
+            "losses": list(self.losses),
+        }
         return state | {"optimizer": self._optimizer.state_dict()}
 
     def set_state(self, state):

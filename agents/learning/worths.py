@@ -1,4 +1,5 @@
-"""What are choices worth by the search's rule of thumb? A task of imitation, in which each is simulated once."""
+"""What are choices worth by the search's rule of thumb? A task of imitation, in which each is simulated
+once."""
 
 import numpy as np
 
@@ -8,7 +9,8 @@ from .self_play import of_choices, once
 
 
 def play(shared, args, threads):
-    """The task: ``shared`` has "run" (an id), "options", "spread" and "ahead"; ``args`` is as of ``self_play.choices``."""
+    """The task: ``shared`` has "run" (an id), "options", "spread" and "ahead"; ``args`` is as of
+    ``self_play.choices``."""
     planner = once(("worths", shared["run"], threads), lambda: Planner(shared["options"], threads=threads))
     points, goes_on, left, _ = planner.play(Positions(*args["at"]), args["rows"], args["picks"], args["keys"])
     ahead = prospects_of(left, shared["spread"], threads=planner.threads)[0]
@@ -17,4 +19,6 @@ def play(shared, args, threads):
 
 def worths(where, shared, at, rows, picks, keys):
     """The task for all positions: float64 (k,)."""
-    return np.concatenate([one["worth"] for one in where.map(f"{__name__}:play", shared, of_choices(at, rows, picks, keys))])
+    return np.concatenate(
+        [one["worth"] for one in where.map(f"{__name__}:play", shared, of_choices(at, rows, picks, keys))]
+    )

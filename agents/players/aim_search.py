@@ -1,5 +1,5 @@
-"""Where must a pot found by geometry be aimed? Each shot is simulated without execution errors, at aims around its line and a few speeds.
-The widest interval of aims that pot gives the shot, and its middle the aim.
+"""Where must a pot found by geometry be aimed? Each shot is simulated without execution errors, at aims
+around its line and a few speeds. The widest interval of aims that pot gives the shot, and its middle the aim.
 
 The player "geometric" uses it: python -m agents.evaluate --agent geometric
 """
@@ -11,7 +11,18 @@ import numpy as np
 from snooker_env.game import N_BALLS, SPOTS, BallOn
 from snooker_env.planning import Planner
 
-from ..features.indirect_pots import AIM_X, AIM_Y, BALL, COLUMNS, GHOST_X, GHOST_Y, REACH, direct, direct_pots, indirect
+from ..features.indirect_pots import (
+    AIM_X,
+    AIM_Y,
+    BALL,
+    COLUMNS,
+    GHOST_X,
+    GHOST_Y,
+    REACH,
+    direct,
+    direct_pots,
+    indirect,
+)
 
 SPEEDS = (1.8, 2.9, 4.4)
 """Cue speeds [m/s] at which the shots are tried."""
@@ -20,7 +31,8 @@ AIMS = 40
 
 
 def widest_run(good):
-    """Start and length of the longest run of True in each row of ``good`` (m, n); of equal ones that nearest to the middle."""
+    """Start and length of the longest run of True in each row of ``good`` (m, n); of equal ones that nearest
+    to the middle."""
     m, n = good.shape
     lengths, run = np.zeros((m, n), np.int64), np.zeros(m, np.int64)
     for i in range(n):
@@ -47,7 +59,8 @@ class Aimer:
 
     def __init__(self, options, speed):
         self._planner, self._speed = Planner(options, noise="none", threads=1), speed
-        indirect(np.array(SPOTS), np.ones(N_BALLS, np.bool_), BallOn.RED, *self._bed)  # compile now, so that decision times exclude it
+        # compile now, so that decision times exclude it
+        indirect(np.array(SPOTS), np.ones(N_BALLS, np.bool_), BallOn.RED, *self._bed)
 
     @property
     def _bed(self):
@@ -56,14 +69,16 @@ class Aimer:
     def strokes(self, at):
         """A stroke for each of n ``Positions``: (n, 5).
 
-        In this order, until one pots without execution errors: the widest direct pot along its solved line; the direct pot with the widest
-        interval of aims; the indirect pot with the widest one. If none does, the first line (without a direct
-        pot: at what is seen of a ball on, or an escape).
+        In this order, until one pots without execution errors: the widest direct pot along its solved line;
+        the direct pot with the widest interval of aims; the indirect pot with the widest one. If none does,
+        the first line (without a direct pot: at what is seen of a ball on, or an escape).
         """
         n, ball_on = len(at), at.ball_on.copy()
         shots, counts = np.empty((n, 1, COLUMNS)), np.empty(n, np.int64)
         direct_pots(at.positions, at.on_table, ball_on, shots, counts)
-        strokes = plain(np.full(n, self._speed), self._solve(at, np.arange(n), shots[:, 0], (self._speed,))[:, 0])
+        strokes = plain(
+            np.full(n, self._speed), self._solve(at, np.arange(n), shots[:, 0], (self._speed,))[:, 0]
+        )
         for k in np.flatnonzero(~self.pots(at, np.arange(n), strokes)).tolist():
             one, (p, on) = at[k : k + 1], (at.positions[k], at.on_table[k])
             found = self.widest(one, direct(p, on, ball_on[k]))
@@ -74,8 +89,8 @@ class Aimer:
         return strokes
 
     def widest(self, one, shots):
-        """The shot with the widest interval of aims that pot, simulated on the only position of ``one``: (its stroke, half the width [rad],
-        index of the shot, index of the speed); None if none pots."""
+        """The shot with the widest interval of aims that pot, simulated on the only position of ``one``: (its
+        stroke, half the width [rad], index of the shot, index of the speed); None if none pots."""
         if len(shots) == 0:
             return None
         lines = self._solve(one, np.zeros(len(shots), np.int64), shots, SPEEDS).ravel()
@@ -91,7 +106,8 @@ class Aimer:
         return plain(speeds[best : best + 1], [middle])[0], 0.5 * width, *divmod(best, len(SPEEDS))
 
     def _scan(self, one, speeds, lines, reaches):
-        """Middle and width [rad] of the widest interval of aims that pot, within ``reaches`` of ``lines``: (m,) each, 0 if none does."""
+        """Middle and width [rad] of the widest interval of aims that pot, within ``reaches`` of ``lines``:
+        (m,) each, 0 if none does."""
         steps = 2.0 * reaches / AIMS
         aims = lines[:, None] + steps[:, None] * (np.arange(AIMS) - 0.5 * (AIMS - 1))
         tries = plain(np.repeat(speeds, AIMS), aims.ravel())
@@ -99,7 +115,8 @@ class Aimer:
         return lines + steps * (starts + 0.5 * (lengths - 1) - 0.5 * (AIMS - 1)), steps * lengths
 
     def _solve(self, at, rows, shots, speeds):
-        """Directions of the cue ball (m, s) [rad] that send the first ball of each shot (m, COLUMNS) to its aim point at each speed."""
+        """Directions of the cue ball (m, s) [rad] that send the first ball of each shot (m, COLUMNS) to its
+        aim point at each speed."""
         m, s = len(shots), len(speeds)
         aims = np.empty((m, s))
         plain = shots[:, BALL] < 0.0
@@ -108,9 +125,13 @@ class Aimer:
             aims[j] = atan2(shots[j, GHOST_Y] - y, shots[j, GHOST_X] - x)
         pots = np.repeat(np.flatnonzero(~plain), s)
         aims[~plain] = self._planner.pot_aim(
-            at, rows[pots], shots[pots, BALL].astype(np.int64), shots[pots][:, [AIM_X, AIM_Y]], np.tile(speeds, len(pots) // s),
+            at,
+            rows[pots],
+            shots[pots, BALL].astype(np.int64),
+            shots[pots][:, [AIM_X, AIM_Y]],
+            np.tile(speeds, len(pots) // s),
             ghosts=shots[pots][:, [GHOST_X, GHOST_Y]],
-        ).reshape(-1, s)  # fmt: skip
+        ).reshape(-1, s)
         return aims
 
     def pots(self, at, rows, strokes):

@@ -1,4 +1,5 @@
-"""How do players choose among simulated strokes? By a rule, or by the network ``ppo_foresight``, from the view ``foresight``."""
+"""How do players choose among simulated strokes? By a rule, or by the network ``ppo_foresight``, from the
+view ``foresight``."""
 
 import numpy as np
 
@@ -9,7 +10,8 @@ from ..features.lookahead_features import PICKS, ForesightView, worth_by_rule
 
 
 class ForesightRule(ChoicePlayer):
-    """The observation of ``ppo_foresight``, scored by a rule instead of a network: mean points plus the mean value of the afterstates."""
+    """The observation of ``ppo_foresight``, scored by a rule instead of a network: mean points plus the mean
+    value of the afterstates."""
 
     name = "foresight_rule"
 
@@ -20,6 +22,7 @@ class ForesightRule(ChoicePlayer):
     def scores(self, at, seeds):
         """Expected points of the simulated choices; all others are worse."""
         masks = action_masks(at)
-        scores = np.where(masks, -1e9, -np.inf)  # where none of the simulated choices is there, the first of the others
+        # where none of the simulated choices is there, the first of the others
+        scores = np.where(masks, -1e9, -np.inf)
         scores[:, PICKS] = np.maximum(worth_by_rule(self._view.ahead(at, masks[:, PICKS])), scores[:, PICKS])
         return scores

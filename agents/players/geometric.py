@@ -1,4 +1,5 @@
-"""How does the player ``geometric`` play? Direct pots, else banks, plants and cannons; aims are solved in the simulator."""
+"""How does the player ``geometric`` play? Direct pots, else banks, plants and cannons; aims are solved in the
+simulator."""
 
 import numpy as np
 

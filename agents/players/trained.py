@@ -1,4 +1,5 @@
-"""How does a trained model of this repository play? Its greedy choices or actions, from the view of the table it has learned with."""
+"""How does a trained model of this repository play? Its greedy choices or actions, from the view of the table
+it has learned with."""
 
 from pathlib import Path
 
@@ -32,7 +33,9 @@ class PolicyPlayer(ChoicePlayer):
 
     def _bind(self, options):
         super()._bind(options)
-        self._view = None if isinstance(self.model.policy, Layers) else view_of(self.model.view, threads=1).at(options)
+        self._view = (
+            None if isinstance(self.model.policy, Layers) else view_of(self.model.view, threads=1).at(options)
+        )
 
     @property
     def learned(self):
@@ -48,7 +51,11 @@ class PolicyPlayer(ChoicePlayer):
         if self._view is None:
             return np.where(masks, policy(observations), -np.inf)
         masks, seen = self._view.allowed(masks), self._view(at, observations)
-        scores = policy.fused.scores(seen, masks) if getattr(policy, "has_fused", False) else _logits(policy, seen, masks)
+        scores = (
+            policy.fused.scores(seen, masks)
+            if getattr(policy, "has_fused", False)
+            else _logits(policy, seen, masks)
+        )
         return np.where(masks, scores, -np.inf)
 
     def figures(self, scores):
@@ -57,19 +64,23 @@ class PolicyPlayer(ChoicePlayer):
 
 
 def _logits(policy, seen, masks):
-    """The logits of a policy of PyTorch, a table at a time: the products of a batch round otherwise than those of one row."""
+    """The logits of a policy of PyTorch, a table at a time: the products of a batch round otherwise than
+    those of one row."""
     import torch
 
     logits = np.empty(masks.shape)
     with one_thread(), torch.no_grad():
         for k in range(len(seen)):
             row = policy.obs_to_tensor(seen[k : k + 1])[0]
-            logits[k] = policy.get_distribution(row, action_masks=masks[k : k + 1]).distribution.logits[0].numpy()
+            logits[k] = (
+                policy.get_distribution(row, action_masks=masks[k : k + 1]).distribution.logits[0].numpy()
+            )
     return logits
 
 
 class BoxModel:
-    """A model with box actions as a ``Seen``: its deterministic actions, from flat observations with pots, a table at a time."""
+    """A model with box actions as a ``Seen``: its deterministic actions, from flat observations with pots, a
+    table at a time."""
 
     def __init__(self, model):
         self.model, self._view = model, view_of(model.view)
@@ -100,7 +111,8 @@ def player_of_model(trained):
 
 
 def load_player(path, field="agent"):
-    """The player of a model's .zip or .npz or a run's folder. ValueError, naming ``field``, if train.py did not make it."""
+    """The player of a model's .zip or .npz or a run's folder. ValueError, naming ``field``, if train.py did
+    not make it."""
     file = file_of(Path(path), field)
     return player_of_model(read_policy(file, field) if file.suffix == ".npz" else load_trained(file, field))
 

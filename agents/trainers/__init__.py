@@ -1,1 +1,2 @@
-"""How do other libraries train on this environment? RLlib here; TorchRL and a loop of one's own are single files in ``examples/``."""
+"""How do other libraries train on this environment? RLlib here; TorchRL and a loop of one's own are single
+files in ``examples/``."""

@@ -1,8 +1,10 @@
-"""How does RLlib train on this environment? PPO of the new API stack with action masks, on native vector environments.
+"""How does RLlib train on this environment? PPO of the new API stack with action masks, on native vector
+environments.
 
-An env runner is a process of Ray with one ``SnookerVectorEnv``. RLlib resets a table in the step after its end (NEXT_STEP, the default of
-that class) and leaves that step out of the sample by itself. The module is RLlib's own ``ActionMaskingTorchRLModule``: it reads
-``observation="masked"``, adds the logarithm of the mask to the scores, and must not be used with another algorithm than PPO.
+An env runner is a process of Ray with one ``SnookerVectorEnv``. RLlib resets a table in the step after its
+end (NEXT_STEP, the default of that class) and leaves that step out of the sample by itself. The module is
+RLlib's own ``ActionMaskingTorchRLModule``: it reads ``observation="masked"``, adds the logarithm of the mask
+to the scores, and must not be used with another algorithm than PPO.
 """
 
 import numpy as np
@@ -22,11 +24,22 @@ BATCH = 8192
 """Shots between two updates, of all runners together."""
 GAMMA = 0.95
 SETTINGS = {
-    "train_batch_size": BATCH, "minibatch_size": 2048, "num_epochs": 4, "lr": 1e-3, "gamma": GAMMA, "lambda_": 0.5,
-    "entropy_coeff": 0.003, "vf_loss_coeff": 0.01, "vf_clip_param": 1e6, "clip_param": 0.2, "use_kl_loss": False, "grad_clip": 0.5,
+    "train_batch_size": BATCH,
+    "minibatch_size": 2048,
+    "num_epochs": 4,
+    "lr": 1e-3,
+    "gamma": GAMMA,
+    "lambda_": 0.5,
+    "entropy_coeff": 0.003,
+    "vf_loss_coeff": 0.01,
+    "vf_clip_param": 1e6,
+    "clip_param": 0.2,
+    "use_kl_loss": False,
+    "grad_clip": 0.5,
     "grad_clip_by": "global_norm",
-}  # fmt: skip
-"""Those of ``hyperparams/ppo_mask.yml``, as far as RLlib has them; RLlib's own clipping of the value's loss and its KL penalty are off."""
+}
+"""Those of ``hyperparams/ppo_mask.yml``, as far as RLlib has them; RLlib's own clipping of the value's loss
+and its KL penalty are off."""
 PATIENCE = 600.0
 """Seconds in which a runner must give its sample: RLlib's own minute is too short for a busy machine."""
 MEMORY = 2**28
@@ -36,7 +49,8 @@ MEMORY = 2**28
 class RunnerTables(SnookerVectorEnv):
     """The tables of one runner, which begin with ``seeds_of_runner``.
 
-    RLlib gives runner w the seed + w, so that all but one of its tables would begin as those of the runner before.
+    RLlib gives runner w the seed + w, so that all but one of its tables would begin as those of the runner
+    before.
     """
 
     own_seeds: list[int | None] | None = None
@@ -47,7 +61,8 @@ class RunnerTables(SnookerVectorEnv):
 
 
 def seeds_of_runner(seed, runner, n):
-    """Seeds of its n tables, 64 bits each. Those of other runners and of runs with other seeds have nothing in common with them."""
+    """Seeds of its n tables, 64 bits each. Those of other runners and of runs with other seeds have nothing
+    in common with them."""
     return np.random.SeedSequence(seed, spawn_key=(runner,)).generate_state(n, np.uint64).tolist()
 
 
@@ -56,7 +71,8 @@ def _tables(context):
 
 
 def _own_seeds(*, env, env_context, env_runner, **more):
-    """RLlib calls it in each runner that has made its tables; ``worker_index`` begins with 1, of the main process with 0."""
+    """RLlib calls it in each runner that has made its tables; ``worker_index`` begins with 1, of the main
+    process with 0."""
     if env_runner.config.seed is not None:
         env.own_seeds = seeds_of_runner(env_runner.config.seed, env_context.worker_index, env.num_envs)
 
@@ -65,13 +81,19 @@ def started(runners, paths):
     """Start Ray on this machine, for so many runners, whose processes find modules in ``paths``."""
     variables = {"PYTHONPATH": paths, "OMP_NUM_THREADS": "1", "SNOOKER_ENV_QUIET": "1"}
     ray.init(
-        "local", num_cpus=runners + 1, object_store_memory=MEMORY, include_dashboard=False, log_to_driver=False, logging_level="ERROR",
+        "local",
+        num_cpus=runners + 1,
+        object_store_memory=MEMORY,
+        include_dashboard=False,
+        log_to_driver=False,
+        logging_level="ERROR",
         runtime_env={"env_vars": variables},
-    )  # fmt: skip
+    )
 
 
 def algorithm_of(settings, seed):
-    """A new PPO algorithm of RLlib; ``settings``: ``rllib_run.RunSettings``. ``seed``: of weights, tables and exploration."""
+    """A new PPO algorithm of RLlib; ``settings``: ``rllib_run.RunSettings``. ``seed``: of weights, tables and
+    exploration."""
     tune.register_env(ENV, _tables)
     network = DefaultModelConfig(fcnet_hiddens=list(HIDDEN), fcnet_activation=ACTIVATION)
     options = {"action": "discrete", "observation": "masked", "threads": 1, **settings.env_options}
@@ -79,23 +101,29 @@ def algorithm_of(settings, seed):
         PPOConfig()
         .environment(ENV, env_config=options)
         .env_runners(
-            num_env_runners=settings.runners, num_envs_per_env_runner=settings.envs, gym_env_vectorize_mode="vector_entry_point",
-            rollout_fragment_length="auto", sample_timeout_s=PATIENCE,
+            num_env_runners=settings.runners,
+            num_envs_per_env_runner=settings.envs,
+            gym_env_vectorize_mode="vector_entry_point",
+            rollout_fragment_length="auto",
+            sample_timeout_s=PATIENCE,
         )
         .learners(num_learners=0)
         .training(**SETTINGS)
         .rl_module(rl_module_spec=RLModuleSpec(module_class=ActionMaskingTorchRLModule, model_config=network))
         .callbacks(on_environment_created=_own_seeds)
         .debugging(seed=seed, log_level="ERROR")
-    )  # fmt: skip
+    )
     return config.build_algo()
 
 
 def restore(algorithm, folder):
-    """Go on from a checkpoint. Its weights go to the runners at once: RLlib would let them play the first rollout with new ones."""
+    """Go on from a checkpoint. Its weights go to the runners at once: RLlib would let them play the first
+    rollout with new ones."""
     algorithm.restore_from_path(str(folder))
     learner = algorithm.learner_group
-    algorithm.env_runner_group.sync_weights(from_worker_or_learner_group=learner, timeout_seconds=PATIENCE, inference_only=True)
+    algorithm.env_runner_group.sync_weights(
+        from_worker_or_learner_group=learner, timeout_seconds=PATIENCE, inference_only=True
+    )
 
 
 def layers_of(algorithm):

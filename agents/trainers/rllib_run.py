@@ -1,16 +1,19 @@
-"""How is an agent trained with RLlib from the command line? Trains, saves, resumes, and judges the policy on held-out tables.
+"""How is an agent trained with RLlib from the command line? Trains, saves, resumes, and judges the policy on
+held-out tables.
 
     python -m agents.train_rllib                                 300,000 shots with one env runner: some minutes
     python -m agents.train_rllib --runners 2 --out runs/two      two env runners, each with its own tables
     python -m agents.train_rllib --resume --out runs/two         go on after Ctrl-C or a kill
     python -m agents.evaluate --agent runs/two                   our protocol, beside any other agent
 
-Files of a run folder: ``policy.npz``, the policy as plain weights; ``untrained.npz``, the same before the first update; ``results.json``,
-every figure; ``state.json`` and a folder ``checkpoint-N`` of RLlib's own, from which a run goes on. That folder holds pickles, and loading
-a pickle runs code: --resume only your own runs.
+Files of a run folder: ``policy.npz``, the policy as plain weights; ``untrained.npz``, the same before the
+first update; ``results.json``, every figure; ``state.json`` and a folder ``checkpoint-N`` of RLlib's own,
+from which a run goes on. That folder holds pickles, and loading a pickle runs code: --resume only your own
+runs.
 
-A resumed run has the weights, the optimiser and the counters of the checkpoint. It is not bit for bit the uninterrupted one: RLlib saves
-neither the tables nor the random generators of its runners. They begin anew, with seeds that no earlier part of the run has used.
+A resumed run has the weights, the optimiser and the counters of the checkpoint. It is not bit for bit the
+uninterrupted one: RLlib saves neither the tables nor the random generators of its runners. They begin anew,
+with seeds that no earlier part of the run has used.
 """
 
 import argparse
@@ -77,26 +80,42 @@ class RunSettings:
 
 
 HELP = {
-    "steps": "total number of shots, rounded up to whole updates", "runners": "env runners, each a process",
-    "envs": "tables of a runner", "seed": "of weights, tables and exploration",
-    "noise": "execution noise: none, professional, amateur, club, robot or olympiad", "layout": "of the training tables",
-    "eval_visits": "visits of the final evaluation on held-out tables", "checkpoint_every": "shots between two checkpoints",
-}  # fmt: skip
+    "steps": "total number of shots, rounded up to whole updates",
+    "runners": "env runners, each a process",
+    "envs": "tables of a runner",
+    "seed": "of weights, tables and exploration",
+    "noise": "execution noise: none, professional, amateur, club, robot or olympiad",
+    "layout": "of the training tables",
+    "eval_visits": "visits of the final evaluation on held-out tables",
+    "checkpoint_every": "shots between two checkpoints",
+}
 BOUNDS = {
-    "steps": (1, 10**12), "runners": (1, 1024), "envs": (1, BATCH), "seed": (0, 2**31), "eval_visits": (2, HELD_OUT),
+    "steps": (1, 10**12),
+    "runners": (1, 1024),
+    "envs": (1, BATCH),
+    "seed": (0, 2**31),
+    "eval_visits": (2, HELD_OUT),
     "checkpoint_every": (1, 10**12),
-}  # fmt: skip
+}
 FREE_ON_RESUME = ("steps", "runners", "eval_visits", "checkpoint_every")
 
 
 def parse(argv):
     """(parser, options given on the command line, the rest)."""
-    parser = argparse.ArgumentParser("python -m agents.train_rllib", description=(__doc__ or "").partition("\n")[0])
+    parser = argparse.ArgumentParser(
+        "python -m agents.train_rllib", description=(__doc__ or "").partition("\n")[0]
+    )
     for f in fields(RunSettings):
         name = "--" + f.name.replace("_", "-")
-        parser.add_argument(name, type=type(f.default), default=argparse.SUPPRESS, help=f"{HELP[f.name]} [{f.default}]")
+        parser.add_argument(
+            name, type=type(f.default), default=argparse.SUPPRESS, help=f"{HELP[f.name]} [{f.default}]"
+        )
     parser.add_argument("--out", type=Path, help="the run's folder [runs/rllib-SEED]")
-    parser.add_argument("--resume", action="store_true", help="go on with the run in that folder; options left out keep their values")
+    parser.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on with the run in that folder; options left out keep their values",
+    )
     given = vars(parser.parse_args(argv))
     out, resume = given.pop("out"), given.pop("resume")
     return parser, given, out or Path("runs", f"rllib-{given.get('seed', RunSettings.seed)}"), resume
@@ -107,7 +126,9 @@ def checked(settings):
     for name, (low, high) in BOUNDS.items():
         integer(name, getattr(settings, name), low, high)
     if settings.layout == "held_out":
-        raise refuse("layout", "held_out", "must be another for training: the held-out tables are kept for evaluation")
+        raise refuse(
+            "layout", "held_out", "must be another for training: the held-out tables are kept for evaluation"
+        )
     Options(action="discrete", observation="masked", **settings.env_options)
     return settings
 
@@ -155,7 +176,8 @@ def claimed(out, resume):
 
 
 def save(out, settings, progress, algorithm):
-    """A checkpoint: RLlib's folder first, then the file that names it, so that a kill at any time leaves a whole one."""
+    """A checkpoint: RLlib's folder first, then the file that names it, so that a kill at any time leaves a
+    whole one."""
     name = f"checkpoint-{progress.updates:06d}"
     if progress.checkpoint != name:
         half = (out / f"{name}.tmp").absolute()
@@ -173,9 +195,15 @@ def save(out, settings, progress, algorithm):
 
 def _write(file, settings, progress, algorithm):
     write_policy(
-        file, layers_of(algorithm), trainer="RLlib", activation=ACTIVATION, shots=progress.shots, seed=settings.seed, gamma=GAMMA,
+        file,
+        layers_of(algorithm),
+        trainer="RLlib",
+        activation=ACTIVATION,
+        shots=progress.shots,
+        seed=settings.seed,
+        gamma=GAMMA,
         env_options=settings.env_options,
-    )  # fmt: skip
+    )
 
 
 def train(out, settings, progress, algorithm, stop):
@@ -191,29 +219,38 @@ def _train(out, settings, progress, algorithm, stop, said):
         found = algorithm.train().get("env_runners")
         if not found or "num_env_steps_sampled_lifetime" not in found:  # RLlib goes on without a sample
             save(out, settings, progress, algorithm)
-            raise SystemExit(f"agents.train_rllib: no env runner gave a sample in {PATIENCE:.0f} s; saved at {progress.shots:,} shots")
+            raise SystemExit(
+                f"agents.train_rllib: no env runner gave a sample in {PATIENCE:.0f} s; saved at {progress.shots:,} shots"
+            )
         progress.shots, progress.updates = int(found["num_env_steps_sampled_lifetime"]), progress.updates + 1
         progress.seconds = before + time.perf_counter() - began
-        said.at(progress.shots, f"update {progress.updates:,}, {found.get('episode_return_mean', float('nan')):.2f} points a visit")
+        said.at(
+            progress.shots,
+            f"update {progress.updates:,}, {found.get('episode_return_mean', float('nan')):.2f} points a visit",
+        )
         if progress.shots - saved >= settings.checkpoint_every:
             save(out, settings, progress, algorithm)
             saved = progress.shots
 
 
 def judge(out, settings, progress):
-    """Held-out visits of the policy, of itself before the training, and of simple players, in ``results.json`` and as a table."""
+    """Held-out visits of the policy, of itself before the training, and of simple players, in
+    ``results.json`` and as a table."""
     files = {"trained": POLICY, "untrained": UNTRAINED}
     players = {name: player_of_model(read_policy(out / file, "out")) for name, file in files.items()}
     players |= {name: snooker_env.player(name) for name in ("ghost_ball", "random")}
     seeds = tables_of("held_out", settings.eval_visits)
     figures = {
-        name: summary(play_visits(player, settings.eval_visits, first_seed=seeds, noise=settings.noise)) for name, player in players.items()
+        name: summary(play_visits(player, settings.eval_visits, first_seed=seeds, noise=settings.noise))
+        for name, player in players.items()
     }
     results = {
-        "settings": asdict(settings), **asdict(progress), "shots_per_second": progress.shots / max(progress.seconds, 1e-9),
+        "settings": asdict(settings),
+        **asdict(progress),
+        "shots_per_second": progress.shots / max(progress.seconds, 1e-9),
         "versions": {"ray": ray.__version__, **software()},
         "evaluation": figures,
-    }  # fmt: skip
+    }
     write_json(out / RESULTS, results)
     show(figures)
     print(f"Figures: {out / RESULTS}   by our protocol: python -m agents.evaluate --agent {out}")
@@ -239,7 +276,10 @@ def main(argv=None):
         snooker_env.warmup()  # before the runners start: each would compile everything for itself
         torch.set_num_threads(1)
         ending.callback(ray.shutdown)
-        started(settings.runners, os.pathsep.join([str(Path(snooker_env.__file__).parents[1]), str(Path(__file__).parents[2])]))
+        started(
+            settings.runners,
+            os.pathsep.join([str(Path(snooker_env.__file__).parents[1]), str(Path(__file__).parents[2])]),
+        )
         algorithm = algorithm_of(settings, settings.seed + SEEDS * progress.parts)
         ending.callback(algorithm.stop)
         progress.parts += 1
@@ -252,7 +292,9 @@ def main(argv=None):
             print(f"RLlib in {out}: {progress.shots:,} of {settings.steps:,} shots played", flush=True)
             train(out, settings, progress, algorithm, stop)
     if stop.signal:
-        print(f"Saved at {progress.shots:,} shots. Continue with:  python -m agents.train_rllib --resume --out {out}")
+        print(
+            f"Saved at {progress.shots:,} shots. Continue with:  python -m agents.train_rllib --resume --out {out}"
+        )
         return 128 + stop.signal
     judge(out, settings, progress)
     return 0

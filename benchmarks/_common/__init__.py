@@ -1,1 +1,2 @@
-"""What several benchmarks share: their command line, the shots they play, invariants, and changed copies of the package."""
+"""What several benchmarks share: their command line, the shots they play, invariants, and changed copies of
+the package."""

@@ -1,4 +1,5 @@
-"""What do the commands of this folder share? Their options, how they start, stop and fail, and how their files are written."""
+"""What do the commands of this folder share? Their options, how they start, stop and fail, and how their
+files are written."""
 
 import argparse
 import contextlib
@@ -24,34 +25,55 @@ _transcripts = []
 class Command(argparse.ArgumentParser):
     """The parser of ``python -m benchmarks.NAME``, with the options that all of them take.
 
-    ``doc``: of its module. ``pictures``: names of the pictures it draws with matplotlib; ``files``: of others that it always writes, both
-    into ``folder`` unless ``--out`` names another. ``redraws``: ``--from`` draws the pictures from the figures that ``--json`` wrote.
-    ``seed``: the usual one, if anything is drawn at random.
+    ``doc``: of its module. ``pictures``: names of the pictures it draws with matplotlib; ``files``: of others
+    that it always writes, both into ``folder`` unless ``--out`` names another. ``redraws``: ``--from`` draws
+    the pictures from the figures that ``--json`` wrote. ``seed``: the usual one, if anything is drawn at
+    random.
     """
 
     def __init__(self, name, doc, *, pictures=(), files=(), folder=PICTURES, seed=None, redraws=False):
-        super().__init__(f"python -m benchmarks.{name}", description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+        super().__init__(
+            f"python -m benchmarks.{name}",
+            description=doc,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
         self._name, self._pictures, self._files, self._folder = name, pictures, files, folder
         made = " and ".join((*pictures, *files))
         root = PICTURES.parents[1]
-        usual = f"{made} [{folder.relative_to(root) if folder.is_relative_to(root) else folder}] and " if made else ""
-        self.add_argument("--out", type=Path, metavar="FOLDER", help=f"write {usual}what is printed, as {name}.txt, into this folder")
+        usual = (
+            f"{made} [{folder.relative_to(root) if folder.is_relative_to(root) else folder}] and "
+            if made
+            else ""
+        )
+        self.add_argument(
+            "--out",
+            type=Path,
+            metavar="FOLDER",
+            help=f"write {usual}what is printed, as {name}.txt, into this folder",
+        )
         self.add_argument("--json", type=Path, metavar="FILE", help="write every figure into this file")
         if pictures:
             self.add_argument("--no-pictures", action="store_true", help="draw nothing")
         if redraws:
             kept = FIGURES / f"{name}.json"
             says = f"measure nothing, draw from the figures that --json wrote [{kept.relative_to(root)}]"
-            self.add_argument("--from", dest="kept", type=Path, nargs="?", const=kept, metavar="FILE", help=says)
+            self.add_argument(
+                "--from", dest="kept", type=Path, nargs="?", const=kept, metavar="FILE", help=says
+            )
         if seed is not None:
             self.add_argument(
-                "--seed", type=at_least(0), default=seed, metavar="N", help=f"seed of everything that is drawn at random [{seed}]"
+                "--seed",
+                type=at_least(0),
+                default=seed,
+                metavar="N",
+                help=f"seed of everything that is drawn at random [{seed}]",
             )
 
     def options(self, argv=None):
         """The options, once it is certain that the files can be written.
 
-        ``folder``: where they go; ``pictures``: whether any are drawn; ``figures``: those of ``--from``, None if all is to be measured.
+        ``folder``: where they go; ``pictures``: whether any are drawn; ``figures``: those of ``--from``, None
+        if all is to be measured.
         """
         found = self.parse_args(argv)
         found.figures = None
@@ -62,7 +84,9 @@ class Command(argparse.ArgumentParser):
                 self.error(f"argument --from: {found.kept}: {getattr(error, 'strerror', None) or error}")
         found.folder = found.out or self._folder
         found.pictures = bool(self._pictures) and not found.no_pictures
-        written = [found.folder / name for name in (*(self._pictures if found.pictures else ()), *self._files)]
+        written = [
+            found.folder / name for name in (*(self._pictures if found.pictures else ()), *self._files)
+        ]
         if found.out is not None:
             _transcripts[:] = [found.out / f"{self._name}.txt"]
             written += _transcripts
@@ -105,7 +129,8 @@ class _Copied(io.StringIO):
 
 
 def run(main):
-    """Run a command's ``main`` and exit with what it returns. Ctrl-C and a library that is missing are said in one line."""
+    """Run a command's ``main`` and exit with what it returns. Ctrl-C and a library that is missing are said
+    in one line."""
     any_terminal()
     before = signal.signal(signal.SIGINT, _interrupt)
     printed = _Copied(sys.stdout)
@@ -128,13 +153,15 @@ def run(main):
 
 
 def _interrupt(_number, _frame):
-    """Ctrl-C. numba clears errors in places and so may swallow an interruption (seen): raised again until ``run`` has it."""
+    """Ctrl-C. numba clears errors in places and so may swallow an interruption (seen): raised again until
+    ``run`` has it."""
     _alarm(2.0)
     raise KeyboardInterrupt
 
 
 def _alarm(seconds):
-    """Interrupt again after so long; 0 for never. Windows has no such clock: there one presses the keys again."""
+    """Interrupt again after so long; 0 for never. Windows has no such clock: there one presses the keys
+    again."""
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, _interrupt)
         signal.setitimer(signal.ITIMER_REAL, seconds)
@@ -153,7 +180,10 @@ def _explained(error):
     """Say in one line what stopped the command; its exit code."""
     if isinstance(error, KeyboardInterrupt):
         so_far = f"written: {', '.join(map(str, _written))}" if _written else "no file was written"
-        print(f"\nstopped by Ctrl-C: what is printed so far stands, the rest was not measured; {so_far}", file=sys.stderr)
+        print(
+            f"\nstopped by Ctrl-C: what is printed so far stands, the rest was not measured; {so_far}",
+            file=sys.stderr,
+        )
         return STOPPED
     try:
         print(what_is_missing(error), file=sys.stderr)
@@ -199,7 +229,8 @@ def save_figure(figure, file, **options):
 
 
 def save_image(file, pixels):
-    """Write a picture (H, W, 3), in the format of the file's suffix. Not by pygame, which says nothing of a full disk."""
+    """Write a picture (H, W, 3), in the format of the file's suffix. Not by pygame, which says nothing of a
+    full disk."""
     import pygame
 
     drawn = io.BytesIO()

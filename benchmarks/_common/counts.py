@@ -2,8 +2,9 @@
 
     NUMBA_DISABLE_JIT=1 python -m benchmarks._common.counts PHYSICS SHOTS.npz ...
 
-A file holds positions, velocities and spins. Prints JSON: of each file, per shot, the impacts integrated (ball-ball and cushion), the
-jaw arcs tested and the jaw arcs whose quartic was solved. ``benchmarks.scene`` starts this in a process of its own.
+A file holds positions, velocities and spins. Prints JSON: of each file, per shot, the impacts integrated
+(ball-ball and cushion), the jaw arcs tested and the jaw arcs whose quartic was solved. ``benchmarks.scene``
+starts this in a process of its own.
 """
 
 import json
@@ -19,15 +20,23 @@ from snooker_env.physics.impact import contact, impulse
 from snooker_env.simulation import _run
 
 FOLDER = str(Path(contact.__file__).parent)
-SOLVE, CROSSING, QUARTIC = (f.__code__ for f in (impulse.solve, detection.distance_crossing, detection.quartic_crossing))
+SOLVE, CROSSING, QUARTIC = (
+    f.__code__ for f in (impulse.solve, detection.distance_crossing, detection.quartic_crossing)
+)
 OF_BALLS, OF_CUSHION = contact.collide_balls.__code__, contact.collide_cushion.__code__
 
 
 def counted(positions, velocities, spins, physics):
     """Counts per shot."""
-    table, physics, code = sn.Table.preset("match"), sn.Physics.preset(physics), contact.parse_fidelity("standard")
+    table, physics, code = (
+        sn.Table.preset("match"),
+        sn.Physics.preset(physics),
+        contact.parse_fidelity("standard"),
+    )
     jaws = set((table.jaws[:, 2] + physics.R).tolist())
-    counts = Counter({"ball-ball integrations": 0, "cushion integrations": 0, "jaw arcs tested": 0, "jaw arcs solved": 0})
+    counts = Counter(
+        {"ball-ball integrations": 0, "cushion integrations": 0, "jaw arcs tested": 0, "jaw arcs solved": 0}
+    )
 
     def watch(frame, event, _):
         if event != "call":

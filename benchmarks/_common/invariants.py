@@ -1,10 +1,12 @@
-"""Does a shot keep the laws? Reads the engine's own log of a shot, piece by piece, and gives the worst figure of every invariant.
+"""Does a shot keep the laws? Reads the engine's own log of a shot, piece by piece, and gives the worst figure
+of every invariant.
 
-The log holds each ball's motion as closed forms, so what lies between two events is checked as well as the events: for every pair the
-gap is followed by steps no longer than the gap allows (at least ``LEAST``, which can hide 2e-10 m at the most), and so are jaws.
-Energies are kinetic, of translation and rotation, per unit mass. A ball in the air over a pocket is judged by what it brings back: it may
-return with no more energy than it had at the edge. And all balls together may at no event have more than they had, those in the air
-no more than that and what a fall by R gives.
+The log holds each ball's motion as closed forms, so what lies between two events is checked as well as the
+events: for every pair the gap is followed by steps no longer than the gap allows (at least ``LEAST``, which
+can hide 2e-10 m at the most), and so are jaws. Energies are kinetic, of translation and rotation, per unit
+mass. A ball in the air over a pocket is judged by what it brings back: it may return with no more energy than
+it had at the edge. And all balls together may at no event have more than they had, those in the air no more
+than that and what a fall by R gives.
 """
 
 from dataclasses import dataclass
@@ -20,11 +22,24 @@ from snooker_env.physics.engine import EventKind, Status
 from snooker_env.physics.parameters import P_G, P_MU_BB_EXTRA, P_MU_BB_LEAST, P_MU_S, P_R, P_SPIN
 from snooker_env.simulation import MAX_EVENTS, _run, log_space
 
-FINITE, CLOCK, JUMP, ENERGY, PHASE, ALL, MOMENTUM, PARTING, OVERLAP, CUSHION, OUTSIDE, REST_TIME, ACCOUNT = range(13)
+FINITE, CLOCK, JUMP, ENERGY, PHASE, ALL, MOMENTUM, PARTING, OVERLAP, CUSHION, OUTSIDE, REST_TIME, ACCOUNT = (
+    range(13)
+)
 NAMES = (
-    "finite", "clock", "jump", "energy at impact", "energy between", "energy of all", "momentum", "parting", "overlap", "in cushion",
-    "off the table", "rest", "account",
-)  # fmt: skip
+    "finite",
+    "clock",
+    "jump",
+    "energy at impact",
+    "energy between",
+    "energy of all",
+    "momentum",
+    "parting",
+    "overlap",
+    "in cushion",
+    "off the table",
+    "rest",
+    "account",
+)
 WHAT = {
     "finite": "numbers that are not finite",
     "clock": "time going backwards [s]",
@@ -41,7 +56,12 @@ WHAT = {
     "account": "balls whose place, fate or log does not add up",
 }
 LEAST = 1e-5
-_BALL_BALL, _CUSHION, _JAW, _POT = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW), int(EventKind.POT)
+_BALL_BALL, _CUSHION, _JAW, _POT = (
+    int(EventKind.BALL_BALL),
+    int(EventKind.CUSHION),
+    int(EventKind.JAW),
+    int(EventKind.POT),
+)
 _DROP, _RETURN = int(EventKind.DROP), int(EventKind.RETURN)
 
 
@@ -116,8 +136,8 @@ def _beyond(r, noses, falls):
 def _in_boundary(r, noses, jaws, R):
     """How deep a centre is in a nose or jaw; how far it is from the next jaw.
 
-    A jaw is no deeper than a ball: behind a straight facing, far away, lies another part of the table. (No path gets there unseen: it is
-    followed by steps much shorter.)
+    A jaw is no deeper than a ball: behind a straight facing, far away, lies another part of the table. (No
+    path gets there unseen: it is followed by steps much shorter.)
     """
     deepest, clear = -inf, inf
     for k in range(len(noses)):
@@ -144,7 +164,9 @@ def _along_boundary(rows, state, i, stop, noses, jaws, R, phys):
         a = rows[i, AX + c]
         turn = rows[i, T0] - rows[i, VX + c] / a if a != 0.0 else inf
         if rows[i, T0] < turn < stop:
-            deepest = max(deepest, _in_boundary(cloth.evaluate(rows, state, i, turn, phys)[0], noses, jaws, R)[0])
+            deepest = max(
+                deepest, _in_boundary(cloth.evaluate(rows, state, i, turn, phys)[0], noses, jaws, R)[0]
+            )
     while True:
         r, v, _ = cloth.evaluate(rows, state, i, t, phys)
         deep, clear = _in_boundary(r, noses, jaws, R)
@@ -200,7 +222,11 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
                 _note(worst, CUSHION, _along_boundary(rows, state, b, t, noses, jaws, R, phys))
             for other in range(n):
                 if other != b and state[other] != GONE and not (state[other] == REST and state[b] == REST):
-                    _note(worst, OVERLAP, _follow(rows, state, b, other, max(rows[b, T0], rows[other, T0]), t, D, phys))
+                    _note(
+                        worst,
+                        OVERLAP,
+                        _follow(rows, state, b, other, max(rows[b, T0], rows[other, T0]), t, D, phys),
+                    )
         for k in range(balls):
             b = i if k == 0 else j
             rows[b] = segments[at + k, :COLUMNS]
@@ -232,7 +258,10 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
         if kind == _BALL_BALL:
             r1, v1, _ = cloth.evaluate(old, old_state, i, t, phys)
             r2, v2, _ = cloth.evaluate(old, old_state, j, t, phys)
-            nx, ny = (r2[0] - r1[0]) / hypot(r2[0] - r1[0], r2[1] - r1[1]), (r2[1] - r1[1]) / hypot(r2[0] - r1[0], r2[1] - r1[1])
+            nx, ny = (
+                (r2[0] - r1[0]) / hypot(r2[0] - r1[0], r2[1] - r1[1]),
+                (r2[1] - r1[1]) / hypot(r2[0] - r1[0], r2[1] - r1[1]),
+            )
             closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
             a1, a2 = rows[i, VX] - v1[0], rows[i, VY] - v1[1]
             b1, b2 = rows[j, VX] - v2[0], rows[j, VY] - v2[1]
@@ -255,7 +284,11 @@ def _check(segments, what, n, duration, phys, boundaries, worst):
             _, v, _ = cloth.evaluate(old, old_state, i, t, phys)
             closing = v[0] * nx + v[1] * ny
             if closing > 0.0:
-                _note(worst, PARTING, (rows[i, VX] * nx + rows[i, VY] * ny - 1e-14 * hypot(v[0], v[1])) / closing)
+                _note(
+                    worst,
+                    PARTING,
+                    (rows[i, VX] * nx + rows[i, VY] * ny - 1e-14 * hypot(v[0], v[1])) / closing,
+                )
         elif kind == _DROP or (kind == _POT and not in_air):
             far = hypot(rows[i, X] - falls[j, 0], rows[i, Y] - falls[j, 1])
             _note(worst, JUMP, abs(far - falls[j, 2]))
@@ -299,14 +332,17 @@ class Checked:
 
 
 def play(balls, physics, table, fidelity, max_events=MAX_EVENTS, log_size=512):
-    """Play b shots and check each; balls: positions, velocities, spins and on_table; fidelity as ``parse_fidelity`` gives it."""
+    """Play b shots and check each; balls: positions, velocities, spins and on_table; fidelity as
+    ``parse_fidelity`` gives it."""
     state = [np.array(a) for a in balls]
     b, n = state[0].shape[:2]
     log = log_space(b, log_size, 2 * log_size + n + 2)
     out = _run(state, physics, table, fidelity, max_events, log)
     worst = np.full((b, len(NAMES)), -inf)
     ends = Ends(out.status, out.n_events, out.n_segments, out.duration)
-    _check_all(log, ends, n, physics.pack(), Boundaries(table.noses, table.jaws, table.falls, physics.R), worst)
+    _check_all(
+        log, ends, n, physics.pack(), Boundaries(table.noses, table.jaws, table.falls, physics.R), worst
+    )
     checked = Checked(state[0], state[3], out.potted, out.duration, out.n_events, out.status, worst)
     for k in np.flatnonzero(out.status == Status.LOG_FULL):  # few; with more room
         one = play([a[k : k + 1] for a in balls], physics, table, fidelity, max_events, 8 * log_size)

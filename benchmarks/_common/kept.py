@@ -1,4 +1,5 @@
-"""Where does a benchmark keep what it makes once and runs later? In this clone, where no other user of the machine could have put it."""
+"""Where does a benchmark keep what it makes once and runs later? In this clone, where no other user of the
+machine could have put it."""
 
 import os
 import shutil
@@ -10,7 +11,8 @@ BUILD = Path(__file__).parents[2] / "build" / "benchmarks"
 
 
 def kept_folder(name, make):
-    """The folder of that name; if there is none, ``make(folder)`` fills it, aside: a second process never sees half of it."""
+    """The folder of that name; if there is none, ``make(folder)`` fills it, aside: a second process never
+    sees half of it."""
     folder = BUILD / name
     if not folder.exists():
         BUILD.mkdir(parents=True, exist_ok=True)

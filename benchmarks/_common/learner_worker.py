@@ -1,10 +1,12 @@
-"""What does a process of ``benchmarks.learner`` do? It trains an agent, a rollout for each line that it reads, and says what it took.
+"""What does a process of ``benchmarks.learner`` do? It trains an agent, a rollout for each line that it
+reads, and says what it took.
 
     python learner_worker.py AGENT MODEL STEPS SEED
 
-Run in the root of the tree to be measured, which need not be this one: it uses only what all versions of ``agents`` have. MODEL: a .zip
-with the weights to begin with. Prints, after the first rollout, which is not timed, and then for each line: JSON with the shots and the
-processor time [s] of the tables (steps, view, masks), of the update, and in all.
+Run in the root of the tree to be measured, which need not be this one: it uses only what all versions of
+``agents`` have. MODEL: a .zip with the weights to begin with. Prints, after the first rollout, which is not
+timed, and then for each line: JSON with the shots and the processor time [s] of the tables (steps, view,
+masks), of the update, and in all.
 """
 
 import json

@@ -1,4 +1,5 @@
-"""How does a benchmark run a changed package? A copy of its source with the change, beside the product, which stays as it is.
+"""How does a benchmark run a changed package? A copy of its source with the change, beside the product, which
+stays as it is.
 
 The copy is kept under a hash of its source, so that numba's cache of it is found again.
 """
@@ -16,11 +17,15 @@ from .kept import kept_folder
 def texts():
     """The package's source: path from the package (posix) -> text."""
     root = Path(snooker_env.__file__).parent
-    return {path.relative_to(root).as_posix(): path.read_text(encoding="utf-8") for path in sorted(root.rglob("*.py"))}
+    return {
+        path.relative_to(root).as_posix(): path.read_text(encoding="utf-8")
+        for path in sorted(root.rglob("*.py"))
+    }
 
 
 def load(name, changed, modules, more=""):
-    """The modules (as "physics.engine") of the package ``name`` made from the texts ``changed``; more: what else it depends on."""
+    """The modules (as "physics.engine") of the package ``name`` made from the texts ``changed``; more: what
+    else it depends on."""
     key = hashlib.sha256(repr((sorted(changed.items()), more)).encode()).hexdigest()[:16]
 
     def make(folder):

@@ -1,8 +1,9 @@
-"""Which shots do the comparisons play? Pots on two balls and on full tables, kicks and head-on stun shots, aimed as a player would.
+"""Which shots do the comparisons play? Pots on two balls and on full tables, kicks and head-on stun shots,
+aimed as a player would.
 
-A pot is aimed so that the object ball, alone with the cue ball on unbounded cloth, leaves exactly towards the pocket: throw, squirt and
-swerve are allowed for, as good players do. It is then struck with a professional's errors (``tasks.noise``), so that some pots are
-centred, some rattle and some miss.
+A pot is aimed so that the object ball, alone with the cue ball on unbounded cloth, leaves exactly towards the
+pocket: throw, squirt and swerve are allowed for, as good players do. It is then struck with a professional's
+errors (``tasks.noise``), so that some pots are centred, some rattle and some miss.
 """
 
 from dataclasses import dataclass
@@ -22,9 +23,11 @@ from snooker_env.tasks.noise import Noise
 
 R, HALF_WIDTH, HALF_LENGTH = 0.02625, 0.889, 1.7845
 TOLERANCE = 5e-4
-"""Pots whose aim may err by less than this [rad] are not played: about a professional's standard deviation."""
+"""Pots whose aim may err by less than this [rad] are not played: about a professional's standard
+deviation."""
 AIM_ERROR = np.radians(0.02)
-"""Aims that leave the object ball further than this [rad] from its line are thrown away (thin cuts that do not settle)."""
+"""Aims that leave the object ball further than this [rad] from its line are thrown away (thin cuts that do
+not settle)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +43,8 @@ class Shots:
     physics: sn.Physics
 
     def struck(self, seed=None, aim=0.0, errors: Any = "professional"):
-        """Velocities (n, b, 2) and spins (n, b, 3) just after the strokes, each turned by ``aim`` [rad]; if seeded, with execution
-        errors: any ``noise``."""
+        """Velocities (n, b, 2) and spins (n, b, 3) just after the strokes, each turned by ``aim`` [rad]; if
+        seeded, with execution errors: any ``noise``."""
         n, b = self.positions.shape[:2]
         v, w = np.zeros((n, b, 2)), np.zeros((n, b, 3))
         noise, rng = Noise.of("none" if seed is None else errors), np.random.default_rng(seed)
@@ -93,13 +96,23 @@ def _settled(positions, stroke, ball, target, physics):
 
 
 def _joined(parts, n):
-    positions, stroke, ball = (np.concatenate([getattr(p, a) for p in parts])[:n] for a in ("positions", "stroke", "ball"))
+    positions, stroke, ball = (
+        np.concatenate([getattr(p, a) for p in parts])[:n] for a in ("positions", "stroke", "ball")
+    )
     return Shots(positions, stroke, ball, parts[0].physics)
 
 
 def _strokes(rng, n, speed, spin):
-    """Strokes without an aim: speeds in a range, the tip anywhere in an upright box (0.25 R by 0.35 R, scaled by ``spin``)."""
-    return np.column_stack([rng.uniform(*speed, n), np.zeros(n), spin * rng.uniform(-0.25, 0.25, n), spin * rng.uniform(-0.35, 0.35, n)])
+    """Strokes without an aim: speeds in a range, the tip anywhere in an upright box (0.25 R by 0.35 R, scaled
+    by ``spin``)."""
+    return np.column_stack(
+        [
+            rng.uniform(*speed, n),
+            np.zeros(n),
+            spin * rng.uniform(-0.25, 0.25, n),
+            spin * rng.uniform(-0.35, 0.35, n),
+        ]
+    )
 
 
 def _anywhere(rng):
@@ -107,14 +120,18 @@ def _anywhere(rng):
 
 
 def by_the_rail(rng):
-    """A place 1 to 20 mm from a cushion and 0.2 to 0.6 m from a corner: what is potted from there meets the jaw."""
+    """A place 1 to 20 mm from a cushion and 0.2 to 0.6 m from a corner: what is potted from there meets the
+    jaw."""
     along, gap = rng.uniform(0.2, 0.6), R + rng.uniform(1e-3, 0.02)
     corner = np.array([HALF_WIDTH, HALF_LENGTH]) - ([along, gap] if rng.random() < 0.5 else [gap, along])
     return corner * rng.choice([-1.0, 1.0], 2)
 
 
-def two_ball(n, physics, seed=0, *, cut=(0.0, 65.0), speed=(1.0, 4.5), run=(0.2, 1.5), spin=1.0, place=_anywhere):
-    """n pots with cuts [deg], speeds [m/s] and distances to the pocket [m] in these ranges; the object ball where ``place`` puts it."""
+def two_ball(
+    n, physics, seed=0, *, cut=(0.0, 65.0), speed=(1.0, 4.5), run=(0.2, 1.5), spin=1.0, place=_anywhere
+):
+    """n pots with cuts [deg], speeds [m/s] and distances to the pocket [m] in these ranges; the object ball
+    where ``place`` puts it."""
     rng, parts = np.random.default_rng(seed), []
     on_table = np.arange(22) < 2
     while sum(len(p.ball) for p in parts) < n:
@@ -135,7 +152,11 @@ def two_ball(n, physics, seed=0, *, cut=(0.0, 65.0), speed=(1.0, 4.5), run=(0.2,
             if (possible[possible[:, 1] == k, 5] >= TOLERANCE).any():
                 found.append(layout[:2])
                 targets.append(POCKET_AIMS[k, :2])
-        parts.append(_settled(np.array(found), _strokes(rng, n, speed, spin), np.ones(n, int), np.array(targets), physics))
+        parts.append(
+            _settled(
+                np.array(found), _strokes(rng, n, speed, spin), np.ones(n, int), np.array(targets), physics
+            )
+        )
     return _joined(parts, n)
 
 
@@ -153,12 +174,17 @@ def full_table(n, physics, seed=0, *, speed=(1.0, 4.5)):
                 found.append(layout)
                 balls.append(int(row[0]))
                 targets.append(POCKET_AIMS[int(row[1]), :2])
-        parts.append(_settled(np.array(found), _strokes(rng, n, speed, 1.0), np.array(balls), np.array(targets), physics))
+        parts.append(
+            _settled(
+                np.array(found), _strokes(rng, n, speed, 1.0), np.array(balls), np.array(targets), physics
+            )
+        )
     return _joined(parts, n)
 
 
 def kicks(n, physics, seed=0, *, speed=(1.5, 4.0)):
-    """n shots that meet one cushion and then the object ball: of a fan of aims, the middle one of those that do."""
+    """n shots that meet one cushion and then the object ball: of a fan of aims, the middle one of those that
+    do."""
     rng, found, strokes = np.random.default_rng(seed), [], []
     while len(found) < n:
         p = np.array([_anywhere(rng), _anywhere(rng)])
@@ -170,7 +196,9 @@ def kicks(n, physics, seed=0, *, speed=(1.5, 4.0)):
         fan = np.repeat(_strokes(rng, 1, speed, 0.6), 41, 0)
         fan[:, 1] = np.arctan2(*(image - p[0])[::-1]) + np.radians(np.linspace(-6, 6, 41))
         shots = Shots(np.repeat(p[None], 41, 0), fan, np.ones(41, int), physics)
-        logs = sn.simulate_batch(shots.positions, *shots.struck(), physics=physics, events=True, threads=1).events
+        logs = sn.simulate_batch(
+            shots.positions, *shots.struck(), physics=physics, events=True, threads=1
+        ).events
         assert logs is not None
         good = [k for k, log in enumerate(logs) if _kick(log["kind"])]
         if good:
@@ -194,4 +222,6 @@ def head_on(n, physics, seed=0):
     p[:, 1] = rng.uniform([-0.3, -0.3], [0.3, 0.3], (n, 2))
     p[:, 0] = p[:, 1] - (2 * R + gap)[:, None] * np.column_stack([np.cos(aim), np.sin(aim)])
     # sliding adds spin (5/2) (leaves - arrives) / R; the strike gives (5/2) leaves top / R
-    return Shots(p, np.column_stack([leaves, aim, np.zeros(n), -(leaves - arrives) / leaves]), np.ones(n, int), physics)
+    return Shots(
+        p, np.column_stack([leaves, aim, np.zeros(n), -(leaves - arrives) / leaves]), np.ones(n, int), physics
+    )

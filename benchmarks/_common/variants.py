@@ -1,15 +1,17 @@
-"""How would a shot run without one of its models? A copy of the package with other impacts, since the product has no such switches.
+"""How would a shot run without one of its models? A copy of the package with other impacts, since the product
+has no such switches.
 
-The copy's ``contact.py`` gets one more piece of text, and its ``engine.py`` one more condition, which add fidelities beyond the
-product's own: each is ``standard`` with one model left out.
+The copy's ``contact.py`` gets one more piece of text, and its ``engine.py`` one more condition, which add
+fidelities beyond the product's own: each is ``standard`` with one model left out.
 """
 
 from . import package_copies
 
 FREE_BALLS, LOOSE_CUSHION, SMOOTH_CLOTH, MIRROR, AT_ONCE = 101, 102, 103, 104, 105
-"""Fidelities of the copy. Two balls as free spheres (the closed form of ``fast``); the cushion with the loose tolerance of ``fast``; the
-cushion in closed form, with friction at the nose but none at the cloth; the cushion as a mirror with a restitution. A ball that drops at
-once where its centre crosses the edge of a pocket."""
+"""Fidelities of the copy. Two balls as free spheres (the closed form of ``fast``); the cushion with the loose
+tolerance of ``fast``; the cushion in closed form, with friction at the nose but none at the cloth; the
+cushion as a mirror with a restitution. A ball that drops at once where its centre crosses the edge of a
+pocket."""
 
 _FLIES = "if kind == events.POT and state[i] != FALLING"
 """Where the engine tests whether a ball at the edge of a pocket can meet a jaw behind it."""
@@ -67,5 +69,7 @@ def load():
     texts["physics/impact/contact.py"] += _ADDED
     if texts["physics/engine.py"].count(_FLIES) != 1:
         raise RuntimeError(f"engine.py has changed: {_FLIES!r} is not in it once")
-    texts["physics/engine.py"] = texts["physics/engine.py"].replace(_FLIES, f"{_FLIES} and law.fidelity != {AT_ONCE}")
+    texts["physics/engine.py"] = texts["physics/engine.py"].replace(
+        _FLIES, f"{_FLIES} and law.fidelity != {AT_ONCE}"
+    )
     return package_copies.load("snooker_env_variants", texts, ["simulation"])[0]

@@ -1,1 +1,2 @@
-"""How large are the execution errors of each level of ``noise``, beside what is published? ``python -m benchmarks.execution``."""
+"""How large are the execution errors of each level of ``noise``, beside what is published?
+``python -m benchmarks.execution``."""

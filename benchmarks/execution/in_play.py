@@ -7,16 +7,22 @@ from snooker_env.planning import Planner, action_masks
 from snooker_env.players import ChoicePlayer
 from snooker_env.tasks import POTS, SIDES, SPEEDS, TOPS, choice_of
 
-PICKS = np.array([
-    choice_of(pot, speed, SIDES.index(0.0), TOPS.index(0.0)) for pot in range(POTS) for speed in range(len(SPEEDS)) if 1 < SPEEDS[speed] < 4
-])  # fmt: skip
+PICKS = np.array(
+    [
+        choice_of(pot, speed, SIDES.index(0.0), TOPS.index(0.0))
+        for pot in range(POTS)
+        for speed in range(len(SPEEDS))
+        if 1 < SPEEDS[speed] < 4
+    ]
+)
 """What it chooses from: every direct pot, without spin, at speeds as played."""
 FIRST, KEEP, MORE = 16, 4, 64
 """Tries of each choice; how many of the best are tried on; tries of those."""
 
 
 class Likeliest(ChoicePlayer):
-    """Plays every choice under its own errors on copies of the table, and takes the one that scores most often."""
+    """Plays every choice under its own errors on copies of the table, and takes the one that scores most
+    often."""
 
     name = "likeliest"
 
@@ -27,7 +33,9 @@ class Likeliest(ChoicePlayer):
 
     def _bind(self, options):
         super()._bind(options)
-        self._tries = Planner(options.but(action="discrete", elevation=False, placement=False), threads=self._threads)
+        self._tries = Planner(
+            options.but(action="discrete", elevation=False, placement=False), threads=self._threads
+        )
 
     def scores(self, at, seeds):
         """The share of tries in which each choice scored; below 0 for those that were tried least."""
@@ -36,7 +44,10 @@ class Likeliest(ChoicePlayer):
         chances = np.where(masks[:, PICKS], 0.0, -1.0)
         rows, columns = np.nonzero(masks[:, PICKS])
         chances[rows, columns] = self._share(at, rows, columns, FIRST, keys)
-        rows, columns = np.repeat(np.arange(len(at)), KEEP), np.argsort(-chances, axis=1, kind="stable")[:, :KEEP].ravel()
+        rows, columns = (
+            np.repeat(np.arange(len(at)), KEEP),
+            np.argsort(-chances, axis=1, kind="stable")[:, :KEEP].ravel(),
+        )
         rows, columns = (a[chances[rows, columns] >= 0.0] for a in (rows, columns))
         judged = np.full(chances.shape, -1.0)
         judged[rows, columns] = self._share(at, rows, columns, MORE, keys)
@@ -48,7 +59,9 @@ class Likeliest(ChoicePlayer):
     def _share(self, at, rows, columns, n, rng):
         """How often each of these choices scores in n tries, all with the same errors."""
         keys = rng.integers(0, 2**64 - 1, n, dtype=np.uint64)
-        points = self._tries.play(at, np.repeat(rows, n), np.repeat(PICKS[columns], n), np.tile(keys, len(rows)))[0]
+        points = self._tries.play(
+            at, np.repeat(rows, n), np.repeat(PICKS[columns], n), np.tile(keys, len(rows))
+        )[0]
         return (points > 0).reshape(-1, n).mean(axis=1)
 
 
@@ -66,7 +79,8 @@ class WidestPot(ChoicePlayer):
 
 
 def in_play(level, visits, seed, **options):
-    """(made (m,), expected (m,)): of every stroke of so many visits from held-out tables whether it scored, and the chance it was given."""
+    """(made (m,), expected (m,)): of every stroke of so many visits from held-out tables whether it scored,
+    and the chance it was given."""
     player = Likeliest()
     strokes = play_visits(player, visits, noise=level, seed=seed, **options)
     return strokes.made, np.concatenate(player.chances)

@@ -1,4 +1,5 @@
-"""Which pots show how well a level of ``noise`` plays, how often is each made, and where does the cue ball stop? Two balls, Monte Carlo."""
+"""Which pots show how well a level of ``noise`` plays, how often is each made, and where does the cue ball
+stop? Two balls, Monte Carlo."""
 
 from dataclasses import dataclass, replace
 from math import degrees, erf, hypot, radians, sqrt
@@ -16,7 +17,8 @@ from .._common.shot_sets import R, Shots, _settled, _turned
 FIRM = 4.5
 """Cue speed [m/s] of the same pot struck firmly."""
 HALF_WINDOW = 0.022
-"""Half of the effective window of a corner pocket [m] from which the published sizes of aim errors were derived."""
+"""Half of the effective window of a corner pocket [m] from which the published sizes of aim errors were
+derived."""
 FAN, REACH = 1201, radians(0.6)
 """So many aims, up to so far to either side, are tried for where a pot begins and ends."""
 
@@ -54,7 +56,8 @@ class Pot:
         return path * self.run / (2 * R * np.cos(turn))
 
     def rate(self, deg, half=HALF_WINDOW):
-        """Share of pots by geometry, if the direction errs by ``deg`` (standard deviation) and half the pocket's window is ``half``."""
+        """Share of pots by geometry, if the direction errs by ``deg`` (standard deviation) and half the
+        pocket's window is ``half``."""
         return erf(half / (self.gain * radians(deg) * sqrt(2.0)))
 
 
@@ -110,7 +113,8 @@ class Rolls:
     made: np.ndarray
     """Which times the ball went into its pocket and the cue ball into none."""
     shift: np.ndarray
-    """Of those: how far the cue ball stopped from where it would have without errors [m], along its way from the impact and across."""
+    """Of those: how far the cue ball stopped from where it would have without errors [m], along its way from
+    the impact and across."""
 
     @property
     def rate(self):
@@ -124,7 +128,8 @@ class Rolls:
 
 
 def played(pot, stroke, turns, physics, table, *, level: str | Noise = "none", seed=0, in_off=False):
-    """(made (n,), where the cue ball stops (n, 2)) of n strokes at a pot, turned by ``turns`` [rad], with the errors of a ``level``."""
+    """(made (n,), where the cue ball stops (n, 2)) of n strokes at a pot, turned by ``turns`` [rad], with the
+    errors of a ``level``."""
     n = len(turns)
     strokes = np.repeat(stroke[None], n, 0)
     strokes[:, 1] += turns
@@ -148,7 +153,14 @@ def aimed(pot, physics, table, speed=None, in_off=False):
     stroke[1] += 0.5 * (fan[first] + fan[last])
     _, stops = played(pot, stroke, np.zeros(1), physics, table)
     way = aim_point - start[1]
-    return Aimed(pot, stroke, 0.5 * (fan[last] - fan[first] + fan[1] - fan[0]), stops[0], start[1] - 2 * R * way / hypot(*way), in_off)
+    return Aimed(
+        pot,
+        stroke,
+        0.5 * (fan[last] - fan[first] + fan[1] - fan[0]),
+        stops[0],
+        start[1] - 2 * R * way / hypot(*way),
+        in_off,
+    )
 
 
 def _widest(made):
@@ -163,7 +175,9 @@ def _widest(made):
 
 def rolls(shot, level, n, seed, physics, table):
     """The ``Rolls`` of n strokes with the errors of a level (any ``noise``)."""
-    made, cue = played(shot.pot, shot.stroke, np.zeros(n), physics, table, level=level, seed=seed, in_off=shot.in_off)
+    made, cue = played(
+        shot.pot, shot.stroke, np.zeros(n), physics, table, level=level, seed=seed, in_off=shot.in_off
+    )
     way = shot.stops - shot.meets
     way = way / max(hypot(*way), 1e-12)
     shift = (cue - shot.stops)[made]
@@ -171,12 +185,16 @@ def rolls(shot, level, n, seed, physics, table):
 
 
 def directions(level, n, seed, physics, speed=2.0):
-    """Standard deviations [deg] of the cue ball's direction at a level stroke without spin: of aim, of squirt, of swerve, of all together.
+    """Standard deviations [deg] of the cue ball's direction at a level stroke without spin: of aim, of
+    squirt, of swerve, of all together.
 
     Squirt is seen where the ball leaves, swerve where it rolls: as the ball alone ends on unbounded cloth.
     """
     errors = Noise.of(level)
-    aim, tip = Noise(aim_deg=errors.aim_deg), Noise(offset_mm=errors.offset_mm, elevation_deg=errors.elevation_deg)
+    aim, tip = (
+        Noise(aim_deg=errors.aim_deg),
+        Noise(offset_mm=errors.offset_mm, elevation_deg=errors.elevation_deg),
+    )
     shots = Shots(np.zeros((n, 1, 2)), np.tile([speed, 0.0, 0.0, 0.0], (n, 1)), np.zeros(n, int), physics)
 
     def angles(noise):
@@ -197,6 +215,7 @@ def wilson(share, n):
 
 
 def of_direction(deg, like, physics):
-    """The ``Noise`` ``like`` with a total direction error of ``deg``: half of its variance is aim, half the squirt of the tip error."""
+    """The ``Noise`` ``like`` with a total direction error of ``deg``: half of its variance is aim, half the
+    squirt of the tip error."""
     each, slope = deg / sqrt(2.0), 2.5 / (3.5 + physics.end_mass_ratio)
     return replace(Noise.of(like), aim_deg=each, offset_mm=1e3 * physics.R * radians(each) / slope)

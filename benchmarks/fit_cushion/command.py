@@ -1,12 +1,14 @@
-"""Where do the cushion constants of ``physics="match"`` come from? Fits e(v) to the measured rebounds of Mathavan 2010, Fig. 7a.
+"""Where do the cushion constants of ``physics="match"`` come from? Fits e(v) to the measured rebounds of
+Mathavan 2010, Fig. 7a.
 
     python -m benchmarks.fit_cushion [--seed 0] [--json FILE] [--out FOLDER]
 
-The model is this project's own cushion impact for a rolling ball at right angles, with e(v) = e_c up to a knee and
-e_c (v / knee)^(-power) above it. e_c stays at the authors' own 0.98 (their fit below 1.5 m/s): left free it runs into its bound at 1, a
-cushion without loss. Printed beside it: a constant, the straight line of version 0.1 and an exponential, which follow the same 19 points
-as well and go elsewhere beyond them; the interval of the power (95 %: profile with an F test, and a bootstrap of the points) and what it
-leaves open at 5 to 10 m/s; the rebound speeds to 15 m/s; and how many lengths of the table a stroke travels.
+The model is this project's own cushion impact for a rolling ball at right angles, with e(v) = e_c up to a
+knee and e_c (v / knee)^(-power) above it. e_c stays at the authors' own 0.98 (their fit below 1.5 m/s): left
+free it runs into its bound at 1, a cushion without loss. Printed beside it: a constant, the straight line of
+version 0.1 and an exponential, which follow the same 19 points as well and go elsewhere beyond them; the
+interval of the power (95 %: profile with an F test, and a bootstrap of the points) and what it leaves open at
+5 to 10 m/s; the rebound speeds to 15 m/s; and how many lengths of the table a stroke travels.
 """
 
 from pathlib import Path
@@ -54,7 +56,8 @@ def impact(speed, physics, rolling=True):
 
 
 class Ratios(NamedTuple):
-    """Rebound over incident speed for each restitution of ``SHARES``: for a given e the impact scales with its speed."""
+    """Rebound over incident speed for each restitution of ``SHARES``: for a given e the impact scales with
+    its speed."""
 
     rolling: np.ndarray
     sliding: np.ndarray
@@ -63,12 +66,14 @@ class Ratios(NamedTuple):
     def measured(cls):
         """By the package's impact."""
         constants = [sn.Physics.preset("match", e_c=float(e), e_c_power=0.0) for e in SHARES]
-        return cls(*(np.array([impact(1.0, physics, rolling) for physics in constants]) for rolling in (True, False)))
+        return cls(
+            *(np.array([impact(1.0, physics, rolling) for physics in constants]) for rolling in (True, False))
+        )
 
 
 class Interval(NamedTuple):
-    """What the data leave open, 95 %: (low, high) of the power and of e at ``FAR`` by the profile and by the bootstrap; ends: the
-    (knee, power) of the two ends of the power's profile."""
+    """What the data leave open, 95 %: (low, high) of the power and of e at ``FAR`` by the profile and by the
+    bootstrap; ends: the (knee, power) of the two ends of the power's profile."""
 
     power: tuple
     power_bootstrap: np.ndarray
@@ -78,10 +83,14 @@ class Interval(NamedTuple):
 
 
 def fitted(law, residuals, free):
-    """(knee, x[, e_c]) of least squares. The kink makes the problem bumpy: it starts from several knees and keeps the best."""
+    """(knee, x[, e_c]) of least squares. The kink makes the problem bumpy: it starts from several knees and
+    keeps the best."""
     low, high = [0.5, 0.0] + [0.5] * free, [3.4, 0.9] + [1.0] * free
     starts = [(knee, 0.2, 0.97)[: 2 + free] for knee in (1.0, 1.5, 2.0, 2.5)]
-    fits = [least_squares(lambda x: residuals(law, *x), start, bounds=(low, high), diff_step=1e-4) for start in starts]
+    fits = [
+        least_squares(lambda x: residuals(law, *x), start, bounds=(low, high), diff_step=1e-4)
+        for start in starts
+    ]
     return min(fits, key=lambda found: found.cost).x
 
 
@@ -98,9 +107,12 @@ def interval(residuals, points, draws=2000, seed=0):
     best = np.concatenate([(flat @ part.T).argmin(axis=0) for part in np.array_split(counts, draws // 100)])
     within = e[:, allowed.ravel()]
     return Interval(
-        tuple(POWERS[inside]), np.quantile(powers[best], (0.025, 0.975)), np.stack((within.min(axis=1), within.max(axis=1))),
-        np.quantile(e[:, best], (0.025, 0.975), axis=1), [(float(KNEES[misfit[k].argmin()]), float(POWERS[k])) for k in inside],
-    )  # fmt: skip
+        tuple(POWERS[inside]),
+        np.quantile(powers[best], (0.025, 0.975)),
+        np.stack((within.min(axis=1), within.max(axis=1))),
+        np.quantile(e[:, best], (0.025, 0.975), axis=1),
+        [(float(KNEES[misfit[k].argmin()]), float(POWERS[k])) for k in inside],
+    )
 
 
 def print_fits(fits, residuals, shipped, preset):
@@ -108,7 +120,9 @@ def print_fits(fits, residuals, shipped, preset):
     rows = [(name, x, residuals(law, *x), law(FAR, *x)) for name, law, x in fits]
     kept = (preset.e_c_knee, preset.e_c_power, preset.e_c)
     rows.insert(0, ("shipped (power)", kept, shipped, power_law(FAR, *kept)))
-    print(f"{'':22s}    e_c  knee m/s  power, or s/m  rms m/s  largest m/s  e at {FAR[0]:g}, {FAR[1]:g}, {FAR[2]:g} m/s")
+    print(
+        f"{'':22s}    e_c  knee m/s  power, or s/m  rms m/s  largest m/s  e at {FAR[0]:g}, {FAR[1]:g}, {FAR[2]:g} m/s"
+    )
     for name, x, r, e in rows:
         e_c = x[2] if len(x) == 3 else E_C
         rms, largest = np.sqrt(np.mean(np.square(r))), np.abs(r).max()
@@ -126,8 +140,10 @@ def print_points(speed, measured, shipped):
 def print_interval(found, fastest):
     """The power's interval and what it means beyond the data."""
     low, high = found.power
-    print(f"\n95 % interval of the power: {low:.2f} to {high:.2f} (profile), {found.power_bootstrap[0]:.2f} to "
-          f"{found.power_bootstrap[1]:.2f} (bootstrap); the data end at {fastest:.2f} m/s.\nIf the power law goes on:")  # fmt: skip
+    print(
+        f"\n95 % interval of the power: {low:.2f} to {high:.2f} (profile), {found.power_bootstrap[0]:.2f} to "
+        f"{found.power_bootstrap[1]:.2f} (bootstrap); the data end at {fastest:.2f} m/s.\nIf the power law goes on:"
+    )
     for v, e, b in zip(FAR, found.e.T, found.e_bootstrap.T, strict=True):
         print(f"  e({v:2g} m/s) = {e[0]:.2f} to {e[1]:.2f} (profile), {b[0]:.2f} to {b[1]:.2f} (bootstrap)")
 
@@ -152,7 +168,10 @@ def main():
         return speed * np.interp(law(speed, *x), SHARES, ratios.rolling) - measured
 
     fits = [(name, law, fitted(law, residuals, free=False)) for name, law in LAWS.items()]
-    fits += [(f"{name}, e_c free", LAWS[name], fitted(LAWS[name], residuals, free=True)) for name in ("power", "line")]
+    fits += [
+        (f"{name}, e_c free", LAWS[name], fitted(LAWS[name], residuals, free=True))
+        for name in ("power", "line")
+    ]
     old = fits[1][2]
     fits.append(("constant", power_law, (0.5, 0.0)))
     shipped = np.array([impact(float(s), preset) for s in speed]) - measured

@@ -1,10 +1,13 @@
-"""How many lengths of the table does a stroke travel? The cue ball alone, up and down the long axis, with several sets of constants.
+"""How many lengths of the table does a stroke travel? The cue ball alone, up and down the long axis, with
+several sets of constants.
 
-Measured: I. Stevenage, The Amateur Billiard Player, October 1996 (https://www.eaba.co.uk/?p=4149), on full-size tables. A ball thrown from
-the baulk end as hard as possible goes 4.25 to 4.75 lengths on nine tables, 4.75 on a heated one with new cloth and steel-block cushions;
-there a ball from a test ramp 3.5 inches high comes back from the top cushion to 6 inches past the pink's spot. Players say about five
-lengths for the hardest stroke. A thrown ball starts without spin, as one struck at its middle does; its speed was not measured. Two
-experienced players close to their maximum stayed under 13.4 m/s (Carroll and Stevenage, Billiards Quarterly Review, July 1993).
+Measured: I. Stevenage, The Amateur Billiard Player, October 1996 (https://www.eaba.co.uk/?p=4149), on
+full-size tables. A ball thrown from the baulk end as hard as possible goes 4.25 to 4.75 lengths on nine
+tables, 4.75 on a heated one with new cloth and steel-block cushions; there a ball from a test ramp 3.5 inches
+high comes back from the top cushion to 6 inches past the pink's spot. Players say about five lengths for the
+hardest stroke. A thrown ball starts without spin, as one struck at its middle does; its speed was not
+measured. Two experienced players close to their maximum stayed under 13.4 m/s (Carroll and Stevenage,
+Billiards Quarterly Review, July 1993).
 """
 
 from math import pi, sqrt
@@ -24,7 +27,8 @@ QUICK = 0.010
 
 
 def path(speed, physics, rolling=False, start=0.05):
-    """Heights y [m] of the cue ball at the start, at each event and at rest; start: from the baulk cushion's nose [m]."""
+    """Heights y [m] of the cue ball at the start, at each event and at rest; start: from the baulk cushion's
+    nose [m]."""
     v, w = sn.strike(speed, pi / 2.0, physics=physics)
     if rolling:
         w = np.array((-speed / physics.R, 0.0, 0.0))
@@ -33,7 +37,8 @@ def path(speed, physics, rolling=False, start=0.05):
 
 
 def lengths(speed, physics):
-    """Distance travelled over the table's length, for a stroke at the middle of the ball at this speed [m/s]."""
+    """Distance travelled over the table's length, for a stroke at the middle of the ball at this speed
+    [m/s]."""
     return float(np.abs(np.diff(path(speed, physics))).sum()) / LENGTH
 
 
@@ -47,7 +52,10 @@ def print_lengths(ends):
 
     ends: (knee, power) at the two ends of the interval of the power.
     """
-    match, (livelier, deader) = sn.Physics.preset("match"), ({"e_c_knee": knee, "e_c_power": power} for knee, power in ends)
+    match, (livelier, deader) = (
+        sn.Physics.preset("match"),
+        ({"e_c_knee": knee, "e_c_power": power} for knee, power in ends),
+    )
     laws = {
         "paper": sn.Physics(),
         "match": match,
@@ -56,21 +64,28 @@ def print_lengths(ends):
         f"mu_r {QUICK:.3f}": sn.Physics.preset("match", mu_r=QUICK),
         "both livelier": sn.Physics.preset("match", mu_r=QUICK, **livelier),
     }
-    print(f"\nlengths of the table travelled ({LENGTH} m each), struck at the middle from the baulk cushion along the long axis")
+    print(
+        f"\nlengths of the table travelled ({LENGTH} m each), struck at the middle from the baulk cushion along the long axis"
+    )
     print("m/s   " + "".join(f"{name:>15s}" for name in laws))
     table = {speed: {name: lengths(speed, physics) for name, physics in laws.items()} for speed in SPEEDS}
     for speed, row in table.items():
         print(f"{speed:4.0f}  " + "".join(f"{value:15.2f}" for value in row.values()))
-    print(f"\nball off a 3.5 inch ramp ({RAMP:.2f} m/s, rolling): where it stops past the pink's spot; measured 0.15 m, on new cloth")
+    print(
+        f"\nball off a 3.5 inch ramp ({RAMP:.2f} m/s, rolling): where it stops past the pink's spot; measured 0.15 m, on new cloth"
+    )
     for mu_r in (match.mu_r, QUICK):
         far, near = (past_pink(sn.Physics.preset("match", mu_r=mu_r), start) for start in (0.05, 0.35))
-        print(f"  mu_r {mu_r:.4f}: {far:+.2f} m from the baulk cushion, {near:+.2f} m where the ramp ends 0.3 m further up the table")
+        print(
+            f"  mu_r {mu_r:.4f}: {far:+.2f} m from the baulk cushion, {near:+.2f} m where the ramp ends 0.3 m further up the table"
+        )
 
     def between(law, soft, hard):
         return f"{table[soft][law]:.1f} to {table[hard][law]:.1f}"
 
     shipped, quick, both, paper = (
-        (between(law, 7.0, 9.0), between(law, 10.0, 13.0)) for law in ("match", f"mu_r {QUICK:.3f}", "both livelier", "paper")
+        (between(law, 7.0, 9.0), between(law, 10.0, 13.0))
+        for law in ("match", f"mu_r {QUICK:.3f}", "both livelier", "paper")
     )
     print(f"""
 Players say about 5 lengths for the hardest stroke; a ball thrown as hard as possible was measured to go 4.25 to 4.75 (Stevenage 1996).

@@ -1,8 +1,10 @@
-"""Which models follow the other data? Throw against cut angle (TP A.14, Doménech's measurements), straight cushion rebounds.
+"""Which models follow the other data? Throw against cut angle (TP A.14, Doménech's measurements), straight
+cushion rebounds.
 
-Used by ``python -m benchmarks.paper``. Throw is the angle [deg] between the object ball's path just after the impact and the line of
-centres, > 0 towards the cue ball's side motion. Data: ``throw_tp_a14.csv`` (a published table, itself computed),
-``throw_domenech2023.csv`` and ``cushion_rebound.csv`` (measured, read off published figures).
+Used by ``python -m benchmarks.paper``. Throw is the angle [deg] between the object ball's path just after the
+impact and the line of centres, > 0 towards the cue ball's side motion. Data: ``throw_tp_a14.csv`` (a
+published table, itself computed), ``throw_domenech2023.csv`` and ``cushion_rebound.csv`` (measured, read off
+published figures).
 """
 
 import numpy as np
@@ -25,11 +27,13 @@ FAST_REBOUND = 2.5
 
 
 def closed_throw(cut, v0, topspin, radius, e=1.0, law=MARLOW):
-    """Throw [deg] of free spheres in closed form, no side (Alciatore, TP A.14). With c the cut, per unit mass:
+    """Throw [deg] of free spheres in closed form, no side (Alciatore, TP A.14). With c the cut, per unit
+    mass:
 
-    tangential slip x = v0 sin c, vertical slip z = R w cos c (the roll), s = hypot(x, z), normal impulse P = (1+e)/2 v0 cos c;
-    friction impulse F = min(mu(s) P, s/7), mu(s) = a + b exp(-k s), opposite to the slip; tan(throw) = F (x/s) / P.
-    F reaches s/7 where it stops the slip: 1/M (two balls, 2/M of motion and 5/M of spin) changes s by 7 a unit of impulse.
+    tangential slip x = v0 sin c, vertical slip z = R w cos c (the roll), s = hypot(x, z), normal impulse P =
+    (1+e)/2 v0 cos c; friction impulse F = min(mu(s) P, s/7), mu(s) = a + b exp(-k s), opposite to the slip;
+    tan(throw) = F (x/s) / P. F reaches s/7 where it stops the slip: 1/M (two balls, 2/M of motion and 5/M of
+    spin) changes s by 7 a unit of impulse.
     """
     c = np.radians(cut)
     x, z = v0 * np.sin(c), radius * topspin * np.cos(c)
@@ -39,10 +43,11 @@ def closed_throw(cut, v0, topspin, radius, e=1.0, law=MARLOW):
 
 
 def stun_throw_following(cut, v0, e=1.0, law=MARLOW):
-    """Throw [deg] of a stun shot in closed form when the friction follows the slip as it dies, not only its first value.
+    """Throw [deg] of a stun shot in closed form when the friction follows the slip as it dies, not only its
+    first value.
 
-    ds/dP = -7 mu(s), mu(s) = a + b exp(-k s), integrates to a exp(k s) + b = (a exp(k s0) + b) exp(-7 a k P); F = (s0 - s) / 7. A stun
-    shot's slip is level, so the cloth takes no part and "reference" must agree.
+    ds/dP = -7 mu(s), mu(s) = a + b exp(-k s), integrates to a exp(k s) + b = (a exp(k s0) + b) exp(-7 a k P);
+    F = (s0 - s) / 7. A stun shot's slip is level, so the cloth takes no part and "reference" must agree.
     """
     c, (a, b, k) = np.radians(cut), law
     s0, p = v0 * np.sin(c), 0.5 * (1 + e) * v0 * np.cos(c)
@@ -52,9 +57,12 @@ def stun_throw_following(cut, v0, e=1.0, law=MARLOW):
 
 
 def solved_throw(cut, v0, topspin, physics, fidelity, *, after_slip=False):
-    """Throw [deg] by the package's impact; ``after_slip``: of the path once the ball rolls, not of the one just after the impact."""
+    """Throw [deg] by the package's impact; ``after_slip``: of the path once the ball rolls, not of the one
+    just after the impact."""
     c = np.radians(cut)
-    _, _, v, w = sn.collide_balls((v0, 0, 0), (0, topspin, 0), (0, 0, 0), (0, 0, 0), (np.cos(c), np.sin(c), 0), physics, fidelity)
+    _, _, v, w = sn.collide_balls(
+        (v0, 0, 0), (0, topspin, 0), (0, 0, 0), (0, 0, 0), (np.cos(c), np.sin(c), 0), physics, fidelity
+    )
     x, y = rolling(v, w, physics.R) if after_slip else v[:2]
     return float(cut - np.degrees(np.arctan2(y, x)))
 
@@ -67,7 +75,8 @@ A14_SHOTS = {f"{kind} {speed} m/s": (kind, speed) for kind in ("stun", "roll") f
 
 
 def a14_throw(kind, v0, cuts):
-    """Throw [deg] of TP A.14's balls at these cuts: closed form, "fast", "reference"; of a stun shot also with friction that follows."""
+    """Throw [deg] of TP A.14's balls at these cuts: closed form, "fast", "reference"; of a stun shot also
+    with friction that follows."""
     physics, topspin = sn.Physics(R=POOL_R, e_b=1.0, mu_bb="marlow"), v0 / POOL_R if kind == "roll" else 0.0
     out = {"closed form": closed_throw(cuts, v0, topspin, POOL_R)}
     for fidelity in ("fast", "reference"):
@@ -84,14 +93,20 @@ def a14():
     out = {}
     for name, (kind, v0) in A14_SHOTS.items():
         models = a14_throw(kind, v0, cuts)
-        out[name] = {"cut": cuts.tolist(), "printed": table[f"{kind}_{v0}"].tolist(), **{k: v.tolist() for k, v in models.items()}}
+        out[name] = {
+            "cut": cuts.tolist(),
+            "printed": table[f"{kind}_{v0}"].tolist(),
+            **{k: v.tolist() for k, v in models.items()},
+        }
     return out
 
 
 def domenech_throw(mu_bb, cuts, *, after_slip=False):
     """Throw [deg] of Doménech's balls at these cuts with this ball-ball friction, at "reference"."""
     physics, topspin = sn.Physics(mu_bb=mu_bb, **DOMENECH), DOMENECH_SPEED / DOMENECH["R"]
-    return np.array([solved_throw(c, DOMENECH_SPEED, topspin, physics, "reference", after_slip=after_slip) for c in cuts])
+    return np.array(
+        [solved_throw(c, DOMENECH_SPEED, topspin, physics, "reference", after_slip=after_slip) for c in cuts]
+    )
 
 
 def _misfit(residuals):
@@ -100,28 +115,45 @@ def _misfit(residuals):
 
 
 def domenech():
-    """Measured throw: the models' residuals [deg], in all and in bins of cut; the best constant friction; how much the data scatter."""
+    """Measured throw: the models' residuals [deg], in all and in bins of cut; the best constant friction; how
+    much the data scatter."""
     cut, seen = (_read("throw_domenech2023.csv")[k] for k in ("cut_deg", "throw_deg"))
-    found = minimize_scalar(lambda mu: np.sum((domenech_throw(mu, cut) - seen) ** 2), bounds=(0.02, 0.3), options={"xatol": 1e-4})
+    found = minimize_scalar(
+        lambda mu: np.sum((domenech_throw(mu, cut) - seen) ** 2), bounds=(0.02, 0.3), options={"xatol": 1e-4}
+    )
     best = float(getattr(found, "x"))  # noqa: B009 (scipy's result has no typed fields)
     smooth = np.polynomial.Polynomial.fit(cut, seen, 3)(cut)
-    laws = {"mu 0.05 (paper)": 0.05, "Marlow (match)": "marlow", "mu 0.10": 0.10, f"best constant, mu {best:.3f}": best}
+    laws = {
+        "mu 0.05 (paper)": 0.05,
+        "Marlow (match)": "marlow",
+        "mu 0.10": 0.10,
+        f"best constant, mu {best:.3f}": best,
+    }
     edges = np.arange(5, 80, 10)
     place = np.digitize(cut, edges)
     values = {name: domenech_throw(mu, cut) for name, mu in laws.items()}
     bins = [
         {
-            "from": int(edges[k - 1]), "to": int(edges[k]), "n": int((place == k).sum()), "measured": float(seen[place == k].mean()),
+            "from": int(edges[k - 1]),
+            "to": int(edges[k]),
+            "n": int((place == k).sum()),
+            "measured": float(seen[place == k].mean()),
             **{name: float(v[place == k].mean()) for name, v in values.items()},
         }
-        for k in range(1, len(edges)) if (place == k).any()
-    ]  # fmt: skip
+        for k in range(1, len(edges))
+        if (place == k).any()
+    ]
     after = domenech_throw(0.10, cut, after_slip=True) - values["mu 0.10"]
     return {
-        "n": len(cut), "laws": laws, "misfit": {name: _misfit(v - seen) for name, v in values.items()},
-        "scatter": float(np.sqrt(np.mean((smooth - seen) ** 2))), "bins": bins, "cut": cut.tolist(), "measured": seen.tolist(),
+        "n": len(cut),
+        "laws": laws,
+        "misfit": {name: _misfit(v - seen) for name, v in values.items()},
+        "scatter": float(np.sqrt(np.mean((smooth - seen) ** 2))),
+        "bins": bins,
+        "cut": cut.tolist(),
+        "measured": seen.tolist(),
         "largest_change_by_cloth": float(np.abs(after).max()),
-    }  # fmt: skip
+    }
 
 
 def rebound(preset, v0):
@@ -136,7 +168,8 @@ CUSHIONS = {
     "paper": lambda v0: rebound("paper", v0),
     "match": lambda v0: rebound("match", v0),
 }
-"""v0 -> rebound speed [m/s]. "match" was fitted to these very data (``benchmarks.fit_cushion``), "paper" to those below 1.5 m/s."""
+"""v0 -> rebound speed [m/s]. "match" was fitted to these very data (``benchmarks.fit_cushion``), "paper" to
+those below 1.5 m/s."""
 
 
 def cushion():
@@ -148,8 +181,11 @@ def cushion():
         values = np.array([model(float(s)) for s in speed])
         r = values - seen
         out["models"][name] = {
-            "rebound": values.tolist(), **_misfit(r), "slow": _misfit(r[~fast]), "fast": _misfit(r[fast]),
+            "rebound": values.tolist(),
+            **_misfit(r),
+            "slow": _misfit(r[~fast]),
+            "fast": _misfit(r[fast]),
             "ratio_at_largest": float(values[-1] / speed[-1]),
-        }  # fmt: skip
+        }
     out["ratio_at_largest"] = float(seen[-1] / speed[-1])
     return out

@@ -1,7 +1,9 @@
-"""What do the paper's equations give for its own shots? Tables 1 and 2, models without friction or spin, Figs. 1, 4 and 6.
+"""What do the paper's equations give for its own shots? Tables 1 and 2, models without friction or spin,
+Figs. 1, 4 and 6.
 
-Paper: Mathavan, Jackson & Parkin (2014), constants of ``Physics.preset("paper")``. Used by ``python -m benchmarks.paper``. Frame of a
-shot: the cue ball comes along +x and cuts the object ball to its left, angles in degrees from +x; units SI.
+Paper: Mathavan, Jackson & Parkin (2014), constants of ``Physics.preset("paper")``. Used by
+``python -m benchmarks.paper``. Frame of a shot: the cue ball comes along +x and cuts the object ball to its
+left, angles in degrees from +x; units SI.
 """
 
 from pathlib import Path
@@ -12,10 +14,12 @@ import snooker_env as sn
 
 TABLES = Path(__file__).parents[1] / "data" / "paper_tables.csv"
 QUANTITIES = ("v_c", "v_o", "angle_c", "angle_o")
-"""Speeds [m/s] of cue and object ball once they roll, and the angles [deg] they then have to the cue ball's incoming path."""
+"""Speeds [m/s] of cue and object ball once they roll, and the angles [deg] they then have to the cue ball's
+incoming path."""
 MEASURED_TO = {"v_c": 0.011, "v_o": 0.011, "angle_c": 0.1}
-"""The paper's own accuracy of its measurements [m/s, deg] (section 3). The object ball's angle is not among them: in all five shots the
-"measured" one is the cut angle, by which the shot was defined, so it tests no model."""
+"""The paper's own accuracy of its measurements [m/s, deg] (section 3). The object ball's angle is not among
+them: in all five shots the "measured" one is the cut angle, by which the shot was defined, so it tests no
+model."""
 PAPER = sn.Physics.preset("paper")
 R, E_B, MU_BB = PAPER.R, PAPER.e_b, PAPER.friction_law[0]
 
@@ -26,9 +30,12 @@ def tables():
 
 
 def impact(v0, topspin, cut, physics=PAPER, fidelity="reference"):
-    """v1, w1, v2, w2 just after a cue ball with ``topspin`` [rad/s] has met a resting ball at ``cut`` [deg]."""
+    """v1, w1, v2, w2 just after a cue ball with ``topspin`` [rad/s] has met a resting ball at ``cut``
+    [deg]."""
     c = np.radians(cut)
-    return sn.collide_balls((v0, 0, 0), (0, topspin, 0), (0, 0, 0), (0, 0, 0), (np.cos(c), np.sin(c), 0), physics, fidelity)
+    return sn.collide_balls(
+        (v0, 0, 0), (0, topspin, 0), (0, 0, 0), (0, 0, 0), (np.cos(c), np.sin(c), 0), physics, fidelity
+    )
 
 
 def rolling(v, w, radius=R):
@@ -52,12 +59,14 @@ def solved(fidelity):
 
 
 def closed(e, mu, cloth):
-    """A model for ``MODELS`` in closed form: the impact does not feel the cue ball's roll. c the cut, per unit mass
+    """A model for ``MODELS`` in closed form: the impact does not feel the cue ball's roll. c the cut, per
+    unit mass
 
-    normal impulse P = (1+e)/2 v0 cos c, friction F = min(mu P, v0 sin c / 7) against the tangential slip v0 sin c;
-    along the line of centres v_C = (1-e)/2 v0 cos c, v_O = P; across it v_C = v0 sin c - F, v_O = F.
-    Without ``cloth`` that is all (the balls are pucks); with it both end up rolling, v = (5/7) v + (2/7) R w x z, the cue ball with the
-    spin it came with, the object ball with none (friction F turns both about the vertical only).
+    normal impulse P = (1+e)/2 v0 cos c, friction F = min(mu P, v0 sin c / 7) against the tangential slip v0
+    sin c; along the line of centres v_C = (1-e)/2 v0 cos c, v_O = P; across it v_C = v0 sin c - F, v_O = F.
+    Without ``cloth`` that is all (the balls are pucks); with it both end up rolling, v = (5/7) v + (2/7) R w
+    x z, the cue ball with the spin it came with, the object ball with none (friction F turns both about the
+    vertical only).
     """
 
     def model(v0, topspin, cut):
@@ -83,7 +92,8 @@ MODELS = {
     "euler:10000": solved("euler:10000"),
     "reference": solved("reference"),
 }
-"""Name -> model(v0, topspin, cut) -> the four ``QUANTITIES``. "fast" feels the spin but not the cloth during the impact."""
+"""Name -> model(v0, topspin, cut) -> the four ``QUANTITIES``. "fast" feels the spin but not the cloth during
+the impact."""
 FRICTIONLESS = ("elastic pucks", "inelastic pucks", "elastic, then cloth", "inelastic, then cloth")
 
 
@@ -100,15 +110,17 @@ def measured():
 
 
 def paper_errors(predicted, seen):
-    """Errors [%] by the paper's definitions: of speeds over the prediction (Table 1), of angles over the measurement (Table 2)."""
+    """Errors [%] by the paper's definitions: of speeds over the prediction (Table 1), of angles over the
+    measurement (Table 2)."""
     return 100 * (predicted - seen) / np.where([True, True, False, False], predicted, seen)
 
 
 def table_rows(found):
-    """Tables 1 and 2, one dict a number: measured, printed, computed, errors; ``slip`` is True where a printed one is not borne out.
+    """Tables 1 and 2, one dict a number: measured, printed, computed, errors; ``slip`` is True where a
+    printed one is not borne out.
 
-    A printed prediction is borne out if euler:10000 rounds to it, a printed error if it is right to 0.1 %: the speeds are given to
-    0.001 m/s, which is worth that much.
+    A printed prediction is borne out if euler:10000 rounds to it, a printed error if it is right to 0.1 %:
+    the speeds are given to 0.001 m/s, which is worth that much.
     """
     rows, seen = tables(), measured()
     errors = paper_errors(found["euler:10000"], seen)
@@ -117,16 +129,26 @@ def table_rows(found):
         for i, row in enumerate(rows):
             printed, error = float(row[f"printed_{q}"]), float(row[f"printed_error_{q}"])
             euler = float(found["euler:10000"][i, j])
-            out.append({
-                "quantity": q, "shot": int(row["shot"]), "measured": float(seen[i, j]), "printed": printed, "euler:10000": euler,
-                "reference": float(found["reference"][i, j]), "printed_error": error, "error": float(errors[i, j]),
-                "slip": round(euler, 3 if j < 2 else 2) != printed, "error_slip": bool(abs(error - errors[i, j]) > 0.1),
-            })  # fmt: skip
+            out.append(
+                {
+                    "quantity": q,
+                    "shot": int(row["shot"]),
+                    "measured": float(seen[i, j]),
+                    "printed": printed,
+                    "euler:10000": euler,
+                    "reference": float(found["reference"][i, j]),
+                    "printed_error": error,
+                    "error": float(errors[i, j]),
+                    "slip": round(euler, 3 if j < 2 else 2) != printed,
+                    "error_slip": bool(abs(error - errors[i, j]) > 0.1),
+                }
+            )
     return out
 
 
 def model_rows(found):
-    """How each model does: errors [%] of the measurement per shot, rms of all shots and without shot 1, how many the camera allows."""
+    """How each model does: errors [%] of the measurement per shot, rms of all shots and without shot 1, how
+    many the camera allows."""
     seen = measured()
     limits = np.array(list(MEASURED_TO.values()))
     out = {}
@@ -143,7 +165,8 @@ def model_rows(found):
     return out
 
 
-# Fig. 4 ------------------------------------------------------------------------------------------------------------------------
+# Fig. 4
+# ------------------------------------------------------------------------------------------------------------------------
 
 HEAD_ON = {
     "no friction, (1+e)/2": lambda v0: 0.5 * (1 + E_B) * v0,
@@ -159,17 +182,21 @@ def head_on(speeds=(0.25, 0.5, 1.0, 1.5, 2.0)):
     return {"v0": list(speeds), **{name: [model(v) for v in speeds] for name, model in HEAD_ON.items()}}
 
 
-# Fig. 6 ------------------------------------------------------------------------------------------------------------------------
+# Fig. 6
+# ------------------------------------------------------------------------------------------------------------------------
 
 CURVED = {"v0": 2.0, "cut": 40.0, "mu_bb": (0.05, 0.1, 0.2)}
-"""A rolling cue ball [m/s], its cut [deg], and ball-ball frictions from the paper's constant to the chalked ball's of section 2.4.2."""
+"""A rolling cue ball [m/s], its cut [deg], and ball-ball frictions from the paper's constant to the chalked
+ball's of section 2.4.2."""
 
 
 def curved_path(mu_bb):
-    """Fig. 6: the object ball's path while it slips, from ``simulate`` and from the paper's parabola (section 2.5, misprints corrected).
+    """Fig. 6: the object ball's path while it slips, from ``simulate`` and from the paper's parabola (section
+    2.5, misprints corrected).
 
-    The parabola, in X'Y' turned by psi = Phi'' - 90 deg so that the slip s'' is along +Y': X' keeps its speed, Y' is braked by mu_s g,
-    for T_S = 2 s'' / (7 mu_s g); the ball rolls off at psi + atan2(Y'_S, X'_S).
+    The parabola, in X'Y' turned by psi = Phi'' - 90 deg so that the slip s'' is along +Y': X' keeps its
+    speed, Y' is braked by mu_s g, for T_S = 2 s'' / (7 mu_s g); the ball rolls off at psi + atan2(Y'_S,
+    X'_S).
     """
     v0, cut = CURVED["v0"], CURVED["cut"]
     physics = sn.Physics.preset("paper", mu_bb=mu_bb)
@@ -195,13 +222,20 @@ def curved_path(mu_bb):
     moved = seen - at[1]
     stop = np.interp(end, t, moved @ along), np.interp(end, t, moved @ across)
     return {
-        "mu_bb": mu_bb, "T_S": float(end), "leaves_deg": float(leaves), "rolls_deg": float((final + 180) % 360 - 180), "cut_deg": cut,
-        "length": float(stop[0]), "aside": float(stop[1]), "gap": float(np.abs(seen - parabola)[sliding].max()),
+        "mu_bb": mu_bb,
+        "T_S": float(end),
+        "leaves_deg": float(leaves),
+        "rolls_deg": float((final + 180) % 360 - 180),
+        "cut_deg": cut,
+        "length": float(stop[0]),
+        "aside": float(stop[1]),
+        "gap": float(np.abs(seen - parabola)[sliding].max()),
         "path": np.column_stack([moved @ along, moved @ across]),
-    }  # fmt: skip
+    }
 
 
-# Fig. 1 ------------------------------------------------------------------------------------------------------------------------
+# Fig. 1
+# ------------------------------------------------------------------------------------------------------------------------
 
 POT = {"object": (0.62, 1.45), "cue": (0.45, 0.85), "pocket": "top right", "speed": 2.0}
 """One pot into a corner pocket [m, m/s]."""
@@ -210,9 +244,11 @@ TOPS, SIDES = (-0.4, -0.2, 0.0, 0.2, 0.4), (-0.25, 0.0, 0.25)
 
 
 def spin_shots():
-    """Fig. 1: the same pot with different top and side; (top, side, the aim's shift [deg], the Shot), all of them potted.
+    """Fig. 1: the same pot with different top and side; (top, side, the aim's shift [deg], the Shot), all of
+    them potted.
 
-    Side and throw move the aim that pots: of the aims within 3 degrees of the ghost ball's that do, the middle one is played.
+    Side and throw move the aim that pots: of the aims within 3 degrees of the ghost ball's that do, the
+    middle one is played.
     """
     balls, pocket = np.array([POT["cue"], POT["object"]]), sn.POCKETS.index(POT["pocket"])
     to_pocket = sn.Table.preset("match").falls[pocket, :2] - balls[1]

@@ -1,5 +1,5 @@
-"""Do the models follow the paper and the other data? Draws ``paper.png`` and ``paper_data.png`` from the figures of
-``python -m benchmarks.paper``."""
+"""Do the models follow the paper and the other data? Draws ``paper.png`` and ``paper_data.png`` from the
+figures of ``python -m benchmarks.paper``."""
 
 import numpy as np
 
@@ -27,7 +27,17 @@ def _spin_panel(ax, shots):
     from matplotlib.patches import Circle
 
     colours = dict(
-        zip(TOPS, (picture_style.ORANGE, picture_style.AMBER, picture_style.GREY, picture_style.SKY, picture_style.BLUE), strict=True)
+        zip(
+            TOPS,
+            (
+                picture_style.ORANGE,
+                picture_style.AMBER,
+                picture_style.GREY,
+                picture_style.SKY,
+                picture_style.BLUE,
+            ),
+            strict=True,
+        )
     )
     marks = dict(zip(SIDES, "<o>", strict=True))
     parts = outline(sn.Table.preset("match"))
@@ -48,16 +58,23 @@ def _spin_panel(ax, shots):
     tips = {t: f"{'top' if t > 0 else 'back'} {abs(t):g} R" if t else "centre" for t in TOPS[::-1]}
     handles = [ax.plot([], [], color=colours[t], label=label)[0] for t, label in tips.items()]
     names = {s: "no side" if s == 0 else f"{'right' if s > 0 else 'left'} {abs(s):g} R" for s in SIDES}
-    handles += [ax.plot([], [], marks[s], color=picture_style.GREY, mec=picture_style.INK, label=names[s])[0] for s in SIDES]
+    handles += [
+        ax.plot([], [], marks[s], color=picture_style.GREY, mec=picture_style.INK, label=names[s])[0]
+        for s in SIDES
+    ]
     ax.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.0, 0.94))
 
 
 def _head_on_panel(ax, found):
     speeds = np.array(found["v0"])
     labels = ("no friction, fast: (1+e)/2", "reference", "reference, physics match")
-    for name, label, style in zip(("fast", "reference", "reference, physics match"), labels, ("--", "-", "-."), strict=True):
+    for name, label, style in zip(
+        ("fast", "reference", "reference, physics match"), labels, ("--", "-", "-."), strict=True
+    ):
         ax.plot(speeds, np.array(found[name]) / speeds, style, label=label)
-    ax.set(xlabel="speed of the rolling cue ball [m/s]", ylabel="speed ratio", ylim=(0.93, 0.99), xlim=(0, 2.05))
+    ax.set(
+        xlabel="speed of the rolling cue ball [m/s]", ylabel="speed ratio", ylim=(0.93, 0.99), xlim=(0, 2.05)
+    )
     ax.set_title("Fig. 4: full hit, object ball / cue ball")
     ax.legend(loc="upper left")
 
@@ -65,7 +82,9 @@ def _head_on_panel(ax, found):
 def _curve_panel(ax, curves):
     for found in curves:
         path = np.array(found["path"]) * 1e3
-        (line,) = ax.plot(*path.T, label=f"friction {found['mu_bb']:.2f}: {found['leaves_deg'] - found['rolls_deg']:.2f}°")
+        (line,) = ax.plot(
+            *path.T, label=f"friction {found['mu_bb']:.2f}: {found['leaves_deg'] - found['rolls_deg']:.2f}°"
+        )
         ax.plot(found["length"] * 1e3, found["aside"] * 1e3, "o", color=line.get_color())
     ax.plot([], [], "o", color=picture_style.GREY, label="slip ends")
     ax.axhline(0, color=picture_style.GREY, lw=0.8)
@@ -83,12 +102,26 @@ def _bar_panel(ax, models, column, title, accuracy):
         ax.bar(places, np.clip(values, -LIMIT, LIMIT), width * 0.92, color=colour)
         for x, value in zip(places, values, strict=True):
             if abs(value) > LIMIT:
-                ax.text(x, LIMIT + 0.4, f"{value:.0f}", ha="center", va="bottom", size=picture_style.SMALL, color=picture_style.QUIET)
+                ax.text(
+                    x,
+                    LIMIT + 0.4,
+                    f"{value:.0f}",
+                    ha="center",
+                    va="bottom",
+                    size=picture_style.SMALL,
+                    color=picture_style.QUIET,
+                )
     ax.axhline(0, color=picture_style.INK, lw=0.8)
     ax.set(xlim=(0.5, 5.5), ylim=(-LIMIT, LIMIT + 3), xticks=shots, xlabel="shot", ylabel="error [%]")
     if QUANTITIES[column] not in MEASURED_TO:
-        ax.text(0.03, 0.96, "No test: the cut defined the shot, so models\nwithout friction give 0.", transform=ax.transAxes,
-                size=picture_style.SMALL, va="top")  # fmt: skip
+        ax.text(
+            0.03,
+            0.96,
+            "No test: the cut defined the shot, so models\nwithout friction give 0.",
+            transform=ax.transAxes,
+            size=picture_style.SMALL,
+            va="top",
+        )
     ax.set_title(title + accuracy)
     ax.grid(axis="x", visible=False)
 
@@ -101,26 +134,39 @@ def paper(path, figures):
         "Camera: the paper's own accuracy."
     )
     titles = (
-        ("v_c", "Fig. 7: cue ball's speed"), ("v_o", "Fig. 7: object ball's speed"), ("angle_c", "Fig. 8: cue ball's angle"),
+        ("v_c", "Fig. 7: cue ball's speed"),
+        ("v_o", "Fig. 7: object ball's speed"),
+        ("angle_c", "Fig. 8: cue ball's angle"),
         ("angle_o", "Fig. 8: object ball's angle"),
-    )  # fmt: skip
+    )
     with picture_style.drawing() as plt:
         from matplotlib.patches import Patch
 
-        figure, _ = picture_style.page(plt, 13.4, "The paper's figures, by its equations and by simpler models", note,
-                                       foot="python -m benchmarks.paper, physics 'paper'")  # fmt: skip
+        figure, _ = picture_style.page(
+            plt,
+            13.4,
+            "The paper's figures, by its equations and by simpler models",
+            note,
+            foot="python -m benchmarks.paper, physics 'paper'",
+        )
         upper, lower = figure.subfigures(2, 1, height_ratios=(1, 1.4))
         axes = upper.subplot_mosaic([["spin", "full"], ["spin", "curve"]], width_ratios=(1.18, 1))
         _spin_panel(axes["spin"], figures["spins"])
         _head_on_panel(axes["full"], figures["head_on"])
         _curve_panel(axes["curve"], figures["curved"])
-        for column, (ax, (quantity, title)) in enumerate(zip(lower.subplots(2, 2, sharey=True).flat, titles, strict=True)):
+        for column, (ax, (quantity, title)) in enumerate(
+            zip(lower.subplots(2, 2, sharey=True).flat, titles, strict=True)
+        ):
             limit = MEASURED_TO.get(quantity)
             unit = "°" if quantity.startswith("angle") else " m/s"
             _bar_panel(ax, figures["models"], column, title, f" (camera: {limit:g}{unit})" if limit else "")
         names = [name + (" (the paper's equations)" if name == "reference" else "") for name in BARS]
         lower.legend(
-            [Patch(color=colour) for colour in BARS.values()], names, loc="outside lower center", ncol=3, fontsize=picture_style.TEXT
+            [Patch(color=colour) for colour in BARS.values()],
+            names,
+            loc="outside lower center",
+            ncol=3,
+            fontsize=picture_style.TEXT,
         )
         picture_style.save(figure, path)
 
@@ -142,16 +188,22 @@ def _a14_panel(ax, a14):
 
 def _domenech_panels(ax, below, found):
     cuts = np.linspace(0.5, 80, 60)
-    ax.plot(found["cut"], found["measured"], "o", color=picture_style.GREY, label=f"measured ({found['n']} shots)")
+    ax.plot(
+        found["cut"], found["measured"], "o", color=picture_style.GREY, label=f"measured ({found['n']} shots)"
+    )
     middle = [(b["from"] + b["to"]) / 2 for b in found["bins"]]
     for name, mu in list(found["laws"].items())[:3]:
         (line,) = ax.plot(cuts, domenech_throw(mu, cuts), label=name)
-        below.plot(middle, [b[name] - b["measured"] for b in found["bins"]], "o-", color=line.get_color(), label=name)
+        below.plot(
+            middle, [b[name] - b["measured"] for b in found["bins"]], "o-", color=line.get_color(), label=name
+        )
     ax.set(xlabel="cut [°]", ylabel="throw [°]", xlim=(0, 80), ylim=(0, 9))
     ax.set_title("Throw of 61 mm balls (Doménech)")
     ax.legend(loc="upper left", ncol=2)
     below.axhline(0, color=picture_style.INK, lw=0.8)
-    below.fill_between([0, 80], -found["scatter"], found["scatter"], color=picture_style.GRID, label="scatter, ± 1 rms")
+    below.fill_between(
+        [0, 80], -found["scatter"], found["scatter"], color=picture_style.GRID, label="scatter, ± 1 rms"
+    )
     below.set(xlabel="cut [°]", ylabel="model − measured [°]", xlim=(0, 80), ylim=(-3.2, 2.6))
     below.set_title("The same throw: model − measured, means of 10°")
     below.legend(loc="upper left", ncol=2)
@@ -162,8 +214,15 @@ def _cushion_panel(ax, found):
     ax.plot(speed, np.array(found["measured"]) / speed, "o", color=picture_style.GREY, label="measured")
     fine = np.linspace(0.2, 3.5, 100)
     for name, model in CUSHIONS.items():
-        ax.plot(fine, [model(v) / v for v in fine], label=name + (" (fitted to these)" if name == "match" else ""))
-    ax.set(xlabel="speed into the cushion, rolling [m/s]", ylabel="rebound / incoming speed", xlim=(0, 3.6), ylim=(0.76, 1.09))
+        ax.plot(
+            fine, [model(v) / v for v in fine], label=name + (" (fitted to these)" if name == "match" else "")
+        )
+    ax.set(
+        xlabel="speed into the cushion, rolling [m/s]",
+        ylabel="rebound / incoming speed",
+        xlim=(0, 3.6),
+        ylim=(0.76, 1.09),
+    )
     ax.set_title("Cushion rebound (Mathavan 2010, Fig. 7a)")
     ax.legend(loc="upper right", ncol=2)
 
@@ -175,8 +234,15 @@ def data(path, figures):
         "(2023) measured 61 mm balls, the cue ball rolling at 0.80 m/s; the cushion data are of Mathavan et al. (2010), Fig. 7a."
     )
     with picture_style.drawing() as plt:
-        figure, axes = picture_style.page(plt, 8.2, "Throw and cushion rebound against other data", note, foot="python -m benchmarks.paper",
-                                          rows=2, columns=2)  # fmt: skip
+        figure, axes = picture_style.page(
+            plt,
+            8.2,
+            "Throw and cushion rebound against other data",
+            note,
+            foot="python -m benchmarks.paper",
+            rows=2,
+            columns=2,
+        )
         _a14_panel(axes[0, 0], figures["throw_a14"])
         _domenech_panels(axes[0, 1], axes[1, 1], figures["throw_domenech"])
         _cushion_panel(axes[1, 0], figures["cushion"])

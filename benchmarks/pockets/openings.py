@@ -1,4 +1,5 @@
-"""How large are the pockets' openings, what passes them without touching a jaw, and what if they were a little larger?"""
+"""How large are the pockets' openings, what passes them without touching a jaw, and what if they were a
+little larger?"""
 
 from math import cos, sin, sqrt
 
@@ -18,18 +19,26 @@ PUBLISHED = (
 
 
 def _in_pocket(pocket):
-    """Its jaws as (depth along the axis from the aim point, distance from the axis, radius); depth of the fall's centre, its radius."""
+    """Its jaws as (depth along the axis from the aim point, distance from the axis, radius); depth of the
+    fall's centre, its radius."""
     u, aim = np.array([cos(pocket.axis), sin(pocket.axis)]), np.array(pocket.aim)
     jaws = pocket.table.jaws[:, :2] - aim
     x, y, radius = pocket.table.falls[0]
-    return jaws @ u, np.abs(jaws @ np.array([-u[1], u[0]])), pocket.table.jaws[:, 2], (np.array([x, y]) - aim) @ u, radius
+    return (
+        jaws @ u,
+        np.abs(jaws @ np.array([-u[1], u[0]])),
+        pocket.table.jaws[:, 2],
+        (np.array([x, y]) - aim) @ u,
+        radius,
+    )
 
 
 def openings(pocket):
-    """Widths [m] across a preset's pocket: the mouth where the jaws begin, the throat where the arcs end, and at the fall.
+    """Widths [m] across a preset's pocket: the mouth where the jaws begin, the throat where the arcs end, and
+    at the fall.
 
-    at the fall: between the noses on the line across the fall's middle (none where the jaws begin behind it); fall to jaw: between
-    the two points at which the fall meets the jaws.
+    at the fall: between the noses on the line across the fall's middle (none where the jaws begin behind it);
+    fall to jaw: between the two points at which the fall meets the jaws.
     """
     depth, across, radius, fall, edge = (a[0] if np.ndim(a) else a for a in _in_pocket(pocket))
     noses = pocket.table.noses
@@ -39,13 +48,19 @@ def openings(pocket):
         top, right = noses[noses[:, 0] == 1][0], noses[noses[:, 0] == 0][0]
         mouth = sqrt((right[2] - top[4]) ** 2 + (top[2] - right[4]) ** 2)
     at_fall = 2 * (across - sqrt(radius**2 - depth**2)) if abs(depth) < radius else np.nan
-    # where the two circles cross: the fall about (fall, 0), the jaw about (depth, across); of both places the one on the table's side
+    # where the two circles cross: the fall about (fall, 0), the jaw about (depth, across); of both places the
+    # one on the table's side
     d = np.hypot(depth - fall, across)
     ux, uy = (depth - fall) / d, across / d
     along = (d * d + edge**2 - radius**2) / (2 * d)
     off = sqrt(edge**2 - along**2)
     _, meets = min((fall + along * ux - side * off * uy, along * uy + side * off * ux) for side in (-1, 1))
-    return {"mouth": mouth, "at the fall": float(at_fall), "fall to jaw": 2 * float(meets), "throat": 2 * float(across - radius)}
+    return {
+        "mouth": mouth,
+        "at the fall": float(at_fall),
+        "fall to jaw": 2 * float(meets),
+        "throat": 2 * float(across - radius),
+    }
 
 
 def clean(pocket, R):
@@ -54,12 +69,19 @@ def clean(pocket, R):
 
 
 def untouched(pocket, speeds, rolling, physics, engine=None, distance=0.3, halvings=30):
-    """The largest offset [m] at which a ball that runs along the axis drops without a jaw in its log, by speed."""
+    """The largest offset [m] at which a ball that runs along the axis drops without a jaw in its log, by
+    speed."""
     engine, speeds = engine or Engine(), np.asarray(speeds, float)
     low, high = np.zeros(len(speeds)), np.full(len(speeds), 0.05)
 
     def free(s):
-        hit, _, out = played(pocket, strokes(pocket, s, 0.0, distance, speeds, rolling, False, physics), physics, engine, log=32)
+        hit, _, out = played(
+            pocket,
+            strokes(pocket, s, 0.0, distance, speeds, rolling, False, physics),
+            physics,
+            engine,
+            log=32,
+        )
         logged = np.arange(out.event_what.shape[1]) < out.n_events[:, None]
         return hit & ~((out.event_what[:, :, 0] == EventKind.JAW) & logged).any(1)
 
@@ -76,11 +98,23 @@ def all_clean_drop(pocket, speeds, physics, engine=None, distance=0.3, n=41):
     """Do all balls within the clean opening drop, at every speed, rolling or not?"""
     most = clean(pocket, physics.R)
     s = np.linspace(-most, most, n)[:, None, None] * (1 - 1e-9)
-    return bool(drops(pocket, 0.0, distance, np.asarray(speeds)[:, None], np.array([True, False]), physics, engine or Engine(), s).all())
+    return bool(
+        drops(
+            pocket,
+            0.0,
+            distance,
+            np.asarray(speeds)[:, None],
+            np.array([True, False]),
+            physics,
+            engine or Engine(),
+            s,
+        ).all()
+    )
 
 
 def moved(table, fall=0.0, throat=0.0):
-    """A preset with its falls further out by ``fall`` [m] along the axes of the pockets, and its throats wider by ``throat`` [m]."""
+    """A preset with its falls further out by ``fall`` [m] along the axes of the pockets, and its throats
+    wider by ``throat`` [m]."""
     noses, jaws, falls = table.noses.copy(), table.jaws.copy(), table.falls.copy()
     falls[:, :2] += fall * POCKET_AIMS[:, 2:4]
     corner, middle = throat / sqrt(2), throat / 2  # by how much the arcs move along their rails

@@ -1,9 +1,11 @@
-"""How do a pool table's pockets compare with Alciatore's effective target sizes? His formulas, and his pockets as tables of their own.
+"""How do a pool table's pockets compare with Alciatore's effective target sizes? His formulas, and his
+pockets as tables of their own.
 
-TP 3.5 (side pocket) and TP 3.6 (corner pocket), "Effective target sizes for slow shots at different angles": straight facings, sharp
-points, mirror reflections without friction, no spin, no speed; a ball drops where its centre reaches the circle of the hole. The target
-size is the width of parallel paths that drop: theta off the axis, R of the ball, p the mouth from point to point, alpha between a facing
-and the axis (facings converge), R_h of the hole, b the shelf from the mouth to the hole; lengths in inches, angles in radians.
+TP 3.5 (side pocket) and TP 3.6 (corner pocket), "Effective target sizes for slow shots at different angles":
+straight facings, sharp points, mirror reflections without friction, no spin, no speed; a ball drops where its
+centre reaches the circle of the hole. The target size is the width of parallel paths that drop: theta off the
+axis, R of the ball, p the mouth from point to point, alpha between a facing and the axis (facings converge),
+R_h of the hole, b the shelf from the mouth to the hole; lengths in inches, angles in radians.
 """
 
 from dataclasses import dataclass
@@ -23,7 +25,8 @@ MIRROR = {"R": 1.125 * INCH, "e_c": 1.0, "mu_c": 0.0, "mu_s": 1e-9, "mu_r": 1e-9
 DISTANCE = 0.4
 """The ball starts so far [m] before the middle of the mouth: at 0.5 m/s it arrives with 0.39."""
 SPEEDS = {"slow": 0.5, "medium": 2.0, "fast": 6.0}
-_FACING, _FLAT = 0.14, 100.0  # m: length of a facing; radius of the arc that stands for it (0.02 mm off a straight line)
+# m: length of a facing; radius of the arc that stands for it (0.02 mm off a straight line)
+_FACING, _FLAT = 0.14, 100.0
 
 
 @dataclass(frozen=True)
@@ -38,20 +41,32 @@ class Pool:
     L: float = 96.0
 
     def far_wall(self, beta, theta):
-        """How far the ball runs from the far facing to the edge of the hole, after it has met the near point at the angle beta."""
+        """How far the ball runs from the far facing to the edge of the hole, after it has met the near point
+        at the angle beta."""
         turn = 2 * beta - theta - self.alpha
-        past = self.p / 2 * cos(self.alpha) - self.R - self.R_h * cos(turn) - (self.R_h + self.b) * sin(self.alpha)
+        past = (
+            self.p / 2 * cos(self.alpha)
+            - self.R
+            - self.R_h * cos(turn)
+            - (self.R_h + self.b) * sin(self.alpha)
+        )
         return past / sin(turn)
 
     def by_wall(self, beta, theta):
-        """Zero where the ball reaches the edge of the hole at a tangent: from the point over the far facing."""
+        """Zero where the ball reaches the edge of the hole at a tangent: from the point over the far
+        facing."""
         run, turn = self.far_wall(beta, theta), 4 * beta - 2 * theta - 2 * self.alpha
         there = self.p / 2 * cos(2 * beta - theta) + (self.R_h + self.b) * sin(2 * beta - theta)
         return self.R * sin(beta) + run * sin(turn) + self.R_h * cos(turn) + there
 
     def direct(self, beta, theta):
         """The same: from the point straight to the hole."""
-        return -self.R * sin(beta) + self.R_h - self.p / 2 * cos(2 * beta - theta) - (self.R_h + self.b) * sin(2 * beta - theta)
+        return (
+            -self.R * sin(beta)
+            + self.R_h
+            - self.p / 2 * cos(2 * beta - theta)
+            - (self.R_h + self.b) * sin(2 * beta - theta)
+        )
 
     def by_two_walls(self, beta, theta):
         """The same: from the point over the far facing and the near one."""
@@ -59,8 +74,14 @@ class Pool:
         first = 2 * beta - pi / 2 - theta - 2 * a
         second = first - 2 * a
         run2 = (half * cos(a) - deep * sin(a) + R_h * sin(second + a) - R) / cos(second + a)
-        run1 = (half * cos(a) - R + run2 * cos(second - a) - R_h * sin(second - a) - deep * sin(a)) / cos(first + a)
-        way = -run1 * cos(2 * beta - theta + first) + run2 * cos(2 * beta - theta - second) + R_h * sin(2 * beta - theta - second)
+        run1 = (half * cos(a) - R + run2 * cos(second - a) - R_h * sin(second - a) - deep * sin(a)) / cos(
+            first + a
+        )
+        way = (
+            -run1 * cos(2 * beta - theta + first)
+            + run2 * cos(2 * beta - theta - second)
+            + R_h * sin(2 * beta - theta - second)
+        )
         return -R * sin(beta) + way - half * cos(2 * beta - theta) - deep * sin(2 * beta - theta)
 
     def root(self, f, theta, guess):
@@ -85,12 +106,18 @@ class Pool:
         """The same, off the facing alone."""
         theta = -theta
         turn = 2 * theta + 2 * self.alpha
-        return self.far_wall(pi / 2, theta) * sin(turn) - self.R_h * cos(turn) - (self.R_h + self.b) * sin(theta)
+        return (
+            self.far_wall(pi / 2, theta) * sin(turn) - self.R_h * cos(turn) - (self.R_h + self.b) * sin(theta)
+        )
 
     def side_by_both_walls(self, theta):
         """The same, off one facing and then the other."""
         after = theta - 2 * self.alpha
-        return self.p / 2 * (cos(theta) + cos(after)) - 2 * self.R * cos(theta - self.alpha) + self.side_by_wall(after)
+        return (
+            self.p / 2 * (cos(theta) + cos(after))
+            - 2 * self.R * cos(theta - self.alpha)
+            + self.side_by_wall(after)
+        )
 
     def side_by_rail(self, f, theta):
         """The same, off the rail beside a corner pocket first: ``f`` of the direction after it."""
@@ -129,7 +156,8 @@ def published(kind, degrees):
 
 
 def pocket(kind):
-    """His pocket as a table: the mouth's middle at the origin, the axis along +x of a side pocket, at 45 degrees of a corner."""
+    """His pocket as a table: the mouth's middle at the origin, the axis along +x of a side pocket, at 45
+    degrees of a corner."""
     pool = POOLS[kind]
     axis = pi / 4 if kind == "corner" else 0.0
     u, left = np.array([cos(axis), sin(axis)]), np.array([-sin(axis), cos(axis)])
@@ -153,19 +181,26 @@ def pocket(kind):
 
 
 def sizes(kind, engines):
-    """Target sizes [m] against the angle: his; this engine's with his assumptions, and with mirrors but a ball that rolls on cloth, at
-    0.5 m/s; and with ``"match"`` at the three speeds. engines: "before" and "after".
+    """Target sizes [m] against the angle: his; this engine's with his assumptions, and with mirrors but a
+    ball that rolls on cloth, at 0.5 m/s; and with ``"match"`` at the three speeds. engines: "before" and
+    "after".
     """
     here, angles = pocket(kind), np.radians(ANGLES[kind])
     found = {"Alciatore": np.array([published(kind, a) * INCH for a in ANGLES[kind]])}
     physics = sn.Physics(**MIRROR)
-    found["his assumptions"] = windows(here, Paths(angles, DISTANCE, 0.5, False, False), physics, engines["before"]).width
+    found["his assumptions"] = windows(
+        here, Paths(angles, DISTANCE, 0.5, False, False), physics, engines["before"]
+    ).width
     physics = sn.Physics(R=PHYSICS["R"], e_c=1.0, mu_c=0.0)
-    found["his, but it rolls"] = windows(here, Paths(angles, DISTANCE, 0.5, True, False), physics, engines["before"]).width
+    found["his, but it rolls"] = windows(
+        here, Paths(angles, DISTANCE, 0.5, True, False), physics, engines["before"]
+    ).width
     physics = sn.Physics.preset("match", **PHYSICS)
     for rule, engine in engines.items():
         for name, speed in SPEEDS.items():
-            found[f"{name} {rule}"] = windows(here, Paths(angles, DISTANCE, speed, True, False), physics, engine).width
+            found[f"{name} {rule}"] = windows(
+                here, Paths(angles, DISTANCE, speed, True, False), physics, engine
+            ).width
     return found
 
 

@@ -1,4 +1,5 @@
-"""What drops along a rail? A ball frozen to the cushion or a little off it, its path parallel to the rail, into the corner pocket."""
+"""What drops along a rail? A ball frozen to the cushion or a little off it, its path parallel to the rail,
+into the corner pocket."""
 
 from math import pi
 
@@ -16,7 +17,8 @@ MOST, SCAN = np.radians(8.0), 641
 
 
 def down_the_rail(table, physics, engine, offs=OFF, runs=RUNS, speeds=SPEEDS):
-    """Potted or not, and the ends of the widest range of angles that pot [rad, + towards the rail], by (off, run, speed, rolling).
+    """Potted or not, and the ends of the widest range of angles that pot [rad, + towards the rail], by (off,
+    run, speed, rolling).
 
     Where a ball does not get there: not potted, and no range.
     """
@@ -31,4 +33,9 @@ def down_the_rail(table, physics, engine, offs=OFF, runs=RUNS, speeds=SPEEDS):
         low.append(-found.high)
         high.append(-found.low)
     arrives = np.broadcast_to(reach(speed, rolling, physics) > run + NEAR, potted[0].shape)
-    return {"potted": np.array(potted) & arrives, "arrives": np.array([arrives] * len(offs)), "low": np.array(low), "high": np.array(high)}
+    return {
+        "potted": np.array(potted) & arrives,
+        "arrives": np.array([arrives] * len(offs)),
+        "low": np.array(low),
+        "high": np.array(high),
+    }

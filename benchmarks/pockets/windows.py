@@ -1,9 +1,11 @@
-"""How wide is a pocket's window? Which paths of one ball drop into it, found by a scan and by bisection of both ends.
+"""How wide is a pocket's window? Which paths of one ball drop into it, found by a scan and by bisection of
+both ends.
 
-A window is what drops of a range of one number s, everything else fixed: the angle by which the path is turned about its start [rad], or
-how far it is shifted sideways as a whole [m]. A scan finds the runs of pots, bisection their ends. A window may be in pieces: a firm ball
-that just touches a jaw may rattle out between paths that drop. Its width is that of all its pieces; gaps and pieces thinner than a step of
-the scan may be missed. Nothing is random and nothing is timed.
+A window is what drops of a range of one number s, everything else fixed: the angle by which the path is
+turned about its start [rad], or how far it is shifted sideways as a whole [m]. A scan finds the runs of pots,
+bisection their ends. A window may be in pieces: a firm ball that just touches a jaw may rattle out between
+paths that drop. Its width is that of all its pieces; gaps and pieces thinner than a step of the scan may be
+missed. Nothing is random and nothing is timed.
 """
 
 import os
@@ -29,7 +31,8 @@ HALVINGS = 18
 AT_POCKET = 0.25
 """Noses that end and jaws whose centre is nearer than this to a pocket [m] are its own."""
 NEAR = 0.05
-"""A ball that would stop less than this [m] past the aim point is not counted as arriving: its speed decides, not the pocket."""
+"""A ball that would stop less than this [m] past the aim point is not counted as arriving: its speed decides,
+not the pocket."""
 
 
 @dataclass(frozen=True)
@@ -69,14 +72,18 @@ def endless(noses, x, y):
     """The noses with an end near (x, y), their other ends so far away that no ball comes round them."""
     out, level, kept = noses.copy(), noses[:, 1] * noses[:, 2], np.zeros(len(noses), bool)
     for end, other in ((3, 4), (4, 3)):
-        far = np.hypot(np.where(noses[:, 0] == 0, level, noses[:, end]) - x, np.where(noses[:, 0] == 0, noses[:, end], level) - y)
+        far = np.hypot(
+            np.where(noses[:, 0] == 0, level, noses[:, end]) - x,
+            np.where(noses[:, 0] == 0, noses[:, end], level) - y,
+        )
         out[far < AT_POCKET, other] = 100.0 if other == 4 else -100.0
         kept |= far < AT_POCKET
     return out[kept]
 
 
 def alone(table, pocket):
-    """Pocket number ``pocket`` of a preset, or of a table like it: its fall, its jaws, and the noses that end at it."""
+    """Pocket number ``pocket`` of a preset, or of a table like it: its fall, its jaws, and the noses that end
+    at it."""
     x, y, _ = table.falls[pocket]
     ax, ay, ux, uy, _ = POCKET_AIMS[pocket]
     jaws = table.jaws[np.hypot(table.jaws[:, 0] - x, table.jaws[:, 1] - y) < AT_POCKET]
@@ -97,7 +104,8 @@ def reach(speed, rolling, physics):
 
 
 def strokes(pocket, s, angle, distance, speed, rolling, turned, physics):
-    """Start, velocity and spin of each path, (n, 2), (n, 2), (n, 3). angle: off the axis [rad]; turned: s is an angle, else a shift."""
+    """Start, velocity and spin of each path, (n, 2), (n, 2), (n, 3). angle: off the axis [rad]; turned: s is
+    an angle, else a shift."""
     course = pocket.axis + angle
     x = pocket.aim[0] - distance * np.cos(course) - np.where(turned, 0.0, s) * np.sin(course)
     y = pocket.aim[1] - distance * np.sin(course) + np.where(turned, 0.0, s) * np.cos(course)
@@ -108,12 +116,21 @@ def strokes(pocket, s, angle, distance, speed, rolling, turned, physics):
 
 
 def played(pocket, start, physics, engine, log=0):
-    """Play the strokes, one ball each: which drop, which start in a cushion (and are not played), and the run itself."""
+    """Play the strokes, one ball each: which drop, which start in a cushion (and are not played), and the run
+    itself."""
     r, v, w = (np.ascontiguousarray(a)[:, None] for a in start)
     here = np.ones((len(r), 1), bool)
     here[pocket.table.unfit(r, physics.R)] = False
     threads = os.cpu_count() or 1
-    out = engine.run([r, v, w, here.copy()], physics, pocket.table, (engine.code, 0), 10_000, simulation.log_space(len(r), log, 0), threads)
+    out = engine.run(
+        [r, v, w, here.copy()],
+        physics,
+        pocket.table,
+        (engine.code, 0),
+        10_000,
+        simulation.log_space(len(r), log, 0),
+        threads,
+    )
     if out.status[here[:, 0]].any():
         raise RuntimeError(f"shots {np.flatnonzero(out.status)} did not come to rest")
     return (out.potted[:, 0] >= 0) & here[:, 0], ~here[:, 0], out
@@ -122,7 +139,9 @@ def played(pocket, start, physics, engine, log=0):
 def drops(pocket, angle, distance, speed, rolling, physics, engine, s):
     """Does the ball on each path drop, shifted by s? Arrays, or numbers."""
     s, angle, distance, speed, rolling = np.broadcast_arrays(s, angle, distance, speed, rolling)
-    start = strokes(pocket, s.ravel(), angle.ravel(), distance.ravel(), speed.ravel(), rolling.ravel(), False, physics)
+    start = strokes(
+        pocket, s.ravel(), angle.ravel(), distance.ravel(), speed.ravel(), rolling.ravel(), False, physics
+    )
     return played(pocket, start, physics, engine)[0].reshape(s.shape)
 
 
@@ -155,13 +174,16 @@ def windows(pocket, paths, physics, engine=None, half=None, scan=SCAN):
 
     def pots(s, case):
         """Who drops, and who starts in a cushion."""
-        start = strokes(pocket, s, angle[case], distance[case], speed[case], rolling[case], turned[case], physics)
+        start = strokes(
+            pocket, s, angle[case], distance[case], speed[case], rolling[case], turned[case], physics
+        )
         return played(pocket, start, physics, engine)[:2]
 
     hit = pots(grid.ravel(), np.repeat(np.arange(n), scan))[0].reshape(n, scan)
     if hit[:, [0, -1]].any():
         raise RuntimeError("a window is wider than the scan")
-    case, left = np.nonzero(hit[:, 1:] != hit[:, :-1])  # each end of each run: between the points left and left + 1
+    # each end of each run: between the points left and left + 1
+    case, left = np.nonzero(hit[:, 1:] != hit[:, :-1])
     rising = hit[case, left + 1]
     inside, outside = grid[case, left + rising], grid[case, left + ~rising]
     for _ in range(HALVINGS):

@@ -1,6 +1,8 @@
-"""Which breaks are played? The cue ball meets the apex of 15 reds, touching or loose, or breaks off from the D.
+"""Which breaks are played? The cue ball meets the apex of 15 reds, touching or loose, or breaks off from the
+D.
 
-Used by ``python -m benchmarks.rack``. A break is r (n, 2), v (n, 2), w (n, 3) at the moment when the cue ball meets the rack.
+Used by ``python -m benchmarks.rack``. A break is r (n, 2), v (n, 2), w (n, 3) at the moment when the cue ball
+meets the rack.
 """
 
 from math import asin, cos, pi, sin
@@ -29,9 +31,11 @@ def rolling(r, direction, speed):
 
 
 def apex_break(speed, offset, gap=0.0, rng=None):
-    """The cue ball meets the foremost of 15 reds, the colours off the table; ``offset`` [R] of its line from the rack's axis.
+    """The cue ball meets the foremost of 15 reds, the colours off the table; ``offset`` [R] of its line from
+    the rack's axis.
 
-    gap [m]: the rack's pitch is 2 R + gap; with ``rng`` each red is also moved at random within gap / 2, so that gaps are 0 to 2 gap.
+    gap [m]: the rack's pitch is 2 R + gap; with ``rng`` each red is also moved at random within gap / 2, so
+    that gaps are 0 to 2 gap.
     """
     r = SPOTS[:16].copy()
     r[1:] = r[1] + (r[1:] - r[1]) * (1 + gap / (2 * R))
@@ -45,7 +49,8 @@ def apex_break(speed, offset, gap=0.0, rng=None):
 
 
 def break_off(rng):
-    """A break-off as it is played: all 22 balls, the cue ball from the D thin onto the end red of the back row."""
+    """A break-off as it is played: all 22 balls, the cue ball from the D thin onto the end red of the back
+    row."""
     r = SPOTS.copy()
     start = np.array([rng.uniform(0.08, 0.2), SPOTS[0, 1] - rng.uniform(0, 0.1)])
     to = r[15] + [rng.uniform(0.01, 0.04), 0] - start

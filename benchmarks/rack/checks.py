@@ -1,4 +1,5 @@
-"""Is the reference model right? One pair, a published break, half the step, twice the stiffness; the other rule by a second method.
+"""Is the reference model right? One pair, a published break, half the step, twice the stiffness; the other
+rule by a second method.
 
 Used by ``python -m benchmarks.rack``.
 """
@@ -15,8 +16,9 @@ from .compliant import LAWS, SPAN, STEP, M, R, compliant
 from .models import misplaced, shares
 from .simultaneous import simultaneous, simultaneous_by_nnls
 
-# Speeds after an elastic break by Hertz contacts without friction, dead centre, the cue ball at 10 units, by ball (the mirror images left
-# out): the computed answer to "Perfectly centered break of a perfectly aligned pool ball rack" (MathOverflow, 2014).
+# Speeds after an elastic break by Hertz contacts without friction, dead centre, the cue ball at 10 units, by
+# ball (the mirror images left out): the computed answer to "Perfectly centered break of a perfectly aligned
+# pool ball rack" (MathOverflow, 2014).
 PUBLISHED = {0: 1.79, 1: 1.20, 2: 1.57, 4: 1.42, 5: 0.12, 7: 1.31, 8: 0.25, 11: 5.60, 12: 2.57, 13: 2.63}
 
 
@@ -35,7 +37,8 @@ def checks(models):
                 n = np.array([sin(cut), cos(cut)])
                 r = np.array([[0, 0], 2 * R * n])
                 v, w = rolling(r, np.array([0.0, 1.0]), speed)
-                # the law with q = 1/2 has the intended restitution at 5 m/s along the line of centres only: compare where it has
+                # the law with q = 1/2 has the intended restitution at 5 m/s along the line of centres only:
+                # compare where it has
                 if law.q == 0.5 and (cut or speed < 5.0):
                     continue
                 dt, span = (STEP, 1e-3) if speed > 0.5 else (5 * STEP, 2e-3)
@@ -49,7 +52,10 @@ def checks(models):
         figures[f"pair {name}"] = row
         print(f"    {name:15s}" + "".join(f"   {speed:g} m/s {x:.1e}" for speed, x in row.items()))
     elastic = sn.Physics.preset("paper", e_b=1.0, mu_bb=0.0, mu_s=1e-9, g=1e-9)
-    print("  the published elastic break without friction (largest difference of a speed; cue ball 10): ", end="")
+    print(
+        "  the published elastic break without friction (largest difference of a speed; cue ball 10): ",
+        end="",
+    )
     for speed in (0.05, 5.0):
         r, v, w = apex_break(speed, 0.0)
         _, v1, _, _, deepest = compliant(r, v, 0 * w, elastic, dt=2 * STEP, span=SPAN * (5 / speed) ** 0.2)
@@ -63,7 +69,9 @@ def checks(models):
         _, v1, w1, lost, _ = compliant(r, v, w, models.physics, dt=dt)
         left = 0.5 * M * ((v1**2).sum() + 0.4 * R**2 * (w1**2).sum())
         parts.append((dt, shares(v1, w1, 5.0), 1 - (left + lost.sum()) / (0.7 * M * 25)))
-    print("  halving the step (break at 5 m/s, offset 0.1 R): energy misplaced against the next; energy unaccounted for")
+    print(
+        "  halving the step (break at 5 m/s, offset 0.1 R): energy misplaced against the next; energy unaccounted for"
+    )
     for (dt, x, open_), (_, y, _) in pairwise(parts):
         figures[f"step {dt:g}"] = {"misplaced": misplaced(x, y), "unaccounted": open_}
         print(f"    {dt * 1e6:4.2f} us  {misplaced(x, y):.1e}  {open_:+.1e}")
@@ -72,5 +80,7 @@ def checks(models):
     figures["stiffer"] = misplaced(x, shares(v1, w1, 5.0))
     print(f"  twice the stiffness misplaces {figures['stiffer']:.1e}")
     figures["lcp"] = float(np.abs(simultaneous(r, v, 0.89) - simultaneous_by_nnls(r, v, 0.89)).max() / 5)
-    print(f"  the simultaneous solution against non-negative least squares: {figures['lcp']:.1e} of the speed\n")
+    print(
+        f"  the simultaneous solution against non-negative least squares: {figures['lcp']:.1e} of the speed\n"
+    )
     return figures

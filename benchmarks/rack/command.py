@@ -1,23 +1,27 @@
-"""Is a touching rack resolved rightly by pairwise impacts in sequence? Breaks by three models of the touching balls, compared.
+"""Is a touching rack resolved rightly by pairwise impacts in sequence? Breaks by three models of the touching
+balls, compared.
 
     python -m benchmarks.rack [--shots 100] [--orders 100] [--racks 30] [--physics paper] [--seed 0]
         [--json FILE] [--out FOLDER]
 
 * **Sequence**: this engine. Touching balls collide two by two at one instant, ties in the order of ball ids.
-* **Simultaneous**: one linear complementarity problem over all touching contacts, no friction, solved by projected Gauss-Seidel: the
-  compression impulses L >= 0 with closing speeds u <= 0 and L u = 0, times 1 + e. With one e for all contacts and no friction this is
-  both Newton's law in Moreau's form (u+ + e u- complementary to L) and Poisson's (L grows by e L in restitution). Then the engine.
-* **Compliant**: the reference. All balls, contacts as springs with dampers, in micro-steps of 0.1 us for 10 ms; then the engine.
-  F = k d^p + c d^q d', never pulling, d the overlap. Hertz: p = 3/2, k = (4/3) (E / (2 (1 - nu^2))) sqrt(R / 2), the resin's E = 5 GPa and
-  nu = 0.34: round figures, and what twice the stiffness changes is printed. q = 1/4 (Tsuji 1992) loses the same share at every speed;
-  q = 1/2 (Kuwabara & Kono 1987) loses more at speed. Linear: p = 1, q = 0, with Hertz's contact time at 5 m/s. c is set so that one
-  pair has the engine's restitution (q = 1/2: at 5 m/s). Friction between balls and on the cloth is Coulomb's, its impulse in a step at
-  most what stops the slip. As in the engine's impact, friction may lift a ball or press it into the cloth, which answers with
-  friction, and the vertical speed is dropped afterwards.
+* **Simultaneous**: one linear complementarity problem over all touching contacts, no friction, solved by
+  projected Gauss-Seidel: the compression impulses L >= 0 with closing speeds u <= 0 and L u = 0, times 1 + e.
+  With one e for all contacts and no friction this is both Newton's law in Moreau's form (u+ + e u-
+  complementary to L) and Poisson's (L grows by e L in restitution). Then the engine.
+* **Compliant**: the reference. All balls, contacts as springs with dampers, in micro-steps of 0.1 us for 10
+  ms; then the engine. F = k d^p + c d^q d', never pulling, d the overlap. Hertz: p = 3/2, k = (4/3) (E / (2
+  (1 - nu^2))) sqrt(R / 2), the resin's E = 5 GPa and nu = 0.34: round figures, and what twice the stiffness
+  changes is printed. q = 1/4 (Tsuji 1992) loses the same share at every speed; q = 1/2 (Kuwabara & Kono 1987)
+  loses more at speed. Linear: p = 1, q = 0, with Hertz's contact time at 5 m/s. c is set so that one pair has
+  the engine's restitution (q = 1/2: at 5 m/s). Friction between balls and on the cloth is Coulomb's, its
+  impulse in a step at most what stops the slip. As in the engine's impact, friction may lift a ball or press
+  it into the cloth, which answers with friction, and the vertical speed is dropped afterwards.
 
-Energies are kinetic, spin included, 10 ms after the cue ball met the rack, over the cue ball's own before. "Misplaced": how much of it
-a model has on other balls than Hertz does, or has lost: half the sum of the differences, the lost share included. "Sharers":
-(sum E)^2 / sum E^2 over the reds, how many share their energy.
+Energies are kinetic, spin included, 10 ms after the cue ball met the rack, over the cue ball's own before.
+"Misplaced": how much of it a model has on other balls than Hertz does, or has lost: half the sum of the
+differences, the lost share included. "Sharers": (sum E)^2 / sum E^2 over the reds, how many share their
+energy.
 """
 
 import os
@@ -41,7 +45,9 @@ from .simultaneous import contacts, gauss_seidel, simultaneous
 
 FILE = "rack.png"
 CORNERS = (11, 15)
-MIRRORED = np.array([0, *(1 + k for row in range(5) for k in range(row * (row + 1) // 2 + row, row * (row + 1) // 2 - 1, -1))])
+MIRRORED = np.array(
+    [0, *(1 + k for row in range(5) for k in range(row * (row + 1) // 2 + row, row * (row + 1) // 2 - 1, -1))]
+)
 """Which ball is the mirror image of ball i in the rack."""
 CENTRE = SPOTS[1:16].mean(0)
 NEAR = 0.25
@@ -59,9 +65,15 @@ def cradle(models):
             v, w = np.zeros((n, 2)), np.zeros((n, 3))
             v[0, 1] = 1.0
             row = {
-                "sequence": sn.simulate(r, v, w, "match", sn.Physics.preset("paper", e_b=e)).at(1e-9)[1][:, 1],
+                "sequence": sn.simulate(r, v, w, "match", sn.Physics.preset("paper", e_b=e)).at(1e-9)[1][
+                    :, 1
+                ],
                 "simultaneous": simultaneous(r, v, e)[:, 1],
-                **{name: compliant(r, v, w, floating, law, span=5e-3)[1][:, 1] for name, law in LAWS.items() if law.q != 0.5},
+                **{
+                    name: compliant(r, v, w, floating, law, span=5e-3)[1][:, 1]
+                    for name, law in LAWS.items()
+                    if law.q != 0.5
+                },
             }
             figures[f"{n} balls, e {e:g}"] = {name: x.tolist() for name, x in row.items()}
             for name, x in row.items():
@@ -72,11 +84,19 @@ def cradle(models):
 
 def head_on(models, speed=5.0):
     """A break on the rack's axis."""
-    print(f"Head-on at {speed:g} m/s, touching rack: energies [% of the cue ball's]; momentum, mirror error of velocities [of its speed]")
-    print(" " * 28 + "  cue   apex  corners (left, right)  back 3  other 9   lost   sharers  momentum  mirror   misplaced")
+    print(
+        f"Head-on at {speed:g} m/s, touching rack: energies [% of the cue ball's]; momentum, mirror error of velocities [of its speed]"
+    )
+    print(
+        " " * 28
+        + "  cue   apex  corners (left, right)  back 3  other 9   lost   sharers  momentum  mirror   misplaced"
+    )
     r, v, w = apex_break(speed, 0.0)
     figures, states = {}, {}
-    cases = [(name, models.physics) for name in models.names] + [("Hertz", models.slippery), ("sequence", models.slippery)]
+    cases = [(name, models.physics) for name in models.names] + [
+        ("Hertz", models.slippery),
+        ("sequence", models.slippery),
+    ]
     reference = {}
     for name, physics in cases:
         _, v1, w1 = models.after(name, r, v, w, physics)
@@ -86,9 +106,18 @@ def head_on(models, speed=5.0):
         mirror = float(np.abs(v1 - v1[MIRRORED] * [-1, 1]).max() / speed)
         other = x[2:11].sum()
         row = {
-            "cue": x[0], "apex": x[1], "left": x[11], "right": x[15], "back": x[12:15].sum(), "other": other, "lost": 1 - x.sum(),
-            "sharers": sharers(x), "momentum": v1[:, 1].sum() / speed, "mirror": mirror, "misplaced": misplaced(x, reference[id(physics)]),
-        }  # fmt: skip
+            "cue": x[0],
+            "apex": x[1],
+            "left": x[11],
+            "right": x[15],
+            "back": x[12:15].sum(),
+            "other": other,
+            "lost": 1 - x.sum(),
+            "sharers": sharers(x),
+            "momentum": v1[:, 1].sum() / speed,
+            "mirror": mirror,
+            "misplaced": misplaced(x, reference[id(physics)]),
+        }
         figures[label] = {key: float(value) for key, value in row.items()}
         states[label] = v1, x
         print(
@@ -105,7 +134,12 @@ def offsets(models):
     """Breaks at several speeds and offsets."""
     print("Touching rack, other breaks: energy misplaced against Hertz [%]; sharers")
     others = models.names[1:]
-    print("  m/s  offset R" + "".join(f"{name:>16s}" for name in others) + "     sharers: " + ", ".join(models.names))
+    print(
+        "  m/s  offset R"
+        + "".join(f"{name:>16s}" for name in others)
+        + "     sharers: "
+        + ", ".join(models.names)
+    )
     figures = []
     for speed in (2.0, 5.0, 8.0):
         for offset in (0.0, 0.05, 0.1, 0.25, 0.5, 1.0, 1.5):
@@ -115,33 +149,44 @@ def offsets(models):
             share = {name: sharers(x[name]) for name in models.names}
             figures.append({"speed": speed, "offset": offset, "misplaced": row, "sharers": share})
             print(
-                f"  {speed:3g}  {offset:8g}" + "".join(f"{100 * row[name]:16.1f}" for name in others)
-                + "     " + "  ".join(f"{x:5.2f}" for x in share.values())
-            )  # fmt: skip
+                f"  {speed:3g}  {offset:8g}"
+                + "".join(f"{100 * row[name]:16.1f}" for name in others)
+                + "     "
+                + "  ".join(f"{x:5.2f}" for x in share.values())
+            )
     print()
     return figures
 
 
 def gaps(models, racks, rng, workers):
     """Racks that do not quite touch."""
-    print(f"Loose racks ({racks} at random for each mean gap; 5 m/s, offset 0.1 R): the corner balls' energy, mean (deviation) [%]")
-    print("   gap m     Hertz: left      right     sequence: left    right     misplaced: each rack, mean racks   lost: Hertz, sequence")
+    print(
+        f"Loose racks ({racks} at random for each mean gap; 5 m/s, offset 0.1 R): the corner balls' energy, mean (deviation) [%]"
+    )
+    print(
+        "   gap m     Hertz: left      right     sequence: left    right     misplaced: each rack, mean racks   lost: Hertz, sequence"
+    )
     figures = []
     for gap in (0.0, 1e-9, 1e-6, 1e-5, 1e-4, 1e-3):
         layouts = [apex_break(5.0, 0.1, gap, rng) for _ in range(racks if gap else 1)]
         a = np.array(list(workers.map(lambda q: models.energy("Hertz", *q), layouts)))
         b = np.array(list(workers.map(lambda q: models.energy("sequence", *q), layouts)))
         row = {
-            "gap": gap, "hertz": a[:, CORNERS].mean(0).tolist(), "hertz_sd": a[:, CORNERS].std(0).tolist(),
-            "sequence": b[:, CORNERS].mean(0).tolist(), "sequence_sd": b[:, CORNERS].std(0).tolist(),
+            "gap": gap,
+            "hertz": a[:, CORNERS].mean(0).tolist(),
+            "hertz_sd": a[:, CORNERS].std(0).tolist(),
+            "sequence": b[:, CORNERS].mean(0).tolist(),
+            "sequence_sd": b[:, CORNERS].std(0).tolist(),
             "misplaced": float(np.mean([misplaced(x, y) for x, y in zip(a, b, strict=True)])),
-            "misplaced_means": misplaced(a.mean(0), b.mean(0)), "lost": [1 - float(x.sum(1).mean()) for x in (a, b)],
-        }  # fmt: skip
+            "misplaced_means": misplaced(a.mean(0), b.mean(0)),
+            "lost": [1 - float(x.sum(1).mean()) for x in (a, b)],
+        }
         figures.append(row)
         text = "   ".join(
             f"{100 * m:5.1f} ({100 * s:4.1f})"
-            for model in ("hertz", "sequence") for m, s in zip(row[model], row[model + "_sd"], strict=True)
-        )  # fmt: skip
+            for model in ("hertz", "sequence")
+            for m, s in zip(row[model], row[model + "_sd"], strict=True)
+        )
         print(
             f"  {gap:6g}    {text}    {100 * row['misplaced']:12.1f} {100 * row['misplaced_means']:12.1f}"
             f"            {100 * row['lost'][0]:5.1f}  {100 * row['lost'][1]:5.1f}"
@@ -152,8 +197,12 @@ def gaps(models, racks, rng, workers):
 
 def orders(models, n, rng):
     """The same touching rack with its balls numbered otherwise, or seen in a mirror."""
-    print(f"Order of ties ({n} random numberings of the reds, 5 m/s): corner balls' share, left and right [%]; energy misplaced [%]")
-    print("  offset R                 as shipped     mean          deviation      each against as shipped   mean against Hertz   mirrored")
+    print(
+        f"Order of ties ({n} random numberings of the reds, 5 m/s): corner balls' share, left and right [%]; energy misplaced [%]"
+    )
+    print(
+        "  offset R                 as shipped     mean          deviation      each against as shipped   mean against Hertz   mirrored"
+    )
     figures = []
     for offset in (0.0, 0.1, 0.5):
         r, v, w = apex_break(5.0, offset)
@@ -169,13 +218,19 @@ def orders(models, n, rng):
             found = np.array(found)
             hertz = base if name == "Hertz" else models.energy("Hertz", r, v, w)
             row = {
-                "offset": offset, "model": name, "shipped": base[list(CORNERS)].tolist(), "mean": found.mean(0)[list(CORNERS)].tolist(),
-                "sd": found.std(0)[list(CORNERS)].tolist(), "misplaced": float(np.mean([misplaced(x, base) for x in found])),
+                "offset": offset,
+                "model": name,
+                "shipped": base[list(CORNERS)].tolist(),
+                "mean": found.mean(0)[list(CORNERS)].tolist(),
+                "sd": found.std(0)[list(CORNERS)].tolist(),
+                "misplaced": float(np.mean([misplaced(x, base) for x in found])),
                 "mean_misplaced": misplaced(found.mean(0), hertz),
                 "mirrored": misplaced(models.energy(name, *image)[MIRRORED], base),
-            }  # fmt: skip
+            }
             figures.append(row)
-            text = "   ".join(f"{100 * row[key][0]:5.1f} {100 * row[key][1]:5.1f}" for key in ("shipped", "mean", "sd"))
+            text = "   ".join(
+                f"{100 * row[key][0]:5.1f} {100 * row[key][1]:5.1f}" for key in ("shipped", "mean", "sd")
+            )
             print(
                 f"  {offset:8g}  {name:12s}  {text}    {100 * row['misplaced']:18.1e}   {100 * row['mean_misplaced']:18.1f}"
                 f"   {100 * row['mirrored']:12.1e}"
@@ -185,7 +240,8 @@ def orders(models, n, rng):
 
 
 def spread(shot):
-    """Of a shot at rest: mean distance [m] of the reds left from the rack's centre, reds near it, balls at a cushion, balls potted."""
+    """Of a shot at rest: mean distance [m] of the reds left from the rack's centre, reds near it, balls at a
+    cushion, balls potted."""
     far = np.hypot(*(shot.positions[1:16][shot.on_table[1:16]] - CENTRE).T)
     rail = shot.events["i"][np.isin(shot.events["kind"], (EventKind.CUSHION, EventKind.JAW))]
     return far.mean(), (far < NEAR).sum(), len(np.unique(rail)), (shot.potted >= 0).sum()
@@ -200,7 +256,9 @@ def whole_shots(models, n, rng, workers):
         "break-off": lambda: break_off(rng),
     }
     print(f"Whole shots to rest ({n} of each kind, the same for all models): mean and standard error")
-    print(f"  {'':20s} {'':15s} reds' distance m   reds within {NEAR:g} m  balls at a cushion  potted              energy misplaced %")
+    print(
+        f"  {'':20s} {'':15s} reds' distance m   reds within {NEAR:g} m  balls at a cushion  potted              energy misplaced %"
+    )
     figures, samples = {}, {}
     for kind, make in kinds.items():
         layouts = [make() for _ in range(n)]
@@ -240,8 +298,12 @@ def cost(models, repeats=5):
         "simultaneous": median(lambda: gauss_seidel(*pairs, v.copy(), models.physics.e_b, 5e-13)),
     }
     print("Cost of one break at 5 m/s, offset 0.1 R, one core")
-    print(f"  sequence, the whole shot to rest, {at_once} impacts of it at once  {figures['sequence, the whole shot']:9.0f} us")
-    print(f"  simultaneous, {len(pairs[0])} contacts, {sweeps} sweeps                    {figures['simultaneous']:9.0f} us")
+    print(
+        f"  sequence, the whole shot to rest, {at_once} impacts of it at once  {figures['sequence, the whole shot']:9.0f} us"
+    )
+    print(
+        f"  simultaneous, {len(pairs[0])} contacts, {sweeps} sweeps                    {figures['simultaneous']:9.0f} us"
+    )
     fine = compliant(r, v, w, models.physics, dt=STEP / 2, span=2e-3)
     fine = shares(fine[1], fine[2], 5.0)
     for dt in (1e-5, 5e-6, 2e-6, 1e-6, STEP):
@@ -249,7 +311,9 @@ def cost(models, repeats=5):
         x = compliant(r, v, w, models.physics, dt=dt, span=2e-3)
         error = misplaced(shares(x[1], x[2], 5.0), fine)
         figures[f"compliant {dt:g}"] = {"us": us, "misplaced": error}
-        print(f"  compliant, 2 ms in steps of {dt * 1e6:4.1f} us: misplaces {100 * error:.4f} %   {us:9.0f} us")
+        print(
+            f"  compliant, 2 ms in steps of {dt * 1e6:4.1f} us: misplaces {100 * error:.4f} %   {us:9.0f} us"
+        )
     print()
     return figures
 
@@ -308,7 +372,9 @@ def main():
     parser.add_argument("--shots", type=at_least(1), default=100, help="whole shots of each kind")
     parser.add_argument("--orders", type=at_least(1), default=100, help="numberings of the rack")
     parser.add_argument("--racks", type=at_least(1), default=30, help="loose racks for each gap")
-    parser.add_argument("--physics", choices=("paper", "match"), default="paper", help="restitution and friction")
+    parser.add_argument(
+        "--physics", choices=("paper", "match"), default="paper", help="restitution and friction"
+    )
     options = parser.options()
     figures = measure(options) if options.figures is None else options.figures
     if options.pictures:
@@ -319,9 +385,16 @@ def measure(options):
     """Measure and print everything; the figures."""
     models = Models(sn.Physics.preset(options.physics))
     rng = np.random.default_rng(options.seed)
-    figures: dict = {"physics": options.physics, "seed": options.seed, "checks": checks(models), "cradle": cradle(models)}
+    figures: dict = {
+        "physics": options.physics,
+        "seed": options.seed,
+        "checks": checks(models),
+        "cradle": cradle(models),
+    }
     figures["head-on"], states = head_on(models)
-    figures["after"] = {name: {"velocities": v.tolist(), "shares": x.tolist()} for name, (v, x) in states.items()}
+    figures["after"] = {
+        name: {"velocities": v.tolist(), "shares": x.tolist()} for name, (v, x) in states.items()
+    }
     figures["offsets"] = offsets(models)
     with ThreadPoolExecutor(os.cpu_count()) as workers:
         figures["gaps"] = gaps(models, options.racks, rng, workers)

@@ -1,6 +1,8 @@
-"""How do touching balls move when their contacts are springs with dampers, followed in micro-steps? The reference for the rack.
+"""How do touching balls move when their contacts are springs with dampers, followed in micro-steps? The
+reference for the rack.
 
-Used by ``python -m benchmarks.rack``, whose docstring states the contact laws, the constants and what the cloth does.
+Used by ``python -m benchmarks.rack``, whose docstring states the contact laws, the constants and what the
+cloth does.
 """
 
 from dataclasses import dataclass
@@ -63,7 +65,8 @@ def _unit_restitution(p, q, damping):
 
 @cache
 def damping(law, e, speed=5.0):
-    """c that gives one pair the restitution e at that closing speed [m/s] (for q = (p - 1) / 2: at every speed)."""
+    """c that gives one pair the restitution e at that closing speed [m/s] (for q = (p - 1) / 2: at every
+    speed)."""
     if e == 1.0:
         return 0.0
     unit = float(brentq(lambda c: _unit_restitution(law.p, law.q, c) - e, 0.0, 2.0, xtol=1e-10))  # pyright: ignore[reportArgumentType]
@@ -85,9 +88,11 @@ class Constants(NamedTuple):
 
 @numba.njit(nogil=True)
 def micro_steps(r, v, w, constants, dt, steps):
-    """Balls r (n, 2), v (n, 3), w (n, 3) through ``steps`` steps, in place: half a drift, the impulses of all contacts, half a drift.
+    """Balls r (n, 2), v (n, 3), w (n, 3) through ``steps`` steps, in place: half a drift, the impulses of all
+    contacts, half a drift.
 
-    Returns the energy [J] gone into dampers, friction between balls, friction on the cloth, lifting and landing; the greatest overlap [m].
+    Returns the energy [J] gone into dampers, friction between balls, friction on the cloth, lifting and
+    landing; the greatest overlap [m].
     """
     p, q, k, c, g, mu_s, friction = constants
     n = len(r)
@@ -145,7 +150,8 @@ def micro_steps(r, v, w, constants, dt, steps):
             dv[j, 0] -= ax
             dv[j, 1] -= ay
             dv[j, 2] -= az
-            tx, ty, tz = spin * ny * fz, -spin * nx * fz, spin * (nx * fy - ny * fx)  # n x f, the same for both balls
+            # n x f, the same for both balls
+            tx, ty, tz = spin * ny * fz, -spin * nx * fz, spin * (nx * fy - ny * fx)
             dw[i, 0] += tx
             dw[i, 1] += ty
             dw[i, 2] += tz
@@ -180,7 +186,8 @@ def micro_steps(r, v, w, constants, dt, steps):
 
 
 def compliant(r, v, w, physics, law=LAWS["Hertz"], dt=STEP, span=SPAN, stiffer=1.0):
-    """Balls after ``span`` seconds of micro-steps: r (n, 2), v (n, 3), w (n, 3), energy lost (4,) [J], greatest overlap [m]."""
+    """Balls after ``span`` seconds of micro-steps: r (n, 2), v (n, 3), w (n, 3), energy lost (4,) [J],
+    greatest overlap [m]."""
     r, v, w = r.copy(), np.column_stack([v, np.zeros(len(v))]), w.copy()
     law = ContactLaw(law.p, law.q, law.k * stiffer)
     friction = coulomb.Friction(*physics.friction_law)

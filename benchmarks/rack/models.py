@@ -1,4 +1,5 @@
-"""How does each model resolve a break, and how far apart are two of them? The contact laws, the sequence, the simultaneous solution.
+"""How does each model resolve a break, and how far apart are two of them? The contact laws, the sequence, the
+simultaneous solution.
 
 Used by ``python -m benchmarks.rack``, whose docstring states the models and the measures.
 """
@@ -64,7 +65,8 @@ class Models:
         return shares(v1, w1, np.hypot(*v[0]))
 
     def to_rest(self, name, r, v, w):
-        """The whole shot (a ``Shot`` that starts after SPAN for contact laws), and the shares (n,) after SPAN."""
+        """The whole shot (a ``Shot`` that starts after SPAN for contact laws), and the shares (n,) after
+        SPAN."""
         speed = np.hypot(*v[0])
         if name in LAWS:
             r, v, w = self.after(name, r, v, w)

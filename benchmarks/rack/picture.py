@@ -1,4 +1,5 @@
-"""Where does the energy of a break go? Draws ``rack.png`` from the figures of ``python -m benchmarks.rack``."""
+"""Where does the energy of a break go? Draws ``rack.png`` from the figures of
+``python -m benchmarks.rack``."""
 
 import numpy as np
 
@@ -24,14 +25,23 @@ def _rack(ax, name, velocities, shares):
     from matplotlib.patches import Circle
 
     r, (title, colour) = apex_break(5.0, 0.0)[0], MODELS[name]
-    shades = picture_style.colours_of("Blues", np.clip(0.05 + 0.8 * np.sqrt(np.array(shares) / MOST), 0.0, 0.85))
+    shades = picture_style.colours_of(
+        "Blues", np.clip(0.05 + 0.8 * np.sqrt(np.array(shares) / MOST), 0.0, 0.85)
+    )
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.5, "shrinkA": 0, "shrinkB": 0}
     for i, (place, v, part) in enumerate(zip(r, np.array(velocities), shares, strict=True)):
         ax.add_patch(Circle(place, R, facecolor=shades[i], edgecolor=picture_style.QUIET, lw=0.7))
         if part >= 0.02:
             white = part > 0.07
-            ax.text(*place, f"{100 * part:.0f}", ha="center", va="center", size=picture_style.SMALL, weight="bold",
-                    color="white" if white else picture_style.INK)  # fmt: skip
+            ax.text(
+                *place,
+                f"{100 * part:.0f}",
+                ha="center",
+                va="center",
+                size=picture_style.SMALL,
+                weight="bold",
+                color="white" if white else picture_style.INK,
+            )
         speed = np.hypot(*v)
         if speed > 0.25:
             start = place + v / speed * R
@@ -40,7 +50,11 @@ def _rack(ax, name, velocities, shares):
     ax.spines[:].set_visible(False)
     ax.grid(False)
     ax.set_title(f"{title[0].upper()}{title[1:]}", color=colour)
-    ax.set_xlabel(f"{100 * (1 - sum(shares)):.0f} % of the energy is lost", size=picture_style.SMALL, color=picture_style.QUIET)
+    ax.set_xlabel(
+        f"{100 * (1 - sum(shares)):.0f} % of the energy is lost",
+        size=picture_style.SMALL,
+        color=picture_style.QUIET,
+    )
 
 
 def _gaps(axes, found):
@@ -50,8 +64,17 @@ def _gaps(axes, found):
         title, colour = MODELS["Hertz" if model == "hertz" else model]
         for side, shift, marker in ((0, -0.13, "o"), (1, 0.13, "s")):
             mean, sd = (np.array([100 * row[key][side] for row in found]) for key in (model, model + "_sd"))
-            ax.errorbar(place + shift, mean, sd, fmt=marker, color=colour, mfc=colour if side == 0 else "white", elinewidth=1.4, ms=6,
-                        label=("left" if side == 0 else "right") + " corner ball")  # fmt: skip
+            ax.errorbar(
+                place + shift,
+                mean,
+                sd,
+                fmt=marker,
+                color=colour,
+                mfc=colour if side == 0 else "white",
+                elinewidth=1.4,
+                ms=6,
+                label=("left" if side == 0 else "right") + " corner ball",
+            )
         ax.set_xticks(place, [picture_style.number(row["gap"] * 1e6) for row in found])
         ax.set(xlabel="mean gap between the balls [µm]", ylim=(0, 40), title=f"Loose racks: {title}")
         ax.legend(loc="upper right", ncols=2)
@@ -60,12 +83,25 @@ def _gaps(axes, found):
 
 def _whole(axes, distances):
     """Whole shots: how far from the rack the reds come to rest."""
-    for ax, (kind, title) in zip(axes, (("apex, touching", "Cue ball into the apex"), ("break-off", "Break-off")), strict=True):
+    for ax, (kind, title) in zip(
+        axes, (("apex, touching", "Cue ball into the apex"), ("break-off", "Break-off")), strict=True
+    ):
         for name in ("Hertz, q = 1/2", "linear", "simultaneous", "Hertz", "sequence"):
             label, colour = MODELS[name]
             x = np.sort(distances[f"{kind}; {name}"])
-            ax.step(x, np.arange(1, len(x) + 1) / len(x), where="post", color=colour, label=label, lw=2.4 if name == "sequence" else 1.5)
-        ax.set(xlabel="reds' mean distance from the rack, at rest [m]", ylim=(0, 1), title=f"Whole shots: {title}")
+            ax.step(
+                x,
+                np.arange(1, len(x) + 1) / len(x),
+                where="post",
+                color=colour,
+                label=label,
+                lw=2.4 if name == "sequence" else 1.5,
+            )
+        ax.set(
+            xlabel="reds' mean distance from the rack, at rest [m]",
+            ylim=(0, 1),
+            title=f"Whole shots: {title}",
+        )
     axes[0].set_ylabel("share of shots below")
     axes[1].legend(loc="lower right")
 

@@ -1,7 +1,8 @@
-"""How do touching balls part when all their contacts are resolved at once as rigid bodies? A linear complementarity problem, solved twice.
+"""How do touching balls part when all their contacts are resolved at once as rigid bodies? A linear
+complementarity problem, solved twice.
 
-Used by ``python -m benchmarks.rack``, whose docstring states the problem. Projected Gauss-Seidel plays the breaks; non-negative least
-squares checks it.
+Used by ``python -m benchmarks.rack``, whose docstring states the problem. Projected Gauss-Seidel plays the
+breaks; non-negative least squares checks it.
 """
 
 import numba
@@ -16,7 +17,8 @@ TOUCHING = 2e-6
 
 @numba.njit(nogil=True)
 def gauss_seidel(i, j, nx, ny, v, e, tolerance):
-    """The simultaneous solution: velocities v (n, 2) become those after the impact; returns the sweeps taken."""
+    """The simultaneous solution: velocities v (n, 2) become those after the impact; returns the sweeps
+    taken."""
     impulse, moved = np.zeros(len(i)), v.copy()
     sweeps, change = 0, np.inf
     while change >= tolerance:
@@ -52,7 +54,8 @@ def simultaneous(r, v, e):
 
 
 def simultaneous_by_nnls(r, v, e):
-    """The same by a second method: the velocities nearest to v that close no contact are those of a non-negative least squares problem."""
+    """The same by a second method: the velocities nearest to v that close no contact are those of a
+    non-negative least squares problem."""
     i, j, nx, ny = contacts(r)
     rows = np.zeros((len(i), len(r), 2))
     for m in range(len(i)):

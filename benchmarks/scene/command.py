@@ -1,19 +1,23 @@
-"""Which models of the physics does a scene require? Each is left out in turn: where balls stop, whether they drop, the cost.
+"""Which models of the physics does a scene require? Each is left out in turn: where balls stop, whether they
+drop, the cost.
 
-    python -m benchmarks.scene [--shots 600] [--repeats 5] [--physics match] [--models NAME ...] [--seed 0] [--json FILE]
+    python -m benchmarks.scene [--shots 600] [--repeats 5] [--physics match] [--models NAME ...] [--seed 0]
+    [--json FILE]
         [--out FOLDER]
 
-The same strokes are played at ``standard`` with every model and without one; times are taken in turn, each shot's best of the repeats.
-A shot ends otherwise if other balls drop, or if the ball aimed at is hit in one case only. The cost is that of the whole shot: a ball that
-goes another way meets other things, which counts too; a model's own cost shows best where it does nothing. The first run compiles a copy
-of the package (``_common/variants.py``). Two rows give the scale: a professional's execution errors (the stroke again with others) and
-the aim turned by 1e-9 rad, which shows how much of an effect is chaos.
+The same strokes are played at ``standard`` with every model and without one; times are taken in turn, each
+shot's best of the repeats. A shot ends otherwise if other balls drop, or if the ball aimed at is hit in one
+case only. The cost is that of the whole shot: a ball that goes another way meets other things, which counts
+too; a model's own cost shows best where it does nothing. The first run compiles a copy of the package
+(``_common/variants.py``). Two rows give the scale: a professional's execution errors (the stroke again with
+others) and the aim turned by 1e-9 rad, which shows how much of an effect is chaos.
 
-The hop is not modelled, so its effect is computed. Friction at an impact throws the upper ball up at v_z. In the air nothing slows it;
-where it lands the cloth stops v_z, and friction comes all at once. However often it bounces, the cloth's normal impulse falls short of the
-ball's weight by M v_z in all, so friction falls short by mu_s M v_z: the ball slides v_z / g longer, and all its later path is shifted by
-v v_z / g (twice that, v times the time of flight, if landing had no friction). Left out: a ball that meets another ball or a cushion in
-the air, the speed lost in rolling, and what the shift changes later.
+The hop is not modelled, so its effect is computed. Friction at an impact throws the upper ball up at v_z. In
+the air nothing slows it; where it lands the cloth stops v_z, and friction comes all at once. However often it
+bounces, the cloth's normal impulse falls short of the ball's weight by M v_z in all, so friction falls short
+by mu_s M v_z: the ball slides v_z / g longer, and all its later path is shifted by v v_z / g (twice that, v
+times the time of flight, if landing had no friction). Left out: a ball that meets another ball or a cushion
+in the air, the speed lost in rolling, and what the shift changes later.
 """
 
 import json
@@ -81,7 +85,8 @@ def times(ways, start, repeats):
 
 
 def effect(end, truth, start, ball):
-    """Median and 95 % of the shifts [mm] of the cue ball and of the ball aimed at, and the share of shots that end otherwise."""
+    """Median and 95 % of the shifts [mm] of the cue ball and of the ball aimed at, and the share of shots
+    that end otherwise."""
     rows = np.arange(len(ball))
     found = {}
     for name, b in (("cue_mm", 0 * ball), ("ball_mm", ball)):
@@ -94,7 +99,8 @@ def effect(end, truth, start, ball):
 
 
 def hops(shots, v, w, constants):
-    """Shift of the cue ball and of the ball aimed at [mm] by the hops of each shot: v v_z / g, summed over its ball-ball impacts."""
+    """Shift of the cue ball and of the ball aimed at [mm] by the hops of each shot: v v_z / g, summed over
+    its ball-ball impacts."""
     shifts = np.zeros((len(v), 2))
     for k in range(len(v)):
         shot = sn.simulate(shots.positions[k], v[k], w[k], physics=constants)
@@ -109,7 +115,10 @@ def hops(shots, v, w, constants):
                 for column, of in enumerate((0, shots.ball[k])):
                     if i == of and shot.on_table[i]:
                         shifts[k, column] += 1e3 * np.hypot(u[0], u[1]) * u[2] / constants.g
-    found = {name: np.quantile(shifts[:, c], [0.5, 0.95, 1.0]).tolist() for c, name in enumerate(("cue_mm", "ball_mm"))}
+    found = {
+        name: np.quantile(shifts[:, c], [0.5, 0.95, 1.0]).tolist()
+        for c, name in enumerate(("cue_mm", "ball_mm"))
+    }
     return {**found, "cue_shots": len(v), "ball_shots": len(v)}
 
 
@@ -119,9 +128,22 @@ def counts(starts, physics, most=40):
         files = [Path(folder) / f"{k}.npz" for k in range(len(starts))]
         for file, (positions, velocities, spins, _here) in zip(files, starts, strict=True):
             np.savez(file, positions=positions[:most], velocities=velocities[:most], spins=spins[:most])
-        command = [sys.executable, "-c", "from benchmarks._common import counts; counts.main()", physics, *map(str, files)]
+        command = [
+            sys.executable,
+            "-c",
+            "from benchmarks._common import counts; counts.main()",
+            physics,
+            *map(str, files),
+        ]
         root = Path(__file__).parents[2]
-        done = subprocess.run(command, cwd=root, env=os.environ | {"NUMBA_DISABLE_JIT": "1"}, check=True, capture_output=True, text=True)
+        done = subprocess.run(
+            command,
+            cwd=root,
+            env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
+            check=True,
+            capture_output=True,
+            text=True,
+        )
     return json.loads(done.stdout)
 
 
@@ -136,12 +158,18 @@ def study(make, n, repeats, physics, chosen, seed):
         v, w = shots.struck(**how)
         return shots.positions, v, w, here
 
-    errors = {} if make is head_on_stun else {"seed": seed + 1}  # with a professional's errors no shot is exactly head-on
+    # with a professional's errors no shot is exactly head-on
+    errors = {} if make is head_on_stun else {"seed": seed + 1}
     start = started(**errors)
     ways = {FULL: (run, constants, match, STANDARD)}
     for name in chosen:
         m = MODELS[name]
-        ways[name] = run, sn.Physics.preset(physics, **m.physics) if m.physics else constants, m.table or match, m.code
+        ways[name] = (
+            run,
+            sn.Physics.preset(physics, **m.physics) if m.physics else constants,
+            m.table or match,
+            m.code,
+        )
     ends = {name: played(way[0], start, *way[1:]) for name, way in ways.items()}
     truth = ends.pop(FULL)
     rows = {name: effect(end, truth, start, shots.ball) for name, end in ends.items()}
@@ -162,8 +190,12 @@ def main():
     """Command line."""
     parser = Command("scene", __doc__, pictures=(FILE,), seed=0, redraws=True)
     parser.add_argument("--shots", type=at_least(2), default=600, help="shots in each scene")
-    parser.add_argument("--repeats", type=at_least(1), default=5, help="timed runs of every shot; the best counts")
-    parser.add_argument("--physics", default="match", help="the constants with every model: match or paper [match]")
+    parser.add_argument(
+        "--repeats", type=at_least(1), default=5, help="timed runs of every shot; the best counts"
+    )
+    parser.add_argument(
+        "--physics", default="match", help="the constants with every model: match or paper [match]"
+    )
     parser.add_argument("--models", nargs="+", choices=list(MODELS), default=list(MODELS), help="only these")
     options = parser.options()
     figures = measure(options) if options.figures is None else options.figures
@@ -174,16 +206,23 @@ def main():
 
 def measure(options):
     """Measure and print everything; the figures."""
-    print(f"{provenance.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters")
+    print(
+        f"{provenance.line()}\n{options.shots} shots a scene, physics {options.physics!r}, fidelity 'standard'; * where it matters"
+    )
     scenes, starts = {}, []
     for scene, make in SCENES.items():
         s, start = study(make, options.shots, options.repeats, options.physics, options.models, options.seed)
         scenes[scene] = s
         starts.append(start)
         print(f"\n{scene}: {s['us']:.1f} us a shot")
-        print("  without                         cue ball off by [mm]: median, 95 %   ball aimed at: the same   end otherwise   cost")
+        print(
+            "  without                         cue ball off by [mm]: median, 95 %   ball aimed at: the same   end otherwise   cost"
+        )
         for name, row in s["rows"].items():
-            mm = "          ".join(" ".join(f"{e:9.3f}" if e < 10 else f"{e:9.0f}" for e in row[k][:2]) for k in ("cue_mm", "ball_mm"))
+            mm = "          ".join(
+                " ".join(f"{e:9.3f}" if e < 10 else f"{e:9.0f}" for e in row[k][:2])
+                for k in ("cue_mm", "ball_mm")
+            )
             star = "*" if name not in (ERRORS, CHAOS) and reasons(row, s["rows"]) else " "
             changed = f"{row['changed']:9.1%}" if "changed" in row else f"{'-':>9s}"
             cost = f"{row['cost']:.2f} x" if "cost" in row else "-"
@@ -197,11 +236,19 @@ def measure(options):
     stun = scenes["head-on stun"]["ran"]
     solved, tested = stun["ball-ball integrations"], stun["jaw arcs tested"]
     paid = "neither costs it any time" if solved + tested == 0 else "it spends time on what it does not need"
-    lines = [f"A head-on stun shot far from every jaw integrates {solved:.2g} ball-ball impacts and tests {tested:.3g} jaw arcs: {paid}."]
+    lines = [
+        f"A head-on stun shot far from every jaw integrates {solved:.2g} ball-ball impacts and tests {tested:.3g} jaw arcs: {paid}."
+    ]
     lines += [verdict(name, scenes) for name in (*options.models, HOP)]
     print("\nWhat follows")
     for sentence in lines:
         print(f"* {sentence}")
-    figures = {"machine": provenance.machine(), "physics": options.physics, "shots": options.shots, "scenes": scenes, "says": lines}
+    figures = {
+        "machine": provenance.machine(),
+        "physics": options.physics,
+        "shots": options.shots,
+        "scenes": scenes,
+        "says": lines,
+    }
     save_json(options.json, figures)
     return figures

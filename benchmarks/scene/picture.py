@@ -1,4 +1,5 @@
-"""How far do balls go astray without each model? Draws ``scene.png`` from the figures of ``python -m benchmarks.scene``."""
+"""How far do balls go astray without each model? Draws ``scene.png`` from the figures of
+``python -m benchmarks.scene``."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -28,7 +29,8 @@ class Panel(NamedTuple):
 
 
 def draw(figures, out):
-    """Three tables in colour: how far the cue ball stops off, how many shots end otherwise, what the model costs."""
+    """Three tables in colour: how far the cue ball stops off, how many shots end otherwise, what the model
+    costs."""
     scenes = figures["scenes"]
     rows = list(next(iter(scenes.values()))["rows"])
     names = [name for name in rows if name not in (ERRORS, CHAOS, HOP)]
@@ -77,7 +79,9 @@ def draw(figures, out):
         )
         heights = [len(panel.rows) for panel in panels]
         title = "What each model of the physics is worth: shots played without it"
-        fig, axes = picture_style.page(plt, 2.5 + 0.3 * sum(heights), title, note, foot=foot, rows=3, height_ratios=heights)
+        fig, axes = picture_style.page(
+            plt, 2.5 + 0.3 * sum(heights), title, note, foot=foot, rows=3, height_ratios=heights
+        )
         for ax, panel in zip(axes, panels, strict=True):
             _table(fig, ax, scenes, panel)
         picture_style.save(fig, out)
@@ -87,7 +91,9 @@ def _table(fig, ax, scenes, panel):
     """One table, a cell for each model and scene."""
     reason, title, rows, value, norm, text, colours, ticks = panel
     grid = np.array([[value(s["rows"][name]) for s in scenes.values()] for name in rows])
-    shown = ax.imshow(np.where(np.isfinite(grid), np.maximum(grid, 1e-9), np.nan), norm=norm, cmap=colours, aspect="auto")
+    shown = ax.imshow(
+        np.where(np.isfinite(grid), np.maximum(grid, 1e-9), np.nan), norm=norm, cmap=colours, aspect="auto"
+    )
     for i, name in enumerate(rows):
         for j, s in enumerate(scenes.values()):
             x = grid[i, j]
@@ -95,8 +101,16 @@ def _table(fig, ax, scenes, panel):
                 at = norm(max(x, 1e-9))
                 bold = name not in (ERRORS, CHAOS) and reason in reasons(s["rows"][name], s["rows"])
                 dark = at > 0.55 if colours == picture_style.HEAT else abs(at - 0.5) > 0.32
-                ax.text(j, i, "0" if x < 5e-4 else text.format(x), ha="center", va="center", size=picture_style.SMALL,
-                        color="white" if dark else picture_style.INK, weight="bold" if bold else "normal")  # fmt: skip
+                ax.text(
+                    j,
+                    i,
+                    "0" if x < 5e-4 else text.format(x),
+                    ha="center",
+                    va="center",
+                    size=picture_style.SMALL,
+                    color="white" if dark else picture_style.INK,
+                    weight="bold" if bold else "normal",
+                )
     for line in np.arange(0.5, len(rows) - 1):
         ax.axhline(line, color=picture_style.PAGE, lw=1.0)
     for line in np.arange(0.5, len(scenes) - 1):
@@ -106,7 +120,12 @@ def _table(fig, ax, scenes, panel):
     ax.grid(False)
     ax.spines[:].set_visible(False)
     ax.set_title(title)
-    ax.set_xticks(range(len(scenes)), [scene.replace(", ", ",\n").replace(" ", "\n", 1) if len(scene) > 9 else scene for scene in scenes])
+    ax.set_xticks(
+        range(len(scenes)),
+        [scene.replace(", ", ",\n").replace(" ", "\n", 1) if len(scene) > 9 else scene for scene in scenes],
+    )
     ax.set_yticks(range(len(rows)), rows)
     ax.tick_params(length=0, labelcolor=picture_style.INK)
-    picture_style.colour_bar(fig, shown, ax, "", ticks, extend="max" if colours == picture_style.HEAT else "neither", aspect=18)
+    picture_style.colour_bar(
+        fig, shown, ax, "", ticks, extend="max" if colours == picture_style.HEAT else "neither", aspect=18
+    )

@@ -1,4 +1,5 @@
-"""Where does a model matter? Its effect against a professional's execution errors and against chaos, and the sentence that follows.
+"""Where does a model matter? Its effect against a professional's execution errors and against chaos, and the
+sentence that follows.
 
 Used by ``python -m benchmarks.scene``.
 """
@@ -7,9 +8,15 @@ from snooker_env.physics.engine import EventKind
 
 from .models import MODELS
 
-FULL, ERRORS, CHAOS, HOP = "everything", "a professional's errors", "aim turned by 1e-9 rad", "hop of the lifted ball"
+FULL, ERRORS, CHAOS, HOP = (
+    "everything",
+    "a professional's errors",
+    "aim turned by 1e-9 rad",
+    "hop of the lifted ball",
+)
 SHARE = 0.1
-"""A model matters in a scene if it moves balls or changes outcomes by more than this share of what a professional's errors do."""
+"""A model matters in a scene if it moves balls or changes outcomes by more than this share of what a
+professional's errors do."""
 VISIBLE = 1.0
 """... by more than this [mm] in the middle case ..."""
 ENOUGH = 20
@@ -21,7 +28,8 @@ FREE = 0.05
 
 
 def reasons(row, rows):
-    """In what a model moves balls or changes outcomes by more than a tenth of what a professional's errors do, and by more than chaos."""
+    """In what a model moves balls or changes outcomes by more than a tenth of what a professional's errors
+    do, and by more than chaos."""
     by_errors, chaos, found = rows[ERRORS], rows[CHAOS], []
     for ball in ("cue", "ball"):
         most = max(SHARE * by_errors[f"{ball}_mm"][0], 2 * chaos[f"{ball}_mm"][0], VISIBLE)
@@ -42,7 +50,10 @@ def verdict(name, scenes):
         row, by_errors = rows[scene], scenes[scene]["rows"][ERRORS]
         balls = [b for b in ("cue", "ball") if row[f"{b}_shots"] >= ENOUGH and by_errors[f"{b}_mm"][0]]
         parts = {b: row[f"{b}_mm"][0] / by_errors[f"{b}_mm"][0] for b in balls}
-        return {**parts, "changed": row.get("changed", 0.0) / by_errors["changed"] if by_errors["changed"] else 0.0}
+        return {
+            **parts,
+            "changed": row.get("changed", 0.0) / by_errors["changed"] if by_errors["changed"] else 0.0,
+        }
 
     worst = max(where or rows, key=lambda scene: max(shares(scene).values()))
     row, by_errors, share = rows[worst], scenes[worst]["rows"][ERRORS], shares(worst)
@@ -65,7 +76,11 @@ def verdict(name, scenes):
     model = MODELS[name]
     costs = {scene: r["cost"] for scene, r in rows.items()}
     dearest = max(costs, key=lambda s: costs[s])
-    cost = f"It costs at most {costs[dearest]:.2f} x ({dearest})" if costs[dearest] > 1 + FREE else "Its cost is within the noise"
+    cost = (
+        f"It costs at most {costs[dearest]:.2f} x ({dearest})"
+        if costs[dearest] > 1 + FREE
+        else "Its cost is within the noise"
+    )
     changed = f"{row['changed']:.1%} of shots end otherwise (by a professional's errors: {by_errors['changed']:.1%})"
     none = [s for s, r in rows.items() if max(r["cue_mm"][2], r["ball_mm"][2]) < NOTHING and not r["changed"]]
     paid = [f"{s} ({costs[s]:.2f} x)" for s in none]

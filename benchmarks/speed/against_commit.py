@@ -1,7 +1,9 @@
-"""Is this tree faster than a commit of it? Both measured in turn on this machine, in fresh processes; only ratios are compared.
+"""Is this tree faster than a commit of it? Both measured in turn on this machine, in fresh processes; only
+ratios are compared.
 
-Part of ``python -m benchmarks.speed --against COMMIT``. The commit is taken out of git into a temporary folder. Each side plays its own
-copy of the same seeded shots, so that its kernels, its `simulate` and its compiling are those of its own source.
+Part of ``python -m benchmarks.speed --against COMMIT``. The commit is taken out of git into a temporary
+folder. Each side plays its own copy of the same seeded shots, so that its kernels, its `simulate` and its
+compiling are those of its own source.
 """
 
 import json
@@ -45,13 +47,19 @@ def _take_out(commit, folder):
     """The files of a commit, in a folder."""
     packed = subprocess.run(["git", "archive", "--format=tar", commit], cwd=ROOT, capture_output=True)
     if packed.returncode:
-        raise CommitError(f"against = {commit!r}: must be pooltool or a commit of this repository ({packed.stderr.decode().strip()})")
+        raise CommitError(
+            f"against = {commit!r}: must be pooltool or a commit of this repository ({packed.stderr.decode().strip()})"
+        )
     subprocess.run(["tar", "-x", "-C", folder], input=packed.stdout, check=True)
 
 
 def _measure(tree, arguments):
     with tempfile.TemporaryDirectory() as cache:
-        environment = os.environ | {"PYTHONPATH": str(tree), "NUMBA_CACHE_DIR": cache, "SNOOKER_ENV_QUIET": "1"}
+        environment = os.environ | {
+            "PYTHONPATH": str(tree),
+            "NUMBA_CACHE_DIR": cache,
+            "SNOOKER_ENV_QUIET": "1",
+        }
         command = [sys.executable, "-c", _CHILD, *map(str, arguments)]
         done = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True)
     if done.returncode:
@@ -60,13 +68,20 @@ def _measure(tree, arguments):
 
 
 def compare(commit, shots, repeats, seed, rounds=ROUNDS):
-    """{figure: {"before", "now", "ratio"}}: medians over rounds in which the two sides take turns, and the median of their ratios."""
+    """{figure: {"before", "now", "ratio"}}: medians over rounds in which the two sides take turns, and the
+    median of their ratios."""
     with tempfile.TemporaryDirectory() as folder:
         _take_out(commit, folder)
-        both = [[_measure(tree, (shots, repeats, seed)) for tree in (Path(folder), ROOT)] for _ in range(rounds)]
+        both = [
+            [_measure(tree, (shots, repeats, seed)) for tree in (Path(folder), ROOT)] for _ in range(rounds)
+        ]
     found = {}
     for name in both[0][0]:
         before, now = ([one[side][name] for one in both] for side in (0, 1))
         ratios = [b / a for a, b in zip(before, now, strict=True)]
-        found[name] = {"before": statistics.median(before), "now": statistics.median(now), "ratio": statistics.median(ratios)}
+        found[name] = {
+            "before": statistics.median(before),
+            "now": statistics.median(now),
+            "ratio": statistics.median(ratios),
+        }
     return found

@@ -1,9 +1,11 @@
-"""Where does the time of a shot go? The cycle counter around each piece of the engine, in a copy of the package made for that.
+"""Where does the time of a shot go? The cycle counter around each piece of the engine, in a copy of the
+package made for that.
 
-In the copy every kernel of ``engine.py``, ``detection.py`` and ``meetings.py`` gets one more argument, the address of the tally, and
-every statement that calls a function named in ``PIECES`` reads the counter before and after. A piece's time is its own: what it calls, if
-that is a piece too, is taken off. What reading costs, measured on an empty statement, is taken off as well; what then differs from the
-time of the untouched kernel on the same shots is printed as the remainder (the readings keep the compiler from merging and reordering).
+In the copy every kernel of ``engine.py``, ``detection.py`` and ``meetings.py`` gets one more argument, the
+address of the tally, and every statement that calls a function named in ``PIECES`` reads the counter before
+and after. A piece's time is its own: what it calls, if that is a piece too, is taken off. What reading costs,
+measured on an empty statement, is taken off as well; what then differs from the time of the untouched kernel
+on the same shots is printed as the remainder (the readings keep the compiler from merging and reordering).
 """
 
 import ast
@@ -42,7 +44,8 @@ _MODULES = ("physics/detection.py", "physics/engine.py", "physics/meetings.py")
 
 _N = len(PIECES)
 _NOW, _OTHERS = 2 * _N * _N, 2 * _N * _N + 1
-"""Places in the tally, int64: n x n ticks (piece, caller), n x n calls, the piece that runs now, the ticks of the pieces it has called."""
+"""Places in the tally, int64: n x n ticks (piece, caller), n x n calls, the piece that runs now, the ticks of
+the pieces it has called."""
 
 
 def _make_get(typing_context, address, place):
@@ -96,8 +99,13 @@ def _is_kernel(node):
 
 
 def _callee(statement):
-    """The name of the function that a statement is a plain call of (``f()``, ``x = f()``, ``return f()``), or None."""
-    value = getattr(statement, "value", None) if isinstance(statement, (ast.Assign, ast.Expr, ast.Return)) else None
+    """The name of the function that a statement is a plain call of (``f()``, ``x = f()``, ``return f()``), or
+    None."""
+    value = (
+        getattr(statement, "value", None)
+        if isinstance(statement, (ast.Assign, ast.Expr, ast.Return))
+        else None
+    )
     return ast.unparse(value.func) if isinstance(value, ast.Call) else None
 
 
@@ -143,21 +151,29 @@ def instrumented(texts):
     trees = {name: ast.parse(texts[name]) for name in _MODULES}
     tallied = {node.name for tree in trees.values() for node in tree.body if _is_kernel(node)}
     out, read = dict(texts), 0
-    calls = sum(isinstance(n, ast.Call) and ast.unparse(n.func) in _NUMBER for tree in trees.values() for n in ast.walk(tree))
+    calls = sum(
+        isinstance(n, ast.Call) and ast.unparse(n.func) in _NUMBER
+        for tree in trees.values()
+        for n in ast.walk(tree)
+    )
     for name, tree in trees.items():
         change = _Instrument(tallied)
         text = ast.unparse(ast.fix_missing_locations(change.visit(tree)))
         out[name] = text + "\nfrom benchmarks.speed.breakdown import enter, leave\n"
         read += change.read
     if read != calls:
-        raise RuntimeError(f"{calls} calls of the pieces in the engine, {read} of them in plain statements: correct PIECES")
+        raise RuntimeError(
+            f"{calls} calls of the pieces in the engine, {read} of them in plain statements: correct PIECES"
+        )
     return out
 
 
 def load():
     """The copy's ``engine`` and ``simulation`` modules."""
     more = Path(__file__).read_text(encoding="utf-8")  # ``enter`` and ``leave`` are compiled into the copy
-    return package_copies.load("snooker_env_profile", instrumented(package_copies.texts()), ["physics.engine", "simulation"], more)
+    return package_copies.load(
+        "snooker_env_profile", instrumented(package_copies.texts()), ["physics.engine", "simulation"], more
+    )
 
 
 @numba.njit
@@ -180,7 +196,8 @@ def _reading_cost():
 
 
 def profile(p, v, w, fidelity="standard", passes=3):
-    """Means over these shots: for each piece its own us a shot and calls a shot, quartics by caller; the quickest of ``passes`` passes.
+    """Means over these shots: for each piece its own us a shot and calls a shot, quartics by caller; the
+    quickest of ``passes`` passes.
 
     The untouched kernel plays the same shots between these passes; ``kernel_us`` is its quickest.
     """
@@ -195,7 +212,8 @@ def profile(p, v, w, fidelity="standard", passes=3):
         untouched.append(time_shots(p, v, w, fidelity, 1, physics).mean())
     time, calls = min(tallies[1:], key=lambda tally: tally[0].sum())  # the first compiles
     own = time - calls * inside  # own[piece, caller]
-    share = calls / np.maximum(calls.sum(1, keepdims=True), 1)  # a piece's calls of others are laid on its own callers by their share
+    # a piece's calls of others are laid on its own callers by their share
+    share = calls / np.maximum(calls.sum(1, keepdims=True), 1)
     own -= outside * calls.sum(0)[:, None] * share
     scale = ns_per_tick() / 1e3 / len(p)
     rows = []
@@ -203,7 +221,15 @@ def profile(p, v, w, fidelity="standard", passes=3):
         if name == "quartic_crossing":
             for caller, of in (("pair_time", "pair: quartic"), ("boundary_event", "boundary: quartic")):
                 j = _NUMBER[caller]
-                rows.append({"piece": of, "group": group, "us": own[k, j] * scale, "calls": calls[k, j] / len(p)})
+                rows.append(
+                    {"piece": of, "group": group, "us": own[k, j] * scale, "calls": calls[k, j] / len(p)}
+                )
         else:
-            rows.append({"piece": label, "group": group, "us": own[k].sum() * scale, "calls": calls[k].sum() / len(p)})
-    return {"rows": rows, "reading_ns": [inside * ns_per_tick(), outside * ns_per_tick()], "kernel_us": float(min(untouched))}
+            rows.append(
+                {"piece": label, "group": group, "us": own[k].sum() * scale, "calls": calls[k].sum() / len(p)}
+            )
+    return {
+        "rows": rows,
+        "reading_ns": [inside * ns_per_tick(), outside * ns_per_tick()],
+        "kernel_us": float(min(untouched)),
+    }

@@ -1,9 +1,11 @@
-"""How long does each shot take inside one kernel? The processor's cycle counter, read before and after each shot.
+"""How long does each shot take inside one kernel? The processor's cycle counter, read before and after each
+shot.
 
-A kernel plays shot after shot, each once, and notes the counter's ticks of each, so that no call from Python is in the figures and caches
-and branch predictors are as cold as the other shots leave them. What reading the counter costs, and making the work space (measured with
-an empty range of shots), is taken off. Ticks become nanoseconds by comparison with ``time.perf_counter`` over the first 50 ms.
-The counter is x86's (RDTSC, constant rate since about 2008); ``HAS_COUNTER`` is False on other machines.
+A kernel plays shot after shot, each once, and notes the counter's ticks of each, so that no call from Python
+is in the figures and caches and branch predictors are as cold as the other shots leave them. What reading the
+counter costs, and making the work space (measured with an empty range of shots), is taken off. Ticks become
+nanoseconds by comparison with ``time.perf_counter`` over the first 50 ms. The counter is x86's (RDTSC,
+constant rate since about 2008); ``HAS_COUNTER`` is False on other machines.
 """
 
 import platform
@@ -33,7 +35,9 @@ HAS_COUNTER = platform.machine().lower() in ("x86_64", "amd64")
 def _ticks(typing_context):
     def make(context, builder, signature, arguments):
         name = "llvm.readcyclecounter"
-        read = builder.module.globals.get(name) or ir.Function(builder.module, ir.FunctionType(ir.IntType(64), []), name)
+        read = builder.module.globals.get(name) or ir.Function(
+            builder.module, ir.FunctionType(ir.IntType(64), []), name
+        )
         return builder.call(read, [])
 
     return types.int64(), make
@@ -81,7 +85,9 @@ def _each_impact(cost, idle, x, normals, phys, code, n_steps):
         if read:
             before = ticks()
             between = ticks()
-        out = contact.collide_balls(v1, w1, still, still, (normals[k, 0], normals[k, 1]), law, phys[P_E_B], work)
+        out = contact.collide_balls(
+            v1, w1, still, still, (normals[k, 0], normals[k, 1]), law, phys[P_E_B], work
+        )
         total += out[0][0]
         if read:
             after = ticks()
@@ -90,7 +96,8 @@ def _each_impact(cost, idle, x, normals, phys, code, n_steps):
 
 
 def kernel_arguments(p, v, w, physics, fidelity, module=engine, run=_run):
-    """What ``simulation._run`` hands to the kernel ``run_batch`` for fresh copies of these shots, but for the range at the end."""
+    """What ``simulation._run`` hands to the kernel ``run_batch`` for fresh copies of these shots, but for the
+    range at the end."""
     caught = []
     state = [np.array(a) for a in (p, v, w, np.ones(p.shape[:2], bool))]
     with mock.patch.object(module, "run_batch", lambda *arguments: caught.append(arguments[:-2])):
@@ -108,9 +115,14 @@ def _passes(work, n, passes):
 
 
 def time_shots(p, v, w, fidelity="standard", passes=1, physics=None):
-    """Kernel time of every shot [us], (passes, shots): in a pass each shot is played once, one after the other."""
+    """Kernel time of every shot [us], (passes, shots): in a pass each shot is played once, one after the
+    other."""
     physics = sn.Physics.of(physics)
-    return _passes(lambda cost, idle: _each_shot(cost, idle, kernel_arguments(p, v, w, physics, fidelity)), len(p), passes)
+    return _passes(
+        lambda cost, idle: _each_shot(cost, idle, kernel_arguments(p, v, w, physics, fidelity)),
+        len(p),
+        passes,
+    )
 
 
 def time_impacts(x, normals, phys, fidelity, passes=1):
@@ -120,7 +132,8 @@ def time_impacts(x, normals, phys, fidelity, passes=1):
 
 
 def time_impact_set(x, normals, phys, fidelity, repeats=1):
-    """Microseconds an impact when the set runs as a whole, the counter unread; the quickest of ``repeats``."""
+    """Microseconds an impact when the set runs as a whole, the counter unread; the quickest of
+    ``repeats``."""
     code, steps = contact.parse_fidelity(fidelity)
     none, found = np.zeros(0, np.int64), []
     for _ in range(repeats + 1):

@@ -1,20 +1,24 @@
-"""How fast is it? Time of an impact, a two-ball pot, a random 22-ball shot and a break-off; where it goes; how it grows; the start.
+"""How fast is it? Time of an impact, a two-ball pot, a random 22-ball shot and a break-off; where it goes;
+how it grows; the start.
 
-    python -m benchmarks.speed [--shots 1000] [--repeats 7] [--parts impacts shots breakdown start growth] [--seed 0]
+    python -m benchmarks.speed [--shots 1000] [--repeats 7] [--parts impacts shots breakdown start growth]
+    [--seed 0]
         [--json FILE] [--out FOLDER]
     python -m benchmarks.speed --profile
     python -m benchmarks.speed --against pooltool [--peer-shots 100]
     python -m benchmarks.speed --against COMMIT
 
-Times are kernel times on one core, each shot (or impact) timed by itself: one kernel plays the whole set in order, each shot once, and
-reads the processor's cycle counter before and after each (``clock.py``). The set is played ``--repeats`` times after one unseen
-time; a shot's time is its median over these passes. "set" (a set of impacts in one call, the counter unread), batches and threads are the
-quickest of their repeats. Where there is no x86 counter, each shot is called from Python ``--repeats`` times, its best time taken and the
-call's own cost taken off. An event is one entry of the shot's log. Errors are against ``reference``, in units of the incoming speed.
+Times are kernel times on one core, each shot (or impact) timed by itself: one kernel plays the whole set in
+order, each shot once, and reads the processor's cycle counter before and after each (``clock.py``). The set
+is played ``--repeats`` times after one unseen time; a shot's time is its median over these passes. "set" (a
+set of impacts in one call, the counter unread), batches and threads are the quickest of their repeats. Where
+there is no x86 counter, each shot is called from Python ``--repeats`` times, its best time taken and the
+call's own cost taken off. An event is one entry of the shot's log. Errors are against ``reference``, in units
+of the incoming speed.
 
-``breakdown``: see ``breakdown.py``; ``start``: ``first_shot.py``; ``growth``, with its picture: ``growth.py``; ``--against pooltool``
-(needs the network): ``against_pooltool.py``; ``--against COMMIT``: ``against_commit.py``. With ``--profile`` or ``--against`` and no
-``--parts``, only these are done.
+``breakdown``: see ``breakdown.py``; ``start``: ``first_shot.py``; ``growth``, with its picture:
+``growth.py``; ``--against pooltool`` (needs the network): ``against_pooltool.py``; ``--against COMMIT``:
+``against_commit.py``. With ``--profile`` or ``--against`` and no ``--parts``, only these are done.
 """
 
 import tempfile
@@ -44,7 +48,12 @@ R = 0.02625
 IMPACT_FIDELITIES = ("fast", "standard", "reference", "euler:200", "euler:1000", "euler:10000")
 SHOT_FIDELITIES = ("fast", "standard", "reference")
 KINDS = ("two-ball pot", "random 22 balls", "break-off")
-GOALS = {"impact": (1.0, 0.5), "two-ball pot": (6.0, 4.0), "random 22 balls": (25.0, 14.0), "break-off": (450.0, 250.0)}
+GOALS = {
+    "impact": (1.0, 0.5),
+    "two-ball pot": (6.0, 4.0),
+    "random 22 balls": (25.0, 14.0),
+    "break-off": (450.0, 250.0),
+}
 """Microseconds at ``standard``: what must be reached and what is aimed at."""
 PEER_GOAL = (500, 1500)
 PARTS = ("impacts", "shots", "breakdown", "start", "growth")
@@ -85,7 +94,8 @@ def results(x, normals, fidelity):
 
 
 def impacts(n, seed=0):
-    """Impacts of real play: cue speeds 0.3 to 6 m/s, cuts to 80 degrees, cue ball anywhere from full draw to full follow, side to 0.4 R."""
+    """Impacts of real play: cue speeds 0.3 to 6 m/s, cuts to 80 degrees, cue ball anywhere from full draw to
+    full follow, side to 0.4 R."""
     rng = np.random.default_rng(seed)
     speed, cut = rng.uniform(0.3, 6, n), np.radians(rng.uniform(-80, 80, n))
     x = np.zeros((n, 5))
@@ -96,7 +106,8 @@ def impacts(n, seed=0):
 
 
 def shots(kind, n, seed=0):
-    """n seeded shots of "two-ball pot", "break-off" or "random N balls": positions (n, b, 2), velocities, spins."""
+    """n seeded shots of "two-ball pot", "break-off" or "random N balls": positions (n, b, 2), velocities,
+    spins."""
     rng = np.random.default_rng(seed)
     balls = {"two-ball pot": 2, "break-off": 22}.get(kind) or int(kind.split()[1])
     p, v, w = np.zeros((n, balls, 2)), np.zeros((n, balls, 2)), np.zeros((n, balls, 3))
@@ -128,7 +139,8 @@ def shots(kind, n, seed=0):
 
 
 def one_by_one(p, v, w, fidelity, repeats, physics=None):
-    """Each shot's own best time [us]: the batch kernel on a slice of one, less the best of calls that do nothing, made in turn with it."""
+    """Each shot's own best time [us]: the batch kernel on a slice of one, less the best of calls that do
+    nothing, made in turn with it."""
     code = contact.parse_fidelity(fidelity)
     physics, table = sn.Physics.of(physics), Table.preset("match")
     here = np.ones(p.shape[:2], bool)
@@ -159,7 +171,8 @@ def kernel_times(p, v, w, fidelity="standard", repeats=1):
 
 
 def summary(times):
-    """Figures of a set; times (passes, items). An item's time is its median over the passes, so that no interruption enters a mean."""
+    """Figures of a set; times (passes, items). An item's time is its median over the passes, so that no
+    interruption enters a mean."""
     each, medians = np.median(times, axis=0), np.median(times, axis=1)
     found = {"median": float(np.median(each)), "mean": float(each.mean())}
     found |= {f"p{q}": float(np.percentile(each, q)) for q in (5, 25, 75, 95, 99)}
@@ -177,7 +190,9 @@ def measure_impacts(n, repeats, seed=0):
     phys = sn.Physics.preset("paper").pack()
     x, normals = impacts(n, seed)
     truth, found = results(x, normals, "reference"), {}
-    print(f"\n{n} impacts, us: median (lowest, highest of {repeats} passes), 5 %, 95 %, set; error: median, 99 %, worst")
+    print(
+        f"\n{n} impacts, us: median (lowest, highest of {repeats} passes), 5 %, 95 %, set; error: median, 99 %, worst"
+    )
     for fidelity in IMPACT_FIDELITIES:
         code, n_steps = contact.parse_fidelity(fidelity)
         whole = clock.time_impact_set(x, normals, phys, fidelity, repeats)
@@ -188,8 +203,15 @@ def measure_impacts(n, repeats, seed=0):
         error = np.abs(results(x, normals, fidelity) - truth).max(1) / x[:, 0]
         row |= {"set": whole, "error": np.quantile(error, [0.5, 0.99, 1.0]).tolist()}
         found[fidelity] = row
-        spread = f"({row['median_low']:.3f}, {row['median_high']:.3f})  {row['p5']:9.3f} {row['p95']:9.3f}" if "p5" in row else ""
-        print(f"  {fidelity:12s} {row['median']:9.3f} {spread} {whole:9.3f}   " + "  ".join(f"{e:.1e}" for e in row["error"]))
+        spread = (
+            f"({row['median_low']:.3f}, {row['median_high']:.3f})  {row['p5']:9.3f} {row['p95']:9.3f}"
+            if "p5" in row
+            else ""
+        )
+        print(
+            f"  {fidelity:12s} {row['median']:9.3f} {spread} {whole:9.3f}   "
+            + "  ".join(f"{e:.1e}" for e in row["error"])
+        )
         if fidelity == "standard":
             print_goals("impact", row["median"])
     return found
@@ -198,9 +220,15 @@ def measure_impacts(n, repeats, seed=0):
 def measure_shots(n, repeats, seed=0):
     """Table of shots."""
     found = {}
-    print(f"\n{n} shots, us a shot: median (lowest, highest of {repeats} passes), percentiles, mean; a shot: events, ball-ball impacts;")
-    print("ns an event: mean time over mean events; 1 and 2 threads: mean us a shot of the set as one batch, quickest")
-    print(f"  {'':27s}  median {'':20s} 5 %     25 %     75 %     95 %     99 %     mean  events  hits ns/event  1 thread 2 threads")
+    print(
+        f"\n{n} shots, us a shot: median (lowest, highest of {repeats} passes), percentiles, mean; a shot: events, ball-ball impacts;"
+    )
+    print(
+        "ns an event: mean time over mean events; 1 and 2 threads: mean us a shot of the set as one batch, quickest"
+    )
+    print(
+        f"  {'':27s}  median {'':20s} 5 %     25 %     75 %     95 %     99 %     mean  events  hits ns/event  1 thread 2 threads"
+    )
     for kind in KINDS:
         shots_ = shots(kind, n, seed)
         for fidelity in SHOT_FIDELITIES:
@@ -208,10 +236,14 @@ def measure_shots(n, repeats, seed=0):
             batch = sn.simulate_batch(*shots_, fidelity=fidelity, threads=1, events=True)
             assert batch.events is not None
             row["events"] = float(np.mean(batch.event_count))
-            row["ball_ball"] = float(np.mean([(e["kind"] == EventKind.BALL_BALL).sum() for e in batch.events]))
+            row["ball_ball"] = float(
+                np.mean([(e["kind"] == EventKind.BALL_BALL).sum() for e in batch.events])
+            )
             row["ns_event"] = 1e3 * row["mean"] / row["events"]
             for threads in (1, 2):
-                row[f"threads_{threads}"] = growth.per_shot(growth.kernel_call, shots_, threads, fidelity, repeats=repeats)
+                row[f"threads_{threads}"] = growth.per_shot(
+                    growth.kernel_call, shots_, threads, fidelity, repeats=repeats
+                )
             found[f"{kind} {fidelity}"] = row
             print(
                 f"  {kind:16s} {fidelity:10s} {row['median']:7.1f} ({row['median_low']:7.1f}, {row['median_high']:7.1f})"
@@ -243,16 +275,23 @@ def measure_breakdown(n, repeats, detailed, seed=0):
             print(f"    {group:33s} {us:9.3f} us  {us / pieces:5.1%}")
             for row in sorted(rows, key=lambda row: -row["us"]) if detailed else ():
                 each = f"{1e3 * row['us'] / row['calls']:7.0f} ns each" if row["calls"] else ""
-                print(f"      {row['piece']:31s} {row['us']:9.3f} us  {row['us'] / pieces:5.1%}  {row['calls']:8.2f} calls a shot {each}")
+                print(
+                    f"      {row['piece']:31s} {row['us']:9.3f} us  {row['us'] / pieces:5.1%}  {row['calls']:8.2f} calls a shot {each}"
+                )
     return found
 
 
 def measure_start():
     """Table of cold and warm starts."""
     found = first_shot.start()
-    print("\nStart of a fresh process, seconds of wall clock (of processor); goals: import 0.6, first shot 15 cold and 1 warm")
+    print(
+        "\nStart of a fresh process, seconds of wall clock (of processor); goals: import 0.6, first shot 15 cold and 1 warm"
+    )
     for state, of in found.items():
-        print(f"  {state:5s} cache  " + "   ".join(f"{step} {of[step][0]:.2f} ({of[step][1]:.2f})" for step in first_shot.STEPS))
+        print(
+            f"  {state:5s} cache  "
+            + "   ".join(f"{step} {of[step][0]:.2f} ({of[step][1]:.2f})" for step in first_shot.STEPS)
+        )
     return found
 
 
@@ -261,20 +300,29 @@ def measure_against(n, repeats, seed=0):
     sets = {kind: shots(kind, n, seed) for kind in KINDS}
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "shots.npz"
-        np.savez(file, allow_pickle=False, **{f"{kind}_{part}": a for kind, of in sets.items() for part, a in zip("pvw", of, strict=True)})
+        np.savez(
+            file,
+            allow_pickle=False,
+            **{f"{kind}_{part}": a for kind, of in sets.items() for part, a in zip("pvw", of, strict=True)},
+        )
         theirs = against_pooltool.play(file, sn.Physics.preset("paper"))
     found = {}
-    print(f"\npooltool {against_pooltool.VERSION} on the same {n} shots of each kind, each by its own models; us a shot, medians; one core")
+    print(
+        f"\npooltool {against_pooltool.VERSION} on the same {n} shots of each kind, each by its own models; us a shot, medians; one core"
+    )
     print(f"  ratio of the kernel: must {PEER_GOAL[0]}, aim {PEER_GOAL[1]}")
     print(f"  {'':16s} {'pooltool':>10s} events failed   kernel  events    ratio   sn.simulate    ratio")
     for kind, (p, v, w) in sets.items():
         peer = theirs[kind]
         row = {
-            "pooltool": float(np.median(peer["us"])), "pooltool_events": float(np.median(peer["events"])), "failed": peer["failed"],
+            "pooltool": float(np.median(peer["us"])),
+            "pooltool_events": float(np.median(peer["events"])),
+            "failed": peer["failed"],
             "kernel": summary(kernel_times(p, v, w, "standard", repeats))["median"],
-            "simulate": float(np.median([_simulate_seconds(*shot) for shot in zip(p, v, w, strict=True)])) * 1e6,
+            "simulate": float(np.median([_simulate_seconds(*shot) for shot in zip(p, v, w, strict=True)]))
+            * 1e6,
             "events": float(np.median(sn.simulate_batch(p, v, w, threads=1).event_count)),
-        }  # fmt: skip
+        }
         found[kind] = row
         print(
             f"  {kind:16s} {row['pooltool']:10.0f} {row['pooltool_events']:6.0f} {row['failed']:6d} {row['kernel']:8.1f}"
@@ -286,8 +334,13 @@ def measure_against(n, repeats, seed=0):
 def measure_against_commit(commit, n, repeats, seed=0):
     """The same shots by the code of a commit and by this tree, in turn."""
     found = against_commit.compare(commit, n, repeats, seed)
-    print(f"\n{commit} and this tree in turn, {against_commit.ROUNDS} times; medians over {n} shots, one core; `standard`")
-    rows = [[name, f"{row['before']:.2f}", f"{row['now']:.2f}", f"{row['ratio']:.3f}"] for name, row in found.items()]
+    print(
+        f"\n{commit} and this tree in turn, {against_commit.ROUNDS} times; medians over {n} shots, one core; `standard`"
+    )
+    rows = [
+        [name, f"{row['before']:.2f}", f"{row['now']:.2f}", f"{row['ratio']:.3f}"]
+        for name, row in found.items()
+    ]
     print("\n".join(text_table(["", "before", "now", "ratio"], rows)))
     return found
 
@@ -306,7 +359,9 @@ def main():
     parser.add_argument("--parts", nargs="+", choices=PARTS, help="only these")
     parser.add_argument("--profile", action="store_true", help="the breakdown by function")
     parser.add_argument(
-        "--against", metavar="PEER", help="pooltool, in a venv of its own, or a commit: play the same shots with it in turn"
+        "--against",
+        metavar="PEER",
+        help="pooltool, in a venv of its own, or a commit: play the same shots with it in turn",
     )
     parser.add_argument("--peer-shots", type=at_least(1), default=100, help="shots of each kind for the peer")
     parser.add_argument("--largest-batch", type=at_least(1), default=65_536)
@@ -324,7 +379,9 @@ def main():
         figures["shots"] = measure_shots(options.shots, options.repeats, options.seed)
     if "breakdown" in parts or options.profile:
         if clock.HAS_COUNTER:
-            figures["breakdown"] = measure_breakdown(options.shots, options.repeats, options.profile, options.seed)
+            figures["breakdown"] = measure_breakdown(
+                options.shots, options.repeats, options.profile, options.seed
+            )
         else:
             print("\nNo breakdown: it needs the cycle counter of x86")
     if "start" in parts:
@@ -334,7 +391,13 @@ def main():
         def middle(p, v, w):
             return np.median(kernel_times(p, v, w, "standard", options.repeats), axis=0)
 
-        found = growth.growth(partial(shots, seed=options.seed), middle, min(options.shots, 300), options.largest_batch, options.repeats)
+        found = growth.growth(
+            partial(shots, seed=options.seed),
+            middle,
+            min(options.shots, 300),
+            options.largest_batch,
+            options.repeats,
+        )
         figures["growth"] = found
         growth.print_growth(found)
         if options.pictures:
@@ -344,7 +407,9 @@ def main():
     if options.against:
         try:
             if options.against == "pooltool":
-                figures["against pooltool"] = measure_against(options.peer_shots, options.repeats, options.seed)
+                figures["against pooltool"] = measure_against(
+                    options.peer_shots, options.repeats, options.seed
+                )
             else:
                 figures[f"against {options.against}"] = measure_against_commit(
                     options.against, options.shots, options.repeats, options.seed

@@ -1,4 +1,5 @@
-"""How long until the first shot? Fresh processes with an empty and with a filled cache of compiled kernels."""
+"""How long until the first shot? Fresh processes with an empty and with a filled cache of compiled
+kernels."""
 
 import json
 import os
@@ -28,12 +29,15 @@ STEPS = ("import", "first shot", "warmup() after it")
 
 
 def start(warm_starts=5):
-    """{"cold", "warm"}: {step: [wall s, processor s]}; cold is one start with an empty cache, warm the median by wall of some after it."""
+    """{"cold", "warm"}: {step: [wall s, processor s]}; cold is one start with an empty cache, warm the median
+    by wall of some after it."""
     with tempfile.TemporaryDirectory() as folder:
         environment = os.environ | {"NUMBA_CACHE_DIR": folder}
         runs = []
         for _ in range(1 + warm_starts):
-            done = subprocess.run([sys.executable, "-c", _CHILD], env=environment, capture_output=True, text=True, check=True)
+            done = subprocess.run(
+                [sys.executable, "-c", _CHILD], env=environment, capture_output=True, text=True, check=True
+            )
             runs.append(json.loads(done.stdout))
     warm = {step: sorted(run[step] for run in runs[1:])[warm_starts // 2] for step in STEPS}
     return {"cold": runs[0], "warm": warm}

@@ -1,4 +1,5 @@
-"""How does the cost of a shot grow with the balls on the table, with events, with the batch and with threads? Figures and their picture."""
+"""How does the cost of a shot grow with the balls on the table, with events, with the batch and with threads?
+Figures and their picture."""
 
 import os
 import time
@@ -36,7 +37,8 @@ def public_call(p, v, w, threads=1):
 def per_shot(call, shots, *options, repeats, batch=None):
     """Microseconds a shot: the quickest of ``repeats``, or of as many as fit into a second.
 
-    A repeat is one ``call`` of all shots, or (``batch``) one call after the other of so many: every size then plays the same shots.
+    A repeat is one ``call`` of all shots, or (``batch``) one call after the other of so many: every size then
+    plays the same shots.
     """
     n = len(shots[0])
     slices = [tuple(a[k : k + (batch or n)] for a in shots) for k in range(0, n, batch or n)]
@@ -47,7 +49,8 @@ def per_shot(call, shots, *options, repeats, batch=None):
 
 
 def growth(make, kernel_times, n, largest, repeats):
-    """Figures. make(kind, n): sets of shots; kernel_times(p, v, w): each shot's own us; ``largest``: no batch above it."""
+    """Figures. make(kind, n): sets of shots; kernel_times(p, v, w): each shot's own us; ``largest``: no batch
+    above it."""
     sets = {b: make(f"random {b} balls", n) for b in BALLS}
     times = {b: kernel_times(*shots) for b, shots in sets.items()}
     counts = {b: sn.simulate_batch(*shots, threads=1).event_count for b, shots in sets.items()}
@@ -61,11 +64,14 @@ def growth(make, kernel_times, n, largest, repeats):
         "balls": [{"balls": b, "us": spread(times[b]), "events": float(counts[b].mean())} for b in BALLS],
         "events": {
             "random 22 balls": {"events": counts[22].tolist(), "us": times[22].tolist()},
-            "break-off": {"events": sn.simulate_batch(*rack, threads=1).event_count.tolist(), "us": kernel_times(*rack).tolist()},
+            "break-off": {
+                "events": sn.simulate_batch(*rack, threads=1).event_count.tolist(),
+                "us": kernel_times(*rack).tolist(),
+            },
         },
         "batch": [{"shots": b, "kernel us": kernel[b], "simulate_batch us": public[b]} for b in batches],
         "threads": _by_threads(many, sorted({1, 2, os.cpu_count() or 1}), repeats),
-    }  # fmt: skip
+    }
 
 
 def _by_threads(shots, threads, repeats):
@@ -109,7 +115,10 @@ def print_growth(found):
         print(f"  {kind}: events    " + "".join(f"{e:9.0f}" for e in events))
         print(f"  {' ' * len(kind)}  us        " + "".join(f"{u:9.1f}" for u in us))
     for key, of in (("batch", "shots"), ("threads", "threads")):
-        print(f"  {of + ' at once' if key == 'batch' else of:20s}" + "".join(f"{row[of]:9d}" for row in found[key]))
+        print(
+            f"  {of + ' at once' if key == 'batch' else of:20s}"
+            + "".join(f"{row[of]:9d}" for row in found[key])
+        )
         for name in ("kernel us", "simulate_batch us"):
             print(f"  {name:20s}" + "".join(f"{row[name]:9.2f}" for row in found[key]))
 
@@ -127,21 +136,37 @@ def draw(figures, file):
         median, low, high = np.array([row["us"] for row in found["balls"]]).T
         by_balls.fill_between(balls, low, high, alpha=0.18, lw=0, label="5 % to 95 % of shots")
         by_balls.plot(balls, median, "o-", label="median")
-        by_balls.set(xlabel="balls on the table", ylabel="time of a shot [µs]", title="With the balls on the table")
+        by_balls.set(
+            xlabel="balls on the table", ylabel="time of a shot [µs]", title="With the balls on the table"
+        )
         by_balls.set_ylim(0, 1.35 * high.max())
         by_balls.set_xticks([2, 4, 6, 8, 11, 15, 22])
         for kind, of in found["events"].items():
             events, us = np.array(of["events"]), np.array(of["us"])
             (line,) = by_event.plot(*by_events(events, us), "o-", label=f"{kind}: medians", zorder=3)
             by_event.scatter(np.maximum(events, 1), us, s=4, alpha=0.25, color=line.get_color(), lw=0)
-        by_event.set(xlabel="events in the shot", ylabel="time of a shot [µs]", title="With the events in a shot")
+        by_event.set(
+            xlabel="events in the shot", ylabel="time of a shot [µs]", title="With the events in a shot"
+        )
         rows = found["threads"]
         for name, label in (("kernel us", "kernel"), ("simulate_batch us", "simulate_batch")):
-            by_batch.plot([r["shots"] for r in found["batch"]], [r[name] for r in found["batch"]], "o-", label=label)
+            by_batch.plot(
+                [r["shots"] for r in found["batch"]], [r[name] for r in found["batch"]], "o-", label=label
+            )
             by_thread.plot([r["threads"] for r in rows], [1e6 / r[name] for r in rows], "o-", label=label)
-        by_batch.set(xlabel="shots in a batch", ylabel="time of a shot [µs]", title="With the batch (22 balls, 1 thread)")
+        by_batch.set(
+            xlabel="shots in a batch",
+            ylabel="time of a shot [µs]",
+            title="With the batch (22 balls, 1 thread)",
+        )
         threads, kernel = [r["threads"] for r in rows], rows[0]["kernel us"]
-        by_thread.plot(threads, [1e6 / kernel * t for t in threads], ":", color=picture_style.GREY, label="kernel times the threads")
+        by_thread.plot(
+            threads,
+            [1e6 / kernel * t for t in threads],
+            ":",
+            color=picture_style.GREY,
+            label="kernel times the threads",
+        )
         title = f"With the threads (22 balls, {rows[0]['shots']:,} shots)"
         by_thread.set(xlabel="threads", ylabel="shots a second", title=title, ylim=(0, None), xticks=threads)
         by_thread.yaxis.set_major_formatter(picture_style.number)
@@ -150,5 +175,7 @@ def draw(figures, file):
         picture_style.log_axis(by_batch.xaxis, decades=2)
         picture_style.log_axis(by_batch.yaxis, subs=(1, 2, 3, 5))
         for axes in (by_balls, by_event, by_batch, by_thread):
-            axes.legend(loc="lower left" if axes is by_thread else "upper right" if axes is by_batch else "upper left")
+            axes.legend(
+                loc="lower left" if axes is by_thread else "upper right" if axes is by_batch else "upper left"
+            )
         picture_style.save(figure, file)

@@ -1,10 +1,12 @@
-"""What breaks at the extremes? Impacts and shots at the edge of what can be asked for, each with its invariants; then a fuzz of a million.
+"""What breaks at the extremes? Impacts and shots at the edge of what can be asked for, each with its
+invariants; then a fuzz of a million.
 
     python -m benchmarks.stability [--fuzz 1000000] [--seed 0] [--threads 2] [--json FILE] [--out FOLDER]
     python -m benchmarks.stability --replay SEED BATCH INDEX
 
-Exit code 1 if an invariant fails. ``--fuzz 0`` plays the extremes alone (10 s). Impacts are played at "fast", "standard" and
-"reference", shots at these in turn; figures are the worst of all. The paper's Euler scheme has a table of its own.
+Exit code 1 if an invariant fails. ``--fuzz 0`` plays the extremes alone (10 s). Impacts are played at "fast",
+"standard" and "reference", shots at these in turn; figures are the worst of all. The paper's Euler scheme has
+a table of its own.
 """
 
 import numpy as np
@@ -29,7 +31,8 @@ def shown(x):
 
 
 def table_of(title, results, limits):
-    """Lines: an extreme a row, an invariant a column, the worst figure in each; below zero there is no violation at all."""
+    """Lines: an extreme a row, an invariant a column, the worst figure in each; below zero there is no
+    violation at all."""
     rows = [["(allowed)", "", *(f"{x:.3g}" for x in limits.values()), ""]]
     for name, (played, figures) in results.items():
         failed = verdict(figures, limits)
@@ -43,7 +46,13 @@ def main():
     parser = Command("stability", __doc__, pictures=(FILE,), seed=0, redraws=True)
     parser.add_argument("--fuzz", type=at_least(0), default=1_000_000, help="random shots; 0 for none")
     parser.add_argument("--threads", type=at_least(1), default=2, help="of the fuzz [2]")
-    parser.add_argument("--replay", type=int, nargs=3, metavar=("SEED", "BATCH", "INDEX"), help="play one shot of the fuzz again")
+    parser.add_argument(
+        "--replay",
+        type=int,
+        nargs=3,
+        metavar=("SEED", "BATCH", "INDEX"),
+        help="play one shot of the fuzz again",
+    )
     options = parser.options()
     if options.replay:
         return int(not fuzz.replay(*options.replay))
@@ -59,7 +68,11 @@ def measure(options):
     print("\n".join(table_of("impacts (worst figures)", impacts, IMPACT_LIMITS)), end="\n\n")
     print("\n".join(table_of("shots (worst figures)", shots, SHOT_LIMITS)), end="\n\n")
     euler, symmetry, fuzzed, order = euler_table(), symmetry_growth(), mirrored_fuzz(), order_matters()
-    print("\n".join([*euler_lines(euler), "", *growth_lines(*symmetry, fuzzed), "", *order_lines(order)]), end="\n\n", flush=True)
+    print(
+        "\n".join([*euler_lines(euler), "", *growth_lines(*symmetry, fuzzed), "", *order_lines(order)]),
+        end="\n\n",
+        flush=True,
+    )
     found = None
     if options.fuzz:
         found = fuzz.fuzz(options.fuzz, options.seed, options.threads)
@@ -70,18 +83,28 @@ def measure(options):
         for name, (_, f) in results.items()
         for bad in verdict(f, limits)
     ]
-    failed += ["mirror symmetry"] * bool(symmetry[1].max() > 0 or fuzzed.any()) + ["fuzz"] * bool(found and found.failures)
+    failed += ["mirror symmetry"] * bool(symmetry[1].max() > 0 or fuzzed.any()) + ["fuzz"] * bool(
+        found and found.failures
+    )
     print("\nall invariants hold" if not failed else "\nFAILED: " + "; ".join(failed))
     contacts, mirror, turned = symmetry
     figures = {
-        "impacts": {k: f | {"played": n, "failed": verdict(f, IMPACT_LIMITS)} for k, (n, f) in impacts.items()},
-        "shots": {k: f | {"played": n, "failed": verdict(f, SHOT_LIMITS)} for k, (n, f) in shots.items()},
-        "allowed": {"impacts": IMPACT_LIMITS, "shots": SHOT_LIMITS}, "euler": euler, "three at once": order,
-        "symmetry": {
-            "mirror": float(max(mirror.max(), fuzzed.max())), "mirrored": len(mirror) + len(fuzzed),
-            "factor a contact": growth(contacts, turned), "contacts": contacts.tolist(), "turned": turned.tolist(),
+        "impacts": {
+            k: f | {"played": n, "failed": verdict(f, IMPACT_LIMITS)} for k, (n, f) in impacts.items()
         },
-        "fuzz": fuzz.figures_of(found, options.seed) if found else None, "failed": failed,
-    }  # fmt: skip
+        "shots": {k: f | {"played": n, "failed": verdict(f, SHOT_LIMITS)} for k, (n, f) in shots.items()},
+        "allowed": {"impacts": IMPACT_LIMITS, "shots": SHOT_LIMITS},
+        "euler": euler,
+        "three at once": order,
+        "symmetry": {
+            "mirror": float(max(mirror.max(), fuzzed.max())),
+            "mirrored": len(mirror) + len(fuzzed),
+            "factor a contact": growth(contacts, turned),
+            "contacts": contacts.tolist(),
+            "turned": turned.tolist(),
+        },
+        "fuzz": fuzz.figures_of(found, options.seed) if found else None,
+        "failed": failed,
+    }
     save_json(options.json, figures)
     return figures

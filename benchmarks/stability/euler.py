@@ -1,4 +1,5 @@
-"""From how many steps on does the paper's scheme hold? Its errors, the energy it creates, the impacts and shots that do not end.
+"""From how many steps on does the paper's scheme hold? Its errors, the energy it creates, the impacts and
+shots that do not end.
 
 Used by ``python -m benchmarks.stability``: measured, not judged.
 """
@@ -20,7 +21,8 @@ EULER_STEPS = (1, 2, 3, 5, 10, 20, 50, 100, 200, 1000, 10_000)
 
 
 def euler_table():
-    """For each N: impacts that do not end, error against "reference" (median, worst), energy gained (e 0.89, e 1), shots lost of 40."""
+    """For each N: impacts that do not end, error against "reference" (median, worst), energy gained (e 0.89,
+    e 1), shots lost of 40."""
     cases, out = any_impacts(200, 12), {}
     p = np.tile(SPOTS, (40, 1, 1))
     p[:, 0] = (0.1, -1.2)
@@ -32,14 +34,26 @@ def euler_table():
             if got is None or want is None:
                 unsolved += 1
                 continue
-            errors.append(np.abs((got - want) * np.where(np.arange(4)[:, None] % 2, R, 1.0)).max() / np.linalg.norm(case[0]))
-        row = {"unsolved": unsolved, "error_median": float(np.median(errors)), "error_worst": float(np.max(errors))}
+            errors.append(
+                np.abs((got - want) * np.where(np.arange(4)[:, None] % 2, R, 1.0)).max()
+                / np.linalg.norm(case[0])
+            )
+        row = {
+            "unsolved": unsolved,
+            "error_median": float(np.median(errors)),
+            "error_worst": float(np.max(errors)),
+        }
         for e in (0.89, 1.0):
             row[f"gain e {e:g}"] = impact_figures(cases, {"e_b": e}, (name,))["energy"]
         if n <= 1000:
             physics = sn.Physics(e_b=1.0, e_c=1.0)
-            state = p.copy(), *(a.copy() for a in motion), np.ones(p.shape[:2], bool)  # not checked on the way: speeds reach 1e150 m/s
-            row["lost"] = int((_run(state, physics, Table.preset("match"), (contact.EULER, n), 3000).status != Status.OK).sum())
+            # not checked on the way: speeds reach 1e150 m/s
+            state = p.copy(), *(a.copy() for a in motion), np.ones(p.shape[:2], bool)
+            row["lost"] = int(
+                (
+                    _run(state, physics, Table.preset("match"), (contact.EULER, n), 3000).status != Status.OK
+                ).sum()
+            )
         out[n] = row
     return out
 
@@ -50,7 +64,11 @@ def euler_lines(rows):
         "the paper's scheme     not ended of 200   error median    worst   energy gained, e 0.89     e 1   shots not ended of 40 (e 1)"
     ]
     for n, r in rows.items():
-        gains = "".join(f"{r[k]:>12.2g}" if r[k] > 0 else f"{'none':>12}" for k in ("gain e 0.89", "gain e 1"))
+        gains = "".join(
+            f"{r[k]:>12.2g}" if r[k] > 0 else f"{'none':>12}" for k in ("gain e 0.89", "gain e 1")
+        )
         lost = r.get("lost", "-")
-        lines.append(f"  euler:{n:<14}{r['unsolved']:>16}{r['error_median']:>15.1e}{r['error_worst']:>9.1e}{gains:>32}{lost:>20}")
+        lines.append(
+            f"  euler:{n:<14}{r['unsolved']:>16}{r['error_median']:>15.1e}{r['error_worst']:>9.1e}{gains:>32}{lost:>20}"
+        )
     return lines

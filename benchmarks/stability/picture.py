@@ -1,4 +1,5 @@
-"""How near to the limits do the extremes come? Draws ``stability.png`` from the figures of ``python -m benchmarks.stability``."""
+"""How near to the limits do the extremes come? Draws ``stability.png`` from the figures of
+``python -m benchmarks.stability``."""
 
 import re
 
@@ -25,11 +26,22 @@ GROUPS = (
 )
 """Extremes that share a line, by their names; of several the worst figure is shown."""
 SAYS = {
-    "unsolved": "not\nsolved", "energy": "energy\ngained", "momentum": "momen-\ntum", "parting": "still\nclosing",
-    "mirror": "mirror\nimage", "lost": "not\nended", "events": "number\nof events", "overlap": "balls\noverlap",
-    "in cushion": "in the\ncushion", "rest": "speed\nat rest", "log": "log not\ncorrect", "jump": "path\njumps",
-    "energy at impact": "energy,\nimpact", "energy between": "energy,\nbetween", "energy of all": "energy,\nall",
-}  # fmt: skip
+    "unsolved": "not\nsolved",
+    "energy": "energy\ngained",
+    "momentum": "momen-\ntum",
+    "parting": "still\nclosing",
+    "mirror": "mirror\nimage",
+    "lost": "not\nended",
+    "events": "number\nof events",
+    "overlap": "balls\noverlap",
+    "in cushion": "in the\ncushion",
+    "rest": "speed\nat rest",
+    "log": "log not\ncorrect",
+    "jump": "path\njumps",
+    "energy at impact": "energy,\nimpact",
+    "energy between": "energy,\nbetween",
+    "energy of all": "energy,\nall",
+}
 
 
 def draw(path, figures):
@@ -43,7 +55,9 @@ def draw(path, figures):
     foot = f"python -m benchmarks.stability: {result}"
     impacts, shots = (grouped(figures[what], figures["allowed"][what]) for what in ("impacts", "shots"))
     with picture_style.drawing() as plt:
-        figure, _ = picture_style.page(plt, 14.0, "How near impacts and shots at the extremes come to breaking a law", note, foot=foot)
+        figure, _ = picture_style.page(
+            plt, 14.0, "How near impacts and shots at the extremes come to breaking a law", note, foot=foot
+        )
         upper, middle, lower = figure.subfigures(3, 1, height_ratios=(3.9, 4.9, 3.7))
         left, right = upper.subplots(1, 2, width_ratios=(1, 1.05))
         _margins(left, impacts, "Impacts")
@@ -87,14 +101,24 @@ def _margins(axes, lines, title):
     values = np.array([list(row.values()) for row in lines.values()])
     blues = picture_style.colours_of("Blues", np.linspace(0.08, 0.75, 255))
     shown = axes.imshow(
-        np.where(values >= FROM, values, np.nan), norm=LogNorm(FROM, FAILS), aspect="auto",
+        np.where(values >= FROM, values, np.nan),
+        norm=LogNorm(FROM, FAILS),
+        aspect="auto",
         cmap=ListedColormap(blues).with_extremes(over=picture_style.ORANGE),
-    )  # fmt: skip
+    )
     for k, row in enumerate(values):
         for c, x in enumerate(row):
             if x >= FROM:
                 text = f"{x:.2f}" if x >= 0.01 else f"$10^{{{np.log10(x):.0f}}}$"
-                axes.text(c, k, text, ha="center", va="center", size=picture_style.SMALL, color="white" if x > 0.05 else picture_style.INK)
+                axes.text(
+                    c,
+                    k,
+                    text,
+                    ha="center",
+                    va="center",
+                    size=picture_style.SMALL,
+                    color="white" if x > 0.05 else picture_style.INK,
+                )
     for edge in np.arange(0.5, len(values) - 1):
         axes.axhline(edge, color=picture_style.PAGE, lw=1)
     for edge in np.arange(0.5, len(columns) - 1):
@@ -129,12 +153,25 @@ def _rounding(axes, symmetry):
     """Deviation against contacts."""
     contacts, turned = np.array(symmetry["contacts"]), np.array(symmetry["turned"])
     good = turned > 0
-    axes.plot(contacts[good] + np.linspace(-0.3, 0.3, good.sum()), turned[good], ".", alpha=0.6, mew=0, label="a shot turned by 1 rad")
+    axes.plot(
+        contacts[good] + np.linspace(-0.3, 0.3, good.sum()),
+        turned[good],
+        ".",
+        alpha=0.6,
+        mew=0,
+        label="a shot turned by 1 rad",
+    )
     at = np.arange(0, contacts.max() + 1)
     fit = np.exp(np.polyval(np.polyfit(contacts[good], np.log(turned[good]), 1), at))
-    axes.plot(at, fit, color=picture_style.INK, lw=1.2, label=f"times {symmetry['factor a contact']:.1f} a contact")
+    axes.plot(
+        at, fit, color=picture_style.INK, lw=1.2, label=f"times {symmetry['factor a contact']:.1f} a contact"
+    )
     picture_style.log_axis(axes.yaxis, decades=2)
-    axes.set(xlabel="ball-ball contacts in the shot", ylabel="deviation at rest [m]", title="How rounding errors grow")
+    axes.set(
+        xlabel="ball-ball contacts in the shot",
+        ylabel="deviation at rest [m]",
+        title="How rounding errors grow",
+    )
     axes.set_ylim(turned[good].min() / 30, turned.max() * 3)
     axes.legend(loc="lower right")
 
@@ -144,12 +181,21 @@ def _fuzz(axes, found):
     if not found:
         axes.set_axis_off()
         return
-    fidelities = [f for f in ("fast", "standard", "reference", "euler:100", "euler:400", "euler:1000") if f in found["worst"]]
-    names = [n for n in invariants.NAMES if n in found["worst"][fidelities[0]] and n in SAYS and n != "account"]  # those of its run
+    fidelities = [
+        f
+        for f in ("fast", "standard", "reference", "euler:100", "euler:400", "euler:1000")
+        if f in found["worst"]
+    ]
+    # those of its run
+    names = [
+        n for n in invariants.NAMES if n in found["worst"][fidelities[0]] and n in SAYS and n != "account"
+    ]
     for k, fidelity in enumerate(fidelities):
         limits: dict[str, float] = dict(zip(invariants.NAMES, fuzz.allowed(fidelity), strict=True))
         ratio = [max(found["worst"][fidelity][name] / limits[name], LEAST_SHOWN) for name in names]
-        axes.plot(np.arange(len(names)) + 0.12 * (k - (len(fidelities) - 1) / 2), ratio, "o", ms=4.5, label=fidelity)
+        axes.plot(
+            np.arange(len(names)) + 0.12 * (k - (len(fidelities) - 1) / 2), ratio, "o", ms=4.5, label=fidelity
+        )
     axes.axhline(1.0, color=picture_style.ORANGE, lw=1.4)
     picture_style.log_axis(axes.yaxis, decades=2)
     axes.set_ylim(LEAST_SHOWN / 3, 2e3)

@@ -1,4 +1,5 @@
-"""Which shots break at the extremes? Balls frozen, wedged and met at once, any speed and spin, constants at their ends, a minute of play.
+"""Which shots break at the extremes? Balls frozen, wedged and met at once, any speed and spin, constants at
+their ends, a minute of play.
 
 Used by ``python -m benchmarks.stability``.
 """
@@ -24,9 +25,16 @@ GAPS = (0.0, 1e-15, 1e-12, 1e-9)
 MOST_EVENTS = 20_000
 
 SHOT_LIMITS = {
-    "lost": 0, "events": MOST_EVENTS, "energy": 1e-9, "momentum": 1e-6, "parting": 1e-5, "overlap": 1e-9, "in cushion": 1e-9,
-    "rest": 1e-9, "log": 1e-12,
-}  # fmt: skip
+    "lost": 0,
+    "events": MOST_EVENTS,
+    "energy": 1e-9,
+    "momentum": 1e-6,
+    "parting": 1e-5,
+    "overlap": 1e-9,
+    "in cushion": 1e-9,
+    "rest": 1e-9,
+    "log": 1e-12,
+}
 """Of a shot: see ``_invariants.WHAT``; "log" is the worst of its finite, clock, jump and account."""
 
 
@@ -42,17 +50,26 @@ def summary(found):
     worst = found.worst.max(0, initial=-np.inf, where=(found.status == Status.OK)[:, None])
     by = dict(zip(invariants.NAMES, worst.tolist(), strict=True))
     return {
-        "lost": int((found.status != Status.OK).sum()), "events": int(found.n_events.max()),
-        "energy": max(by["energy at impact"], by["energy between"]), "momentum": by["momentum"], "parting": by["parting"],
-        "overlap": by["overlap"], "in cushion": by["in cushion"], "rest": by["rest"],
+        "lost": int((found.status != Status.OK).sum()),
+        "events": int(found.n_events.max()),
+        "energy": max(by["energy at impact"], by["energy between"]),
+        "momentum": by["momentum"],
+        "parting": by["parting"],
+        "overlap": by["overlap"],
+        "in cushion": by["in cushion"],
+        "rest": by["rest"],
         "log": max(by[name] for name in ("finite", "clock", "jump", "account")),
-    }  # fmt: skip
+    }
 
 
 def struck(p, speed, aim, side: Any = 0.0, top: Any = 0.0):
     """Velocities and spins of b tables whose first ball has just been struck, by arrays of b or numbers."""
     b, n = p.shape[:2]
-    v, w, (speed, aim, side, top) = np.zeros((b, n, 2)), np.zeros((b, n, 3)), np.broadcast_arrays(speed, aim, side, top, np.zeros(b))[:4]
+    v, w, (speed, aim, side, top) = (
+        np.zeros((b, n, 2)),
+        np.zeros((b, n, 3)),
+        np.broadcast_arrays(speed, aim, side, top, np.zeros(b))[:4],
+    )
     v[:, 0] = np.column_stack([speed * np.cos(aim), speed * np.sin(aim)])
     w[:, 0] = 2.5 * np.column_stack([-top * v[:, 0, 1], top * v[:, 0, 0], side * speed]) / R
     return v, w
@@ -68,7 +85,8 @@ def chains(rng, gap, kind):
     if kind == "line":
         steps = [(k * far, 0.0) for k in range(6)]
     else:
-        steps = [(k * far * np.sqrt(0.75), (j - k / 2) * far) for k in range(5) for j in range(k + 1)]  # a triangle of 15
+        # a triangle of 15
+        steps = [(k * far * np.sqrt(0.75), (j - k / 2) * far) for k in range(5) for j in range(k + 1)]
     rest = np.stack([x * along + y * across for x, y in steps], 1)
     free = -rng.uniform(0.06, 0.4, (b, 1)) * along + rng.uniform(-0.03, 0.03, (b, 1)) * across
     return np.concatenate([free[:, None], rest], 1)
@@ -80,14 +98,17 @@ def frozen(gap):
     for kind in ("pair", "line", "rack"):
         p = chains(rng, gap, kind)
         to = p[:, 1] - p[:, 0]
-        aim = np.arctan2(to[:, 1], to[:, 0]) + (rng.uniform(-np.pi, np.pi, 100) if kind == "pair" else rng.uniform(-0.15, 0.15, 100))
+        aim = np.arctan2(to[:, 1], to[:, 0]) + (
+            rng.uniform(-np.pi, np.pi, 100) if kind == "pair" else rng.uniform(-0.15, 0.15, 100)
+        )
         tips = rng.uniform(-0.35, 0.35, (2, 100))
         out.append(shot_figures(p, *struck(p, rng.uniform(0.2, 7, 100), aim, *tips), None))
     return 900, merge(out)
 
 
 def at_cushions(gap):
-    """A ball frozen to a nose or in a jaw, struck any way or struck by a ball; every second with another ball frozen to it."""
+    """A ball frozen to a nose or in a jaw, struck any way or struck by a ball; every second with another ball
+    frozen to it."""
     rng, table = np.random.default_rng(8), Table.preset("match")
     places = [
         (side * (level - R - gap), y) if axis == 0 else (y, side * (level - R - gap))
@@ -117,14 +138,17 @@ def at_cushions(gap):
 
 
 def wedged(gap):
-    """A ball between two others, between two jaws that it touches both, and in a channel of ``PLAY`` (narrower ones are refused)."""
+    """A ball between two others, between two jaws that it touches both, and in a channel of ``PLAY``
+    (narrower ones are refused)."""
     rng, b = np.random.default_rng(9), 20
     aim, tips, speed = rng.uniform(-np.pi, np.pi, b), rng.uniform(-0.4, 0.4, (2, b)), rng.uniform(0.05, 7, b)
     far = EXACT + gap
     between = np.tile([(0.0, 0.0), (far, 0.0), (-far, 0.0)], (b, 1, 1))
     out = [shot_figures(between, *struck(between, speed, aim, *tips), None)]
     half = R + (PLAY + 1e-12 + gap) / 2
-    channel = Table("channel", np.array([(0, -1, half, -9, 9), (0, 1, half, -9, 9)]), np.zeros((0, 6)), np.zeros((0, 3)))
+    channel = Table(
+        "channel", np.array([(0, -1, half, -9, 9), (0, 1, half, -9, 9)]), np.zeros((0, 6)), np.zeros((0, 3))
+    )
     one = np.zeros((b, 1, 2))
     out.append(shot_figures(one, *struck(one, speed, aim, *tips), channel))
     radius = 0.1
@@ -132,7 +156,9 @@ def wedged(gap):
     jaws = Table(
         "two jaws",
         np.zeros((0, 5)),
-        np.array([(s * apart, -(radius + R) / 2 - gap, radius, -s * np.sqrt(0.75), 0.5, -0.5) for s in (-1, 1)]),
+        np.array(
+            [(s * apart, -(radius + R) / 2 - gap, radius, -s * np.sqrt(0.75), 0.5, -0.5) for s in (-1, 1)]
+        ),
         np.zeros((0, 3)),
     )
     out.append(shot_figures(one, *struck(one, speed, aim, *tips), jaws))
@@ -140,14 +166,18 @@ def wedged(gap):
 
 
 def at_once(offset):
-    """The cue ball and two object balls side by side that it meets at the same time, or ``offset`` [m] from it."""
+    """The cue ball and two object balls side by side that it meets at the same time, or ``offset`` [m] from
+    it."""
     p = np.tile([(-0.3, 0.0), (0.0, R + 1e-4), (0.0, -R - 1e-4)], (60, 1, 1))
     p[:, 2, 0] += offset
-    return p, struck(p, np.linspace(0.3, 7, 60), 0.0, np.repeat([0.0, 0.3], 30), np.tile([-0.4, 0.0, 0.4], 20))
+    return p, struck(
+        p, np.linspace(0.3, 7, 60), 0.0, np.repeat([0.0, 0.3], 30), np.tile([-0.4, 0.0, 0.4], 20)
+    )
 
 
 def three_at_once():
-    """Their invariants, in both orders (the lower ball goes first), and on the table itself: three meeting in the middle."""
+    """Their invariants, in both orders (the lower ball goes first), and on the table itself: three meeting in
+    the middle."""
     out = [shot_figures(p, *motion, None) for p, motion in (at_once(0.0), at_once(1e-15), at_once(1e-9))]
     turns = 2 * np.pi * np.arange(3) / 3
     ring = np.column_stack([np.cos(turns), np.sin(turns)])
@@ -164,13 +194,16 @@ def clear_of_balls(p, here):
 
 
 def long_play():
-    """Strokes on 12 tables of 22 balls, each from where the one before left it, until 60 s have been played: does overlap build up?"""
+    """Strokes on 12 tables of 22 balls, each from where the one before left it, until 60 s have been played:
+    does overlap build up?"""
     rng, b, figures = np.random.default_rng(10), 12, []
     p, here, played = np.tile(SPOTS, (b, 1, 1)), np.ones((b, 22), bool), np.zeros(b)
     p[:, 0] = (0.1, -1.2)
     while played.min() < 60:
         to = p[np.arange(b), rng.integers(1, 22, b)] - p[:, 0]
-        v, w = struck(p, rng.uniform(1, 6, b), np.arctan2(to[:, 1], to[:, 0]), *rng.uniform(-0.3, 0.3, (2, b)))
+        v, w = struck(
+            p, rng.uniform(1, 6, b), np.arctan2(to[:, 1], to[:, 0]), *rng.uniform(-0.3, 0.3, (2, b))
+        )
         sn.simulate_batch(p, v, w, on_table=here, threads=1)  # it refuses a layout that is not sound
         code = contact.parse_fidelity("standard")
         found = invariants.play((p, v, w, here), sn.Physics(), Table.preset("match"), code)
@@ -186,7 +219,12 @@ def slow_cloth():
     """22 balls on cloth of rolling resistance 2e-4, so that one shot lasts more than a minute."""
     p = np.tile(SPOTS, (12, 1, 1))
     p[:, 0] = (0.1, -1.2)
-    return 36, shot_figures(p, *struck(p, np.linspace(1.5, 5, 12), np.pi / 2 + np.linspace(-0.12, 0.1, 12), 0.2), "match", {"mu_r": 2e-4})
+    return 36, shot_figures(
+        p,
+        *struck(p, np.linspace(1.5, 5, 12), np.pi / 2 + np.linspace(-0.12, 0.1, 12), 0.2),
+        "match",
+        {"mu_r": 2e-4},
+    )
 
 
 def shot_extremes():
@@ -216,10 +254,15 @@ def shot_extremes():
     }
     q = np.tile(SPOTS, (20, 1, 1))
     q[:, 0] = (0.1, -1.2)
-    motion = struck(q, rng.uniform(1, 7, 20), np.pi / 2 + rng.uniform(-0.12, 0.1, 20), *rng.uniform(-0.3, 0.3, (2, 20)))
+    motion = struck(
+        q, rng.uniform(1, 7, 20), np.pi / 2 + rng.uniform(-0.12, 0.1, 20), *rng.uniform(-0.3, 0.3, (2, 20))
+    )
     for name, values in constants.items():
         for value in values:
-            out[f"{name} = {value:g}"] = 60, shot_figures(q, *motion, "match", dict.fromkeys(name.split(", "), value))
+            out[f"{name} = {value:g}"] = (
+                60,
+                shot_figures(q, *motion, "match", dict.fromkeys(name.split(", "), value)),
+            )
     out["60 s of strokes, 22 balls"] = long_play()
     out["one shot of 60 s and more"] = slow_cloth()
     return out

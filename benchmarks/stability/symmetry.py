@@ -1,7 +1,8 @@
-"""Is a shot as symmetric as its physics? Shots mirrored and turned, and two balls met at once, where the order of their numbers decides.
+"""Is a shot as symmetric as its physics? Shots mirrored and turned, and two balls met at once, where the
+order of their numbers decides.
 
-Used by ``python -m benchmarks.stability``, which fails if a mirrored shot is not mirrored to the last bit, on the table or on unbounded
-cloth; the rest is measured, not judged.
+Used by ``python -m benchmarks.stability``, which fails if a mirrored shot is not mirrored to the last bit, on
+the table or on unbounded cloth; the rest is measured, not judged.
 """
 
 from typing import Any
@@ -21,17 +22,24 @@ CLOTH: Any = None
 
 
 def images(drawn, axis, rows=slice(None)):
-    """How ``rows`` of a fuzz's batch end, and how their mirror images (x or y reversed) do, seen in the mirror: positions and durations."""
+    """How ``rows`` of a fuzz's batch end, and how their mirror images (x or y reversed) do, seen in the
+    mirror: positions and durations."""
     flip = np.array([1.0, 1.0])
     flip[axis] = -1.0
     spin = np.array([-flip[0], -flip[1], -1.0])  # spins are axial
-    p, v, w, how = drawn.positions[rows], drawn.velocities[rows], drawn.spins[rows], (drawn.table, drawn.physics, drawn.fidelity)
+    p, v, w, how = (
+        drawn.positions[rows],
+        drawn.velocities[rows],
+        drawn.spins[rows],
+        (drawn.table, drawn.physics, drawn.fidelity),
+    )
     here, there = sn.simulate_batch(p, v, w, *how), sn.simulate_batch(p * flip, v * flip, w * spin, *how)
     return (here.positions, here.duration), (there.positions * flip, there.duration)
 
 
 def mirrored_fuzz(batches=20, seed=5):
-    """Shots of the fuzz and their images in either axis: how many were compared, and by how much [m, s] each one's end differs."""
+    """Shots of the fuzz and their images in either axis: how many were compared, and by how much [m, s] each
+    one's end differs."""
     gaps = []
     for number in range(batches):
         for axis in (0, 1):
@@ -41,9 +49,11 @@ def mirrored_fuzz(batches=20, seed=5):
 
 
 def symmetry_growth(shots=400):
-    """How far a mirrored shot and one turned by 1 rad end from where they should, against the number of ball-ball contacts.
+    """How far a mirrored shot and one turned by 1 rad end from where they should, against the number of
+    ball-ball contacts.
 
-    Unbounded cloth, one ball into a loose cluster. Returns contacts (shots,), mirror (shots,), turned (shots,) [m]."""
+    Unbounded cloth, one ball into a loose cluster. Returns contacts (shots,), mirror (shots,), turned
+    (shots,) [m]."""
     rng = np.random.default_rng(13)
     p = fuzz.layouts(rng, "scattered", 1, Table.of(None), shots)
     spots = rng.uniform(-0.25, 0.25, (4000, 2))
@@ -52,7 +62,9 @@ def symmetry_growth(shots=400):
         if all(np.hypot(*(q - a)) > D + 0.004 for a in keep):
             keep.append(q)
     p = np.tile(np.array([(-0.8, 0.0), *keep[:14]]), (shots, 1, 1))
-    v, w = struck(p, rng.uniform(0.5, 6, shots), rng.uniform(-0.25, 0.25, shots), *rng.uniform(-0.3, 0.3, (2, shots)))
+    v, w = struck(
+        p, rng.uniform(0.5, 6, shots), rng.uniform(-0.25, 0.25, shots), *rng.uniform(-0.3, 0.3, (2, shots))
+    )
     c, s = np.cos(1.0), np.sin(1.0)
     turn, turn3 = np.array([(c, s), (-s, c)]), np.array([(c, s, 0), (-s, c, 0), (0, 0, 1)])
     plain = sn.simulate_batch(p, v, w, CLOTH, events=True)
@@ -60,11 +72,16 @@ def symmetry_growth(shots=400):
     turned = sn.simulate_batch(p @ turn, v @ turn, w @ turn3, CLOTH)
     contacts = np.array([(e["kind"] == EventKind.BALL_BALL).sum() for e in plain.events or []])
     gap = lambda a, b: np.hypot(*(a - b).transpose(2, 0, 1)).max(1)  # noqa: E731
-    return contacts, gap(flip.positions, plain.positions * (-1, 1)), gap(turned.positions, plain.positions @ turn)
+    return (
+        contacts,
+        gap(flip.positions, plain.positions * (-1, 1)),
+        gap(turned.positions, plain.positions @ turn),
+    )
 
 
 def order_matters():
-    """Two balls met at once by a stun ball at 2 m/s: speeds of the three just after, in the order of the rule and with names swapped."""
+    """Two balls met at once by a stun ball at 2 m/s: speeds of the three just after, in the order of the rule
+    and with names swapped."""
     p = np.array([(-0.3, 0.0), (0.0, R + 1e-4), (0.0, -R - 1e-4)])
     v = np.array([(2.0, 0.0), (0, 0), (0, 0)])
     w = np.zeros((3, 3))
@@ -77,9 +94,11 @@ def order_matters():
     rule, nearer = after(p), after(p + np.array([(0, 0), (0, 0), (-1e-9, 0)]))
     speeds = np.hypot(*rule.T)
     return {
-        "cue ball": float(speeds[0]), "lower number": float(speeds[1]), "higher number": float(speeds[2]),
+        "cue ball": float(speeds[0]),
+        "lower number": float(speeds[1]),
+        "higher number": float(speeds[2]),
         "other nearer by 1e-9 m": np.hypot(*nearer.T).tolist(),
-    }  # fmt: skip
+    }
 
 
 def order_lines(order):
@@ -87,7 +106,8 @@ def order_lines(order):
     return [
         "two balls met at the same time (stun, 2 m/s): the lower number first. Speeds after, over the cue ball's before:",
         f"  cue ball {order['cue ball']:.4f}, lower number {order['lower number']:.4f}, higher number {order['higher number']:.4f}",
-        "  with the higher number nearer by 1e-9 m: " + ", ".join(f"{x:.4f}" for x in order["other nearer by 1e-9 m"]),
+        "  with the higher number nearer by 1e-9 m: "
+        + ", ".join(f"{x:.4f}" for x in order["other nearer by 1e-9 m"]),
     ]
 
 

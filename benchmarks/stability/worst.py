@@ -1,4 +1,5 @@
-"""How is an extreme judged? The worst figure of each invariant, at every exact fidelity, against what is allowed.
+"""How is an extreme judged? The worst figure of each invariant, at every exact fidelity, against what is
+allowed.
 
 Used by ``python -m benchmarks.stability``. Figures and limits are dicts by the name of the invariant.
 """
@@ -15,7 +16,10 @@ def note(worst, name, figure):
 
 def merge(figures):
     """The worst of several."""
-    return {name: sum(f[name] for f in figures) if name in ("unsolved", "lost") else max(f[name] for f in figures) for name in figures[0]}
+    return {
+        name: sum(f[name] for f in figures) if name in ("unsolved", "lost") else max(f[name] for f in figures)
+        for name in figures[0]
+    }
 
 
 def verdict(figures, limits):

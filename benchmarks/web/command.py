@@ -1,11 +1,13 @@
-"""How fluently does the browser play a replay? Pictures a second of a moving break-off, and what drawing one costs.
+"""How fluently does the browser play a replay? Pictures a second of a moving break-off, and what drawing one
+costs.
 
     python -m benchmarks.web [--width 1920] [--height 1080] [--seconds 5] [--json FILE] [--out FOLDER]
 
-A hard break-off, all balls in motion, in a headless Chromium without a graphics card. Pictures a second are counted by the browser's own
-clock, that of ``requestAnimationFrame``, which runs at most 60 times a second and waits for pictures that are late; "late" are those that
-came 25 ms or more after the one before. What a picture costs is measured beside it, one after the other: all that the player does for a
-moment, and reading a pixel of it back, which makes the browser finish the drawing. "as it opens": spots on the cue ball and ghosts;
+A hard break-off, all balls in motion, in a headless Chromium without a graphics card. Pictures a second are
+counted by the browser's own clock, that of ``requestAnimationFrame``, which runs at most 60 times a second
+and waits for pictures that are late; "late" are those that came 25 ms or more after the one before. What a
+picture costs is measured beside it, one after the other: all that the player does for a moment, and reading a
+pixel of it back, which makes the browser finish the drawing. "as it opens": spots on the cue ball and ghosts;
 "all": paths of all balls, spots and letters on all of them, too.
 """
 
@@ -23,9 +25,14 @@ from snooker_env.game import layout
 from .._common.command import Command, at_least, save_json
 
 FLAGS = (
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
     "--disable-sync",
-)  # fmt: skip
+)
 SETTINGS = {"as it opens": {}, "all": {"paths": True, "spin": "all", "labels": True}}
 BEGIN, END = 0.35, 6.0
 """The part of the stroke in which many balls move [s]."""
@@ -88,9 +95,12 @@ def measured(page, setting, seconds):
     stamps = np.diff(page.evaluate(RATE, [setting, BEGIN, END, seconds]))
     costs = page.evaluate(COST, [setting, BEGIN, END, int(60 * seconds)])[5:]
     return {
-        "frames_per_second": 1000.0 / float(stamps.mean()), "pictures": len(stamps), "late": int((stamps >= LATE).sum()),
-        "draw_median_ms": float(np.median(costs)), "draw_95_ms": float(np.quantile(costs, 0.95)),
-    }  # fmt: skip
+        "frames_per_second": 1000.0 / float(stamps.mean()),
+        "pictures": len(stamps),
+        "late": int((stamps >= LATE).sum()),
+        "draw_median_ms": float(np.median(costs)),
+        "draw_95_ms": float(np.quantile(costs, 0.95)),
+    }
 
 
 def main():
@@ -117,7 +127,9 @@ def main():
             "page_bytes": file.stat().st_size,
             "canvas": page.evaluate("[player.canvas.width, player.canvas.height]"),
         }
-        figures["settings"] = {name: measured(page, setting, options.seconds) for name, setting in SETTINGS.items()}
+        figures["settings"] = {
+            name: measured(page, setting, options.seconds) for name, setting in SETTINGS.items()
+        }
         browser.close()
     print(figures["machine"])
     print(f"Chromium {figures['chromium']} without a graphics card")

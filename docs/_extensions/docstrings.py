@@ -1,6 +1,8 @@
-"""How do docstrings with Markdown sections and tables, as Gymnasium has them, come into a page? They become reStructuredText.
+"""How do docstrings with Markdown sections and tables, as Gymnasium has them, come into a page? They become
+reStructuredText.
 
-``## Title`` is a heading that is in no table of contents, rows ``| a | b |`` are a table. All else is reStructuredText already.
+``## Title`` is a heading that is in no table of contents, rows ``| a | b |`` are a table. All else is
+reStructuredText already.
 """
 
 import re

@@ -1,7 +1,9 @@
-"""How does a page list every public name of a module? ``.. public:: snooker_env.game`` documents what is in its ``__all__``, constants too.
+"""How does a page list every public name of a module? ``.. public:: snooker_env.game`` documents what is in
+its ``__all__``, constants too.
 
-``:only: NAME ...`` takes some of the names, ``:but: NAME ...`` leaves some out. A name that is another public module's too is documented
-there, and here linked to it. Constants have the text that stands below their assignment.
+``:only: NAME ...`` takes some of the names, ``:but: NAME ...`` leaves some out. A name that is another public
+module's too is documented there, and here linked to it. Constants have the text that stands below their
+assignment.
 """
 
 import ast
@@ -23,7 +25,8 @@ SHORT = 90
 
 @cache
 def modules():
-    """The public modules that the package names in its docstring, the deepest first, the package itself last."""
+    """The public modules that the package names in its docstring, the deepest first, the package itself
+    last."""
     import snooker_env
 
     named = re.findall(r"^\* ``(snooker_env[.\w]*)``", str(snooker_env.__doc__), re.MULTILINE)
@@ -31,7 +34,8 @@ def modules():
 
 
 def home_of(module, name):
-    """The public module that documents a name of ``module``: another one, if it has the same thing under the same name."""
+    """The public module that documents a name of ``module``: another one, if it has the same thing under the
+    same name."""
     thing = getattr(importlib.import_module(module), name)
     for other in modules():
         found = importlib.import_module(other)
@@ -46,14 +50,28 @@ def texts():
     out = {}
     for path in PACKAGE.rglob("*.py"):
         body = ast.parse(path.read_text(encoding="utf-8")).body
-        own = out[".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")] = {}
+        own = out[
+            ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
+        ] = {}
         for node, below in zip(body, [*body[1:], None], strict=True):
-            targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
-            text = below.value if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant) else None
+            targets = (
+                node.targets
+                if isinstance(node, ast.Assign)
+                else [node.target]
+                if isinstance(node, ast.AnnAssign)
+                else []
+            )
+            text = (
+                below.value if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant) else None
+            )
             for target in targets:
                 for name in target.elts if isinstance(target, ast.Tuple) else [target]:
                     if isinstance(name, ast.Name):
-                        own[name.id] = inspect.cleandoc(text.value) if text is not None and isinstance(text.value, str) else ""
+                        own[name.id] = (
+                            inspect.cleandoc(text.value)
+                            if text is not None and isinstance(text.value, str)
+                            else ""
+                        )
         for node in body:  # names that are handed on, under their own name or another
             if isinstance(node, ast.ImportFrom):
                 for alias in node.names:
@@ -85,7 +103,11 @@ def kind_of(thing):
         return "class"
     if inspect.isfunction(thing):
         return "function"
-    return "kernel" if callable(thing) and (hasattr(thing, "py_func") or hasattr(thing, "__wrapped__")) else "data"
+    return (
+        "kernel"
+        if callable(thing) and (hasattr(thing, "py_func") or hasattr(thing, "__wrapped__"))
+        else "data"
+    )
 
 
 def kernel_of(thing):
@@ -105,17 +127,33 @@ def entry(module, name, config):
         role = {"class": "py:class", "data": "py:data"}.get(kind, "py:func")
         return [f":{role}:`{name} <{home}.{name}>`: see ``{home}``.", ""]
     if kind == "class":
-        others = sorted({base.__name__ for base in thing.__mro__ if not base.__module__.startswith("snooker_env")})
-        return [f".. autoclass:: {full}", "   :members:", f"   :inherited-members: {', '.join(others)}", ""]  # of its own bases alone
+        others = sorted(
+            {base.__name__ for base in thing.__mro__ if not base.__module__.startswith("snooker_env")}
+        )
+        # of its own bases alone
+        return [f".. autoclass:: {full}", "   :members:", f"   :inherited-members: {', '.join(others)}", ""]
     if kind == "function":
         return [f".. autofunction:: {full}", ""]
     if kind == "kernel":
         plain = kernel_of(thing)
         lines = NumpyDocstring(inspect.getdoc(plain) or "", config, what="function").lines()
-        return [f".. py:function:: {full}{inspect.signature(plain)}", "", *(f"   {line}" for line in lines), ""]
+        return [
+            f".. py:function:: {full}{inspect.signature(plain)}",
+            "",
+            *(f"   {line}" for line in lines),
+            "",
+        ]
     shown = repr(thing)
-    value = [f"   :value: {shown}"] if len(shown) <= SHORT and "\n" not in shown and " at 0x" not in shown else []
-    return [f".. py:data:: {full}", *value, "", *(f"   {line}" for line in text_of(module, name).splitlines()), ""]
+    value = (
+        [f"   :value: {shown}"] if len(shown) <= SHORT and "\n" not in shown and " at 0x" not in shown else []
+    )
+    return [
+        f".. py:data:: {full}",
+        *value,
+        "",
+        *(f"   {line}" for line in text_of(module, name).splitlines()),
+        "",
+    ]
 
 
 class Public(Directive):

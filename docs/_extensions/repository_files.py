@@ -1,4 +1,5 @@
-"""How does a page link to a Markdown file outside ``docs/``? As to any other file: the site has a copy of it."""
+"""How does a page link to a Markdown file outside ``docs/``? As to any other file: the site has a copy of
+it."""
 
 from pathlib import Path
 
@@ -7,7 +8,8 @@ from sphinx.transforms import SphinxTransform
 
 
 class RepositoryFiles(SphinxTransform):
-    """MyST makes a download of a link to ``../train.py``, and of one to ``../CHANGELOG.md`` a link to a page, of which there is none."""
+    """MyST makes a download of a link to ``../train.py``, and of one to ``../CHANGELOG.md`` a link to a page,
+    of which there is none."""
 
     default_priority = 300
 
@@ -21,8 +23,12 @@ class RepositoryFiles(SphinxTransform):
             here = (source / self.env.docname).parent
             if source in target.parents or not target.is_file():
                 continue
-            relative = Path(*[".."] * len(here.relative_to(source).parts), "..", target.relative_to(source.parent))
-            made = addnodes.download_reference("", "", *node.children, reftarget=relative.as_posix(), refdoc=self.env.docname)
+            relative = Path(
+                *[".."] * len(here.relative_to(source).parts), "..", target.relative_to(source.parent)
+            )
+            made = addnodes.download_reference(
+                "", "", *node.children, reftarget=relative.as_posix(), refdoc=self.env.docname
+            )
             made.source, made.line = node.source, node.line
             node.replace_self(made)
 

@@ -1,7 +1,9 @@
-"""How are the films on the pages of the tasks made? ``python docs/films/make.py`` plays one episode for each film and writes an .mp4 of it.
+"""How are the films on the pages of the tasks made? ``python docs/films/make.py`` plays one episode for each
+film and writes an .mp4 of it.
 
-Run it in a clone with the extras ``render`` and ``train``; ``--only NAME ...`` makes some of the films, ``--out FOLDER`` writes them
-elsewhere. An episode is played from the first of a few seeds that has what the film is to show; the same code gives the same film.
+Run it in a clone with the extras ``render`` and ``train``; ``--only NAME ...`` makes some of the films,
+``--out FOLDER`` writes them elsewhere. An episode is played from the first of a few seeds that has what the
+film is to show; the same code gives the same film.
 """
 
 import argparse
@@ -53,7 +55,12 @@ class Film:
 
 
 def _visit(agent, layout, at_least, noise="professional", **options):
-    return Film(agent, {"layout": layout, "noise": noise, **options}, at_least, f"{agent}, layout {layout}, {noise}'s execution errors")
+    return Film(
+        agent,
+        {"layout": layout, "noise": noise, **options},
+        at_least,
+        f"{agent}, layout {layout}, {noise}'s execution errors",
+    )
 
 
 FILMS = {
@@ -64,7 +71,10 @@ FILMS = {
     "pot_hard": _visit("planner_500", "pots:hard", 1),
     "escape": _visit("geometric", "snookered", 0, reward="legal", one_stroke=True),
     "frame": Film(
-        "planner_500", {"task": "frame", "opponent": "ghost_ball", "noise": "professional"}, 8, "a frame: planner_500 against ghost_ball"
+        "planner_500",
+        {"task": "frame", "opponent": "ghost_ball", "noise": "professional"},
+        8,
+        "a frame: planner_500 against ghost_ball",
     ),
     "break_off": _visit("planner_500", "break_off", 0),
     "random": _visit("planner_500", "random:6", 15),
@@ -89,7 +99,8 @@ def episode(film: Film, seed: int) -> Any:
 
 
 def found(film: Film) -> tuple[Any, int]:
-    """The episode of the first seed that has what the film is to show, and that seed. SystemExit if there is none."""
+    """The episode of the first seed that has what the film is to show, and that seed. SystemExit if there is
+    none."""
     for seed in range(SEED, SEED + TRIES):
         env = episode(film, seed)
         if env is not None:
@@ -97,12 +108,28 @@ def found(film: Film) -> tuple[Any, int]:
     raise SystemExit(f"docs/films/make.py: {film.title}: nothing to show in {TRIES} episodes")
 
 
-def write(made: Any, path: Path, *, size: tuple[int, int] = SIZE, fps: float = FPS, speed: float = SPEED) -> None:
-    """Encode a ``Replay`` as an .mp4 that browsers play while it loads, smaller than ``Replay.save`` makes it, which is faster."""
+def write(
+    made: Any, path: Path, *, size: tuple[int, int] = SIZE, fps: float = FPS, speed: float = SPEED
+) -> None:
+    """Encode a ``Replay`` as an .mp4 that browsers play while it loads, smaller than ``Replay.save`` makes
+    it, which is faster."""
     from imageio_ffmpeg import get_ffmpeg_exe
 
     given = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:g}", "-i", "-"]
-    wanted = ["-c:v", "libx264", "-preset", "slow", "-crf", "30", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-threads", "1"]
+    wanted = [
+        "-c:v",
+        "libx264",
+        "-preset",
+        "slow",
+        "-crf",
+        "30",
+        "-pix_fmt",
+        "yuv420p",
+        "-movflags",
+        "+faststart",
+        "-threads",
+        "1",
+    ]
     command = [get_ffmpeg_exe(), "-y", "-loglevel", "error", *given, *wanted, str(path)]
     with subprocess.Popen(command, stdin=subprocess.PIPE) as encoder:
         assert encoder.stdin is not None
@@ -116,7 +143,14 @@ def main(argv: list[str] | None = None) -> int:
     """Make the films."""
     parser = argparse.ArgumentParser(description=str(__doc__).split("\n\n")[0])
     names = list(FILMS)
-    parser.add_argument("--only", nargs="+", choices=names, default=names, metavar="NAME", help="films to make: " + ", ".join(names))
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        choices=names,
+        default=names,
+        metavar="NAME",
+        help="films to make: " + ", ".join(names),
+    )
     parser.add_argument("--out", type=Path, default=OUT, help="folder (default: docs/_static/films)")
     given = parser.parse_args(argv)
     given.out.mkdir(parents=True, exist_ok=True)
@@ -125,7 +159,10 @@ def main(argv: list[str] | None = None) -> int:
         env, seed = found(film)
         players = [film.agent, film.options["opponent"]] if "opponent" in film.options else [film.agent]
         write(replay(env, title=film.title, players=players), path)
-        print(f"{path}: {film.agent}, seed {seed}, {len(env.history)} strokes, {path.stat().st_size / 1000:.0f} kB", flush=True)
+        print(
+            f"{path}: {film.agent}, seed {seed}, {len(env.history)} strokes, {path.stat().st_size / 1000:.0f} kB",
+            flush=True,
+        )
     return 0
 
 

@@ -1,6 +1,8 @@
-"""How are the screenshots in docs made? ``python docs/pictures/make.py`` in a clone with the extra ``test``, and Chromium, makes them anew.
+"""How are the screenshots in docs made? ``python docs/pictures/make.py`` in a clone with the extra ``test``,
+and Chromium, makes them anew.
 
-The page of ``snooker_env.play`` with advice, and a replay of a trained agent's break, each as a browser shows it.
+The page of ``snooker_env.play`` with advice, and a replay of a trained agent's break, each as a browser shows
+it.
 """
 
 import argparse
@@ -16,7 +18,13 @@ from playwright.sync_api import sync_playwright
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-QUIET = ("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-component-update")
+QUIET = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+)
 
 
 def shoot(page, file):
@@ -27,7 +35,18 @@ def shoot(page, file):
 
 def page_with_advice(browser, out):
     """The page to play, as it answers "What would you play?"."""
-    command = [sys.executable, "-m", "snooker_env.play", "--no-browser", "--layout", "opened", "--seed", "3", "--agent", "ppo_foresight"]
+    command = [
+        sys.executable,
+        "-m",
+        "snooker_env.play",
+        "--no-browser",
+        "--layout",
+        "opened",
+        "--seed",
+        "3",
+        "--agent",
+        "ppo_foresight",
+    ]
     server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
     try:
         address = next(found[0] for line in server.stdout if (found := re.search(r"http://\S+", line)))
@@ -50,7 +69,17 @@ def replay(browser, out):
     """The replay of a break, paths on, at a desk and on a phone."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "break.html"
-        command = [sys.executable, "-m", "agents.watch", "--agent", "ppo_foresight", "--at-least", "50", "--out", str(file)]
+        command = [
+            sys.executable,
+            "-m",
+            "agents.watch",
+            "--agent",
+            "ppo_foresight",
+            "--at-least",
+            "50",
+            "--out",
+            str(file),
+        ]
         subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
         for name, width, height in (("replay.jpg", 1280, 720), ("replay_phone.jpg", 390, 700)):
             page = browser.new_page(viewport={"width": width, "height": height})
@@ -64,7 +93,9 @@ def replay(browser, out):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description="Make the screenshots of the documentation anew.")
-    parser.add_argument("--out", type=Path, default=HERE, metavar="FOLDER", help="where to write them (default: here)")
+    parser.add_argument(
+        "--out", type=Path, default=HERE, metavar="FOLDER", help="where to write them (default: here)"
+    )
     folder = parser.parse_args().out
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(QUIET))

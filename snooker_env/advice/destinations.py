@@ -1,4 +1,5 @@
-"""Where do the balls of a stroke stop? ``destinations``: cue ball and object ball under many execution errors, as points and as a map."""
+"""Where do the balls of a stroke stop? ``destinations``: cue ball and object ball under many execution
+errors, as points and as a map."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -28,8 +29,8 @@ class Destinations:
     cue : numpy.ndarray
         float64 (m, 2). Where the cue ball stopped [m], for the samples in which it stayed on the table.
     ball : numpy.ndarray
-        float64 (m, 2). Where the object ball stopped [m], before respotting, for the samples in which it was not potted; (0, 2) if there
-        is no object ball.
+        float64 (m, 2). Where the object ball stopped [m], before respotting, for the samples in which it was
+        not potted; (0, 2) if there is no object ball.
     potted : float
         Share of the samples in which the object ball was potted, in [0, 1].
     in_off : float
@@ -73,8 +74,9 @@ class Destinations:
         Returns
         -------
         dict
-            "x0", "y0": the corner of the first cell [m]; "cell" [m]; "nx", "ny": numbers of cells; "values": a list of ny rows of nx
-            numbers. The values add up to the share of the samples in which the ball stayed on the table.
+            "x0", "y0": the corner of the first cell [m]; "cell" [m]; "nx", "ny": numbers of cells; "values":
+            a list of ny rows of nx numbers. The values add up to the share of the samples in which the ball
+            stayed on the table.
 
         Raises
         ------
@@ -94,7 +96,8 @@ class Destinations:
         places = getattr(self, choice("ball", ball, ("cue", "ball")))
         nx, ny = int(np.ceil(2.0 * HALF_WIDTH / cell)), int(np.ceil(2.0 * HALF_LENGTH / cell))
         x0, y0 = -0.5 * nx * cell, -0.5 * ny * cell
-        columns = np.clip(((places - (x0, y0)) / cell).astype(int), 0, (nx - 1, ny - 1))  # a ball may come to rest between the jaws
+        # a ball may come to rest between the jaws
+        columns = np.clip(((places - (x0, y0)) / cell).astype(int), 0, (nx - 1, ny - 1))
         values = np.bincount(columns[:, 1] * nx + columns[:, 0], minlength=nx * ny) / self.samples
         return {"x0": x0, "y0": y0, "cell": float(cell), "nx": nx, "ny": ny, "values": values.tolist()}
 
@@ -128,7 +131,8 @@ def destinations(
     seed: int = 0,
     options: Any = None,
 ) -> Destinations:
-    """Find where the cue ball and the object ball of a stroke stop under execution errors, and how often it pots and fouls.
+    """Find where the cue ball and the object ball of a stroke stop under execution errors, and how often it
+    pots and fouls.
 
     Parameters
     ----------
@@ -141,8 +145,8 @@ def destinations(
     samples : int, optional
         How often the stroke is played, in [1, 1000000]; default 500.
     seed : int, optional
-        Seed of the noise samples, in [0, 2**63]; default 0. Every stroke meets the same errors with the same seed, so a map changes
-        smoothly with the stroke.
+        Seed of the noise samples, in [0, 2**63]; default 0. Every stroke meets the same errors with the same
+        seed, so a map changes smoothly with the stroke.
     options : dict or Options, optional
         Physics, table and fidelity, see ``advise``.
 
@@ -172,11 +176,19 @@ def destinations(
     row = struck.numbers()[None]
     trial = practice.play(start, np.zeros(1, np.int64), row)
     ball, tries = int(trial.first[0]), 1 if practice.sure else samples
-    stops = practice.play(start, np.zeros(tries, np.int64), np.repeat(row, tries, 0), keys(seed, JUDGING, tries))
+    stops = practice.play(
+        start, np.zeros(tries, np.int64), np.repeat(row, tries, 0), keys(seed, JUDGING, tries)
+    )
     stayed = stops.potted[:, CUE] < 0
     here = stops.potted[:, ball] < 0 if ball > 0 else np.zeros(tries, np.bool_)
     return Destinations(
-        samples=tries, object_ball=ball, cue=stops.places[stayed, CUE], ball=stops.places[here, max(0, ball)],
-        potted=float(1.0 - here.mean()) if ball > 0 else 0.0, in_off=float(1.0 - stayed.mean()), foul=float((stops.penalty > 0).mean()),
-        scored=float((stops.points > 0).mean()), points=float(stops.points.mean()),
-    )  # fmt: skip
+        samples=tries,
+        object_ball=ball,
+        cue=stops.places[stayed, CUE],
+        ball=stops.places[here, max(0, ball)],
+        potted=float(1.0 - here.mean()) if ball > 0 else 0.0,
+        in_off=float(1.0 - stayed.mean()),
+        foul=float((stops.penalty > 0).mean()),
+        scored=float((stops.points > 0).mean()),
+        points=float(stops.points.mean()),
+    )

@@ -1,4 +1,5 @@
-"""How does a stroke turn out under execution errors? Chances, expected points and stopping points, on common noise samples."""
+"""How does a stroke turn out under execution errors? Chances, expected points and stopping points, on common
+noise samples."""
 
 from dataclasses import replace
 from math import hypot, sqrt
@@ -25,7 +26,8 @@ Z = 1.959964
 
 
 def wilson(made: int, tries: int) -> tuple[float, float]:
-    """The 95 % interval of a probability of which ``made`` of ``tries`` samples were successes (Wilson 1927)."""
+    """The 95 % interval of a probability of which ``made`` of ``tries`` samples were successes (Wilson
+    1927)."""
     share, z2 = made / tries, Z * Z / tries
     middle = (share + 0.5 * z2) / (1.0 + z2)
     half = Z * sqrt(share * (1.0 - share) / tries + 0.25 * z2 / tries) / (1.0 + z2)
@@ -35,11 +37,13 @@ def wilson(made: int, tries: int) -> tuple[float, float]:
 def points_expected(
     points: NDArray[np.float64], goes_on: NDArray[np.bool_], rest: NDArray[np.float64]
 ) -> tuple[float, tuple[float, float]]:
-    """Mean points of a visit and its 95 % interval, from (samples,) of the first stroke and the ``rest`` (visits,) where it goes on."""
+    """Mean points of a visit and its 95 % interval, from (samples,) of the first stroke and the ``rest``
+    (visits,) where it goes on."""
     n, follows = len(points), float(rest.mean()) if len(rest) else 0.0
     share, each = float(goes_on.mean()), points + goes_on * follows
     mean = float(each.mean())
-    variance = float(each.var(ddof=1)) / n if n > 1 else 0.0  # delta method: the samples' part, then that of the rest
+    # delta method: the samples' part, then that of the rest
+    variance = float(each.var(ddof=1)) / n if n > 1 else 0.0
     variance += share * share * float(rest.var(ddof=1)) / len(rest) if len(rest) > 1 else 0.0
     half = Z * sqrt(variance)
     return mean, (max(0.0, mean - half), mean + half)
@@ -66,7 +70,10 @@ def tried(practice: Practice, at: Positions, ranked: Rankings) -> list[Tried]:
     starts = _joined([played_from(at, stroke) for stroke in strokes])
     stops = practice.play(starts, np.arange(len(strokes)), np.stack([stroke.numbers() for stroke in strokes]))
     hidden = ~clear_paths(starts).any_part
-    return [Tried(*one, starts[k : k + 1], *_trial(practice, starts, stops, k, one[0], bool(hidden[k]))) for k, one in enumerate(ranked)]
+    return [
+        Tried(*one, starts[k : k + 1], *_trial(practice, starts, stops, k, one[0], bool(hidden[k])))
+        for k, one in enumerate(ranked)
+    ]
 
 
 def _joined(positions: list[Positions]) -> Positions:
@@ -75,8 +82,11 @@ def _joined(positions: list[Positions]) -> Positions:
     return Positions(np.concatenate(places), np.concatenate(present), np.concatenate(game))
 
 
-def _trial(practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool) -> tuple[str, int, int, int, str]:
-    """Kind, ball, pocket, first ball and words of stroke k; ``hidden``: no straight path leads to a ball on."""
+def _trial(
+    practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool
+) -> tuple[str, int, int, int, str]:
+    """Kind, ball, pocket, first ball and words of stroke k; ``hidden``: no straight path leads to a ball
+    on."""
     first, pocket, how = int(trial.first[k]), -1, ""
     ball, (x, y) = first, starts.positions[k, CUE].tolist()
     dx, dy = (starts.positions[k, max(0, first)] - (x, y)).tolist()
@@ -97,32 +107,50 @@ def _trial(practice: Practice, starts: Positions, trial: Stops, k: int, stroke: 
 
 def distinct(strokes: list[Tried]) -> list[Tried]:
     """Only the first of several strokes with equal descriptions, apart from the speed of a pot."""
-    read = [one.words.replace(f"{one.stroke.speed:.1f} m/s", "") if one.kind == "pot" else one.words for one in strokes]
+    read = [
+        one.words.replace(f"{one.stroke.speed:.1f} m/s", "") if one.kind == "pot" else one.words
+        for one in strokes
+    ]
     return [one for k, one in enumerate(strokes) if read[k] not in read[:k]]
 
 
-def fair(practice: Practice, strokes: list[Tried], n: int, *, samples: int, visits: int, seed: int) -> list[Suggestion]:
-    """The first n of the strokes that are no foul without errors, nor in most samples, by their figure: the preferred kind first."""
+def fair(
+    practice: Practice, strokes: list[Tried], n: int, *, samples: int, visits: int, seed: int
+) -> list[Suggestion]:
+    """The first n of the strokes that are no foul without errors, nor in most samples, by their figure: the
+    preferred kind first."""
     waiting, out = [one for one in strokes if one.kind not in FOULS], []
     while waiting and len(out) < n:
         some, waiting = waiting[: n - len(out)], waiting[n - len(out) :]
-        out += [one for one in judged(practice, some, samples=samples, visits=visits, seed=seed) if one.foul <= 0.5]
+        out += [
+            one
+            for one in judged(practice, some, samples=samples, visits=visits, seed=seed)
+            if one.foul <= 0.5
+        ]
     return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))
 
 
-def least_bad(practice: Practice, strokes: list[Tried], *, samples: int, visits: int, seed: int) -> Suggestion:
+def least_bad(
+    practice: Practice, strokes: list[Tried], *, samples: int, visits: int, seed: int
+) -> Suggestion:
     """The stroke that is fair in most samples, where none is fair."""
-    worst = min(judged(practice, strokes, samples=samples, visits=visits, seed=seed), key=lambda one: one.foul)
+    worst = min(
+        judged(practice, strokes, samples=samples, visits=visits, seed=seed), key=lambda one: one.foul
+    )
     return replace(worst, words=f"no fair stroke found: {worst.words}")
 
 
-def judged(practice: Practice, strokes: list[Tried], *, samples: int, visits: int, seed: int) -> list[Suggestion]:
+def judged(
+    practice: Practice, strokes: list[Tried], *, samples: int, visits: int, seed: int
+) -> list[Suggestion]:
     """Strokes with their outcomes under execution errors, in their order."""
     n = len(strokes)
     tries, again = (1, min(1, visits)) if practice.sure else (samples, visits)
     noise, rows = keys(seed, JUDGING, tries), np.stack([one.stroke.numbers() for one in strokes])
     starts = _joined([one.start for one in strokes])
-    stops = practice.play(starts, np.repeat(np.arange(n), tries), np.repeat(rows, tries, 0), np.tile(noise, n))
+    stops = practice.play(
+        starts, np.repeat(np.arange(n), tries), np.repeat(rows, tries, 0), np.tile(noise, n)
+    )
     rest = _rest(practice, stops, n, tries, again, seed)
     out = []
     for k, one in enumerate(strokes):
@@ -133,26 +161,45 @@ def judged(practice: Practice, strokes: list[Tried], *, samples: int, visits: in
         points, interval = points_expected(stops.points[mine], stops.goes_on[mine], rest[k])
         stayed = stops.potted[mine, CUE] < 0
         middle, spread = _cloud(stops.places[mine, CUE][stayed])
-        out.append(Suggestion(
-            **{name: getattr(one.stroke, name) for name in ("speed", "aim", "side", "top", "elevation", "place")},
-            kind=one.kind, ball=one.ball, pocket=one.pocket, first=one.first,
-            chance=chance, chance_interval=(chance, chance) if practice.sure else wilson(int(made.sum()), tries),
-            points=points, points_interval=interval, foul=float((~no_foul).mean()), in_off=float((~stayed).mean()),
-            stops=middle, spread=spread, score=one.score, words=f"{one.words}, {figures_words(one.kind, chance, points)}",
-        ))  # fmt: skip
+        out.append(
+            Suggestion(
+                **{
+                    name: getattr(one.stroke, name)
+                    for name in ("speed", "aim", "side", "top", "elevation", "place")
+                },
+                kind=one.kind,
+                ball=one.ball,
+                pocket=one.pocket,
+                first=one.first,
+                chance=chance,
+                chance_interval=(chance, chance) if practice.sure else wilson(int(made.sum()), tries),
+                points=points,
+                points_interval=interval,
+                foul=float((~no_foul).mean()),
+                in_off=float((~stayed).mean()),
+                stops=middle,
+                spread=spread,
+                score=one.score,
+                words=f"{one.words}, {figures_words(one.kind, chance, points)}",
+            )
+        )
     return out
 
 
 def _cloud(places: NDArray[np.float64]) -> tuple[tuple[float, float] | None, float | None]:
-    """The mean of points (m, 2) and the root of their mean square distance from it; None, None if there are no points."""
+    """The mean of points (m, 2) and the root of their mean square distance from it; None, None if there are
+    no points."""
     if not len(places):
         return None, None
     x, y = places.mean(axis=0).tolist()
     return (x, y), float(np.sqrt(((places - (x, y)) ** 2).sum(axis=1).mean()))
 
 
-def _rest(practice: Practice, stops: Stops, n: int, tries: int, visits: int, seed: int) -> list[NDArray[np.float64]]:
-    """For each of n strokes: the points that followed in the first ``visits`` of its samples in which the visit went on."""
+def _rest(
+    practice: Practice, stops: Stops, n: int, tries: int, visits: int, seed: int
+) -> list[NDArray[np.float64]]:
+    """For each of n strokes: the points that followed in the first ``visits`` of its samples in which the
+    visit went on."""
     rows = [k * tries + np.flatnonzero(stops.goes_on[k * tries : (k + 1) * tries])[:visits] for k in range(n)]
     numbers = np.concatenate([np.arange(len(each)) for each in rows]).astype(np.int64)
     rest = played_on(practice, stops.afterstates[np.concatenate(rows).astype(np.int64)], numbers, seed)

@@ -1,4 +1,5 @@
-"""What is one stroke? ``CueStroke``: speed, tip, aim, elevation and, with the cue ball in hand, its place; validated, and as an action."""
+"""What is one stroke? ``CueStroke``: speed, tip, aim, elevation and, with the cue ball in hand, its place;
+validated, and as an action."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
@@ -27,10 +28,12 @@ class CueStroke:
     speed : float
         Cue speed [m/s], in [0.2, 7].
     aim : float
-        Direction in which the cue ball leaves [rad], anticlockwise from +x. Squirt is compensated, as a player does: with side, the cue
-        points in a slightly different direction. ``aim="absolute"`` of an action means the same.
+        Direction in which the cue ball leaves [rad], anticlockwise from +x. Squirt is compensated, as a
+        player does: with side, the cue points in a slightly different direction. ``aim="absolute"`` of an
+        action means the same.
     side : float, optional
-        Tip offset to the right over R, as the player sees it; default 0. The point (side, top) must lie within a disc of radius 0.5.
+        Tip offset to the right over R, as the player sees it; default 0. The point (side, top) must lie
+        within a disc of radius 0.5.
     top : float, optional
         Tip offset upwards over R; default 0.
     elevation : float, optional
@@ -64,12 +67,20 @@ class CueStroke:
         for name in ("side", "top"):
             put(name, number(name, getattr(self, name), -FARTHEST, FARTHEST))
         if hypot(self.side, self.top) > FARTHEST + 1e-9:
-            raise refuse_what("side, top", f"({self.side:g}, {self.top:g})", f"must lie within the disc of radius {FARTHEST}")
+            raise refuse_what(
+                "side, top",
+                f"({self.side:g}, {self.top:g})",
+                f"must lie within the disc of radius {FARTHEST}",
+            )
         put("elevation", number("elevation", self.elevation, 0.0, MAX_ELEVATION))
         if self.place is not None:
             put("place", tuple(array("place", self.place, (2,)).tolist()))
             if not within_d(*self.place):
-                raise refuse_what("place", f"({self.place[0]:g}, {self.place[1]:g})", "must be on or within the lines of the D")
+                raise refuse_what(
+                    "place",
+                    f"({self.place[0]:g}, {self.place[1]:g})",
+                    "must be on or within the lines of the D",
+                )
 
     @classmethod
     def of(cls, stroke: "StrokeLike") -> "CueStroke":
@@ -107,7 +118,11 @@ class CueStroke:
             values = {name: getattr(stroke, name) for name in names if hasattr(stroke, name)}
         for name in ("speed", "aim"):
             if name not in values:
-                raise refuse_what("stroke", f"a {type(stroke).__name__} without {name!r}", "must be a CueStroke or a dict of its fields")
+                raise refuse_what(
+                    "stroke",
+                    f"a {type(stroke).__name__} without {name!r}",
+                    "must be a CueStroke or a dict of its fields",
+                )
         return cls(**values)
 
     def to_dict(self) -> dict[str, Any]:
@@ -142,7 +157,9 @@ class CueStroke:
         """
         return np.array([self.speed, self.side, self.top, self.aim, self.elevation])
 
-    def action(self, *, elevation: bool = False, placement: bool = False, decision: bool = False) -> NDArray[np.float32]:
+    def action(
+        self, *, elevation: bool = False, placement: bool = False, decision: bool = False
+    ) -> NDArray[np.float32]:
         """Return the stroke as an action of an environment with ``aim="absolute"`` and the given options.
 
         Parameters
@@ -150,8 +167,8 @@ class CueStroke:
         elevation : bool, optional
             Whether the action holds the elevation; default False.
         placement : bool, optional
-            Whether the action holds the place in the D; default False. A stroke without a place puts the cue ball in the middle of the
-            baulk line.
+            Whether the action holds the place in the D; default False. A stroke without a place puts the cue
+            ball in the middle of the baulk line.
         decision : bool, optional
             Whether the action holds the decision after a foul; default False. The decision is to play.
 
@@ -181,7 +198,8 @@ StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any
 
 
 def cue_strokes(strokes: Strokes, at: Positions) -> list[CueStroke]:
-    """The strokes that a player plays in the one position ``at``, with a place in the D if the cue ball is in hand."""
+    """The strokes that a player plays in the one position ``at``, with a place in the D if the cue ball is in
+    hand."""
     in_hand, (here, *_) = bool(at.in_hand[0]), at.positions[0].tolist()
     out = []
     for (speed, side, top, aim, elevation), place in zip(strokes.values.tolist(), strokes.place, strict=True):

@@ -1,4 +1,5 @@
-"""What does advice hold? ``Suggestion``, one stroke with its outcomes, and ``Advice``, a sequence of them, as data and in words."""
+"""What does advice hold? ``Suggestion``, one stroke with its outcomes, and ``Advice``, a sequence of them, as
+data and in words."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -26,29 +27,34 @@ class Suggestion(CueStroke):
     place : (float, float) or None
         Where in the D the cue ball is placed first [m]; None if it is not in hand.
     kind : {"pot", "contact", "escape", "in-off", "foul"}
-        What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores nothing; what it is worth as a
-        safety is not judged. "escape": the same where no straight path leads to a ball on. "in-off": it loses the cue ball. "foul": any
-        other foul.
+        What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores
+        nothing; what it is worth as a safety is not judged. "escape": the same where no straight path leads
+        to a ball on. "in-off": it loses the cue ball. "foul": any other foul.
     ball : int
-        Id of the ball that it pots without errors or, if none, of the ball that it strikes first; -1 if it strikes nothing.
+        Id of the ball that it pots without errors or, if none, of the ball that it strikes first; -1 if it
+        strikes nothing.
     pocket : int
         Pocket of that ball, an index into ``snooker_env.POCKETS``; -1 if it is not potted.
     first : int
         Id of the ball that it strikes first without errors; -1 if none.
     chance : float
-        For a pot: the share of the samples in which that ball went into that pocket without a foul. Otherwise: the share without a foul.
+        For a pot: the share of the samples in which that ball went into that pocket without a foul.
+        Otherwise: the share without a foul.
     chance_interval : (float, float)
         Wilson's 95 % interval of the chance; without noise, the chance itself twice.
     points : float
-        Expected points of the visit from this stroke on, when it is continued by the fast player of ``snooker_env.advice.visits``.
+        Expected points of the visit from this stroke on, when it is continued by the fast player of
+        ``snooker_env.advice.visits``.
     points_interval : (float, float)
-        95 % interval of that mean. It covers the sampling error of the strokes and of the visits; a stronger player may score more.
+        95 % interval of that mean. It covers the sampling error of the strokes and of the visits; a stronger
+        player may score more.
     foul : float
         Share of the samples in which the stroke was a foul, in [0, 1].
     in_off : float
         Share of the samples in which the cue ball was potted, in [0, 1].
     stops : (float, float) or None
-        Mean stopping point of the cue ball [m] over the samples in which it stayed on the table; None if there are none.
+        Mean stopping point of the cue ball [m] over the samples in which it stayed on the table; None if
+        there are none.
     spread : float or None
         Root of the mean square distance from that point [m].
     score : float or None
@@ -84,13 +90,16 @@ class Suggestion(CueStroke):
 
     @property
     def figure(self) -> float:
-        """What strokes of its kind are ordered by: the expected points of a pot, otherwise the share without a foul."""
+        """What strokes of its kind are ordered by: the expected points of a pot, otherwise the share without
+        a foul."""
         return self.points if self.kind == "pot" else self.chance
 
     @property
     def stroke(self) -> CueStroke:
         """The stroke alone, a ``CueStroke``."""
-        return CueStroke.of({name: getattr(self, name) for name in ("speed", "aim", "side", "top", "elevation", "place")})
+        return CueStroke.of(
+            {name: getattr(self, name) for name in ("speed", "aim", "side", "top", "elevation", "place")}
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return the suggestion as JSON types.
@@ -107,7 +116,9 @@ class Suggestion(CueStroke):
         >>> sn.advise(position, agent="search", noise="none", n=1)[0].to_dict()["chance_interval"]
         [1.0, 1.0]
         """
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
+        return {
+            name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()
+        }
 
     def __str__(self) -> str:
         return self.words
@@ -115,7 +126,8 @@ class Suggestion(CueStroke):
 
 @dataclass(frozen=True, kw_only=True)
 class Advice(Sequence[Suggestion]):
-    """The strokes that an agent would play in a position, ordered by the figure in their words: a sequence of ``Suggestion``.
+    """The strokes that an agent would play in a position, ordered by the figure in their words: a sequence of
+    ``Suggestion``.
 
     Attributes
     ----------
@@ -126,7 +138,8 @@ class Advice(Sequence[Suggestion]):
     agent : str
         Name of the agent.
     own : bool
-        Whether the strokes are the agent's own; False where none of its own is fair, so that others were judged, too.
+        Whether the strokes are the agent's own; False where none of its own is fair, so that others were
+        judged, too.
     noise : str or dict
         Execution errors: a level's name, or the fields of ``Noise``.
     samples : int
@@ -194,7 +207,10 @@ class Advice(Sequence[Suggestion]):
         >>> list(advice.to_dict())
         ['position', 'agent', 'own', 'order', 'noise', 'samples', 'visits', 'seed', 'suggestions']
         """
-        kept = {name: getattr(self, name) for name in ("agent", "own", "order", "noise", "samples", "visits", "seed")}
+        kept = {
+            name: getattr(self, name)
+            for name in ("agent", "own", "order", "noise", "samples", "visits", "seed")
+        }
         return {"position": self.position.to_dict(), **kept, "suggestions": [one.to_dict() for one in self]}
 
     def __str__(self) -> str:

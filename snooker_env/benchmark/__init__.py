@@ -1,4 +1,5 @@
-"""The benchmark: named tasks with frozen options, and how agents are judged on them. ``python -m snooker_env.benchmark`` runs it."""
+"""The benchmark: named tasks with frozen options, and how agents are judged on them.
+``python -m snooker_env.benchmark`` runs it."""
 
 from ..play.program import AgentError, ProgramPlayer
 from .agents import Agent
@@ -15,9 +16,45 @@ from .statistics import RESAMPLES, Resamples, figure, interval, iqm, unseen
 from .tasks import FREE, HELD_OUT_SEED, TASKS, Task, most_points, tables_of, task_of
 
 __all__ = [
-    "CENTURY", "COLUMNS", "FIGURES", "FREE", "HELD_OUT_SEED", "MAXIMUM", "RESAMPLES", "TASKS", "Agent", "AgentError",
-    "PlayedEpisodes", "ProgramPlayer", "Resamples", "Strokes", "Task", "afresh", "arithmetic", "budget_of", "commit",
-    "counts", "faults", "faults_of_fields", "figure", "figures_of", "interval", "iqm", "judge", "machine", "most_points",
-    "page", "play_episodes", "play_visits", "processor", "read_result", "replayed", "software", "summary", "tables_of",
-    "task_of", "unseen", "write_result",
-]  # fmt: skip
+    "CENTURY",
+    "COLUMNS",
+    "FIGURES",
+    "FREE",
+    "HELD_OUT_SEED",
+    "MAXIMUM",
+    "RESAMPLES",
+    "TASKS",
+    "Agent",
+    "AgentError",
+    "PlayedEpisodes",
+    "ProgramPlayer",
+    "Resamples",
+    "Strokes",
+    "Task",
+    "afresh",
+    "arithmetic",
+    "budget_of",
+    "commit",
+    "counts",
+    "faults",
+    "faults_of_fields",
+    "figure",
+    "figures_of",
+    "interval",
+    "iqm",
+    "judge",
+    "machine",
+    "most_points",
+    "page",
+    "play_episodes",
+    "play_visits",
+    "processor",
+    "read_result",
+    "replayed",
+    "software",
+    "summary",
+    "tables_of",
+    "task_of",
+    "unseen",
+    "write_result",
+]

@@ -1,4 +1,5 @@
-"""How is the benchmark run? By ``python -m snooker_env.benchmark`` tasks, run, check, table or profile; the rules: docs/benchmark.md."""
+"""How is the benchmark run? By ``python -m snooker_env.benchmark`` tasks, run, check, table or profile; the
+rules: docs/benchmark.md."""
 
 import argparse
 import os
@@ -29,7 +30,9 @@ NAME = "python -m snooker_env.benchmark"
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    p = argparse.ArgumentParser(NAME, description="Judge agents on named tasks by the rules of docs/benchmark.md.")
+    p = argparse.ArgumentParser(
+        NAME, description="Judge agents on named tasks by the rules of docs/benchmark.md."
+    )
     commands = p.add_subparsers(dest="command", required=True)
     commands.add_parser("tasks", help="list the tasks")
     run = commands.add_parser("run", help="play a task and write its result file")
@@ -54,8 +57,12 @@ def parser() -> argparse.ArgumentParser:
     add("--force", action="store_true", help="replace result files that are there")
     check = commands.add_parser("check", help="verify result files; exit code 1 if one is wrong")
     check.add_argument("files", nargs="+", metavar="FILE")
-    check.add_argument("--replay", type=int, metavar="N", help="have --agent play N episodes again: the same strokes?")
-    check.add_argument("--fresh", type=int, metavar="N", help="have --agent play N episodes on fresh seeds: the same mean?")
+    check.add_argument(
+        "--replay", type=int, metavar="N", help="have --agent play N episodes again: the same strokes?"
+    )
+    check.add_argument(
+        "--fresh", type=int, metavar="N", help="have --agent play N episodes on fresh seeds: the same mean?"
+    )
     _agent(check, required=False)
     table = commands.add_parser("table", help="print the leaderboard of result files")
     table.add_argument("files", nargs="*", metavar="FILE")
@@ -74,12 +81,15 @@ def _agent(p: argparse.ArgumentParser, required: bool) -> None:
     how = "how a model's actions are read, as aim=target"
     p.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help=how)
     p.add_argument("--trust", action="store_true", help="run the pickled code in a model's file")
-    p.add_argument("--timeout", type=float, default=60.0, help="seconds that a program has for a stroke (default: 60)")
+    p.add_argument(
+        "--timeout", type=float, default=60.0, help="seconds that a program has for a stroke (default: 60)"
+    )
     p.add_argument("--threads", type=int, help="threads that play the tables (default: one for each core)")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command. Exit code 0; 1 for a wrong file or a failed agent; 2 for wrong arguments; 130 after Ctrl-C."""
+    """Run a command. Exit code 0; 1 for a wrong file or a failed agent; 2 for wrong arguments; 130 after
+    Ctrl-C."""
     words = list(sys.argv[1:] if argv is None else argv)
     args = parser().parse_args(words)
     args.line = f"{NAME} {shlex.join(words)}"
@@ -103,7 +113,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _tasks(args: Any) -> int:
     """List the tasks."""
     every = TASKS.values()
-    rows = [[one.id, one.title, one.judged_layout, str(one.frozen["noise"]), f"{one.episodes:,}"] for one in every]
+    rows = [
+        [one.id, one.title, one.judged_layout, str(one.frozen["noise"]), f"{one.episodes:,}"] for one in every
+    ]
     print("\n".join(text_table(["task", "what", "judged on", "noise", "episodes"], rows, 4)))
     print(f"\nFree options: {', '.join(FREE)}. All others are frozen.")
     return 0
@@ -118,7 +130,9 @@ def _agent_of(args: Any, **more: Any) -> Agent:
 def _run(args: Any) -> int:
     """Play tasks; whatever is wrong is said before the first one is played."""
     tasks = list(TASKS.values()) if args.tasks == ["all"] else [task_of(name) for name in args.tasks]
-    agent = _agent_of(args, label=args.label, training_shots=args.training_shots, shots_declared=args.simulated_shots)
+    agent = _agent_of(
+        args, label=args.label, training_shots=args.training_shots, shots_declared=args.simulated_shots
+    )
     out = Path(args.out or ".")
     if len(tasks) > 1 and out.suffix == ".json":
         raise refuse("out", args.out, "must be a folder for several tasks")

@@ -1,4 +1,5 @@
-"""Which agent is judged? A player for each training seed, by name, file, class, command or object, and what is declared of it."""
+"""Which agent is judged? A player for each training seed, by name, file, class, command or object, and what
+is declared of it."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -56,13 +57,16 @@ class Agent:
     shots_declared: int | None = None
 
     @classmethod
-    def of(cls, agent: Any, *, label: str | None = None, training_shots: int | None = None, **more: Any) -> "Agent":
+    def of(
+        cls, agent: Any, *, label: str | None = None, training_shots: int | None = None, **more: Any
+    ) -> "Agent":
         """The agent that a text names, or that a player is.
 
         Parameters
         ----------
         agent : str or player
-            A text that ``sn.player`` accepts, LABEL=SOURCE,SOURCE,... with one source for each training seed, or a player.
+            A text that ``sn.player`` accepts, LABEL=SOURCE,SOURCE,... with one source for each training seed,
+            or a player.
         label : str, optional
             As in ``Agent``; None: made from the text or the class.
         training_shots : int, optional
@@ -148,7 +152,11 @@ class Agent:
         source = self.sources[run]
         if self.program and isinstance(source, str):
             return ProgramPlayer(source.removeprefix(PROGRAM), timeout=self.timeout)
-        made = saved_player(Path(source), self.options, self.trust) if self.options else player_named(source, trust=self.trust)
+        made = (
+            saved_player(Path(source), self.options, self.trust)
+            if self.options
+            else player_named(source, trust=self.trust)
+        )
         if getattr(made, "frames", False) and not task.frame:
             raise refuse("player", source, "must see visits to play them: it sees frames")
         made.at(task.judged())
@@ -171,7 +179,11 @@ def text_of(source: Any) -> str:
     if isinstance(source, str):
         return source
     name = getattr(source, "name", None)
-    return name if isinstance(name, str) and name.startswith(PROGRAM) else f"{type(source).__module__}:{type(source).__qualname__}"
+    return (
+        name
+        if isinstance(name, str) and name.startswith(PROGRAM)
+        else f"{type(source).__module__}:{type(source).__qualname__}"
+    )
 
 
 def is_known(text: str) -> bool:

@@ -1,4 +1,5 @@
-"""Is a submitted result what it says? Its strokes are played again, without the agent; rows and figures must be theirs, to the last bit."""
+"""Is a submitted result what it says? Its strokes are played again, without the agent; rows and figures must
+be theirs, to the last bit."""
 
 from typing import Any
 
@@ -36,10 +37,12 @@ STROKES = COLUMNS.index("strokes")
 
 
 def faults(found: Any, threads: int | None = None) -> list[str]:
-    """Check a result: its fields, that they fit each other, and all rows and figures by a replay of its strokes.
+    """Check a result: its fields, that they fit each other, and all rows and figures by a replay of its
+    strokes.
 
-    Players that are known by name, of the package or of one that is installed, are asked again for the first stroke of the
-    first tables of every training seed: they must be those of the file, and whoever simulates shots is planning.
+    Players that are known by name, of the package or of one that is installed, are asked again for the first
+    stroke of the first tables of every training seed: they must be those of the file, and whoever simulates
+    shots is planning.
 
     Parameters
     ----------
@@ -77,7 +80,9 @@ def faults(found: Any, threads: int | None = None) -> list[str]:
         if wrong:
             return wrong
         rows = found["rows"]
-        wrong = _of_figures(found["figures"], figures_of(task, found["agent"]["label"], rows) if rows else None)
+        wrong = _of_figures(
+            found["figures"], figures_of(task, found["agent"]["label"], rows) if rows else None
+        )
         official = not missing(found, task)
         if found["protocol"]["official"] != official:
             wrong.append(f"protocol.official = {not official}: must be {official} by the rules")
@@ -119,9 +124,13 @@ def _of_agent(result: dict[str, Any]) -> list[str]:
     if len(set(sources)) < len(sources):
         return ["agent.sources: must be different: the same one twice makes nothing surer"]
     if is_reserved(agent["label"], sources):
-        wrong.append(f"agent.label = {agent['label']!r}: must not be the name of another player than agent.sources")
+        wrong.append(
+            f"agent.label = {agent['label']!r}: must not be the name of another player than agent.sources"
+        )
     if agent["budget"] != (budget := budget_of(agent["training_shots"])):
-        wrong.append(f"agent.budget = {shortened(agent['budget'])}: must be {budget!r} by agent.training_shots")
+        wrong.append(
+            f"agent.budget = {shortened(agent['budget'])}: must be {budget!r} by agent.training_shots"
+        )
     decisions = sum(row[STROKES] for row in result["rows"] if _is_row(row))
     by_word = agent["simulated_shots"] if agent["declared"] else None
     shots, program = result["timing"]["simulated_shots"], sources[0].startswith("program:")
@@ -154,17 +163,22 @@ def _of_rows(result: dict[str, Any], task: Task) -> list[str]:
         return [f"rows: must be {each}, not {len(rows)}; or incomplete must say why"]
     for k, (row, (run, seed)) in enumerate(zip(rows, want, strict=False)):
         if row[:2] != [run, seed]:
-            return [f"rows[{k}]: run {row[0]}, table {row[1]}: must be run {run}, table {seed}, as the protocol says"]
+            return [
+                f"rows[{k}]: run {row[0]}, table {row[1]}: must be run {run}, table {seed}, as the protocol says"
+            ]
     return []
 
 
 def _of_runs(result: dict[str, Any], strokes: Kept) -> list[str]:
-    """Two training seeds do not play whole results of a hundred episodes and more alike: they would be one."""
+    """Two training seeds do not play whole results of a hundred episodes and more alike: they would be
+    one."""
     many, known = result["protocol"]["episodes"], {}
     for run in range(len(strokes) // many if many >= 100 else 0):
         whole = b"".join(one.tobytes() for one in strokes[run * many : (run + 1) * many])
         if known.setdefault(whole, run) != run:
-            return [f"agent.sources: {known[whole]} and {run} must be different training seeds: their strokes are equal"]
+            return [
+                f"agent.sources: {known[whole]} and {run} must be different training seeds: their strokes are equal"
+            ]
     return []
 
 
@@ -182,7 +196,9 @@ def _of_play(result: dict[str, Any], task: Task, strokes: Kept, threads: int | N
                 wrong.append(f"{name}.strokes = {row[STROKES]}: must be more: the episode goes on after them")
                 continue
             other = [c for c in range(2, len(COLUMNS)) if row[c] != want[c]]
-            wrong += [f"{name}.{COLUMNS[c]} = {row[c]}: must be {want[c]}, as its strokes play" for c in other]
+            wrong += [
+                f"{name}.{COLUMNS[c]} = {row[c]}: must be {want[c]}, as its strokes play" for c in other
+            ]
     more = [f"rows: {len(wrong) - MOST} more faults"] if len(wrong) > MOST else []
     return _elsewhere(result, wrong[:MOST] + more)
 
@@ -200,7 +216,9 @@ def _of_figures(value: Any, want: Any, name: str = "figures") -> list[str]:
     """Where do figures differ from those that follow from the rows?"""
     if isinstance(want, dict) and isinstance(value, dict):
         other = [f"{name}.{key}: is no figure" for key in value if key not in want]
-        return other + [line for key in want for line in _of_figures(value.get(key), want[key], f"{name}.{key}")]
+        return other + [
+            line for key in want for line in _of_figures(value.get(key), want[key], f"{name}.{key}")
+        ]
     if isinstance(want, list) and isinstance(value, list) and len(want) == len(value):
         return [line for k in range(len(want)) for line in _of_figures(value[k], want[k], f"{name}[{k}]")]
     if type(value) is type(want) and value == want and str(value) == str(want):  # as texts: 0.0 is not -0.0
@@ -210,7 +228,8 @@ def _of_figures(value: Any, want: Any, name: str = "figures") -> list[str]:
 
 
 def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
-    """Do known players begin on the first tables of each training seed as the file says, and plan if they simulate shots?"""
+    """Do known players begin on the first tables of each training seed as the file says, and plan if they
+    simulate shots?"""
     agent, many, wrong = result["agent"], result["protocol"]["episodes"], []
     for run, source in enumerate(agent["sources"]):
         first = min(BATCH, len(strokes) - run * many, many)
@@ -225,16 +244,21 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
         tables.close()
         for k, one in enumerate(kept):
             if len(one) and one[0].tobytes() != actions[k].tobytes():
-                wrong.append(f"strokes: run {run}, table {seeds[k]}: {source} begins with another stroke than the file")
+                wrong.append(
+                    f"strokes: run {run}, table {seeds[k]}: {source} begins with another stroke than the file"
+                )
                 break
         if decide.simulated and agent["class"] == "model_free":
             shots = f"{decide.simulated:,} shots for {decide.decisions:,} strokes"
-            wrong.append(f"agent.class = 'model_free': must be 'planning': {shortened(source)} simulated {shots}")
+            wrong.append(
+                f"agent.class = 'model_free': must be 'planning': {shortened(source)} simulated {shots}"
+            )
     return _elsewhere(result, wrong)
 
 
 def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None) -> list[str]:
-    """Have the agent play the first episodes of a result again, of every training seed, and compare strokes and rows.
+    """Have the agent play the first episodes of a result again, of every training seed, and compare strokes
+    and rows.
 
     Parameters
     ----------
@@ -266,7 +290,10 @@ def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | 
     """
     seeds = TASKS[found["task"]].seeds(found["protocol"]["episodes"])[:episodes]
     again, wrong = _by(agent, found, seeds, threads), []
-    kept = {tuple(row[:2]): (row, one.tobytes()) for row, one in zip(found["rows"], strokes_of(found), strict=True)}
+    kept = {
+        tuple(row[:2]): (row, one.tobytes())
+        for row, one in zip(found["rows"], strokes_of(found), strict=True)
+    }
     for row, one in zip(again.rows, again.strokes, strict=True):
         old = kept.get((row[0], row[1]))
         if old is not None and old != (row, one.tobytes()):
@@ -274,7 +301,9 @@ def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | 
             wrong.append(f"run {row[0]}, table {row[1]}: played again {what}, the file has {old[0][2:]}")
     shots = found["timing"]["simulated_shots"]
     if not wrong and len(again.rows) == len(found["rows"]) and again.simulated != shots:
-        wrong.append(f"timing.simulated_shots = {shots}: must be {again.simulated}, as the agent played again")
+        wrong.append(
+            f"timing.simulated_shots = {shots}: must be {again.simulated}, as the agent played again"
+        )
     return wrong
 
 
@@ -285,7 +314,8 @@ def afresh(
     seed: int,
     threads: int | None = None,
 ) -> tuple[float, float, list[str]]:
-    """Have the agent play a task on seeds that it cannot know, and compare its mean score and its class with those of the result.
+    """Have the agent play a task on seeds that it cannot know, and compare its mean score and its class with
+    those of the result.
 
     Parameters
     ----------
@@ -305,8 +335,8 @@ def afresh(
     mean, error : float
         The mean score of the fresh episodes, and the standard error of its difference to the result.
     faults : list of str
-        One line if they differ by more than 3.29 standard errors, which one honest result in 1,000 does; one if a
-        model-free agent simulates shots.
+        One line if they differ by more than 3.29 standard errors, which one honest result in 1,000 does; one
+        if a model-free agent simulates shots.
 
     Raises
     ------
@@ -327,7 +357,9 @@ def afresh(
         len(agent.sources),
         COLUMNS.index("score"),
     )
-    each = [np.reshape([row[column] for row in rows], (runs, -1)).mean(0) for rows in (found["rows"], played.rows)]
+    each = [
+        np.reshape([row[column] for row in rows], (runs, -1)).mean(0) for rows in (found["rows"], played.rows)
+    ]
     (old, mean), error = (
         (one.mean() for one in each),
         float(np.sqrt(sum(one.var(ddof=1) / len(one) for one in each))),

@@ -1,8 +1,9 @@
-"""Which environments play the tasks of the benchmark? One class for each id and one for many tables: ``Snooker-v0`` with frozen options.
+"""Which environments play the tasks of the benchmark? One class for each id and one for many tables:
+``Snooker-v0`` with frozen options.
 
-They are what ``gymnasium.make("SnookerBreak-v0")`` and
-``gymnasium.make_vec("SnookerBreak-v0", vectorization_mode="vector_entry_point")`` make. Everything that is not an option
-of the game works as in ``SnookerEnv`` and ``SnookerVectorEnv``.
+They are what ``gymnasium.make("SnookerBreak-v0")`` and ``gymnasium.make_vec("SnookerBreak-v0",
+vectorization_mode="vector_entry_point")`` make. Everything that is not an option of the game works as in
+``SnookerEnv`` and ``SnookerVectorEnv``.
 """
 
 from typing import Any, ClassVar
@@ -29,7 +30,8 @@ class TaskEnv(SnookerEnv):
 
 
 class TaskVectorEnv(SnookerVectorEnv):
-    """Many tables of a task: keywords of ``SnookerVectorEnv``, and the options that the task leaves free, as ``TaskEnv``."""
+    """Many tables of a task: keywords of ``SnookerVectorEnv``, and the options that the task leaves free, as
+    ``TaskEnv``."""
 
     TASK: ClassVar[str]
 

@@ -1,6 +1,8 @@
-"""Which figures follow from the rows of a result? Mean score, inter-quartile mean and performance profile, each with its interval.
+"""Which figures follow from the rows of a result? Mean score, inter-quartile mean and performance profile,
+each with its interval.
 
-Everything is computed again from the rows alone, with the same bootstrap samples for the same label: ``check`` compares.
+Everything is computed again from the rows alone, with the same bootstrap samples for the same label:
+``check`` compares.
 """
 
 import zlib
@@ -15,7 +17,8 @@ from .tasks import Task
 
 
 def matrix(rows: list[list[int]]) -> dict[str, Floats] | None:
-    """The columns of the rows, (runs, episodes); None unless every run has played the same tables in the same order."""
+    """The columns of the rows, (runs, episodes); None unless every run has played the same tables in the same
+    order."""
     table = np.array(rows, np.float64).reshape(-1, len(COLUMNS))
     runs = [table[table[:, 0] == run] for run in np.unique(table[:, 0])]
     if not runs or any(not np.array_equal(one[:, 1], runs[0][:, 1]) for one in runs):
@@ -38,9 +41,9 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
     Returns
     -------
     dict or None
-        "score", "iqm" (for points only), "profile" (a list of {"at_least", and a figure}), "by_run", "best", "points",
-        "pots", "strokes", "fouls" and "cleared". A figure is {"value", "low", "high", "exact"}. None if the runs are not
-        complete.
+        "score", "iqm" (for points only), "profile" (a list of {"at_least", and a figure}), "by_run", "best",
+        "points", "pots", "strokes", "fouls" and "cleared". A figure is {"value", "low", "high", "exact"}.
+        None if the runs are not complete.
 
     Examples
     --------
@@ -74,7 +77,8 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
 
 
 def _figure(value: float, samples: Floats, trials: int) -> dict[str, Any]:
-    """A figure with its 95 % interval; of a share never or always seen in so many ``trials`` the exact one-sided bound."""
+    """A figure with its 95 % interval; of a share never or always seen in so many ``trials`` the exact
+    one-sided bound."""
     low, high = interval(samples)
     if np.isfinite(low):
         return {"value": value, "low": low, "high": high, "exact": False}

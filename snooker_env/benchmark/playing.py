@@ -1,8 +1,10 @@
-"""How are episodes played? Tables side by side: a player decides by positions and seeds, and what it decides is kept as it is played.
+"""How are episodes played? Tables side by side: a player decides by positions and seeds, and what it decides
+is kept as it is played.
 
-The environment reads all of a stroke (``players.VISITS``, ``players.FRAMES``). An action is rounded to float32, the type
-of the action space, before it is played: what is kept is what was played. The seed of a decision depends on the training
-seed, the table's seed and the number of the stroke alone, so a player gives the same strokes in any batch.
+The environment reads all of a stroke (``players.VISITS``, ``players.FRAMES``). An action is rounded to
+float32, the type of the action space, before it is played: what is kept is what was played. The seed of a
+decision depends on the training seed, the table's seed and the number of the stroke alone, so a player gives
+the same strokes in any batch.
 """
 
 import time
@@ -34,7 +36,8 @@ COLUMNS = (
     "opponent_points",
     "ended",
 )
-"""Columns of a row: index of the training seed, seed of the table, then integers that docs/benchmark.md explains."""
+"""Columns of a row: index of the training seed, seed of the table, then integers that docs/benchmark.md
+explains."""
 Kept = list[NDArray[np.float32]]
 """The strokes of each episode: its actions, one row each."""
 
@@ -48,7 +51,8 @@ class PlayedEpisodes:
     rows : list of list of int
         One row for each episode, columns ``COLUMNS``.
     strokes : list of numpy.ndarray
-        The strokes of each episode, float32, one row each: actions of an environment that reads all of a stroke.
+        The strokes of each episode, float32, one row each: actions of an environment that reads all of a
+        stroke.
     decisions : int
         Number of decisions of the player.
     seconds : float
@@ -85,7 +89,8 @@ class PlayedEpisodes:
 
 
 class Decider:
-    """A player at the tables of an environment: what it decides is rounded, kept and timed, and its shots are counted."""
+    """A player at the tables of an environment: what it decides is rounded, kept and timed, and its shots are
+    counted."""
 
     def __init__(self, player: Any, tables: SnookerVectorEnv, seeds: Any, seed: int):
         self.player = player_named(player).at(tables)
@@ -130,7 +135,8 @@ class Repeater:
 
 
 class Round(NamedTuple):
-    """What one stroke of each player was: the tables where it was ``asked``, and what the environment said after it."""
+    """What one stroke of each player was: the tables where it was ``asked``, and what the environment said
+    after it."""
 
     asked: Bools
     info: dict[str, Any]
@@ -146,7 +152,8 @@ def rounds(tables: SnookerVectorEnv, seeds: Any, decide: Any, rekey: int | None 
     tables.reset(seed=seeds)
     going, number = np.ones(tables.num_envs, np.bool_), 0
     while going.any():
-        asked = going & ~tables.tables.ended()  # a frame that the opponent has won already only needs its last step
+        # a frame that the opponent has won already only needs its last step
+        asked = going & ~tables.tables.ended()
         actions = decide(asked, number) if asked.any() else np.zeros(tables.action_space.shape, np.float32)
         if rekey is not None:
             tables.tables.streams[:, 0] = decision_seeds(~rekey, np.asarray(seeds), number)
@@ -203,7 +210,9 @@ def play_episodes(
     return PlayedEpisodes(rows, strokes, decide.decisions, decide.seconds, decide.simulated)
 
 
-def rows_of(task: Task, tables: SnookerVectorEnv, seeds: list[int], decide: Any, run: int = 0) -> list[list[int]]:
+def rows_of(
+    task: Task, tables: SnookerVectorEnv, seeds: list[int], decide: Any, run: int = 0
+) -> list[list[int]]:
     """The rows of the episodes with these seeds, as ``decide`` plays them."""
     n = len(seeds)
     sums: dict[str, Floats] = {name: np.zeros(n) for name in ("strokes", "points", "pots", "fouls")}

@@ -1,4 +1,5 @@
-"""Where do figures come from? The commit of the checkout, the machine, its load and its last bits, and the versions of what was running."""
+"""Where do figures come from? The commit of the checkout, the machine, its load and its last bits, and the
+versions of what was running."""
 
 import hashlib
 import os
@@ -63,7 +64,8 @@ def processor() -> str:
 
 
 def software() -> dict[str, str | None]:
-    """Versions of this package, of Python and of the libraries that decide results; None for one that is not installed.
+    """Versions of this package, of Python and of the libraries that decide results; None for one that is not
+    installed.
 
     Returns
     -------
@@ -91,8 +93,8 @@ def software() -> dict[str, str | None]:
 def arithmetic() -> str:
     """How the last bits fall here: where this is the same, the same strokes end alike, bit for bit.
 
-    The kernels call the system's mathematical library, whose functions may differ in the last bit between systems, versions and processors;
-    a stroke with many impacts amplifies that.
+    The kernels call the system's mathematical library, whose functions may differ in the last bit between
+    systems, versions and processors; a stroke with many impacts amplifies that.
 
     Returns
     -------

@@ -1,4 +1,5 @@
-"""What stands in a result file, and how is it written and read? One JSON object; ``schema`` documents every field."""
+"""What stands in a result file, and how is it written and read? One JSON object; ``schema`` documents every
+field."""
 
 import json
 from datetime import datetime, timezone
@@ -45,7 +46,8 @@ def budget_of(shots: int | None) -> str:
 
 
 def of_decisions(program: bool, declared: int | None, shots: int, decisions: int) -> dict[str, Any]:
-    """Class and simulated shots a decision: counted, or declared where they cannot be counted or the number is higher."""
+    """Class and simulated shots a decision: counted, or declared where they cannot be counted or the number
+    is higher."""
     counted = None if program else shots / max(1, decisions)
     by_word = program or (declared is not None and declared > shots / max(1, decisions))
     mean = counted if not by_word else None if declared is None else float(declared)
@@ -76,7 +78,8 @@ def result_of(
 ) -> dict[str, Any]:
     """The object of a result file.
 
-    ``alone``: decisions on one table; ``why`` episodes are missing; ``about``: "command", and "load" as the machine was before.
+    ``alone``: decisions on one table; ``why`` episodes are missing; ``about``: "command", and "load" as the
+    machine was before.
     """
     result: dict[str, Any] = {
         "schema": {"name": NAME, "version": VERSION},
@@ -167,7 +170,11 @@ def read_result(path: str | Path) -> Any:
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         names = [name for name, _ in pairs]
-        twice = next((name for name in names if names.count(name) > 1), None) if len(set(names)) < len(names) else None
+        twice = (
+            next((name for name in names if names.count(name) > 1), None)
+            if len(set(names)) < len(names)
+            else None
+        )
         if twice is not None:
             raise ValueError(f"the key {twice!r} stands there twice")
         return dict(pairs)

@@ -1,4 +1,5 @@
-"""What happens in the visits that a player plays? Every stroke of them on tables that are the same for all players, and what is counted."""
+"""What happens in the visits that a player plays? Every stroke of them on tables that are the same for all
+players, and what is counted."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -100,7 +101,8 @@ class Strokes:
 
     @property
     def clears(self) -> Bools:
-        """Whether each stroke scored and left no object ball: bool (n,). A foul that pots the last ball clears no table."""
+        """Whether each stroke scored and left no object ball: bool (n,). A foul that pots the last ball
+        clears no table."""
         return self.made & self.cleared
 
     @property
@@ -168,7 +170,8 @@ def play_visits(
     seed : int
         Of what the player draws. Its strokes on a table do not depend on the other tables.
     rekey : int, optional
-        Seed of new execution errors after every decision: a control that the player has not seen them beforehand.
+        Seed of new execution errors after every decision: a control that the player has not seen them
+        beforehand.
     threads : int, optional
         As in ``SnookerVectorEnv``.
     each : callable, optional
@@ -262,8 +265,8 @@ def summary(strokes: Strokes) -> dict[str, Any]:
     Returns
     -------
     dict of str to float, int or None
-        Points, pots, fouls and other means by name. Names that end in "_se" are standard errors over visits. None where
-        a mean has no cases.
+        Points, pots, fouls and other means by name. Names that end in "_se" are standard errors over visits.
+        None where a mean has no cases.
 
     Examples
     --------

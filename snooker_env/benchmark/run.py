@@ -1,4 +1,5 @@
-"""How is an agent judged on a task? Batch after batch of the protocol's episodes; what was played is kept, whatever stops it."""
+"""How is an agent judged on a task? Batch after batch of the protocol's episodes; what was played is kept,
+whatever stops it."""
 
 import time
 from collections.abc import Callable
@@ -55,15 +56,16 @@ def judge(
     Returns
     -------
     dict
-        The result. After Ctrl-C, or when a program that plays fails, it holds the complete batches, and "incomplete" has
-        the reason.
+        The result. After Ctrl-C, or when a program that plays fails, it holds the complete batches, and
+        "incomplete" has the reason.
 
     Raises
     ------
     ValueError
         If the agent cannot play the task, or ``out`` holds a result of another run.
     Exception
-        What the code of a player raises; ``out`` then holds the complete batches. ``SystemExit`` becomes RuntimeError.
+        What the code of a player raises; ``out`` then holds the complete batches. ``SystemExit`` becomes
+        RuntimeError.
 
     Examples
     --------

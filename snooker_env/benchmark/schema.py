@@ -1,4 +1,5 @@
-"""What is a result file? Its fields with their types and meanings, version by version; ``docs/benchmark.md`` prints this table."""
+"""What is a result file? Its fields with their types and meanings, version by version; ``docs/benchmark.md``
+prints this table."""
 
 import re
 from collections.abc import Mapping
@@ -9,7 +10,8 @@ from .provenance import LIBRARIES
 
 NAME, VERSION = "snooker_env.benchmark.result", 3
 PROTOCOL = 1
-"""Version of the rules: tables, episodes, figures. Results of different versions are never put into one table."""
+"""Version of the rules: tables, episodes, figures. Results of different versions are never put into one
+table."""
 PACKAGES = ("0.3.0.dev0",)
 """Versions of the package whose results compare by these rules, the present one last."""
 BEGUN = "2026-11-21T00:00:00Z"
@@ -70,13 +72,18 @@ _PROVED = (
     "strokes",
 )
 UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED) and name != "software.snooker_env")
-"""Fields that a replay cannot prove: their form is checked, and that they fit the others. Class and budget follow from them."""
+"""Fields that a replay cannot prove: their form is checked, and that they fit the others. Class and budget
+follow from them."""
 
 LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,20}")
 MOST_WHOLE = 2**53
 """Whole numbers up to here are exact in every reader of JSON."""
 RANGES: dict[str, tuple[float, float]] = {
-    **{name: (0.0, 1e12) if kind is NUMBER else (0, MOST_WHOLE) for name, (kind, _, _) in FIELDS.items() if kind in (int, NUMBER)},
+    **{
+        name: (0.0, 1e12) if kind is NUMBER else (0, MOST_WHOLE)
+        for name, (kind, _, _) in FIELDS.items()
+        if kind in (int, NUMBER)
+    },
     "agent.simulated_shots": (0, MOST_WHOLE),
     "protocol.episodes": (1, 2**20),
     "machine.cores": (1, 2**20),
@@ -141,11 +148,15 @@ def faults_of_fields(
         if value is _MISSING:
             wrong.append(f"{name}: is missing")
         elif not (value is None and empty) and not _fits(value, kind):
-            wrong.append(f"{name} = {shortened(value)}: must be {_WORDS.get(kind, 'a number')}{' or null' if empty else ''}")
+            wrong.append(
+                f"{name} = {shortened(value)}: must be {_WORDS.get(kind, 'a number')}{' or null' if empty else ''}"
+            )
         elif value is not None and (allowed := _allowed(name, value, ranges)):
             wrong.append(f"{name} = {shortened(value)}: must be {allowed}")
     for name, value in found.items():
-        inner = [f"{name}.{key}" for key in value] if isinstance(value, dict) and name not in fields else [name]
+        inner = (
+            [f"{name}.{key}" for key in value] if isinstance(value, dict) and name not in fields else [name]
+        )
         wrong += [f"{other}: is no field of version {version}" for other in inner if other not in fields]
     return wrong
 
@@ -167,7 +178,9 @@ def _allowed(name: str, value: Any, ranges: Mapping[str, tuple[float, float]]) -
         return PATTERNS[name][1]
     if name == "date" and not _is_date(value):
         return "a time in UTC, as 2026-11-22T19:00:00Z"
-    if name == "date" and not BEGUN <= value <= (datetime.now(timezone.utc) + timedelta(hours=1)).strftime(DATE):
+    if name == "date" and not BEGUN <= value <= (datetime.now(timezone.utc) + timedelta(hours=1)).strftime(
+        DATE
+    ):
         return f"between {BEGUN} and now"
     return None
 

@@ -1,13 +1,16 @@
-"""How sure is a figure of many visits by several training runs? Means, ratios and inter-quartile means with bootstrap intervals.
+"""How sure is a figure of many visits by several training runs? Means, ratios and inter-quartile means with
+bootstrap intervals.
 
-Scores come as a matrix (runs, visits): every run has played the same visits. Two things are a sample and both are drawn again, with
-replacement: the runs (other training seeds) and the visits (other tables and other luck), the visits the same for every run, which is the
-bootstrap of crossed factors [Owen, The pigeonhole bootstrap, 2007]. Of R > 1 runs R - 1 are drawn, since R would make their variance
-(R - 1) / R of what it is [Rao & Wu 1988]. With one run only the visits are drawn: such an interval says nothing about other seeds.
+Scores come as a matrix (runs, visits): every run has played the same visits. Two things are a sample and both
+are drawn again, with replacement: the runs (other training seeds) and the visits (other tables and other
+luck), the visits the same for every run, which is the bootstrap of crossed factors [Owen, The pigeonhole
+bootstrap, 2007]. Of R > 1 runs R - 1 are drawn, since R would make their variance (R - 1) / R of what it is
+[Rao & Wu 1988]. With one run only the visits are drawn: such an interval says nothing about other seeds.
 
-Intervals are percentiles. Where luck within a visit matters most they are too wide (of 5 runs up to 1.5 times, never too narrow by it);
-where nothing but the seeds differs, 5 of them are few and the 95 % interval covers 85 % (``test_statistics`` measures both).
-A bootstrap cannot say how rare a thing is that was never seen, or always: that bound is ``unseen``.
+Intervals are percentiles. Where luck within a visit matters most they are too wide (of 5 runs up to 1.5
+times, never too narrow by it); where nothing but the seeds differs, 5 of them are few and the 95 % interval
+covers 85 % (``test_statistics`` measures both). A bootstrap cannot say how rare a thing is that was never
+seen, or always: that bound is ``unseen``.
 """
 
 from functools import lru_cache
@@ -22,7 +25,8 @@ RESAMPLES = 2000
 
 
 def iqm(values: Any) -> float:
-    """The inter-quartile mean: the mean of the middle half. A value at its edge counts with the part that is inside.
+    """The inter-quartile mean: the mean of the middle half. A value at its edge counts with the part that is
+    inside.
 
     Parameters
     ----------
@@ -54,7 +58,8 @@ def _middle_mean(values, weights):
 
 @lru_cache(maxsize=16)
 def _drawn(size, draws, n, seed):
-    """How often each of ``size`` things comes when ``draws`` are drawn with replacement: (n, size), n times over."""
+    """How often each of ``size`` things comes when ``draws`` are drawn with replacement: (n, size), n times
+    over."""
     picks = np.random.default_rng(seed).integers(size, size=(n, draws)) + size * np.arange(n)[:, None]
     return np.bincount(picks.ravel(), minlength=n * size).reshape(n, size).astype(np.float64)
 
@@ -62,8 +67,8 @@ def _drawn(size, draws, n, seed):
 class Resamples:
     """Bootstrap samples of matrices (runs, visits).
 
-    Two agents with the same number of visits have the same visits in each sample, so that their figures can be paired. With different
-    seeds their runs are drawn independently.
+    Two agents with the same number of visits have the same visits in each sample, so that their figures can
+    be paired. With different seeds their runs are drawn independently.
 
     Parameters
     ----------
@@ -136,8 +141,9 @@ class Resamples:
         values, which = np.unique(scores, return_inverse=True)
         which = which.reshape(scores.shape)
         weights = sum(
-            self._runs[:, r, None] * (self._visits @ np.eye(len(values))[which[r]]) for r in range(len(scores))
-        )  # fmt: skip
+            self._runs[:, r, None] * (self._visits @ np.eye(len(values))[which[r]])
+            for r in range(len(scores))
+        )
         return _middle_mean(values, weights)
 
 
@@ -154,7 +160,8 @@ def interval(samples: Any, level: float = 0.95) -> tuple[float, float]:
     Returns
     -------
     low, high : float
-        The interval. NaN if a sample is NaN, or all samples are equal: no century in 500 visits does not prove that there are none.
+        The interval. NaN if a sample is NaN, or all samples are equal: no century in 500 visits does not
+        prove that there are none.
 
     Examples
     --------
@@ -170,8 +177,9 @@ def interval(samples: Any, level: float = 0.95) -> tuple[float, float]:
 def unseen(n: float, level: float = 0.95) -> float:
     """Upper bound of a share of which ``n`` independent trials showed no case.
 
-    The bound is exact and one-sided, about 3 / n at 95 % [Clopper & Pearson 1934]. Runs on the same tables with the same noise samples
-    count once. The bound then holds for other tables and noise samples, not for other training seeds.
+    The bound is exact and one-sided, about 3 / n at 95 % [Clopper & Pearson 1934]. Runs on the same tables
+    with the same noise samples count once. The bound then holds for other tables and noise samples, not for
+    other training seeds.
 
     Parameters
     ----------

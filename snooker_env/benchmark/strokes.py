@@ -1,4 +1,5 @@
-"""How do the strokes of episodes stand in a result's file? The first bytes of all numbers, then all second bytes and so on, packed."""
+"""How do the strokes of episodes stand in a result's file? The first bytes of all numbers, then all second
+bytes and so on, packed."""
 
 import base64
 import hashlib
@@ -11,7 +12,8 @@ from .playing import Kept
 
 
 def packed(strokes: Kept) -> dict[str, str]:
-    """The field ``strokes`` of a file: float32, little-endian, compressed by zlib, in base64, with a digest."""
+    """The field ``strokes`` of a file: float32, little-endian, compressed by zlib, in base64, with a
+    digest."""
     rows = [np.ascontiguousarray(one, "<f4") for one in strokes if len(one)]
     raw = np.concatenate(rows).view(np.uint8).T.tobytes() if rows else b""
     return {
@@ -21,7 +23,8 @@ def packed(strokes: Kept) -> dict[str, str]:
 
 
 def unpacked(field: dict[str, str], lengths: list[int], size: int) -> Kept:
-    """The strokes of episodes with so many each, actions (n, ``size``); ValueError if they are damaged or no actions."""
+    """The strokes of episodes with so many each, actions (n, ``size``); ValueError if they are damaged or no
+    actions."""
     n, width = sum(lengths), 4 * size
     try:
         packing = zlib.decompressobj()
@@ -31,7 +34,9 @@ def unpacked(field: dict[str, str], lengths: list[int], size: int) -> Kept:
         raise refuse_what("strokes.data", much, f"must be zlib in base64 ({error})") from None
     if len(raw) != n * width or not packing.eof or packing.unused_data:
         much = f"{len(raw):,} bytes" if packing.eof else f"more than {len(raw) - 1:,} bytes, or cut off"
-        raise refuse_what("strokes.data", much, f"must be {n * width:,} bytes, {width} for each of {n:,} strokes")
+        raise refuse_what(
+            "strokes.data", much, f"must be {n * width:,} bytes, {width} for each of {n:,} strokes"
+        )
     digest = hashlib.sha256(raw).hexdigest()
     if digest != field["sha256"]:
         raise refuse("strokes.sha256", field["sha256"], f"must be {digest}, the digest of the strokes")

@@ -1,7 +1,9 @@
-"""What are the tasks of the benchmark? Ids with a version, the options that are frozen, and how an agent is judged on each.
+"""What are the tasks of the benchmark? Ids with a version, the options that are frozen, and how an agent is
+judged on each.
 
-A task freezes what decides its results: how tables are dealt, execution noise, physics, table, fidelity, reward, rules and opponent. What
-only says how an agent sees and acts stays free: ``FREE``. docs/benchmark.md holds the rules.
+A task freezes what decides its results: how tables are dealt, execution noise, physics, table, fidelity,
+reward, rules and opponent. What only says how an agent sees and acts stays free: ``FREE``. docs/benchmark.md
+holds the rules.
 """
 
 from collections.abc import Mapping
@@ -97,10 +99,14 @@ class Task:
         frees = ", ".join(FREE)
         for name in (name for name in free if name not in FREE):
             if name == "options":
-                allowed = f"must be left out: {self.id} makes its own; give the free options themselves ({frees})"
+                allowed = (
+                    f"must be left out: {self.id} makes its own; give the free options themselves ({frees})"
+                )
                 raise refuse_what("options", f"a {type(free[name]).__name__}", allowed)
             if name not in _USUAL:
-                raise TypeError(f"got an unexpected keyword argument {name!r}; the free options of {self.id} are {frees}")
+                raise TypeError(
+                    f"got an unexpected keyword argument {name!r}; the free options of {self.id} are {frees}"
+                )
             why = f"{self.id} freezes it at {self.frozen[name]!r}; only Snooker-v0 lets you choose it"
             raise refuse(name, free[name], f"must be left out: {why}")
         return Options(**{**self.changes, **free})
@@ -127,7 +133,8 @@ class Task:
 
     @property
     def counts(self) -> bool:
-        """Whether the score of an episode is a number of points; else it is 0 or 1, and the mean is a share."""
+        """Whether the score of an episode is a number of points; else it is 0 or 1, and the mean is a
+        share."""
         return self.score == "points"
 
     @property
@@ -136,7 +143,8 @@ class Task:
         return self.changes.get("task") == "frame"
 
     def seeds(self, n: int) -> list[int]:
-        """The seeds of the first judged tables, by ``tables_of``; of frames, which all begin with the same rack, those of the errors.
+        """The seeds of the first judged tables, by ``tables_of``; of frames, which all begin with the same
+        rack, those of the errors.
 
         Parameters
         ----------
@@ -154,7 +162,9 @@ class Task:
             If ``n`` is out of range, or the layout has fewer tables.
         """
         integer("episodes", n, 1, 2**20)
-        return list(range(HELD_OUT_SEED, HELD_OUT_SEED + n)) if self.frame else tables_of(self.judged_layout, n)
+        return (
+            list(range(HELD_OUT_SEED, HELD_OUT_SEED + n)) if self.frame else tables_of(self.judged_layout, n)
+        )
 
     @property
     def most(self) -> int:
@@ -254,7 +264,8 @@ def _tables_of(layout: str, n: int) -> tuple[int, ...]:
 
 
 def tables_of(layout: str, visits: int) -> list[int]:
-    """Seeds of different tables for judging: the first from ``HELD_OUT_SEED`` whose tables differ from all before and their mirror images.
+    """Seeds of different tables for judging: the first from ``HELD_OUT_SEED`` whose tables differ from all
+    before and their mirror images.
 
     Parameters
     ----------

@@ -1,11 +1,15 @@
-"""How do recorders get films of strokes? They request one picture a step, and receive all pictures of the motion, one by one.
+"""How do recorders get films of strokes? They request one picture a step, and receive all pictures of the
+motion, one by one.
 
-``gymnasium.wrappers.RecordVideo``, ``gymnasium.wrappers.vector.RecordVideo`` and Stable-Baselines3's ``VecVideoRecorder`` call ``render()``
-once after each step, in a method named ``_capture_frame``, and append the result to their film. A step here is a whole shot, so a visit
-would become a film of a fifth of a second, and none of the recorders accepts a list of pictures. So when ``render()`` is called by such a
-method, it calls that method back once for each picture of the motion. The recorder's own call then returns the last picture.
+``gymnasium.wrappers.RecordVideo``, ``gymnasium.wrappers.vector.RecordVideo`` and Stable-Baselines3's
+``VecVideoRecorder`` call ``render()`` once after each step, in a method named ``_capture_frame``, and append
+the result to their film. A step here is a whole shot, so a visit would become a film of a fifth of a second,
+and none of the recorders accepts a list of pictures. So when ``render()`` is called by such a method, it
+calls that method back once for each picture of the motion. The recorder's own call then returns the last
+picture.
 
-Several tables of ``SyncVectorEnv`` or ``DummyVecEnv`` are filmed one after the other; those of ``SnookerVectorEnv`` together.
+Several tables of ``SyncVectorEnv`` or ``DummyVecEnv`` are filmed one after the other; those of
+``SnookerVectorEnv`` together.
 """
 
 import sys
@@ -16,7 +20,8 @@ _CAPTURE = "_capture_frame"
 
 
 def recorder_asking() -> Any:
-    """The recorder that is requesting a picture; None if there is none, or if it is receiving a film already."""
+    """The recorder that is requesting a picture; None if there is none, or if it is receiving a film
+    already."""
     found, frame = [], sys._getframe(1)
     while frame is not None:
         if frame.f_code.co_name == _CAPTURE and hasattr(frame.f_locals.get("self"), "recorded_frames"):
@@ -32,7 +37,8 @@ class PictureSource:
         self._current: Any = None
 
     def picture(self, motion: Callable[[], Iterator[Any]], still: Callable[[], Any]) -> Any:
-        """The result of ``render()``; ``motion()`` yields the pictures of the last strokes, ``still()`` returns the current one."""
+        """The result of ``render()``; ``motion()`` yields the pictures of the last strokes, ``still()``
+        returns the current one."""
         if self._current is not None:
             return self._current
         recorder = recorder_asking()

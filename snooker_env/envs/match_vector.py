@@ -1,4 +1,5 @@
-"""How do two players meet on thousands of tables, both stepped by the caller? ``match_env`` on many tables, as kernels."""
+"""How do two players meet on thousands of tables, both stepped by the caller? ``match_env`` on many tables,
+as kernels."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -22,26 +23,31 @@ from .vector import SnookerVectorEnv
 
 
 class MatchVectorEnv(SnookerVectorEnv):
-    """Many frames or matches between player 0 and player 1: ``match_env``, bit for bit, on n tables, for leagues and self-play.
+    """Many frames or matches between player 0 and player 1: ``match_env``, bit for bit, on n tables, for
+    leagues and self-play.
 
-    A step is one turn on each table, of the player whose turn it is there: ``strikers``. Observations are those of the strikers, from their
-    own side; infos have the keys of ``SnookerEnv`` as player 0 sees them, with the last stroke of either player, and "striker". Rewards are
-    float64 (n, 2), one for each player; they sum to zero.
+    A step is one turn on each table, of the player whose turn it is there: ``strikers``. Observations are
+    those of the strikers, from their own side; infos have the keys of ``SnookerEnv`` as player 0 sees them,
+    with the last stroke of either player, and "striker". Rewards are float64 (n, 2), one for each player;
+    they sum to zero.
 
-    A table whose frame or match has ended stands still until ``reset(options={"reset_mask": ...})``: its actions are ignored, its rewards
-    are 0, and its flags stay.
+    A table whose frame or match has ended stands still until ``reset(options={"reset_mask": ...})``: its
+    actions are ignored, its rewards are 0, and its flags stay.
 
     Parameters
     ----------
     num_envs : int, optional
         Number of tables, in [1, 2**24]; default 1.
     options : Options, optional
-        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the keywords.
+        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the
+        keywords.
     seats : (dict, dict), optional
-        What differs for each player: options of its actions, and "noise", its execution errors. Default None: nothing.
+        What differs for each player: options of its actions, and "noise", its execution errors. Default None:
+        nothing.
     **given
-        ``threads``, ``render_mode`` and ``render_size`` of ``SnookerVectorEnv``, and the keywords of ``Options`` in place of
-        ``options``. As in ``match_env`` box actions hold placement and decision by default, and with ``frames`` the task is "match".
+        ``threads``, ``render_mode`` and ``render_size`` of ``SnookerVectorEnv``, and the keywords of
+        ``Options`` in place of ``options``. As in ``match_env`` box actions hold placement and decision by
+        default, and with ``frames`` the task is "match".
 
     Raises
     ------
@@ -74,7 +80,11 @@ class MatchVectorEnv(SnookerVectorEnv):
     ):
         for name in ("autoreset_mode", "max_episode_steps"):
             if name in given:
-                raise refuse(name, given[name], "must be left out: tables whose match has ended stand still until they are reset")
+                raise refuse(
+                    name,
+                    given[name],
+                    "must be left out: tables whose match has ended stand still until they are reset",
+                )
         self._asked = seats
         super().__init__(num_envs, options, autoreset_mode=AutoresetMode.DISABLED, **given)
         one, other = (seat.actions.space for seat in self.tables.seats)
@@ -91,10 +101,13 @@ class MatchVectorEnv(SnookerVectorEnv):
 
     @property
     def strikers(self) -> Ints:
-        """Whose turn it is on each table: int64 (num_envs,), 0 or 1; of a frame that has ended, whose turn was the last."""
+        """Whose turn it is on each table: int64 (num_envs,), 0 or 1; of a frame that has ended, whose turn
+        was the last."""
         return self.tables.game[:, STRIKER].copy()
 
-    def reset(self, *, seed: Any = None, options: Any = None, out: Any = None) -> tuple[Observation, dict[str, Any]]:
+    def reset(
+        self, *, seed: Any = None, options: Any = None, out: Any = None
+    ) -> tuple[Observation, dict[str, Any]]:
         """Begin new frames or matches on all tables, or on some.
 
         Parameters
@@ -125,14 +138,16 @@ class MatchVectorEnv(SnookerVectorEnv):
         observations, infos = super().reset(seed=seed, options=options)
         return observations, infos | {"striker": self.strikers}
 
-    def step(self, actions: Any, *, out: Any = None) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
+    def step(
+        self, actions: Any, *, out: Any = None
+    ) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
         """Play one turn on each table.
 
         Parameters
         ----------
         actions : array_like or (array_like, array_like)
-            float (num_envs, k) within [-1, 1], or int (num_envs,): of the strikers. With seats whose actions differ, two such
-            arrays, one for each player, of which the striker's rows are read.
+            float (num_envs, k) within [-1, 1], or int (num_envs,): of the strikers. With seats whose actions
+            differ, two such arrays, one for each player, of which the striker's rows are read.
         out : None
             Not available.
 
@@ -160,9 +175,15 @@ class MatchVectorEnv(SnookerVectorEnv):
             raise refuse("out", type(out).__name__, "must be None: observations are of either player")
         tables = self.tables
         if not self._alike and not (isinstance(actions, tuple | list) and len(actions) == 2):
-            raise refuse_what("actions", f"a {type(actions).__name__}", "must be two arrays, one for each player: their seats differ")
+            raise refuse_what(
+                "actions",
+                f"a {type(actions).__name__}",
+                "must be two arrays, one for each player: their seats differ",
+            )
         each = [actions, actions] if self._alike else actions
-        checked = [seat.actions.check_many(a, self.num_envs) for seat, a in zip(tables.seats, each, strict=True)]
+        checked = [
+            seat.actions.check_many(a, self.num_envs) for seat, a in zip(tables.seats, each, strict=True)
+        ]
         if not self._begun.all():
             raise gymnasium.error.ResetNeeded("call reset() before step()")
         written = tables.output()
@@ -172,7 +193,9 @@ class MatchVectorEnv(SnookerVectorEnv):
         except BaseException:
             self._begun[:] = False  # only some tables have played
             raise
-        infos = tables.infos(written.reals, written.counts, np.ones(self.num_envs, np.bool_)) | {"striker": self.strikers}
+        infos = tables.infos(written.reals, written.counts, np.ones(self.num_envs, np.bool_)) | {
+            "striker": self.strikers
+        }
         rewards = np.stack([written.rewards, -written.rewards], axis=1) + 0.0  # no negative zero
         return self._shaped(written, None), rewards, written.terminated, written.truncated, infos
 
@@ -216,7 +239,9 @@ class MatchVectorEnv(SnookerVectorEnv):
             With other actions.
         """
         if not self._alike or not isinstance(self.tables.seats[0].actions, Choices):
-            raise refuse("action", self.options.action, 'must be "discrete" for both players: a Box has no masks')
+            raise refuse(
+                "action", self.options.action, 'must be "discrete" for both players: a Box has no masks'
+            )
         return self.tables.action_masks()
 
     def _shaped(self, written: Any, out: Any) -> Any:

@@ -1,4 +1,5 @@
-"""What does an environment of one table show of it, and how is it saved? Balls, ball on, visit or frame, options, and states."""
+"""What does an environment of one table show of it, and how is it saved? Balls, ball on, visit or frame,
+options, and states."""
 
 from typing import Any
 
@@ -25,7 +26,8 @@ class ShowsBalls:
 
     @property
     def positions(self) -> Floats:
-        """Centres of the balls [m], float64 (22, 2); a copy. Row 0 is the cue ball, 1 to 15 the reds, 16 to 21 yellow to black."""
+        """Centres of the balls [m], float64 (22, 2); a copy. Row 0 is the cue ball, 1 to 15 the reds, 16 to
+        21 yellow to black."""
         return self.tables.positions[0].copy()
 
     @property
@@ -41,9 +43,12 @@ class TakesTurns:
 
     @property
     def agent_selection(self) -> str:
-        """The agent whose turn it is. Before ``reset`` there is none: then AttributeError, as PettingZoo's own environments have it."""
+        """The agent whose turn it is. Before ``reset`` there is none: then AttributeError, as PettingZoo's
+        own environments have it."""
         if self._selected is None:
-            raise AttributeError("agent_selection cannot be read before reset(): call reset(), then observe(), last() or action_mask()")
+            raise AttributeError(
+                "agent_selection cannot be read before reset(): call reset(), then observe(), last() or action_mask()"
+            )
         return self._selected
 
     @agent_selection.setter
@@ -77,7 +82,8 @@ class OneTable(ShowsBalls):
 
     @property
     def over(self) -> bool:
-        """Whether there is no stroke to play, a bool: the visit or frame has ended, was stopped by the referee, or has not begun."""
+        """Whether there is no stroke to play, a bool: the visit or frame has ended, was stopped by the
+        referee, or has not begun."""
         return bool(self.tables.ended()[0])
 
     @property
@@ -105,17 +111,20 @@ class OneTable(ShowsBalls):
         """The execution noise, a ``Noise``."""
         return self.options.rules.noise
 
-    # states ----------------------------------------------------------------------------------------------------------------
+    # states
+    # ----------------------------------------------------------------------------------------------------------------
 
     def get_state(self) -> dict[str, Any]:
-        """Return the whole state between two shots: table, game and random stream. ``set_state`` restores it exactly.
+        """Return the whole state between two shots: table, game and random stream. ``set_state`` restores it
+        exactly.
 
         Returns
         -------
         dict
-            JSON types. In a visit: "positions" (22, 2) [m], "on_table" (22,), "ball_on", "in_hand", "points", "over", "stream", "rng". In a
-            frame: "positions", "on_table", "frame" (``Frame.to_dict``), "strokes", "unpaid", "due", "stream", "rng"; in a match also
-            "frames", "first_break" and "best_of".
+            JSON types. In a visit: "positions" (22, 2) [m], "on_table" (22,), "ball_on", "in_hand", "points",
+            "over", "stream", "rng". In a frame: "positions", "on_table", "frame" (``Frame.to_dict``),
+            "strokes", "unpaid", "due", "stream", "rng"; in a match also "frames", "first_break" and
+            "best_of".
 
         Examples
         --------
@@ -154,5 +163,6 @@ class OneTable(ShowsBalls):
         """Begin from there; the random stream of a state is taken over unless there is a seed."""
         rng = start.take(self.tables, 0)
         if rng is not None and seed is None:
-            self.np_random.bit_generator.state, self._np_random_seed = rng, -1  # Gymnasium's number for "not from a seed"
+            # Gymnasium's number for "not from a seed"
+            self.np_random.bit_generator.state, self._np_random_seed = rng, -1
             self._seeded = True

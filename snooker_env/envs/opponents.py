@@ -1,4 +1,5 @@
-"""Who sits opposite the agent of a frame? What the option ``opponent`` names, or an object, bound once to the game."""
+"""Who sits opposite the agent of a frame? What the option ``opponent`` names, or an object, bound once to the
+game."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -44,7 +45,8 @@ def opponent_of(opponent: Any, options: Options) -> Opponent:
 
 
 def game_of(options: Options | None, keywords: Mapping[str, Any]) -> tuple[Options, Any]:
-    """The ``Options`` of an environment, as ``options_of``, and who was passed as an object beside them, else None."""
+    """The ``Options`` of an environment, as ``options_of``, and who was passed as an object beside them, else
+    None."""
     opponent = keywords.get("opponent")
     if opponent is None or isinstance(opponent, str | Path):
         return options_of(options, keywords), None
@@ -55,10 +57,16 @@ def game_of(options: Options | None, keywords: Mapping[str, Any]) -> tuple[Optio
 
 
 def match_options(options: Options | None, keywords: Mapping[str, Any]) -> Options:
-    """The ``Options`` of an environment of two players: box actions hold placement and decision, and with ``frames`` it is a match."""
+    """The ``Options`` of an environment of two players: box actions hold placement and decision, and with
+    ``frames`` it is a match."""
     if options is None:
         box = keywords.get("action", "box") == "box"
-        keywords = {"task": "match" if "frames" in keywords else "frame", "placement": box, "decision": box, **keywords}
+        keywords = {
+            "task": "match" if "frames" in keywords else "frame",
+            "placement": box,
+            "decision": box,
+            **keywords,
+        }
     options = options_of(options, keywords)
     if options.task == "visit" or options.opponent != "none" or options.trust:
         what = f"task={options.task!r}, opponent={options.opponent!r}, trust={options.trust!r}"
@@ -71,13 +79,21 @@ def two_seats(options: Options, seats: Any) -> list[Seat]:
     """The seats of two players; ``seats``: None, or what differs from ``options`` for each, two dicts."""
     if seats is None:
         return [Seat.of(options.rules)] * 2
-    if not isinstance(seats, list | tuple) or len(seats) != 2 or not all(isinstance(one, Mapping) for one in seats):
+    if (
+        not isinstance(seats, list | tuple)
+        or len(seats) != 2
+        or not all(isinstance(one, Mapping) for one in seats)
+    ):
         raise refuse("seats", seats, "must be None, or two dicts of options, one for each player")
     allowed, out = (*Options.group("action"), *SAYS, "noise"), []
     for k, changes in enumerate(seats):
         for name in changes:
             choice(f"key of seats[{k}]", name, allowed)
-        plain = {"elevation": False, "placement": False, "decision": False} if changes.get("action") == "discrete" else {}
+        plain = (
+            {"elevation": False, "placement": False, "decision": False}
+            if changes.get("action") == "discrete"
+            else {}
+        )
         out.append(Seat.of(options.but(**plain | dict(changes)).rules))
     return out
 
@@ -88,8 +104,12 @@ def tables_of(options: Options, opponent: Any, n: int, limit: int = NEVER) -> Ta
     if options.task == "visit":
         return kind(options.rules, n, limit=limit)
     if options.opponent == OBJECT and opponent is None:
-        raise refuse("opponent", OBJECT, "must come with the object: pass it as opponent=... beside the options")
+        raise refuse(
+            "opponent", OBJECT, "must come with the object: pass it as opponent=... beside the options"
+        )
     seats = [Seat.of(options.rules)]
     if options.opponent != "none":
-        seats.append(Seat.of(options.rules, opponent_of(options.opponent if opponent is None else opponent, options)))
+        seats.append(
+            Seat.of(options.rules, opponent_of(options.opponent if opponent is None else opponent, options))
+        )
     return kind(options.rules, n, limit=limit, seats=seats)

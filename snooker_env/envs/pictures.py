@@ -1,4 +1,5 @@
-"""How does an environment show itself? A picture for "rgb_array", text for "ansi", a window with the moving shot for "human"."""
+"""How does an environment show itself? A picture for "rgb_array", text for "ansi", a window with the moving
+shot for "human"."""
 
 from collections.abc import Iterator, Sequence
 from itertools import chain, zip_longest
@@ -27,7 +28,8 @@ Picture: TypeAlias = NDArray[np.uint8] | str | None
 
 
 class Pictures:
-    """The pictures of one environment on a ``Table``. A window belongs to one process; a copy of the environment has none.
+    """The pictures of one environment on a ``Table``. A window belongs to one process; a copy of the
+    environment has none.
 
     ``size``: width and height [pixels]; ``players``: their names on the score bar.
     """
@@ -35,7 +37,9 @@ class Pictures:
     table: Table
     mode: str | None
 
-    def __init__(self, table: Table, mode: str | None, size: Sequence[int] = SIZE, players: tuple[str, ...] = ()):
+    def __init__(
+        self, table: Table, mode: str | None, size: Sequence[int] = SIZE, players: tuple[str, ...] = ()
+    ):
         self.table, self.mode = table, mode
         self.players: tuple[str, ...] = players
         self.size: tuple[int, int] = checked_size(size)
@@ -44,13 +48,19 @@ class Pictures:
     def __getstate__(self) -> dict[str, Any]:
         return self.__dict__ | {"_window": None, "_source": PictureSource()}
 
-    def render(self, tables: Tables, k: int, history: list[Played], recent: list[tuple[list[Played], int]]) -> Picture:
-        """Table k with the paths of the last stroke of its ``history``: uint8 (H, W, 3) for "rgb_array", str for "ansi", None otherwise.
+    def render(
+        self, tables: Tables, k: int, history: list[Played], recent: list[tuple[list[Played], int]]
+    ) -> Picture:
+        """Table k with the paths of the last stroke of its ``history``: uint8 (H, W, 3) for "rgb_array", str
+        for "ansi", None otherwise.
 
-        A recorder first gets the motion of the ``recent`` strokes, see ``films``: for each episode, its last strokes and their number.
+        A recorder first gets the motion of the ``recent`` strokes, see ``films``: for each episode, its last
+        strokes and their number.
         """
         if self.mode is None:
-            gymnasium.logger.warn('render() without render_mode; make the environment with render_mode="rgb_array", "ansi" or "human"')
+            gymnasium.logger.warn(
+                'render() without render_mode; make the environment with render_mode="rgb_array", "ansi" or "human"'
+            )
         if self.mode == "rgb_array":
             motion = lambda: chain.from_iterable(self._motion(*some) for some in recent)  # noqa: E731
             return self._source.picture(motion, lambda: self._still(tables, k, history))
@@ -61,7 +71,8 @@ class Pictures:
         return None
 
     def render_all(self, tables: Tables, recent: list[list[Played]]) -> tuple[Picture, ...]:
-        """``render`` for many tables at once. They move at the same time, and all wait for the longest motion."""
+        """``render`` for many tables at once. They move at the same time, and all wait for the longest
+        motion."""
         if self.mode != "rgb_array":
             return tuple(self.render(tables, k, strokes, []) for k, strokes in enumerate(recent))
 
@@ -79,7 +90,8 @@ class Pictures:
     def require_display(self) -> None:
         """Raise RuntimeError if a stroke is to be shown in a window and there is no display.
 
-        A reset does without: Gymnasium's ``check_env`` makes and resets an environment of each mode, on servers too.
+        A reset does without: Gymnasium's ``check_env`` makes and resets an environment of each mode, on
+        servers too.
         """
         if self.mode == "human":
             from ..render.window import require_display
@@ -87,7 +99,8 @@ class Pictures:
             require_display()
 
     def show(self, tables: Tables, history: list[Played], *, played: bool = False) -> None:
-        """In a window show the table; with ``played``, first show the last stroke in motion. What a reset shows needs no display."""
+        """In a window show the table; with ``played``, first show the last stroke in motion. What a reset
+        shows needs no display."""
         if self.mode != "human":
             return
         from ..render.window import Window, display_missing
@@ -138,16 +151,25 @@ class Pictures:
 
         paths = ghosts = last = None
         turns = {0: np.array([1.0, 0.0, 0.0, 0.0])}  # spots as in films
-        if history and np.array_equal(history[-1].positions, tables.positions[k]):  # otherwise it did not lead to this table
+        # otherwise it did not lead to this table
+        if history and np.array_equal(history[-1].positions, tables.positions[k]):
             shot = history[-1].shot
             paths, ghosts = ball_paths(shot, trail_of(shot)), {0: contacts(shot)}
             last = bars(history, self.players)[-1][1]
-            if shot.on_table[0] and np.array_equal(shot.positions[0], tables.positions[k][0]):  # as the film of the stroke left it
+            # as the film of the stroke left it
+            if shot.on_table[0] and np.array_equal(shot.positions[0], tables.positions[k][0]):
                 turns = {0: Turning(shot, 0).at(shot.duration)}
         bar = standing_bar(tables, k, self.players, last)
         return scene(
-            self.table, tables.positions[k], tables.on_table[k], paths=paths, ghosts=ghosts, turns=turns, text=tables.text(k), bar=bar
-        )  # fmt: skip
+            self.table,
+            tables.positions[k],
+            tables.on_table[k],
+            paths=paths,
+            ghosts=ghosts,
+            turns=turns,
+            text=tables.text(k),
+            bar=bar,
+        )
 
 
 def trail_of(shot: Any) -> tuple[int, ...]:

@@ -8,7 +8,8 @@ from ..tasks.tables import Tables
 
 
 class Record:
-    """The strokes of one table. ``full``: all of them since the reset, with their paths; otherwise only the agent's last ``Shot``."""
+    """The strokes of one table. ``full``: all of them since the reset, with their paths; otherwise only the
+    agent's last ``Shot``."""
 
     buffers: ShotBuffers
     """Work space in which the strokes are played."""
@@ -37,7 +38,8 @@ class Record:
         self._before, self._ended, self._seen = len(self.strokes), ([], 0), False
 
     def recent(self) -> list[tuple[list[Played], int]]:
-        """Episodes, and how many of their last strokes belong to the last step or reset; called when they are rendered."""
+        """Episodes, and how many of their last strokes belong to the last step or reset; called when they are
+        rendered."""
         self._seen = True
         return [self._ended, (self.strokes, len(self.strokes) - self._before)]
 
@@ -59,19 +61,22 @@ class HasHistory:
 
     @property
     def last_shot(self) -> Shot | None:
-        """The agent's last ``Shot``; if a history is kept, that of either player, with its path. None before the first."""
+        """The agent's last ``Shot``; if a history is kept, that of either player, with its path. None before
+        the first."""
         return self._record.last_shot
 
     @property
     def history(self) -> list[Played]:
-        """The strokes of both players since the last reset, a list of ``Played``; empty unless ``keep_history``."""
+        """The strokes of both players since the last reset, a list of ``Played``; empty unless
+        ``keep_history``."""
         return list(self._record.strokes)
 
     @property
     def keep_history(self) -> bool:
         """Whether ``history`` is kept, with the path of every stroke, a bool.
 
-        It is always kept with a render mode, otherwise from when this is set to True. Setting it to False forgets the strokes so far.
+        It is always kept with a render mode, otherwise from when this is set to True. Setting it to False
+        forgets the strokes so far.
         """
         return self._record.full
 

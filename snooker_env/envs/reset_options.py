@@ -1,4 +1,5 @@
-"""Which tables does a reset begin anew, from where, and with which seeds? Checks the arguments of every environment's ``reset``."""
+"""Which tables does a reset begin anew, from where, and with which seeds? Checks the arguments of every
+environment's ``reset``."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,7 +15,10 @@ from ..game.frame_columns import BALL_ON, POINTS
 from ..tasks.options import Options
 from ..tasks.tables import Tables
 
-ONE, MANY = ("state", "position", "breaker"), ("reset_mask", "state", "states", "position", "positions", "breaker")
+ONE, MANY = (
+    ("state", "position", "breaker"),
+    ("reset_mask", "state", "states", "position", "positions", "breaker"),
+)
 STARTS = ("state", "states", "position", "positions")
 """Allowed keys of the reset options for one table and for many."""
 
@@ -42,7 +46,8 @@ def mask_of(options: dict[str, Any], n: int) -> Bools:
 
 @dataclass(frozen=True)
 class Start:
-    """The start of an episode that is not dealt: a valid state of a table, or the arrays of a valid position."""
+    """The start of an episode that is not dealt: a valid state of a table, or the arrays of a valid
+    position."""
 
     state: Any = None
     """``states.State`` or ``states.FrameState``."""
@@ -50,7 +55,8 @@ class Start:
     """``planning.Position.arrays``."""
 
     def take(self, tables: Tables, k: int) -> dict[str, Any] | None:
-        """Put it on table k; returns the state of its NumPy generator, which every state has and no position."""
+        """Put it on table k; returns the state of its NumPy generator, which every state has and no
+        position."""
         if self.arrays is not None:
             tables.set_position(k, *self.arrays)
             return None
@@ -63,7 +69,8 @@ Check = Callable[[Any], Any]
 
 
 def given_of(options: Any, known: tuple[str, ...]) -> dict[str, Any]:
-    """The options of a reset as a dict; ValueError unless each is ``known`` and at most one of them defines the start."""
+    """The options of a reset as a dict; ValueError unless each is ``known`` and at most one of them defines
+    the start."""
     if options is None:
         return {}
     if not isinstance(options, dict):
@@ -74,19 +81,28 @@ def given_of(options: Any, known: tuple[str, ...]) -> dict[str, Any]:
     return options
 
 
-def breakers_of(options: dict[str, Any], n: int, game: Options, *, two_players: bool = False) -> dict[str, Ints]:
-    """Who breaks on each of n tables instead of the draw, as the keyword ``breakers`` of ``Frames.reset``; empty without "breaker"."""
+def breakers_of(
+    options: dict[str, Any], n: int, game: Options, *, two_players: bool = False
+) -> dict[str, Ints]:
+    """Who breaks on each of n tables instead of the draw, as the keyword ``breakers`` of ``Frames.reset``;
+    empty without "breaker"."""
     if "breaker" not in options:
         return {}
     given, field = options["breaker"], 'options["breaker"]'
     for start in _starts(options):
-        raise refuse(field, given, f'must be left out with "{start}": it says who breaks where balls are dealt')
+        raise refuse(
+            field, given, f'must be left out with "{start}": it says who breaks where balls are dealt'
+        )
     if game.task == "visit" or (game.opponent == "none" and not two_players):
         raise refuse(field, given, "must be left out: there is no opponent, and nothing is drawn")
     if isinstance(given, list | tuple | np.ndarray) and np.ndim(given) > 0:
         if len(given) != n:
             raise refuse_what(field, f"{len(given)} numbers", f"must be 0, 1, or {n} of them")
-        return {"breakers": np.array([integer(f"{field}[{k}]", one, 0, 1) for k, one in enumerate(given)], np.int64)}
+        return {
+            "breakers": np.array(
+                [integer(f"{field}[{k}]", one, 0, 1) for k, one in enumerate(given)], np.int64
+            )
+        }
     return {"breakers": np.full(n, integer(field, given, 0, 1), np.int64)}
 
 
@@ -119,20 +135,28 @@ def starts_of(options: dict[str, Any], n: int, tables: Tables, check: Check) -> 
         return [Start(state=check(state)) for state in _list_of("states", options, n)]
     if "positions" in options:
         positions = enumerate(_list_of("positions", options, n))
-        return [Start(arrays=_position(f'options["positions"][{k}]', position, tables)) for k, position in positions]
+        return [
+            Start(arrays=_position(f'options["positions"][{k}]', position, tables))
+            for k, position in positions
+        ]
     return None
 
 
 def _list_of(key, options, n):
     given = options[key]
     if not isinstance(given, list | tuple) or len(given) != n:
-        found = f"{type(given).__name__} of {len(given)}" if isinstance(given, list | tuple) else type(given).__name__
+        found = (
+            f"{type(given).__name__} of {len(given)}"
+            if isinstance(given, list | tuple)
+            else type(given).__name__
+        )
         raise refuse_what(f'options["{key}"]', found, f"must be a list of {n} {key}")
     return given
 
 
 def _position(field, given, tables):
-    """The arrays of a ``Position`` or of its ``to_dict()``, validated on the table that is played on; ``field``: its name in messages."""
+    """The arrays of a ``Position`` or of its ``to_dict()``, validated on the table that is played on;
+    ``field``: its name in messages."""
     from ..planning import Position
 
     if isinstance(given, Position):
@@ -152,5 +176,9 @@ def _position(field, given, tables):
     _, on_table, game = arrays
     more = points_available(mask_of_present(on_table), int(game[BALL_ON]))
     if game[POINTS] + more > MOST_BREAK:
-        raise refuse(f"{field}.points", int(game[POINTS]), f"must be at most {MOST_BREAK - more}: the balls on the table offer {more} more")
+        raise refuse(
+            f"{field}.points",
+            int(game[POINTS]),
+            f"must be at most {MOST_BREAK - more}: the balls on the table offer {more} more",
+        )
     return arrays

@@ -1,4 +1,5 @@
-"""What is ``Snooker-v0``? The Gymnasium environment: composes action, noise, strike, engine, referee, observation and reward."""
+"""What is ``Snooker-v0``? The Gymnasium environment: composes action, noise, strike, engine, referee,
+observation and reward."""
 
 from collections.abc import Sequence
 from inspect import cleandoc
@@ -24,14 +25,15 @@ from .reset_options import ONE, breakers_of, given_of, start_of
 class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     """Shot selection in snooker: one step is one whole shot.
 
-    ## Description
-    The agent plays a visit to the table. In each step it strikes the cue ball once. The shot is simulated until all balls rest, the referee
-    judges it, colours are respotted, and the agent observes the new table. The goal is a high break: a red, then a colour, and so on,
-    finally the colours in order. The physics is an exact event-driven engine with frictional impacts (see References).
+    ## Description The agent plays a visit to the table. In each step it strikes the cue ball once. The shot
+    is simulated until all balls rest, the referee judges it, colours are respotted, and the agent observes
+    the new table. The goal is a high break: a red, then a colour, and so on, finally the colours in order.
+    The physics is an exact event-driven engine with frictional impacts (see References).
 
-    With ``task="frame"`` the agent plays a whole frame against ``opponent``, with scores, fouls and free balls. One step is one stroke of
-    the agent and all strokes of the opponent after it. The seed determines who breaks off. ``task="match"`` is the best of ``frames``
-    frames, in which they break in turn; what is said of a frame holds for it, too.
+    With ``task="frame"`` the agent plays a whole frame against ``opponent``, with scores, fouls and free
+    balls. One step is one stroke of the agent and all strokes of the opponent after it. The seed determines
+    who breaks off. ``task="match"`` is the best of ``frames`` frames, in which they break in turn; what is
+    said of a frame holds for it, too.
 
     | opponent | plays |
     |---|---|
@@ -44,8 +46,8 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | a callable | ``opponent(observation, rng) -> action``, in this environment's spaces, from its own side of the table |
     | a ``tasks.OpponentPool`` | one of several, drawn for each frame. More about all of them: docs/environment/opponents.md |
 
-    ## Action space
-    ``action="box"`` (default): ``Box(-1, 1, (4,), float32)``, or longer with the options in the last column. All components are linear.
+    ## Action space ``action="box"`` (default): ``Box(-1, 1, (4,), float32)``, or longer with the options in
+    the last column. All components are linear.
 
     | component | -1 | +1 | present with |
     |---|---|---|---|
@@ -61,25 +63,29 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | decision after a foul | the offender plays again | the balls are replaced, he plays again | ``decision=True`` |
     | declaration | concedes | claims the frame | ``concede``, ``claim``, ``lot`` |
 
-    A tip offset outside the disc of radius 0.5 R (the miscue limit) is moved to its edge. The aim is the direction in which the cue
-    ball leaves without noise: squirt is compensated. The target line is that of the widest direct pot or, without one, of what is seen
-    of a ball on, or of an escape over cushions. The place counts only when the cue ball is in hand; without it, the cue ball stands at
-    its usual place, 0.18 m beside the brown, or near it. The decision counts only in a frame when the opponent has just fouled. Between
-    -1/3 and 1/3 the agent plays, with this same action; above 1/3 it does so, too, unless a miss was called (``miss``).
+    A tip offset outside the disc of radius 0.5 R (the miscue limit) is moved to its edge. The aim is the
+    direction in which the cue ball leaves without noise: squirt is compensated. The target line is that of
+    the widest direct pot or, without one, of what is seen of a ball on, or of an escape over cushions. The
+    place counts only when the cue ball is in hand; without it, the cue ball stands at its usual place, 0.18 m
+    beside the brown, or near it. The decision counts only in a frame when the opponent has just fouled.
+    Between -1/3 and 1/3 the agent plays, with this same action; above 1/3 it does so, too, unless a miss was
+    called (``miss``).
 
-    ``action="discrete"``: ``Discrete(540)``. A choice is one of 4 pots, 9 speeds, 3 sides and 5 tops, and the aim is solved for it
-    (``snooker_env.tasks.choice_of``). ``action_masks()`` returns the available choices. ``nominate=True`` makes them 7 x 540, 540 n + the
-    choice: n = 0 nominates nothing, 1 to 6 yellow to black. ``concede``, ``claim`` and ``lot`` each add one choice at the end.
+    ``action="discrete"``: ``Discrete(540)``. A choice is one of 4 pots, 9 speeds, 3 sides and 5 tops, and the
+    aim is solved for it (``snooker_env.tasks.choice_of``). ``action_masks()`` returns the available choices.
+    ``nominate=True`` makes them 7 x 540, 540 n + the choice: n = 0 nominates nothing, 1 to 6 yellow to black.
+    ``concede``, ``claim`` and ``lot`` each add one choice at the end.
 
-    The nomination counts after a red (the range cut in six) and with a free ball (in seven: first the ball on itself); the aim and the
-    pots are then those of the ball nominated. Without ``nominate``, the colour first struck is the one nominated; so is the free ball. The
-    declaration concedes below -2/3 and claims above 2/3 (only the black left, more than 7 ahead); the winner of the lot for a re-spotted
-    black lets the other player begin below 0.
+    The nomination counts after a red (the range cut in six) and with a free ball (in seven: first the ball on
+    itself); the aim and the pots are then those of the ball nominated. Without ``nominate``, the colour first
+    struck is the one nominated; so is the free ball. The declaration concedes below -2/3 and claims above 2/3
+    (only the black left, more than 7 ahead); the winner of the lot for a re-spotted black lets the other
+    player begin below 0.
 
-    ## Observation space
-    ``observation="flat"`` (default): ``Box(-1.1, 1.1, (121,), float32)``, the 22 rows of 5 numbers of the table of balls, then the
-    11 of the state. "balls": ``Dict(balls=(22, 5), state=(11,))``, the same numbers. "masked", with ``action="discrete"``:
-    ``Dict(observations=(121,), action_mask=(540,))``, the flat ones and ``action_masks()`` as int8 (for RLlib and TorchRL).
+    ## Observation space ``observation="flat"`` (default): ``Box(-1.1, 1.1, (121,), float32)``, the 22 rows of
+    5 numbers of the table of balls, then the 11 of the state. "balls": ``Dict(balls=(22, 5), state=(11,))``,
+    the same numbers. "masked", with ``action="discrete"``: ``Dict(observations=(121,), action_mask=(540,))``,
+    the flat ones and ``action_masks()`` as int8 (for RLlib and TorchRL).
 
     | column of balls | value | entry of state | value |
     |---|---|---|---|
@@ -88,11 +94,12 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | value | points of the ball / 7 | in_hand | 1 if the cue ball is in hand |
     | ball_on | 1 if it may be struck first | break | points of the visit / 155 |
 
-    Rows: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow, green, brown, blue, pink, black. Table frame: the origin is the table's centre,
-    +x points to the yellow side and +y to the black end.
+    Rows: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow, green, brown, blue, pink, black. Table frame: the
+    origin is the table's centre, +x points to the yellow side and +y to the black end.
 
-    ``task="frame"`` appends 19 numbers to the state, so that the shapes are ``(140,)`` and ``(30,)``. With a miss rule, the layout that
-    "replace" restores follows: 66 more numbers, or "replaced" (22, 3), the x, y and on_table of each ball; 0 unless a miss was called.
+    ``task="frame"`` appends 19 numbers to the state, so that the shapes are ``(140,)`` and ``(30,)``. With a
+    miss rule, the layout that "replace" restores follows: 66 more numbers, or "replaced" (22, 3), the x, y
+    and on_table of each ball; 0 unless a miss was called.
 
     | entry | value |
     |---|---|
@@ -127,17 +134,18 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | "random:N", "snookered" | N reds at random places; no straight path to any red |
     | "pots:easy", "pots:medium", "pots:hard" | one red alone, by difficulty |
 
-    ## Episode end
-    A visit is terminated by the first stroke that pots nothing, by a foul, or by a clearance; with ``one_stroke=True``, by any stroke. It
-    is never truncated by itself (``gymnasium.make(..., max_episode_steps=N)`` does that).
+    ## Episode end A visit is terminated by the first stroke that pots nothing, by a foul, or by a clearance;
+    with ``one_stroke=True``, by any stroke. It is never truncated by itself (``gymnasium.make(...,
+    max_episode_steps=N)`` does that).
 
-    A frame is terminated by its end under the rules. It is truncated, without a winner, after the last of ``max_strokes`` strokes of both
-    players together; so is its match. A frame that ends in the opponent's opening visit is not dealt again: reset's info shows its end, and
-    the next step plays nothing and reports it.
+    A frame is terminated by its end under the rules. It is truncated, without a winner, after the last of
+    ``max_strokes`` strokes of both players together; so is its match. A frame that ends in the opponent's
+    opening visit is not dealt again: reset's info shows its end, and the next step plays nothing and reports
+    it.
 
-    ## Arguments
-    All but an opponent that is an object are JSON types, so that ``EnvSpec.to_json`` round-trips. ``Options`` describes each option.
-    ``decision=True`` and the like are another spelling of ``says=("decision",)``.
+    ## Arguments All but an opponent that is an object are JSON types, so that ``EnvSpec.to_json``
+    round-trips. ``Options`` describes each option. ``decision=True`` and the like are another spelling of
+    ``says=("decision",)``.
 
     {options}
     | options | None | an ``Options`` in place of all of the above |
@@ -157,32 +165,36 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     | ball_on | int | what was on, a ``BallOn`` |
     | events | int | number of events in the shot |
 
-    In a frame these are about the agent's own stroke, and there are more keys: ``score``, ``opponent_score``, ``clock`` (float; the last:
-    time played by a clock [s]), ``strokes`` (of both players so far), ``opponent_strokes`` (in this step), ``winner`` (-1 for none, 0 the
-    agent, 1 the opponent), ``misses``, ``failures`` (int), ``choice``, ``free_ball``, ``needs_snookers``, ``anywhere``, ``warned`` (bool).
-    They are of the frame in progress; a match adds ``frames_won``, ``opponent_frames`` and ``frame`` (from 0).
+    In a frame these are about the agent's own stroke, and there are more keys: ``score``, ``opponent_score``,
+    ``clock`` (float; the last: time played by a clock [s]), ``strokes`` (of both players so far),
+    ``opponent_strokes`` (in this step), ``winner`` (-1 for none, 0 the agent, 1 the opponent), ``misses``,
+    ``failures`` (int), ``choice``, ``free_ball``, ``needs_snookers``, ``anywhere``, ``warned`` (bool). They
+    are of the frame in progress; a match adds ``frames_won``, ``opponent_frames`` and ``frame`` (from 0).
 
-    ## States
-    ``env.unwrapped.get_state()`` returns everything between two shots as JSON types, and ``reset(options={"state": state})``
-    starts from it. A state holds the random stream: the same actions then meet the same execution errors (and the same opponent). With a
-    seed as well, table and game are those of the state, the random numbers those of the seed. An invalid state is refused; nothing changes.
+    ## States ``env.unwrapped.get_state()`` returns everything between two shots as JSON types, and
+    ``reset(options={"state": state})`` starts from it. A state holds the random stream: the same actions then
+    meet the same execution errors (and the same opponent). With a seed as well, table and game are those of
+    the state, the random numbers those of the seed. An invalid state is refused; nothing changes.
 
-    ``reset(options={"position": position})`` starts from a ``snooker_env.Position``, validated on this environment's table. Balls, ball on,
-    in hand and points are the position's; the random stream goes on, or is that of the seed. In a frame it is the agent's turn, with a
-    break of the position's points so far; both scores are 0.
+    ``reset(options={"position": position})`` starts from a ``snooker_env.Position``, validated on this
+    environment's table. Balls, ball on, in hand and points are the position's; the random stream goes on, or
+    is that of the seed. In a frame it is the agent's turn, with a break of the position's points so far; both
+    scores are 0.
 
-    ## Pictures and films
-    ``render()`` returns the table with the paths of the last stroke and a score bar. ``RecordVideo`` and
-    ``vector.RecordVideo`` of Gymnasium and ``VecVideoRecorder`` of Stable-Baselines3, in the same process, get the motion of every stroke
-    of a step, at ``render_fps`` (30 a second, in real time). They keep all pictures in memory, 6 MB each at the default size:
-    ``render_size=(960, 540)`` takes a quarter, ``sn.RecordReplay`` none. "human" raises RuntimeError at the first stroke without a display.
+    ## Pictures and films ``render()`` returns the table with the paths of the last stroke and a score bar.
+    ``RecordVideo`` and ``vector.RecordVideo`` of Gymnasium and ``VecVideoRecorder`` of Stable-Baselines3, in
+    the same process, get the motion of every stroke of a step, at ``render_fps`` (30 a second, in real time).
+    They keep all pictures in memory, 6 MB each at the default size: ``render_size=(960, 540)`` takes a
+    quarter, ``sn.RecordReplay`` none. "human" raises RuntimeError at the first stroke without a display.
 
     ## Version history
     v0: first version. Results of package versions 0.1 and 0.2 are not comparable (CHANGELOG.md).
 
     ## References
-    * S. Mathavan, M. R. Jackson, R. M. Parkin: Numerical simulations of the frictional collisions of solid balls on a rough surface (2014).
-    * S. Mathavan, M. R. Jackson, R. M. Parkin: A theoretical analysis of billiard ball dynamics under cushion impacts (2010).
+    * S. Mathavan, M. R. Jackson, R. M. Parkin: Numerical simulations of the frictional collisions of solid
+      balls on a rough surface (2014).
+    * S. Mathavan, M. R. Jackson, R. M. Parkin: A theoretical analysis of billiard ball dynamics under cushion
+      impacts (2010).
     * WPBSA: Official Rules of the Games of Snooker and English Billiards, May 2022.
 
     Parameters
@@ -217,12 +229,19 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012 - Gymnasium's own convention
 
     def __init__(
-        self, options: Options | None = None, *, render_mode: RenderMode | None = None, render_size: Sequence[int] = SIZE, **given: Any
+        self,
+        options: Options | None = None,
+        *,
+        render_mode: RenderMode | None = None,
+        render_size: Sequence[int] = SIZE,
+        **given: Any,
     ):
         game, opponent = game_of(options, given)
         self._set_up(game, tables_of(game, opponent, 1), render_mode, render_size)
 
-    def _set_up(self, game: Options, tables: Tables, render_mode: RenderMode | None, render_size: Sequence[int]) -> None:
+    def _set_up(
+        self, game: Options, tables: Tables, render_mode: RenderMode | None, render_size: Sequence[int]
+    ) -> None:
         self.options: Options = game
         self.tables: Tables = tables
         """The one table: ``tasks.tables.Tables``."""
@@ -236,15 +255,20 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         self._record, self._seeded = Record(full=render_mode is not None), False
 
     @classmethod
-    def _of(cls, game: Options, tables: Tables, render_mode: RenderMode | None, render_size: Sequence[int]) -> "SnookerEnv":
+    def _of(
+        cls, game: Options, tables: Tables, render_mode: RenderMode | None, render_size: Sequence[int]
+    ) -> "SnookerEnv":
         """An environment of a table that exists."""
         one = cls.__new__(cls)
         one._set_up(game, tables, render_mode, render_size)
         return one
 
-    # Gymnasium's interface -------------------------------------------------------------------------------------------------
+    # Gymnasium's interface
+    # -------------------------------------------------------------------------------------------------
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Observation, dict[str, Any]]:
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
         """Begin a new visit or frame.
 
         Parameters
@@ -252,7 +276,8 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         seed : int, optional
             Seed of all random numbers from now on; default None: the stream goes on.
         options : dict, optional
-            "state" or "position": starts from there, see States. "breaker": 0 or 1, the agent or the opponent breaks.
+            "state" or "position": starts from there, see States. "breaker": 0 or 1, the agent or the opponent
+            breaks.
 
         Returns
         -------
@@ -314,7 +339,8 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         gymnasium.error.ResetNeeded
             If the episode is over or has not begun.
         SimulationError
-            If a shot cannot be computed. The balls are then left as they lay, except for a cue ball that was placed.
+            If a shot cannot be computed. The balls are then left as they lay, except for a cue ball that was
+            placed.
 
         Examples
         --------
@@ -328,7 +354,9 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         a = self.options.rules.actions.check(action)
         tables = self.tables
         if tables.finished()[0]:
-            raise gymnasium.error.ResetNeeded(f"the {self.options.task} {tables.unplayable}: call reset() before step()")
+            raise gymnasium.error.ResetNeeded(
+                f"the {self.options.task} {tables.unplayable}: call reset() before step()"
+            )
         self._pictures.require_display()
         out = tables.output()
         self._record.begin_step()
@@ -337,10 +365,17 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         except BaseException:
             tables.interrupted()
             raise
-        return self._shaped(out), float(out.rewards[0]), bool(out.terminated[0]), bool(out.truncated[0]), tables.info(out, 0)
+        return (
+            self._shaped(out),
+            float(out.rewards[0]),
+            bool(out.terminated[0]),
+            bool(out.truncated[0]),
+            tables.info(out, 0),
+        )
 
     def action_masks(self) -> Bools:
-        """Return the available choices, with ``action="discrete"``; sb3-contrib's maskable algorithms call this method.
+        """Return the available choices, with ``action="discrete"``; sb3-contrib's maskable algorithms call
+        this method.
 
         Returns
         -------
@@ -365,7 +400,9 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         return self.tables.action_masks()[0]
 
     def _shaped(self, out: StepOutput) -> Observation:
-        return observations.shaped(self.options.observation, out.observations[0], out.masks[0] if len(out.masks) else None)
+        return observations.shaped(
+            self.options.observation, out.observations[0], out.masks[0] if len(out.masks) else None
+        )
 
     def _crew(self) -> Crew:
         return Crew(self._record.buffers, (self.np_random,), self._watch)
@@ -376,7 +413,8 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         self._show(played=True)
 
     def render(self) -> Picture:
-        """Return the table with the paths of the last shot. A recorder gets the motion of the strokes, see Pictures and films.
+        """Return the table with the paths of the last shot. A recorder gets the motion of the strokes, see
+        Pictures and films.
 
         Returns
         -------

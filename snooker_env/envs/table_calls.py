@@ -1,4 +1,5 @@
-"""Which attributes can be read and which methods called for each of many tables? Everything public that belongs to one table."""
+"""Which attributes can be read and which methods called for each of many tables? Everything public that
+belongs to one table."""
 
 import copy
 from typing import Any
@@ -11,10 +12,19 @@ from .snooker import SnookerEnv
 
 _ONE_TABLE = "simulate_batch, or SnookerEnv for one table"
 NOT_OF_A_TABLE = {
-    "reset": 'reset(options={"reset_mask": ...})', "step": "step", "set_state": 'reset(options={"states": ...})', "render": "render",
-    "close": "close", "last_shot": _ONE_TABLE, "history": _ONE_TABLE, "keep_history": _ONE_TABLE, "spec": "the attribute spec",
-    "unwrapped": "this environment", "get_wrapper_attr": "call", "set_wrapper_attr": "another environment",
-}  # fmt: skip
+    "reset": 'reset(options={"reset_mask": ...})',
+    "step": "step",
+    "set_state": 'reset(options={"states": ...})',
+    "render": "render",
+    "close": "close",
+    "last_shot": _ONE_TABLE,
+    "history": _ONE_TABLE,
+    "keep_history": _ONE_TABLE,
+    "spec": "the attribute spec",
+    "unwrapped": "this environment",
+    "get_wrapper_attr": "call",
+    "set_wrapper_attr": "another environment",
+}
 """Names that ``call`` refuses, and their replacements: the tables play, end and begin together."""
 
 
@@ -22,7 +32,11 @@ def check_name(name: Any) -> None:
     """Raise ValueError unless it is a public name that belongs to one table."""
     if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
         instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
-        raise refuse("name", name, "must be something public that a table has for itself" + (f"; use {instead}" if instead else ""))
+        raise refuse(
+            "name",
+            name,
+            "must be something public that a table has for itself" + (f"; use {instead}" if instead else ""),
+        )
 
 
 class TableCalls:
@@ -34,7 +48,8 @@ class TableCalls:
     np_random: Any
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """Read an attribute or call a method of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call`` does.
+        """Read an attribute or call a method of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call``
+        does.
 
         Parameters
         ----------
@@ -111,5 +126,9 @@ class TableCalls:
     def _table(self, k: int, generator: np.random.Generator) -> SnookerEnv:
         """Table k as a ``SnookerEnv`` that shares the table's state."""
         env = copy.copy(self._one)
-        env.tables, env._np_random, env._np_random_seed = self.tables.view(k), generator, self._generator_seeds[k]
+        env.tables, env._np_random, env._np_random_seed = (
+            self.tables.view(k),
+            generator,
+            self._generator_seeds[k],
+        )
         return env

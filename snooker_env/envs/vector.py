@@ -1,4 +1,5 @@
-"""How do thousands of tables play side by side? The native vector environment of ``Snooker-v0``: steps as kernels, on several threads.
+"""How do thousands of tables play side by side? The native vector environment of ``Snooker-v0``: steps as
+kernels, on several threads.
 
 gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")
 """
@@ -31,14 +32,18 @@ PICTURES = ("rgb_array", "ansi")
 
 
 class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
-    """Many tables side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
+    """Many tables side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of
+    ``SnookerEnv`` with the same seeds.
 
-    The steps run as compiled kernels on several threads. ``SnookerEnv`` specifies actions, observations, rewards and infos.
+    The steps run as compiled kernels on several threads. ``SnookerEnv`` specifies actions, observations,
+    rewards and infos.
 
-    **Opponents.** In a frame, the opponents "random" and "ghost_ball" run as kernels. Any other player is asked once for all tables that
-    wait for it. A callable is called table by table or, if it has a method ``many(observations, generators, masks) -> actions``, that once.
+    **Opponents.** In a frame, the opponents "random" and "ghost_ball" run as kernels. Any other player is
+    asked once for all tables that wait for it. A callable is called table by table or, if it has a method
+    ``many(observations, generators, masks) -> actions``, that once.
 
-    **Reset.** ``reset(seed=...)`` takes an int, a list or None, as ``SyncVectorEnv`` does. ``reset(options=...)`` takes these keys:
+    **Reset.** ``reset(seed=...)`` takes an int, a list or None, as ``SyncVectorEnv`` does.
+    ``reset(options=...)`` takes these keys:
 
     | key | value |
     |---|---|
@@ -49,12 +54,13 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     | "positions" | a list with one position for each |
     | "breaker" | in a frame or match: who breaks instead of the draw, 0 the agent or 1 the opponent; an int, or one for each |
 
-    A state holds its random stream, so all tables that start from one state meet the same execution errors. With a seed as well, table k
-    draws from seed + k. Positions hold no random stream: each table draws its own errors.
+    A state holds its random stream, so all tables that start from one state meet the same execution errors.
+    With a seed as well, table k draws from seed + k. Positions hold no random stream: each table draws its
+    own errors.
 
-    **Results in given arrays.** ``reset`` and ``step`` can write into arrays of the caller, for instance in shared memory:
-    ``out={"observations": ..., "rewards": ..., "terminations": ..., "truncations": ...}``. Any of them may be given, C-contiguous and with
-    the right shape and dtype; the same arrays are then returned.
+    **Results in given arrays.** ``reset`` and ``step`` can write into arrays of the caller, for instance in
+    shared memory: ``out={"observations": ..., "rewards": ..., "terminations": ..., "truncations": ...}``. Any
+    of them may be given, C-contiguous and with the right shape and dtype; the same arrays are then returned.
 
     **Pictures** show the paths of the last shots. A window ("human") is available for ``SnookerEnv`` only.
 
@@ -71,7 +77,8 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     autoreset_mode : gymnasium.vector.AutoresetMode or str, optional
         NEXT_STEP (default), SAME_STEP or DISABLED, or its value.
     threads : int, optional
-        Number of threads, in [1, 1024]; default one for each available processor. Results do not depend on it.
+        Number of threads, in [1, 1024]; default one for each available processor. Results do not depend on
+        it.
     render_size : (int, int), optional
         Width and height of a table's picture [pixels], each in [100, 8192]; default (1920, 1080).
     **given
@@ -103,18 +110,29 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     tables: Tables
 
     def __init__(
-        self, num_envs: int = 1, options: Options | None = None, *, max_episode_steps: int | None = None,
-        render_mode: Literal["rgb_array", "ansi"] | None = None, autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
-        threads: int | None = None, render_size: Sequence[int] = SIZE, **given: Any,
-    ):  # fmt: skip
+        self,
+        num_envs: int = 1,
+        options: Options | None = None,
+        *,
+        max_episode_steps: int | None = None,
+        render_mode: Literal["rgb_array", "ansi"] | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        threads: int | None = None,
+        render_size: Sequence[int] = SIZE,
+        **given: Any,
+    ):
         self.num_envs = integer("num_envs", num_envs, 1, 2**24)
         threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
-        self.autoreset_mode = autoreset_mode if isinstance(autoreset_mode, AutoresetMode) else AutoresetMode(autoreset_mode)
+        self.autoreset_mode = (
+            autoreset_mode if isinstance(autoreset_mode, AutoresetMode) else AutoresetMode(autoreset_mode)
+        )
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
         if render_mode is not None:
             choice("render_mode", render_mode, PICTURES)
         self.options, opponent = self._game_of(options, given)
-        limit = NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
+        limit = (
+            NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
+        )
         self.render_mode = render_mode
         self.tables = self._tables_of(opponent, limit)
         self._one = SnookerEnv._of(self.options, self.tables.view(0), render_mode, render_size)
@@ -140,18 +158,23 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     def _tables_of(self, opponent: Any, limit: int) -> Tables:
         return tables_of(self.options, opponent, self.num_envs, limit)
 
-    # Gymnasium's interface -------------------------------------------------------------------------------------------------
+    # Gymnasium's interface
+    # -------------------------------------------------------------------------------------------------
 
     def reset(
-        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None, out: dict[str, Any] | None = None
+        self,
+        *,
+        seed: int | list[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+        out: dict[str, Any] | None = None,
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin new visits or frames on all tables, or on some.
 
         Parameters
         ----------
         seed : int, list or None, optional
-            Seeds of the random numbers from now on: table k draws from seed + k, or from element k of the list. Default None: the streams
-            go on.
+            Seeds of the random numbers from now on: table k draws from seed + k, or from element k of the
+            list. Default None: the streams go on.
         options : dict, optional
             Keys "reset_mask", "state", "states", "position", "positions", "breaker", see the class.
         out : dict, optional
@@ -162,7 +185,8 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         observations : numpy.ndarray or dict
             float32 (num_envs, k), or a dict of such arrays.
         infos : dict
-            An array for each key of ``SnookerEnv``'s info; the array under "_key" marks the tables that it holds for.
+            An array for each key of ``SnookerEnv``'s info; the array under "_key" marks the tables that it
+            holds for.
 
         Raises
         ------
@@ -177,10 +201,16 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         starts = starts_of(options, self.num_envs, self.tables, check)
         breakers = breakers_of(options, self.num_envs, self.options, two_players=bool(self._both))
         if not (wanted | self._begun).all():
-            raise gymnasium.error.ResetNeeded(f"table {int(np.argmin(wanted | self._begun))} has no visit yet: reset all tables first")
+            raise gymnasium.error.ResetNeeded(
+                f"table {int(np.argmin(wanted | self._begun))} has no visit yet: reset all tables first"
+            )
         given = self._given(out, ("observations",))
         tables = np.flatnonzero(wanted).tolist()
-        made = {k: seeding.np_random(seeds[k]) for k in tables if seeds[k] is not None or self._generators[k] is None}
+        made = {
+            k: seeding.np_random(seeds[k])
+            for k in tables
+            if seeds[k] is not None or self._generators[k] is None
+        }
         for k, own in made.items():
             self._generators[k], self._generator_seeds[k] = own
         for k in tables:
@@ -201,7 +231,9 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         self._done[wanted] = False
         return self._shaped(written, out), self.tables.infos(written.reals, written.counts, wanted)
 
-    def step(self, actions: Any, *, out: dict[str, Any] | None = None) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
+    def step(
+        self, actions: Any, *, out: dict[str, Any] | None = None
+    ) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
         """Play one step on each table.
 
         Parameters
@@ -220,13 +252,14 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         terminations, truncations : numpy.ndarray
             bool (num_envs,).
         infos : dict
-            An array for each key of ``SnookerEnv``'s info; the array under "_key" marks the tables that it holds for. With SAME_STEP also
-            "final_obs" and "final_info".
+            An array for each key of ``SnookerEnv``'s info; the array under "_key" marks the tables that it
+            holds for. With SAME_STEP also "final_obs" and "final_info".
 
         Raises
         ------
         ValueError
-            If an action is not in the action space, or an array of ``out`` does not fit; then nothing is played.
+            If an action is not in the action space, or an array of ``out`` does not fit; then nothing is
+            played.
         gymnasium.error.ResetNeeded
             Before the first reset, and with DISABLED if an episode is over.
         SimulationError
@@ -240,7 +273,9 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         if mode == AutoresetMode.DISABLED and self._done.any():
             k = int(np.argmax(self._done))
             what = self.options.task
-            raise gymnasium.error.ResetNeeded(f'the {what} on table {k} is over: reset(options={{"reset_mask": ...}}) before step()')
+            raise gymnasium.error.ResetNeeded(
+                f'the {what} on table {k} is over: reset(options={{"reset_mask": ...}}) before step()'
+            )
         same_step = mode == AutoresetMode.SAME_STEP
         waiting = self._done if mode == AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, np.bool_)
         written = self.tables.output(last=same_step, given=given)
@@ -286,7 +321,8 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         return self.tables.action_masks()
 
     def render(self) -> tuple[Picture, ...]:
-        """Return a picture of each table. A recorder gets the motion of all of them at once, see ``SnookerEnv``.
+        """Return a picture of each table. A recorder gets the motion of all of them at once, see
+        ``SnookerEnv``.
 
         Returns
         -------
@@ -317,7 +353,8 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
 
     @property
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
-        """The NumPy generator of each table, a tuple. Each is used once, for the key of its table's random stream."""
+        """The NumPy generator of each table, a tuple. Each is used once, for the key of its table's random
+        stream."""
         for k in range(self.num_envs):
             if self._generators[k] is None:
                 self._seed_generator(k, None)
@@ -331,10 +368,12 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     def _seed_generator(self, k: int, seed: int | None) -> None:
         self._generators[k], self._generator_seeds[k] = seeding.np_random(seed)
 
-    # states ----------------------------------------------------------------------------------------------------------------
+    # states
+    # ----------------------------------------------------------------------------------------------------------------
 
     def get_state(self) -> list[dict[str, Any]]:
-        """Return the state of each table, as ``SnookerEnv.get_state`` does. Steps towards ``max_episode_steps`` are not part of it.
+        """Return the state of each table, as ``SnookerEnv.get_state`` does. Steps towards
+        ``max_episode_steps`` are not part of it.
 
         Returns
         -------
@@ -353,7 +392,9 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         >>> bool((envs.step(np.zeros((2, 4)))[0] == first).all())
         True
         """
-        return [self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)]
+        return [
+            self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)
+        ]
 
     def _take(self, k: int, start: Start, *, seeded: bool) -> None:
         rng = start.take(self.tables, k)
@@ -362,7 +403,8 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
             if not seeded:
                 self._generators[k].bit_generator.state, self._generator_seeds[k] = rng, -1
 
-    # parts of reset and step -----------------------------------------------------------------------------------------------
+    # parts of reset and step
+    # -----------------------------------------------------------------------------------------------
 
     def _given(self, out: Any, names: Collection[str]) -> dict[str, Any]:
         """The validated arrays to write into."""
@@ -381,7 +423,11 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     def _final(self, out, done):
         """The entries that SAME_STEP adds: how the episodes ended that ended in this step."""
         rows = observations.shaped(self.options.observation, out.last_observations, out.last_masks)
-        each = rows if self.options.observation == "flat" else ({name: rows[name][k] for name in rows} for k in range(self.num_envs))
+        each = (
+            rows
+            if self.options.observation == "flat"
+            else ({name: rows[name][k] for name in rows} for k in range(self.num_envs))
+        )
         final = np.fromiter(each, object, self.num_envs)
         final[~done] = None
         info = self.tables.infos(out.last_reals, out.last_counts, done)

@@ -1,10 +1,26 @@
-"""The game of snooker: balls, rules, frames and layouts, without physics and Gymnasium. ``__all__`` is public; the modules are not."""
+"""The game of snooker: balls, rules, frames and layouts, without physics and Gymnasium. ``__all__`` is
+public; the modules are not."""
 
 from .balls import COLOUR_NAMES, CUE, N_BALLS, NAMES, SPOTS, TOUCH, VALUES, BallOn, balls_on, ids_of, mask_of
 from .layouts import LAYOUTS, POT_WINDOWS, Plan, layout, plan_of
 from .opened import HELD_OUT
 
 __all__ = [
-    "COLOUR_NAMES", "CUE", "HELD_OUT", "LAYOUTS", "NAMES", "N_BALLS", "POT_WINDOWS", "SPOTS", "TOUCH", "VALUES", "BallOn", "Plan",
-    "balls_on", "ids_of", "layout", "mask_of", "plan_of",
-]  # fmt: skip
+    "COLOUR_NAMES",
+    "CUE",
+    "HELD_OUT",
+    "LAYOUTS",
+    "NAMES",
+    "N_BALLS",
+    "POT_WINDOWS",
+    "SPOTS",
+    "TOUCH",
+    "VALUES",
+    "BallOn",
+    "Plan",
+    "balls_on",
+    "ids_of",
+    "layout",
+    "mask_of",
+    "plan_of",
+]

@@ -1,12 +1,13 @@
-"""Was it the best effort? How near a snookered striker's cue ball came to a ball on, exact, as kernels: the rule ``miss="attempt"``.
+"""Was it the best effort? How near a snookered striker's cue ball came to a ball on, exact, as kernels: the
+rule ``miss="attempt"``.
 
-S3 R14(a) demands that the striker "endeavours to the best of his ability to hit a ball on", which a referee judges. Here a declared rule
-of geometry does: the cue ball must pass within ``ATTEMPT_GAP`` of a ball on before its first contact with any ball, or before it comes to
-rest if it strikes none. Until then no ball on has moved, so the gap is that to balls at rest, along the path that was really played, off
-every cushion.
+S3 R14(a) demands that the striker "endeavours to the best of his ability to hit a ball on", which a referee
+judges. Here a declared rule of geometry does: the cue ball must pass within ``ATTEMPT_GAP`` of a ball on
+before its first contact with any ball, or before it comes to rest if it strikes none. Until then no ball on
+has moved, so the gap is that to balls at rest, along the path that was really played, off every cushion.
 
-The cue ball moves on pieces x + v t + a t^2 / 2. Its squared distance from a ball has a cubic as derivative; between the extremes of that
-cubic it changes sign at most once, so that bisection finds every minimum.
+The cue ball moves on pieces x + v t + a t^2 / 2. Its squared distance from a ball has a cubic as derivative;
+between the extremes of that cubic it changes sign at most once, so that bisection finds every minimum.
 """
 
 import numpy as np
@@ -16,7 +17,8 @@ from ..geometry import BALL_RADIUS
 from .balls import CUE, N_BALLS
 
 ATTEMPT_GAP = 2.0 * BALL_RADIUS
-"""A gap up to this between the cue ball and a ball on counts as the best effort [m]: one ball would just fit between them."""
+"""A gap up to this between the cue ball and a ball on counts as the best effort [m]: one ball would just fit
+between them."""
 
 X, Y, VX, VY, AX, AY, START, END, BALL = 0, 1, 2, 3, 4, 5, 9, 10, 15
 """Columns of a piece of a path, as in ``physics.cloth``."""
@@ -47,7 +49,8 @@ def _minimum(c0, c1, c2, c3, low, high):
 
 @kernel
 def nearest_on_piece(dx, dy, vx, vy, ax, ay, T):
-    """The smallest distance from the origin of a point that moves as d + v t + a t^2 / 2 for t in [0, T] [m]."""
+    """The smallest distance from the origin of a point that moves as d + v t + a t^2 / 2 for t in [0, T]
+    [m]."""
     c0, c1 = dx * vx + dy * vy, vx * vx + vy * vy + dx * ax + dy * ay
     c2, c3 = 1.5 * (vx * ax + vy * ay), 0.5 * (ax * ax + ay * ay)
     # The slope turns where c1 + 2 c2 t + 3 c3 t^2 = 0.
@@ -69,9 +72,11 @@ def nearest_on_piece(dx, dy, vx, vy, ax, ay, T):
 
 @kernel
 def closest_approach(segments, n_segments, until, positions, on_table, on, radius):
-    """The smallest gap between the cue ball and a ball of the mask ``on`` up to the time ``until`` [s], along its path [m]; inf for none.
+    """The smallest gap between the cue ball and a ball of the mask ``on`` up to the time ``until`` [s], along
+    its path [m]; inf for none.
 
-    ``segments``, ``n_segments``: the path log of the shot; ``positions``, ``on_table``: the balls before it, which must not have moved.
+    ``segments``, ``n_segments``: the path log of the shot; ``positions``, ``on_table``: the balls before it,
+    which must not have moved.
     """
     best, k = np.inf, 0
     while k < n_segments:
@@ -89,7 +94,9 @@ def closest_approach(segments, n_segments, until, positions, on_table, on, radiu
             for i in range(1, N_BALLS):
                 if on_table[i] and (on >> i) & 1:
                     dx, dy = segments[k, X] - positions[i, 0], segments[k, Y] - positions[i, 1]
-                    far = nearest_on_piece(dx, dy, segments[k, VX], segments[k, VY], segments[k, AX], segments[k, AY], T)
+                    far = nearest_on_piece(
+                        dx, dy, segments[k, VX], segments[k, VY], segments[k, AX], segments[k, AY], T
+                    )
                     best = min(best, far - 2.0 * radius)
         k = following
     return best

@@ -1,7 +1,9 @@
-"""Which balls are there, what is each worth and where does it belong? Ids, values and places; those of the table are in ``geometry``.
+"""Which balls are there, what is each worth and where does it belong? Ids, values and places; those of the
+table are in ``geometry``.
 
-Table frame as in ``geometry``. The 22 balls have fixed ids: 0 is the cue ball, 1 to 15 are the reds, 16 to 21 the colours in the order of
-their values. A set of balls is an integer whose bit i stands for ball i, or a bool array (22,). Positions are float64 (22, 2) [m].
+Table frame as in ``geometry``. The 22 balls have fixed ids: 0 is the cue ball, 1 to 15 are the reds, 16 to 21
+the colours in the order of their values. A set of balls is an integer whose bit i stands for ball i, or a
+bool array (22,). Positions are float64 (22, 2) [m].
 """
 
 from collections.abc import Iterable
@@ -74,15 +76,16 @@ PINK_GAP = 0.0005
 """Gap between the pink on its spot and the red at the apex [m]: small, without contact."""
 
 TOUCH = 1e-6
-"""Two balls touch when the gap between them is below this [m]: far below what can be seen, far above rounding."""
+"""Two balls touch when the gap between them is below this [m]: far below what can be seen, far above
+rounding."""
 
 REFEREE_TOUCH = 50e-6
-"""The referee calls a touching ball when the gap to the cue ball is below this [m]. The eye resolves about one arc minute, 70 um at 25 cm,
-so nobody sees light through a smaller gap; and balls that a referee would call touching come to rest 1 to 40 um apart in the simulation.
-The physics keeps ``TOUCH``."""
+"""The referee calls a touching ball when the gap to the cue ball is below this [m]. The eye resolves about
+one arc minute, 70 um at 25 cm, so nobody sees light through a smaller gap; and balls that a referee would
+call touching come to rest 1 to 40 um apart in the simulation. The physics keeps ``TOUCH``."""
 CLEARANCE = 2.0 * REFEREE_TOUCH
-"""The gap to a ball or cushion beside which a ball is put down without touching it [m]: a colour that returns, a cue ball in hand. The
-referee sees that they do not touch."""
+"""The gap to a ball or cushion beside which a ball is put down without touching it [m]: a colour that
+returns, a cue ball in hand. The referee sees that they do not touch."""
 
 
 def _spots():
@@ -91,18 +94,23 @@ def _spots():
     spots[CUE] = 0.18, BAULK_Y
     spots[YELLOW:] = COLOUR_SPOTS
     pink_y = spots[PINK, 1]
-    # Rows sqrt(3) R apart with a pitch of 2 R: each red touches its neighbours to rounding. Places rounded to mm would overlap.
+    # Rows sqrt(3) R apart with a pitch of 2 R: each red touches its neighbours to rounding. Places rounded to
+    # mm would overlap.
     ball = 1
     for row in range(5):
         for k in range(row + 1):
-            spots[ball] = (2 * k - row) * BALL_RADIUS, pink_y + 2 * BALL_RADIUS + PINK_GAP + row * np.sqrt(3.0) * BALL_RADIUS
+            spots[ball] = (
+                (2 * k - row) * BALL_RADIUS,
+                pink_y + 2 * BALL_RADIUS + PINK_GAP + row * np.sqrt(3.0) * BALL_RADIUS,
+            )
             ball += 1
     return spots
 
 
 SPOTS = _spots()
-"""A place for each ball: float64 (22, 2) [m], read-only. The spot of each colour, the place of each red in the triangle, and the
-usual place of the cue ball in hand: on the baulk line between brown and yellow. It breaks off from there or from its mirror image."""
+"""A place for each ball: float64 (22, 2) [m], read-only. The spot of each colour, the place of each red in
+the triangle, and the usual place of the cue ball in hand: on the baulk line between brown and yellow. It
+breaks off from there or from its mirror image."""
 
 for _constant in (VALUES, SPOTS):
     _constant.setflags(write=False)
@@ -151,7 +159,8 @@ def count(mask):
 
 
 def next_on(mask: int) -> int:
-    """The ball on (a ``BallOn``) for a player who comes to the table: red while there is one, then the lowest colour, else NOTHING (-1)."""
+    """The ball on (a ``BallOn``) for a player who comes to the table: red while there is one, then the lowest
+    colour, else NOTHING (-1)."""
     if mask & REDS_MASK:
         return 1
     for i in range(YELLOW, N_BALLS):
@@ -193,10 +202,12 @@ def balls_on(ball_on: int, on_table: int) -> int:
 
 
 def points_available(on_table: int, ball_on: int, free_ball: bool = False) -> int:
-    """The most points that the striker can still score with the balls of the mask ``on_table``, without any from fouls.
+    """The most points that the striker can still score with the balls of the mask ``on_table``, without any
+    from fouls.
 
-    8 for each red, the value of each colour, and 7 if any colour is on, after a red. A free ball adds 8 to them with a red on: it is one
-    more red. With a colour on it adds that colour's value: it scores as much and comes back. It must be another ball than the one on.
+    8 for each red, the value of each colour, and 7 if any colour is on, after a red. A free ball adds 8 to
+    them with a red on: it is one more red. With a colour on it adds that colour's value: it scores as much
+    and comes back. It must be another ball than the one on.
     """
     points, colours = 0, 0
     for i in range(1, N_BALLS):
@@ -280,10 +291,15 @@ def ids_of(mask: int) -> tuple[int, ...]:
 
 
 def check_table(positions: Vectors, on_table: Flags) -> tuple[Floats, Bools]:
-    """New copies of ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; raises ``ValueError`` for anything else."""
+    """New copies of ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; raises ``ValueError`` for anything
+    else."""
     present = np.array(on_table)
     if present.shape != (N_BALLS,) or present.dtype != np.bool_:
-        raise refuse("on_table", f"{present.dtype} array of shape {present.shape}", f"must be bool of shape ({N_BALLS},)")
+        raise refuse(
+            "on_table",
+            f"{present.dtype} array of shape {present.shape}",
+            f"must be bool of shape ({N_BALLS},)",
+        )
     return array("positions", positions, (N_BALLS, 2)), present
 
 

@@ -1,4 +1,5 @@
-"""How does a frame between two players go on? A pure, serialisable state machine around the referee, without physics.
+"""How does a frame between two players go on? A pure, serialisable state machine around the referee, without
+physics.
 
     frame = Frame.start(breaker=0)
     frame, verdict = frame.play(stroke)         # a Stroke from a simulation, or any other
@@ -10,16 +11,17 @@ act packs the frame into a row, lets a kernel of ``frame_columns`` change it, as
 Players are 0 and 1. An act that is not allowed raises ``ValueError``. ``rules`` names the game
 (``rule_sets``): snooker, six-red snooker or the Shoot Out.
 
-A foul and a miss (S3 R14): ``miss="off"`` never calls it. ``miss="clear_path"`` calls it where geometry alone decides: the striker failed
-to strike a ball on first although a straight path to a part of one was clear. It is not called when either player needed penalty points
-before or after the stroke, or when the points left equalled the difference: the penalties of a striker who fails again and again decide
-the frame in the end. After a miss with a clear full-ball path, a second failure from the same position is a miss whatever the scores;
-then the striker is warned, and the third loses the frame. ``miss="attempt"`` calls it on a snookered striker too, whose cue ball did not
-come near a ball on (``attempt``).
+A foul and a miss (S3 R14): ``miss="off"`` never calls it. ``miss="clear_path"`` calls it where geometry alone
+decides: the striker failed to strike a ball on first although a straight path to a part of one was clear. It
+is not called when either player needed penalty points before or after the stroke, or when the points left
+equalled the difference: the penalties of a striker who fails again and again decide the frame in the end.
+After a miss with a clear full-ball path, a second failure from the same position is a miss whatever the
+scores; then the striker is warned, and the third loses the frame. ``miss="attempt"`` calls it on a snookered
+striker too, whose cue ball did not come near a ball on (``attempt``).
 
-Left out, because a simulator cannot judge it: whether a failure was deliberate; when there is a stalemate (``restart`` only carries one
-out); time wasting and conduct; balls that fall in unprovoked or are moved by others; fouls before the stroke on a replaced position. The
-lot for a re-spotted black is passed in.
+Left out, because a simulator cannot judge it: whether a failure was deliberate; when there is a stalemate
+(``restart`` only carries one out); time wasting and conduct; balls that fall in unprovoked or are moved by
+others; fouls before the stroke on a replaced position. The lot for a re-spotted black is passed in.
 """
 
 from dataclasses import asdict, dataclass
@@ -131,7 +133,8 @@ class Saved:
     anywhere : bool
         The stroke is played from anywhere on the table.
     layout : tuple or None
-        The caller's own record of the positions, anything that JSON can hold. It is stored and returned, never read.
+        The caller's own record of the positions, anything that JSON can hold. It is stored and returned,
+        never read.
     """
 
     on_table: int
@@ -145,7 +148,11 @@ class Saved:
         _set(self, "on_table", _object_balls(self.on_table))
         for name in ("in_hand", "free_ball", "anywhere"):
             _set(self, name, truth(name, getattr(self, name)))
-        _set(self, "ball_on", Situation(on_table=self.on_table, ball_on=self.ball_on, free_ball=self.free_ball).ball_on)
+        _set(
+            self,
+            "ball_on",
+            Situation(on_table=self.on_table, ball_on=self.ball_on, free_ball=self.free_ball).ball_on,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -173,7 +180,8 @@ class Frame:
     respotted_black : bool
         The black has been re-spotted: scores were level.
     phase : {"stroke", "choice", "lot", "over"}
-        "stroke": ``play`` is next. "choice": after a foul, ``choose``. "lot": before a re-spotted black, ``draw``. "over".
+        "stroke": ``play`` is next. "choice": after a foul, ``choose``. "lot": before a re-spotted black,
+        ``draw``. "over".
     winner : int, or None
         The player who has won; None before the end.
     rules : {"snooker", "six_red", "shoot_out"}
@@ -224,7 +232,11 @@ class Frame:
         choice("phase", self.phase, PHASES)
         choice("miss", self.miss, MISS_RULES)
         if rule_set(self.rules).anywhere and self.miss != "off":
-            raise refuse("miss", self.miss, f"must be 'off' with rules = {self.rules!r}: no miss is called in this game")
+            raise refuse(
+                "miss",
+                self.miss,
+                f"must be 'off' with rules = {self.rules!r}: no miss is called in this game",
+            )
         most = (("break_points", MOST_BREAK), ("failures", 2), ("misses", MOST_MISSES), ("clock", MOST_CLOCK))
         for name, high in (("striker", 1), ("breaker", 1), *most):
             if not is_plain(getattr(self, name), high):
@@ -235,7 +247,13 @@ class Frame:
         if not isinstance(self.scores, tuple) or len(self.scores) != 2:
             raise refuse("scores", self.scores, "must be a tuple of two integers")
         if not all(is_plain(points, MOST_POINTS) for points in self.scores):
-            _set(self, "scores", tuple(integer(f"scores[{k}]", points, 0, MOST_POINTS) for k, points in enumerate(self.scores)))
+            _set(
+                self,
+                "scores",
+                tuple(
+                    integer(f"scores[{k}]", points, 0, MOST_POINTS) for k, points in enumerate(self.scores)
+                ),
+            )
         _set(self, "on_table", _object_balls(self.on_table))
         _set(self, "rack", _object_balls(self.rack, "rack"))
         if self.saved is not None and not isinstance(self.saved, Saved):
@@ -249,11 +267,30 @@ class Frame:
             _set(self, "ball_on", self.situation.ball_on)  # the situation checks it against the table
 
     @classmethod
-    def start(cls, *, breaker: int = 0, miss: MissRule = "off", on_table: int | None = None, rules: RulesName = "snooker") -> "Frame":
+    def start(
+        cls,
+        *,
+        breaker: int = 0,
+        miss: MissRule = "off",
+        on_table: int | None = None,
+        rules: RulesName = "snooker",
+    ) -> "Frame":
         """A new frame. ``on_table``: mask of the balls, for a start with others than the rule set's."""
-        balls = rule_set(rules).on_table if on_table is None else integer("on_table", on_table, 0, ALL_MASK) & ~CUE_BIT
+        balls = (
+            rule_set(rules).on_table
+            if on_table is None
+            else integer("on_table", on_table, 0, ALL_MASK) & ~CUE_BIT
+        )
         ball_on = BallOn(next_on(balls))
-        return cls(striker=breaker, breaker=breaker, rules=rules, miss=miss, on_table=balls, ball_on=ball_on, rack=balls)
+        return cls(
+            striker=breaker,
+            breaker=breaker,
+            rules=rules,
+            miss=miss,
+            on_table=balls,
+            ball_on=ball_on,
+            rack=balls,
+        )
 
     @property
     def rule_set(self) -> RuleSet:
@@ -264,7 +301,13 @@ class Frame:
     def situation(self) -> Situation:
         """The ``Situation`` in which the referee judges the next stroke."""
         lead = self.scores[self.striker] - self.scores[1 - self.striker]
-        return Situation(on_table=self.on_table, ball_on=self.ball_on, free_ball=self.free_ball, lead=lead, rules=self.rules)
+        return Situation(
+            on_table=self.on_table,
+            ball_on=self.ball_on,
+            free_ball=self.free_ball,
+            lead=lead,
+            rules=self.rules,
+        )
 
     @property
     def available(self) -> int:
@@ -316,14 +359,16 @@ class Frame:
     ) -> tuple["Frame", Verdict]:
         """One stroke: the next frame and the referee's ``Verdict``.
 
-        ``clear_path``, ``full_ball_path``: whether before the stroke a straight path was clear to any part, and to the full face, of a
-        ball on, in hand from any place (``paths.paths``); ``attempt``: whether the cue ball came near one (``attempt.ATTEMPT_GAP``). They
-        matter with a miss rule only. ``layout``: see ``Saved``.
+        ``clear_path``, ``full_ball_path``: whether before the stroke a straight path was clear to any part,
+        and to the full face, of a ball on, in hand from any place (``paths.paths``); ``attempt``: whether the
+        cue ball came near one (``attempt.ATTEMPT_GAP``). They matter with a miss rule only. ``layout``: see
+        ``Saved``.
 
-        ``time_to_play``, ``duration``: the time [ms] from the rest of the balls to this stroke, and to the next rest; they matter with a
-        clock only. The clock starts with the first stroke. A stroke that needs longer than ``shot_clock`` is not played: the caller leaves
-        the balls as they lie, and ``stroke`` is read as ``Stroke(late=True)``. The frame ends when another stroke with the same
-        ``time_to_play`` could not begin in time.
+        ``time_to_play``, ``duration``: the time [ms] from the rest of the balls to this stroke, and to the
+        next rest; they matter with a clock only. The clock starts with the first stroke. A stroke that needs
+        longer than ``shot_clock`` is not played: the caller leaves the balls as they lie, and ``stroke`` is
+        read as ``Stroke(late=True)``. The frame ends when another stroke with the same ``time_to_play`` could
+        not begin in time.
         """
         self._in_phase("stroke", "play")
         late, lasted, rules = False, 0, self.rule_set
@@ -348,10 +393,11 @@ class Frame:
     def choose(self, what: Choice) -> "Frame":
         """The opponent's decision after a foul, which is final.
 
-        "play": the opponent plays the table as it lies (with the free ball, if there is one). "play_again": the offender plays it, and
-        a free ball is void. "replace", after a miss: ``saved`` is restored and the offender plays from there; the penalty stands.
-        "anywhere", after the last miss that may be called in succession: the opponent plays with the cue ball in hand, from anywhere on the
-        table, and a free ball is void.
+        "play": the opponent plays the table as it lies (with the free ball, if there is one). "play_again":
+        the offender plays it, and a free ball is void. "replace", after a miss: ``saved`` is restored and the
+        offender plays from there; the penalty stands. "anywhere", after the last miss that may be called in
+        succession: the opponent plays with the cue ball in hand, from anywhere on the table, and a free ball
+        is void.
         """
         self._in_phase("choice", "choose")
         choice("choice", what, self.choices)
@@ -372,7 +418,11 @@ class Frame:
     def claim(self) -> "Frame":
         """The striker claims the frame."""
         if not self.may_claim:
-            raise refuse("lead", self.situation.lead if self.phase == "stroke" else self.phase, "must be over 7 with only the black left")
+            raise refuse(
+                "lead",
+                self.situation.lead if self.phase == "stroke" else self.phase,
+                "must be over 7 with only the black left",
+            )
         return self._acted(_CLAIM)
 
     def concede(self, player: int) -> "Frame":
@@ -382,7 +432,8 @@ class Frame:
         return self._acted(_CONCEDE)
 
     def restart(self) -> "Frame":
-        """The referee ends a stalemate: scores are void, the balls of ``rack`` are set up again and the same player breaks."""
+        """The referee ends a stalemate: scores are void, the balls of ``rack`` are set up again and the same
+        player breaks."""
         if self.phase == "over":
             raise refuse("phase", self.phase, "must not be over to restart")
         return Frame.start(breaker=self.breaker, miss=self.miss, rules=self.rules, on_table=self.rack)
@@ -398,7 +449,8 @@ class Frame:
     def from_dict(cls, plain: dict[str, Any], field: str = "frame") -> "Frame":
         """The frame from the result of ``to_dict``, also after a round trip through JSON.
 
-        Raises ValueError, which names the wrong part of ``field``; also where the rules forbid a combination of parts.
+        Raises ValueError, which names the wrong part of ``field``; also where the rules forbid a combination
+        of parts.
         """
         check_fields(field, plain, cls)
         saved, scores = plain["saved"], plain["scores"]
@@ -407,7 +459,9 @@ class Frame:
             with within(f"{field}.saved"):
                 saved = Saved(**saved | {"layout": tuples(saved["layout"])})
         with within(field):
-            frame = cls(**plain | {"scores": tuple(scores) if isinstance(scores, list) else scores, "saved": saved})
+            frame = cls(
+                **plain | {"scores": tuple(scores) if isinstance(scores, list) else scores, "saved": saved}
+            )
             check_fit(frame)
         return frame
 

@@ -17,13 +17,39 @@ from .rule_sets import CLOCK_LIMIT, MOST_MISSES, SHOOT_OUT, SHOT_CLOCK, SIX_RED
 from .ruling import FOUL, OUTCOME
 
 (BALL_ON, IN_HAND, POINTS, OVER, STEPS) = range(5)
-"""A ``BallOn``; whether the cue ball is in hand; points of the break so far; whether the episode has ended by the rules; its steps."""
+"""A ``BallOn``; whether the cue ball is in hand; points of the break so far; whether the episode has ended by
+the rules; its steps."""
 VISIT_COLUMNS = 5
 (
-    FREE_BALL, ON_TABLE, PHASE, STRIKER, BREAKER, SCORE_0, SCORE_1, WINNER, RESPOTTED_BLACK, MISS_CALLED, FAILURES, WARNED, SAVED,
-    SAVED_ON_TABLE, SAVED_BALL_ON, SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT, STROKES, PAID, FRAMES_0, FRAMES_1, FIRST_BREAK, CLOCK,
-    MISSES, ANYWHERE, OPPONENT, RACK,
-) = range(5, 33)  # fmt: skip
+    FREE_BALL,
+    ON_TABLE,
+    PHASE,
+    STRIKER,
+    BREAKER,
+    SCORE_0,
+    SCORE_1,
+    WINNER,
+    RESPOTTED_BLACK,
+    MISS_CALLED,
+    FAILURES,
+    WARNED,
+    SAVED,
+    SAVED_ON_TABLE,
+    SAVED_BALL_ON,
+    SAVED_IN_HAND,
+    SAVED_FREE_BALL,
+    SAVED_LAYOUT,
+    STROKES,
+    PAID,
+    FRAMES_0,
+    FRAMES_1,
+    FIRST_BREAK,
+    CLOCK,
+    MISSES,
+    ANYWHERE,
+    OPPONENT,
+    RACK,
+) = range(5, 33)
 """The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether a frame has one;
 SAVED_IN_HAND: 2 if the cue ball could be placed anywhere). Of tables only: strokes of both players; the
 agent's lead that rewards have already paid; frames won in a match and who broke in its first frame; which
@@ -71,7 +97,8 @@ class Layouts(NamedTuple):
 
 @kernel
 def strikeable(row, mask):
-    """Mask of the balls in ``mask`` that may be struck first; with a free ball, all colours too. ``row``: of a visit or a frame."""
+    """Mask of the balls in ``mask`` that may be struck first; with a free ball, all colours too. ``row``: of
+    a visit or a frame."""
     on = balls_on_kernel(row[BALL_ON], mask)
     if row.shape[0] > FREE_BALL and row[FREE_BALL]:
         on |= COLOURS_MASK & mask
@@ -94,7 +121,9 @@ def _end(row, winner):
     """End the frame; what no frame that is over has is cleared (``frame_checks.SETTLED``)."""
     row[PHASE], row[OVER], row[WINNER] = FINISHED, 1, winner
     row[BALL_ON] = -1
-    row[FREE_BALL] = row[MISS_CALLED] = row[FAILURES] = row[WARNED] = row[SAVED] = row[SAVED_LAYOUT] = row[MISSES] = row[ANYWHERE] = 0
+    row[FREE_BALL] = row[MISS_CALLED] = row[FAILURES] = row[WARNED] = row[SAVED] = row[SAVED_LAYOUT] = row[
+        MISSES
+    ] = row[ANYWHERE] = 0
 
 
 @kernel
@@ -106,13 +135,18 @@ def lead_of(row, player):
 @kernel
 def needs_snookers(row, player):
     """Whether ``player`` trails by more than is left for them; a free ball is the striker's alone."""
-    left = available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL]) if row[STRIKER] == player else available(row[ON_TABLE], -1, 0)
+    left = (
+        available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
+        if row[STRIKER] == player
+        else available(row[ON_TABLE], -1, 0)
+    )
     return -lead_of(row, player) > left
 
 
 @kernel
 def _decided(row):
-    """Whether the scores rule a miss out: a player needs penalty points, or the difference is what is left."""
+    """Whether the scores rule a miss out: a player needs penalty points, or the difference is what is
+    left."""
     level = abs(lead_of(row, 0)) == available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
     return level or needs_snookers(row, 0) or needs_snookers(row, 1)
 
@@ -140,7 +174,8 @@ def shot_clock(row, rules):
 
 @kernel
 def is_late(row, rules, time_to_play):
-    """Whether a stroke that takes ``time_to_play`` [ms] is not begun within the shot clock: it must not be played."""
+    """Whether a stroke that takes ``time_to_play`` [ms] is not begun within the shot clock: it must not be
+    played."""
     return 0 < shot_clock(row, rules) < time_to_play
 
 
@@ -155,7 +190,12 @@ def after_stroke(row, result, conditions, effort, layout, duration):
     other = 1 - me
     failures, warned, misses = row[FAILURES], row[WARNED], row[MISSES]
     decided = _decided(row)
-    on_table, ball_on, in_hand, free_ball = row[ON_TABLE], row[BALL_ON], row[IN_HAND] + row[ANYWHERE], row[FREE_BALL]
+    on_table, ball_on, in_hand, free_ball = (
+        row[ON_TABLE],
+        row[BALL_ON],
+        row[IN_HAND] + row[ANYWHERE],
+        row[FREE_BALL],
+    )
     row[SCORE_0 + me] += result.points
     row[SCORE_0 + other] += result.penalty
     row[ON_TABLE] = result.on_table
@@ -188,7 +228,12 @@ def after_stroke(row, result, conditions, effort, layout, duration):
     row[FAILURES] = failures + 1 if called and full else 0
     row[MISSES] = misses + 1 if called and rules == SIX_RED else 0
     row[SAVED], row[SAVED_LAYOUT] = 1, layout
-    row[SAVED_ON_TABLE], row[SAVED_BALL_ON], row[SAVED_IN_HAND], row[SAVED_FREE_BALL] = on_table, ball_on, in_hand, free_ball
+    row[SAVED_ON_TABLE], row[SAVED_BALL_ON], row[SAVED_IN_HAND], row[SAVED_FREE_BALL] = (
+        on_table,
+        ball_on,
+        in_hand,
+        free_ball,
+    )
 
 
 @kernel
@@ -223,7 +268,11 @@ def choose(row, what):
     if what == REPLACE:
         row[STRIKER] = 1 - row[STRIKER]
         row[WARNED] = row[FAILURES] >= 2
-        row[ON_TABLE], row[BALL_ON], row[FREE_BALL] = row[SAVED_ON_TABLE], row[SAVED_BALL_ON], row[SAVED_FREE_BALL]
+        row[ON_TABLE], row[BALL_ON], row[FREE_BALL] = (
+            row[SAVED_ON_TABLE],
+            row[SAVED_BALL_ON],
+            row[SAVED_FREE_BALL],
+        )
         row[IN_HAND], row[ANYWHERE] = row[SAVED_IN_HAND] > 0, row[SAVED_IN_HAND] == 2
         return
     row[FAILURES] = row[SAVED] = row[SAVED_LAYOUT] = 0

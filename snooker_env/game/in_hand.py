@@ -1,7 +1,9 @@
-"""Where may the cue ball in hand stand? In the D or, in some games, anywhere; and the free place nearest to a given point, as kernels.
+"""Where may the cue ball in hand stand? In the D or, in some games, anywhere; and the free place nearest to a
+given point, as kernels.
 
-The centre must lie on or within the lines of the D: the part of the baulk line between yellow and green, and the half circle behind it.
-Anywhere on the table, it must lie within the rectangle that leaves a gap to the cushions; the pockets lie outside it. Both are exact.
+The centre must lie on or within the lines of the D: the part of the baulk line between yellow and green, and
+the half circle behind it. Anywhere on the table, it must lie within the rectangle that leaves a gap to the
+cushions; the pockets lie outside it. Both are exact.
 """
 
 from typing import Any
@@ -16,7 +18,8 @@ from .balls import CLEARANCE, N_BALLS, REFEREE_TOUCH, check_table
 from .spotting import touches
 
 POCKET_REACH = 0.15
-"""Least distance of the cue ball's centre from a pocket's nominal place, anywhere on the table [m]: clear of the jaws, as in layouts."""
+"""Least distance of the cue ball's centre from a pocket's nominal place, anywhere on the table [m]: clear of
+the jaws, as in layouts."""
 ROUNDING = 1e-12
 """Tolerance for points on the lines of the D [m]."""
 D_STEP, BED_STEP = 0.005, 0.05
@@ -24,7 +27,8 @@ D_STEP, BED_STEP = 0.005, 0.05
 
 
 def _places_in_d():
-    """The ends of the baulk line's part in the D and the brown spot, then a grid of ``D_STEP`` with the arc: (n, 2) [m]."""
+    """The ends of the baulk line's part in the D and the brown spot, then a grid of ``D_STEP`` with the arc:
+    (n, 2) [m]."""
     places = [(side * D_RADIUS, BAULK_Y) for side in (-1, 0, 1)]
     rows = int(np.ceil(D_RADIUS / D_STEP))
     for row in range(rows + 1):
@@ -44,7 +48,8 @@ def _places_on_bed():
 
 
 PLACES_IN_D, PLACES_ON_BED = _places_in_d(), _places_on_bed()
-"""Places that are tried where a rule asks what the cue ball in hand could do: float64 (n, 2) [m], read-only."""
+"""Places that are tried where a rule asks what the cue ball in hand could do: float64 (n, 2) [m],
+read-only."""
 for _places in (PLACES_IN_D, PLACES_ON_BED):
     _places.setflags(write=False)
 
@@ -108,10 +113,12 @@ def _better(positions, on_table, wish, p, best, anywhere, radius):
 
 @kernel
 def nearest_place(positions, on_table, x, y, radius):
-    """The free place in the D nearest to (x, y) [m], and whether there is one: (x, y, bool). At a free place a ball touches no other.
+    """The free place in the D nearest to (x, y) [m], and whether there is one: (x, y, bool). At a free place
+    a ball touches no other.
 
-    Each ball excludes a disc around it. The nearest point outside all discs is the wish itself (moved into the D), the nearest point of one
-    circle, or a point where two of the circles and the lines of the D cross: all are tried. ``on_table[0]`` must be False.
+    Each ball excludes a disc around it. The nearest point outside all discs is the wish itself (moved into
+    the D), the nearest point of one circle, or a point where two of the circles and the lines of the D cross:
+    all are tried. ``on_table[0]`` must be False.
     """
     wish = x, y = _into_d(x, y)
     reach = 2.0 * radius + CLEARANCE
@@ -141,7 +148,8 @@ def nearest_place(positions, on_table, x, y, radius):
 
 @kernel
 def _disc(positions, on_table, i, reach):
-    """Disc i that bars places: of ball i, or of pocket i - 22: (x, y, radius); radius 0 for a ball that is not on the table."""
+    """Disc i that bars places: of ball i, or of pocket i - 22: (x, y, radius); radius 0 for a ball that is
+    not on the table."""
     if i >= N_BALLS:
         return POCKET_PLACES[i - N_BALLS, 0], POCKET_PLACES[i - N_BALLS, 1], POCKET_REACH
     return positions[i, 0], positions[i, 1], reach if on_table[i] else 0.0
@@ -149,12 +157,17 @@ def _disc(positions, on_table, i, reach):
 
 @kernel
 def nearest_anywhere(positions, on_table, x, y, radius):
-    """The free place on the whole bed nearest to (x, y) [m], and whether there is one: (x, y, bool); as ``nearest_place``.
+    """The free place on the whole bed nearest to (x, y) [m], and whether there is one: (x, y, bool); as
+    ``nearest_place``.
 
-    Tried are the wish, moved onto the bed; the nearest point of the circle of each ball and pocket; and where two circles, or a circle and
-    an edge of the bed, cross.
+    Tried are the wish, moved onto the bed; the nearest point of the circle of each ball and pocket; and where
+    two circles, or a circle and an edge of the bed, cross.
     """
-    wide, high, reach = HALF_WIDTH - radius - CLEARANCE, HALF_LENGTH - radius - CLEARANCE, 2.0 * radius + CLEARANCE
+    wide, high, reach = (
+        HALF_WIDTH - radius - CLEARANCE,
+        HALF_LENGTH - radius - CLEARANCE,
+        2.0 * radius + CLEARANCE,
+    )
     wish = x, y = min(wide, max(-wide, x)), min(high, max(-high, y))
     place = _better(positions, on_table, wish, wish, (x, y, np.inf), True, radius)
     if place[2] == 0.0:
@@ -187,14 +200,26 @@ def _nearest_place(positions, on_table, x, y, radius, anywhere):
     return nearest_place(positions, on_table, x, y, radius)
 
 
-def place_cue(positions: Vectors, on_table: Flags, x: float, y: float, *, radius: float = BALL_RADIUS, anywhere: bool = False) -> Place:
-    """The free place (x, y) in the D (``anywhere``: on the bed) nearest to (x, y) [m]. The cue ball's own position is ignored.
+def place_cue(
+    positions: Vectors,
+    on_table: Flags,
+    x: float,
+    y: float,
+    *,
+    radius: float = BALL_RADIUS,
+    anywhere: bool = False,
+) -> Place:
+    """The free place (x, y) in the D (``anywhere``: on the bed) nearest to (x, y) [m]. The cue ball's own
+    position is ignored.
 
-    Raises ``ValueError`` for wrong arrays or numbers, and if there is no free place (which no legal table has).
+    Raises ``ValueError`` for wrong arrays or numbers, and if there is no free place (which no legal table
+    has).
     """
     placed, present = check_table(positions, on_table)
     present[0] = False
-    px, py, found = _nearest_place(placed, present, number("x", x), number("y", y), float(radius), bool(anywhere))
+    px, py, found = _nearest_place(
+        placed, present, number("x", x), number("y", y), float(radius), bool(anywhere)
+    )
     if not found:
         raise refuse("on_table", int(present.sum()), "must leave a free place")
     return px, py

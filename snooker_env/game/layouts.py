@@ -1,7 +1,9 @@
-"""Which tables can a task start from? Layouts from a stream of random numbers: geometry only, no shot is simulated.
+"""Which tables can a task start from? Layouts from a stream of random numbers: geometry only, no shot is
+simulated.
 
-A layout is ``positions`` (22, 2) [m] and ``on_table`` (22,) bool. It depends on the stream alone: same key and counter, same table. The
-row of a ball off the table is that of ``balls.SPOTS``. Balls that are not racked or on a spot are at least ``GAP`` from any other.
+A layout is ``positions`` (22, 2) [m] and ``on_table`` (22,) bool. It depends on the stream alone: same key
+and counter, same table. The row of a ball off the table is that of ``balls.SPOTS``. Balls that are not racked
+or on a spot are at least ``GAP`` from any other.
 """
 
 from dataclasses import dataclass
@@ -23,7 +25,8 @@ from .snookered import NO_JAWS, snookered_from
 GAP = 0.001
 """Least gap between a ball placed at random and any other ball [m]."""
 CUSHION_GAP = 0.05
-"""Least gap between such a ball and a cushion [m]: about a ball's width, so that it can be struck normally."""
+"""Least gap between such a ball and a cushion [m]: about a ball's width, so that it can be struck
+normally."""
 POCKET_GAP = 0.15
 """Least distance of such a ball's centre from a pocket's nominal place [m]: clear of the jaws."""
 
@@ -42,13 +45,16 @@ def clear(positions, on_table, x, y):
             return False
     free = True
     for i in range(N_BALLS):
-        free = free and not (on_table[i] and hypot(positions[i, 0] - x, positions[i, 1] - y) < 2 * BALL_RADIUS + GAP)
+        free = free and not (
+            on_table[i] and hypot(positions[i, 0] - x, positions[i, 1] - y) < 2 * BALL_RADIUS + GAP
+        )
     return free
 
 
 @kernel
 def _put(positions, on_table, ball, kind, stream):
-    """Put a ball at the first random place that is clear; the cue ball within the bounds of its kind of layout.
+    """Put a ball at the first random place that is clear; the cue ball within the bounds of its kind of
+    layout.
 
     For the break-off it stands at its usual place, left or right of the brown.
     """
@@ -62,7 +68,11 @@ def _put(positions, on_table, ball, kind, stream):
     while True:
         u, v = pair(stream)
         x, y = left + u * (right - left), bottom + v * (top - bottom)
-        if ball == CUE and kind == COLOURS and not 0.25 <= hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1]) <= 1.2:
+        if (
+            ball == CUE
+            and kind == COLOURS
+            and not 0.25 <= hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1]) <= 1.2
+        ):
             continue  # too near to the first ball on, or too far from it
         if clear(positions, on_table, x, y):
             positions[ball, 0], positions[ball, 1] = x, y
@@ -87,8 +97,8 @@ def _opened(positions, on_table, tables, first, last, stream):
 def _line_up_y(k):
     """The y of red k of 15 in the practice line-up on the centre line [m].
 
-    Two reds are below the blue, seven between blue and pink, four between pink and black, two above the black. They are about 112 mm apart,
-    so that a ball just passes between two.
+    Two reds are below the blue, seven between blue and pink, four between pink and black, two above the
+    black. They are about 112 mm apart, so that a ball just passes between two.
     """
     blue, pink, black = SPOTS[19, 1], SPOTS[20, 1], SPOTS[21, 1]
     low, high = (pink - blue) / 8, (black - pink) / 5
@@ -100,22 +110,27 @@ def _line_up_y(k):
 SNOOKERED_REDS = 3
 """The most reds on the table in the layout "snookered"."""
 BEHIND = (0.08, 0.5)
-"""Least and largest distance of its cue ball from the snookering colour [m]: from 1.5 ball widths to 28 % of the table's width."""
+"""Least and largest distance of its cue ball from the snookering colour [m]: from 1.5 ball widths to 28 % of
+the table's width."""
 
 
 @kernel
 def _hide(positions, on_table, reds, stream):
-    """Try to snooker the cue ball on every red, 1 to ``reds``, by a random colour; returns whether this succeeded.
+    """Try to snooker the cue ball on every red, 1 to ``reds``, by a random colour; returns whether this
+    succeeded.
 
-    The cue ball is placed behind the colour as seen from a red. The place is accepted only if the rule's tangent test
-    (``snookered.is_snookered``) finds no red that can be struck at both edges. An escape needs a cushion, swerve, or a contact with the one
-    open edge of a red.
+    The cue ball is placed behind the colour as seen from a red. The place is accepted only if the rule's
+    tangent test (``snookered.is_snookered``) finds no red that can be struck at both edges. An escape needs a
+    cushion, swerve, or a contact with the one open edge of a red.
     """
     u, v = pair(stream)
     far, _ = pair(stream)
     turn, _ = normals(stream)
     red, colour = 1 + int(u * reds), YELLOW + int(v * (N_BALLS - YELLOW))
-    angle = atan2(positions[colour, 1] - positions[red, 1], positions[colour, 0] - positions[red, 0]) + 0.03 * turn
+    angle = (
+        atan2(positions[colour, 1] - positions[red, 1], positions[colour, 0] - positions[red, 0])
+        + 0.03 * turn
+    )
     far = BEHIND[0] + far * (BEHIND[1] - BEHIND[0])
     x, y = positions[colour, 0] + far * cos(angle), positions[colour, 1] + far * sin(angle)
     if not clear(positions, on_table, x, y):
@@ -126,15 +141,18 @@ def _hide(positions, on_table, reds, stream):
 
 
 POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e-3)}
-"""Difficulty -> range of the tolerance of the layout's widest pot [rad]: by how much the aim may err to either side, by ``game.pots``.
+"""Difficulty -> range of the tolerance of the layout's widest pot [rad]: by how much the aim may err to
+either side, by ``game.pots``.
 
-Played along the solved line at 2.3 m/s, with the execution errors of a professional 94, 90 and 61 % of them are potted; with those of a
-club player 92, 63 and 24 % (``python -m benchmarks.execution --strokes 2000``)."""
+Played along the solved line at 2.3 m/s, with the execution errors of a professional 94, 90 and 61 % of them
+are potted; with those of a club player 92, 63 and 24 % (``python -m benchmarks.execution --strokes
+2000``)."""
 
 
 @kernel
 def _deal(code, tables, stream, positions, on_table, found):
-    """One layout: first the racked and spotted balls, then the loose reds, last the cue ball; repeated until its condition holds."""
+    """One layout: first the racked and spotted balls, then the loose reds, last the cue ball; repeated until
+    its condition holds."""
     kind, reds, low, high = int(code[0]), int(code[1]), code[2], code[3]
     if kind == OPENED:
         _opened(positions, on_table, tables, int(low), int(high), stream)
@@ -156,7 +174,10 @@ def _deal(code, tables, stream, positions, on_table, found):
             if _hide(positions, on_table, loose, stream):
                 return
         elif kind == POT:
-            if find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, found) and low <= found[0, TOLERANCE] < high:
+            if (
+                find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, found)
+                and low <= found[0, TOLERANCE] < high
+            ):
                 return
         else:
             return
@@ -164,7 +185,8 @@ def _deal(code, tables, stream, positions, on_table, found):
 
 @entry(what="the dealing of tables", seconds=4)
 def deal_tables(which, code, tables, streams, positions, on_table):
-    """Write a new layout for each of the tables ``which``, from its own stream, into positions (n, 22, 2) [m] and on_table (n, 22).
+    """Write a new layout for each of the tables ``which``, from its own stream, into positions (n, 22, 2) [m]
+    and on_table (n, 22).
 
     ``code`` and ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64.
     """
@@ -184,7 +206,8 @@ class Plan:
     name : str
         Name of the layout.
     code : float64 (4,)
-        Kind, number of reds, and two numbers: the first and last table of the bank, or the range of a pot's tolerance [rad].
+        Kind, number of reds, and two numbers: the first and last table of the bank, or the range of a pot's
+        tolerance [rad].
     tables : float64 (b, 22, 2)
         The bank of opened tables [m]; b = 0 for a layout without one.
     unfit : tuple of int
@@ -221,7 +244,8 @@ _NAMES = {
 _COUNTED = {"random": RANDOM, "break_off": BREAK_OFF}
 _COUNTS = [str(n) for n in range(N_REDS + 1)]
 LAYOUTS = ("opened", "held_out", *_NAMES)
-"""Names of the layouts without a number: "opened", "held_out", "break_off", "line_up", "colours" and "snookered"."""
+"""Names of the layouts without a number: "opened", "held_out", "break_off", "line_up", "colours" and
+"snookered"."""
 
 
 def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
@@ -230,7 +254,8 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     Parameters
     ----------
     name : str
-        One of ``LAYOUTS``, ``"random:N"`` or ``"break_off:N"`` with N reds from 0 to 15, or ``"pots:D"`` with D one of ``POT_WINDOWS``.
+        One of ``LAYOUTS``, ``"random:N"`` or ``"break_off:N"`` with N reds from 0 to 15, or ``"pots:D"`` with
+        D one of ``POT_WINDOWS``.
     unfit : tuple of int
         Indices of tables of the bank that are not to be dealt, in rising order.
 
@@ -306,7 +331,8 @@ def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
 
 
 def break_off(rng: np.random.Generator) -> tuple[Floats, Bools]:
-    """The start of a frame: reds racked, colours on their spots, the cue ball at its usual place, on either side of the brown."""
+    """The start of a frame: reds racked, colours on their spots, the cue ball at its usual place, on either
+    side of the brown."""
     return layout("break_off", rng)
 
 

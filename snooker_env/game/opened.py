@@ -1,8 +1,10 @@
-"""Where do opened tables come from? From a bank of tables opened by simulated play, shipped as data: ``opened.npz``.
+"""Where do opened tables come from? From a bank of tables opened by simulated play, shipped as data:
+``opened.npz``.
 
-Each table is a break-off and further hard strokes at the reds, all simulated and refereed, until the pack is spread. It is in the bank if
-all 22 balls are still on it and some red can be potted. ``python -m benchmarks.make_opened`` makes the file. The last ``HELD_OUT`` tables
-are never dealt by the layout "opened": they are for evaluation ("held_out"). Every table is also dealt mirrored in the long axis.
+Each table is a break-off and further hard strokes at the reds, all simulated and refereed, until the pack is
+spread. It is in the bank if all 22 balls are still on it and some red can be potted.
+``python -m benchmarks.make_opened`` makes the file. The last ``HELD_OUT`` tables are never dealt by the
+layout "opened": they are for evaluation ("held_out"). Every table is also dealt mirrored in the long axis.
 """
 
 from functools import cache, lru_cache
@@ -37,7 +39,8 @@ def kept(size: int) -> tuple[range, range]:
 
 @lru_cache(8)
 def bank_without(unfit: tuple[int, ...]) -> Floats:
-    """The bank with each table of ``unfit`` (indices) replaced by the next table of its part (held out or not) that is not in ``unfit``.
+    """The bank with each table of ``unfit`` (indices) replaced by the next table of its part (held out or
+    not) that is not in ``unfit``.
 
     So a stream deals the same tables as before, except for these. Some tables of each part must be left.
     """

@@ -1,13 +1,16 @@
-"""Which direct pots does a layout have, and how wide is each? Ghost-ball geometry: straight lines, no throw, no spin.
+"""Which direct pots does a layout have, and how wide is each? Ghost-ball geometry: straight lines, no throw,
+no spin.
 
-For object ball b and pocket k the object ball must go along d, the unit vector from b to the pocket's aim point; the cue ball must
-arrive at the ghost ball G = b - 2 R d. With theta the cut angle (between d and the cue ball's path C -> G), the aim may err by about::
+For object ball b and pocket k the object ball must go along d, the unit vector from b to the pocket's aim
+point; the cue ball must arrive at the ghost ball G = b - 2 R d. With theta the cut angle (between d and the
+cue ball's path C -> G), the aim may err by about::
 
     tolerance = w(a) / (2 |b pocket|)  *  2 R cos(theta) / |C G|      [rad]
 
-This is the half window of the pocket as an angle of the object ball's path, divided by the magnification of an aiming error at the impact.
-w(a) is the width of the lateral window of the pocket at the angle a off its axis [m], for a ball that rolls at 1.5 m/s on table "match",
-jaws included, to a millimetre (tests/benchmarks/test_pocket_windows.py). The window is smaller for a fast ball and larger for a slow one.
+This is the half window of the pocket as an angle of the object ball's path, divided by the magnification of
+an aiming error at the impact. w(a) is the width of the lateral window of the pocket at the angle a off its
+axis [m], for a ball that rolls at 1.5 m/s on table "match", jaws included, to a millimetre
+(tests/benchmarks/test_pocket_windows.py). The window is smaller for a fast ball and larger for a slow one.
 """
 
 from math import acos, cos, radians, sqrt
@@ -16,17 +19,32 @@ import numpy as np
 
 from .._jit import entry, kernel
 from .._types import Flags, Floats, Vectors
-from ..geometry import AIM_X, AIM_Y, AXIS_X, AXIS_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, IS_MIDDLE, POCKET_AIMS
+from ..geometry import (
+    AIM_X,
+    AIM_Y,
+    AXIS_X,
+    AXIS_Y,
+    BALL_RADIUS,
+    HALF_LENGTH,
+    HALF_WIDTH,
+    IS_MIDDLE,
+    POCKET_AIMS,
+)
 from .balls import N_BALLS
 
-_CORNER_ANGLE, _CORNER_WINDOW = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0)  # degrees, metres
+# degrees, metres
+_CORNER_ANGLE, _CORNER_WINDOW = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0)
 _MIDDLE_ANGLE, _MIDDLE_WINDOW = (0.0, 15.0, 30.0, 45.0, 60.0, 70.0), (0.073, 0.071, 0.063, 0.043, 0.018, 0.0)
-# Squared cosines of the last angles, less a margin far above rounding: below them a window is certainly closed.
-_CORNER_SHUT, _MIDDLE_SHUT = (cos(radians(angle)) ** 2 - 1e-9 for angle in (_CORNER_ANGLE[-1], _MIDDLE_ANGLE[-1]))
+# Squared cosines of the last angles, less a margin far above rounding: below them a window is certainly
+# closed.
+_CORNER_SHUT, _MIDDLE_SHUT = (
+    cos(radians(angle)) ** 2 - 1e-9 for angle in (_CORNER_ANGLE[-1], _MIDDLE_ANGLE[-1])
+)
 _CORNER_WIDEST, _MIDDLE_WIDEST = max(_CORNER_WINDOW), max(_MIDDLE_WINDOW)
 
 POT_BALL, POT_POCKET, GHOST_X, GHOST_Y, COS_CUT, TOLERANCE = range(6)
-"""Columns of a pot: object ball, pocket, place of the ghost ball [m], cosine of the cut angle, tolerance of the aim [rad]."""
+"""Columns of a pot: object ball, pocket, place of the ghost ball [m], cosine of the cut angle, tolerance of
+the aim [rad]."""
 POT_COLUMNS = 6
 """Number of columns of a pot."""
 
@@ -107,8 +125,8 @@ def pot_at(positions, on_table, ball, k, d, least):
     """
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     dx, dy = POCKET_AIMS[k, AIM_X] - bx, POCKET_AIMS[k, AIM_Y] - by
-    # most pots are out of the question, and that is seen without a root: the object ball would have to come back towards the cue ball, or
-    # the pocket is shut from there
+    # most pots are out of the question, and that is seen without a root: the object ball would have to come
+    # back towards the cue ball, or the pocket is shut from there
     along, middle = dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
     shut = (_MIDDLE_SHUT if middle else _CORNER_SHUT) * (dx * dx + dy * dy)
     if dx * (bx - cx) + dy * (by - cy) <= 0.0 or along <= 0.0 or along * along < shut:
@@ -122,7 +140,8 @@ def pot_at(positions, on_table, ball, k, d, least):
     path = sqrt(px * px + py * py)
     if path < 1e-9:
         return 0.0, 0.0, 0.0, 0.0
-    if abs(gx) > HALF_WIDTH - 0.5 * d + 1e-9 or abs(gy) > HALF_LENGTH - 0.5 * d + 1e-9:  # the ghost ball would be in the cushion
+    # the ghost ball would be in the cushion
+    if abs(gx) > HALF_WIDTH - 0.5 * d + 1e-9 or abs(gy) > HALF_LENGTH - 0.5 * d + 1e-9:
         return 0.0, 0.0, 0.0, 0.0
     cos_cut = (px * dx + py * dy) / path
     if cos_cut < 0.05:  # a cut of more than 87 degrees
@@ -134,7 +153,9 @@ def pot_at(positions, on_table, ball, k, d, least):
     tolerance = width * of_width
     if width <= 0.0 or tolerance <= least:
         return 0.0, 0.0, 0.0, 0.0
-    if not clear_segment(positions, on_table, bx, by, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], ball, 0, d):
+    if not clear_segment(
+        positions, on_table, bx, by, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], ball, 0, d
+    ):
         return 0.0, 0.0, 0.0, 0.0
     if not clear_segment(positions, on_table, cx, cy, gx, gy, ball, 0, d * (1.0 - 1e-9)):
         return 0.0, 0.0, 0.0, 0.0
@@ -186,7 +207,8 @@ def find_pots(positions, on_table, on, radius, pots):
 
 @kernel
 def count_pots(positions, on_table, on, radius, most):
-    """The number of rows that ``find_pots`` writes into ``most`` rows. It stops at the last one that counts."""
+    """The number of rows that ``find_pots`` writes into ``most`` rows. It stops at the last one that
+    counts."""
     count = 0
     for ball in range(1, N_BALLS):
         if not on_table[ball] or not (on >> ball) & 1:
@@ -204,8 +226,17 @@ def _pots(positions, on_table, on, radius, pots):
     return find_pots(positions, on_table, on, radius, pots)
 
 
-def pots(positions: Vectors, on_table: Flags, on: int, *, most: int = 32, radius: float = BALL_RADIUS) -> Floats:
-    """The direct pots (k, POT_COLUMNS) of the balls in the mask ``on``, widest tolerance first, k at most ``most``."""
+def pots(
+    positions: Vectors, on_table: Flags, on: int, *, most: int = 32, radius: float = BALL_RADIUS
+) -> Floats:
+    """The direct pots (k, POT_COLUMNS) of the balls in the mask ``on``, widest tolerance first, k at most
+    ``most``."""
     out = np.zeros((most, POT_COLUMNS))
-    n = _pots(np.ascontiguousarray(positions, dtype=np.float64), np.ascontiguousarray(on_table, dtype=np.bool_), int(on), radius, out)
+    n = _pots(
+        np.ascontiguousarray(positions, dtype=np.float64),
+        np.ascontiguousarray(on_table, dtype=np.bool_),
+        int(on),
+        radius,
+        out,
+    )
     return out[:n].copy()

@@ -1,4 +1,5 @@
-"""How does Python call the referee? ``judge(Situation, Stroke) -> Verdict``: checked input, named results, and the kernel ``ruling``."""
+"""How does Python call the referee? ``judge(Situation, Stroke) -> Verdict``: checked input, named results,
+and the kernel ``ruling``."""
 
 from dataclasses import dataclass
 
@@ -17,7 +18,8 @@ MOST_POINTS = 2**60
 
 @dataclass(frozen=True, kw_only=True)
 class Situation:
-    """The state of the frame before the stroke, as far as the referee needs it. Masks have bit i for ball i (``balls.mask_of``).
+    """The state of the frame before the stroke, as far as the referee needs it. Masks have bit i for ball i
+    (``balls.mask_of``).
 
     Attributes
     ----------
@@ -41,13 +43,21 @@ class Situation:
 
     def __post_init__(self) -> None:
         integer("on_table", self.on_table, 0, ALL_MASK)
-        object.__setattr__(self, "ball_on", BallOn(integer("ball_on", self.ball_on, BallOn.ANY_COLOUR, BallOn.BLACK)))
+        object.__setattr__(
+            self, "ball_on", BallOn(integer("ball_on", self.ball_on, BallOn.ANY_COLOUR, BallOn.BLACK))
+        )
         integer("lead", self.lead, -MOST_POINTS, MOST_POINTS)
         choice("rules", self.rules, RULES)
         if not balls_on(self.ball_on, self.on_table & ~CUE_BIT):
-            raise refuse("ball_on", self.ball_on.name, "must name balls of which one is on the table (on_table)")
+            raise refuse(
+                "ball_on", self.ball_on.name, "must name balls of which one is on the table (on_table)"
+            )
         if self.ball_on > BallOn.RED and self.on_table & REDS_MASK:
-            raise refuse("ball_on", self.ball_on.name, "must be RED or ANY_COLOUR while reds are on the table (on_table)")
+            raise refuse(
+                "ball_on",
+                self.ball_on.name,
+                "must be RED or ANY_COLOUR while reds are on the table (on_table)",
+            )
         if self.free_ball and self.ball_on == BallOn.ANY_COLOUR:
             raise refuse("free_ball", self.free_ball, "must be False when any colour is on (ball_on)")
 
@@ -59,7 +69,8 @@ class Stroke:
     Attributes
     ----------
     first : int
-        Object balls struck by the cue ball's first impact: 0 for none, more than one for simultaneous impacts.
+        Object balls struck by the cue ball's first impact: 0 for none, more than one for simultaneous
+        impacts.
     potted : int
         Balls that entered a pocket, bit 0 the cue ball.
     off : int
@@ -67,10 +78,11 @@ class Stroke:
     touching : int
         Object balls that touched the cue ball before the stroke.
     moved : int
-        Those of ``touching`` that the cue ball moved as it left them (not those that another ball moved later).
+        Those of ``touching`` that the cue ball moved as it left them (not those that another ball moved
+        later).
     nominated : int
-        Id of the colour nominated, after a red or as the free ball; 0 for none (a free ball declined); AUTO: the colour first
-        struck.
+        Id of the colour nominated, after a red or as the free ball; 0 for none (a free ball declined); AUTO:
+        the colour first struck.
     jump : bool
         An illegal jump shot.
     push : bool
@@ -84,11 +96,13 @@ class Stroke:
     out_of_turn : bool
         Played out of turn.
     seven : bool
-        An act that costs 7 points whatever is on: wrong cue ball, a ball off the table used, measuring, no declaration on request ...
+        An act that costs 7 points whatever is on: wrong cue ball, a ball off the table used, measuring, no
+        declaration on request ...
     snookered : bool
         After the stroke, with colours respotted, the next striker is snookered on the next ball on.
     behind_free_ball : bool
-        As ``snookered``, and the snookering ball is the one that was nominated, as the free ball or after a red.
+        As ``snookered``, and the snookering ball is the one that was nominated, as the free ball or after a
+        red.
     no_cushion : bool
         No ball reached a cushion.
     late : bool
@@ -123,13 +137,20 @@ class Stroke:
             raise refuse("moved", ids_of(self.moved), "must be some of the touching balls")
         if self.potted & self.off:
             raise refuse("off", ids_of(self.off), "must name no ball that was potted")
-        if integer("nominated", self.nominated, AUTO, N_BALLS - 1) > 0 and not COLOURS_MASK >> self.nominated & 1:
-            raise refuse("nominated", self.nominated, "must be a colour (ids 16 to 21), 0 for none or -1 (AUTO)")
+        if (
+            integer("nominated", self.nominated, AUTO, N_BALLS - 1) > 0
+            and not COLOURS_MASK >> self.nominated & 1
+        ):
+            raise refuse(
+                "nominated", self.nominated, "must be a colour (ids 16 to 21), 0 for none or -1 (AUTO)"
+            )
 
     @property
     def flags(self) -> Flag:
         """The bool fields as a ``Flag``."""
-        return Flag(sum(flag for flag in Flag if flag not in RULE_FLAGS and getattr(self, str(flag.name).lower())))
+        return Flag(
+            sum(flag for flag in Flag if flag not in RULE_FLAGS and getattr(self, str(flag.name).lower()))
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,7 +172,8 @@ class Verdict:
     ball_on : BallOn
         The next ball on; NOTHING when the frame is over.
     stays : bool, or None
-        Whether the striker plays on; None: a lot decides (re-spotted black). After a foul the opponent may decide otherwise.
+        Whether the striker plays on; None: a lot decides (re-spotted black). After a foul the opponent may
+        decide otherwise.
     in_hand : bool
         The next stroke is played from the D.
     free_ball : bool
@@ -214,10 +236,20 @@ def check(situation: Situation, stroke: Stroke) -> None:
             raise refuse(name, [NAMES[i] for i in ids_of(absent)], "must be on the table before the stroke")
     if stroke.nominated > 0:
         on = balls_on(situation.ball_on, situation.on_table)
-        allowed = on if situation.ball_on == BallOn.ANY_COLOUR else situation.on_table & ~on if situation.free_ball else 0
+        allowed = (
+            on
+            if situation.ball_on == BallOn.ANY_COLOUR
+            else situation.on_table & ~on
+            if situation.free_ball
+            else 0
+        )
         if not allowed >> stroke.nominated & 1:
             what = [NAMES[i] for i in ids_of(allowed & COLOURS_MASK)]
-            raise refuse("nominated", NAMES[stroke.nominated], f"must be one of {what}" if what else "must be none: no choice is on")
+            raise refuse(
+                "nominated",
+                NAMES[stroke.nominated],
+                f"must be one of {what}" if what else "must be none: no choice is on",
+            )
 
 
 def numbers_of(situation: Situation, stroke: Stroke) -> tuple[Before, Facts, int]:
@@ -237,6 +269,7 @@ def ruling_of(situation: Situation, stroke: Stroke) -> Ruling:
 def judge(situation: Situation, stroke: Stroke) -> Verdict:
     """Judge one stroke: the ``Verdict`` on a ``Stroke`` in a ``Situation``. A pure function.
 
-    Raises ``ValueError`` if the two do not fit together (a ball potted that was not on the table, a nomination that is not allowed).
+    Raises ``ValueError`` if the two do not fit together (a ball potted that was not on the table, a
+    nomination that is not allowed).
     """
     return verdict_of(ruling_of(situation, stroke))

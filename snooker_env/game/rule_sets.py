@@ -1,4 +1,5 @@
-"""Which game is played? Snooker, six-red snooker or the Shoot Out: what each changes in the rules of a frame, as data.
+"""Which game is played? Snooker, six-red snooker or the Shoot Out: what each changes in the rules of a frame,
+as data.
 
 ``docs/environment/rules.md`` says where each rule comes from, what is left out and why. Kernels know a rule
 set by its ``code``.
@@ -30,12 +31,14 @@ class RuleSet:
     reds : int
         Reds in the rack at the start: the first ``reds`` places of the triangle.
     most_misses : int
-        Foul-and-a-miss calls in succession after which the position is not replaced again, and the non-offender may place the cue ball
-        anywhere instead; 0 for no limit.
+        Foul-and-a-miss calls in succession after which the position is not replaced again, and the
+        non-offender may place the cue ball anywhere instead; 0 for no limit.
     behind_nominated : bool
-        A snooker behind a nominated ball is a foul at any time: behind a colour nominated after a red, too, and with pink and black.
+        A snooker behind a nominated ball is a foul at any time: behind a colour nominated after a red, too,
+        and with pink and black.
     anywhere : bool
-        After every foul the opponent plays from in hand, from anywhere on the table: no choice, no free ball and no miss.
+        After every foul the opponent plays from in hand, from anywhere on the table: no choice, no free ball
+        and no miss.
     cushion : bool
         A stroke that pots no ball must drive a ball, the cue ball included, to a cushion.
     clock : int
@@ -72,7 +75,14 @@ LATE_PENALTY = 5
 RULE_SETS = (
     RuleSet(name="snooker", code=SNOOKER),
     RuleSet(name="six_red", code=SIX_RED, reds=6, most_misses=5, behind_nominated=True),
-    RuleSet(name="shoot_out", code=SHOOT_OUT, anywhere=True, cushion=True, clock=600_000, shot_clock=(15_000, 10_000)),
+    RuleSet(
+        name="shoot_out",
+        code=SHOOT_OUT,
+        anywhere=True,
+        cushion=True,
+        clock=600_000,
+        shot_clock=(15_000, 10_000),
+    ),
 )
 """All rule sets, by code."""
 RULES = get_args(RulesName)

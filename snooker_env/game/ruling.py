@@ -1,12 +1,15 @@
-"""Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke, as a pure function.
+"""Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke, as a
+pure function.
 
-``ruling`` is a kernel on integers and masks (bit i is ball i), so the same machine code judges one table from Python and thousands in a
-batch. ``referee.judge`` calls it from Python; ``apply_ruling.settle`` also sets up the table.
+``ruling`` is a kernel on integers and masks (bit i is ball i), so the same machine code judges one table from
+Python and thousands in a batch. ``referee.judge`` calls it from Python; ``apply_ruling.settle`` also sets up
+the table.
 
-Its input is what a simulator can observe. It does not judge intent or effort (whether a miss was deliberate or the attempt good enough;
-``frame.py`` has the part of that rule that geometry decides), time wasting or conduct. Acts outside the simulation (a foot off the floor,
-playing out of turn, measuring ...) are passed in as flags. So are an illegal jump, a push and a double hit, which depend on the cue ball's
-flight and the tip's contact.
+Its input is what a simulator can observe. It does not judge intent or effort (whether a miss was deliberate
+or the attempt good enough; ``frame.py`` has the part of that rule that geometry decides), time wasting or
+conduct. Acts outside the simulation (a foot off the floor, playing out of turn, measuring ...) are passed in
+as flags. So are an illegal jump, a push and a double hit, which depend on the cue ball's flight and the tip's
+contact.
 """
 
 from collections import namedtuple
@@ -18,7 +21,8 @@ from .balls import BLACK, COLOURS_MASK, CUE_BIT, N_BALLS, PINK, VALUES, balls_on
 from .rule_sets import LATE_PENALTY
 
 AUTO = -1
-"""The referee decides which ball was nominated: the one that was evidently played at (see ``_nomination``)."""
+"""The referee decides which ball was nominated: the one that was evidently played at (see
+``_nomination``)."""
 
 
 class Flag(IntFlag):
@@ -218,8 +222,9 @@ def _top_ball(mask):
 def _nomination(on, ball_on, free_ball, first, touching, nominated):
     """The id of the colour on, or of the free ball, or 0 for none.
 
-    A nomination is needed only on "any colour" or with a free ball. With AUTO it is the colour first struck among those allowed, the
-    highest if there are several; if none was struck, an allowed colour that the cue ball was touching.
+    A nomination is needed only on "any colour" or with a free ball. With AUTO it is the colour first struck
+    among those allowed, the highest if there are several; if none was struck, an allowed colour that the cue
+    ball was touching.
     """
     if ball_on != 0 and not free_ball:
         return 0
@@ -227,7 +232,8 @@ def _nomination(on, ball_on, free_ball, first, touching, nominated):
         return nominated
     could_be = COLOURS_MASK if ball_on == 0 else COLOURS_MASK & ~on
     ball = _top_ball(first & could_be)
-    # A striker who plays from a touching ball and strikes the real ball on first has not nominated a free ball.
+    # A striker who plays from a touching ball and strikes the real ball on first has not nominated a free
+    # ball.
     return ball if ball != 0 or (ball_on != 0 and first & on != 0) else _top_ball(touching & could_be)
 
 
@@ -304,9 +310,12 @@ def ruling(before, facts, flags):
         fouls |= FOUL.NO_CUSHION
         penalty = max(penalty, base)
 
-    # 6. No snooker behind the free ball after a stroke that does not score, unless only pink and black are left.
+    # 6. No snooker behind the free ball after a stroke that does not score, unless only pink and black are
+    #    left.
     behind = flags & FLAG.BEHIND_FREE_BALL and (fouls or not down)
-    if behind and ((choice and flags & FLAG.SIX_RED) or (free and reds_and_colours != (1 << PINK | 1 << BLACK))):
+    if behind and (
+        (choice and flags & FLAG.SIX_RED) or (free and reds_and_colours != (1 << PINK | 1 << BLACK))
+    ):
         fouls |= FOUL.BEHIND_FREE_BALL
         penalty = max(penalty, base)
 
@@ -318,7 +327,8 @@ def ruling(before, facts, flags):
         fouls |= FOUL.NO_NOMINATION
         penalty = 7
 
-    # Points, and the colours that return: after a foul all, else those that were not potted as the ball on of the sequence.
+    # Points, and the colours that return: after a foul all, else those that were not potted as the ball on of
+    # the sequence.
     points = 0
     respotted = down & COLOURS_MASK
     if not fouls:
@@ -339,7 +349,8 @@ def ruling(before, facts, flags):
     if remaining == 0 and not fouls:
         visit_end = VISIT.CLEARANCE
 
-    # The frame ends when the table is empty, and with the first score or foul when only the black is left. If level, the black returns.
+    # The frame ends when the table is empty, and with the first score or foul when only the black is left. If
+    # level, the black returns.
     outcome = OUTCOME.PLAYING
     if remaining == 0 or (fouls and reds_and_colours == 1 << BLACK):
         lead += points - penalty
@@ -358,4 +369,17 @@ def ruling(before, facts, flags):
     if flags & FLAG.SHOOT_OUT and playing and fouls:
         in_hand = 1
     free_next = 1 if playing and fouls and flags & FLAG.SNOOKERED and not flags & FLAG.SHOOT_OUT else 0
-    return Ruling(fouls, penalty, points, respotted, remaining, next_on, stays, in_hand, free_next, visit_end, outcome, choice)  # type: ignore[arg-type]
+    return Ruling(
+        fouls,
+        penalty,
+        points,
+        respotted,
+        remaining,
+        next_on,
+        stays,
+        in_hand,
+        free_next,
+        visit_end,
+        outcome,
+        choice,
+    )  # type: ignore[arg-type]

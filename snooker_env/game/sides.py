@@ -1,4 +1,5 @@
-"""How does a player see a frame? Rows of frames from the other side, from the striker's own, and as a visit; whole arrays at once."""
+"""How does a player see a frame? Rows of frames from the other side, from the striker's own, and as a visit;
+whole arrays at once."""
 
 import numpy as np
 
@@ -38,7 +39,8 @@ def strikers_own(game: Ints) -> Ints:
 
 
 def as_visits(game: Ints) -> Ints:
-    """Rows of frames as a player of visits sees them, copied: a free ball is any colour, what may stand anywhere is placed."""
+    """Rows of frames as a player of visits sees them, copied: a free ball is any colour, what may stand
+    anywhere is placed."""
     seen = game.copy()
     free, anywhere = game[:, FREE_BALL] != 0, game[:, ANYWHERE] != 0
     seen[free, BALL_ON] = seen[free, FREE_BALL] = 0

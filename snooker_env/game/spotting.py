@@ -1,10 +1,11 @@
 """Where does a colour go when it returns? The spotting rule, exact, as kernels.
 
-A colour goes on its own spot. If that is occupied, it goes on the free spot of the highest value. If every spot is occupied, it goes as
-near its own spot as possible without touching another ball, on the straight line from there to the top cushion. If that line has no room,
-it goes on the same line below the spot (the rules state this for pink and black, whose line is the centre line). A spot is occupied if a
-ball placed there would touch another, as the referee sees it (``balls.REFEREE_TOUCH``): he puts no ball down where he would then call a
-touching ball. Of several colours, those whose own spot is free go first, then the highest value first.
+A colour goes on its own spot. If that is occupied, it goes on the free spot of the highest value. If every
+spot is occupied, it goes as near its own spot as possible without touching another ball, on the straight line
+from there to the top cushion. If that line has no room, it goes on the same line below the spot (the rules
+state this for pink and black, whose line is the centre line). A spot is occupied if a ball placed there would
+touch another, as the referee sees it (``balls.REFEREE_TOUCH``): he puts no ball down where he would then call
+a touching ball. Of several colours, those whose own spot is free go first, then the highest value first.
 """
 
 import numpy as np
@@ -13,7 +14,17 @@ from .._check import integer, refuse
 from .._jit import entry, kernel
 from .._types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS, HALF_LENGTH
-from .balls import ALL_MASK, BLACK, CLEARANCE, COLOURS_MASK, N_BALLS, REFEREE_TOUCH, SPOTS, YELLOW, check_table
+from .balls import (
+    ALL_MASK,
+    BLACK,
+    CLEARANCE,
+    COLOURS_MASK,
+    N_BALLS,
+    REFEREE_TOUCH,
+    SPOTS,
+    YELLOW,
+    check_table,
+)
 
 
 @kernel
@@ -35,10 +46,12 @@ def occupied(positions, on_table, x, y, radius):
 
 @kernel
 def nearest_free(positions, on_table, x, y, direction, radius):
-    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no other [m]. Cushions are ignored.
+    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no
+    other [m]. Cushions are ignored.
 
-    Each ball i excludes an open interval of the line, y_i - h to y_i + h with h^2 = (2 R + clearance)^2 - (x_i - x)^2. To move y to the far
-    end of each interval that contains it, until none does, gives the nearest free place exactly.
+    Each ball i excludes an open interval of the line, y_i - h to y_i + h with h^2 = (2 R + clearance)^2 -
+    (x_i - x)^2. To move y to the far end of each interval that contains it, until none does, gives the
+    nearest free place exactly.
     """
     reach = 2.0 * radius + CLEARANCE
     moved = True
@@ -57,7 +70,8 @@ def nearest_free(positions, on_table, x, y, direction, radius):
 
 @kernel
 def place_colour(positions, on_table, ball, radius):
-    """The place of the colour ``ball`` by the rule: (x, y) [m]. Its own entry in ``on_table`` must be False."""
+    """The place of the colour ``ball`` by the rule: (x, y) [m]. Its own entry in ``on_table`` must be
+    False."""
     x, y = SPOTS[ball, 0], SPOTS[ball, 1]
     if not occupied(positions, on_table, x, y, radius):
         return x, y
@@ -73,9 +87,11 @@ def place_colour(positions, on_table, ball, radius):
 
 @kernel
 def spot(positions, on_table, mask, radius):
-    """Return the colours in ``mask`` to the table: write their rows of ``positions`` (22, 2) [m] and ``on_table`` (22,) bool.
+    """Return the colours in ``mask`` to the table: write their rows of ``positions`` (22, 2) [m] and
+    ``on_table`` (22,) bool.
 
-    ``mask`` may contain balls that are still on the table; they are removed first (the black of a re-spotted black).
+    ``mask`` may contain balls that are still on the table; they are removed first (the black of a re-spotted
+    black).
     """
     for ball in range(YELLOW, BLACK + 1):
         if (mask >> ball) & 1:
@@ -98,10 +114,14 @@ def _spot(positions, on_table, mask, radius):
     spot(positions, on_table, mask, radius)
 
 
-def spot_colours(positions: Vectors, on_table: Flags, mask: int, *, radius: float = BALL_RADIUS) -> tuple[Floats, Bools]:
-    """Return colours to the table: new ``positions`` (22, 2) [m] and ``on_table`` (22,) with the colours in ``mask`` placed by the rule.
+def spot_colours(
+    positions: Vectors, on_table: Flags, mask: int, *, radius: float = BALL_RADIUS
+) -> tuple[Floats, Bools]:
+    """Return colours to the table: new ``positions`` (22, 2) [m] and ``on_table`` (22,) with the colours in
+    ``mask`` placed by the rule.
 
-    The arrays given are not changed. Raises ``ValueError`` for other shapes, or a mask that contains a ball that is no colour.
+    The arrays given are not changed. Raises ``ValueError`` for other shapes, or a mask that contains a ball
+    that is no colour.
     """
     if integer("mask", mask, 0, ALL_MASK) & ~COLOURS_MASK:
         raise refuse("mask", mask, "must name colours only (ids 16 to 21)")

@@ -1,7 +1,8 @@
-"""Where do the numbers of a table lie? Columns of ``Table.noses``, ``Table.jaws`` and ``Table.falls``; ``Table`` states their meaning.
+"""Where do the numbers of a table lie? Columns of ``Table.noses``, ``Table.jaws`` and ``Table.falls``;
+``Table`` states their meaning.
 
-They are indices, not tunable constants: freezing them into a kernel is safe. Kernels read single numbers by them, and make no row and no
-tuple of its numbers (``detection.may_meet`` says why).
+They are indices, not tunable constants: freezing them into a kernel is safe. Kernels read single numbers by
+them, and make no row and no tuple of its numbers (``detection.may_meet`` says why).
 """
 
 NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL, NOSE_LOW, NOSE_HIGH = range(5)

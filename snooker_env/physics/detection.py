@@ -1,18 +1,21 @@
-"""What happens next to a ball? Times of its next contact with a ball, nose, jaw or fall: reject cheaply, then solve exactly.
+"""What happens next to a ball? Times of its next contact with a ball, nose, jaw or fall: reject cheaply, then
+solve exactly.
 
-The relative position in a phase is c(x) = c0 + c1 x + c2 x^2 [m], with x the time from now [s]. A contact is the first time at which |c|
-falls through a distance d.
+The relative position in a phase is c(x) = c0 + c1 x + c2 x^2 [m], with x the time from now [s]. A contact is
+the first time at which |c| falls through a distance d.
 
-Bodies in touch. Two bodies whose gap is below TOUCH and which approach faster than CREEP meet at once. If they approach more slowly, are at
-rest or separate, their next contact is where the gap falls through -SKIN (at once if it is there already). So bodies that friction
-presses together from rest gain a closing speed before they meet, and do not meet infinitely often at speed zero. And bodies that separate
-do not meet again because of rounding.
+Bodies in touch. Two bodies whose gap is below TOUCH and which approach faster than CREEP meet at once. If
+they approach more slowly, are at rest or separate, their next contact is where the gap falls through -SKIN
+(at once if it is there already). So bodies that friction presses together from rest gain a closing speed
+before they meet, and do not meet infinitely often at speed zero. And bodies that separate do not meet again
+because of rounding.
 
-Noses and arcs. The places that a ball's centre cannot pass are made of pieces: a line beside each nose, and a circle about each arc in the
-sector of that arc. (A facing is an arc, too.) Neighbours join with a common tangent, so a ball at the end of one is at the same depth in
-the next. A path is judged by each piece from where it comes into that piece's range: there the rule for bodies in touch holds again, so a
-ball pressed SKIN deep into a nose is handed on to the arc. Each range is longer by SEAM at its ends, so that there is no crack between
-two. A place deeper than HELD behind a piece is another part of the table.
+Noses and arcs. The places that a ball's centre cannot pass are made of pieces: a line beside each nose, and a
+circle about each arc in the sector of that arc. (A facing is an arc, too.) Neighbours join with a common
+tangent, so a ball at the end of one is at the same depth in the next. A path is judged by each piece from
+where it comes into that piece's range: there the rule for bodies in touch holds again, so a ball pressed SKIN
+deep into a nose is handed on to the arc. Each range is longer by SEAM at its ends, so that there is no crack
+between two. A place deeper than HELD behind a piece is another part of the table.
 """
 
 from math import inf, sqrt
@@ -53,7 +56,8 @@ CREEP = 5e-5  # m/s; the speed gained over SKIN at the largest relative accelera
 
 @kernel
 def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
-    """Earliest time in [0, T] at which |c| falls through d [s], or inf. c = (x0 + x1 t + x2 t^2, y0 + y1 t + y2 t^2) [m]."""
+    """Earliest time in [0, T] at which |c| falls through d [s], or inf. c = (x0 + x1 t + x2 t^2, y0 + y1 t +
+    y2 t^2) [m]."""
     far2 = x0 * x0 + y0 * y0
     dot1 = x0 * x1 + y0 * y1
     dot2 = x0 * x2 + y0 * y2
@@ -72,34 +76,45 @@ def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
             reach = -0.25 * dot1 * dot1 / dot2
         if far2 + min(0.0, reach) > d * far:
             return inf
-        # across the first direction of motion: the offset, less the most that the curvature can change it, must be d or less
+        # across the first direction of motion: the offset, less the most that the curvature can change it,
+        # must be d or less
         speed2 = x1 * x1 + y1 * y1
         side = abs(x1 * y0 - y1 * x0) - abs(x1 * y2 - y1 * x2) * T * T
         if side > 0.0 and side * side > d * d * speed2 * (1.0 + 1e-12):
             return inf
-    return quartic_crossing(x2 * x2 + y2 * y2, 2.0 * (x1 * x2 + y1 * y2), x1 * x1 + y1 * y1 + 2.0 * dot2, 2.0 * dot1, far2 - d * d, T)
+    return quartic_crossing(
+        x2 * x2 + y2 * y2,
+        2.0 * (x1 * x2 + y1 * y2),
+        x1 * x1 + y1 * y1 + 2.0 * dot2,
+        2.0 * dot1,
+        far2 - d * d,
+        T,
+    )
 
 
 @kernel
 def _rolls_onto(dx, dy, vx, vy, ax, ay, d):
-    """Time until a ball that rolls at v, with deceleration a along its path, meets a ball at rest at (dx, dy) from it [s]; inf if never."""
+    """Time until a ball that rolls at v, with deceleration a along its path, meets a ball at rest at (dx, dy)
+    from it [s]; inf if never."""
     speed2 = vx * vx + vy * vy
     along, across = dx * vx + dy * vy, dx * vy - dy * vx  # times the speed
     half = d * d * speed2 - across * across
     if along <= 0.0 or half <= 0.0:
         return inf
     speed = sqrt(speed2)
-    distance = (dx * dx + dy * dy - d * d) * speed / (along + sqrt(half))  # along the straight path to the contact
+    # along the straight path to the contact
+    distance = (dx * dx + dy * dy - d * d) * speed / (along + sqrt(half))
     left = speed2 - 2.0 * distance * sqrt(ax * ax + ay * ay)  # the square of its speed there
     return 2.0 * distance / (speed + sqrt(left)) if left >= 0.0 else inf
 
 
 @kernel
 def may_meet(lo_x, hi_x, lo_y, hi_y, motion, j):
-    """Whether the path of ball j in its present phase has a place in the rectangle [m]: a quick test of its bounds.
+    """Whether the path of ball j in its present phase has a place in the rectangle [m]: a quick test of its
+    bounds.
 
-    (Here and below: indices, no rows. numba counts the references to a row, which takes longer than the arithmetic. And ``&`` instead of
-    ``and``: one branch instead of four.)
+    (Here and below: indices, no rows. numba counts the references to a row, which takes longer than the
+    arithmetic. And ``&`` instead of ``and``: one branch instead of four.)
     """
     beside = (lo_x <= motion[j, HI_X]) & (motion[j, LO_X] <= hi_x)
     return beside & (lo_y <= motion[j, HI_Y]) & (motion[j, LO_Y] <= hi_y)
@@ -107,7 +122,8 @@ def may_meet(lo_x, hi_x, lo_y, hi_y, motion, j):
 
 @kernel
 def pair_time(motion, state, i, j, t, d):
-    """Absolute time of the next contact of balls i and j within their present phases [s]; t: now; d: distance of the centres in contact."""
+    """Absolute time of the next contact of balls i and j within their present phases [s]; t: now; d: distance
+    of the centres in contact."""
     ti, tj = t - motion[i, T0], t - motion[j, T0]
     axi, ayi, axj, ayj = motion[i, AX], motion[i, AY], motion[j, AX], motion[j, AY]
     vxi, vyi, vxj, vyj = motion[i, VX], motion[i, VY], motion[j, VX], motion[j, VY]
@@ -123,26 +139,40 @@ def pair_time(motion, state, i, j, t, d):
 
 @kernel
 def _apart(lo_x, hi_x, lo_y, hi_y, x, y, r2):
-    """Whether the circle about (x, y) whose radius has the square r2 and the rectangle have no common point."""
+    """Whether the circle about (x, y) whose radius has the square r2 and the rectangle have no common
+    point."""
     dx, dy = max(lo_x - x, x - hi_x, 0.0), max(lo_y - y, y - hi_y, 0.0)
     return dx * dx + dy * dy > r2
 
 
 @kernel
 def _arc_outside(lo_x, hi_x, lo_y, hi_y, jaws, k, d):
-    """Whether the part of the circle of radius d about jaw k that lies in its sector is outside the rectangle, by its bounds."""
-    x, y, ux, uy, cos_half = jaws[k, JAW_X], jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY], jaws[k, JAW_COS]
+    """Whether the part of the circle of radius d about jaw k that lies in its sector is outside the
+    rectangle, by its bounds."""
+    x, y, ux, uy, cos_half = (
+        jaws[k, JAW_X],
+        jaws[k, JAW_Y],
+        jaws[k, JAW_UX],
+        jaws[k, JAW_UY],
+        jaws[k, JAW_COS],
+    )
     sin_half = sqrt(1.0 - cos_half * cos_half)
     x1, y1 = cos_half * ux - sin_half * uy, cos_half * uy + sin_half * ux
     x2, y2 = cos_half * ux + sin_half * uy, cos_half * uy - sin_half * ux
     left, right = -1.0 if -ux >= cos_half else min(x1, x2), 1.0 if ux >= cos_half else max(x1, x2)
     low, high = -1.0 if -uy >= cos_half else min(y1, y2), 1.0 if uy >= cos_half else max(y1, y2)
-    return x + d * right < lo_x + _MARGIN or x + d * left > hi_x - _MARGIN or y + d * high < lo_y + _MARGIN or y + d * low > hi_y - _MARGIN
+    return (
+        x + d * right < lo_x + _MARGIN
+        or x + d * left > hi_x - _MARGIN
+        or y + d * high < lo_y + _MARGIN
+        or y + d * low > hi_y - _MARGIN
+    )
 
 
 @kernel
 def clear_box(boundaries):
-    """A rectangle (lo_x, hi_x, lo_y, hi_y) [m] in which a ball's centre meets no nose, jaw or fall; empty if there is none."""
+    """A rectangle (lo_x, hi_x, lo_y, hi_y) [m] in which a ball's centre meets no nose, jaw or fall; empty if
+    there is none."""
     noses, jaws, falls, R = boundaries
     lo_x, hi_x, lo_y, hi_y = -inf, inf, -inf, inf
     for k in range(noses.shape[0]):
@@ -156,7 +186,8 @@ def clear_box(boundaries):
         d = jaws[k, JAW_RADIUS] + R
         r2 = (d - _MARGIN) * (d - _MARGIN)
         free = free and (
-            _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, JAW_X], jaws[k, JAW_Y], r2) or _arc_outside(lo_x, hi_x, lo_y, hi_y, jaws, k, d)
+            _apart(lo_x, hi_x, lo_y, hi_y, jaws[k, JAW_X], jaws[k, JAW_Y], r2)
+            or _arc_outside(lo_x, hi_x, lo_y, hi_y, jaws, k, d)
         )
     for k in range(falls.shape[0]):
         r2 = (falls[k, FALL_RADIUS] - _MARGIN) * (falls[k, FALL_RADIUS] - _MARGIN)
@@ -168,7 +199,8 @@ def clear_box(boundaries):
 
 @kernel
 def _level_crossing(gap, closing, closing2, held, T):
-    """Earliest time x in [0, T] at which gap - closing x - closing2 x^2 falls through 0 [s], or inf; ``held``: they may touch."""
+    """Earliest time x in [0, T] at which gap - closing x - closing2 x^2 falls through 0 [s], or inf;
+    ``held``: they may touch."""
     if held and gap < TOUCH:
         if closing > CREEP or (gap <= -_DEEP and closing > STILL):
             return 0.0
@@ -180,14 +212,16 @@ def _level_crossing(gap, closing, closing2, held, T):
 def _beside_later(approach, along, low, high, T):
     """Earliest contact in [0, T] with a nose of a ball that comes in touch from the next arc [s], or inf.
 
-    The gap to its line is gap - closing t - closing2 t^2 (``approach``), the place along it q + q1 t + q2 t^2 (``along``). The ball is not
-    beside the nose, which is from ``low`` to ``high``, when it passes the line.
+    The gap to its line is gap - closing t - closing2 t^2 (``approach``), the place along it q + q1 t + q2 t^2
+    (``along``). The ball is not beside the nose, which is from ``low`` to ``high``, when it passes the line.
     """
     (gap, closing, closing2), (q, q1, q2) = approach, along
     first = inf
     for x in (quadratic_crossing(low - q, -q1, -q2, T), quadratic_crossing(q - high, q1, q2, T)):
         if x < inf and gap - (closing + closing2 * x) * x > -HELD:
-            s = x + _level_crossing(gap - (closing + closing2 * x) * x, closing + 2.0 * closing2 * x, closing2, True, T - x)
+            s = x + _level_crossing(
+                gap - (closing + closing2 * x) * x, closing + 2.0 * closing2 * x, closing2, True, T - x
+            )
             if s < first and low <= q + (q1 + q2 * s) * s <= high:
                 first = s
     return first
@@ -195,14 +229,16 @@ def _beside_later(approach, along, low, high, T):
 
 @kernel
 def _past_end(x, y, ux, uy, cos_half, sin_half):
-    """How far outside the arc's sector the place (x, y) from the arc's centre is, along the arc [m]; 0 or less inside. Near its ends."""
+    """How far outside the arc's sector the place (x, y) from the arc's centre is, along the arc [m]; 0 or
+    less inside. Near its ends."""
     past = cos_half * sqrt(x * x + y * y) - (x * ux + y * uy)
     return past / sin_half if past > 0.0 and sin_half > 0.0 else past
 
 
 @kernel
 def _jaw_time(path, d, sector, T):
-    """Earliest contact in [0, T] with a jaw's arc [s], or inf: |c| (of ``path``) falls through d while c lies in the arc's sector."""
+    """Earliest contact in [0, T] with a jaw's arc [s], or inf: |c| (of ``path``) falls through d while c lies
+    in the arc's sector."""
     (x0, y0, x1, y1, x2, y2), (ux, uy, cos_half) = path, sector
     s = distance_crossing(x0, y0, x1, y1, x2, y2, d, T)
     far2, sin_half = x0 * x0 + y0 * y0, sqrt(1.0 - cos_half * cos_half)
@@ -213,38 +249,68 @@ def _jaw_time(path, d, sector, T):
         px, py = x0 + (x1 + x2 * s) * s, y0 + (y1 + y2 * s) * s
         past = _past_end(px, py, ux, uy, cos_half, sin_half)
         closing = -(px * (x1 + 2.0 * x2 * s) + py * (y1 + 2.0 * y2 * s))
-        if past <= 0.0 or (past <= SEAM and closing > CREEP * d):  # (a ball that glides along the nose only grazes the circle)
+        # (a ball that glides along the nose only grazes the circle)
+        if past <= 0.0 or (past <= SEAM and closing > CREEP * d):
             return s
-    first = inf  # not in the sector when it meets the circle: it may come into it in touch, from the nose or the next arc, over either end
+    # not in the sector when it meets the circle: it may come into it in touch, from the nose or the next arc,
+    # over either end
+    first = inf
     for side in (-1.0, 1.0):
-        ex, ey = cos_half * ux - side * sin_half * uy, cos_half * uy + side * sin_half * ux  # from the centre to the end of the arc
-        x = quadratic_crossing(side * (y0 * ex - x0 * ey), side * (y1 * ex - x1 * ey), side * (y2 * ex - x2 * ey), T)
+        # from the centre to the end of the arc
+        ex, ey = cos_half * ux - side * sin_half * uy, cos_half * uy + side * sin_half * ux
+        x = quadratic_crossing(
+            side * (y0 * ex - x0 * ey), side * (y1 * ex - x1 * ey), side * (y2 * ex - x2 * ey), T
+        )
         if x == inf:
             continue
         px, py = x0 + (x1 + x2 * x) * x, y0 + (y1 + y2 * x) * x
         if px * ex + py * ey > max(0.0, d - HELD):
             s = x + distance_crossing(px, py, x1 + 2.0 * x2 * x, y1 + 2.0 * y2 * x, x2, y2, d, T - x)
-            if s < first and _past_end(x0 + (x1 + x2 * s) * s, y0 + (y1 + y2 * s) * s, ux, uy, cos_half, sin_half) <= SEAM:
+            if (
+                s < first
+                and _past_end(x0 + (x1 + x2 * s) * s, y0 + (y1 + y2 * s) * s, ux, uy, cos_half, sin_half)
+                <= SEAM
+            ):
                 first = s
     return first
 
 
 @kernel
 def boundary_event(motion, state, i, boundaries, clear):
-    """The next nose (CUSHION), jaw (JAW) or fall (POT) that ball i meets after T0 within its phase: time [s], kind, index; inf if none.
+    """The next nose (CUSHION), jaw (JAW) or fall (POT) that ball i meets after T0 within its phase: time [s],
+    kind, index; inf if none.
 
     clear: as ``clear_box`` returns it.
     """
     noses, jaws, falls, R = boundaries
     best, kind, index = inf, events.NONE, -1
-    lo_x, hi_x, lo_y, hi_y = motion[i, LO_X] - _MARGIN, motion[i, HI_X] + _MARGIN, motion[i, LO_Y] - _MARGIN, motion[i, HI_Y] + _MARGIN
+    lo_x, hi_x, lo_y, hi_y = (
+        motion[i, LO_X] - _MARGIN,
+        motion[i, HI_X] + _MARGIN,
+        motion[i, LO_Y] - _MARGIN,
+        motion[i, HI_Y] + _MARGIN,
+    )
     clear_lo_x, clear_hi_x, clear_lo_y, clear_hi_y = clear
-    if state[i] == REST or (lo_x > clear_lo_x and hi_x < clear_hi_x and lo_y > clear_lo_y and hi_y < clear_hi_y):
+    if state[i] == REST or (
+        lo_x > clear_lo_x and hi_x < clear_hi_x and lo_y > clear_lo_y and hi_y < clear_hi_y
+    ):
         return best, kind, index
     T = motion[i, T_END] - motion[i, T0]
-    x0, y0, x1, y1, x2, y2 = motion[i, X], motion[i, Y], motion[i, VX], motion[i, VY], 0.5 * motion[i, AX], 0.5 * motion[i, AY]
+    x0, y0, x1, y1, x2, y2 = (
+        motion[i, X],
+        motion[i, Y],
+        motion[i, VX],
+        motion[i, VY],
+        0.5 * motion[i, AX],
+        0.5 * motion[i, AY],
+    )
     for k in range(noses.shape[0]):
-        side, level, low, high = noses[k, NOSE_SIDE], noses[k, NOSE_LEVEL], noses[k, NOSE_LOW], noses[k, NOSE_HIGH]
+        side, level, low, high = (
+            noses[k, NOSE_SIDE],
+            noses[k, NOSE_LEVEL],
+            noses[k, NOSE_LOW],
+            noses[k, NOSE_HIGH],
+        )
         if noses[k, NOSE_AXIS] == AXIS_X:
             if (hi_x if side > 0.0 else -lo_x) < level - R or hi_y < low or lo_y > high:
                 continue
@@ -280,7 +346,8 @@ def boundary_event(motion, state, i, boundaries, clear):
         if _apart(lo_x, hi_x, lo_y, hi_y, x, y, d * d):
             continue
         ux, uy, cos_half = jaws[k, JAW_UX], jaws[k, JAW_UY], jaws[k, JAW_COS]
-        chord2 = 2.0 * (1.0 - cos_half) * d * d  # of the half arc; of a facing this is a small part of a very large circle
+        # of the half arc; of a facing this is a small part of a very large circle
+        chord2 = 2.0 * (1.0 - cos_half) * d * d
         if _apart(lo_x, hi_x, lo_y, hi_y, x + d * ux, y + d * uy, chord2 + _AROUND):
             continue
         s = _jaw_time((x0 - x, y0 - y, x1, y1, x2, y2), d, (ux, uy, cos_half), T)

@@ -1,7 +1,8 @@
-"""How does a whole shot run? The event loop: predict, take the earliest event, resolve it, predict again for the balls that it changed.
+"""How does a whole shot run? The event loop: predict, take the earliest event, resolve it, predict again for
+the balls that it changed.
 
-Predictions are stored: those of a ball hold as long as no event changes its motion. Ties are decided by (time, kind, ball, partner), kinds
-in the order of ``EventKind``. The loop allocates nothing.
+Predictions are stored: those of a ball hold as long as no event changes its motion. Ties are decided by
+(time, kind, ball, partner), kinds in the order of ``EventKind``. The loop allocates nothing.
 """
 
 from math import inf, sqrt
@@ -25,17 +26,28 @@ from .placement import SOUND, place_fault
 
 @kernel
 def _begin_again(paths, i, t, r, v, w, boundaries, phys):
-    """Ball i has new velocities at time t, after a meeting with another ball: write its next phase, on the bed or in the air."""
+    """Ball i has new velocities at time t, after a meeting with another ball: write its next phase, on the
+    bed or in the air."""
     motion, state, flight = paths
     if state[i] == FALLING:
-        pocket.next_leg(paths, i, t, (r[0], r[1], flight[i, pocket.Z0]), (v[0], v[1], flight[i, pocket.U0]), w, boundaries, phys)
+        pocket.next_leg(
+            paths,
+            i,
+            t,
+            (r[0], r[1], flight[i, pocket.Z0]),
+            (v[0], v[1], flight[i, pocket.U0]),
+            w,
+            boundaries,
+            phys,
+        )
     else:
         cloth.begin(motion, state, i, t, r, v, w, phys)
 
 
 @kernel
 def _rescan(pair, best_time, best_ball, i):
-    """Find the earliest partner of ball i from the stored pair times; in a tie the ball with the lower index."""
+    """Find the earliest partner of ball i from the stored pair times; in a tie the ball with the lower
+    index."""
     n = pair.shape[0]
     time, ball = inf, -1
     for j in range(n):
@@ -52,7 +64,12 @@ def _predict(paths, i, t, boundaries, clear, forecast):
     n = pair.shape[0]
     still = state[i] == REST
     d = 2.0 * boundaries.R + TOUCH
-    lo_x, hi_x, lo_y, hi_y = motion[i, LO_X] - d, motion[i, HI_X] + d, motion[i, LO_Y] - d, motion[i, HI_Y] + d
+    lo_x, hi_x, lo_y, hi_y = (
+        motion[i, LO_X] - d,
+        motion[i, HI_X] + d,
+        motion[i, LO_Y] - d,
+        motion[i, HI_Y] + d,
+    )
     time, ball = inf, -1
     for j in range(n):
         if j == i or state[j] == GONE:
@@ -75,18 +92,29 @@ def _predict(paths, i, t, boundaries, clear, forecast):
     best_time[i], best_ball[i] = time, ball
     alone_time[i], alone_kind[i], alone_index[i] = inf, events.NONE, -1
     if state[i] == FALLING:
-        alone_time[i], alone_kind[i], alone_index[i] = motion[i, T_END], int(flight[i, pocket.KIND]), int(flight[i, pocket.INDEX])
+        alone_time[i], alone_kind[i], alone_index[i] = (
+            motion[i, T_END],
+            int(flight[i, pocket.KIND]),
+            int(flight[i, pocket.INDEX]),
+        )
     elif not still:
         s, kind, index = boundary_event(motion, state, i, boundaries, clear)
         if s > motion[i, T_END] or kind == events.NONE:
             s, index = motion[i, T_END], -1
-            kind = events.STOP if state[i] == cloth.ROLL else events.ROLL if state[i] == cloth.SLIDE else events.BEND
+            kind = (
+                events.STOP
+                if state[i] == cloth.ROLL
+                else events.ROLL
+                if state[i] == cloth.SLIDE
+                else events.BEND
+            )
         alone_time[i], alone_kind[i], alone_index[i] = s, kind, index
 
 
 @kernel
 def _is_clear(motion, i, clear):
-    """Whether ball i is in the rectangle that noses, jaws and falls leave free, or at most ``HELD`` outside: it is in none of them."""
+    """Whether ball i is in the rectangle that noses, jaws and falls leave free, or at most ``HELD`` outside:
+    it is in none of them."""
     x, y = motion[i, X], motion[i, Y]
     lo_x, hi_x, lo_y, hi_y = clear
     return (lo_x - HELD <= x) & (x <= hi_x + HELD) & (lo_y - HELD <= y) & (y <= hi_y + HELD)
@@ -94,8 +122,12 @@ def _is_clear(motion, i, clear):
 
 @kernel
 def _is_astray(motion, state, i, reach, boundaries):
-    """Whether ball i lies or moves on the bed where no ball can be: deeper than ``HELD`` in a cushion, over a pocket, or off the table."""
-    return state[i] != FALLING and place_fault(motion[i, X], motion[i, Y], reach, boundaries, HELD, HELD)[0] != SOUND
+    """Whether ball i lies or moves on the bed where no ball can be: deeper than ``HELD`` in a cushion, over a
+    pocket, or off the table."""
+    return (
+        state[i] != FALLING
+        and place_fault(motion[i, X], motion[i, Y], reach, boundaries, HELD, HELD)[0] != SOUND
+    )
 
 
 @kernel
@@ -133,7 +165,8 @@ def _record(segments, n_segments, motion, state, i):
 
 @inlined
 def _next_event(best_time, best_ball, alone_time, alone_kind, alone_index):
-    """The earliest event: time [s], kind, ball and partner; of simultaneous ones the lowest kind, then the lowest ball."""
+    """The earliest event: time [s], kind, ball and partner; of simultaneous ones the lowest kind, then the
+    lowest ball."""
     t, kind, i, j = inf, np.int64(events.NONE), np.int64(-1), np.int64(-1)
     for k in range(best_time.shape[0]):
         s = best_time[k]
@@ -151,8 +184,9 @@ def run(balls, setup, max_events, log, paths, forecast, series):
 
     Returns status, number of events, number of segments, duration [s].
 
-    A ``kernel``, because there tuples are free. Inlined into ``run_batch``, which makes arrays, numba would count the references to
-    the arrays of a tuple whenever one is made or read: shots of two balls would take 4 % longer.
+    A ``kernel``, because there tuples are free. Inlined into ``run_batch``, which makes arrays, numba would
+    count the references to the arrays of a tuple whenever one is made or read: shots of two balls would take
+    4 % longer.
     """
     positions, velocities, spins, on_table, potted = balls
     law, boundaries, reach = setup
@@ -196,7 +230,11 @@ def run(balls, setup, max_events, log, paths, forecast, series):
                 status = events.LOG_FULL
                 break
             time[n_events] = t
-            what[n_events, events.LOG_KIND], what[n_events, events.LOG_I], what[n_events, events.LOG_J] = kind, i, j
+            what[n_events, events.LOG_KIND], what[n_events, events.LOG_I], what[n_events, events.LOG_J] = (
+                kind,
+                i,
+                j,
+            )
         n_events += 1
         end = t
         if kind == events.BALL_BALL:
@@ -245,7 +283,11 @@ def run(balls, setup, max_events, log, paths, forecast, series):
         else:
             r, v, w = cloth.evaluate(motion, state, i, t, phys)
             if kind == events.CUSHION:
-                nx, ny = (noses[j, NOSE_SIDE], 0.0) if noses[j, NOSE_AXIS] == AXIS_X else (0.0, noses[j, NOSE_SIDE])
+                nx, ny = (
+                    (noses[j, NOSE_SIDE], 0.0)
+                    if noses[j, NOSE_AXIS] == AXIS_X
+                    else (0.0, noses[j, NOSE_SIDE])
+                )
             else:
                 nx, ny = jaws[j, JAW_X] - r[0], jaws[j, JAW_Y] - r[1]
                 d = sqrt(nx * nx + ny * ny)
@@ -279,11 +321,12 @@ def run(balls, setup, max_events, log, paths, forecast, series):
 
 @entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion))
 def run_batch(balls, setup, max_events, log, ends, start, stop):
-    """Simulate shots ``start`` to ``stop`` of a batch. All arrays of the balls, the log and the outcome have a leading batch axis.
+    """Simulate shots ``start`` to ``stop`` of a batch. All arrays of the balls, the log and the outcome have
+    a leading batch axis.
 
-    Python passes plain tuples: of the fields of ``Balls``, ``Log`` and ``Ends``, and as ``setup`` phys, noses, jaws, falls, reach,
-    fidelity and n_steps. So a call takes 0.3 us longer than with the arrays one by one; with named tuples it would be 3 us (a shot
-    of two balls takes 6 us). The work space is made once.
+    Python passes plain tuples: of the fields of ``Balls``, ``Log`` and ``Ends``, and as ``setup`` phys,
+    noses, jaws, falls, reach, fidelity and n_steps. So a call takes 0.3 us longer than with the arrays one by
+    one; with named tuples it would be 3 us (a shot of two balls takes 6 us). The work space is made once.
     """
     positions, velocities, spins, on_table, potted = balls
     time, what, segments = log
@@ -292,9 +335,18 @@ def run_batch(balls, setup, max_events, log, ends, start, stop):
     same = Setup(Law(phys, fidelity, n_steps), Boundaries(noses, jaws, falls, phys[P_R]), reach)
     n = positions.shape[1]
     paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, pocket.FLIGHT)))
-    forecast = Forecast(np.zeros((n, n)), np.zeros(n), np.zeros(n, np.int64), np.zeros(n), np.zeros(n, np.int64), np.zeros(n, np.int64))
+    forecast = Forecast(
+        np.zeros((n, n)),
+        np.zeros(n),
+        np.zeros(n, np.int64),
+        np.zeros(n),
+        np.zeros(n, np.int64),
+        np.zeros(n, np.int64),
+    )
     series = np.zeros(WORK)
     for k in range(start, stop):
         shot = Balls(positions[k], velocities[k], spins[k], on_table[k], potted[k])
         shot_log = Log(time[k], what[k], segments[k])
-        status[k], n_events[k], n_segments[k], duration[k] = run(shot, same, max_events, shot_log, paths, forecast, series)
+        status[k], n_events[k], n_segments[k], duration[k] = run(
+            shot, same, max_events, shot_log, paths, forecast, series
+        )

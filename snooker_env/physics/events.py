@@ -1,4 +1,5 @@
-"""What can happen in a shot, and how can it end? Kinds of events, in the order in which simultaneous ones are handled, and status codes."""
+"""What can happen in a shot, and how can it end? Kinds of events, in the order in which simultaneous ones are
+handled, and status codes."""
 
 from enum import IntEnum
 
@@ -6,8 +7,8 @@ from enum import IntEnum
 class EventKind(IntEnum):
     """The kind of an event in the log of a shot.
 
-    In a logged event, ``i`` is the ball; ``j`` is the other ball (i < j), the nose, the jaw or the pocket, or -1. Simultaneous events are
-    handled in the order of their numbers.
+    In a logged event, ``i`` is the ball; ``j`` is the other ball (i < j), the nose, the jaw or the pocket, or
+    -1. Simultaneous events are handled in the order of their numbers.
 
     ========= ====== =============================================================================================
     BALL_BALL 0      Balls i and j struck each other.

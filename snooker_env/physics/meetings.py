@@ -1,10 +1,12 @@
-"""How do bodies separate after a meeting inside a shot? As the impact model says; if they approach very slowly, by a small hop.
+"""How do bodies separate after a meeting inside a shot? As the impact model says; if they approach very
+slowly, by a small hop.
 
-Lasting contact. A spin can press a ball against another ball or against a cushion. The cloth damps each bounce, so the ball would bounce
-more and more often, without end. Therefore no impact leaves a pair separating at less than ``PART``. If the pair approaches faster than
-that, its restitution is raised as far as needed. If it approaches more slowly, the impact has no friction and takes the missing energy
-from the spin of the balls, as the rubbing that it replaces would. A lasting contact is then a series of hops of about a micrometre and
-a millisecond each. Energy never rises.
+Lasting contact. A spin can press a ball against another ball or against a cushion. The cloth damps each
+bounce, so the ball would bounce more and more often, without end. Therefore no impact leaves a pair
+separating at less than ``PART``. If the pair approaches faster than that, its restitution is raised as far as
+needed. If it approaches more slowly, the impact has no friction and takes the missing energy from the spin of
+the balls, as the rubbing that it replaces would. A lasting contact is then a series of hops of about a
+micrometre and a millisecond each. Energy never rises.
 """
 
 from math import sqrt
@@ -18,10 +20,11 @@ PART = 2e-3  # m/s; too slow to matter in a shot: a ball at this speed rolls 16 
 
 @kernel
 def _hop(closing, spin_energy):
-    """A slow contact: the speed at which the bodies separate [m/s], and the factor on the spins, whose energy is used for it.
+    """A slow contact: the speed at which the bodies separate [m/s], and the factor on the spins, whose energy
+    is used for it.
 
-    Energies are per unit of the contact's reduced mass: closing^2 / 2 before, parting^2 / 2 after. ``spin_energy``: energy that the spins
-    can give, in the same unit [m^2/s^2].
+    Energies are per unit of the contact's reduced mass: closing^2 / 2 before, parting^2 / 2 after.
+    ``spin_energy``: energy that the spins can give, in the same unit [m^2/s^2].
     """
     closing = max(closing, 0.0)
     missing = min(0.5 * (PART * PART - closing * closing), 0.5 * spin_energy)
@@ -43,14 +46,21 @@ def _scaled(w, k):
 
 @inlined
 def meet(v1, w1, v2, w2, normal, law, series):
-    """Ball-ball impact inside a shot: ``collide_balls`` or, below ``PART``, a hop. The vertical velocity is dropped, as in the paper."""
+    """Ball-ball impact inside a shot: ``collide_balls`` or, below ``PART``, a hop. The vertical velocity is
+    dropped, as in the paper."""
     (nx, ny), phys = normal, law.phys
     closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
     if closing <= PART:
         # two equal balls: the reduced mass is M/2, so the spin energy counts double
         parting, k = _hop(closing, 2.0 * (_spin_energy(w1, phys[P_R]) + _spin_energy(w2, phys[P_R])))
         dv = 0.5 * (closing + parting)
-        return (v1[0] - dv * nx, v1[1] - dv * ny), _scaled(w1, k), (v2[0] + dv * nx, v2[1] + dv * ny), _scaled(w2, k), True
+        return (
+            (v1[0] - dv * nx, v1[1] - dv * ny),
+            _scaled(w1, k),
+            (v2[0] + dv * nx, v2[1] + dv * ny),
+            _scaled(w2, k),
+            True,
+        )
     e = max(phys[P_E_B], PART / closing)
     v1, v2 = (v1[0], v1[1], 0.0), (v2[0], v2[1], 0.0)
     a, wa, b, wb, solved = collide_balls(v1, w1, v2, w2, normal, law, e, series)

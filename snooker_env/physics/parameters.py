@@ -1,7 +1,9 @@
-"""Which constants does a simulation use? ``Physics``: each with its source, validated, and packed to one float64 vector for the kernels.
+"""Which constants does a simulation use? ``Physics``: each with its source, validated, and packed to one
+float64 vector for the kernels.
 
-Sources: [MJP14] Mathavan, Jackson & Parkin, Sports Eng. (2014); [MJP10] the same authors, Proc. IMechE C 224 (2010);
-[Marlow] The Physics of Pocket Billiards (1994), as fitted by Alciatore (TP A.14); [TP A.30, A.31] Alciatore, technical proofs.
+Sources: [MJP14] Mathavan, Jackson & Parkin, Sports Eng. (2014); [MJP10] the same authors, Proc. IMechE C 224
+(2010); [Marlow] The Physics of Pocket Billiards (1994), as fitted by Alciatore (TP A.14); [TP A.30, A.31]
+Alciatore, technical proofs.
 """
 
 import dataclasses
@@ -19,32 +21,49 @@ MARLOW = (9.951e-3, 0.108, 1.088)
 """Marlow's law of ball-ball friction, mu(s) = a + b exp(-c s), s the slip speed in m/s."""
 
 FASTEST = 1000.0
-"""The largest component of a ball's velocity, and the largest speed of a cue, that a shot accepts [m/s]; the hardest strokes reach about
-15 m/s. Measured: all invariants of a shot hold to 10,000 m/s. At 100,000 m/s the rounding (1e-16 of the speed) exceeds the speed that
-counts as rest, and shots do not end."""
+"""The largest component of a ball's velocity, and the largest speed of a cue, that a shot accepts [m/s]; the
+hardest strokes reach about 15 m/s. Measured: all invariants of a shot hold to 10,000 m/s. At 100,000 m/s the
+rounding (1e-16 of the speed) exceeds the speed that counts as rest, and shots do not end."""
 MOST_SPIN = 1e5
-"""The largest component of a ball's spin that a shot accepts [rad/s]: what a strike at ``FASTEST`` can give a snooker ball. Measured: shots
-are right to 1e6 rad/s and do not end at 1e7."""
+"""The largest component of a ball's spin that a shot accepts [rad/s]: what a strike at ``FASTEST`` can give a
+snooker ball. Measured: shots are right to 1e6 rad/s and do not end at 1e7."""
 FASTEST_IMPACT, MOST_SPIN_IMPACT = 1e6, 1e9
-"""The same limits for one impact alone. Its outcome scales with its speeds (except for the laws that contain a speed), so it is right far
-beyond those of a shot."""
+"""The same limits for one impact alone. Its outcome scales with its speeds (except for the laws that contain
+a speed), so it is right far beyond those of a shot."""
 _LEAST_DECELERATION, _MOST_DECELERATION = 1e-6, 1e6
 _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
-"""Bounds of ``e_c_knee`` (from below) and ``e_c_power`` (from above). The rebound varies with at most the power 1.25 of e
-(tests/physics/test_cushion_law.py), so with a power up to 0.8 it never falls with the speed."""
+"""Bounds of ``e_c_knee`` (from below) and ``e_c_power`` (from above). The rebound varies with at most the
+power 1.25 of e (tests/physics/test_cushion_law.py), so with a power up to 0.8 it never falls with the
+speed."""
 
 # Places in the packed vector. They are indices, not tunable constants: freezing them into a kernel is safe.
 (
-    P_R, P_M, P_G, P_MU_S, P_MU_R, P_SPIN, P_E_B, P_MU_BB_LEAST, P_MU_BB_EXTRA, P_MU_BB_FADE, P_E_C, P_E_KNEE, P_E_POWER, P_MU_C, P_SIN,
-    P_E_J, P_NAP,
-) = range(17)  # fmt: skip
+    P_R,
+    P_M,
+    P_G,
+    P_MU_S,
+    P_MU_R,
+    P_SPIN,
+    P_E_B,
+    P_MU_BB_LEAST,
+    P_MU_BB_EXTRA,
+    P_MU_BB_FADE,
+    P_E_C,
+    P_E_KNEE,
+    P_E_POWER,
+    P_MU_C,
+    P_SIN,
+    P_E_J,
+    P_NAP,
+) = range(17)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Physics:
     """The physical constants and laws of a simulation, in SI units.
 
-    ``Physics()`` is the preset "paper"; see ``preset``. An instance cannot be changed; ``dataclasses.replace`` makes a changed copy.
+    ``Physics()`` is the preset "paper"; see ``preset``. An instance cannot be changed;
+    ``dataclasses.replace`` makes a changed copy.
 
     Parameters
     ----------
@@ -55,36 +74,43 @@ class Physics:
     g : float
         Acceleration of gravity [m/s^2], > 0.
     mu_s : float
-        Coefficient of sliding friction between ball and cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
+        Coefficient of sliding friction between ball and cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to
+        0.245].
     mu_r : float
         Rolling resistance: deceleration over g, in [0, 1]. Measured: 0.124 to 0.126 m/s^2, that is 0.0127 g.
     spin_decel : float
-        Angular deceleration of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14 eq. 21]. With 0 nothing
-        ends such a spin: a shot ends when no ball moves across the table, and the remaining spin stays.
+        Angular deceleration of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14
+        eq. 21]. With 0 nothing ends such a spin: a shot ends when no ball moves across the table, and the
+        remaining spin stays.
     nap : float
-        Acceleration of a rolling ball along +y by the cloth's nap, which runs from baulk to the black end [m/s^2]. 0: no nap; else its
-        size must be below mu_r g, so that a ball at rest stays there. Not measured; 0.001 is the most that the range of mu_r allows
-        (``python -m benchmarks.nap``).
+        Acceleration of a rolling ball along +y by the cloth's nap, which runs from baulk to the black end
+        [m/s^2]. 0: no nap; else its size must be below mu_r g, so that a ball at rest stays there. Not
+        measured; 0.001 is the most that the range of mu_r allows (``python -m benchmarks.nap``).
     e_b : float
         Energetic coefficient of restitution between balls, in [0, 1] [MJP14 2.4.2].
     mu_bb : float, "marlow" or (float, float, float)
-        Coefficient of friction between balls: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) of the law
-        mu(s) = a + b exp(-c s), with the slip speed s in m/s.
+        Coefficient of friction between balls: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c)
+        of the law mu(s) = a + b exp(-c s), with the slip speed s in m/s.
     e_c : float
-        Energetic coefficient of restitution between ball and cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s].
+        Energetic coefficient of restitution between ball and cushion at low speed, in [0, 1] [MJP10, fitted
+        below 1.5 m/s].
     e_c_knee : float
-        Speed straight into the cushion above which its restitution falls [m/s], >= 0, and >= 0.001 where e_c_power > 0.
+        Speed straight into the cushion above which its restitution falls [m/s], >= 0, and >= 0.001 where
+        e_c_power > 0.
     e_c_power : float
-        Exponent of that fall, in [0, 0.8]; 0: none. e(v) = e_c for v <= e_c_knee, and e_c (v / e_c_knee)^(-e_c_power) above. So v e(v)
-        always rises with v; for mu_c, mu_s and sin_theta up to 0.5 the rebound of a rolling or a stunned ball rises too. An impact that
-        loses its energy by yielding has the power 1/4 (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
+        Exponent of that fall, in [0, 0.8]; 0: none. e(v) = e_c for v <= e_c_knee, and e_c (v /
+        e_c_knee)^(-e_c_power) above. So v e(v) always rises with v; for mu_c, mu_s and sin_theta up to 0.5
+        the rebound of a rolling or a stunned ball rises too. An impact that loses its energy by yielding has
+        the power 1/4 (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
     e_j : float, optional
-        Energetic coefficient of restitution between ball and jaw, the same at every speed, in [0, 1]. None: e_c, without the fall with
-        speed that a rail has. Not measured. A rail loses energy because its rubber deforms; at a jaw the rubber is cut thin over wood.
+        Energetic coefficient of restitution between ball and jaw, the same at every speed, in [0, 1]. None:
+        e_c, without the fall with speed that a rail has. Not measured. A rail loses energy because its rubber
+        deforms; at a jaw the rubber is cut thin over wood.
     mu_c : float
         Coefficient of sliding friction between ball and cushion, in [0, 1] [MJP10].
     sin_theta : float
-        Height of the nose above the ball's centre over R, in [0, 0.95]; a nose height of 7R/5 gives 0.4 [MJP10].
+        Height of the nose above the ball's centre over R, in [0, 0.95]; a nose height of 7R/5 gives 0.4
+        [MJP10].
     end_mass_ratio : float
         Ball mass over the effective end mass of the cue, >= 0; it determines the squirt [TP A.31].
     max_offset : float
@@ -122,17 +148,35 @@ class Physics:
 
     def __post_init__(self) -> None:
         low_high = {
-            "R": (1e-3, 1), "M": (0, np.inf), "g": (0, np.inf), "mu_s": (0, 1), "mu_r": (0, 1), "spin_decel": (0, np.inf),
-            "nap": (-np.inf, np.inf), "e_b": (0, 1), "e_c": (0, 1), "e_c_knee": (0, np.inf), "e_c_power": (0, _MOST_POWER), "mu_c": (0, 1),
-            "sin_theta": (0, 0.95), "end_mass_ratio": (0, np.inf), "max_offset": (0, 0.999),
-        }  # fmt: skip
+            "R": (1e-3, 1),
+            "M": (0, np.inf),
+            "g": (0, np.inf),
+            "mu_s": (0, 1),
+            "mu_r": (0, 1),
+            "spin_decel": (0, np.inf),
+            "nap": (-np.inf, np.inf),
+            "e_b": (0, 1),
+            "e_c": (0, 1),
+            "e_c_knee": (0, np.inf),
+            "e_c_power": (0, _MOST_POWER),
+            "mu_c": (0, 1),
+            "sin_theta": (0, 0.95),
+            "end_mass_ratio": (0, np.inf),
+            "max_offset": (0, 0.999),
+        }
         for field in ("R", "M"):
             value = getattr(self, field)
             if isinstance(value, (list, tuple, np.ndarray)) and np.shape(value)[:1] > (1,):
-                raise refuse(f"physics.{field}", value, "must be one number: all balls of a shot are equal (docs/physics/limits.md)")
+                raise refuse(
+                    f"physics.{field}",
+                    value,
+                    "must be one number: all balls of a shot are equal (docs/physics/limits.md)",
+                )
         for field, (low, high) in low_high.items():
             open_low = field in ("M", "g", "max_offset")
-            object.__setattr__(self, field, number(f"physics.{field}", getattr(self, field), low, high, open_low=open_low))
+            object.__setattr__(
+                self, field, number(f"physics.{field}", getattr(self, field), low, high, open_low=open_low)
+            )
         if self.e_j is not None:
             object.__setattr__(self, "e_j", number("physics.e_j", self.e_j, 0, 1))
         object.__setattr__(self, "mu_bb", _mu_bb(self.mu_bb))
@@ -140,7 +184,9 @@ class Physics:
             allowed = f"must be at least {_LEAST_KNEE:g} m/s where e_c_power > 0: above it e(v) = e_c (v / e_c_knee)^(-e_c_power)"
             raise refuse("physics.e_c_knee", self.e_c_knee, allowed)
         if self.nap != 0 and not abs(self.nap) < self.mu_r * self.g:
-            raise refuse("physics.nap", self.nap, f"must be 0 or below mu_r g = {self.mu_r * self.g:g} m/s^2 in size")
+            raise refuse(
+                "physics.nap", self.nap, f"must be 0 or below mu_r g = {self.mu_r * self.g:g} m/s^2 in size"
+            )
 
     @classmethod
     def preset(cls, name: PhysicsName = "paper", **fields: Any) -> "Physics":
@@ -148,10 +194,11 @@ class Physics:
 
         ``"paper"``: the constants of [MJP14] and [MJP10].
 
-        ``"match"``: measured snooker, that is e_b 0.94, Marlow's mu_bb(s), and a cushion whose restitution falls as v^-0.31 above
-        2.17 m/s. That law is fitted to the rebounds of Fig. 7a of [MJP10], 19 speeds from 0.26 to 3.40 m/s
-        (``python -m benchmarks.fit_cushion``); the 95 % interval of the power is 0.21 to 0.46. Beyond 3.4 m/s it is extrapolated. If the
-        power law holds there, the 95 % intervals of e are 0.70 to 0.80 at 5 m/s, 0.60 to 0.75 at 7 m/s and 0.51 to 0.69 at 10 m/s.
+        ``"match"``: measured snooker, that is e_b 0.94, Marlow's mu_bb(s), and a cushion whose restitution
+        falls as v^-0.31 above 2.17 m/s. That law is fitted to the rebounds of Fig. 7a of [MJP10], 19 speeds
+        from 0.26 to 3.40 m/s (``python -m benchmarks.fit_cushion``); the 95 % interval of the power is 0.21
+        to 0.46. Beyond 3.4 m/s it is extrapolated. If the power law holds there, the 95 % intervals of e are
+        0.70 to 0.80 at 5 m/s, 0.60 to 0.75 at 7 m/s and 0.51 to 0.69 at 10 m/s.
 
         Parameters
         ----------
@@ -191,7 +238,8 @@ class Physics:
         Parameters
         ----------
         physics : None, str, dict or Physics
-            None is "paper"; a str is the name of a preset; a dict replaces fields of the preset that its key "preset" names, or of "paper".
+            None is "paper"; a str is the name of a preset; a dict replaces fields of the preset that its key
+            "preset" names, or of "paper".
 
         Returns
         -------
@@ -280,10 +328,25 @@ class Physics:
     @cached_property
     def _packed(self) -> Floats:
         """The same array at every access, for kernels, which only read it."""
-        return np.array([
-            self.R, self.M, self.g, self.mu_s, self.mu_r, self.spin_decel, self.e_b, *self.friction_law,
-            self.e_c, self.e_c_knee, self.e_c_power, self.mu_c, self.sin_theta, self.e_c if self.e_j is None else self.e_j, self.nap,
-        ])  # fmt: skip
+        return np.array(
+            [
+                self.R,
+                self.M,
+                self.g,
+                self.mu_s,
+                self.mu_r,
+                self.spin_decel,
+                self.e_b,
+                *self.friction_law,
+                self.e_c,
+                self.e_c_knee,
+                self.e_c_power,
+                self.mu_c,
+                self.sin_theta,
+                self.e_c if self.e_j is None else self.e_j,
+                self.nap,
+            ]
+        )
 
 
 PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None

@@ -1,25 +1,32 @@
-"""What becomes of a ball that crosses the edge of a pocket? It flies, falls, may strike a jaw or the edge, and is lost or comes back.
+"""What becomes of a ball that crosses the edge of a pocket? It flies, falls, may strike a jaw or the edge,
+and is lost or comes back.
 
-A slow ball is lost where its centre crosses the edge. A fast one flies on, may meet the jaw beyond before it has fallen, and may bounce
-back on to the bed. Most balls have no jaw in their way and are lost at the edge at once; the others are followed here.
+A slow ball is lost where its centre crosses the edge. A fast one flies on, may meet the jaw beyond before it
+has fallen, and may bounce back on to the bed. Most balls have no jaw in their way and are lost at the edge at
+once; the others are followed here.
 
-Table frame; z is the drop of the centre below its height on the bed [m], u its rate [m/s]. In flight there is no friction with the cloth.
+Table frame; z is the drop of the centre below its height on the bed [m], u its rate [m/s]. In flight there is
+no friction with the cloth.
 
 * Gravity: du/dt = g.
-* The slate's edge is a sharp circle, the pocket's fall. A sphere whose centre is d inside it touches it where d^2 + (R - z)^2 = R^2; the
-  normal points from the edge to the centre. Restitution ``EDGE``, no friction. Below ``SOFT`` the ball stays on the edge and tips over it.
-* A jaw's nose is an arc at the height (1 + sin_theta) R. A ball that has dropped by z touches it at the angle phi above its equator,
-  sin(phi) = sin_theta + z/R. Nothing supports the ball from below, so this is the impact of a free sphere with a fixed body, in closed
-  form: p = (1 + e_j) times the closing speed; friction min(mu_c p, 2/7 of the slip), opposite to the slip at the contact. The nose is
-  above the centre and drives the ball down.
-* The ball is lost in three cases. No jaw's arc is ahead, and its line leaves the fall on the far side, seen from where it came in. Or it
-  is below the noses, at z = (1 - sin_theta) R, where the edge pushes it inwards too. Or it touches the throat behind a jaw's arc.
+* The slate's edge is a sharp circle, the pocket's fall. A sphere whose centre is d inside it touches it where
+  d^2 + (R - z)^2 = R^2; the normal points from the edge to the centre. Restitution ``EDGE``, no friction.
+  Below ``SOFT`` the ball stays on the edge and tips over it.
+* A jaw's nose is an arc at the height (1 + sin_theta) R. A ball that has dropped by z touches it at the angle
+  phi above its equator, sin(phi) = sin_theta + z/R. Nothing supports the ball from below, so this is the
+  impact of a free sphere with a fixed body, in closed form: p = (1 + e_j) times the closing speed; friction
+  min(mu_c p, 2/7 of the slip), opposite to the slip at the contact. The nose is above the centre and drives
+  the ball down.
+* The ball is lost in three cases. No jaw's arc is ahead, and its line leaves the fall on the far side, seen
+  from where it came in. Or it is below the noses, at z = (1 - sin_theta) R, where the edge pushes it inwards
+  too. Or it touches the throat behind a jaw's arc.
 
-Balls meet each other in the plane, whatever their drop. ``SLOW``, ``SOFT`` and ``STEP`` are chosen for snooker balls and normal gravity.
+Balls meet each other in the plane, whatever their drop. ``SLOW``, ``SOFT`` and ``STEP`` are chosen for
+snooker balls and normal gravity.
 
-A ball that clears the edge flies to the first jaw in closed form. For one that touches the edge there is no closed form: it is followed in
-steps of ``STEP``, each a parabola, with the impacts on the edge at its end. Oracle: a compliant ball in three dimensions
-(``tests/oracles/pocket_3d.py``).
+A ball that clears the edge flies to the first jaw in closed form. For one that touches the edge there is no
+closed form: it is followed in steps of ``STEP``, each a parabola, with the impacts on the edge at its end.
+Oracle: a compliant ball in three dimensions (``tests/oracles/pocket_3d.py``).
 """
 
 from math import inf, sqrt
@@ -33,29 +40,33 @@ from .parameters import P_E_J, P_G, P_MU_C, P_R, P_SIN
 JAW, LOST, BACK = range(3)
 """How a leg of the flight ends."""
 EDGE = 0.5
-"""Restitution of a ball on the slate's edge (a billiard ball dropped on a covered slate rises to about a quarter of its height)."""
+"""Restitution of a ball on the slate's edge (a billiard ball dropped on a covered slate rises to about a
+quarter of its height)."""
 SLOW = 0.4
 """A ball slower than this is lost at the edge [m/s]: it tips in before it could come back."""
 SOFT = 0.05
 """Closing speed below which the ball does not bounce on the edge or on a jaw, but stays in contact [m/s]."""
 STRIDE, STEP = 4e-4, 4e-4
-"""Distance that the ball moves in a step [m], and the longest step [s]. Measured: with a quarter of both no window of a pocket
-(``benchmarks.pockets``) changes by more than 1.1 mm of its width, and most change by at most 0.3 mm."""
+"""Distance that the ball moves in a step [m], and the longest step [s]. Measured: with a quarter of both no
+window of a pocket (``benchmarks.pockets``) changes by more than 1.1 mm of its width, and most change by at
+most 0.3 mm."""
 SHORTEST = 1e-9
 """The shortest leg [s]; the ball can meet a jaw right at the edge."""
 _MOST_STEPS = 10_000
-"""A ball that stays in the mouth for so many steps, a few seconds, is lost: it is wedged in a throat narrower than a ball."""
+"""A ball that stays in the mouth for so many steps, a few seconds, is lost: it is wedged in a throat narrower
+than a ball."""
 IN_X, IN_Y, POCKET, HAD, Z0, U0, Z1, U1, END_VX, END_VY, KIND, INDEX = range(12)
 FLIGHT = 12
-"""Columns of ``flight``. IN_X, IN_Y: where the ball came in, relative to the pocket's centre [m]; POCKET: the pocket. HAD: its
-energy of translation and height at the start of this leg, per unit mass [m^2/s^2]. Z0, U0 and Z1, U1: drop of the centre [m] and its
-rate [m/s] at the start and at the end of this leg. END_VX, END_VY, KIND, INDEX: velocity [m/s],
-kind of event and its index at the end."""
+"""Columns of ``flight``. IN_X, IN_Y: where the ball came in, relative to the pocket's centre [m]; POCKET: the
+pocket. HAD: its energy of translation and height at the start of this leg, per unit mass [m^2/s^2]. Z0, U0
+and Z1, U1: drop of the centre [m] and its rate [m/s] at the start and at the end of this leg. END_VX, END_VY,
+KIND, INDEX: velocity [m/s], kind of event and its index at the end."""
 
 
 @kernel
 def _first_arc(x, y, vx, vy, jaws, R):
-    """The first jaw arc on a straight line ahead: time until the ball meets it [s], and its index; (inf, -1) if there is none."""
+    """The first jaw arc on a straight line ahead: time until the ball meets it [s], and its index; (inf, -1)
+    if there is none."""
     speed2 = vx * vx + vy * vy
     best, jaw = inf, -1
     for k in range(jaws.shape[0]):
@@ -74,11 +85,12 @@ def _first_arc(x, y, vx, vy, jaws, R):
 
 @kernel
 def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
-    """A ball crosses the edge at (x, y) [m]: time until it flies into a jaw [s], and the jaw. inf: never. -1: it may, but touches the edge.
+    """A ball crosses the edge at (x, y) [m]: time until it flies into a jaw [s], and the jaw. inf: never. -1:
+    it may, but touches the edge.
 
-    Whether the sphere clears the edge is tested at the end of the path. Over a circle the depth grows more and more slowly, while a falling
-    sphere needs it to grow almost linearly (at sqrt(g R)). So a ball that clears the edge at the end has cleared it before, except for a
-    graze near that speed.
+    Whether the sphere clears the edge is tested at the end of the path. Over a circle the depth grows more
+    and more slowly, while a falling sphere needs it to grow almost linearly (at sqrt(g R)). So a ball that
+    clears the edge at the end has cleared it before, except for a graze near that speed.
     """
     R, g = phys[P_R], phys[P_G]
     if vx * vx + vy * vy < SLOW * SLOW:
@@ -97,7 +109,8 @@ def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
 
 @kernel
 def _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket):
-    """Whether a straight line from (x, y) leaves the fall on the side away from where the ball came in, seen from the centre."""
+    """Whether a straight line from (x, y) leaves the fall on the side away from where the ball came in, seen
+    from the centre."""
     dx, dy = x - falls[pocket, FALL_X], y - falls[pocket, FALL_Y]
     speed2, along = vx * vx + vy * vy, dx * vx + dy * vy
     inside = falls[pocket, FALL_RADIUS] * falls[pocket, FALL_RADIUS] - dx * dx - dy * dy
@@ -109,10 +122,12 @@ def _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket):
 
 @kernel
 def jaw_gap(r, jaws, k, R, sin_theta):
-    """A sphere at r = (x, y, z): its distance from the nose of jaw k in the plane [m], the unit vector to it, sin(phi), and the part.
+    """A sphere at r = (x, y, z): its distance from the nose of jaw k in the plane [m], the unit vector to it,
+    sin(phi), and the part.
 
-    Past its ends (part 1, else 0) the arc is continued straight along its tangents: on one side into the throat, on the other as the nose.
-    For a ball above the nose's height the nose is a wall: no ball flies over a cushion.
+    Past its ends (part 1, else 0) the arc is continued straight along its tangents: on one side into the
+    throat, on the other as the nose. For a ball above the nose's height the nose is a wall: no ball flies
+    over a cushion.
     """
     x, y, z = r
     dx, dy, ux, uy = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY]
@@ -130,18 +145,26 @@ def jaw_gap(r, jaws, k, R, sin_theta):
             return 1.0, 0.0, 0.0, 0.0, 0
         s = sin_half if aside > 0.0 else -sin_half
         nx, ny = cos_half * ux - s * uy, cos_half * uy + s * ux
-    # A ball on the bed touches the nose at the distance R from the table's arc. A dropped ball has the same distance, so that it comes
-    # back without an overlap.
+    # A ball on the bed touches the nose at the distance R from the table's arc. A dropped ball has the same
+    # distance, so that it comes back without an overlap.
     sin_phi = min(1.0, max(0.0, sin_theta + z / R))
     high = min(sin_phi, sin_theta)
-    return far - jaws[k, JAW_RADIUS] - R * (1.0 - sqrt(1.0 - sin_theta * sin_theta) + sqrt(1.0 - high * high)), -nx, -ny, sin_phi, part
+    return (
+        far - jaws[k, JAW_RADIUS] - R * (1.0 - sqrt(1.0 - sin_theta * sin_theta) + sqrt(1.0 - high * high)),
+        -nx,
+        -ny,
+        sin_phi,
+        part,
+    )
 
 
 @kernel
 def strike_jaw(v, w, nx, ny, sin_phi, phys):
-    """Impact of a free ball with a nose; (nx, ny) is the unit vector to it in the plane -> v = (vx, vy, u) [m/s], w [rad/s].
+    """Impact of a free ball with a nose; (nx, ny) is the unit vector to it in the plane -> v = (vx, vy, u)
+    [m/s], w [rad/s].
 
-    A ball that falls away from the nose faster than it moves towards it keeps its velocity: the nose does not pull.
+    A ball that falls away from the nose faster than it moves towards it keeps its velocity: the nose does not
+    pull.
     """
     cos_phi, R = sqrt(1.0 - sin_phi * sin_phi), phys[P_R]
     vx, vy, u = v
@@ -163,7 +186,8 @@ def strike_jaw(v, w, nx, ny, sin_phi, phys):
 
 @kernel
 def _deepest_jaw(r, v, jaws, first, last, R, sin_theta):
-    """Of the jaws that the ball touches and moves into, the deepest: its index (-1: none), gap [m], closing speed [m/s] and normal.
+    """Of the jaws that the ball touches and moves into, the deepest: its index (-1: none), gap [m], closing
+    speed [m/s] and normal.
 
     Also: whether the ball touches any jaw, and whether one behind its arc.
     """
@@ -185,10 +209,12 @@ def _deepest_jaw(r, v, jaws, first, last, R, sin_theta):
 
 @kernel
 def fly(r, v, entered, falls, pocket, jaws, phys):
-    """One leg of a flight over the fall of ``pocket`` from r = (x, y, z) [m] with v = (vx, vy, u) [m/s], up to the next event.
+    """One leg of a flight over the fall of ``pocket`` from r = (x, y, z) [m] with v = (vx, vy, u) [m/s], up
+    to the next event.
 
-    entered: where the ball came in, relative to the pocket's centre [m]. Returns how the leg ends (``JAW``, ``LOST``, ``BACK``), the jaw,
-    the duration [s], and r and v at its end (before the impact with the jaw; on the bed for ``BACK``).
+    entered: where the ball came in, relative to the pocket's centre [m]. Returns how the leg ends (``JAW``,
+    ``LOST``, ``BACK``), the jaw, the duration [s], and r and v at its end (before the impact with the jaw; on
+    the bed for ``BACK``).
     """
     R, sin_theta, g = phys[P_R], phys[P_SIN], phys[P_G]
     (x, y, z), (vx, vy, u), (in_x, in_y) = r, v, entered
@@ -196,14 +222,20 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
         t, jaw = ahead(x, y, vx, vy, falls, pocket, jaws, phys)
         if 0.0 <= t < inf:
             return JAW, jaw, t, (x + vx * t, y + vy * t, 0.5 * g * t * t), (vx, vy, g * t)
-    elif _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket) and _first_arc(x, y, vx, vy, jaws, R)[0] == inf:
-        return LOST, -1, STEP, (x + vx * STEP, y + vy * STEP, z), v  # nothing is in its way, and the edge only pushes it inwards
+    elif (
+        _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket) and _first_arc(x, y, vx, vy, jaws, R)[0] == inf
+    ):
+        # nothing is in its way, and the edge only pushes it inwards
+        return LOST, -1, STEP, (x + vx * STEP, y + vy * STEP, z), v
     first, last = jaws.shape[0], 0  # the jaws of this pocket
     for k in range(jaws.shape[0]):
-        # measured from the middle of the arc (a straight facing is an arc of a very large circle, whose centre is far away)
+        # measured from the middle of the arc (a straight facing is an arc of a very large circle, whose
+        # centre is far away)
         dx = jaws[k, JAW_X] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UX] - falls[pocket, FALL_X]
         dy = jaws[k, JAW_Y] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UY] - falls[pocket, FALL_Y]
-        reach = jaws[k, JAW_RADIUS] * sqrt(2.0 * (1.0 - jaws[k, JAW_COS])) + 4.0 * R + falls[pocket, FALL_RADIUS]
+        reach = (
+            jaws[k, JAW_RADIUS] * sqrt(2.0 * (1.0 - jaws[k, JAW_COS])) + 4.0 * R + falls[pocket, FALL_RADIUS]
+        )
         if dx * dx + dy * dy < reach * reach:
             first, last = min(first, k), k + 1
     T = 0.0
@@ -216,10 +248,13 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
         dx, dy = x - falls[pocket, FALL_X], y - falls[pocket, FALL_Y]
         far = sqrt(dx * dx + dy * dy)
         depth, high = falls[pocket, FALL_RADIUS] - far, R - z
-        jaw, deepest, hard, px, py, pz, touches, behind = _deepest_jaw((x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta)
+        jaw, deepest, hard, px, py, pz, touches, behind = _deepest_jaw(
+            (x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta
+        )
         if behind and depth > 0.0:
             return LOST, -1, T, (x, y, z), (vx, vy, u)  # through the throat
-        if hard > SOFT:  # it met the jaw within the step, with the velocity of the step: the edge comes after it
+        # it met the jaw within the step, with the velocity of the step: the edge comes after it
+        if hard > SOFT:
             back = min(0.9 * h, -deepest * sqrt(1.0 - pz * pz) / hard)  # time since the contact
             r = x - vx * back, y - vy * back, z - (u - 0.5 * g * back) * back
             return JAW, jaw, T - back, r, (vx, vy, u - g * back)
@@ -232,8 +267,11 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
                 p = closing * (1.0 + EDGE if closing > SOFT else 1.0)
                 vx, vy, u = vx + p * ex, vy + p * ey, u - p * ez
         if touches:
-            _, _, hard, px, py, pz, _, _ = _deepest_jaw((x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta)
-            if hard <= SOFT:  # it stays on the jaw; if the edge has driven it into the jaw harder, the next step finds it there
+            _, _, hard, px, py, pz, _, _ = _deepest_jaw(
+                (x, y, z), (vx, vy, u), jaws, first, last, R, sin_theta
+            )
+            # it stays on the jaw; if the edge has driven it into the jaw harder, the next step finds it there
+            if hard <= SOFT:
                 vx, vy, u = vx - hard * px, vy - hard * py, u + hard * pz
         if depth < 0.0 and dx * vx + dy * vy > 0.0 and not touches:
             speed2, climb2 = vx * vx + vy * vy, 2.0 * g * max(z, 0.0)
@@ -246,33 +284,53 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
 
 @kernel
 def next_leg(paths, i, t, r, v, w, boundaries, phys):
-    """Ball i is over a pocket, in the air at r = (x, y, z) with v = (vx, vy, u): write its next leg, a line to its next event."""
+    """Ball i is over a pocket, in the air at r = (x, y, z) with v = (vx, vy, u): write its next leg, a line
+    to its next event."""
     (motion, state, flight), (x, y, z), (vx, vy, u) = paths, r, v
     into = int(flight[i, POCKET])
     entered = flight[i, IN_X], flight[i, IN_Y]
-    end, jaw, T, (x1, y1, z1), (vx1, vy1, u1) = fly(r, v, entered, boundaries.falls, into, boundaries.jaws, phys)
+    end, jaw, T, (x1, y1, z1), (vx1, vy1, u1) = fly(
+        r, v, entered, boundaries.falls, into, boundaries.jaws, phys
+    )
     state[i] = FALLING
     T = max(T, SHORTEST)
     motion[i, X], motion[i, Y], motion[i, VX], motion[i, VY] = x, y, (x1 - x) / T, (y1 - y) / T
     motion[i, AX] = motion[i, AY] = 0.0
     motion[i, WX], motion[i, WY], motion[i, WZ] = w
     motion[i, T0], motion[i, T_END] = t, t + T
-    motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y] = min(x, x1), max(x, x1), min(y, y1), max(y, y1)
+    motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y] = (
+        min(x, x1),
+        max(x, x1),
+        min(y, y1),
+        max(y, y1),
+    )
     flight[i, HAD] = 0.5 * (vx * vx + vy * vy + u * u) - phys[P_G] * z
-    flight[i, Z0], flight[i, U0], flight[i, Z1], flight[i, U1], flight[i, END_VX], flight[i, END_VY] = z, u, z1, u1, vx1, vy1
+    flight[i, Z0], flight[i, U0], flight[i, Z1], flight[i, U1], flight[i, END_VX], flight[i, END_VY] = (
+        z,
+        u,
+        z1,
+        u1,
+        vx1,
+        vy1,
+    )
     flight[i, KIND] = events.JAW if end == JAW else events.RETURN if end == BACK else events.POT
     flight[i, INDEX] = jaw if end == JAW else into
 
 
 @kernel
 def aloft(motion, flight, i, t, v, phys):
-    """Ball i in the air meets another ball at time t, when its leg has the velocity v: its velocity. The leg starts anew there.
+    """Ball i in the air meets another ball at time t, when its leg has the velocity v: its velocity. The leg
+    starts anew there.
 
-    A leg with the edge or a soft jaw on its way is not straight, and its mean speed in the plane is not that of any moment. Together with
-    the drop it may come to more energy than the ball had at the start of the leg: then the ball is slower.
+    A leg with the edge or a soft jaw on its way is not straight, and its mean speed in the plane is not that
+    of any moment. Together with the drop it may come to more energy than the ball had at the start of the
+    leg: then the ball is slower.
     """
     s = (t - motion[i, T0]) / (motion[i, T_END] - motion[i, T0])
-    z, u = flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0]), flight[i, U0] + s * (flight[i, U1] - flight[i, U0])
+    z, u = (
+        flight[i, Z0] + s * (flight[i, Z1] - flight[i, Z0]),
+        flight[i, U0] + s * (flight[i, U1] - flight[i, U0]),
+    )
     vx, vy = v
     has, had = 0.5 * (vx * vx + vy * vy + u * u), max(0.0, flight[i, HAD] + phys[P_G] * z)
     if has > had:

@@ -1,7 +1,8 @@
-"""What bounds the balls? A ``Table``: straight noses, jaw arcs and the falls of the pockets, checked, as arrays for the kernels.
+"""What bounds the balls? A ``Table``: straight noses, jaw arcs and the falls of the pockets, checked, as
+arrays for the kernels.
 
-Table frame as in ``geometry``, where the places and sizes are. Behind the arcs no shape is needed: the throat goes on straight, and a
-ball that touches it there is lost (``pocket.py``).
+Table frame as in ``geometry``, where the places and sizes are. Behind the arcs no shape is needed: the throat
+goes on straight, and a ball that touches it there is lost (``pocket.py``).
 """
 
 from dataclasses import dataclass, field
@@ -19,8 +20,8 @@ from .placement import IN_JAW, IN_NOSE, OFF, OVER_POCKET, OVERLAP_ALLOWED, SOUND
 from .shapes import check_fit, check_shapes
 
 MOUTH = 0.012
-"""How far past the line of the noses a ball can lie at rest [m], unless the pockets of a table let it lie deeper. This is the depth between
-the jaw and the fall of a middle pocket of snooker."""
+"""How far past the line of the noses a ball can lie at rest [m], unless the pockets of a table let it lie
+deeper. This is the depth between the jaw and the fall of a middle pocket of snooker."""
 PLAY = 1e-3
 """Facing noses must be at least this much further apart than a ball is wide [m]."""
 SAME_BALL = 1e-9
@@ -31,30 +32,34 @@ SAME_BALL = 1e-9
 class Table:
     """The shape of a table: straight noses, jaw arcs and falls.
 
-    ``Table.preset("match")`` is a table with a name, ``Table.rectangular`` makes a rectangular one, and the constructor makes any table
-    from arrays. There is one object for each preset, also after pickling and copying. Arrays are copied and read-only.
+    ``Table.preset("match")`` is a table with a name, ``Table.rectangular`` makes a rectangular one, and the
+    constructor makes any table from arrays. There is one object for each preset, also after pickling and
+    copying. Arrays are copied and read-only.
 
     Parameters
     ----------
     name : str
         Name of the table in messages.
     noses : array_like, float (k, 5)
-        Straight noses: axis (0: x, 1: y), side (-1 or 1), level [m], and the range lo, hi [m] along the other axis. A ball touches the
-        nose where side * coordinate = level - R.
+        Straight noses: axis (0: x, 1: y), side (-1 or 1), level [m], and the range lo, hi [m] along the other
+        axis. A ball touches the nose where side * coordinate = level - R.
     jaws : array_like, float (m, 6)
-        Jaw arcs: x and y of the centre [m], radius [m], unit vector from the centre to the middle of the arc, cosine of half its angle.
+        Jaw arcs: x and y of the centre [m], radius [m], unit vector from the centre to the middle of the arc,
+        cosine of half its angle.
     falls : array_like, float (p, 3)
-        Falls: x and y of the centre and radius of the slate's edge [m]. A ball whose centre crosses the edge begins to drop. The index of
-        a fall is its pocket.
+        Falls: x and y of the centre and radius of the slate's edge [m]. A ball whose centre crosses the edge
+        begins to drop. The index of a fall is its pocket.
     ball_radius : float, optional
-        Radius of the balls that the table is made for [m], in [0.001, 1]; ``physics.R`` must equal it. None: any ball.
+        Radius of the balls that the table is made for [m], in [0.001, 1]; ``physics.R`` must equal it. None:
+        any ball.
     pockets : tuple of str
         Names of the pockets, one for each fall, or ().
 
     Attributes
     ----------
     bounds : float64 (2, 2)
-        Lowest and highest x, lowest and highest y of the outermost noses [m]; infinite where there is no nose.
+        Lowest and highest x, lowest and highest y of the outermost noses [m]; infinite where there is no
+        nose.
 
     Raises
     ------
@@ -91,8 +96,14 @@ class Table:
         if self.ball_radius is not None:
             object.__setattr__(self, "ball_radius", number("table.ball_radius", self.ball_radius, 1e-3, 1))
         names = self.pockets
-        if not isinstance(names, tuple) or not all(isinstance(name, str) for name in names) or len(names) not in (0, len(self.falls)):
-            raise refuse("table.pockets", names, f"must be a tuple of {len(self.falls)} names, one a fall, or ()")
+        if (
+            not isinstance(names, tuple)
+            or not all(isinstance(name, str) for name in names)
+            or len(names) not in (0, len(self.falls))
+        ):
+            raise refuse(
+                "table.pockets", names, f"must be a tuple of {len(self.falls)} names, one a fall, or ()"
+            )
         bounds = bounds_of(self.noses)
         bounds.setflags(write=False)
         object.__setattr__(self, "bounds", bounds)
@@ -106,9 +117,10 @@ class Table:
         Parameters
         ----------
         name : {"match", "tight", "uk8", "pool9", "carom"}
-            Snooker: "match" (throat of the corners 86.0 mm) and "tight" (80.14 mm), 3.569 x 1.778 m, balls of 52.5 mm. "uk8": UK 8-ball
-            pool, 7 ft x 3 ft 6 in, balls of 2 in; its pockets are an estimate. "pool9": pool, 100 x 50 in, balls of 2 1/4 in. "carom":
-            2.84 x 1.42 m, no pockets, balls of 61.5 mm. Sources: ``snooker_env.geometry``.
+            Snooker: "match" (throat of the corners 86.0 mm) and "tight" (80.14 mm), 3.569 x 1.778 m, balls of
+            52.5 mm. "uk8": UK 8-ball pool, 7 ft x 3 ft 6 in, balls of 2 in; its pockets are an estimate.
+            "pool9": pool, 100 x 50 in, balls of 2 1/4 in. "carom": 2.84 x 1.42 m, no pockets, balls of 61.5
+            mm. Sources: ``snooker_env.geometry``.
 
         Returns
         -------
@@ -130,23 +142,32 @@ class Table:
 
     @classmethod
     def rectangular(
-        cls, length: float, width: float, *, pockets: Literal[6, 4, 0] = 6, corner: Pocket | None = None, middle: Pocket | None = None,
-        ball_radius: float | None = None, name: str = "rectangular",
-    ) -> "Table":  # fmt: skip
+        cls,
+        length: float,
+        width: float,
+        *,
+        pockets: Literal[6, 4, 0] = 6,
+        corner: Pocket | None = None,
+        middle: Pocket | None = None,
+        ball_radius: float | None = None,
+        name: str = "rectangular",
+    ) -> "Table":
         """A rectangular table of your own with straight noses on its four sides.
 
         Parameters
         ----------
         length, width : float
-            Distance between facing noses [m], in (0, 100]: ``length`` along y, ``width`` along x. The origin is in the middle.
+            Distance between facing noses [m], in (0, 100]: ``length`` along y, ``width`` along x. The origin
+            is in the middle.
         pockets : {6, 4, 0}
-            6: four corners and the middles of the sides along y; 4: the corners; 0: none. They are numbered anticlockwise from (-x, -y);
-            ``Table.pockets`` has their names.
+            6: four corners and the middles of the sides along y; 4: the corners; 0: none. They are numbered
+            anticlockwise from (-x, -y); ``Table.pockets`` has their names.
         corner, middle : Pocket, optional
-            Shapes of the pockets: ``Pocket.corner(...)``, ``Pocket.middle(...)``. None: those of snooker's match table.
+            Shapes of the pockets: ``Pocket.corner(...)``, ``Pocket.middle(...)``. None: those of snooker's
+            match table.
         ball_radius : float, optional
-            Radius of the balls that the table is made for [m], in [0.001, 1]; a shot with another ``physics.R`` raises ValueError. None:
-            any ball.
+            Radius of the balls that the table is made for [m], in [0.001, 1]; a shot with another
+            ``physics.R`` raises ValueError. None: any ball.
         name : str
             Name of the table in messages.
 
@@ -158,7 +179,8 @@ class Table:
         Raises
         ------
         ValueError
-            If a size is out of range, or the sizes do not fit together: jaws that overlap along a rail, a pocket narrower than the ball.
+            If a size is out of range, or the sizes do not fit together: jaws that overlap along a rail, a
+            pocket narrower than the ball.
 
         Examples
         --------
@@ -177,7 +199,11 @@ class Table:
             if shape is not None and not needed:
                 raise refuse(f"table.{field_name}", shape, f"must be None on a table with {pockets} pockets")
             if shape is not None and (not isinstance(shape, Pocket) or shape.is_middle != is_middle):
-                raise refuse(f"table.{field_name}", shape, f"must be a Pocket made by Pocket.{field_name}, or None for snooker's")
+                raise refuse(
+                    f"table.{field_name}",
+                    shape,
+                    f"must be a Pocket made by Pocket.{field_name}, or None for snooker's",
+                )
             shapes.append((shape or getattr(PRESETS["match"], field_name)) if needed else None)
         if ball_radius is not None:
             ball_radius = number("table.ball_radius", ball_radius, 1e-3, 1)
@@ -216,7 +242,11 @@ class Table:
             return table
         if isinstance(table, str):
             return cls.preset(table)
-        raise refuse("table", table, f"must be {', '.join(map(_quoted, PRESETS))}, a Table, or None for unbounded cloth")
+        raise refuse(
+            "table",
+            table,
+            f"must be {', '.join(map(_quoted, PRESETS))}, a Table, or None for unbounded cloth",
+        )
 
     @property
     def is_preset(self) -> bool:
@@ -225,9 +255,11 @@ class Table:
 
     @property
     def ball(self) -> dict[str, float]:
-        """Fields of ``Physics`` for the balls that the table is made for, for ``Physics.preset("match", **table.ball)``.
+        """Fields of ``Physics`` for the balls that the table is made for, for
+        ``Physics.preset("match", **table.ball)``.
 
-        A preset has R [m], M [kg] and sin_theta (the height of its noses), a table of your own has R, and a table for any ball nothing.
+        A preset has R [m], M [kg] and sin_theta (the height of its noses), a table of your own has R, and a
+        table for any ball nothing.
         """
         if self.is_preset:
             return dict(PRESETS[self.name].ball)
@@ -241,7 +273,8 @@ class Table:
         return _again, (self.name, self.noses, self.jaws, self.falls, self.ball_radius, self.pockets)
 
     def _reach(self, R):
-        """The bounds (2, 2), widened by how far a ball of radius R can lie past them in the mouth of a pocket. Kept for each radius."""
+        """The bounds (2, 2), widened by how far a ball of radius R can lie past them in the mouth of a
+        pocket. Kept for each radius."""
         if R not in self._reaches:
             past = max(MOUTH, deepest(self.jaws, self.falls, self.bounds, R))
             self._reaches[R] = self.bounds + np.array([-past, past])
@@ -260,7 +293,8 @@ class Table:
         Returns
         -------
         list of int
-            Indices of the layouts in which a ball is off the table, in a cushion, jaw or other ball, or over a pocket; in order.
+            Indices of the layouts in which a ball is off the table, in a cushion, jaw or other ball, or over
+            a pocket; in order.
 
         Examples
         --------
@@ -271,14 +305,23 @@ class Table:
         """
         here, unfit, first = np.ones(positions.shape[:2], bool), [], 0
         while True:
-            k, _, fault, _ = first_fault(positions[first:], here[first:], self._reach(R), self.noses, self.jaws, self.falls, float(R))
+            k, _, fault, _ = first_fault(
+                positions[first:], here[first:], self._reach(R), self.noses, self.jaws, self.falls, float(R)
+            )
             if fault == SOUND:
                 return unfit
             first += k + 1
             unfit.append(first - 1)
 
-    def check(self, positions: Batches | Vectors, R: float, field: str = "positions", on_table: FlagRows | Flags | None = None) -> None:
-        """Check that layouts are sound: no ball off the table, in a cushion, jaw or other ball, or over a pocket.
+    def check(
+        self,
+        positions: Batches | Vectors,
+        R: float,
+        field: str = "positions",
+        on_table: FlagRows | Flags | None = None,
+    ) -> None:
+        """Check that layouts are sound: no ball off the table, in a cushion, jaw or other ball, or over a
+        pocket.
 
         Parameters
         ----------
@@ -298,8 +341,8 @@ class Table:
         Raises
         ------
         ValueError
-            If a layout is not sound, or the table is made for other balls; the message names the layout, the ball and the reason. Also if
-            an array has another shape.
+            If a layout is not sound, or the table is made for other balls; the message names the layout, the
+            ball and the reason. Also if an array has another shape.
 
         Examples
         --------
@@ -312,24 +355,35 @@ class Table:
         radius = self.ball_radius
         if radius is not None and abs(R - radius) > SAME_BALL:
             made = f'must be {radius} on table "{self.name}", which is made for it'
-            raise refuse("physics.R", R, f'{made}: write physics={{"R": {radius}}}, or give a Table of your own')
+            raise refuse(
+                "physics.R", R, f'{made}: write physics={{"R": {radius}}}, or give a Table of your own'
+            )
         positions = np.ascontiguousarray(positions, np.float64)
         many = positions.ndim == 3
         if positions.ndim not in (2, 3) or positions.shape[-1] != 2:
-            raise refuse_what(field, f"array of shape {positions.shape}", "must have shape (n, 2) or (b, n, 2)")
+            raise refuse_what(
+                field, f"array of shape {positions.shape}", "must have shape (n, 2) or (b, n, 2)"
+            )
         places, shape = positions if many else positions[None], positions.shape[:-1]
-        here = (np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)).reshape(places.shape[:2])
+        here = (np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)).reshape(
+            places.shape[:2]
+        )
         width, *pair = self._narrowest
         if width - 2 * R < PLAY:  # it would bounce between them infinitely often in a finite time
             what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
             raise refuse_what("table.noses", f"{pair[0]} and {pair[1]}", what)
-        k, i, fault, j = first_fault(places, here, self._reach(R), self.noses, self.jaws, self.falls, float(R))
+        k, i, fault, j = first_fault(
+            places, here, self._reach(R), self.noses, self.jaws, self.falls, float(R)
+        )
         if fault == SOUND:
             return
         field = f"{field}[{k}]" if many else field
         place = f"{field}[{i}]", (float(places[k, i, 0]), float(places[k, i, 1]))
         if fault == OFF:
-            ranges = [_range(name, low + R, high - R) for name, (low, high) in zip("xy", self.bounds.tolist(), strict=True)]
+            ranges = [
+                _range(name, low + R, high - R)
+                for name, (low, high) in zip("xy", self.bounds.tolist(), strict=True)
+            ]
             raise refuse(*place, f"must be on the table, {', '.join(filter(None, ranges))} away from pockets")
         if fault == IN_NOSE:
             axis, side, level = self.noses[j, [NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL]]
@@ -337,9 +391,13 @@ class Table:
         if fault == OVER_POCKET:
             raise refuse(*place, "is over a pocket")
         if fault == IN_JAW:
-            raise refuse(*place, f"overlaps jaw {j} at ({self.jaws[j, JAW_X]:.4f}, {self.jaws[j, JAW_Y]:.4f})")
+            raise refuse(
+                *place, f"overlaps jaw {j} at ({self.jaws[j, JAW_X]:.4f}, {self.jaws[j, JAW_Y]:.4f})"
+            )
         depth = 2 * R - float(hypot(*(places[k, i] - places[k, j])))
-        raise refuse_what(field, f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed")
+        raise refuse_what(
+            field, f"balls {i} and {j}", f"overlap by {depth:.3g} m, at most {OVERLAP_ALLOWED:g} is allowed"
+        )
 
 
 TableLike: TypeAlias = Table | TableName | None  # the type of an argument ``table``

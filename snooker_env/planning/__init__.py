@@ -1,10 +1,13 @@
-"""Planning: play many strokes on copies of positions, under given noise samples, and find strokes by geometry.
+"""Planning: play many strokes on copies of positions, under given noise samples, and find strokes by
+geometry.
 
 A planner works in two steps:
 
-1. Find strokes: ``pots``, ``action_masks``, ``obstructions``, ``clear_paths``, ``pot_aim``. A stroke is five numbers in SI: cue
-   speed, side, top, direction of the cue ball, elevation. ``Planner.strokes_of`` and ``Planner.actions_of`` decode and encode actions.
-2. Play them: ``Planner.play`` returns points and afterstates; ``Planner.stops`` also returns where each ball stopped.
+1. Find strokes: ``pots``, ``action_masks``, ``obstructions``, ``clear_paths``, ``pot_aim``. A stroke is five
+   numbers in SI: cue speed, side, top, direction of the cue ball, elevation. ``Planner.strokes_of`` and
+   ``Planner.actions_of`` decode and encode actions.
+2. Play them: ``Planner.play`` returns points and afterstates; ``Planner.stops`` also returns where each ball
+   stopped.
 
 The caller assigns a value to each afterstate. ``prospects_of`` is a rule of thumb for that.
 

@@ -1,6 +1,8 @@
-"""Which strokes does the geometry offer, and what is in the way? Direct pots, balls beside a path and clear paths.
+"""Which strokes does the geometry offer, and what is in the way? Direct pots, balls beside a path and clear
+paths.
 
-The geometry is that of straight lines: no throw, no spin and no cushions. ``pot_aim`` corrects the aim for throw, swerve and spin.
+The geometry is that of straight lines: no throw, no spin and no cushions. ``pot_aim`` corrects the aim for
+throw, swerve and spin.
 """
 
 from collections.abc import Sequence
@@ -26,8 +28,8 @@ from .positions import Positions, PositionsLike, rows_of
 class Pots(NamedTuple):
     """The direct pots of m positions, widest tolerance first, as returned by ``pots``.
 
-    Each position has ``most`` columns. Where a position has fewer pots, the remaining columns hold -1 in ``ball`` and ``pocket`` and 0
-    in the other arrays.
+    Each position has ``most`` columns. Where a position has fewer pots, the remaining columns hold -1 in
+    ``ball`` and ``pocket`` and 0 in the other arrays.
 
     Attributes
     ----------
@@ -36,9 +38,11 @@ class Pots(NamedTuple):
     pocket : numpy.ndarray
         int64 (m, most). Index into ``snooker_env.POCKETS``; -1 for no pot.
     ghost : numpy.ndarray
-        float64 (m, most, 2). Centre of the cue ball [m] at the moment in which it touches the object ball (the ghost ball).
+        float64 (m, most, 2). Centre of the cue ball [m] at the moment in which it touches the object ball
+        (the ghost ball).
     cut : numpy.ndarray
-        float64 (m, most). Cut angle [rad]: the angle between the paths of the cue ball and of the object ball, 0 for a straight pot.
+        float64 (m, most). Cut angle [rad]: the angle between the paths of the cue ball and of the object
+        ball, 0 for a straight pot.
     tolerance : numpy.ndarray
         float64 (m, most). Approximate largest error of the aim [rad] with which the ball is still potted.
 
@@ -98,7 +102,8 @@ def pots(positions: PositionsLike, most: int = POTS) -> Pots:
     positions : PositionsLike
         The m positions: anything that ``Positions.of`` accepts.
     most : int, optional
-        Largest number of pots for each position, in [1, 126]; default 4, the number that ``action="discrete"`` chooses from.
+        Largest number of pots for each position, in [1, 126]; default 4, the number that
+        ``action="discrete"`` chooses from.
 
     Returns
     -------
@@ -119,7 +124,13 @@ def pots(positions: PositionsLike, most: int = POTS) -> Pots:
     """
     at, most = Positions.of(positions).as_visits(), integer("most", most, 1, 6 * (N_BALLS - 1))
     m = len(at)
-    out = Pots(np.full((m, most), -1), np.full((m, most), -1), np.zeros((m, most, 2)), np.zeros((m, most)), np.zeros((m, most)))
+    out = Pots(
+        np.full((m, most), -1),
+        np.full((m, most), -1),
+        np.zeros((m, most, 2)),
+        np.zeros((m, most)),
+        np.zeros((m, most)),
+    )
     _pots(at.positions, at.on_table, at.game, *out)
     return out
 
@@ -140,7 +151,8 @@ def _obstructions(positions, on_table, rows, starts, ends, reach, out):
 def obstructions(
     positions: PositionsLike, rows: Integers, starts: Vectors, ends: Vectors, *, ignore: Sequence[int] = ()
 ) -> NDArray[np.bool_]:
-    """Find the balls in the way of a ball that runs straight: those whose centres are nearer than 2 R to its path.
+    """Find the balls in the way of a ball that runs straight: those whose centres are nearer than 2 R to its
+    path.
 
     Parameters
     ----------
@@ -151,7 +163,8 @@ def obstructions(
     starts, ends : array_like
         float (n, 2). First and last point of the path of the running ball's centre [m].
     ignore : array_like, optional
-        int (j,) or (n, j). Ids of balls that do not count, usually the running ball and its target; default none.
+        int (j,) or (n, j). Ids of balls that do not count, usually the running ball and its target; default
+        none.
 
     Returns
     -------
@@ -190,11 +203,14 @@ def _clear_paths(positions, on_table, game, noses, jaws, any_part, full_ball):
     for k in range(len(any_part)):
         on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
         any_part[k] = on_table[k, 0] and clear_path(positions[k], on_table[k], on, noses, jaws, BALL_RADIUS)
-        full_ball[k] = on_table[k, 0] and full_ball_path(positions[k], on_table[k], on, noses, jaws, BALL_RADIUS)
+        full_ball[k] = on_table[k, 0] and full_ball_path(
+            positions[k], on_table[k], on, noses, jaws, BALL_RADIUS
+        )
 
 
 def clear_paths(positions: PositionsLike) -> Paths:
-    """Determine whether the cue ball can roll straight from where it lies to a ball on without touching another ball or a cushion first.
+    """Determine whether the cue ball can roll straight from where it lies to a ball on without touching
+    another ball or a cushion first.
 
     The cushions are those of the match table.
 
@@ -206,8 +222,8 @@ def clear_paths(positions: PositionsLike) -> Paths:
     Returns
     -------
     Paths
-        Two bool arrays (m,), for the two tests of the foul-and-miss rule (``snooker_env.game.paths``). False where the cue ball is off
-        the table.
+        Two bool arrays (m,), for the two tests of the foul-and-miss rule (``snooker_env.game.paths``). False
+        where the cue ball is off the table.
 
     Raises
     ------

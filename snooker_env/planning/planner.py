@@ -1,4 +1,5 @@
-"""What would strokes lead to? ``Planner`` plays them on copies of positions, under given noise samples, by the rules, on all cores."""
+"""What would strokes lead to? ``Planner`` plays them on copies of positions, under given noise samples, by
+the rules, on all cores."""
 
 import copy
 import threading
@@ -39,7 +40,8 @@ class Outcomes(NamedTuple):
     afterstates : Positions
         n rows: the balls at rest, with colours respotted, and the ball on for the next stroke.
     observations : numpy.ndarray
-        float32 (n, 121). The flat observation of each afterstate, as ``Snooker-v0`` returns it with ``task="visit"``.
+        float32 (n, 121). The flat observation of each afterstate, as ``Snooker-v0`` returns it with
+        ``task="visit"``.
 
     Examples
     --------
@@ -56,26 +58,30 @@ class Outcomes(NamedTuple):
 
 
 class Planner:
-    """Plays strokes on copies of positions exactly as the environment would: same physics, same rules, same errors for the same keys.
+    """Plays strokes on copies of positions exactly as the environment would: same physics, same rules, same
+    errors for the same keys.
 
-    Each stroke is judged as a stroke of a *visit* (``task="visit"``): the visit ends with the first miss, foul or clearance. With an
-    environment that plays whole frames, a planner therefore covers what the player scores and leaves within the current visit. It does
-    not cover penalties, free balls, the foul-and-miss rule or the opponent.
+    Each stroke is judged as a stroke of a *visit* (``task="visit"``): the visit ends with the first miss,
+    foul or clearance. With an environment that plays whole frames, a planner therefore covers what the player
+    scores and leaves within the current visit. It does not cover penalties, free balls, the foul-and-miss
+    rule or the opponent.
 
-    A *stroke* is a row of five numbers in SI: cue speed [m/s], side and top (tip offset over R, to the right and up), the direction in
-    which the cue ball leaves [rad], elevation of the cue [rad]. The cue itself points aside from that direction by the squirt of the side.
+    A *stroke* is a row of five numbers in SI: cue speed [m/s], side and top (tip offset over R, to the right
+    and up), the direction in which the cue ball leaves [rad], elevation of the cue [rad]. The cue itself
+    points aside from that direction by the squirt of the side.
 
     Parameters
     ----------
     env_or_options : Env, VectorEnv, AECEnv, Options or dict
-        An environment of this package (one table or many, wrapped or not, or a match), an ``Options``, or the keyword arguments of
-        ``gymnasium.make("Snooker-v0", ...)`` as a dict. They define the action format, the noise, the physics, the table and the
-        fidelity.
+        An environment of this package (one table or many, wrapped or not, or a match), an ``Options``, or the
+        keyword arguments of ``gymnasium.make("Snooker-v0", ...)`` as a dict. They define the action format,
+        the noise, the physics, the table and the fidelity.
     noise : str, dict or Noise, optional
-        Execution noise for planning in place of the environment's own. "none" plays all strokes as intended. Default: the noise of
-        ``env_or_options``.
+        Execution noise for planning in place of the environment's own. "none" plays all strokes as intended.
+        Default: the noise of ``env_or_options``.
     threads : int, optional
-        Number of threads, in [1, 1024]; default one for each available processor. Results do not depend on it.
+        Number of threads, in [1, 1024]; default one for each available processor. Results do not depend on
+        it.
 
     Raises
     ------
@@ -97,12 +103,20 @@ class Planner:
     """
 
     def __init__(
-        self, env_or_options: Environment | Options | Mapping[str, Any], *, noise: NoiseLike | None = None, threads: int | None = None
+        self,
+        env_or_options: Environment | Options | Mapping[str, Any],
+        *,
+        noise: NoiseLike | None = None,
+        threads: int | None = None,
     ):
         rules = options_in(env_or_options).rules
         errors = rules.noise if noise is None else Noise.of(noise)
-        self._rules = replace(rules, noise=errors, reward=REWARDS[0], one_stroke=False, observation=OBSERVATIONS[0])
-        self._threads = Threads(min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024))
+        self._rules = replace(
+            rules, noise=errors, reward=REWARDS[0], one_stroke=False, observation=OBSERVATIONS[0]
+        )
+        self._threads = Threads(
+            min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
+        )
         self._visits, self._watched = TrialVisits(self._rules, 0), WatchedVisits(self._rules, 0)
         self._lock = threading.Lock()
         self._shots = 0
@@ -168,13 +182,16 @@ class Planner:
         actions : array_like, optional
             float (n, k): actions of the box action space; or int (n,): choices, with ``action="discrete"``.
         keys : array_like, optional
-            int (n,) or (n, 2), in [0, 2**64). The noise sample of each stroke: the key of its random stream, or key and counter as a saved
-            state holds them under "stream". Equal keys give equal execution errors for every stroke (common random numbers). Keys or
-            ``errors`` are required unless the planner has no noise.
+            int (n,) or (n, 2), in [0, 2**64). The noise sample of each stroke: the key of its random stream,
+            or key and counter as a saved state holds them under "stream". Equal keys give equal execution
+            errors for every stroke (common random numbers). Keys or ``errors`` are required unless the
+            planner has no noise.
         strokes : array_like, optional
-            float (n, 5), in place of ``actions``: strokes in SI, see above. A cue ball in hand is played from where it lies.
+            float (n, 5), in place of ``actions``: strokes in SI, see above. A cue ball in hand is played from
+            where it lies.
         errors : array_like, optional
-            float (n, 5), in place of ``keys``: the errors of speed, side, top, aim and elevation, in standard deviations of the noise.
+            float (n, 5), in place of ``keys``: the errors of speed, side, top, aim and elevation, in standard
+            deviations of the noise.
 
         Returns
         -------
@@ -184,15 +201,15 @@ class Planner:
         Raises
         ------
         ValueError
-            If a row is out of range, an action is not in the action space, a stroke is out of range, an array has the wrong shape, or a
-            position is invalid or has no stroke left to play.
+            If a row is out of range, an action is not in the action space, a stroke is out of range, an array
+            has the wrong shape, or a position is invalid or has no stroke left to play.
         SimulationError
             If a shot cannot be computed.
 
         Notes
         -----
-        Several threads may call this method at once. A stroke costs about 20 us; in calls with fewer than a few dozen strokes the input
-        checks are a noticeable part of the cost.
+        Several threads may call this method at once. A stroke costs about 20 us; in calls with fewer than a
+        few dozen strokes the input checks are a noticeable part of the cost.
 
         Examples
         --------
@@ -250,7 +267,9 @@ class Planner:
         (21, 3)
         """
         visits = copy.copy(self._watched)
-        after, out = self._played(positions, rows, actions, keys, strokes=strokes, errors=errors, visits=visits)
+        after, out = self._played(
+            positions, rows, actions, keys, strokes=strokes, errors=errors, visits=visits
+        )
         first, penalty = out.counts[:, I_FIRST].copy(), out.counts[:, I_PENALTY].copy()
         return Stops(visits.places, visits.potted, first, out.reals[:, 0].copy(), penalty, ~after.over, after)
 
@@ -265,12 +284,17 @@ class Planner:
         errors: Any = None,
         visits: TrialVisits | None = None,
     ) -> tuple[Positions, StepOutput]:
-        """Check the arguments and play the strokes on ``visits`` to be filled. Returns the afterstates and the output of the step."""
+        """Check the arguments and play the strokes on ``visits`` to be filled. Returns the afterstates and
+        the output of the step."""
         at = Positions.of(positions).as_visits()
         which = rows_of(at, rows)
         n = len(which)
         if (actions is None) == (strokes is None):
-            raise refuse_what("actions, strokes", "none" if actions is None else "both", "must be one of them: what is played")
+            raise refuse_what(
+                "actions, strokes",
+                "none" if actions is None else "both",
+                "must be one of them: what is played",
+            )
         played = self._rules.actions.check_many(actions, n) if strokes is None else check_strokes(strokes, n)
         streams = _streams(keys, n, self.noise.silent or errors is not None)
         wrong = None if errors is None else _errors(errors, keys, n)
@@ -288,7 +312,9 @@ class Planner:
             self._shots += n
         return after, out
 
-    def strokes_of(self, positions: PositionsLike, rows: Integers, actions: Vectors | Integers) -> tuple[NDArray[np.float64], Positions]:
+    def strokes_of(
+        self, positions: PositionsLike, rows: Integers, actions: Vectors | Integers
+    ) -> tuple[NDArray[np.float64], Positions]:
         """Decode actions or choices of this planner's action space: which strokes do they mean?
 
         Parameters
@@ -338,9 +364,11 @@ class Planner:
         strokes : array_like
             float (n, 5). Strokes in SI.
         positions, rows : PositionsLike, array_like, optional
-            Where each stroke is played, see ``strokes_of``. Required with ``aim="target"``, which is measured from a line there.
+            Where each stroke is played, see ``strokes_of``. Required with ``aim="target"``, which is measured
+            from a line there.
         places : array_like, optional
-            float (n, 2). With ``placement=True``: where in the D a cue ball in hand is placed [m]. Default: the middle of the baulk line.
+            float (n, 2). With ``placement=True``: where in the D a cue ball in hand is placed [m]. Default:
+            the middle of the baulk line.
 
         Returns
         -------
@@ -365,7 +393,11 @@ class Planner:
         if form.aim == "absolute":
             return encoded(form, told, where)
         if positions is None or rows is None:
-            raise refuse("positions, rows", None, 'must be given with aim="target", which is measured from a line in each position')
+            raise refuse(
+                "positions, rows",
+                None,
+                'must be given with aim="target", which is measured from a line in each position',
+            )
         lines, _ = self.strokes_of(positions, rows, encoded(form, told, where, told[:, AIM]))
         return encoded(form, told, where, lines[:, AIM])
 
@@ -400,14 +432,28 @@ class Planner:
         [7.0]
         """
         if isinstance(self._rules.actions, Actions) and self._rules.actions.aim != "absolute":
-            raise refuse("aim", self._rules.actions.aim, 'must be "absolute": this planner would read the result differently')
+            raise refuse(
+                "aim",
+                self._rules.actions.aim,
+                'must be "absolute": this planner would read the result differently',
+            )
         return solved_choices(self._rules, Positions.of(positions), rows, choices)
 
     def pot_aim(
-        self, positions: PositionsLike, rows: Integers, balls: Integers, targets: Vectors, speeds: Scalars, *, side: Scalars = 0.0,
-        top: Scalars = 0.0, elevation: Scalars = 0.0, ghosts: Vectors | None = None,
-    ) -> NDArray[np.float64]:  # fmt: skip
-        """Solve the direction in which the cue ball must leave to pot a ball, with this planner's physics and fidelity.
+        self,
+        positions: PositionsLike,
+        rows: Integers,
+        balls: Integers,
+        targets: Vectors,
+        speeds: Scalars,
+        *,
+        side: Scalars = 0.0,
+        top: Scalars = 0.0,
+        elevation: Scalars = 0.0,
+        ghosts: Vectors | None = None,
+    ) -> NDArray[np.float64]:
+        """Solve the direction in which the cue ball must leave to pot a ball, with this planner's physics and
+        fidelity.
 
         Parameters
         ----------
@@ -446,7 +492,9 @@ class Planner:
         0.785
         """
         dynamics = (self.physics, self._rules.fidelity)
-        return solved_aims(Positions.of(positions), rows, balls, targets, speeds, side, top, elevation, ghosts, dynamics)
+        return solved_aims(
+            Positions.of(positions), rows, balls, targets, speeds, side, top, elevation, ghosts, dynamics
+        )
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_lock"}
@@ -456,7 +504,8 @@ class Planner:
 
 
 def options_in(source: Any) -> Options:
-    """The ``Options`` of an environment, or those given as such or as a dict; ValueError for anything else."""
+    """The ``Options`` of an environment, or those given as such or as a dict; ValueError for anything
+    else."""
     if isinstance(source, Mapping):
         source = options_of(None, source)
     options = source if isinstance(source, Options) else getattr(bare(source), "options", None)
@@ -479,14 +528,21 @@ def _streams(keys: Integers | Sequence[Integers] | None, n: int, silent: bool) -
     if keys is None:
         if silent:
             return streams
-        raise refuse("keys", None, f"must be given with execution noise: {n} integers in [0, 2**64), a noise sample for each stroke")
+        raise refuse(
+            "keys",
+            None,
+            f"must be given with execution noise: {n} integers in [0, 2**64), a noise sample for each stroke",
+        )
     allowed = f"must be {n} integers in [0, 2**64), a noise sample for each stroke"
-    given = keys if isinstance(keys, np.ndarray) else np.array(keys, object)  # NumPy converts a list of large and small integers to floats
+    # NumPy converts a list of large and small integers to floats
+    given = keys if isinstance(keys, np.ndarray) else np.array(keys, object)
     if given.dtype == object and all(isinstance(k, int | np.integer) and 0 <= k < 2**64 for k in given.flat):
         given = given.astype(np.uint64)
     if given.shape not in ((n,), (n, 2)):
         raise refuse_what("keys", f"array of shape {given.shape}", allowed)
     if given.dtype.kind not in "iu" or (given.dtype.kind == "i" and (given < 0).any()):
-        raise refuse_what("keys", "negative numbers" if given.dtype.kind == "i" else f"array of {given.dtype}", allowed)
+        raise refuse_what(
+            "keys", "negative numbers" if given.dtype.kind == "i" else f"array of {given.dtype}", allowed
+        )
     streams[:, : given.ndim] = given.reshape(n, -1)
     return streams

@@ -1,4 +1,5 @@
-"""How is a position written down? ``Position``: the balls by name and the ball on, validated; and the arrays for the kernels."""
+"""How is a position written down? ``Position``: the balls by name and the ball on, validated; and the arrays
+for the kernels."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import InitVar, asdict, dataclass, fields
@@ -36,33 +37,38 @@ ON = tuple(ball.name.lower() for ball in BallOn)
 
 @dataclass(frozen=True, kw_only=True)
 class Position:
-    """The balls on a table in the middle of a visit, by name. A ``Position`` is validated when it is made, and it is immutable.
+    """The balls on a table in the middle of a visit, by name. A ``Position`` is validated when it is made,
+    and it is immutable.
 
     Parameters
     ----------
     cue : (float, float), optional
-        Centre of the cue ball [m]. The origin is the table's centre, +x points to the yellow side and +y to the black end. It may be
-        left out with ``in_hand=True``: then the cue ball lies at the free place of the D nearest to its usual one, (0.18, -1.0475).
+        Centre of the cue ball [m]. The origin is the table's centre, +x points to the yellow side and +y to
+        the black end. It may be left out with ``in_hand=True``: then the cue ball lies at the free place of
+        the D nearest to its usual one, (0.18, -1.0475).
     reds : sequence of (float, float), optional
         Up to 15 centres [m]. The reds get the ids 1, 2, ... in this order. Default: none.
     yellow, green, brown, blue, pink, black : (float, float), optional
         Centres [m]. A ball that is left out is off the table.
     on : str, optional
-        What must be struck first: "red", "any_colour" (a red was just potted), or the name of a colour. Default: "red" while there is a
-        red, else the lowest colour.
+        What must be struck first: "red", "any_colour" (a red was just potted), or the name of a colour.
+        Default: "red" while there is a red, else the lowest colour.
     in_hand : bool, optional
         Whether the cue ball may be placed in the D before the stroke; default False.
     points : int, optional
         Points of the visit so far, in [0, 155]; default 0.
     over : bool, optional
-        Whether the visit has ended; default False. After its end anything may be on, and the cue ball may be missing.
+        Whether the visit has ended; default False. After its end anything may be on, and the cue ball may be
+        missing.
     table : str, Table or None, optional
-        The table that the balls must fit on; it is not stored. None stands for unbounded cloth. Default: "match".
+        The table that the balls must fit on; it is not stored. None stands for unbounded cloth. Default:
+        "match".
 
     Raises
     ------
     ValueError
-        If a ball is off the table, in a cushion or over a pocket, if two balls overlap, or if the ball on contradicts the balls.
+        If a ball is off the table, in a cushion or over a pocket, if two balls overlap, or if the ball on
+        contradicts the balls.
     TypeError
         For an unknown field.
 
@@ -112,15 +118,23 @@ class Position:
         _check_layout(positions, on_table, Table.of(table))
         put("on", _named(self.on, mask_of_present(on_table)))
         if not self.over:
-            check_playable(on_table, BallOn[str(self.on).upper()], on="on", cue="cue", balls="the balls given")
+            check_playable(
+                on_table, BallOn[str(self.on).upper()], on="on", cue="cue", balls="the balls given"
+            )
             if self.in_hand and not within_d(*positions[CUE]):
                 raise refuse(
-                    "in_hand", True, f"must be False with the cue ball at ({positions[CUE, 0]:g}, {positions[CUE, 1]:g}), outside the D"
+                    "in_hand",
+                    True,
+                    f"must be False with the cue ball at ({positions[CUE, 0]:g}, {positions[CUE, 1]:g}), outside the D",
                 )
 
     def _layout(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         positions, on_table = np.zeros((N_BALLS, 2)), np.zeros(N_BALLS, np.bool_)
-        places = {CUE: self.cue, **dict(enumerate(self.reds, 1)), **{colour(name): getattr(self, name) for name in COLOUR_NAMES}}
+        places = {
+            CUE: self.cue,
+            **dict(enumerate(self.reds, 1)),
+            **{colour(name): getattr(self, name) for name in COLOUR_NAMES},
+        }
         for ball, place in places.items():
             if place is not None:
                 positions[ball], on_table[ball] = place, True
@@ -136,7 +150,8 @@ class Position:
         on_table : numpy.ndarray
             bool (22,). Which balls are on the table.
         game : numpy.ndarray
-            int64 (5,). The ball on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit is over, strokes (0).
+            int64 (5,). The ball on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit
+            is over, strokes (0).
 
         Examples
         --------
@@ -180,10 +195,16 @@ class Position:
         """
         places, there = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
         ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]
-        named = {name: tuple(places[i]) for name, i in {"cue": CUE, **{c: colour(c) for c in COLOUR_NAMES}}.items() if there[i]}
+        named = {
+            name: tuple(places[i])
+            for name, i in {"cue": CUE, **{c: colour(c) for c in COLOUR_NAMES}}.items()
+            if there[i]
+        }
         reds = tuple(tuple(places[i]) for i in range(1, N_REDS + 1) if there[i])
         on = BallOn(ball_on).name.lower()
-        return cls(**named, reds=reds, on=on, in_hand=bool(in_hand), points=points, over=bool(over), table=None)
+        return cls(
+            **named, reds=reds, on=on, in_hand=bool(in_hand), points=points, over=bool(over), table=None
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return the position as JSON types, without the balls off the table.
@@ -281,7 +302,8 @@ class Position:
         Raises
         ------
         ValueError
-            If the file does not hold the JSON of a position. The message names the unknown key or the ball that is wrong.
+            If the file does not hold the JSON of a position. The message names the unknown key or the ball
+            that is wrong.
         OSError
             If the file cannot be read.
 
@@ -303,14 +325,19 @@ _NAMES = tuple(f.name for f in fields(Position))
 
 
 def _known(init: Any) -> Any:
-    """``Position.__init__`` with a word on a field that it does not have: which there are, and that the reds are one list."""
+    """``Position.__init__`` with a word on a field that it does not have: which there are, and that the reds
+    are one list."""
     names = (*_NAMES, "table")
 
     @wraps(init)
     def checked(self: Position, *args: Any, **given: Any) -> None:
         for name in given:
             if name not in names:
-                hint = "the reds are one list, reds=[(x, y), ...]" if name.startswith("red") else f"the fields are {', '.join(names)}"
+                hint = (
+                    "the reds are one list, reds=[(x, y), ...]"
+                    if name.startswith("red")
+                    else f"the fields are {', '.join(names)}"
+                )
                 raise TypeError(f"Position got an unexpected keyword argument {name!r}; {hint}")
         init(self, *args, **given)
 
@@ -334,7 +361,9 @@ def _named(on: Any, balls: int) -> str:
 
 def _name(ball: int) -> str:
     """The name of a ball as a field of ``Position``."""
-    return "cue" if ball == CUE else f"reds[{ball - 1}]" if ball <= N_REDS else COLOUR_NAMES[ball - N_REDS - 1]
+    return (
+        "cue" if ball == CUE else f"reds[{ball - 1}]" if ball <= N_REDS else COLOUR_NAMES[ball - N_REDS - 1]
+    )
 
 
 def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], table: Table) -> None:
@@ -350,12 +379,15 @@ def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], t
             other, place = int(others[apart.argmin()]), tuple(positions[ball].tolist())
             at = tuple(positions[other].tolist())
             raise refuse(
-                _name(ball), place, f"overlaps {_name(other)} at {at} by {2 * BALL_RADIUS - apart.min():.3g} m, at most 1e-06 is allowed"
+                _name(ball),
+                place,
+                f"overlaps {_name(other)} at {at} by {2 * BALL_RADIUS - apart.min():.3g} m, at most 1e-06 is allowed",
             )
 
 
 def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue: str, balls: str) -> None:
-    """Raise ValueError unless there is a stroke to play. ``on``, ``cue``, ``balls``: names of the fields for the message.
+    """Raise ValueError unless there is a stroke to play. ``on``, ``cue``, ``balls``: names of the fields for
+    the message.
 
     The rules are those of a saved state (``tasks.states.checked``).
     """
@@ -365,9 +397,13 @@ def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue
     if not balls_on(ball_on, there):
         raise refuse(on, ball_on.name.lower(), f"must name balls of which one is on the table ({balls})")
     if ball_on > BallOn.RED and there & REDS_MASK:
-        raise refuse(on, ball_on.name.lower(), f"must be 'red' or 'any_colour' while reds are on the table ({balls})")
+        raise refuse(
+            on, ball_on.name.lower(), f"must be 'red' or 'any_colour' while reds are on the table ({balls})"
+        )
     lowest = next_on(there)
     if ball_on not in (BallOn.ANY_COLOUR, lowest):
         raise refuse(
-            on, ball_on.name.lower(), f"must be 'any_colour' or {BallOn(lowest).name.lower()!r}, the lowest on the table ({balls})"
+            on,
+            ball_on.name.lower(),
+            f"must be 'any_colour' or {BallOn(lowest).name.lower()!r}, the lowest on the table ({balls})",
         )

@@ -1,4 +1,5 @@
-"""How is a position kept in a file? As a small JSON object, replaced in one step, and read with strict checks."""
+"""How is a position kept in a file? As a small JSON object, replaced in one step, and read with strict
+checks."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -16,7 +17,8 @@ def checked(raw: Any, names: Sequence[str], field: str = "position") -> Mapping[
     for key in raw:
         choice(f"key of {field}", key, names)
     for key, value in raw.items():
-        if any(isinstance(x, bool) for place in _places(value) for x in place):  # NumPy converts them to 0 and 1
+        # NumPy converts them to 0 and 1
+        if any(isinstance(x, bool) for place in _places(value) for x in place):
             raise refuse(key, value, "must be two real numbers" + (" for each ball" if key == "reds" else ""))
     return raw
 

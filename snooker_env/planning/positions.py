@@ -1,4 +1,5 @@
-"""Which positions are strokes tried on? ``Positions``: arrays with one row for each, taken from environments, states or ``Position``."""
+"""Which positions are strokes tried on? ``Positions``: arrays with one row for each, taken from environments,
+states or ``Position``."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias, overload
@@ -52,28 +53,31 @@ def _balls_on(on_table, game, out):
 class Positions:
     """m positions, each with a stroke to play in a visit or in a frame, as arrays.
 
-    Positions of frames are seen by the striker, who is player 0 in them, and hold all that a player of frames may know. Planning plays
-    their strokes as those of visits, see ``as_visits``.
+    Positions of frames are seen by the striker, who is player 0 in them, and hold all that a player of frames
+    may know. Planning plays their strokes as those of visits, see ``as_visits``.
 
-    ``positions[3]`` is one ``Position``. Any other NumPy index (a slice, a mask, a list of rows) gives ``Positions``: a view for a
-    slice, else a copy.
+    ``positions[3]`` is one ``Position``. Any other NumPy index (a slice, a mask, a list of rows) gives
+    ``Positions``: a view for a slice, else a copy.
 
     Parameters
     ----------
     positions : array_like
-        float (m, 22, 2). Centres of the balls [m], by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow to black.
+        float (m, 22, 2). Centres of the balls [m], by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow
+        to black.
     on_table : array_like
         bool (m, 22). Which balls are on the table.
     game : array_like
-        int (m, 5), of visits: the ball on (a ``BallOn``), whether the cue ball is in hand, points of the visit, whether it is over, strokes
-        so far. Or int (m, 33), of frames: the columns of ``snooker_env.game.frame_columns``, with the striker as player 0.
+        int (m, 5), of visits: the ball on (a ``BallOn``), whether the cue ball is in hand, points of the
+        visit, whether it is over, strokes so far. Or int (m, 33), of frames: the columns of
+        ``snooker_env.game.frame_columns``, with the striker as player 0.
     saved : Layouts, optional
         Of frames: the balls before the last foul, which "replace" restores. Default None.
 
     Raises
     ------
     ValueError
-        If an array has the wrong shape or type, or a number is not finite. Overlapping balls are found when a position is played.
+        If an array has the wrong shape or type, or a number is not finite. Overlapping balls are found when a
+        position is played.
 
     Examples
     --------
@@ -96,7 +100,11 @@ class Positions:
         m = len(self.positions)
         there, columns = np.asarray(on_table), np.asarray(game)
         if there.shape != (m, N_BALLS) or there.dtype != np.bool_:
-            raise refuse_what("on_table", f"{there.dtype} array of shape {there.shape}", f"must be bool of shape {(m, N_BALLS)}")
+            raise refuse_what(
+                "on_table",
+                f"{there.dtype} array of shape {there.shape}",
+                f"must be bool of shape {(m, N_BALLS)}",
+            )
         if columns.shape not in ((m, VISIT_COLUMNS), (m, COLUMNS)) or columns.dtype.kind not in "iu":
             allowed = f"must be integers of shape {(m, VISIT_COLUMNS)}, or {(m, COLUMNS)} of frames"
             raise refuse_what("game", f"{columns.dtype} array of shape {columns.shape}", allowed)
@@ -111,9 +119,9 @@ class Positions:
         Parameters
         ----------
         source : Env, VectorEnv, AECEnv, Positions, Position, dict, or sequence of Position and dict
-            An environment, of one table or many, wrapped or not, gives its current tables, also those whose visit has ended; those of
-            frames and matches as their strikers see them. A dict is a state of a visit from ``get_state()``, or the result of
-            ``Position.to_dict()``.
+            An environment, of one table or many, wrapped or not, gives its current tables, also those whose
+            visit has ended; those of frames and matches as their strikers see them. A dict is a state of a
+            visit from ``get_state()``, or the result of ``Position.to_dict()``.
 
         Returns
         -------
@@ -138,14 +146,20 @@ class Positions:
             return source
         if isinstance(source, Position | Mapping):
             source = [source]
-        if isinstance(source, list | tuple) and source and all(isinstance(one, Position | Mapping) for one in source):
+        if (
+            isinstance(source, list | tuple)
+            and source
+            and all(isinstance(one, Position | Mapping) for one in source)
+        ):
             positions, on_table, game = zip(*map(_arrays, source), strict=True)
             return cls(np.stack(positions), np.stack(on_table), np.stack(game))
         tables = getattr(bare(source), "tables", None)
         if isinstance(tables, Tables):
             return _of_tables(tables)
         raise refuse_what(
-            "positions", f"a {type(source).__name__}", "must be Positions, a Position, a state, a list of these, or an environment"
+            "positions",
+            f"a {type(source).__name__}",
+            "must be Positions, a Position, a state, a list of these, or an environment",
         )
 
     def __len__(self) -> int:
@@ -166,9 +180,12 @@ class Positions:
             return Position.of_arrays(one.positions[0], one.on_table[0], one.game[0])
         taken = object.__new__(Positions)
         for name in ("positions", "on_table", "game"):
-            setattr(taken, name, np.ascontiguousarray(getattr(self, name)[rows]))  # the kernels are compiled for contiguous arrays
+            # the kernels are compiled for contiguous arrays
+            setattr(taken, name, np.ascontiguousarray(getattr(self, name)[rows]))
         saved = self.saved
-        taken.saved = saved and Layouts(np.ascontiguousarray(saved.positions[rows]), np.ascontiguousarray(saved.on_table[rows]))
+        taken.saved = saved and Layouts(
+            np.ascontiguousarray(saved.positions[rows]), np.ascontiguousarray(saved.on_table[rows])
+        )
         return taken
 
     def __repr__(self) -> str:
@@ -193,10 +210,12 @@ class Positions:
         return Positions(self.positions.copy(), self.on_table.copy(), self.game.copy(), saved)
 
     def as_visits(self) -> "Positions":
-        """Return the positions as those of visits, with ``game`` (m, 5); positions of visits are returned as they are.
+        """Return the positions as those of visits, with ``game`` (m, 5); positions of visits are returned as
+        they are.
 
-        A stroke is then judged as one of a visit. With a free ball any colour is on, which is right in all but what it scores. A cue ball
-        that may stand anywhere is played from where it lies: visits have no ball in hand outside the D.
+        A stroke is then judged as one of a visit. With a free ball any colour is on, which is right in all
+        but what it scores. A cue ball that may stand anywhere is played from where it lies: visits have no
+        ball in hand outside the D.
 
         Returns
         -------
@@ -268,7 +287,8 @@ class Positions:
 
     @property
     def ball_on(self) -> NDArray[np.int64]:
-        """What must be struck first, int64 (m,): a ``BallOn`` for each row, without regard to a free ball; a view."""
+        """What must be struck first, int64 (m,): a ``BallOn`` for each row, without regard to a free ball; a
+        view."""
         return self.game[:, BALL_ON]
 
     @property
@@ -317,7 +337,13 @@ class Positions:
 def _floats(field: str, values: Any, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """``_check.array``, but without a copy of an array that is valid already."""
     a = np.asarray(values)
-    sound = a.dtype == np.float64 and a.ndim == len(shape) and a.shape[1:] == shape[1:] and a.flags.c_contiguous and np.isfinite(a).all()
+    sound = (
+        a.dtype == np.float64
+        and a.ndim == len(shape)
+        and a.shape[1:] == shape[1:]
+        and a.flags.c_contiguous
+        and np.isfinite(a).all()
+    )
     return a if sound and not isinstance(values, np.ma.MaskedArray) else array(field, values, shape)
 
 
@@ -338,7 +364,8 @@ def bare(env: Any) -> Any:
     """The environment of this package inside all wrappers of Gymnasium, PettingZoo or Stable-Baselines3."""
     env = getattr(env, "unwrapped", env)
     inner = getattr(env, "tables", None)
-    return env if inner is None or isinstance(inner, Tables) else inner  # SnookerVecEnv holds a SnookerVectorEnv
+    # SnookerVecEnv holds a SnookerVectorEnv
+    return env if inner is None or isinstance(inner, Tables) else inner
 
 
 def _of_tables(tables: Tables) -> Positions:
@@ -348,10 +375,17 @@ def _of_tables(tables: Tables) -> Positions:
     if saved is None:
         game[:, STEPS] = 0
         return Positions(tables.positions.copy(), tables.on_table.copy(), game)
-    return Positions(tables.positions.copy(), tables.on_table.copy(), strikers_own(game), Layouts(*(each.copy() for each in saved)))
+    return Positions(
+        tables.positions.copy(),
+        tables.on_table.copy(),
+        strikers_own(game),
+        Layouts(*(each.copy() for each in saved)),
+    )
 
 
-PositionsLike: TypeAlias = Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
+PositionsLike: TypeAlias = (
+    Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
+)
 """The types that arguments called ``positions`` accept, see ``Positions.of``."""
 
 
@@ -371,7 +405,8 @@ def rows_of(at: Positions, rows: Integers, n: int | None = None) -> NDArray[np.i
 
 
 def check_played(at: Positions, rows: NDArray[np.int64], table: Table, radius: float) -> None:
-    """Raise ValueError unless every position named in ``rows`` (n,) is valid on the table and has a stroke to play."""
+    """Raise ValueError unless every position named in ``rows`` (n,) is valid on the table and has a stroke to
+    play."""
     used = np.unique(rows)
     some = at if len(used) == len(at) else at[used]
     on, there = some.ball_on, some.on_table
@@ -379,7 +414,9 @@ def check_played(at: Positions, rows: NDArray[np.int64], table: Table, radius: f
     reds = there[:, 1:16].any(axis=1)
     lowest = np.where(reds, int(BallOn.RED), 2 + colours.argmax(axis=1))
     fine = there[:, CUE] & ~some.over & np.isfinite(some.positions).all(axis=(1, 2))
-    fine &= np.where(on == int(BallOn.ANY_COLOUR), colours.any(axis=1), (on == lowest) & (reds | colours.any(axis=1)))
+    fine &= np.where(
+        on == int(BallOn.ANY_COLOUR), colours.any(axis=1), (on == lowest) & (reds | colours.any(axis=1))
+    )
     fine &= (some.points >= 0) & (some.points <= MOST_BREAK)
     if not fine.all():
         k = int(used[np.argmin(fine)])

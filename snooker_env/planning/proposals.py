@@ -1,13 +1,16 @@
-"""Which strokes are worth a look? Generators of continuous strokes: at the direct pots, at the balls on that are seen, over cushions.
+"""Which strokes are worth a look? Generators of continuous strokes: at the direct pots, at the balls on that
+are seen, over cushions.
 
-A generator is called with a search, n positions, a number m and n seeds, and returns m strokes for each position that it has any for.
+A generator is called with a search, n positions, a number m and n seeds, and returns m strokes for each
+position that it has any for.
 
-* ``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to chance^4 x worth. The strokes at a pot are
-  consecutive points of one scrambled Sobol sequence over the logarithm of the speed, the height of the tip and its side; half of them have
-  no side.
-* ``at_balls``: in the directions in which a ball on is met first (``tasks.windows``), evenly. Every other stroke is hard, since a ball then
-  goes in by chance more often.
-* ``over_cushions``, where hardly anything is seen: about the escapes of ``tasks.escapes``, aimed by the models of the engine.
+* ``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to chance^4 x worth.
+  The strokes at a pot are consecutive points of one scrambled Sobol sequence over the logarithm of the speed,
+  the height of the tip and its side; half of them have no side.
+* ``at_balls``: in the directions in which a ball on is met first (``tasks.windows``), evenly. Every other
+  stroke is hard, since a ball then goes in by chance more often.
+* ``over_cushions``, where hardly anything is seen: about the escapes of ``tasks.escapes``, aimed by the
+  models of the engine.
 """
 
 from math import erf, exp, hypot, log, pi, sqrt
@@ -36,18 +39,21 @@ from .trials import AIM, COLUMNS, SIDE, SPEED, TOP
 SLOWEST, FASTEST = 0.8, 6.5
 """Cue speeds of the proposals at pots [m/s]."""
 HIGHEST, WIDEST = 0.45, 0.35
-"""Largest tip offsets over R, up or down and to a side; a corner is drawn in to the disc of radius ``RIM``."""
+"""Largest tip offsets over R, up or down and to a side; a corner is drawn in to the disc of radius
+``RIM``."""
 PLAIN = 0.5
 """Share of the strokes without side."""
 RIM = 0.49
 LOST = 0.01
-"""Decay of a stroke's chance per metre of both balls' paths [1/m]: the width alone nearly says what errors leave of a pot."""
+"""Decay of a stroke's chance per metre of both balls' paths [1/m]: the width alone nearly says what errors
+leave of a pot."""
 POWER = 4.0
 """Power of the chance in a pot's share of the strokes."""
 SOFTEST = 0.5
 """Smallest cue speed of strokes without a pot [m/s]."""
 ESCAPES, ANYWHERE = 8, 8
-"""Number of escapes that strokes are shared among; of the strokes over cushions every ``ANYWHERE``-th goes in any direction."""
+"""Number of escapes that strokes are shared among; of the strokes over cushions every ``ANYWHERE``-th goes in
+any direction."""
 MOST_POTS = 16
 """Number of pots that strokes are shared among, the widest ones."""
 
@@ -67,8 +73,8 @@ class Proposals(NamedTuple):
     strokes : numpy.ndarray
         float64 (n, m, 5). Strokes in SI, see ``Planner``.
     chances : numpy.ndarray
-        float64 (n, m). Chance of each stroke's pot by its width; 1 for a stroke without a pot. 0 in a position that the generator has no
-        stroke for.
+        float64 (n, m). Chance of each stroke's pot by its width; 1 for a stroke without a pot. 0 in a
+        position that the generator has no stroke for.
 
     Examples
     --------
@@ -84,10 +90,13 @@ class Proposals(NamedTuple):
 
 @kernel
 def pot_chance(positions, found, spread, far):
-    """Chance of a pot by its width: the aim's error stays within the tolerance. ``far`` [1/m]: loss per metre of both balls' paths."""
+    """Chance of a pot by its width: the aim's error stays within the tolerance. ``far`` [1/m]: loss per metre
+    of both balls' paths."""
     ball, pocket = int(found[POT_BALL]), int(found[POT_POCKET])
     path = hypot(found[GHOST_X] - positions[0, 0], found[GHOST_Y] - positions[0, 1])
-    run = hypot(POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1])
+    run = hypot(
+        POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
+    )
     return erf(found[TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
 
 
@@ -119,10 +128,13 @@ def _aim(stroke, positions, pot, law, work):
 
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
-def _propose(positions, on_table, game, seeds, which, spread, phys, end_mass_ratio, fidelity, n_steps, strokes, chances):
+def _propose(
+    positions, on_table, game, seeds, which, spread, phys, end_mass_ratio, fidelity, n_steps, strokes, chances
+):
     """Fill strokes (n, m, 5) and chances (n, m) of n positions.
 
-    ``which`` (n, m): at which pot each stroke is, widest first, its speed and tip being given; without rows, all are spread.
+    ``which`` (n, m): at which pot each stroke is, widest first, its speed and tip being given; without rows,
+    all are spread.
     """
     found, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
     law, work = CueLaw(phys, end_mass_ratio, fidelity, n_steps), new_work()
@@ -136,7 +148,10 @@ def _propose(positions, on_table, game, seeds, which, spread, phys, end_mass_rat
             continue
         total = 0.0
         for j in range(many):
-            weights[j] = pot_chance(p, found[j], spread, FAR) ** POWER * (VALUES[int(found[j, POT_BALL])] + FOLLOWS) + 1e-12
+            weights[j] = (
+                pot_chance(p, found[j], spread, FAR) ** POWER * (VALUES[int(found[j, POT_BALL])] + FOLLOWS)
+                + 1e-12
+            )
             total += weights[j]
         j, reached = 0, weights[0] / total
         for i in range(m):
@@ -157,7 +172,9 @@ def _plain_stroke(i, seed, hard, stroke):
     """Speed and tip of stroke i without a pot; ``hard``: few balls go in by chance unless it is."""
     _spread_stroke(i, seed, stroke)
     u = sobol(i, 0, seed)
-    stroke[SPEED] = max(SLOWEST, MAX_SPEED * u ** (1.0 / 3.0)) if hard else SOFTEST * exp(log(FASTEST / SOFTEST) * u)
+    stroke[SPEED] = (
+        max(SLOWEST, MAX_SPEED * u ** (1.0 / 3.0)) if hard else SOFTEST * exp(log(FASTEST / SOFTEST) * u)
+    )
 
 
 @entry(what="the contacts of positions", seconds=2)
@@ -210,7 +227,9 @@ def _escapes(positions, on_table, game, seeds, phys, end_mass_ratio, strokes, ch
             stroke[SPEED], stroke[SIDE], stroke[TOP] = line[LINE_SPEED] * exp(0.5 * faster), 0.0, ROLLING
             if again == 0:
                 aims[j] = escape_aim(line[LINE_AIM], (stroke[SPEED], 0.0, ROLLING), p, here, on, law, work)
-            aside = 0.0 if again == 0 else line[LINE_ROOM] * (2.0 * sobol(again - 1, 4, seed + j % many) - 1.0)
+            aside = (
+                0.0 if again == 0 else line[LINE_ROOM] * (2.0 * sobol(again - 1, 4, seed + j % many) - 1.0)
+            )
             stroke[AIM] = turned(aims[j % many] + aside)
 
 
@@ -249,7 +268,9 @@ def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: 
     return _proposed(at, np.zeros((len(at), m, COLUMNS)), seeds, _NOT_GIVEN, spread, dynamics)
 
 
-def strokes_at(at: Positions, which: Ints, speeds_and_tips: Floats, seeds: Ints, spread: float, dynamics: Dynamics) -> Proposals:
+def strokes_at(
+    at: Positions, which: Ints, speeds_and_tips: Floats, seeds: Ints, spread: float, dynamics: Dynamics
+) -> Proposals:
     """Propose strokes at given pots with given speeds and tips; their aims are solved.
 
     Parameters
@@ -257,9 +278,11 @@ def strokes_at(at: Positions, which: Ints, speeds_and_tips: Floats, seeds: Ints,
     at : Positions
         The n positions.
     which : numpy.ndarray
-        int64 (n, m). Index of each stroke's pot, widest first as of ``pots``; beyond the last pot, the last one.
+        int64 (n, m). Index of each stroke's pot, widest first as of ``pots``; beyond the last pot, the last
+        one.
     speeds_and_tips : numpy.ndarray
-        float64 (n, m, 3). Cue speed [m/s], side and top (tip offset over R). A tip outside the disc of radius 0.49 is drawn in to it.
+        float64 (n, m, 3). Cue speed [m/s], side and top (tip offset over R). A tip outside the disc of radius
+        0.49 is drawn in to it.
     seeds, spread, dynamics
         As for ``spread_strokes``.
 
@@ -288,8 +311,19 @@ def _proposed(at, strokes, seeds, which, spread, dynamics):
     chances = np.empty(strokes.shape[:2])
     keys = np.asarray(seeds, np.int64)
     _propose(
-        at.positions, at.on_table, at.game, keys, which, spread, physics.pack(), physics.end_mass_ratio, code, n_steps, strokes, chances
-    )  # fmt: skip
+        at.positions,
+        at.on_table,
+        at.game,
+        keys,
+        which,
+        spread,
+        physics.pack(),
+        physics.end_mass_ratio,
+        code,
+        n_steps,
+        strokes,
+        chances,
+    )
     return Proposals(strokes, chances)
 
 
@@ -371,7 +405,15 @@ def over_cushions(search: Search, at: Positions, m: int, seeds: Integers) -> Pro
     [[1.0, 1.0, 1.0, 1.0]]
     """
     at, made, physics = at.as_visits(), _nothing(at, m), search.dynamics[0]
-    _escapes(at.positions, at.on_table, at.game, np.asarray(seeds, np.int64), physics.pack(), physics.end_mass_ratio, *made)
+    _escapes(
+        at.positions,
+        at.on_table,
+        at.game,
+        np.asarray(seeds, np.int64),
+        physics.pack(),
+        physics.end_mass_ratio,
+        *made,
+    )
     return made
 
 

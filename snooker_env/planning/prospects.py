@@ -1,4 +1,5 @@
-"""How good is a position? The chances of its pots, and the points to expect of them and of what follows, by a rule of thumb."""
+"""How good is a position? The chances of its pots, and the points to expect of them and of what follows, by a
+rule of thumb."""
 
 from concurrent.futures import ThreadPoolExecutor
 from math import erf, exp, radians, sqrt
@@ -21,14 +22,15 @@ WORTH_A_THREAD = 128
 """Smallest number of positions for which another thread is worth its cost."""
 
 FOLLOWS = 25.0
-"""Points to expect after a made pot from the rest of the visit; fewer if fewer points are left on the table."""
+"""Points to expect after a made pot from the rest of the visit; fewer if fewer points are left on the
+table."""
 SECOND, THIRD = 0.15, 0.05
 """Shares of the second and third best pot that count: they leave a choice of where to play next."""
 FAR = 0.1
 """Decay of the chance of a pot per metre of both balls' paths [1/m]."""
 RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, FAR)
-"""Constants of ``prospects_of`` for a player with execution errors: points of the rest of the visit, shares of the second and third
-best pot, decay of the chance with distance [1/m].
+"""Constants of ``prospects_of`` for a player with execution errors: points of the rest of the visit, shares
+of the second and third best pot, decay of the chance with distance [1/m].
 """
 SURE = (1e4, 1e-3, 0.0, 0.0)
 """Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left."""
@@ -47,15 +49,24 @@ def _prospects(positions, on_table, ball_on, spread, constants, values, chances)
         values[k] = 0.0
         p, on = positions[k], balls_on_kernel(ball_on[k], bits(on_table[k]))
         many = find_pots(p, on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0
-        left = 7.0 if ball_on[k] == _ANY_COLOUR else 0.0  # points: a black with each red, and one after a red just potted
+        # points: a black with each red, and one after a red just potted
+        left = 7.0 if ball_on[k] == _ANY_COLOUR else 0.0
         for i in range(1, N_BALLS):
             if on_table[k, i]:
                 left += 8.0 if VALUES[i] == 1 else VALUES[i]
         a = b = c = 0.0
         for j in range(many):
-            ball, pocket, gx, gy = int(found[j, POT_BALL]), int(found[j, POT_POCKET]), found[j, GHOST_X], found[j, GHOST_Y]
+            ball, pocket, gx, gy = (
+                int(found[j, POT_BALL]),
+                int(found[j, POT_POCKET]),
+                found[j, GHOST_X],
+                found[j, GHOST_Y],
+            )
             path = sqrt((gx - p[0, 0]) ** 2 + (gy - p[0, 1]) ** 2)
-            run = sqrt((POCKET_AIMS[pocket, AIM_X] - p[ball, 0]) ** 2 + (POCKET_AIMS[pocket, AIM_Y] - p[ball, 1]) ** 2)
+            run = sqrt(
+                (POCKET_AIMS[pocket, AIM_X] - p[ball, 0]) ** 2
+                + (POCKET_AIMS[pocket, AIM_Y] - p[ball, 1]) ** 2
+            )
             chance = erf(found[j, TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
             if j < chances.shape[1]:
                 chances[k, j] = chance
@@ -78,7 +89,8 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
     noise : Noise
         The execution noise.
     physics : str, dict, Physics or None, optional
-        Physical constants, as ``Physics.of`` takes them; they determine the squirt of a tip error. Default None: the preset "paper".
+        Physical constants, as ``Physics.of`` takes them; they determine the squirt of a tip error. Default
+        None: the preset "paper".
 
     Returns
     -------
@@ -101,13 +113,17 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
 
 
 def prospects_of(
-    at: Positions, spread: float, constants: tuple[float, float, float, float] = RULE_OF_THUMB, most: int = POTS, threads: int = 1
+    at: Positions,
+    spread: float,
+    constants: tuple[float, float, float, float] = RULE_OF_THUMB,
+    most: int = POTS,
+    threads: int = 1,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Estimate the value of positions and the chances of their pots by a rule of thumb.
 
-    The chance of a pot is the probability that a normal error of the aim stays within the pot's tolerance, reduced for long paths. The
-    value of a pot is its chance times its points plus what may follow. The value of a position is that of its best pot, plus a small
-    share of the second and the third.
+    The chance of a pot is the probability that a normal error of the aim stays within the pot's tolerance,
+    reduced for long paths. The value of a pot is its chance times its points plus what may follow. The value
+    of a position is that of its best pot, plus a small share of the second and the third.
 
     Parameters
     ----------
@@ -142,7 +158,15 @@ def prospects_of(
 
     def fill(first: int, last: int) -> None:
         here = slice(first, last)
-        _prospects(at.positions[here], at.on_table[here], ball_on[here], spread, constants, values[here], chances[here])
+        _prospects(
+            at.positions[here],
+            at.on_table[here],
+            ball_on[here],
+            spread,
+            constants,
+            values[here],
+            chances[here],
+        )
 
     if threads <= 1:
         fill(0, n)

@@ -1,4 +1,5 @@
-"""Where did every ball stop? ``Stops``: the balls at rest before colours are respotted, and what the referee says of the stroke."""
+"""Where did every ball stop? ``Stops``: the balls at rest before colours are respotted, and what the referee
+says of the stroke."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -20,11 +21,14 @@ class Stops(NamedTuple):
     Attributes
     ----------
     places : numpy.ndarray
-        float64 (n, 22, 2). Centres at rest [m], before colours are respotted; for a potted ball the point where it fell.
+        float64 (n, 22, 2). Centres at rest [m], before colours are respotted; for a potted ball the point
+        where it fell.
     potted : numpy.ndarray
-        int64 (n, 22). Pocket of each ball, an index into ``snooker_env.POCKETS``; -1 if this stroke did not pot it.
+        int64 (n, 22). Pocket of each ball, an index into ``snooker_env.POCKETS``; -1 if this stroke did not
+        pot it.
     first : numpy.ndarray
-        int64 (n,). Id of the ball struck first (the lowest id if several were struck at once); -1 if none was.
+        int64 (n,). Id of the ball struck first (the lowest id if several were struck at once); -1 if none
+        was.
     points : numpy.ndarray
         float64 (n,). Points scored; 0 for a miss or a foul.
     penalty : numpy.ndarray
@@ -52,7 +56,8 @@ class Stops(NamedTuple):
 
 
 class WatchedVisits(TrialVisits):
-    """Trial visits that record where the balls of each table's last stroke stopped: ``places`` (n, 22, 2) and ``potted`` (n, 22)."""
+    """Trial visits that record where the balls of each table's last stroke stopped: ``places`` (n, 22, 2) and
+    ``potted`` (n, 22)."""
 
     places: Floats
     potted: Ints

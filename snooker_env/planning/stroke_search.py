@@ -1,10 +1,13 @@
-"""Which stroke is best? A search over continuous strokes, one shot deep, with a value of what each stroke leaves.
+"""Which stroke is best? A search over continuous strokes, one shot deep, with a value of what each stroke
+leaves.
 
-1. Generators propose strokes (``proposals``), and each is played once without error. Its score is the chance of its pot by the pot's width,
-   times its points plus the value of the afterstate. Where strokes without a pot are proposed, the penalty of a foul is deducted, and if
-   the visit ends, the share ``LEFT`` of the value of the position for the opponent.
-2. The best meet noise samples, the better ones more of them (sequential halving, Karnin, Koren & Somekh 2013). The samples are scrambled
-   Sobol points, common to all strokes of a position. The score is the mean over the samples, with the first look as ``PRIOR`` of them.
+1. Generators propose strokes (``proposals``), and each is played once without error. Its score is the chance
+   of its pot by the pot's width, times its points plus the value of the afterstate. Where strokes without a
+   pot are proposed, the penalty of a foul is deducted, and if the visit ends, the share ``LEFT`` of the value
+   of the position for the opponent.
+2. The best meet noise samples, the better ones more of them (sequential halving, Karnin, Koren & Somekh
+   2013). The samples are scrambled Sobol points, common to all strokes of a position. The score is the mean
+   over the samples, with the first look as ``PRIOR`` of them.
 
 Without execution errors the first look is the whole truth and takes the whole budget.
 """
@@ -46,18 +49,21 @@ SCHEDULES = (
 LEFT = 0.5
 """Share of a position's value for the opponent that counts."""
 FOUL = 20.0
-"""What a foul costs beside its penalty [points]: the opponent may have the balls replaced or, snookered, has a free ball."""
+"""What a foul costs beside its penalty [points]: the opponent may have the balls replaced or, snookered, has
+a free ball."""
 
 Value: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 """Values [points] of n positions that strokes have left: (n,)."""
 Propose: TypeAlias = Callable[["StrokeSearch", Positions, int, Ints], Proposals]
-"""A generator: proposals of m strokes for each position, called with the search, the n positions, m and the seeds (n,)."""
+"""A generator: proposals of m strokes for each position, called with the search, the n positions, m and the
+seeds (n,)."""
 WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)
 """The generators for positions in which those of the search have no likely pot."""
 
 
 class Ranked(NamedTuple):
-    """The strokes tried in each of n positions, as returned by ``StrokeSearch.rank``: first those that met most samples, best first.
+    """The strokes tried in each of n positions, as returned by ``StrokeSearch.rank``: first those that met
+    most samples, best first.
 
     A stroke that was left behind in an earlier round may keep a higher score: fewer samples flatter it.
 
@@ -99,11 +105,14 @@ class Ranked(NamedTuple):
         [[[0.0, 0.0, 0.5, 0.0]]]
         """
         flat = self.strokes.reshape(-1, COLUMNS)
-        return actions_of(flat[:, SPEED], flat[:, AIM], flat[:, SIDE], flat[:, TOP]).reshape(*self.scores.shape, 4)
+        return actions_of(flat[:, SPEED], flat[:, AIM], flat[:, SIDE], flat[:, TOP]).reshape(
+            *self.scores.shape, 4
+        )
 
 
 def schedule(budget: int) -> tuple[int, tuple[tuple[int, int], ...]]:
-    """Number of looks, and (strokes, further samples) of each round, for a budget of simulated shots; together at most the budget.
+    """Number of looks, and (strokes, further samples) of each round, for a budget of simulated shots;
+    together at most the budget.
 
     Examples
     --------
@@ -130,13 +139,16 @@ class StrokeSearch:
     value : callable, optional
         Values [points] of n ``Positions``: (n,). Default: the rule of thumb ``prospects_of``.
     propose : callable or sequence of callable, optional
-        One or several generators of the strokes that are looked at, ``propose(search, at, m, seeds)`` -> ``Proposals``. Those that have
-        strokes for a position share the looks evenly; the first is taken to propose pots. Where none of these is likelier than
-        ``doubtful``, ``at_balls`` and ``over_cushions`` share them, too. Default: ``at_pots``.
+        One or several generators of the strokes that are looked at, ``propose(search, at, m, seeds)`` ->
+        ``Proposals``. Those that have strokes for a position share the looks evenly; the first is taken to
+        propose pots. Where none of these is likelier than ``doubtful``, ``at_balls`` and ``over_cushions``
+        share them, too. Default: ``at_pots``.
     doubtful : float, optional
-        Largest chance of a pot at which strokes without a pot are tried as well, in [0, 1]. Default 0: where there is no pot.
+        Largest chance of a pot at which strokes without a pot are tried as well, in [0, 1]. Default 0: where
+        there is no pot.
     pots_only : bool, optional
-        Score by the chance of the pot alone, without points and what follows; without a pot, less that of a foul. Default False.
+        Score by the chance of the pot alone, without points and what follows; without a pot, less that of a
+        foul. Default False.
     noise : str, dict or Noise, optional
         Execution noise in place of the environment's own.
     threads : int, optional
@@ -192,7 +204,9 @@ class StrokeSearch:
 
     def _by_rule(self, at: Positions) -> Floats:
         """Values of positions by the rule of thumb [points]: float64 (n,)."""
-        return prospects_of(at, self.spread, SURE if self.noise.silent else RULE_OF_THUMB, threads=self.planner.threads)[0]
+        return prospects_of(
+            at, self.spread, SURE if self.noise.silent else RULE_OF_THUMB, threads=self.planner.threads
+        )[0]
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> Ranked:
         """Try strokes in n positions and rank them.
@@ -200,14 +214,16 @@ class StrokeSearch:
         Parameters
         ----------
         positions : PositionsLike
-            The n positions: anything that ``Positions.of`` accepts. A cue ball in hand is played from where it lies.
+            The n positions: anything that ``Positions.of`` accepts. A cue ball in hand is played from where
+            it lies.
         seeds : array_like
             int (n,), of the proposals and noise samples of each position. Equal seeds give equal decisions.
 
         Returns
         -------
         Ranked
-            ``strokes``, ``scores`` and ``samples`` with n rows each; the first stroke of a row is the one to play.
+            ``strokes``, ``scores`` and ``samples`` with n rows each; the first stroke of a row is the one to
+            play.
 
         Raises
         ------
@@ -224,7 +240,11 @@ class StrokeSearch:
         at = Positions.of(positions).as_visits()
         n, own = len(at), np.asarray(seeds)
         if own.shape != (n,) or own.dtype.kind not in "iu":
-            raise refuse_what("seeds", f"{own.dtype} array of shape {own.shape}", f"must be {n} integers, one for each position")
+            raise refuse_what(
+                "seeds",
+                f"{own.dtype} array of shape {own.shape}",
+                f"must be {n} integers, one for each position",
+            )
         keys = (own.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
         check_played(at, np.arange(n), self.planner.table, self.planner.physics.R)
         looks, rounds = self.strokes_tried, () if self.noise.silent else schedule(self.budget)[1]
@@ -239,7 +259,8 @@ class StrokeSearch:
                 scores[doubt] -= (1.0 - chances[doubt]) * LEFT * self.value(for_opponent(at[doubt]))[:, None]
         every, tries, sums = np.arange(n)[:, None], np.zeros((n, looks), np.int64), PRIOR * scores
         order = np.argsort(-scores, axis=1, kind="stable")
-        if safe.any():  # a look flatters pots, and strokes that pot by luck: the best of each kind are sampled
+        # a look flatters pots, and strokes that pot by luck: the best of each kind are sampled
+        if safe.any():
             kinds = np.where((which > 0) & (scores > 0.0), -1, which)[safe]
             order[safe] = in_turn(order[safe], kinds)
         samples = np.stack([normal_points(sum(each for _, each in rounds), k) for k in keys.tolist()])
@@ -267,7 +288,8 @@ class StrokeSearch:
         strokes : numpy.ndarray
             float64 (m, 5). As in ``Ranked``.
         errors : numpy.ndarray
-            float64 (m, 5). Errors of speed, side, top, aim and elevation, in standard deviations of the search's noise.
+            float64 (m, 5). Errors of speed, side, top, aim and elevation, in standard deviations of the
+            search's noise.
 
         Returns
         -------
@@ -291,7 +313,8 @@ class StrokeSearch:
         return self.planner.play(at, rows, strokes=strokes, errors=errors)
 
     def _proposed(self, at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Ints, Bools]:
-        """Strokes (n, m, 5), chances and generators (n, m), and the positions (n,) where strokes without a pot are among them."""
+        """Strokes (n, m, 5), chances and generators (n, m), and the positions (n,) where strokes without a
+        pot are among them."""
         generators = (self.propose,) if callable(self.propose) else tuple(self.propose)
         strokes, chances, which = self._shared(generators, at, m, seeds)
         doubt = chances.max(axis=1) <= self.doubtful
@@ -301,8 +324,11 @@ class StrokeSearch:
             strokes[doubt], chances[doubt], which[doubt] = shared
         return strokes, chances, which, doubt | which.any(axis=1)
 
-    def _shared(self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Ints]:
-        """Strokes of the generators in turn, in each position of those that have any; chances; which generator each is of."""
+    def _shared(
+        self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints
+    ) -> tuple[Floats, Floats, Ints]:
+        """Strokes of the generators in turn, in each position of those that have any; chances; which
+        generator each is of."""
         made = [Proposals(*generate(self, at, m, seeds)) for generate in generators]
         if len(made) == 1:
             return made[0].strokes, made[0].chances, np.zeros((len(at), m), np.int64)
@@ -314,7 +340,8 @@ class StrokeSearch:
         return strokes, chances, which
 
     def _gains(self, at: Positions, safe: Bools, strokes: Floats, errors: Floats) -> Floats:
-        """What strokes (n, m, s, 5) under the errors (n, s, 5) of each position bring, and the value of what they leave: (n, m, s)."""
+        """What strokes (n, m, s, 5) under the errors (n, s, 5) of each position bring, and the value of what
+        they leave: (n, m, s)."""
         n, m, s = strokes.shape[:3]
         every = np.broadcast_to(errors[:, None], (n, m, s, DIMENSIONS)).reshape(-1, DIMENSIONS)
         rows = np.repeat(np.arange(n), m * s)
@@ -332,7 +359,8 @@ class StrokeSearch:
 
 
 def in_turn(order: Ints, kinds: Ints) -> Ints:
-    """Rows (n, m) of indices, best first, in a new order: the best of each of their ``kinds`` (n, m), then the second best, and so on."""
+    """Rows (n, m) of indices, best first, in a new order: the best of each of their ``kinds`` (n, m), then
+    the second best, and so on."""
     sorted_kinds = np.take_along_axis(kinds, order, 1)
     place = np.zeros_like(order)
     for kind in np.unique(kinds):
@@ -342,7 +370,8 @@ def in_turn(order: Ints, kinds: Ints) -> Ints:
 
 
 def for_opponent(after: Positions) -> Positions:
-    """Positions in which a visit has ended, as those in which the opponent's begins; a cue ball in hand lies at its usual place."""
+    """Positions in which a visit has ended, as those in which the opponent's begins; a cue ball in hand lies
+    at its usual place."""
     theirs = after.copy()
     reds = theirs.on_table[:, 1:16].any(axis=1)
     theirs.game[:, BALL_ON] = np.where(reds, int(BallOn.RED), 2 + theirs.on_table[:, 16:].argmax(axis=1))

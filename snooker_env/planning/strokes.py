@@ -1,7 +1,9 @@
-"""How does a stroke become an action? The one encoder of strokes, choices of ``action="discrete"`` as actions, and the aim solver.
+"""How does a stroke become an action? The one encoder of strokes, choices of ``action="discrete"`` as
+actions, and the aim solver.
 
-A stroke is a row of five numbers in SI, in the columns of ``trials``: cue speed [m/s], side and top (tip offset over R), the direction in
-which the cue ball leaves [rad] (the cue itself points aside by the squirt of the side), elevation of the cue [rad].
+A stroke is a row of five numbers in SI, in the columns of ``trials``: cue speed [m/s], side and top (tip
+offset over R), the direction in which the cue ball leaves [rad] (the cue itself points aside by the squirt of
+the side), elevation of the cue [rad].
 """
 
 from dataclasses import replace
@@ -51,8 +53,8 @@ def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
     Returns
     -------
     numpy.ndarray
-        bool (m, 540). True for each available choice. In a position without a direct pot other lines of the cue ball stand for the
-        pots: parts of balls on that it sees, or escapes over cushions.
+        bool (m, 540). True for each available choice. In a position without a direct pot other lines of the
+        cue ball stand for the pots: parts of balls on that it sees, or escapes over cushions.
 
     Raises
     ------
@@ -105,15 +107,22 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
     strokes = np.zeros((len(turns), COLUMNS))
     strokes[:, SPEED], strokes[:, SIDE], strokes[:, TOP], strokes[:, AIM] = fast, side, top, turns
     if not (np.abs(strokes[:, [SIDE, TOP]]) <= FARTHEST).all():
-        raise refuse("side, top", float(np.abs(strokes[:, [SIDE, TOP]]).max()), "must be finite and within 0.5")
+        raise refuse(
+            "side, top", float(np.abs(strokes[:, [SIDE, TOP]]).max()), "must be finite and within 0.5"
+        )
     return encoded(_ABSOLUTE, strokes).astype(np.float32)
 
 
 def check_strokes(strokes: Any, n: int | None = None) -> Floats:
-    """Strokes (n, 5) as float64; ValueError names the first one with a number that is not finite or out of range."""
+    """Strokes (n, 5) as float64; ValueError names the first one with a number that is not finite or out of
+    range."""
     a = np.asarray(strokes)
     if a.dtype.kind not in "iuf" or a.ndim != 2 or a.shape[1] != COLUMNS or (n is not None and len(a) != n):
-        raise refuse_what("strokes", f"{a.dtype} array of shape {a.shape}", f"must be real numbers of shape ({'n' if n is None else n}, 5)")
+        raise refuse_what(
+            "strokes",
+            f"{a.dtype} array of shape {a.shape}",
+            f"must be real numbers of shape ({'n' if n is None else n}, 5)",
+        )
     a = np.ascontiguousarray(a, np.float64)
     fair = (a[:, SPEED] >= MIN_SPEED) & (a[:, SPEED] <= MAX_SPEED) & np.isfinite(a[:, AIM])
     fair &= (np.abs(a[:, SIDE]) <= FARTHEST) & (np.abs(a[:, TOP]) <= FARTHEST)
@@ -121,18 +130,27 @@ def check_strokes(strokes: Any, n: int | None = None) -> Floats:
     if not fair.all():
         k = int(np.argmin(fair))
         numbers = dict(zip(("speed", "side", "top", "aim", "elevation"), a[k].tolist(), strict=True))
-        high = {"speed": MAX_SPEED, "side": FARTHEST, "top": FARTHEST, "aim": np.inf, "elevation": MAX_ELEVATION}
+        high = {
+            "speed": MAX_SPEED,
+            "side": FARTHEST,
+            "top": FARTHEST,
+            "aim": np.inf,
+            "elevation": MAX_ELEVATION,
+        }
         for name, value in numbers.items():
             low = MIN_SPEED if name == "speed" else 0.0 if name == "elevation" else -high[name]
             number(f"strokes[{k}], {name}", value, low, high[name])
     return a
 
 
-def encoded(actions: Actions, strokes: Floats, places: Vectors | None = None, lines: Vector | None = None) -> Floats:
+def encoded(
+    actions: Actions, strokes: Floats, places: Vectors | None = None, lines: Vector | None = None
+) -> Floats:
     """Checked strokes (n, 5) as actions (n, k) of a box action space, in double precision.
 
-    ``places`` (n, 2) [m]: of a cue ball in hand in the D, by default the middle of the baulk line. ``lines`` (n,) [rad]: with
-    ``aim="target"``, the direction that each aim is measured from. What else an action says is left at 0: play.
+    ``places`` (n, 2) [m]: of a cue ball in hand in the D, by default the middle of the baulk line. ``lines``
+    (n,) [rad]: with ``aim="target"``, the direction that each aim is measured from. What else an action says
+    is left at 0: play.
     """
     line = np.zeros(len(strokes)) if lines is None else np.asarray(lines, np.float64)
     out, turned = np.zeros((len(strokes), actions.size)), strokes[:, AIM] - line
@@ -142,13 +160,25 @@ def encoded(actions: Actions, strokes: Floats, places: Vectors | None = None, li
     out[:, 3] = turned / (pi if lines is None else TARGET_SPAN)
     if (np.abs(out[:, 3]) > 1.0 + 1e-9).any():
         k = int(np.argmax(np.abs(out[:, 3])))
-        raise refuse(f"strokes[{k}], aim", float(strokes[k, AIM]), f"must be within 3 degrees of the target line, {line[k]:.6g} rad")
+        raise refuse(
+            f"strokes[{k}], aim",
+            float(strokes[k, AIM]),
+            f"must be within 3 degrees of the target line, {line[k]:.6g} rad",
+        )
     if actions.elevation:
         out[:, 4] = 2.0 * strokes[:, ELEVATION] / MAX_ELEVATION - 1.0
     elif strokes[:, ELEVATION].any():
-        raise refuse("elevation", float(strokes[:, ELEVATION].max()), "must be 0: actions without elevation=True have a level cue")
+        raise refuse(
+            "elevation",
+            float(strokes[:, ELEVATION].max()),
+            "must be 0: actions without elevation=True have a level cue",
+        )
     if actions.placement:
-        x, y = (np.zeros(len(strokes)), np.full(len(strokes), BAULK_Y)) if places is None else np.asarray(places, np.float64).T
+        x, y = (
+            (np.zeros(len(strokes)), np.full(len(strokes), BAULK_Y))
+            if places is None
+            else np.asarray(places, np.float64).T
+        )
         across = np.clip(x / D_RADIUS, -1.0, 1.0)
         depth = D_RADIUS * np.sqrt(1.0 - across * across)
         back = np.where(depth > 1e-9, np.clip((BAULK_Y - y) / np.maximum(depth, 1e-9), 0.0, 1.0), 0.0)
@@ -161,9 +191,15 @@ _ABSOLUTE = Actions("absolute", False, False, Physics())
 
 
 def as_actions(
-    positions: PositionsLike, rows: Integers, choices: Integers, *, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
+    positions: PositionsLike,
+    rows: Integers,
+    choices: Integers,
+    *,
+    physics: PhysicsLike = None,
+    fidelity: Fidelity = "standard",
 ) -> NDArray[np.float32]:
-    """Convert choices of ``action="discrete"`` to actions of ``aim="absolute"``: the same strokes, up to the rounding of float32.
+    """Convert choices of ``action="discrete"`` to actions of ``aim="absolute"``: the same strokes, up to the
+    rounding of float32.
 
     Parameters
     ----------
@@ -230,11 +266,13 @@ def pot_aim(
     physics: PhysicsLike = None,
     fidelity: Fidelity = "standard",
 ) -> NDArray[np.float64]:
-    """Solve the direction in which the cue ball must leave to send a ball to a point, with throw, swerve and the ball's own curve.
+    """Solve the direction in which the cue ball must leave to send a ball to a point, with throw, swerve and
+    the ball's own curve.
 
-    Only the cue ball and that ball are simulated, on unbounded cloth, until the ball rolls. Secant steps correct the direction until the
-    ball passes the point by less than 1e-6 rad (``snooker_env.tasks.pot_aim``). If no direction succeeds (the stroke is too soft to
-    arrive or the cut too thin), the best direction tried is returned.
+    Only the cue ball and that ball are simulated, on unbounded cloth, until the ball rolls. Secant steps
+    correct the direction until the ball passes the point by less than 1e-6 rad
+    (``snooker_env.tasks.pot_aim``). If no direction succeeds (the stroke is too soft to arrive or the cut too
+    thin), the best direction tried is returned.
 
     Parameters
     ----------
@@ -245,15 +283,18 @@ def pot_aim(
     balls : array_like
         int (n,). Id of the ball to send, in [1, 21].
     targets : array_like
-        float (n, 2). Where to send it [m]; the aim points of the pockets are ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
+        float (n, 2). Where to send it [m]; the aim points of the pockets are
+        ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
     speeds : array_like or float
         float, scalar or (n,). Cue speeds [m/s], at least 0.
     side, top : array_like or float, optional
-        float, scalar or (n,). Tip offsets over R, to the right and up, within the miscue limit of the physics; default 0.
+        float, scalar or (n,). Tip offsets over R, to the right and up, within the miscue limit of the
+        physics; default 0.
     elevation : array_like or float, optional
         float, scalar or (n,). Elevation of the cue [rad], at least 0; default 0.
     ghosts : array_like, optional
-        float (n, 2). Ghost-ball centres of the straight line [m]; default: 2 R behind the ball as seen from the target.
+        float (n, 2). Ghost-ball centres of the straight line [m]; default: 2 R behind the ball as seen from
+        the target.
     physics : str, dict, Physics or None, optional
         Physical constants; default None: the preset "paper".
     fidelity : str, optional
@@ -279,20 +320,32 @@ def pot_aim(
     at = Positions.of(positions)
     return solved_aims(
         at, rows, balls, targets, speeds, side, top, elevation, ghosts, dynamics_of(physics, fidelity)
-    )  # fmt: skip
+    )
 
 
 def solved_aims(
-    at: Positions, rows: Integers, balls: Integers, targets: Vectors, speeds: Scalars, side: Scalars, top: Scalars,
-    elevation: Scalars, ghosts: Vectors | None, dynamics: Dynamics,
-) -> NDArray[np.float64]:  # fmt: skip
+    at: Positions,
+    rows: Integers,
+    balls: Integers,
+    targets: Vectors,
+    speeds: Scalars,
+    side: Scalars,
+    top: Scalars,
+    elevation: Scalars,
+    ghosts: Vectors | None,
+    dynamics: Dynamics,
+) -> NDArray[np.float64]:
     """``pot_aim`` with checked physics and fidelity."""
     which = rows_of(at, rows)
     n, (physics, (code, n_steps)) = len(which), dynamics
     ids, to = _integers("balls", balls, n, 1, N_BALLS - 1), array("targets", targets, (n, 2))
     there = at.on_table[which, ids] & at.on_table[which, 0]
     if not there.all():
-        raise refuse(f"balls[{int(np.argmin(there))}]", int(ids[np.argmin(there)]), "must be on the table, and the cue ball too")
+        raise refuse(
+            f"balls[{int(np.argmin(there))}]",
+            int(ids[np.argmin(there)]),
+            "must be on the table, and the cue ball too",
+        )
     if ghosts is None:
         lie = at.positions[which, ids]
         along = to - lie
@@ -306,9 +359,26 @@ def solved_aims(
         strokes[:, c] = array(name, value, (n,) if np.ndim(value) else ())
         low = -high[c] if name in ("side", "top") else 0.0
         if n and not (low <= strokes[:, c].min() and strokes[:, c].max() <= high[c]):
-            number(name, float(strokes[:, c].min() if strokes[:, c].min() < low else strokes[:, c].max()), low, high[c])
+            number(
+                name,
+                float(strokes[:, c].min() if strokes[:, c].min() < low else strokes[:, c].max()),
+                low,
+                high[c],
+            )
     out = np.empty(n)
-    _pot_aim(at.positions, which, ids, to, behind, strokes, physics.pack(), physics.end_mass_ratio, code, n_steps, out)
+    _pot_aim(
+        at.positions,
+        which,
+        ids,
+        to,
+        behind,
+        strokes,
+        physics.pack(),
+        physics.end_mass_ratio,
+        code,
+        n_steps,
+        out,
+    )
     return out
 
 

@@ -1,4 +1,5 @@
-"""How are trial strokes played on copies of positions? As strokes in SI under given errors, or as actions under drawn ones.
+"""How are trial strokes played on copies of positions? As strokes in SI under given errors, or as actions
+under drawn ones.
 
 ``decoded`` is the one way from actions and choices to strokes: the environment's own, without errors.
 """
@@ -21,25 +22,32 @@ from ..tasks.visit import Visits
 from .positions import Positions
 
 (SPEED, SIDE, TOP, AIM, ELEVATION) = range(5)
-"""Columns of a stroke: cue speed [m/s], tip offset over R to the right and up, direction in which the cue ball leaves, elevation [rad]."""
+"""Columns of a stroke: cue speed [m/s], tip offset over R to the right and up, direction in which the cue
+ball leaves, elevation [rad]."""
 COLUMNS = 5
 NO_NOISE = Noise()
 
 
 @entry(what="strokes under given errors", seconds=2)
 def _strike(which, strokes, errors, tables, shots, options, noise, silent):
-    """Carry the strokes (n, 5) of the tables ``which`` out up to the strike, under their standard normal errors (n, 5)."""
+    """Carry the strokes (n, 5) of the tables ``which`` out up to the strike, under their standard normal
+    errors (n, 5)."""
     tables, shots = TableArrays(*tables), StruckArrays(*shots)
     for j in range(which.shape[0]):
         k = which[j]
         speed, aim, elevation = strokes[k, SPEED], strokes[k, AIM], strokes[k, ELEVATION]
         side, top = tip_on_disc(strokes[k, SIDE], strokes[k, TOP], options[A_MAX_OFFSET])
-        struck = with_errors(speed, side, top, aim - squirt(side, options[A_END_MASS]), elevation, errors[k], noise)
-        stroke.strike(struck, tables.positions[k], tables.on_table[k], tables.streams[k], options, silent, j, shots)
+        struck = with_errors(
+            speed, side, top, aim - squirt(side, options[A_END_MASS]), elevation, errors[k], noise
+        )
+        stroke.strike(
+            struck, tables.positions[k], tables.on_table[k], tables.streams[k], options, silent, j, shots
+        )
 
 
 class TrialVisits(Visits):
-    """Visits of one stroke each, to be filled by ``lay``: with ``errors`` (n, 5), what they play are strokes (n, 5), else actions."""
+    """Visits of one stroke each, to be filled by ``lay``: with ``errors`` (n, 5), what they play are strokes
+    (n, 5), else actions."""
 
     errors: Floats | None = None
 
@@ -57,8 +65,11 @@ class TrialVisits(Visits):
         _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
 
 
-def decoded(rules: Rules, at: Positions, which: Ints, actions: Floats, nominated: Ints | None = None) -> tuple[Floats, Positions]:
-    """Strokes (n, 5) that checked actions mean on ``at[which]``, and where they are played: the cue ball placed where they say.
+def decoded(
+    rules: Rules, at: Positions, which: Ints, actions: Floats, nominated: Ints | None = None
+) -> tuple[Floats, Positions]:
+    """Strokes (n, 5) that checked actions mean on ``at[which]``, and where they are played: the cue ball
+    placed where they say.
 
     ``nominated`` (n,): of frames, what is nominated with each stroke; a choice is a pot of that ball.
     """

@@ -1,4 +1,5 @@
-"""How is the page opened? ``python -m snooker_env.play``: a server on this machine's own address, and the browser on its page."""
+"""How is the page opened? ``python -m snooker_env.play``: a server on this machine's own address, and the
+browser on its page."""
 
 import argparse
 import json
@@ -23,22 +24,33 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--port", type=int, default=0, help="port to listen on (default: any free port)")
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
     parser.add_argument(
-        "--agent", action="append", default=[], metavar="NAME",
+        "--agent",
+        action="append",
+        default=[],
+        metavar="NAME",
         help="an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or MODULE:CLASS; the first one "
         "is your opponent; may be given more than once",
-    )  # fmt: skip
+    )
     parser.add_argument("--trust", action="store_true", help="let code in an --agent's model file run")
     parser.add_argument(
-        "--noise", choices=list(LEVELS), default="professional", help="execution errors of the agent (default: %(default)s)"
+        "--noise",
+        choices=list(LEVELS),
+        default="professional",
+        help="execution errors of the agent (default: %(default)s)",
     )
-    parser.add_argument("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
+    parser.add_argument(
+        "--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)"
+    )
     parser.add_argument("--layout", default="break_off", help="how the table is dealt (default: %(default)s)")
-    parser.add_argument("--seed", type=int, default=None, help="seed of all random numbers (default: a new one each time)")
+    parser.add_argument(
+        "--seed", type=int, default=None, help="seed of all random numbers (default: a new one each time)"
+    )
     return parser.parse_args(argv)
 
 
 def service_of(args: argparse.Namespace) -> Any:
-    """The game for the command line's arguments: a ``Service``. ValueError or OSError if something is invalid."""
+    """The game for the command line's arguments: a ``Service``. ValueError or OSError if something is
+    invalid."""
     import numpy as np
 
     from ..players import player
@@ -49,7 +61,10 @@ def service_of(args: argparse.Namespace) -> Any:
 
     seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
     session = Session(layout=args.layout, seed=seed)
-    agents = {Path(name).stem if name.endswith(".zip") else name: player(name, trust=args.trust) for name in args.agent}
+    agents = {
+        Path(name).stem if name.endswith(".zip") else name: player(name, trust=args.trust)
+        for name in args.agent
+    }
     seats = Seats(agents)
     if agents:
         seats.sit([PERSON, next(iter(agents))])
@@ -64,7 +79,8 @@ def service_of(args: argparse.Namespace) -> Any:
 
 
 def warm_up(service: Any) -> None:
-    """Compile everything that a stroke and a question need, so that nobody waits for it in the middle of a game."""
+    """Compile everything that a stroke and a question need, so that nobody waits for it in the middle of a
+    game."""
     from ..advice import CueStroke
     from . import questions
     from .report import report
@@ -81,7 +97,9 @@ def warm_up(service: Any) -> None:
 def _read(path: Path) -> dict[str, Any]:
     """The JSON object in a file."""
     if path.stat().st_size > MOST_FILE:
-        raise refuse_what("position", f"a file of {path.stat().st_size} bytes", f"must be at most {MOST_FILE}")
+        raise refuse_what(
+            "position", f"a file of {path.stat().st_size} bytes", f"must be at most {MOST_FILE}"
+        )
     try:
         read = json.loads(path.read_text("utf-8"))
     except (ValueError, RecursionError) as error:

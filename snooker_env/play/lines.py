@@ -1,4 +1,5 @@
-"""Which paths to the pockets are open, and what blocks the others? Straight lines to each pocket for every ball on."""
+"""Which paths to the pockets are open, and what blocks the others? Straight lines to each pocket for every
+ball on."""
 
 from dataclasses import asdict, dataclass
 from math import acos, atan2, degrees, erf, hypot, radians, sqrt
@@ -39,11 +40,16 @@ class Line:
     tolerance: float
     """Largest error of the aim; 0 unless the line is open."""
     chance: float | None
-    """Approximate probability that a player with the seat's noise keeps within the tolerance; None without noise."""
+    """Approximate probability that a player with the seat's noise keeps within the tolerance; None without
+    noise."""
 
     def to_dict(self) -> dict[str, Any]:
         """The line as JSON types."""
-        names = {"ball": NAMES[self.ball], "pocket": POCKETS[self.pocket], "blocked_by": list(self.blocked_by)}
+        names = {
+            "ball": NAMES[self.ball],
+            "pocket": POCKETS[self.pocket],
+            "blocked_by": list(self.blocked_by),
+        }
         return asdict(self) | names
 
     @property
@@ -61,13 +67,16 @@ class Line:
 
 
 def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
-    """All lines to pockets for the balls in the mask ``on``; ``positions``: the table, with a free ball once more for the colours."""
+    """All lines to pockets for the balls in the mask ``on``; ``positions``: the table, with a free ball once
+    more for the colours."""
     errors = LEVELS[noise]
     sigma = 0.0 if errors.silent else radians(errors.direction_deg())
     tolerances = {}
     for position in positions:
         some = pots(position, most=MOST)
-        for ball, pocket, tolerance in zip(some.ball[0].tolist(), some.pocket[0].tolist(), some.tolerance[0].tolist(), strict=True):
+        for ball, pocket, tolerance in zip(
+            some.ball[0].tolist(), some.pocket[0].tolist(), some.tolerance[0].tolist(), strict=True
+        ):
             if ball >= 0:
                 tolerances[ball, pocket] = tolerance
     at = positions[0]
@@ -82,7 +91,9 @@ def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
     skip: Any = np.column_stack([np.full(len(ways), CUE), balls])
     barred = obstructions(at, rows, places[balls], aims, ignore=skip)
     barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, ignore=skip)
-    return [_line(*way, places, ghosts[k], aims[k], barred[k], tolerances, sigma) for k, way in enumerate(ways)]
+    return [
+        _line(*way, places, ghosts[k], aims[k], barred[k], tolerances, sigma) for k, way in enumerate(ways)
+    ]
 
 
 def _line(ball, pocket, places, ghost, aim, barred, tolerances, sigma):
@@ -92,12 +103,23 @@ def _line(ball, pocket, places, ghost, aim, barred, tolerances, sigma):
     cut = acos(min(1.0, max(-1.0, cos_cut)))
     tolerance = tolerances.get((ball, pocket), 0.0)
     blocked = tuple(NAMES[i] for i in np.flatnonzero(barred))
-    why = "" if tolerance or blocked else "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
+    why = (
+        "" if tolerance or blocked else "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
+    )
     chance = erf(tolerance / (sigma * sqrt(2.0))) if sigma else None
     return Line(
-        ball=ball, pocket=pocket, open=tolerance > 0.0, blocked_by=() if tolerance else blocked, why=why, cut=cut, to_ball=far,
-        to_pocket=on, aim=atan2(run[1], run[0]), tolerance=tolerance, chance=chance if tolerance else None,
-    )  # fmt: skip
+        ball=ball,
+        pocket=pocket,
+        open=tolerance > 0.0,
+        blocked_by=() if tolerance else blocked,
+        why=why,
+        cut=cut,
+        to_ball=far,
+        to_pocket=on,
+        aim=atan2(run[1], run[0]),
+        tolerance=tolerance,
+        chance=chance if tolerance else None,
+    )
 
 
 def _unit(v: Floats) -> Floats:

@@ -1,9 +1,11 @@
-"""How does an external program play? JSON lines: the state of ``docs/play/protocol.md`` on its standard input, a stroke on its output.
+"""How does an external program play? JSON lines: the state of ``docs/play/protocol.md`` on its standard
+input, a stroke on its output.
 
-The program is started at the first question and answers all of them. For each stroke it gets one line, the object of
-``GET api/state`` with a "seed" for what it draws, and answers with one line, an object as ``POST api/stroke`` takes it,
-without "nominate". In phase "choice" of a frame it answers with a "choice"; after "play" alone it gets the state once
-more, for its stroke. Its standard error goes to that of this process.
+The program is started at the first question and answers all of them. For each stroke it gets one line, the
+object of ``GET api/state`` with a "seed" for what it draws, and answers with one line, an object as
+``POST api/stroke`` takes it, without "nominate". In phase "choice" of a frame it answers with a "choice";
+after "play" alone it gets the state once more, for its stroke. Its standard error goes to that of this
+process.
 """
 
 import contextlib
@@ -42,7 +44,8 @@ DECISIONS = {"play": PLAY, "play_again": PLAY_AGAIN, "replace": REPLACE}
 
 
 class AgentError(RuntimeError):
-    """An agent that stopped playing: a program that died, was too slow, or answered something that is no stroke."""
+    """An agent that stopped playing: a program that died, was too slow, or answered something that is no
+    stroke."""
 
 
 class ProgramPlayer(BoundPlayer):
@@ -160,7 +163,9 @@ class ProgramPlayer(BoundPlayer):
 
     def _asked(self, seed: int) -> dict[str, Any]:
         """The program's answer to the table as it stands: an object."""
-        answer = self._lines.asked(json.dumps(report(self._service) | {"seed": seed}, separators=(",", ":")).encode() + b"\n")
+        answer = self._lines.asked(
+            json.dumps(report(self._service) | {"seed": seed}, separators=(",", ":")).encode() + b"\n"
+        )
         try:
             return parsed(answer.strip())
         except RefusedError as error:
@@ -263,7 +268,9 @@ class _Lines:
                 self._taken.set()
 
 
-def _struck(values: Any = (MIN_SPEED, 0.0, 0.0, 0.0, 0.0), place: Any = None, decision: int = PLAY) -> Strokes:
+def _struck(
+    values: Any = (MIN_SPEED, 0.0, 0.0, 0.0, 0.0), place: Any = None, decision: int = PLAY
+) -> Strokes:
     """One stroke."""
     places: Any = None if place is None else np.array([place])
     return Strokes(np.array([values]), places, decision=np.array([decision]))

@@ -1,4 +1,5 @@
-"""What would be played, and where would the balls stop? Questions about the next stroke, answered on copies of the table."""
+"""What would be played, and where would the balls stop? Questions about the next stroke, answered on copies
+of the table."""
 
 from typing import Any
 
@@ -24,7 +25,8 @@ MOST_SUGGESTIONS = 10
 
 
 def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
-    """The direction in which the cue ball must leave to pot a ball, with throw and swerve; ``asked``: {"pot": [ball, pocket]}."""
+    """The direction in which the cue ball must leave to pot a ball, with throw and swerve; ``asked``: {"pot":
+    [ball, pocket]}."""
     pair = asked.get("pot") if isinstance(asked, dict) and set(asked) == {"pot"} else None
     if not isinstance(pair, list) or len(pair) != 2:
         raise refuse("aim_at", asked, 'must be {"pot": [ball, pocket]}, as {"pot": ["blue", "middle right"]}')
@@ -46,7 +48,8 @@ def exact(session: Session, stroke: CueStroke) -> Shot:
 
 
 def paths(shot: Shot) -> dict[str, Any]:
-    """The paths of a shot's balls: points [m], rounded to a tenth of a millimetre; and the ball struck first, the pots and the duration."""
+    """The paths of a shot's balls: points [m], rounded to a tenth of a millimetre; and the ball struck first,
+    the pots and the duration."""
     events = shot.events
     hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
     lines = ball_paths(shot, range(len(shot.positions)), step=0.04)
@@ -58,20 +61,33 @@ def paths(shot: Shot) -> dict[str, Any]:
     }
 
 
-def scatter(session: Session, stroke: CueStroke, *, noise: NoiseName, samples: int, seed: int) -> dict[str, Any]:
-    """Where cue ball and object ball stop when the stroke is played many times with execution errors; and its paths without them."""
+def scatter(
+    session: Session, stroke: CueStroke, *, noise: NoiseName, samples: int, seed: int
+) -> dict[str, Any]:
+    """Where cue ball and object ball stop when the stroke is played many times with execution errors; and its
+    paths without them."""
     shot = exact(session, stroke)
     stops = destinations(session.planned(), stroke, noise=noise, samples=samples, seed=seed)
     return paths(shot) | {
-        "cue": packed(stops.cue, "f4"), "ball": packed(stops.ball, "f4"), "samples": stops.samples, "potted": stops.potted,
-        "in_off": stops.in_off, "foul": stops.foul, "points": stops.points,
-    }  # fmt: skip
+        "cue": packed(stops.cue, "f4"),
+        "ball": packed(stops.ball, "f4"),
+        "samples": stops.samples,
+        "potted": stops.potted,
+        "in_off": stops.in_off,
+        "foul": stops.foul,
+        "points": stops.points,
+    }
 
 
-def suggestions(session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int) -> dict[str, Any]:
-    """Strokes of the agent in words and data, each with its paths without errors; whose they are, and by what they are ordered."""
+def suggestions(
+    session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int
+) -> dict[str, Any]:
+    """Strokes of the agent in words and data, each with its paths without errors; whose they are, and by what
+    they are ordered."""
     choice("agent", agent, seats.agents)
-    advice = advise(session.planned(), agent=seats.players[agent], noise=noise, n=n, samples=samples, seed=seed)
+    advice = advise(
+        session.planned(), agent=seats.players[agent], noise=noise, n=n, samples=samples, seed=seed
+    )
     out = []
     for one in advice:
         twin = session.twin()
@@ -84,6 +100,7 @@ def suggestions(session: Session, seats: Seats, *, agent: str, noise: NoiseName,
 def _named(one: Suggestion) -> dict[str, Any]:
     """Ball and pocket of a suggestion by name; None where there is none."""
     return {
-        "ball": NAMES[one.ball] if one.ball >= 0 else None, "pocket": POCKETS[one.pocket] if one.pocket >= 0 else None,
+        "ball": NAMES[one.ball] if one.ball >= 0 else None,
+        "pocket": POCKETS[one.pocket] if one.pocket >= 0 else None,
         "first": NAMES[one.first] if one.first >= 0 else None,
-    }  # fmt: skip
+    }

@@ -1,7 +1,9 @@
-"""What is on the table, and what may be done? The game as JSON types for the page and for programs, and as plain text.
+"""What is on the table, and what may be done? The game as JSON types for the page and for programs, and as
+plain text.
 
-``table_after`` says what table and scoreboard are after one act. The state of the game is that of its last act, and what may be done now. A
-stroke is sent with the tables before and after it, so that whoever shows it needs nothing else.
+``table_after`` says what table and scoreboard are after one act. The state of the game is that of its last
+act, and what may be done now. A stroke is sent with the tables before and after it, so that whoever shows it
+needs nothing else.
 """
 
 from typing import Any
@@ -27,14 +29,24 @@ def scene(service: Service) -> dict[str, Any]:
     """The constant part: the table as it is drawn, limits of strokes, available players."""
     rules = service.session.options_with("none").rules
     return {
-        "scene": scene_data(rules.table), "R": rules.physics.R, "spin_decel": rules.physics.spin_decel,
+        "scene": scene_data(rules.table),
+        "R": rules.physics.R,
+        "spin_decel": rules.physics.spin_decel,
         "limits": {
-            "speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, MAX_ELEVATION], "samples": MOST_SAMPLES,
+            "speed": [MIN_SPEED, MAX_SPEED],
+            "offset": FARTHEST,
+            "elevation": [0.0, MAX_ELEVATION],
+            "samples": MOST_SAMPLES,
             "suggestions": MOST_SUGGESTIONS,
         },
-        "pockets": [{"name": name, "x": float(x), "y": float(y)} for name, (x, y) in zip(POCKET_WORDS, POCKET_AIMS[:, :2], strict=True)],
-        "agents": service.seats.agents, "players": service.seats.names, "noise": list(LEVELS),
-    }  # fmt: skip
+        "pockets": [
+            {"name": name, "x": float(x), "y": float(y)}
+            for name, (x, y) in zip(POCKET_WORDS, POCKET_AIMS[:, :2], strict=True)
+        ],
+        "agents": service.seats.agents,
+        "players": service.seats.names,
+        "noise": list(LEVELS),
+    }
 
 
 def table_after(act: Act, labels: tuple[str, str]) -> dict[str, Any]:
@@ -43,12 +55,21 @@ def table_after(act: Act, labels: tuple[str, str]) -> dict[str, Any]:
     present = [ball for ball, on in enumerate(state["on_table"]) if on]
     over = frame.phase == "over"
     return {
-        "phase": frame.phase, "striker": frame.striker, "breaker": frame.breaker, "scores": list(frame.scores), "break": frame.break_points,
-        "ball_on": None if over else frame.ball_on.name.lower(), "free_ball": frame.free_ball, "in_hand": frame.in_hand,
-        "reds": sum(0 < ball < YELLOW for ball in present), "available": 0 if over else frame.available, "winner": frame.winner,
-        "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in present}, "words": asked_words(frame, labels),
+        "phase": frame.phase,
+        "striker": frame.striker,
+        "breaker": frame.breaker,
+        "scores": list(frame.scores),
+        "break": frame.break_points,
+        "ball_on": None if over else frame.ball_on.name.lower(),
+        "free_ball": frame.free_ball,
+        "in_hand": frame.in_hand,
+        "reds": sum(0 < ball < YELLOW for ball in present),
+        "available": 0 if over else frame.available,
+        "winner": frame.winner,
+        "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in present},
+        "words": asked_words(frame, labels),
         "last": last_words(act, labels),
-    }  # fmt: skip
+    }
 
 
 def stroke_report(service: Service, k: int) -> dict[str, Any]:
@@ -56,7 +77,9 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
     acts, labels = service.session.acts, service.seats.labels
     played = acts[k].played
     assert played is not None
-    return encoded_stroke(played, labels) | {"tables": [table_after(acts[k - 1], labels), table_after(acts[k], labels)]}
+    return encoded_stroke(played, labels) | {
+        "tables": [table_after(acts[k - 1], labels), table_after(acts[k], labels)]
+    }
 
 
 def report(service: Service) -> dict[str, Any]:
@@ -68,14 +91,26 @@ def report(service: Service) -> dict[str, Any]:
     lines = _lines(session, frame, on)
     state = table_after(session.acts[session.at - 1], seats.labels)
     state |= {
-        "revision": service.revision, "players": list(seats.who), "labels": list(seats.labels), "noise": list(session.noise),
-        "practice": session.practice, "balls_on": [NAMES[i] for i in ids_of(on)], "snookered": hidden, "miss_called": frame.miss_called,
-        "choices": list(frame.choices), "nominations": [NAMES[i] for i in session.nominations()],
-        "needs_snookers": frame.phase != "over" and frame.needs_snookers(frame.striker), "lines": [line.to_dict() for line in lines],
-        "thinking": service.thinking, "paused": service.paused and service.agent_to_play(), "trouble": service.trouble,
-        "strokes": len(session.strokes), "undo": session.at > 1, "redo": session.at < len(session.acts),
+        "revision": service.revision,
+        "players": list(seats.who),
+        "labels": list(seats.labels),
+        "noise": list(session.noise),
+        "practice": session.practice,
+        "balls_on": [NAMES[i] for i in ids_of(on)],
+        "snookered": hidden,
+        "miss_called": frame.miss_called,
+        "choices": list(frame.choices),
+        "nominations": [NAMES[i] for i in session.nominations()],
+        "needs_snookers": frame.phase != "over" and frame.needs_snookers(frame.striker),
+        "lines": [line.to_dict() for line in lines],
+        "thinking": service.thinking,
+        "paused": service.paused and service.agent_to_play(),
+        "trouble": service.trouble,
+        "strokes": len(session.strokes),
+        "undo": session.at > 1,
+        "redo": session.at < len(session.acts),
         "words": _agents_words(service) or state["words"],
-    }  # fmt: skip
+    }
     places = {NAMES.index(name): (x, y) for name, (x, y) in state["positions"].items()}
     return state | {"text": table_text(places, on, lines, _facts(session, state, places))}
 
@@ -112,16 +147,22 @@ def _facts(session: Session, state: dict[str, Any], places: dict[int, tuple[floa
     facts.append(f"Score: {one} {state['scores'][0]}, {other} {state['scores'][1]}; break {state['break']}.")
     if state["phase"] == "over":
         return facts
-    facts.append(f"{state['available']} points are left on the table, {reds} red{'' if reds == 1 else 's'} among the balls.")
+    facts.append(
+        f"{state['available']} points are left on the table, {reds} red{'' if reds == 1 else 's'} among the balls."
+    )
     if state["needs_snookers"]:
         facts.append("The striker needs penalty points to win.")
     if state["phase"] == "choice":
         facts.append("Choices: " + ", ".join(state["choices"]) + ".")
         return facts
     if state["nominations"]:
-        facts.append(f"May be nominated: {', '.join(state['nominations'])}; without a nomination it is the colour first struck.")
+        facts.append(
+            f"May be nominated: {', '.join(state['nominations'])}; without a nomination it is the colour first struck."
+        )
     if state["in_hand"]:
-        facts.append("The cue ball may be placed anywhere in the D (x^2 + (y + 1.0475)^2 <= 0.292^2 and y <= -1.0475).")
+        facts.append(
+            "The cue ball may be placed anywhere in the D (x^2 + (y + 1.0475)^2 <= 0.292^2 and y <= -1.0475)."
+        )
     if state["snookered"]:
         facts.append("The cue ball is snookered: no ball on can be struck at both edges in a straight line.")
     return facts + freedom(places)

@@ -1,7 +1,8 @@
-"""Which requests does the server answer, and how? Each route of the protocol: its fields, checked, and its action.
+"""Which requests does the server answer, and how? Each route of the protocol: its fields, checked, and its
+action.
 
-A handler takes the fields of one request as plain JSON types and returns JSON types. A ValueError names an invalid field.
-``docs/play/protocol.md`` describes every route.
+A handler takes the fields of one request as plain JSON types and returns JSON types. A ValueError names an
+invalid field. ``docs/play/protocol.md`` describes every route.
 """
 
 import re
@@ -30,7 +31,8 @@ Handler = Callable[[Service, dict[str, Any]], Any]
 
 @dataclass(frozen=True)
 class Route:
-    """One route: what answers it, with JSON types or with a ``str``, an HTML page; and the fields that a request may have."""
+    """One route: what answers it, with JSON types or with a ``str``, an HTML page; and the fields that a
+    request may have."""
 
     handler: Handler
     fields: tuple[str, ...] = ()
@@ -38,7 +40,9 @@ class Route:
 
 def _state(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     if "after" in fields:
-        service.wait(integer("after", fields["after"], 0, MOST), number("wait", fields.get("wait", 0.0), 0.0, 60.0))
+        service.wait(
+            integer("after", fields["after"], 0, MOST), number("wait", fields.get("wait", 0.0), 0.0, 60.0)
+        )
     with service.reading():
         return report(service)
 
@@ -46,7 +50,10 @@ def _state(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 def _strokes(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading() as session:
         first = integer("from", fields.get("from", 0), 0, MOST)
-        return {"revision": service.revision, "strokes": [stroke_report(service, k) for k in session.strokes[first:]]}
+        return {
+            "revision": service.revision,
+            "strokes": [stroke_report(service, k) for k in session.strokes[first:]],
+        }
 
 
 def stroke_asked(session: Session, fields: dict[str, Any]) -> CueStroke:
@@ -71,7 +78,9 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         twin = session.twin()  # errors occur on the copy first, so that a refused request has changed nothing
         if "choice" in fields:
             if strikes and fields["choice"] != "play":
-                raise refuse("choice", fields["choice"], 'must be "play" in a request that holds a stroke too')
+                raise refuse(
+                    "choice", fields["choice"], 'must be "play" in a request that holds a stroke too'
+                )
             twin.choose(fields["choice"])
         if strikes:
             stroke = stroke_asked(twin, fields)
@@ -109,7 +118,10 @@ def _put(service: Service, fields: dict[str, Any], check: bool) -> dict[str, Any
     if not isinstance(scores, list) or len(scores) != 2:
         raise refuse("scores", scores, "must be two integers")
     points = (integer("scores[0]", scores[0], 0, MOST), integer("scores[1]", scores[1], 0, MOST))
-    striker, free = integer("striker", fields.get("striker", 0), 0, 1), truth("free_ball", fields.get("free_ball", False))
+    striker, free = (
+        integer("striker", fields.get("striker", 0), 0, 1),
+        truth("free_ball", fields.get("free_ball", False)),
+    )
     position = position_of(fields.get("position"))
     if check:
         with service.asking() as session:
@@ -124,7 +136,11 @@ def position_of(fields: Any) -> Position:
     """A ``Position`` from JSON types; ValueError, with the name of the ball or field, if it is invalid."""
     names = tuple(Position.__dataclass_fields__)
     if not isinstance(fields, dict):
-        raise refuse("position", fields, 'must be an object: {"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}')
+        raise refuse(
+            "position",
+            fields,
+            'must be an object: {"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}',
+        )
     for name in fields:
         choice("field of position", name, [n for n in names if n not in ("table", "over")])
     points: dict[str, Any] = {"points": integer("points", fields.get("points", 0), 0, MOST_BREAK)}
@@ -205,13 +221,17 @@ def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     n = integer("n", fields.get("n", 5), 1, questions.MOST_SUGGESTIONS)
     with service.asking(_revision(fields)) as session:
         noise, samples, seed = _errors(fields, 200, session)
-        return questions.suggestions(session, service.seats, agent=agent, noise=noise, n=n, samples=samples, seed=seed)
+        return questions.suggestions(
+            session, service.seats, agent=agent, noise=noise, n=n, samples=samples, seed=seed
+        )
 
 
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking(_revision(fields)) as session:
         noise, samples, seed = _errors(fields, 500, session)
-        return questions.scatter(session, stroke_asked(session, fields), noise=noise, samples=samples, seed=seed)
+        return questions.scatter(
+            session, stroke_asked(session, fields), noise=noise, samples=samples, seed=seed
+        )
 
 
 def _revision(fields: dict[str, Any]) -> int | None:
@@ -250,22 +270,37 @@ def _scene(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 ERRORS = ("noise", "samples", "seed", "revision")
 GET: dict[str, Route] = {
-    "scene": Route(_scene), "state": Route(_state, ("after", "wait")), "strokes": Route(_strokes, ("from",)), "replay": Route(_replay),
+    "scene": Route(_scene),
+    "state": Route(_state, ("after", "wait")),
+    "strokes": Route(_strokes, ("from",)),
+    "replay": Route(_replay),
     "replay.html": Route(_replay_page),
-}  # fmt: skip
+}
 POST: dict[str, Route] = {
-    "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision")), "place": Route(_place, ("place",)),
-    "advise": Route(_advise, ("agent", "n", *ERRORS)), "destinations": Route(_destinations, (*STROKE, *ERRORS)),
-    "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")), "undo": Route(_undo), "redo": Route(_redo),
-    "new": Route(_new, ("layout", "seed", "breaker")), "players": Route(_players, ("players", "noise", "practice")), "go": Route(_go),
-    "concede": Route(_concede), "save": Route(_save), "load": Route(_load, ("saved",)),
-}  # fmt: skip
+    "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision")),
+    "place": Route(_place, ("place",)),
+    "advise": Route(_advise, ("agent", "n", *ERRORS)),
+    "destinations": Route(_destinations, (*STROKE, *ERRORS)),
+    "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
+    "undo": Route(_undo),
+    "redo": Route(_redo),
+    "new": Route(_new, ("layout", "seed", "breaker")),
+    "players": Route(_players, ("players", "noise", "practice")),
+    "go": Route(_go),
+    "concede": Route(_concede),
+    "save": Route(_save),
+    "load": Route(_load, ("saved",)),
+}
 
 
 def parts_of(error: ValueError) -> dict[str, Any]:
     """The parts of an error message that ``_check.refuse`` made."""
     text = str(error)
-    at = re.match(r"(?P<field>[\w\[\]., ]+?) = (?P<value>.*?): (?P<message>(must|overlaps|lies|ball).*)\Z", text, re.DOTALL)
+    at = re.match(
+        r"(?P<field>[\w\[\]., ]+?) = (?P<value>.*?): (?P<message>(must|overlaps|lies|ball).*)\Z",
+        text,
+        re.DOTALL,
+    )
     return at.groupdict() if at else {"field": None, "value": None, "message": text}
 
 
@@ -273,7 +308,13 @@ def answer(service: Service, route: Route, fields: dict[str, Any]) -> Any:
     """The answer of a route; ValueError for an unknown or invalid field."""
     for name in fields:
         if name not in route.fields:
-            raise refuse("field", name, f"must be one of {list(route.fields)}" if route.fields else "must be left out: there are no fields")
+            raise refuse(
+                "field",
+                name,
+                f"must be one of {list(route.fields)}"
+                if route.fields
+                else "must be left out: there are no fields",
+            )
     try:
         return route.handler(service, fields)
     except StaleError:

@@ -1,6 +1,8 @@
-"""Who sits at the table? Persons, and agents by name: some of the package, and those named when the page was started.
+"""Who sits at the table? Persons, and agents by name: some of the package, and those named when the page was
+started.
 
-An agent is asked for one stroke at a time, on a copy of the frame, without execution errors, which are drawn when the stroke is played.
+An agent is asked for one stroke at a time, on a copy of the frame, without execution errors, which are drawn
+when the stroke is played.
 """
 
 from collections.abc import Mapping
@@ -61,7 +63,8 @@ class Seats:
         return self.label(0), self.label(1)
 
     def decided(self, name: str, session: Session) -> Strokes:
-        """What an agent does in the current frame: a decision after a foul, a declaration, or a stroke. ``session`` is not changed."""
+        """What an agent does in the current frame: a decision after a foul, a declaration, or a stroke.
+        ``session`` is not changed."""
         options = session.options_with(session.noise[session.frame.striker])
         decided = self.players[name].at(options).play(session.position, session.tables.game[:, STROKES])
         if not isinstance(decided, Strokes) or len(decided) != 1:

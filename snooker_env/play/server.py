@@ -1,8 +1,10 @@
-"""How does the game answer a browser or a program? A small HTTP server on this machine's own address, for those who have its token.
+"""How does the game answer a browser or a program? A small HTTP server on this machine's own address, for
+those who have its token.
 
-Every request is checked before anything is done: the token in its path, in constant time; ``Host``, so that no other name leads here;
-``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method, path, length, type and form of the body. Requests are
-limited in head, body, time and number. Every error is answered by one JSON object.
+Every request is checked before anything is done: the token in its path, in constant time; ``Host``, so that
+no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method,
+path, length, type and form of the body. Requests are limited in head, body, time and number. Every error is
+answered by one JSON object.
 """
 
 import hmac
@@ -24,7 +26,15 @@ from ..web import WEB, table_js
 from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
 
-SCRIPTS = ("table.js", "play.js", "play_aim.js", "play_ask.js", "play_first.js", "play_setup.js", "play_parts.js")
+SCRIPTS = (
+    "table.js",
+    "play.js",
+    "play_aim.js",
+    "play_ask.js",
+    "play_first.js",
+    "play_setup.js",
+    "play_parts.js",
+)
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_HEAD = 16_384
@@ -34,7 +44,8 @@ MOST_AT_ONCE = 32
 """Largest number of connections; a browser keeps six."""
 _FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
 FULL = (
-    b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\nContent-Length: %d\r\n\r\n" % len(_FULL)
+    b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\nContent-Length: %d\r\n\r\n"
+    % len(_FULL)
     + _FULL
 )
 """The answer to further connections."""
@@ -43,9 +54,13 @@ IDLE, REQUEST = 20.0, 10.0
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-    "X-Content-Type-Options": "nosniff", "X-Frame-Options": "DENY", "Referrer-Policy": "no-referrer", "Cache-Control": "no-store",
-    "Cross-Origin-Resource-Policy": "same-origin", "Cross-Origin-Opener-Policy": "same-origin",
-}  # fmt: skip
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-store",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+}
 
 
 class RefusedError(Exception):
@@ -57,7 +72,8 @@ class RefusedError(Exception):
 
 
 class TimedReader:
-    """A connection for ``http.server`` with limits: bytes in a head, and ``REQUEST`` seconds from the first byte of a request."""
+    """A connection for ``http.server`` with limits: bytes in a head, and ``REQUEST`` seconds from the first
+    byte of a request."""
 
     def __init__(self, connection: socket.socket):
         self._socket, self._held = connection, b""
@@ -118,7 +134,13 @@ class PlayHandler(BaseHTTPRequestHandler):
     def handle_one_request(self) -> None:
         """Handle one request, its head within the limits."""
         self.rfile.expect()
-        self.path, self.command, self.requestline, self.request_version, self.close_connection = "", "", "", "HTTP/1.1", True
+        self.path, self.command, self.requestline, self.request_version, self.close_connection = (
+            "",
+            "",
+            "",
+            "HTTP/1.1",
+            True,
+        )
         try:
             super().handle_one_request()
         except RefusedError as refused:
@@ -133,7 +155,9 @@ class PlayHandler(BaseHTTPRequestHandler):
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
         """Answer an error that ``http.server`` itself finds, as one JSON error."""
         self.close_connection = True
-        self._refuse(RefusedError(405 if code == 501 else code, message or "not a request that can be answered"))
+        self._refuse(
+            RefusedError(405 if code == 501 else code, message or "not a request that can be answered")
+        )
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("do_"):  # any method: the same checks refuse it, after the token
@@ -141,7 +165,8 @@ class PlayHandler(BaseHTTPRequestHandler):
         raise AttributeError(name)
 
     def finish(self) -> None:
-        """Read the rest of a refused request: closing a connection with unread bytes would lose the answer."""
+        """Read the rest of a refused request: closing a connection with unread bytes would lose the
+        answer."""
         with suppress(OSError):
             self.connection.shutdown(socket.SHUT_WR)
             self.connection.settimeout(0.2)
@@ -159,9 +184,18 @@ class PlayHandler(BaseHTTPRequestHandler):
             route = (GET if self.command == "GET" else POST)[name[4:]]
             reply = answer(self.server.service, route, query if self.command == "GET" else self._body())
             if isinstance(reply, str):
-                self._send(200, reply.encode(), "text/html", {"Content-Disposition": 'attachment; filename="replay.html"'})
+                self._send(
+                    200,
+                    reply.encode(),
+                    "text/html",
+                    {"Content-Disposition": 'attachment; filename="replay.html"'},
+                )
             else:
-                self._send(200, json.dumps(reply, allow_nan=False, separators=(",", ":")).encode(), "application/json")
+                self._send(
+                    200,
+                    json.dumps(reply, allow_nan=False, separators=(",", ":")).encode(),
+                    "application/json",
+                )
         except RefusedError as refused:
             self._refuse(refused)
         except ValueError as error:
@@ -187,12 +221,17 @@ class PlayHandler(BaseHTTPRequestHandler):
             raise self._last(403, "Sec-Fetch-Site must be same-origin, or none")
         parts = urlsplit(self.path)
         token, _, name = parts.path.removeprefix("/").partition("/")
-        name = re.sub("^/+(?=api/)", "", name)  # the printed address ends with "/", and clients often append "/api/state"
-        if not parts.path.startswith("/") or not hmac.compare_digest(token.encode(), self.server.token.encode()):
+        # the printed address ends with "/", and clients often append "/api/state"
+        name = re.sub("^/+(?=api/)", "", name)
+        if not parts.path.startswith("/") or not hmac.compare_digest(
+            token.encode(), self.server.token.encode()
+        ):
             raise self._last(403, "the address must hold the token that was printed when the server started")
         if self.command not in ("GET", "POST"):
             raise self._last(405, "the method must be GET or POST", Allow="GET, POST")
-        known = {f"api/{key}" for key in (GET if self.command == "GET" else POST)} | (set(FILES) if self.command == "GET" else set())
+        known = {f"api/{key}" for key in (GET if self.command == "GET" else POST)} | (
+            set(FILES) if self.command == "GET" else set()
+        )
         if name not in known:
             other = "GET" if self.command == "POST" else "POST"
             if name in FILES or name.removeprefix("api/") in {"GET": GET, "POST": POST}[other]:
@@ -212,13 +251,16 @@ class PlayHandler(BaseHTTPRequestHandler):
         for name, value in pairs:
             if name in fields:
                 raise RefusedError(400, "must be given once", name, value)
-            fields[name] = json.loads(value) if re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value) else value
+            fields[name] = (
+                json.loads(value) if re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value) else value
+            )
         return fields
 
     def _body(self) -> dict[str, Any]:
         length = self.headers.get_all("Content-Length") or []
         if not length or length == ["0"]:  # as ``curl -X POST`` sends it
-            self.close_connection = self.close_connection or not length  # there might be a body without a known end
+            # there might be a body without a known end
+            self.close_connection = self.close_connection or not length
             return {}
         if len(length) != 1 or not re.fullmatch(r"\d{1,12}", length[0]):
             raise self._last(411, "must be one number of bytes", "Content-Length", ", ".join(length))
@@ -232,7 +274,9 @@ class PlayHandler(BaseHTTPRequestHandler):
             raise self._last(400, "the body ended before its Content-Length")
         return parsed(raw)
 
-    def _last(self, status: int, message: str, field: str | None = None, value: Any = None, **headers: str) -> RefusedError:
+    def _last(
+        self, status: int, message: str, field: str | None = None, value: Any = None, **headers: str
+    ) -> RefusedError:
         """A refusal that closes the connection, because the rest of the request may not have been read."""
         self.close_connection = True
         refused = RefusedError(status, message, field, value)
@@ -253,7 +297,12 @@ class PlayHandler(BaseHTTPRequestHandler):
     def _send(self, status: int, body: bytes, kind: str, more: dict[str, str] | None = None) -> None:
         self.connection.settimeout(REQUEST)
         self.send_response(status)
-        for name, value in {**HEADERS, **(more or {}), "Content-Type": kind, "Content-Length": str(len(body))}.items():
+        for name, value in {
+            **HEADERS,
+            **(more or {}),
+            "Content-Type": kind,
+            "Content-Length": str(len(body)),
+        }.items():
             self.send_header(name, value)
         if self.close_connection:
             self.send_header("Connection", "close")
@@ -263,9 +312,12 @@ class PlayHandler(BaseHTTPRequestHandler):
 
 
 def parsed(raw: bytes) -> dict[str, Any]:
-    """The JSON object in a body; RefusedError for anything else, including NaN, Infinity and repeated names."""
+    """The JSON object in a body; RefusedError for anything else, including NaN, Infinity and repeated
+    names."""
     try:
-        fields = json.loads(raw.decode("utf-8"), parse_constant=_no_number, object_pairs_hook=_once) if raw else {}
+        fields = (
+            json.loads(raw.decode("utf-8"), parse_constant=_no_number, object_pairs_hook=_once) if raw else {}
+        )
     except (ValueError, RecursionError) as error:
         raise RefusedError(400, f"the body must be JSON in UTF-8 ({error})") from None
     if not isinstance(fields, dict):

@@ -1,7 +1,9 @@
-"""How do a page, a program and thinking agents share one game? Behind one lock: each act is atomic, and agents think on copies.
+"""How do a page, a program and thinking agents share one game? Behind one lock: each act is atomic, and
+agents think on copies.
 
-A number, the revision, grows with every change; a request that waits for a change names the last revision it has seen. The agent's thread
-is notified when it is its turn, and its stroke is dropped if the game has changed in the meantime.
+A number, the revision, grows with every change; a request that waits for a change names the last revision it
+has seen. The agent's thread is notified when it is its turn, and its stroke is dropped if the game has
+changed in the meantime.
 """
 
 import threading
@@ -36,7 +38,8 @@ class Service:
     """One game, its seats, and the thread in which agents think."""
 
     paused: bool
-    """Whether an agent whose turn it is waits for ``go_on``: after an undo, a load or a position set up, and between two agents."""
+    """Whether an agent whose turn it is waits for ``go_on``: after an undo, a load or a position set up, and
+    between two agents."""
     trouble: str
     """Why the last agent did not play, or ""."""
 
@@ -64,20 +67,26 @@ class Service:
             yield self.session
 
     @contextmanager
-    def acting(self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False) -> Iterator[Session]:
-        """The game, for changing it. ``pause``: an agent to play then waits; ``any_turn``: not refused in an agent's turn."""
+    def acting(
+        self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False
+    ) -> Iterator[Session]:
+        """The game, for changing it. ``pause``: an agent to play then waits; ``any_turn``: not refused in an
+        agent's turn."""
         with self._changed:
             if revision not in (None, self.revision):
                 raise StaleError
             if not any_turn and self.agent_to_play():
-                raise ValueError(f"turn = {self.seats.label(self.session.frame.striker)!r}: must be a person's: an agent is to play")
+                raise ValueError(
+                    f"turn = {self.seats.label(self.session.frame.striker)!r}: must be a person's: an agent is to play"
+                )
             yield self.session
             self.paused, self.trouble = pause, ""
             self._moved()
 
     @contextmanager
     def asking(self, revision: int | None = None) -> Iterator[Session]:
-        """A copy of the game for trial strokes; ``BusyError`` for too many questions, ``StaleError`` for an old revision."""
+        """A copy of the game for trial strokes; ``BusyError`` for too many questions, ``StaleError`` for an
+        old revision."""
         if not self._asking.acquire(timeout=10.0):
             raise BusyError("other questions are being answered")
         try:
@@ -130,7 +139,8 @@ class Service:
             decided, trouble = None, ""
             try:
                 decided = self.seats.decided(who, twin)
-            except Exception as error:  # a custom player may raise anything: it is reported, and the game waits
+            # a custom player may raise anything: it is reported, and the game waits
+            except Exception as error:
                 trouble = f"{who} gave no stroke ({type(error).__name__}: {error})"
             with self._changed:
                 if self.revision != revision or self._closed:

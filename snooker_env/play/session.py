@@ -1,8 +1,10 @@
-"""What is the game on the page? One frame in memory, played by the package's own functions, with a list of acts to undo and redo.
+"""What is the game on the page? One frame in memory, played by the package's own functions, with a list of
+acts to undo and redo.
 
-``Session`` plays the strokes and decisions of the current striker, with the noise of that seat. ``seats.py`` says who
-sits there, ``service.py`` handles threads. Each act is an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so
-a stroke that is undone and played again meets the same execution errors.
+``Session`` plays the strokes and decisions of the current striker, with the noise of that seat. ``seats.py``
+says who sits there, ``service.py`` handles threads. Each act is an ``Act`` in a list; undo and redo move in
+it. A state holds the random stream, so a stroke that is undone and played again meets the same execution
+errors.
 """
 
 from dataclasses import dataclass, replace
@@ -54,19 +56,27 @@ class Act:
 
 
 class Session:
-    """A frame that can be played, set up, undone, saved and loaded; ``layout`` deals it, ``seed`` is that of all random numbers."""
+    """A frame that can be played, set up, undone, saved and loaded; ``layout`` deals it, ``seed`` is that of
+    all random numbers."""
 
     noise: list[NoiseName]
     """Execution errors of each seat: names of ``snooker_env.tasks.LEVELS``."""
     practice: bool
-    """Alone at the table: the turn always returns to player 0, and after a foul the balls stay as they lie."""
+    """Alone at the table: the turn always returns to player 0, and after a foul the balls stay as they
+    lie."""
     acts: list[Act]
     at: int
     """Number of acts that count; the following ones were undone."""
 
     def __init__(self, *, layout: str = "break_off", seed: int = 0):
         self._options = Options(
-            task="frame", placement=True, decision=True, elevation=True, miss="clear_path", max_strokes=None, layout=layout
+            task="frame",
+            placement=True,
+            decision=True,
+            elevation=True,
+            miss="clear_path",
+            max_strokes=None,
+            layout=layout,
         )
         self.noise, self.practice = ["none", "none"], False
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
@@ -108,12 +118,17 @@ class Session:
         return Positions.of(cast(Any, self))  # it has tables, as environments have
 
     def planned(self, *, free_ball: bool = False) -> Positions:
-        """The position of the next stroke for planning, as one of a visit; with ``free_ball`` every colour is on instead of the ball on."""
+        """The position of the next stroke for planning, as one of a visit; with ``free_ball`` every colour is
+        on instead of the ball on."""
         frame, tables = self.frame, self.tables
         if frame.phase == "over":
             raise refuse("phase", "over", "must not be over: there is no stroke to play")
         on = BallOn.ANY_COLOUR if free_ball else frame.ball_on
-        return Positions(tables.positions.copy(), tables.on_table.copy(), [[int(on), int(frame.in_hand), frame.break_points, 0, 0]])
+        return Positions(
+            tables.positions.copy(),
+            tables.on_table.copy(),
+            [[int(on), int(frame.in_hand), frame.break_points, 0, 0]],
+        )
 
     def options_with(self, noise: NoiseName) -> Options:
         """The options of this frame for a player with these execution errors."""
@@ -151,7 +166,11 @@ class Session:
         """Raise ValueError unless a stroke may be played now, and that colour be nominated."""
         frame = self.frame
         if frame.phase != "stroke":
-            allowed = 'must be "stroke": choose first (play, play_again or replace)' if frame.phase == "choice" else "must not be over"
+            allowed = (
+                'must be "stroke": choose first (play, play_again or replace)'
+                if frame.phase == "choice"
+                else "must not be over"
+            )
             raise refuse("phase", frame.phase, allowed)
         declined = nominated == DECLINED and frame.free_ball
         if nominated != AUTO and not declined and nominated not in self.nominations():
@@ -160,7 +179,8 @@ class Session:
             raise refuse("nominate", NAMES[nominated], allowed)
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
-        """Play the stroke from where the cue ball lies; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
+        """Play the stroke from where the cue ball lies; ``nominated``: a colour, AUTO for the one first
+        struck, or DECLINED."""
         self.check_stroke(nominated)
         before, tables = self.state, self.tables
         striker = self.frame.striker
@@ -212,7 +232,8 @@ class Session:
         return self._ended("concede", frame.concede(frame.striker))
 
     def claim(self) -> Act:
-        """End the frame: the striker, more than seven points ahead with the black alone on the table, claims it."""
+        """End the frame: the striker, more than seven points ahead with the black alone on the table, claims
+        it."""
         return self._ended("claim", self.frame.claim())
 
     def _ended(self, what: str, after: Frame) -> Act:
@@ -221,7 +242,8 @@ class Session:
         return self._did(Act(what, self.state, striker))
 
     def place(self, x: float, y: float) -> tuple[float, float]:
-        """Put the cue ball in hand on the free place of the D nearest to (x, y), and return that place. It may be moved again."""
+        """Put the cue ball in hand on the free place of the D nearest to (x, y), and return that place. It
+        may be moved again."""
         frame = self.frame
         if not frame.in_hand or frame.phase != "stroke":
             raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
@@ -230,20 +252,41 @@ class Session:
         px, py = self.tables.positions[0, CUE].tolist()
         return px, py
 
-    def set_up(self, position: Position, *, scores: tuple[int, int], striker: int, free_ball: bool, check: bool = False) -> None:
-        """Put the balls as in a position. ``check``: only validate it. ValueError names the ball or the field."""
+    def set_up(
+        self,
+        position: Position,
+        *,
+        scores: tuple[int, int],
+        striker: int,
+        free_ball: bool,
+        check: bool = False,
+    ) -> None:
+        """Put the balls as in a position. ``check``: only validate it. ValueError names the ball or the
+        field."""
         positions, on_table, _ = position.arrays()
         mask = mask_of_present(on_table) & ~1
         for i in np.flatnonzero(~on_table):
             positions[i] = 0.0
         frame = Frame(
-            scores=scores, striker=striker, breaker=striker, break_points=position.points, on_table=mask, in_hand=position.in_hand,
-            ball_on=BallOn[str(position.on).upper()], free_ball=free_ball, miss="clear_path",
-        )  # fmt: skip
-        sound = self._checked({
-            "positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict(), "strokes": 0,
-            "stream": self.tables.streams[0].tolist(),
-        })  # fmt: skip
+            scores=scores,
+            striker=striker,
+            breaker=striker,
+            break_points=position.points,
+            on_table=mask,
+            in_hand=position.in_hand,
+            ball_on=BallOn[str(position.on).upper()],
+            free_ball=free_ball,
+            miss="clear_path",
+        )
+        sound = self._checked(
+            {
+                "positions": positions.tolist(),
+                "on_table": on_table.tolist(),
+                "frame": frame.to_dict(),
+                "strokes": 0,
+                "stream": self.tables.streams[0].tolist(),
+            }
+        )
         if not check:
             self.tables.set_state(0, sound)
             self._did(Act("set_up", self.state))
@@ -258,15 +301,27 @@ class Session:
 
     def save(self) -> dict[str, Any]:
         """The current game as JSON types."""
-        return {"format": "snooker-game", "version": 1, "practice": self.practice, "noise": list(self.noise), "state": self.state}
+        return {
+            "format": "snooker-game",
+            "version": 1,
+            "practice": self.practice,
+            "noise": list(self.noise),
+            "state": self.state,
+        }
 
     def load(self, saved: Any) -> None:
         """Restore a result of ``save``. ValueError names what is invalid, and then nothing has changed."""
         fields = ("format", "version", "practice", "noise", "state")
         if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
-            raise refuse_what("saved", "something else", 'must be a saved game, with "format": "snooker-game"')
+            raise refuse_what(
+                "saved", "something else", 'must be a saved game, with "format": "snooker-game"'
+            )
         if set(saved) != set(fields) or saved["version"] != 1 or saved["version"] is True:
-            raise refuse_what("saved", f"version {saved.get('version')!r} with {sorted(saved)}", f"must be version 1 with {list(fields)}")
+            raise refuse_what(
+                "saved",
+                f"version {saved.get('version')!r} with {sorted(saved)}",
+                f"must be version 1 with {list(fields)}",
+            )
         noise = saved["noise"]
         if not isinstance(noise, list) or len(noise) != 2:
             raise refuse("saved.noise", noise, "must be two names")
@@ -298,7 +353,8 @@ class Session:
 
     def _checked(self, state: dict[str, Any]) -> FrameState:
         try:
-            alone = {"opponent": 0, "unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}  # no rewards are paid here
+            # no rewards are paid here
+            alone = {"opponent": 0, "unpaid": 0, "due": False, "rng": self._generator.bit_generator.state}
             return self.tables.checked(state | alone, self._generator, either=True)
         except ValueError as error:
             text = str(error)

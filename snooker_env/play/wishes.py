@@ -1,6 +1,7 @@
 """Which stroke does a request contain? Its fields checked, in SI units and names.
 
-Nothing is corrected: a tip beyond the miscue limit or a speed out of range is refused, and the message says what is allowed.
+Nothing is corrected: a tip beyond the miscue limit or a speed out of range is refused, and the message says
+what is allowed.
 """
 
 from typing import Any
@@ -12,10 +13,13 @@ from ..geometry import POCKETS
 
 
 def stroke_in(fields: dict[str, Any], aim: float | None = None) -> CueStroke:
-    """The stroke in a request: "speed", "aim" (unless passed separately), "side", "top", "elevation"; ValueError if invalid."""
+    """The stroke in a request: "speed", "aim" (unless passed separately), "side", "top", "elevation";
+    ValueError if invalid."""
     for name in ("speed",) if aim is not None else ("speed", "aim"):
         if name not in fields:
-            raise refuse(name, None, 'must be given: {"speed": m/s, "aim": rad, "side": 0, "top": 0, "elevation": 0}')
+            raise refuse(
+                name, None, 'must be given: {"speed": m/s, "aim": rad, "side": 0, "top": 0, "elevation": 0}'
+            )
     parts = {name: fields[name] for name in ("speed", "side", "top", "elevation") if name in fields}
     return CueStroke(aim=number("aim", fields["aim"], -1e6, 1e6) if aim is None else aim, **parts)
 

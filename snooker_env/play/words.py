@@ -1,4 +1,5 @@
-"""How is the game described without a picture? In plain words: balls, ball on, lines to pockets, what was done, what is to be done.
+"""How is the game described without a picture? In plain words: balls, ball on, lines to pockets, what was
+done, what is to be done.
 
 Left and right are as seen from the baulk end: right is the yellow side, +x; the black end is +y.
 """
@@ -15,10 +16,13 @@ from .lines import Line
 from .session import Act
 
 _ALONG = (
-    (BAULK_Y, "in baulk"), (-0.35, "between baulk and the middle"), (0.35, "about the middle of the table"),
-    (COLOUR_SPOTS[4, 1], "between the middle and the pink spot"), (COLOUR_SPOTS[5, 1], "between the pink and the black spot"),
+    (BAULK_Y, "in baulk"),
+    (-0.35, "between baulk and the middle"),
+    (0.35, "about the middle of the table"),
+    (COLOUR_SPOTS[4, 1], "between the middle and the pink spot"),
+    (COLOUR_SPOTS[5, 1], "between the pink and the black spot"),
     (np.inf, "behind the black spot"),
-)  # fmt: skip
+)
 
 
 def asked_words(frame: Frame, labels: tuple[str, str]) -> str:
@@ -30,7 +34,11 @@ def asked_words(frame: Frame, labels: tuple[str, str]) -> str:
     if frame.phase == "choice":
         miss = " and a miss" if frame.miss_called else ""
         return f"Foul{miss} by {labels[1 - frame.striker]}: {'choose' if who == 'You' else f'{who} chooses'}."
-    on = f"{on_words(frame.ball_on)}, and a free ball are" if frame.free_ball else f"{on_words(frame.ball_on)} is"
+    on = (
+        f"{on_words(frame.ball_on)}, and a free ball are"
+        if frame.free_ball
+        else f"{on_words(frame.ball_on)} is"
+    )
     placing = "; the cue ball is in hand" if frame.in_hand else ""
     return f"{yours}: {on} on{placing}."
 
@@ -42,10 +50,13 @@ def last_words(act: Act, labels: tuple[str, str]) -> str:
         nominated = f" ({act.detail} nominated)" if act.detail else ""
         return f"{who}{nominated}: {sentence(act.played, labels)}"
     return {
-        "choice": f"{who}: {act.detail.replace('_', ' ')}.", "concede": f"{who} concede{'' if who == 'You' else 's'} the frame.",
+        "choice": f"{who}: {act.detail.replace('_', ' ')}.",
+        "concede": f"{who} concede{'' if who == 'You' else 's'} the frame.",
         "claim": f"{who} claim{'' if who == 'You' else 's'} the frame.",
-        "set_up": "Position set up.", "load": "Game loaded.", "new": "New frame.",
-    }[act.what]  # fmt: skip
+        "set_up": "Position set up.",
+        "load": "Game loaded.",
+        "new": "New frame.",
+    }[act.what]
 
 
 def where(ball: int, x: float, y: float) -> str:
@@ -54,20 +65,36 @@ def where(ball: int, x: float, y: float) -> str:
         if hypot(x - spot[0], y - spot[1]) < 1e-3:
             return "on its spot" if ball == YELLOW + k else f"on the {NAMES[YELLOW + k]} spot"
     along = next(words for limit, words in _ALONG if y <= limit)
-    across = "on the centre line" if abs(x) < 0.03 else f"{'far ' if abs(x) > 0.5 else ''}{'right' if x > 0 else 'left'}"
+    across = (
+        "on the centre line"
+        if abs(x) < 0.03
+        else f"{'far ' if abs(x) > 0.5 else ''}{'right' if x > 0 else 'left'}"
+    )
     gaps = {
-        "left cushion": x + HALF_WIDTH, "right cushion": HALF_WIDTH - x, "baulk cushion": y + HALF_LENGTH, "top cushion": HALF_LENGTH - y,
-    }  # fmt: skip
+        "left cushion": x + HALF_WIDTH,
+        "right cushion": HALF_WIDTH - x,
+        "baulk cushion": y + HALF_LENGTH,
+        "top cushion": HALF_LENGTH - y,
+    }
     near, gap = min(gaps.items(), key=lambda item: item[1])
     gap -= BALL_RADIUS
-    tight = f", tight on the {near}" if gap < 0.003 else f", {100 * gap:.0f} cm from the {near}" if gap < 0.12 else ""
+    tight = (
+        f", tight on the {near}"
+        if gap < 0.003
+        else f", {100 * gap:.0f} cm from the {near}"
+        if gap < 0.12
+        else ""
+    )
     return f"{along}, {across}{tight}"
 
 
 def table_text(places: dict[int, tuple[float, float]], on: int, lines: list[Line], facts: list[str]) -> str:
-    """The whole description; ``places``: of the balls on the table, ``on``: mask of those that may be struck first."""
+    """The whole description; ``places``: of the balls on the table, ``on``: mask of those that may be struck
+    first."""
     text = [*facts, ""]
-    text.append("Balls (x to the right, y to the black end, metres from the middle of the table; * may be struck first):")
+    text.append(
+        "Balls (x to the right, y to the black end, metres from the middle of the table; * may be struck first):"
+    )
     for ball, (x, y) in places.items():
         racked = 0 < ball < YELLOW and hypot(x - SPOTS[ball, 0], y - SPOTS[ball, 1]) < 1e-6
         place = "in the rack" if racked else where(ball, x, y)
@@ -77,7 +104,9 @@ def table_text(places: dict[int, tuple[float, float]], on: int, lines: list[Line
         for ball in dict.fromkeys(line.ball for line in lines):
             mine = [line for line in lines if line.ball == ball]
             shown = [line for line in mine if line.open] or sorted(mine, key=_how_shut)[:1]
-            text += [f"  {NAMES[ball]}, {line.words}" for line in sorted(shown, key=lambda line: -line.tolerance)]
+            text += [
+                f"  {NAMES[ball]}, {line.words}" for line in sorted(shown, key=lambda line: -line.tolerance)
+            ]
     return "\n".join(text)
 
 
@@ -92,12 +121,16 @@ def freedom(places: dict[int, tuple[float, float]]) -> list[str]:
         return []
     x, y = places[CUE]
     text = []
-    near = sorted((hypot(px - x, py - y) - 2.0 * BALL_RADIUS, ball) for ball, (px, py) in places.items() if ball != CUE)
+    near = sorted(
+        (hypot(px - x, py - y) - 2.0 * BALL_RADIUS, ball) for ball, (px, py) in places.items() if ball != CUE
+    )
     touching = [NAMES[ball] for gap, ball in near if gap < 1e-6]
     if touching:
         text.append("Touching ball: " + ", ".join(touching) + ".")
     elif near and near[0][0] < 0.2:
-        text.append(f"The ball nearest to the cue ball is {NAMES[near[0][1]]}, {100 * near[0][0]:.1f} cm away.")
+        text.append(
+            f"The ball nearest to the cue ball is {NAMES[near[0][1]]}, {100 * near[0][0]:.1f} cm away."
+        )
     place = where(CUE, x, y)
     text.append(f"The cue ball lies {place}.")
     return text

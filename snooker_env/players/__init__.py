@@ -41,4 +41,5 @@ class _Room(_ModuleType):
         return players()
 
 
-_sys.modules[__name__].__class__ = _Room  # an import sets the attribute of snooker_env to this package, not to the function
+# an import sets the attribute of snooker_env to this package, not to the function
+_sys.modules[__name__].__class__ = _Room

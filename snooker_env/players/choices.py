@@ -1,4 +1,5 @@
-"""How does a player play that scores the discrete choices? The one with the highest score; its aim is solved."""
+"""How does a player play that scores the discrete choices? The one with the highest score; its aim is
+solved."""
 
 from typing import Any
 
@@ -85,7 +86,9 @@ class ChoicePlayer(BoundPlayer):
             n strokes.
         """
         visits, places, scores = self._scored(positions, seeds)
-        return Strokes(self._planner.strokes_of(visits, np.arange(len(visits)), scores.argmax(axis=1))[0], places)
+        return Strokes(
+            self._planner.strokes_of(visits, np.arange(len(visits)), scores.argmax(axis=1))[0], places
+        )
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """Rank the choices of each position.
@@ -107,7 +110,11 @@ class ChoicePlayer(BoundPlayer):
         for k, row in enumerate(scores):
             choices = np.argsort(-row, kind="stable")[: max(1, min(MOST, int(np.isfinite(row).sum())))]
             values = self._planner.strokes_of(visits, np.full(len(choices), k), choices)[0]
-            ranked.append(Ranked(Strokes(values, np.repeat(places[k : k + 1], len(choices), 0)), self.figures(row[choices])))
+            ranked.append(
+                Ranked(
+                    Strokes(values, np.repeat(places[k : k + 1], len(choices), 0)), self.figures(row[choices])
+                )
+            )
         return ranked
 
     def _scored(self, positions: Any, seeds: Any) -> tuple[Positions, Floats, Floats]:
@@ -143,16 +150,19 @@ class Random(ChoicePlayer):
 
 
 class GhostBall(ChoicePlayer):
-    """``ghost_ball``: the widest direct pot, aim solved, in the middle at 2.3 m/s; without one, the geometric player's stroke.
+    """``ghost_ball``: the widest direct pot, aim solved, in the middle at 2.3 m/s; without one, the geometric
+    player's stroke.
 
-    It places the cue ball, breaks off, nominates and decides after a foul as the kernels of ``tasks.ghost_ball`` do. The
-    opponent of that name plays these kernels alone, at the straight line of the pot, for speed.
+    It places the cue ball, breaks off, nominates and decides after a foul as the kernels of
+    ``tasks.ghost_ball`` do. The opponent of that name plays these kernels alone, at the straight line of the
+    pot, for speed.
     """
 
     name, training_shots = "ghost_ball", 0
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """The stroke that it plays, then the same at the other direct pots, with the tolerance of each pot [mrad]."""
+        """The stroke that it plays, then the same at the other direct pots, with the tolerance of each pot
+        [mrad]."""
         at = Positions.of(positions)
         strokes, start = self._played(at, seeds)
         found = pots(start)
@@ -163,7 +173,9 @@ class GhostBall(ChoicePlayer):
                 continue
             values = self._planner.strokes_of(start, np.full(many, k), STROKES * np.arange(many) + _PLAIN)[0]
             others = Strokes(values, np.repeat(strokes.place[k : k + 1], many, 0))
-            ranked.append(Ranked(Strokes.join([strokes[k : k + 1], others[1:]]), 1e3 * found.tolerance[k, :many]))
+            ranked.append(
+                Ranked(Strokes.join([strokes[k : k + 1], others[1:]]), 1e3 * found.tolerance[k, :many])
+            )
         return ranked
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
@@ -176,7 +188,9 @@ class GhostBall(ChoicePlayer):
         values, (nominate, decision) = np.empty((n, 5)), np.empty((2, n), np.int64)
         racks = at.in_hand & (at.on_table[:, 1:16].sum(axis=1) == 15)
         streams = streams_of(seeds_of(seeds, n))
-        geometric_strokes(moved.positions, moved.on_table, moved.game, code, streams, values, nominate, decision)
+        geometric_strokes(
+            moved.positions, moved.on_table, moved.game, code, streams, values, nominate, decision
+        )
         start = moved.as_visits()
         again = at.of_frames and at.miss_called
         rows = np.flatnonzero((pots(start, most=1).ball[:, 0] >= 0) & ~racks & ~np.broadcast_to(again, n))

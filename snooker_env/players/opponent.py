@@ -1,4 +1,5 @@
-"""How does a player sit opposite the agent of a frame? Asked once for all tables that wait; its strokes are carried out as they are."""
+"""How does a player sit opposite the agent of a frame? Asked once for all tables that wait; its strokes are
+carried out as they are."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -26,7 +27,8 @@ _KINDS = (ValueError, TypeError, ImportError)
 
 
 class PlayerOpponent(Opponent):
-    """A bound player as the opponent: asked once for all tables that wait, with a seed from each table's own stream."""
+    """A bound player as the opponent: asked once for all tables that wait, with a seed from each table's own
+    stream."""
 
     def __init__(self, player: Player, name: str):
         self.player, self.name = player, name
@@ -36,15 +38,24 @@ class PlayerOpponent(Opponent):
         numbers = np.empty(len(which))
         drawn(which, frames.streams, numbers)
         saved = Layouts(frames.saved.positions[which], frames.saved.on_table[which])
-        at = Positions(frames.positions[which], frames.on_table[which], strikers_own(frames.game[which]), saved)
+        at = Positions(
+            frames.positions[which], frames.on_table[which], strikers_own(frames.game[which]), saved
+        )
         try:
             strokes = self.player.play(at, (numbers * 2**32).astype(np.int64))
-        except Exception as error:  # of the player's own code: it is named, and the kind kept where callers tell kinds apart
+        # of the player's own code: it is named, and the kind kept where callers tell kinds apart
+        except Exception as error:
             kind = next((kind for kind in _KINDS if isinstance(error, kind)), RuntimeError)
             raise kind(f"opponent {self.name} raised {type(error).__name__}: {error}") from error
         if not isinstance(strokes, Strokes) or len(strokes) != len(which):
-            what = f"{len(strokes)} Strokes" if isinstance(strokes, Strokes) else f"a {type(strokes).__name__}"
-            raise refuse_what(f"opponent {self.name}: play(...)", what, f"must be {len(which)} Strokes, one for each position")
+            what = (
+                f"{len(strokes)} Strokes" if isinstance(strokes, Strokes) else f"a {type(strokes).__name__}"
+            )
+            raise refuse_what(
+                f"opponent {self.name}: play(...)",
+                what,
+                f"must be {len(which)} Strokes, one for each position",
+            )
         out = []
         for part in (strokes.values, strokes.place, strokes.nominate, strokes.decision, strokes.declare):
             out.append(np.zeros((frames.n, *part.shape[1:]), part.dtype))
@@ -83,7 +94,8 @@ def _of_train(name: str) -> bool:
 
 
 def _model(path: str, options: Options) -> Player:
-    """A model of Stable-Baselines3: its actions are read as the environment's own, with or without what is said beside the stroke."""
+    """A model of Stable-Baselines3: its actions are read as the environment's own, with or without what is
+    said beside the stroke."""
     own = {name: getattr(options, name) for name in Options.group("action", "visit")}
     said = own | dict.fromkeys(options.says, True)
     try:

@@ -1,7 +1,8 @@
 """What is a player? A function of positions and a seed: it sees where the balls lie and says what it plays.
 
-A ``Player`` is bound once to where it plays (``at``) and then asked for any number of positions (``play``). It keeps
-nothing between two calls: the same position and seed give the same stroke, whether asked for one table or a thousand.
+A ``Player`` is bound once to where it plays (``at``) and then asked for any number of positions (``play``).
+It keeps nothing between two calls: the same position and seed give the same stroke, whether asked for one
+table or a thousand.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,7 +25,9 @@ from ..tasks.options import Options
 
 RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]
 """What ``Player.at`` takes: an environment, an ``Options``, or a dict of its fields."""
-PositionsLike: TypeAlias = Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
+PositionsLike: TypeAlias = (
+    Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
+)
 """What ``Player.play`` takes: anything that ``Positions.of`` accepts."""
 (SPEED, SIDE, TOP, AIM, ELEVATION) = range(5)
 """Columns of a stroke."""
@@ -37,18 +40,20 @@ class Strokes:
     Parameters
     ----------
     values : numpy.ndarray
-        float64 (n, 5). Cue speed [m/s], side and top (tip offsets over R), direction in which the cue ball leaves [rad,
-        anticlockwise from +x; squirt is compensated], elevation of the cue [rad].
+        float64 (n, 5). Cue speed [m/s], side and top (tip offsets over R), direction in which the cue ball
+        leaves [rad, anticlockwise from +x; squirt is compensated], elevation of the cue [rad].
     place : numpy.ndarray, optional
-        float64 (n, 2). Where a cue ball in hand is placed [m]; NaN where it is played from where it lies. Default: NaN.
+        float64 (n, 2). Where a cue ball in hand is placed [m]; NaN where it is played from where it lies.
+        Default: NaN.
     nominate : numpy.ndarray, optional
-        int64 (n,). Id of the colour that is nominated after a red or as a free ball; 0: the free ball is declined; -1: the
-        colour first struck. Default: -1.
+        int64 (n,). Id of the colour that is nominated after a red or as a free ball; 0: the free ball is
+        declined; -1: the colour first struck. Default: -1.
     decision : numpy.ndarray, optional
-        int64 (n,). After a foul of the opponent, of ``game.frame_columns``: PLAY, PLAY_AGAIN, REPLACE or PLACE_ANYWHERE.
-        Default: PLAY.
+        int64 (n,). After a foul of the opponent, of ``game.frame_columns``: PLAY, PLAY_AGAIN, REPLACE or
+        PLACE_ANYWHERE. Default: PLAY.
     declare : numpy.ndarray, optional
-        int64 (n,). Of ``tasks.declarations``: SAYS_NOTHING, CONCEDES, CLAIMS or OTHER_BEGINS. Default: SAYS_NOTHING.
+        int64 (n,). Of ``tasks.declarations``: SAYS_NOTHING, CONCEDES, CLAIMS or OTHER_BEGINS. Default:
+        SAYS_NOTHING.
 
     Raises
     ------
@@ -73,7 +78,9 @@ class Strokes:
     def __post_init__(self) -> None:
         values = np.asarray(self.values, np.float64)
         if values.ndim != 2 or values.shape[1] != 5:
-            raise refuse_what("values", f"array of shape {values.shape}", "must be (n, 5): speed, side, top, aim, elevation")
+            raise refuse_what(
+                "values", f"array of shape {values.shape}", "must be (n, 5): speed, side, top, aim, elevation"
+            )
         n = len(values)
         most = np.array([MAX_SPEED, 0.5, 0.5, np.inf, MAX_ELEVATION]) + 1e-9
         least = np.array([MIN_SPEED, -0.5, -0.5, -np.inf, 0.0]) - 1e-9
@@ -81,7 +88,9 @@ class Strokes:
         if not fine.all():
             k, c = np.argwhere(~fine)[0].tolist()
             name = ("speed", "side", "top", "aim", "elevation")[c]
-            raise refuse(f"{name}[{k}]", float(values[k, c]), f"must be finite and in [{least[c]:.3g}, {most[c]:.3g}]")
+            raise refuse(
+                f"{name}[{k}]", float(values[k, c]), f"must be finite and in [{least[c]:.3g}, {most[c]:.3g}]"
+            )
         usual: dict[str, Any] = {
             "place": np.full((n, 2), np.nan),
             "nominate": np.full(n, AUTO, np.int64),
@@ -100,7 +109,9 @@ class Strokes:
 
     def __getitem__(self, rows: Any) -> "Strokes":
         """Some of the strokes: ``rows`` is a slice, a mask or an array of rows."""
-        return Strokes(*(getattr(self, name)[rows] for name in ("values", "place", "nominate", "decision", "declare")))
+        return Strokes(
+            *(getattr(self, name)[rows] for name in ("values", "place", "nominate", "decision", "declare"))
+        )
 
     @classmethod
     def join(cls, parts: "Sequence[Strokes]") -> "Strokes":
@@ -150,11 +161,12 @@ class Strokes:
         Parameters
         ----------
         options : Options
-            Of the environment, with ``action="box"`` and ``aim="absolute"``. What the action holds (elevation, placement,
-            nomination, decision, declaration) is written; what it does not hold must not be needed.
+            Of the environment, with ``action="box"`` and ``aim="absolute"``. What the action holds
+            (elevation, placement, nomination, decision, declaration) is written; what it does not hold must
+            not be needed.
         at : Positions
-            The n positions: a place means another action where the cue ball may stand anywhere, and a nomination another
-            one with a free ball.
+            The n positions: a place means another action where the cue ball may stand anywhere, and a
+            nomination another one with a free ball.
 
         Returns
         -------
@@ -175,9 +187,11 @@ class Strokes:
             )
         turns = self.aim / np.pi
         parts = [
-            2.0 * (self.speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0, 2.0 * self.side, 2.0 * self.top,
+            2.0 * (self.speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0,
+            2.0 * self.side,
+            2.0 * self.top,
             turns - 2.0 * np.round(0.5 * turns),
-        ]  # fmt: skip
+        ]
         if box.elevation:
             parts.append(2.0 * self.elevation / MAX_ELEVATION - 1.0)
         elif (self.elevation > 0.0).any():
@@ -191,7 +205,9 @@ class Strokes:
         if box.nominate:
             parts.append(self._nominated(at))
         if box.decision:
-            parts.append(np.where(self.decision == PLAY, 0.0, np.where(self.decision == PLAY_AGAIN, -1.0, 1.0)))
+            parts.append(
+                np.where(self.decision == PLAY, 0.0, np.where(self.decision == PLAY_AGAIN, -1.0, 1.0))
+            )
         elif (self.decision != PLAY).any():
             raise refuse(
                 "decision",
@@ -199,7 +215,9 @@ class Strokes:
                 "must be PLAY: the environment's actions hold no decision",
             )
         if box.declares:
-            parts.append(np.where(self.declare == SAYS_NOTHING, 0.0, np.where(self.declare == CLAIMS, 1.0, -1.0)))
+            parts.append(
+                np.where(self.declare == SAYS_NOTHING, 0.0, np.where(self.declare == CLAIMS, 1.0, -1.0))
+            )
         elif (self.declare != SAYS_NOTHING).any():
             raise refuse(
                 "declare",
@@ -220,7 +238,8 @@ class Strokes:
         ]
 
     def _nominated(self, at: Positions) -> Floats:
-        """The component of the nomination: one of six parts of the range after a red, of seven with a free ball."""
+        """The component of the nomination: one of six parts of the range after a red, of seven with a free
+        ball."""
         n = np.maximum(self.nominate - YELLOW + 1, 0)  # 0 none, 1 to 6 yellow to black
         after_red = at.game[:, BALL_ON] == 0
         return np.where(after_red, (np.maximum(n, 1) - 0.5) / COLOURS, (n + 0.5) / (1 + COLOURS)) * 2.0 - 1.0
@@ -252,8 +271,8 @@ class Ranked(NamedTuple):
 class Player(Protocol):
     """A player: a function of positions and a seed.
 
-    A player may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position; the first stroke is the
-    one that ``play`` returns. Advice shows it.
+    A player may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position; the first
+    stroke is the one that ``play`` returns. Advice shows it.
 
     Examples
     --------
@@ -269,8 +288,8 @@ class Player(Protocol):
         Parameters
         ----------
         rules : Env, VectorEnv, AECEnv, Options or dict
-            Physics, table, fidelity, execution noise and, for frames, the game. How the actions of an environment are
-            read does not matter: strokes are the same everywhere.
+            Physics, table, fidelity, execution noise and, for frames, the game. How the actions of an
+            environment are read does not matter: strokes are the same everywhere.
 
         Returns
         -------
@@ -311,5 +330,7 @@ def seeds_of(seeds: Integers, n: int) -> Ints:
     """``seeds`` as int64 (n,) in [0, 2**32); ValueError unless they are n integers."""
     a = np.asarray(seeds)
     if a.shape != (n,) or (a.dtype.kind not in "iu" and n):
-        raise refuse_what("seeds", f"{a.dtype} array of shape {a.shape}", f"must be {n} integers, one for each position")
+        raise refuse_what(
+            "seeds", f"{a.dtype} array of shape {a.shape}", f"must be {n} integers, one for each position"
+        )
     return (a.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)

@@ -1,4 +1,5 @@
-"""Which player does a name stand for? The only place that answers: built in, installed by others, your class, a model, a program."""
+"""Which player does a name stand for? The only place that answers: built in, installed by others, your class,
+a model, a program."""
 
 import importlib
 import importlib.util
@@ -15,9 +16,11 @@ from .player import Player
 from .search import BUDGET, SearchPlayer
 
 GROUP = "snooker_env.players"
-"""Entry points of this group name players of other packages: NAME = MODULE:MAKER, called without arguments."""
+"""Entry points of this group name players of other packages: NAME = MODULE:MAKER, called without
+arguments."""
 READERS = "snooker_env.models"
-"""Entry points of this group read files of models: MODULE:READER, called with the path; None if the file is not theirs."""
+"""Entry points of this group read files of models: MODULE:READER, called with the path; None if the file is
+not theirs."""
 BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner")
 """The players in the package."""
 RENAMED = {"lookahead": "search"}
@@ -25,7 +28,9 @@ RENAMED = {"lookahead": "search"}
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")
 """MODULE:CLASS."""
 PROGRAM = "program:"
-_SEARCHING = re.compile(r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d{1,7}))?(?:@(.+))?")
+_SEARCHING = re.compile(
+    r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d{1,7}))?(?:@(.+))?"
+)
 
 
 def players() -> list[str]:
@@ -34,8 +39,8 @@ def players() -> list[str]:
     Returns
     -------
     list of str
-        Names that ``player`` accepts. ``best_pot``, ``search`` and ``planner`` also take a number of simulated shots:
-        "search_2000".
+        Names that ``player`` accepts. ``best_pot``, ``search`` and ``planner`` also take a number of
+        simulated shots: "search_2000".
 
     Examples
     --------
@@ -54,12 +59,14 @@ def player(name: Any, *, trust: bool = False) -> Player:
     name : str, Path or player
         One of:
 
-        * a name of ``players()``, for players that search optionally with a number of simulated shots ("planner_500") and
-          for a planner with a model ("planner@runs/ppo_value-0");
+        * a name of ``players()``, for players that search optionally with a number of simulated shots
+          ("planner_500") and for a planner with a model ("planner@runs/ppo_value-0");
         * "MODULE:CLASS" of a player of your own, made without arguments; its module is imported;
-        * a model's ``.zip`` of Stable-Baselines3 or sb3-contrib, or a training run's folder or files of ``train.py``;
+        * a model's ``.zip`` of Stable-Baselines3 or sb3-contrib, or a training run's folder or files of
+          ``train.py``;
         * "program:COMMAND", an external program (docs/play/protocol.md);
-        * a player, which is returned as it is; or an object with ``options`` and ``act(observations, masks, seeds)``.
+        * a player, which is returned as it is; or an object with ``options`` and
+          ``act(observations, masks, seeds)``.
     trust : bool, optional
         Whether code in a model's ``.zip`` may run; default False.
 
@@ -125,7 +132,9 @@ def _built_in(name: str) -> Player | None:
         return None
     kind, budget, model = form.groups()
     if kind in RENAMED:
-        warnings.warn(f"the player {kind!r} is called {RENAMED[kind]!r} now", DeprecationWarning, stacklevel=3)
+        warnings.warn(
+            f"the player {kind!r} is called {RENAMED[kind]!r} now", DeprecationWarning, stacklevel=3
+        )
         kind = RENAMED[kind]
     if model is not None and not kind.startswith("planner"):
         raise refuse("player", name, f"must not name a model: {kind} has learned nothing")
@@ -139,7 +148,8 @@ def _installed() -> dict[str, EntryPoint]:
 
 
 def _importable(module: str) -> bool:
-    """Whether there is a module: this repository's own ``agents`` are named by a wheel that does not hold them."""
+    """Whether there is a module: this repository's own ``agents`` are named by a wheel that does not hold
+    them."""
     try:
         return importlib.util.find_spec(module) is not None
     except ModuleNotFoundError:
@@ -151,7 +161,9 @@ def _made(name: str, maker: Callable[[], Any]) -> Any:
     try:
         return maker()()
     except Exception as error:
-        raise refuse("player", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})") from error
+        raise refuse(
+            "player", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})"
+        ) from error
 
 
 def _of_object(thing: Any) -> Player:

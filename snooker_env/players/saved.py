@@ -1,4 +1,5 @@
-"""How does a model of Stable-Baselines3 or sb3-contrib play? Its ``.zip``, checked before any code in it runs, as a ``Seen``."""
+"""How does a model of Stable-Baselines3 or sb3-contrib play? Its ``.zip``, checked before any code in it
+runs, as a ``Seen``."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +20,8 @@ _VIEW = "must be a model trained on the observation of a visit or a frame, flat,
 
 @dataclass(frozen=True)
 class FittingModel:
-    """A model's file whose spaces, as the file describes them, are those of an environment with these options.
+    """A model's file whose spaces, as the file describes them, are those of an environment with these
+    options.
 
     ``saved``: the file, of which nothing was unpickled. ``options``: how it sees and acts, see ``Seen``.
     """
@@ -36,7 +38,9 @@ class FittingModel:
         for frame, replaced in ((False, False), (True, False), (True, True)):
             for kind in OBSERVATIONS:
                 task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
-                told = options if frame else {name: value for name, value in options.items() if name not in SAYS}
+                told = (
+                    options if frame else {name: value for name, value in options.items() if name not in SAYS}
+                )
                 model = cls(saved, told | task | {"observation": kind}, kind)
                 choices = getattr(model.actions, "n", 0)
                 if outline(space(kind, frame=frame, replaced=replaced, choices=choices)) == saved.observation:
@@ -61,13 +65,17 @@ class FittingModel:
     def network(self, trust: bool) -> Any:
         """Load its policy: the code in its pickles runs. ValueError without ``trust``."""
         network = self.saved.network(trust, "trust=True")
-        if outline(network.observation_space) != self.saved.observation or network.action_space != self.actions:
+        if (
+            outline(network.observation_space) != self.saved.observation
+            or network.action_space != self.actions
+        ):
             raise self.saved.refused("must be a model whose spaces are those that its file describes")
         return network
 
 
 class SavedNetwork:
-    """The policy of a saved model as a ``Seen``; its actions are deterministic. It is loaded again in another process."""
+    """The policy of a saved model as a ``Seen``; its actions are deterministic. It is loaded again in another
+    process."""
 
     def __init__(self, model: FittingModel, trust: bool):
         self.options, self.model, self._trust = model.options, model, trust
@@ -78,13 +86,18 @@ class SavedNetwork:
         return self.__dict__ | {"_network": None}
 
     def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
-        """The greedy actions, one row at a time: the products of a batch round otherwise than those of one row."""
+        """The greedy actions, one row at a time: the products of a batch round otherwise than those of one
+        row."""
         if self._network is None:
             self._network = self.model.network(self._trust)
         actions = []
         with one_thread():
             for k in range(len(seeds)):
-                row = {name: part[k] for name, part in observations.items()} if isinstance(observations, dict) else observations[k]
+                row = (
+                    {name: part[k] for name, part in observations.items()}
+                    if isinstance(observations, dict)
+                    else observations[k]
+                )
                 masked = {"action_masks": masks[k]} if self._masked and masks is not None else {}
                 actions.append(self._network.predict(row, deterministic=True, **masked)[0])
         space = self._network.action_space
@@ -93,7 +106,8 @@ class SavedNetwork:
 
 
 def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = "player") -> SeenPlayer:
-    """The player of a model's ``.zip``; ValueError if it is none, or for the files of ``train.py`` without their reader."""
+    """The player of a model's ``.zip``; ValueError if it is none, or for the files of ``train.py`` without
+    their reader."""
     try:
         ours = path.is_dir() or by_train(entries(path))
     except Exception as error:

@@ -1,8 +1,9 @@
-"""How do players search? By the rule of thumb, for the pot alone, or with a learned value and policy, by one ``StrokeSearch``.
+"""How do players search? By the rule of thumb, for the pot alone, or with a learned value and policy, by one
+``StrokeSearch``.
 
 * ``search`` judges positions by the rule of thumb and looks at strokes spread evenly over the pots.
-* ``planner`` judges by the learned value and looks at the strokes that the learned policy proposes. It has weights for
-  several levels of execution errors and takes those of the level that it plays under.
+* ``planner`` judges by the learned value and looks at the strokes that the learned policy proposes. It has
+  weights for several levels of execution errors and takes those of the level that it plays under.
 * ``best_pot`` plays the likeliest pot without regard to what follows.
 
 A name may end in a number of simulated shots a decision: ``search_2000``.
@@ -66,7 +67,8 @@ class SearchPlayer(BoundPlayer):
         return Strokes(ranked.strokes[:, 0], places)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """The strokes that met noise samples, those that met most first, best first, with their scores [points]."""
+        """The strokes that met noise samples, those that met most first, best first, with their scores
+        [points]."""
         at = Positions.of(positions)
         ranked, places = self._ranked(at, seeds)
         met = (ranked.samples > 0).sum(axis=1)

@@ -1,4 +1,5 @@
-"""How does a network play? It sees observations and answers with actions; one adapter makes a player of it."""
+"""How does a network play? It sees observations and answers with actions; one adapter makes a player of
+it."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol, runtime_checkable
@@ -33,15 +34,17 @@ from .player import Strokes, seeds_of
 from .simple import BoundPlayer, placed
 
 OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")
-"""Options that say how a network sees and acts; with a miss rule it sees the layout that "replace" restores."""
+"""Options that say how a network sees and acts; with a miss rule it sees the layout that "replace"
+restores."""
 
 
 @runtime_checkable
 class Seen(Protocol):
     """What acts on observations: a network, or any model of another library.
 
-    It may have ``options``, a dict: how its observations look and its actions are read ("action", "aim", "observation",
-    "elevation", "placement", "decision", ... of ``Options``), and "task", "visit" (default) or "frame".
+    It may have ``options``, a dict: how its observations look and its actions are read ("action", "aim",
+    "observation", "elevation", "placement", "decision", ... of ``Options``), and "task", "visit" (default) or
+    "frame".
 
     Examples
     --------
@@ -63,7 +66,8 @@ class Seen(Protocol):
         masks : numpy.ndarray or None
             bool (n, choices): the available choices of ``action="discrete"``; None for box actions.
         seeds : numpy.ndarray
-            int64 (n,): of what it draws. Equal rows and seeds must give equal actions, however many are asked for.
+            int64 (n,): of what it draws. Equal rows and seeds must give equal actions, however many are asked
+            for.
 
         Returns
         -------
@@ -76,8 +80,9 @@ class Seen(Protocol):
 class SeenPlayer(BoundPlayer):
     """A player that shows positions to a ``Seen`` as observations and reads its actions as strokes.
 
-    One that sees visits plays frames too: it sees the stroke to come as one of a visit, with a free ball as any colour; a
-    cue ball in hand that it does not place stands where ``ghost_ball`` puts it; after a foul it plays.
+    One that sees visits plays frames too: it sees the stroke to come as one of a visit, with a free ball as
+    any colour; a cue ball in hand that it does not place stands where ``ghost_ball`` puts it; after a foul it
+    plays.
 
     Parameters
     ----------
@@ -103,7 +108,9 @@ class SeenPlayer(BoundPlayer):
     def __init__(self, seen: Any, options: Mapping[str, Any] | None = None, name: str | None = None):
         given = dict(getattr(seen, "options", {}) if options is None else options)
         self.seen, self.name = seen, name or type(seen).__name__
-        self.frames = choice(f"task of player {self.name}", given.pop("task", "visit"), ("visit", "frame")) == "frame"
+        self.frames = (
+            choice(f"task of player {self.name}", given.pop("task", "visit"), ("visit", "frame")) == "frame"
+        )
         for key in given:
             choice(f"key of the options of player {self.name}", key, OPTIONS)
         if not self.frames:
@@ -113,10 +120,13 @@ class SeenPlayer(BoundPlayer):
         self._bind(Options())
 
     def _bind(self, options: Options) -> None:
-        """Read its options with the physics of ``options``; ValueError if they are not those of an environment."""
+        """Read its options with the physics of ``options``; ValueError if they are not those of an
+        environment."""
         same: dict[str, Any] = {name: getattr(options, name) for name in Options.group("shot")}
         if self.frames:
-            match = {"task": "match", "frames": options.frames} if options.task == "match" else {"task": "frame"}
+            match = (
+                {"task": "match", "frames": options.frames} if options.task == "match" else {"task": "frame"}
+            )
             same |= match | {name: getattr(options, name) for name in Options.group("frame")}
         self._rules = Options(**same | self.sees).rules
 
@@ -148,14 +158,17 @@ class SeenPlayer(BoundPlayer):
         shown = shown.copy()
         shown.game[decision == PLACE_ANYWHERE, IN_HAND] = shown.game[decision == PLACE_ANYWHERE, ANYWHERE] = 1
         values, start = decoded(self._rules, shown, rows, actions, nominate)
-        return Strokes(values, np.where(self._puts(shown), start.positions[:, 0], places), nominate, decision, declare)
+        return Strokes(
+            values, np.where(self._puts(shown), start.positions[:, 0], places), nominate, decision, declare
+        )
 
     def _puts(self, at: Positions) -> Bools:
         """Where its action places the cue ball: bool (n, 1)."""
         return (at.in_hand & bool(self._rules.actions.placement))[:, None]
 
     def _shown(self, at: Positions, keys: Ints) -> tuple[Positions, NDArray[np.float64]]:
-        """The positions as it sees them, and where cue balls in hand have been placed for it (n, 2), else NaN."""
+        """The positions as it sees them, and where cue balls in hand have been placed for it (n, 2), else
+        NaN."""
         none = np.full((len(at), 2), np.nan)
         if self.frames:
             return (at if at.of_frames else _begun(at)), none
@@ -181,7 +194,9 @@ class SeenPlayer(BoundPlayer):
         try:
             actions = np.asarray(answer)
             if actions.ndim == 0 or len(actions) != n:
-                raise refuse_what("actions", f"array of shape {actions.shape}", f"must be {n}, one for each position")
+                raise refuse_what(
+                    "actions", f"array of shape {actions.shape}", f"must be {n}, one for each position"
+                )
             return rules.actions.check_many(actions, n)
         except ValueError as error:
             raise ValueError(f"player {self.name}: {error}") from None

@@ -14,7 +14,8 @@ from .player import RulesLike
 
 
 class BoundPlayer:
-    """Base class of players: ``at`` returns a copy bound to options; subclasses make what they need in ``_bind(options)``.
+    """Base class of players: ``at`` returns a copy bound to options; subclasses make what they need in
+    ``_bind(options)``.
 
     Examples
     --------
@@ -65,7 +66,8 @@ def streams_of(seeds: Any) -> np.ndarray:
 
 
 def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
-    """Visits with each cue ball in hand placed where ``ghost_ball`` puts it, and these places (n, 2); NaN for others."""
+    """Visits with each cue ball in hand placed where ``ghost_ball`` puts it, and these places (n, 2); NaN for
+    others."""
     places = np.full((len(at), 2), np.nan)
     if not at.in_hand.any():
         return at.as_visits(), places

@@ -1,7 +1,9 @@
-"""How is a scene drawn in a terminal? From above in characters, baulk left and black right, as the picture of ``pygame_view``.
+"""How is a scene drawn in a terminal? From above in characters, baulk left and black right, as the picture of
+``pygame_view``.
 
-A ball is a letter in the cell of its centre: W the white cue ball, r a red, Y G N B P K the colours (N brown and K black, because B is
-blue). Reds that share a cell are shown as their number. The cue ball is never hidden; a line below names the balls under another one.
+A ball is a letter in the cell of its centre: W the white cue ball, r a red, Y G N B P K the colours (N brown
+and K black, because B is blue). Reds that share a cell are shown as their number. The cue ball is never
+hidden; a line below names the balls under another one.
 """
 
 from itertools import pairwise
@@ -22,13 +24,15 @@ _LINE, _ARC, _SPOT, _PATH, _AIM, _GHOST, _POCKET = "│", "·", "+", ".", "-", "
 
 
 class _Grid:
-    """Characters on a table, ``columns`` by ``rows`` cells between the noses; a cell is about twice as high as wide."""
+    """Characters on a table, ``columns`` by ``rows`` cells between the noses; a cell is about twice as high
+    as wide."""
 
     def __init__(self, columns, table):
         (self.left, self.right), (self.low, self.high) = extent(table).tolist()
         self.columns = columns
         rows = round(columns * (self.right - self.left) / (self.high - self.low) / 2)
-        self.rows = min(max(9, rows), 400) | 1  # odd, so that blue, brown, pink and black have a row of their own
+        # odd, so that blue, brown, pink and black have a row of their own
+        self.rows = min(max(9, rows), 400) | 1
         self.cells = np.full((self.rows, columns), " ")
         self.owner = np.full((self.rows, columns), -1)  # ball id, for colours
 
@@ -79,7 +83,8 @@ def ansi(scene: Scene, width: int = WIDTH, *, colour: bool = False) -> str:
 
 
 def _balls(grid, scene):
-    """Put the balls' letters on the grid; returns the balls that could not be shown, for instance "r under W"."""
+    """Put the balls' letters on the grid; returns the balls that could not be shown, for instance "r under
+    W"."""
     shared = {}
     for ball, point in zip(scene.ids.tolist(), scene.positions, strict=True):
         at = grid.cell(np.clip(point, (grid.left, grid.low), (grid.right, grid.high)))
@@ -113,7 +118,11 @@ def _framed(grid, table, colour):
     top, bottom = (corners[2 * k] + "".join(rails[k]) + corners[2 * k + 1] for k in (0, 1))
     paint = _paint if colour else lambda character, ball: character
     rows = zip(grid.cells.tolist(), grid.owner.tolist(), strict=True)
-    return [top, *(wall + "".join(map(paint, characters, owners)) + wall for characters, owners in rows), bottom]
+    return [
+        top,
+        *(wall + "".join(map(paint, characters, owners)) + wall for characters, owners in rows),
+        bottom,
+    ]
 
 
 def _paint(character, ball):

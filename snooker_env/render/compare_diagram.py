@@ -1,4 +1,5 @@
-"""How are two ways to play a stroke compared? By their diagrams side by side, of the same part of the table."""
+"""How are two ways to play a stroke compared? By their diagrams side by side, of the same part of the
+table."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -51,7 +52,8 @@ def compare(
     Raises
     ------
     ValueError
-        If there is no shot, if they were played on different tables, or if there is not one label, axes or cue for each shot.
+        If there is no shot, if they were played on different tables, or if there is not one label, axes or
+        cue for each shot.
     ImportError
         If matplotlib is not installed.
 
@@ -75,7 +77,9 @@ def compare(
     for k, shot in enumerate(shots):
         if shot.table is not table:
             raise refuse_what(f"shots[{k}].table", "another table", "must be that of shots[0]")
-    region = region_of(view, np.concatenate([area(shot) for shot in shots]), Table.of(None) if table is None else table)
+    region = region_of(
+        view, np.concatenate([area(shot) for shot in shots]), Table.of(None) if table is None else table
+    )
     caption = options.pop("caption", "full" if len(shots) == 1 else "short")
     if axes is None:
         n = len(shots)
@@ -85,4 +89,7 @@ def compare(
         axes = [figure.add_axes((k * (wide + _GAP), 0.0, wide, 1.0)) for k in range(n)]
     seen = np.array(region).reshape(2, 2)
     each = zip(shots, axes, labels or [""] * len(shots), cues or [None] * len(shots), strict=True)
-    return tuple(plot(shot, ax, cue=cue, view=seen, title=label, caption=caption, **options) for shot, ax, label, cue in each)  # pyright: ignore[reportArgumentType]
+    return tuple(
+        plot(shot, ax, cue=cue, view=seen, title=label, caption=caption, **options)
+        for shot, ax, label, cue in each
+    )  # pyright: ignore[reportArgumentType]

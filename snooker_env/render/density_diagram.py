@@ -1,4 +1,5 @@
-"""Where does a ball stop, and how likely? A heat map of final positions, with the areas that hold half and nine tenths of them."""
+"""Where does a ball stop, and how likely? A heat map of final positions, with the areas that hold half and
+nine tenths of them."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -25,7 +26,8 @@ _REACH = 3.0  # a Gaussian kernel is cut off at this many bandwidths
 
 
 def bandwidth_of(points: Floats) -> float:
-    """The bandwidth by Scott's rule: the standard deviation of the points times m^(-1/6), at least 1 cm and at most 15 cm.
+    """The bandwidth by Scott's rule: the standard deviation of the points times m^(-1/6), at least 1 cm and
+    at most 15 cm.
 
     Parameters
     ----------
@@ -48,7 +50,9 @@ def bandwidth_of(points: Floats) -> float:
     return float(np.clip(spread * len(points) ** (-1 / 6), 0.01, 0.15))
 
 
-def density_of(points: Floats, low: Floats, high: Floats, bandwidth: float, cell: float = CELL) -> tuple[Floats, Floats]:
+def density_of(
+    points: Floats, low: Floats, high: Floats, bandwidth: float, cell: float = CELL
+) -> tuple[Floats, Floats]:
     """A kernel density estimate with Gaussian kernels in a rectangle.
 
     Parameters
@@ -65,8 +69,8 @@ def density_of(points: Floats, low: Floats, high: Floats, bandwidth: float, cell
     Returns
     -------
     values : float64 (nx, ny)
-        Density [1/m^2]. The tails of the kernels beyond the corners are folded back, so that the sum times the cell's area is the share of
-        the points that lie inside.
+        Density [1/m^2]. The tails of the kernels beyond the corners are folded back, so that the sum times
+        the cell's area is the share of the points that lie inside.
     size : float64 (2,)
         Size of a cell, close to ``cell`` [m].
 
@@ -87,7 +91,9 @@ def density_of(points: Floats, low: Floats, high: Floats, bandwidth: float, cell
         bell = np.exp(-0.5 * (np.arange(-half, half + 1) * size[axis] / bandwidth) ** 2)
         wide = np.pad(values, [(half, half) if k == axis else (0, 0) for k in range(2)], mode="symmetric")
         bell /= bell.sum()
-        values = np.apply_along_axis(lambda line, bell=bell: np.convolve(line, bell, mode="valid"), axis, wide)
+        values = np.apply_along_axis(
+            lambda line, bell=bell: np.convolve(line, bell, mode="valid"), axis, wide
+        )
     return values, size
 
 
@@ -136,8 +142,8 @@ def density(
     Parameters
     ----------
     points : array_like, float (m, 2)
-        Final positions [m], for instance ``snooker_env.advice.destinations(...).cue``. Rows of NaN (the ball did not stop on the table)
-        are left out; the share of the others is then written beside the cross.
+        Final positions [m], for instance ``snooker_env.advice.destinations(...).cue``. Rows of NaN (the ball
+        did not stop on the table) are left out; the share of the others is then written beside the cross.
     ax : matplotlib.axes.Axes, optional
         Axes to draw on; a diagram that is already there keeps its table. None makes a new figure.
     table : str, Table or None
@@ -228,9 +234,17 @@ def _draw_cloud(sketch, points, bandwidth, shares, colour):
     values, size = density_of(points.clip(low, high), low, high, bandwidth)
     strength = values / values.max()
     picture = np.empty((*values.shape, 4))
-    picture[..., :3] = np.array(rgb(colour)[:3]) + (1 - np.array(rgb(colour)[:3])) * (0.55 * strength[..., None] ** 3)
+    picture[..., :3] = np.array(rgb(colour)[:3]) + (1 - np.array(rgb(colour)[:3])) * (
+        0.55 * strength[..., None] ** 3
+    )
     picture[..., 3] = 0.95 * (1 - np.exp(-5 * strength))
-    image = AxesImage(sketch.ax, extent=(low[1], high[1], high[0], low[0]), origin="upper", interpolation="bilinear", zorder=3.0)
+    image = AxesImage(
+        sketch.ax,
+        extent=(low[1], high[1], high[0], low[0]),
+        origin="upper",
+        interpolation="bilinear",
+        zorder=3.0,
+    )
     image.set_data(picture)
     image.set_gid("density")
     sketch.ax.add_image(image)
@@ -255,4 +269,6 @@ def _label(sketch, lines, share, *, outer):
         stroke = [withStroke(linewidth=2.0, foreground=rgb("path_edge", 0.8))]
         away, side = (0.4, "left") if outer else (-0.4, "right")
         y += away * sketch.font / sketch.points_per_metre
-        sketch.text(y, x, f"{100 * share:g} %", size=0.9, zorder=8.5, gid="share", path_effects=stroke, ha=side)
+        sketch.text(
+            y, x, f"{100 * share:g} %", size=0.9, zorder=8.5, gid="share", path_effects=stroke, ha=side
+        )

@@ -1,4 +1,5 @@
-"""Where can the cue ball go? A fan: the same pot with every top and side of a range, and the cue ball's path of each."""
+"""Where can the cue ball go? A fan: the same pot with every top and side of a range, and the cue ball's path
+of each."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -72,10 +73,11 @@ def fan(
     sides: Sequence[float] = SIDES,
     **options: Any,
 ) -> "Axes":
-    """Draw the cue ball's paths of one pot, played with every pair of a top and a side, as in Fig. 1 of the paper.
+    """Draw the cue ball's paths of one pot, played with every pair of a top and a side, as in Fig. 1 of the
+    paper.
 
-    Squirt and throw change the aim that pots the ball; of the aims that pot it, the middle one is played. The colour of a path is its top,
-    from screw (blue) to follow (red); the sign at its end is its side.
+    Squirt and throw change the aim that pots the ball; of the aims that pot it, the middle one is played. The
+    colour of a path is its top, from screw (blue) to follow (red); the sign at its end is its side.
 
     Parameters
     ----------
@@ -92,9 +94,10 @@ def fan(
     tops, sides : sequence of float
         Tip offsets over R, up and to the right.
     **options
-        ``elevation``: of the cue [rad]. ``aim``: direction of every stroke [rad]; then no ball needs to be potted. ``table``,
-        ``physics``: as in ``snooker_env.simulate``. ``on_table``: bool (n,), False for the balls to leave out, with an array
-        of positions. ``view``, ``labels``, ``title``: as in ``plot``; here ``view`` is "shot" by default.
+        ``elevation``: of the cue [rad]. ``aim``: direction of every stroke [rad]; then no ball needs to be
+        potted. ``table``, ``physics``: as in ``snooker_env.simulate``. ``on_table``: bool (n,), False for the
+        balls to leave out, with an array of positions. ``view``, ``labels``, ``title``: as in ``plot``; here
+        ``view`` is "shot" by default.
 
     Returns
     -------
@@ -142,9 +145,16 @@ def fan(
 
 
 def fan_options(
-    r: Floats, here: Any, ball: int | None, pocket: int | None, strokes: Strokes, table: Table, physics: Physics
+    r: Floats,
+    here: Any,
+    ball: int | None,
+    pocket: int | None,
+    strokes: Strokes,
+    table: Table,
+    physics: Physics,
 ) -> list[Option]:
-    """The strokes of a fan: for each top and side the aim (as given, or one that pots the ball), and the shot."""
+    """The strokes of a fan: for each top and side the aim (as given, or one that pots the ball), and the
+    shot."""
     speed, tops, sides, elevation, aim = strokes
     tops, sides = array("tops", tops, (-1,)).tolist(), array("sides", sides, (-1,)).tolist()
     if not tops or not sides:
@@ -222,7 +232,11 @@ def _line(r, ball, pocket, table, R):
 def _met(shot):
     """The cue ball's first meeting with another ball, or None."""
     first = cue_ball(shot)
-    return None if first is None else next((c for c in contacts(shot, first) if c.kind == EventKind.BALL_BALL), None)
+    return (
+        None
+        if first is None
+        else next((c for c in contacts(shot, first) if c.kind == EventKind.BALL_BALL), None)
+    )
 
 
 def _way(shot):
@@ -250,7 +264,9 @@ def shade(top: float, tops: Sequence[float]) -> tuple[int, ...]:
     most = max(map(abs, tops)) or 1.0
     middle = len(SHADES) // 2
     place = middle * (1.0 + top / most)
-    return tuple(round(float(np.interp(place, range(len(SHADES)), [colour[c] for colour in SHADES]))) for c in range(3))
+    return tuple(
+        round(float(np.interp(place, range(len(SHADES)), [colour[c] for colour in SHADES]))) for c in range(3)
+    )
 
 
 def _write(sketch, options, tops, speed):
@@ -266,10 +282,16 @@ def _write(sketch, options, tops, speed):
     for k, side in enumerate(sides):
         at = y + (0.36 + 0.17 * k) * w.width
         sketch.mark((rows[1], at), _MARKS[1 + int(np.sign(round(side, 9)))], "text", 6.5, 9.5)
-        sketch.text(at + 0.018 * w.width, rows[1], "none" if side == 0 else f"{'right' if side > 0 else 'left'} {abs(side):.2f}")
+        sketch.text(
+            at + 0.018 * w.width,
+            rows[1],
+            "none" if side == 0 else f"{'right' if side > 0 else 'left'} {abs(side):.2f}",
+        )
     step = 0.68 / max(len(tops), 4)
     for k, top in enumerate(tops):
         at = y + (0.285 + step * k) * w.width
-        sketch.ax.plot([at, at + 0.028 * w.width], [rows[0]] * 2, color=rgb(shade(top, tops)), lw=3.0, zorder=9.5)
+        sketch.ax.plot(
+            [at, at + 0.028 * w.width], [rows[0]] * 2, color=rgb(shade(top, tops)), lw=3.0, zorder=9.5
+        )
         words = "centre" if top == 0 else f"{'top' if top > 0 else 'screw'} {abs(top):.2f}"
         sketch.text(at + 0.036 * w.width, rows[0], words)

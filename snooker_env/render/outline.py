@@ -1,7 +1,8 @@
-"""Which parts of a table never move, and where are they? Cushions, falls and holes, and snooker's lines, in metres.
+"""Which parts of a table never move, and where are they? Cushions, falls and holes, and snooker's lines, in
+metres.
 
-They are computed from the noses, jaws and falls of a ``Table``. Table frame: origin at the table's centre, +x to the yellow side, +y to the
-black end.
+They are computed from the noses, jaws and falls of a ``Table``. Table frame: origin at the table's centre, +x
+to the yellow side, +y to the black end.
 """
 
 from dataclasses import dataclass
@@ -41,13 +42,15 @@ class Outline:
     Attributes
     ----------
     cushions : tuple of float64 (m, 2)
-        Closed polygons, one for each cushion: nose, the jaws at its two ends, and the cushion's back under the wood [m].
+        Closed polygons, one for each cushion: nose, the jaws at its two ends, and the cushion's back under
+        the wood [m].
     noses : tuple of float64 (m, 2)
         Polylines, one for each cushion: the part that balls meet, jaw - nose - jaw [m].
     falls : float64 (k, 3)
         x and y of the centre and radius of the slate circles over which balls drop [m].
     throats : float64 (k, 5)
-        The holes in the wood: x and y of the middle of the mouth, x and y of the fall's centre, and half the width [m].
+        The holes in the wood: x and y of the middle of the mouth, x and y of the fall's centre, and half the
+        width [m].
 
     Examples
     --------
@@ -65,15 +68,20 @@ class Outline:
 
 
 def extent(table: Table) -> Floats:
-    """The part of a ``Table`` between its rails that a picture shows, (2, 2) [m]: its bounds, or snooker's bed where it has none."""
+    """The part of a ``Table`` between its rails that a picture shows, (2, 2) [m]: its bounds, or snooker's
+    bed where it has none."""
     snooker = np.array([(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)])
     return np.where(np.isfinite(table.bounds), table.bounds, snooker)
 
 
 def is_marked(table: Table) -> bool:
-    """Whether snooker's lines and spots are drawn on a ``Table``: on a snooker bed, and on unbounded cloth."""
+    """Whether snooker's lines and spots are drawn on a ``Table``: on a snooker bed, and on unbounded
+    cloth."""
     ends = (HALF_WIDTH, HALF_LENGTH)
-    return all(np.allclose(bounds, (-end, end), rtol=0.0, atol=1e-9) for bounds, end in zip(extent(table), ends, strict=True))
+    return all(
+        np.allclose(bounds, (-end, end), rtol=0.0, atol=1e-9)
+        for bounds, end in zip(extent(table), ends, strict=True)
+    )
 
 
 @lru_cache(maxsize=16)
@@ -98,7 +106,11 @@ def outline(table: Table) -> Outline:
     4
     """
     cushions, noses = [], []
-    ends = [(_point(axis, side * level, end), _point(axis, side, 0.0)) for axis, side, level, *low_high in table.noses for end in low_high]
+    ends = [
+        (_point(axis, side * level, end), _point(axis, side, 0.0))
+        for axis, side, level, *low_high in table.noses
+        for end in low_high
+    ]
     for axis, side, level, low, high in table.noses:
         out = _point(axis, side, 0.0)  # from the nose into the wood
         left, right = (_jaw(table.jaws, _point(axis, side * level, end)) for end in (low, high))
@@ -116,7 +128,8 @@ def _point(axis, across, along):
 
 
 def _jaw(jaws, start):
-    """The jaw that begins at ``start`` on a nose, arc after arc to its end in the pocket: (m, 2); only ``start`` if there is none."""
+    """The jaw that begins at ``start`` on a nose, arc after arc to its end in the pocket: (m, 2); only
+    ``start`` if there is none."""
     points, left = [start], list(jaws)
     while (step := _arc_from(points[-1], left)) is not None:
         k, arc = step
@@ -126,7 +139,8 @@ def _jaw(jaws, start):
 
 
 def _arc_from(place, jaws):
-    """The index of an arc of which one end is at ``place``, and its points (25, 2) from there on; None if there is none."""
+    """The index of an arc of which one end is at ``place``, and its points (25, 2) from there on; None if
+    there is none."""
     for k, (x, y, radius, ux, uy, cos_half) in enumerate(jaws):
         angles = np.arctan2(uy, ux) + np.arccos(cos_half) * np.linspace(-1.0, 1.0, 25)
         arc = np.array([x, y]) + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -137,23 +151,31 @@ def _arc_from(place, jaws):
 
 
 def _onward(jaw, out, level, ends):
-    """Where the straight continuation of a jaw behind its last arc meets the line at ``level``; two noses that meet share a mitre."""
+    """Where the straight continuation of a jaw behind its last arc meets the line at ``level``; two noses
+    that meet share a mitre."""
     if len(jaw) > 1:
         onward = jaw[-1] - jaw[-2]
     else:
-        onward = out + sum((other for place, other in ends if abs(other @ out) < 0.5 and np.hypot(*(place - jaw[0])) < 1e-6), np.zeros(2))
+        onward = out + sum(
+            (other for place, other in ends if abs(other @ out) < 0.5 and np.hypot(*(place - jaw[0])) < 1e-6),
+            np.zeros(2),
+        )
     return jaw[-1] + onward * ((level - jaw[-1] @ out) / (onward @ out))
 
 
 def _throat(fall, noses, mouths):
-    """The hole in the wood: from the middle of the pocket's mouth to the centre of its fall, as wide as its jaws' ends are apart."""
+    """The hole in the wood: from the middle of the pocket's mouth to the centre of its fall, as wide as its
+    jaws' ends are apart."""
     jaw_ends = [end for nose in noses for end in (nose[0], nose[-1])]
-    (a, b), (c, d) = (sorted(points, key=lambda point: np.hypot(*(point - fall[:2])))[:2] for points in (mouths, jaw_ends))
+    (a, b), (c, d) = (
+        sorted(points, key=lambda point: np.hypot(*(point - fall[:2])))[:2] for points in (mouths, jaw_ends)
+    )
     return [*(a + b) / 2, *fall[:2], np.hypot(*(c - d)) / 2]
 
 
 def scene_data(table: TableLike) -> dict[str, Any]:
-    """A table, its lines, the balls and all colours as JSON types: the description that pygame, matplotlib and the browser share.
+    """A table, its lines, the balls and all colours as JSON types: the description that pygame, matplotlib
+    and the browser share.
 
     Parameters
     ----------
@@ -163,10 +185,11 @@ def scene_data(table: TableLike) -> dict[str, Any]:
     Returns
     -------
     dict
-        Lengths in metres, rounded to 1e-6. ``cushions``, ``noses``, ``falls``, ``throats``: as in ``Outline``, with lists for arrays.
-        ``extent``: [[lowest x, highest x], [lowest y, highest y]] of the bed. ``rail``, ``cushion``: ``RAIL``, ``CUSHION``. ``lines``:
-        {"baulk", "d", "spots"}, or None on a table without snooker's marks. ``ball_radius``. ``palette``: {name: [red, green, blue]}.
-        ``balls``: by id {"name", "letter", "value", "rgb"}.
+        Lengths in metres, rounded to 1e-6. ``cushions``, ``noses``, ``falls``, ``throats``: as in
+        ``Outline``, with lists for arrays. ``extent``: [[lowest x, highest x], [lowest y, highest y]] of the
+        bed. ``rail``, ``cushion``: ``RAIL``, ``CUSHION``. ``lines``: {"baulk", "d", "spots"}, or None on a
+        table without snooker's marks. ``ball_radius``. ``palette``: {name: [red, green, blue]}. ``balls``: by
+        id {"name", "letter", "value", "rgb"}.
 
     Raises
     ------
@@ -182,7 +205,11 @@ def scene_data(table: TableLike) -> dict[str, Any]:
     """
     table = Table.of(table)
     parts = outline(table)
-    marks = {"baulk": _rounded(BAULK_LINE), "d": _rounded(D_ARC), "spots": _rounded(SPOT_MARKS)} if is_marked(table) else None
+    marks = (
+        {"baulk": _rounded(BAULK_LINE), "d": _rounded(D_ARC), "spots": _rounded(SPOT_MARKS)}
+        if is_marked(table)
+        else None
+    )
     return {
         "cushions": [_rounded(polygon) for polygon in parts.cushions],
         "noses": [_rounded(nose) for nose in parts.noses],
@@ -195,7 +222,12 @@ def scene_data(table: TableLike) -> dict[str, Any]:
         "ball_radius": float(table.ball_radius or BALL_RADIUS),
         "palette": {name: list(rgb) for name, rgb in PALETTE.items()},
         "balls": [
-            {"name": NAMES[ball], "letter": LETTERS[ball], "value": int(VALUES[ball]), "rgb": COLOURS[ball].tolist()}
+            {
+                "name": NAMES[ball],
+                "letter": LETTERS[ball],
+                "value": int(VALUES[ball]),
+                "rgb": COLOURS[ball].tolist(),
+            }
             for ball in range(N_BALLS)
         ],
     }

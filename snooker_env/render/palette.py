@@ -1,8 +1,9 @@
-"""Which colours does everything have? One table of them, red, green, blue, for pygame, matplotlib and the browser.
+"""Which colours does everything have? One table of them, red, green, blue, for pygame, matplotlib and the
+browser.
 
-The cloth is as bright as under a table's lamps on television, and the green, the brown and the black are dark: each ball differs from the
-cloth by at least 25 in CIEDE2000, so that it is easy to see. The balls that are alike for colour-blind people carry letters when labels
-are on.
+The cloth is as bright as under a table's lamps on television, and the green, the brown and the black are
+dark: each ball differs from the cloth by at least 25 in CIEDE2000, so that it is easy to see. The balls that
+are alike for colour-blind people carry letters when labels are on.
 """
 
 import numpy as np
@@ -30,17 +31,20 @@ PALETTE: dict[str, tuple[int, int, int]] = {
     "text": (240, 240, 236),
     "text_quiet": (164, 170, 184),
 }
-"""Colours by name, (red, green, blue), 0 to 255. ``cloth_edge``: the cloth where it bends over a fall; ``line``: the baulk line, the D and
-the spots; ``nose``: the edge of a cushion that balls meet; ``path_edge``: the outline of a path; ``lamp``: its reflection in a ball;
-``bar``: the score bar."""
+"""Colours by name, (red, green, blue), 0 to 255. ``cloth_edge``: the cloth where it bends over a fall;
+``line``: the baulk line, the D and the spots; ``nose``: the edge of a cushion that balls meet; ``path_edge``:
+the outline of a path; ``lamp``: its reflection in a ball; ``bar``: the score bar."""
 
 COLOURS: NDArray[np.uint8] = np.array(
-    [(252, 248, 234)] + [(196, 18, 24)] * 15 + [(252, 214, 36), (0, 74, 62), (118, 62, 22), (20, 72, 206), (244, 138, 166), (18, 18, 21)],
+    [(252, 248, 234)]
+    + [(196, 18, 24)] * 15
+    + [(252, 214, 36), (0, 74, 62), (118, 62, 22), (20, 72, 206), (244, 138, 166), (18, 18, 21)],
     dtype=np.uint8,
 )
 """Colours of the balls by id: uint8 (22, 3), red, green, blue; read-only."""
 PALE: NDArray[np.uint8] = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)
-"""Lighter colours of the balls, for a ball's path on the cloth and for letters on a dark terminal: uint8 (22, 3), read-only."""
+"""Lighter colours of the balls, for a ball's path on the cloth and for letters on a dark terminal: uint8 (22,
+3), read-only."""
 LETTERS = "W" + "r" * 15 + "YGNBPK"
 """Letters by ball id: W the white cue ball, r a red; N is brown and K black, because B is blue."""
 

@@ -1,7 +1,8 @@
-"""How is a ball drawn? Shaded, with reflections of the lamps over the table, and with a faint shadow from each lamp.
+"""How is a ball drawn? Shaded, with reflections of the lamps over the table, and with a faint shadow from
+each lamp.
 
-Pictures of balls, reflections and shadows are made once for each colour, size and quarter of a pixel; a frame only copies them to their
-places.
+Pictures of balls, reflections and shadows are made once for each colour, size and quarter of a pixel; a frame
+only copies them to their places.
 """
 
 from functools import lru_cache
@@ -46,7 +47,9 @@ def draw_balls(surface: Any, scene: Scene, view: View) -> None:
     images += _mirrored(scene.positions[~lettered], over, where[~lettered], radius)
     for ball, place in zip(scene.ids[lettered].tolist(), where[lettered], strict=True):
         letter = _letter(ball, round(radius, 1))
-        images.append((letter, (round(place[0] - letter.get_width() / 2), round(place[1] - letter.get_height() / 2))))
+        images.append(
+            (letter, (round(place[0] - letter.get_width() / 2), round(place[1] - letter.get_height() / 2)))
+        )
     surface.fblits(images)
 
 
@@ -58,13 +61,15 @@ def _at(place, make, *what):
 
 
 def _grid(half, fx, fy):
-    """Columns and rows of a picture's pixels from its middle, which is fx / 4, fy / 4 pixels right of and below a pixel's corner."""
+    """Columns and rows of a picture's pixels from its middle, which is fx / 4, fy / 4 pixels right of and
+    below a pixel's corner."""
     steps = np.arange(-half, half + 1) + 0.5
     return np.meshgrid(steps - fx / 4, steps - fy / 4)
 
 
 def _shaded(colour, nz):
-    """A ball's colours (..., 3) where the z of its unit normal is ``nz``: lit from above, and by the cloth from below."""
+    """A ball's colours (..., 3) where the z of its unit normal is ``nz``: lit from above, and by the cloth
+    from below."""
     nz = nz[..., None]
     lit = np.asarray(colour, dtype=np.float64) * (0.50 + 0.56 * nz)
     rim = (1 - nz) ** 2.5
@@ -90,7 +95,10 @@ def _spotted(place, colour, radius, turn):
     d = np.hypot(x, y)
     nz = np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1))
     towards = matrix(turn) @ _SPOTS.T  # (3, 6) in the table frame: x down, y to the right, z to the eye
-    seen = np.max(y[..., None] / radius * towards[0] + x[..., None] / radius * towards[1] + nz[..., None] * towards[2], axis=-1)
+    seen = np.max(
+        y[..., None] / radius * towards[0] + x[..., None] / radius * towards[1] + nz[..., None] * towards[2],
+        axis=-1,
+    )
     spot = np.clip((seen - _SPOT) * radius * 3.4 + 0.5, 0, 1)[..., None]
     ink = np.array(COLOURS[1] if min(colour) > 120 else (250, 250, 245), dtype=np.float64)
     image = np.empty((*d.shape, 4))
@@ -107,7 +115,8 @@ def _rays(positions, over):
 
 
 def _mirrored(positions, over, where, radius):
-    """The reflections of the lamps: each where the surface normal is half-way between the eye, straight above, and the lamp."""
+    """The reflections of the lamps: each where the surface normal is half-way between the eye, straight
+    above, and the lamp."""
     images = []
     ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
     across, far = _rays(positions, ends.reshape(-1, 2))
@@ -132,12 +141,17 @@ def _lamp(half, radius, fx, fy):
     image = np.empty((*d.shape, 4))
     image[..., :3] = PALETTE["lamp"]
     small = min(1.0, 0.25 + radius / 12)  # fainter in a small ball, which it would hide
-    image[..., 3] = 255 * small * np.maximum(0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2)))
+    image[..., 3] = (
+        255
+        * small
+        * np.maximum(0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2)))
+    )
     return surface_of(image)
 
 
 def _shadows(positions, over, where, radius):
-    """A soft shadow from each lamp, fainter for a lower angle of its light, and the dark place where the ball touches the cloth."""
+    """A soft shadow from each lamp, fainter for a lower angle of its light, and the dark place where the ball
+    touches the cloth."""
     images = []
     across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3
@@ -175,7 +189,13 @@ def dot(ball: int, radius: float) -> Any:
         ring.blit(image, ((ring.get_width() - image.get_width()) // 2,) * 2)
         image = ring
     lamp = _lamp(max(1, round(0.8 * radius)), round(radius, 1), 2, 2)
-    image.blit(lamp, ((image.get_width() - lamp.get_width()) // 2, round(image.get_height() / 2 - lamp.get_height() / 2 - 0.35 * radius)))
+    image.blit(
+        lamp,
+        (
+            (image.get_width() - lamp.get_width()) // 2,
+            round(image.get_height() / 2 - lamp.get_height() / 2 - 0.35 * radius),
+        ),
+    )
     return image
 
 

@@ -1,4 +1,5 @@
-"""How is the score bar drawn? As on television: the break and its balls, the players and their points, the ball on and what is left."""
+"""How is the score bar drawn? As on television: the break and its balls, the players and their points, the
+ball on and what is left."""
 
 from functools import lru_cache
 from typing import Any
@@ -26,7 +27,11 @@ def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> Any:
     page.box(0, 0, width / page.unit, 2, "bar_edge")
     if bar is None or height < _SMALLEST:
         page.text(
-            in_words(bar) if bar is not None else text, 33 if height >= _SMALLEST else 44, _EDGE, 36, room=width / page.unit - 2 * _EDGE
+            in_words(bar) if bar is not None else text,
+            33 if height >= _SMALLEST else 44,
+            _EDGE,
+            36,
+            room=width / page.unit - 2 * _EDGE,
         )
         return page.surface
     right = _right(page, bar, width / page.unit)
@@ -57,7 +62,10 @@ class _Page:
 
     def box(self, x, y, width, height, ink):
         u = self.unit
-        self.surface.fill(PALETTE[ink], (round(x * u), round(y * u), round((x + width) * u) - round(x * u), max(1, round(height * u))))
+        self.surface.fill(
+            PALETTE[ink],
+            (round(x * u), round(y * u), round((x + width) * u) - round(x * u), max(1, round(height * u))),
+        )
 
     def text(self, text, size, x, y, *, ink="text", file=MEDIUM, anchor="midleft", room=None):
         """Write a line with its middle at height y; one that is too long ends in "…". Returns its width."""
@@ -81,7 +89,10 @@ class _Page:
 
     def ball(self, ball, x, y, radius):
         image = dot(ball, radius * self.unit)
-        self.surface.blit(image, (round(x * self.unit - image.get_width() / 2), round(y * self.unit - image.get_height() / 2)))
+        self.surface.blit(
+            image,
+            (round(x * self.unit - image.get_width() / 2), round(y * self.unit - image.get_height() / 2)),
+        )
 
 
 def _break(page, bar, end):
@@ -97,11 +108,14 @@ def _break(page, bar, end):
         for k, ball in enumerate(bar.potted):
             page.ball(ball, x + 9 + k * step, 36 if lines == 1 else 24, 9)
     if bar.words:
-        page.text(bar.words, 24, x, 36 if lines == 1 else 52, ink="text" if lines == 1 else "text_quiet", room=room)
+        page.text(
+            bar.words, 24, x, 36 if lines == 1 else 52, ink="text" if lines == 1 else "text_quiet", room=room
+        )
 
 
 def _players(page, bar, width):
-    """In the middle: names and points, with the player whose turn it is emphasised. Returns the x where this begins."""
+    """In the middle: names and points, with the player whose turn it is emphasised. Returns the x where this
+    begins."""
     middle, half = width / 2, 46
     if len(bar.players) == 1:
         name, score = bar.players[0], str(bar.scores[0])
@@ -140,7 +154,9 @@ def _turn(page, x, side):
     """A triangle that points to the name of the player whose turn it is."""
     pygame, u = pygame_(), page.unit
     fine = pygame.Surface((40, 40), pygame.SRCALPHA, 32)
-    pygame.draw.polygon(fine, PALETTE["bar_accent"], [(20 - 14 * side, 2), (20 - 14 * side, 38), (20 + 16 * side, 20)])
+    pygame.draw.polygon(
+        fine, PALETTE["bar_accent"], [(20 - 14 * side, 2), (20 - 14 * side, 38), (20 + 16 * side, 20)]
+    )
     small = pygame.transform.smoothscale(fine, (max(3, round(20 * u)), max(3, round(20 * u))))
     page.surface.blit(small, small.get_rect(center=(round(x * u), round(37 * u))))
 
@@ -168,10 +184,14 @@ def _shown(ball_on):
 
 
 def _column(page, label, value, end, balls=(), size=36, widest=""):
-    """One value under its label, up to ``end``, with room for the ``widest`` value, so that nothing moves. Returns the end of the next."""
+    """One value under its label, up to ``end``, with room for the ``widest`` value, so that nothing moves.
+    Returns the end of the next."""
     step = 22 if len(balls) < 3 else 13
     taken = (step * (len(balls) - 1) + 30) if balls else 0
-    across = max(page.width(label, 17, BOLD), taken + max(page.width(text, size, BOLD, room=220) for text in (value, widest)))
+    across = max(
+        page.width(label, 17, BOLD),
+        taken + max(page.width(text, size, BOLD, room=220) for text in (value, widest)),
+    )
     start = end - across
     page.text(label, 17, start, 17, ink="text_quiet", file=BOLD)
     for k, ball in enumerate(balls):

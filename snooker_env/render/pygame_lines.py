@@ -1,7 +1,8 @@
 """How is a ball's path drawn? As a line with a dark edge, smooth at every angle, in pieces that are kept.
 
-A path that grows from frame to frame changes only at its end. So it is cut at equal lengths from its start, and the picture of each piece
-is made once. First all edges are drawn, then all lines, so that no piece darkens its neighbour.
+A path that grows from frame to frame changes only at its end. So it is cut at equal lengths from its start,
+and the picture of each piece is made once. First all edges are drawn, then all lines, so that no piece
+darkens its neighbour.
 """
 
 from functools import lru_cache
@@ -21,7 +22,8 @@ _LONGEST = 1e5  # pixels: a longer path is not drawn
 
 
 def line_width(scale: float) -> float:
-    """Width of a path [pixels] at ``scale`` pixels per metre: 3.4 on the match table in a picture 1080 pixels high."""
+    """Width of a path [pixels] at ``scale`` pixels per metre: 3.4 on the match table in a picture 1080 pixels
+    high."""
     return max(1.5, 0.0072 * scale)
 
 
@@ -59,7 +61,10 @@ def _piece(numbers, start, end, colour, width):
     if np.max(off) < 0.05:  # straight
         points = points[[0, -1]]
     margin = width / 2 + 1
-    low, high = np.floor(points.min(axis=0) - margin).astype(int), np.ceil(points.max(axis=0) + margin).astype(int)
+    low, high = (
+        np.floor(points.min(axis=0) - margin).astype(int),
+        np.ceil(points.max(axis=0) + margin).astype(int),
+    )
     x, y = np.meshgrid(np.arange(low[0], high[0]) + 0.5, np.arange(low[1], high[1]) + 0.5)
     nearest, whose = np.full(x.shape, np.inf), np.zeros(x.shape, int)
     for k, ((ax, ay), (bx, by)) in enumerate(zip(points[:-1].tolist(), points[1:].tolist(), strict=True)):

@@ -1,6 +1,8 @@
-"""How is a picture made? The kept picture of the table is copied; then paths, balls and the score bar are drawn on it.
+"""How is a picture made? The kept picture of the table is copied; then paths, balls and the score bar are
+drawn on it.
 
-Pictures of balls (for each quarter of a pixel) and of pieces of paths are kept too, so that this takes a few milliseconds.
+Pictures of balls (for each quarter of a pixel) and of pieces of paths are kept too, so that this takes a few
+milliseconds.
 """
 
 from typing import Any
@@ -21,14 +23,19 @@ from .view import View
 def draw(scene: Scene, view: View) -> NDArray[np.uint8]:
     """The picture of a scene in a view of its table: uint8 (height, width, 3), a new array."""
     pixels = table_picture(scene.table, view).copy()
-    surface: Any = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")  # draws into ``pixels``
+    # draws into ``pixels``
+    surface: Any = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")
     surface.set_clip((0, 0, view.width, view.height - view.bar))
     width = line_width(view.scale)
-    draw_lines(surface, [(view(points), tuple(PALE[ball].tolist())) for ball, points in scene.paths.items()], width)
+    draw_lines(
+        surface, [(view(points), tuple(PALE[ball].tolist())) for ball, points in scene.paths.items()], width
+    )
     if scene.aim is not None:
         draw_lines(surface, [(view(scene.aim), PALETTE["aim"])], 0.8 * width)
     if scene.ghost is not None:
-        draw_lines(surface, [(view(outline_of_a_ball(scene.ghost, scene.ball_radius)), PALETTE["aim"])], 0.6 * width)
+        draw_lines(
+            surface, [(view(outline_of_a_ball(scene.ghost, scene.ball_radius)), PALETTE["aim"])], 0.6 * width
+        )
     draw_balls(surface, scene, view)
     surface.set_clip(None)
     if scene.bar is not None or scene.text:

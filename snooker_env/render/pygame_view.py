@@ -17,13 +17,19 @@ from .window import Window as Window
 
 
 def to_pixels(
-    points: Vector | Vectors, height: int | None = None, table: TableLike = "match", *, size: tuple[int, int] | None = None
+    points: Vector | Vectors,
+    height: int | None = None,
+    table: TableLike = "match",
+    *,
+    size: tuple[int, int] | None = None,
 ) -> Floats:
     """Columns and rows [pixels] of points (..., 2) [m] in a picture of ``rgb_array`` of that size."""
     return View.of(Table.of(table), height, size)(np.asarray(points, dtype=np.float64))
 
 
-def rgb_array(scene: Scene, height: int | None = None, *, size: tuple[int, int] | None = None) -> NDArray[np.uint8]:
+def rgb_array(
+    scene: Scene, height: int | None = None, *, size: tuple[int, int] | None = None
+) -> NDArray[np.uint8]:
     """The picture of a scene, uint8 (height, width, 3), of a size, or a height that gives the width."""
     pygame_()
     return draw(scene, View.of(scene.table, height, size))

@@ -1,8 +1,8 @@
 """What is there to draw? A table, its lines, balls and overlays, in metres and without a drawing library.
 
-Table frame: origin at the table's centre, +x to the yellow side, +y to the black end. ``scene`` describes one picture; ``Film`` and
-``shot_scenes`` make the pictures of a film from a shot. The parts of a table that never move, and ``scene_data`` for drawing in another
-language, are in ``outline``; colours are in ``palette``.
+Table frame: origin at the table's centre, +x to the yellow side, +y to the black end. ``scene`` describes one
+picture; ``Film`` and ``shot_scenes`` make the pictures of a film from a shot. The parts of a table that never
+move, and ``scene_data`` for drawing in another language, are in ``outline``; colours are in ``palette``.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -43,7 +43,9 @@ class ScoreBar:
         if len(self.players) > 2 or not all(isinstance(name, str) for name in self.players):
             raise refuse("players", self.players, "must be the names of at most two players")
         if len(self.scores) != len(self.players):
-            raise refuse("scores", self.scores, f"must hold one number for each of the {len(self.players)} players")
+            raise refuse(
+                "scores", self.scores, f"must hold one number for each of the {len(self.players)} players"
+            )
         if self.striker is not None and self.striker not in range(len(self.players)):
             raise refuse("striker", self.striker, "must be None or an index of players")
         for ball in self.potted:
@@ -99,21 +101,34 @@ def scene(
     lettered: bool = False,
     **overlays: Any,
 ) -> Scene:
-    """Describe one picture: n <= 22 balls, ids 0 to n-1, and overlays (``_Overlays``) as in ``Scene``. Arrays are copied."""
+    """Describe one picture: n <= 22 balls, ids 0 to n-1, and overlays (``_Overlays``) as in ``Scene``. Arrays
+    are copied."""
     r = array("positions", positions, (-1, 2))
     if len(r) > N_BALLS:
         raise refuse("positions", f"array of shape {r.shape}", f"must hold at most {N_BALLS} balls")
     here = np.ones(len(r), bool) if on_table is None else np.array(on_table)
     if here.shape != (len(r),) or here.dtype != bool:
-        raise refuse("on_table", f"{here.dtype} array of shape {here.shape}", f"must be bool of shape ({len(r)},)")
+        raise refuse(
+            "on_table", f"{here.dtype} array of shape {here.shape}", f"must be bool of shape ({len(r)},)"
+        )
     if bar is not None and not isinstance(bar, ScoreBar):
         raise refuse("bar", bar, "must be None or a ScoreBar")
     ids, table = np.flatnonzero(here), Table.of(table)
-    radius = (table.ball_radius or BALL_RADIUS) if ball_radius is None else number("ball_radius", ball_radius, 1e-3, 1)
+    radius = (
+        (table.ball_radius or BALL_RADIUS)
+        if ball_radius is None
+        else number("ball_radius", ball_radius, 1e-3, 1)
+    )
     paths, aim, ghost, ghosts, turns = _Overlays(**overlays)
     aim = None if aim is None else array("aim", aim, (-1, 2))
     ghost = None if ghost is None else array("ghost", ghost, (2,))
-    drawn = _by_ball("paths", paths, (-1, 2)), aim, ghost, _by_ball("ghosts", ghosts, (-1, 2)), _by_ball("turns", turns, (4,))
+    drawn = (
+        _by_ball("paths", paths, (-1, 2)),
+        aim,
+        ghost,
+        _by_ball("ghosts", ghosts, (-1, 2)),
+        _by_ball("turns", turns, (4,)),
+    )
     return Scene(table, ids, r[ids], radius, *drawn, str(text), bar, bool(lettered))
 
 
@@ -124,7 +139,9 @@ def _by_ball(field, values, shape):
     return {int(ball): array(f"{field}[{ball}]", value, shape) for ball, value in (values or {}).items()}
 
 
-def ball_paths(shot: Shot, balls: Iterable[int] = (CUE,), until: float | None = None, step: float = 0.02) -> dict[int, Floats]:
+def ball_paths(
+    shot: Shot, balls: Iterable[int] = (CUE,), until: float | None = None, step: float = 0.02
+) -> dict[int, Floats]:
     """Paths {ball: (m, 2)} [m] of the balls that move, until a time [s]; impacts are points of them."""
     until = shot.duration if until is None else min(number("until", until, 0.0), shot.duration)
     return {ball: points for ball, (points, _) in _timed_paths(shot, balls, until, step).items()}
@@ -152,7 +169,10 @@ def contacts(shot: Shot, ball: int = CUE) -> Floats:
 
 def _timed_contacts(shot, ball):
     """``contacts`` and their times (m,) [s]."""
-    met = shot.events[(shot.events["kind"] == EventKind.BALL_BALL) & ((shot.events["i"] == ball) | (shot.events["j"] == ball))]
+    met = shot.events[
+        (shot.events["kind"] == EventKind.BALL_BALL)
+        & ((shot.events["i"] == ball) | (shot.events["j"] == ball))
+    ]
     kept = []
     for place, time in zip(shot.at(met["time"])[0][:, ball].reshape(-1, 2), met["time"], strict=True):
         if not kept or np.hypot(*(place - kept[-1][0])) > shot.physics.R:
@@ -174,7 +194,11 @@ class Film:
         **overlays: Any,
     ):
         self.duration: float = shot.duration
-        self._table, self._shot, self._overlays = Table.of(table), shot, {"ball_radius": shot.physics.R, **overlays}
+        self._table, self._shot, self._overlays = (
+            Table.of(table),
+            shot,
+            {"ball_radius": shot.physics.R, **overlays},
+        )
         self._paths = _timed_paths(shot, trail, shot.duration)
         self._turning = {int(ball): Turning(shot, ball) for ball in spots}
         self._contacts = {int(ball): _timed_contacts(shot, ball) for ball in faded}
@@ -195,7 +219,12 @@ class Film:
                 paths[ball] = done
         turns = {ball: turning.at(t) for ball, turning in self._turning.items()}
         ghosts = {ball: places[times <= t] for ball, (places, times) in self._contacts.items()}
-        return scene(self._table, r, self._gone_at > t, **{"paths": paths, "turns": turns, "ghosts": ghosts, **self._overlays})
+        return scene(
+            self._table,
+            r,
+            self._gone_at > t,
+            **{"paths": paths, "turns": turns, "ghosts": ghosts, **self._overlays},
+        )
 
     def scenes(self, fps: float = 30.0, speed: float = 1.0) -> Iterator[Scene]:
         """One picture every speed / fps seconds of the shot's own time, and one of its end."""

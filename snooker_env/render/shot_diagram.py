@@ -1,4 +1,5 @@
-"""How is a shot drawn as a diagram? Sliding and rolling paths, ghost balls, impacts, speeds, the cut and the tip, on a ``Sketch``."""
+"""How is a shot drawn as a diagram? Sliding and rolling paths, ghost balls, impacts, speeds, the cut and the
+tip, on a ``Sketch``."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
@@ -12,21 +13,34 @@ from ..physics.engine import EventKind
 from ..physics.table import Table
 from ..simulation import Shot
 from .palette import PALE
-from .shot_paths import Meeting, Piece, Tip, arrow_places, contacts, cue_ball, cut_angle, paths, tip_of, velocity_before
+from .shot_paths import (
+    Meeting,
+    Piece,
+    Tip,
+    arrow_places,
+    contacts,
+    cue_ball,
+    cut_angle,
+    paths,
+    tip_of,
+    velocity_before,
+)
 from .sketch import CAPTIONS, PATH_WIDTH, Region, Sketch, flipped, is_closed, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 View: TypeAlias = Literal["table", "shot"] | Sequence[Sequence[float]]
-"""The part of the table to show: all of it, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) [m]."""
+"""The part of the table to show: all of it, as much as the shot needs, or ((lowest x, highest x), (lowest y,
+highest y)) [m]."""
 
 SLIDES = (255, 168, 36)
 """Colour of the stripes of a path on which the ball slides."""
 DASHES = (0, (2.0, 1.6))
 """Lengths of these stripes, in widths of the path."""
 MOST_PATHS = 7
-"""If more balls move, only the paths of the cue ball, of the ball that it strikes first and of potted balls are drawn in full width."""
+"""If more balls move, only the paths of the cue ball, of the ball that it strikes first and of potted balls
+are drawn in full width."""
 
 _SIGNS: dict[EventKind, tuple[Any, Any, float]] = {
     EventKind.BALL_BALL: ("o", "text", 4.5),
@@ -35,7 +49,12 @@ _SIGNS: dict[EventKind, tuple[Any, Any, float]] = {
     EventKind.POT: ("X", "text", 7.0),
 }
 """Marker, colour and size of each kind of impact."""
-_WORDS = {EventKind.BALL_BALL: "ball", EventKind.CUSHION: "cushion", EventKind.JAW: "jaw", EventKind.POT: "pocket"}
+_WORDS = {
+    EventKind.BALL_BALL: "ball",
+    EventKind.CUSHION: "cushion",
+    EventKind.JAW: "jaw",
+    EventKind.POT: "pocket",
+}
 
 
 def plot(
@@ -52,23 +71,25 @@ def plot(
 ) -> "Axes":
     """Draw a shot from above, baulk left and black right.
 
-    Balls are drawn at their places before the shot. Paths are 3 pixels wide in the colours of the balls, striped where the ball slides and
-    plain where it rolls, with arrowheads. Faded balls show a ball when it meets another, and where it comes to rest. Signs mark impacts: a
-    disc with a ball, a diamond with a cushion, a triangle with a jaw, a cross in a pocket. Under the table: the tip, speeds and the cut.
+    Balls are drawn at their places before the shot. Paths are 3 pixels wide in the colours of the balls,
+    striped where the ball slides and plain where it rolls, with arrowheads. Faded balls show a ball when it
+    meets another, and where it comes to rest. Signs mark impacts: a disc with a ball, a diamond with a
+    cushion, a triangle with a jaw, a cross in a pocket. Under the table: the tip, speeds and the cut.
 
     Parameters
     ----------
     shot : Shot
         The shot, with its path and at most 22 balls.
     ax : matplotlib.axes.Axes, optional
-        Axes to draw on; None makes a new figure. Axes with an earlier diagram keep their table and their limits. The horizontal axis is
-        y [m], the vertical one x [m] downwards: ``ax.plot(y, x)``.
+        Axes to draw on; None makes a new figure. Axes with an earlier diagram keep their table and their
+        limits. The horizontal axis is y [m], the vertical one x [m] downwards: ``ax.plot(y, x)``.
     cue : mapping, optional
-        How the cue ball was struck: "side" and "top" (tip offset over R, right and up), and if known "speed" [m/s], "elevation" and "aim"
-        [rad]. None: computed from the cue ball's velocity and spin; without side the cue is taken as level.
+        How the cue ball was struck: "side" and "top" (tip offset over R, right and up), and if known "speed"
+        [m/s], "elevation" and "aim" [rad]. None: computed from the cue ball's velocity and spin; without side
+        the cue is taken as level.
     view : "table", "shot" or ((float, float), (float, float))
-        The part of the table to show: all of it (if it has cushions on all sides), as much as the shot needs, or a range of x and one of
-        y [m].
+        The part of the table to show: all of it (if it has cushions on all sides), as much as the shot needs,
+        or a range of x and one of y [m].
     balls : iterable of int, optional
         Balls whose paths are drawn; None: all that moved, and if many did, the less important ones thinly.
     labels : bool
@@ -107,7 +128,9 @@ def plot(
     truth("speeds", speeds)
     choice("caption", caption, CAPTIONS)
     table, moved = shot.table or Table.of(None), paths(shot)
-    chosen = set(moved if balls is None else (integer("balls", ball, 0, len(shot.positions) - 1) for ball in balls))
+    chosen = set(
+        moved if balls is None else (integer("balls", ball, 0, len(shot.positions) - 1) for ball in balls)
+    )
     first = cue_ball(shot)
     tip = _tip(cue, shot, first)
     sketch = Sketch(table, shot.physics.R, region_of(view, area(shot), table), ax, strip=CAPTIONS[caption])
@@ -135,9 +158,13 @@ def plot(
 def region_of(view: Any, points: Floats, table: Table) -> Region:
     """The part of the table that a view shows, for a shot with these points (m, 2) [m]."""
     if isinstance(view, str) and view in ("table", "shot"):
-        return Region.of_table(table) if view == "table" and is_closed(table) else Region.around(points, table)
+        return (
+            Region.of_table(table) if view == "table" and is_closed(table) else Region.around(points, table)
+        )
     if isinstance(view, str) or np.shape(view) != (2, 2):
-        raise refuse("view", view, 'must be "table", "shot" or ((lowest x, highest x), (lowest y, highest y))')
+        raise refuse(
+            "view", view, 'must be "table", "shot" or ((lowest x, highest x), (lowest y, highest y))'
+        )
     (low_x, high_x), (low_y, high_y) = array("view", view, (2, 2)).tolist()
     if low_x >= high_x or low_y >= high_y:
         raise refuse("view", view, "must have its lower ends first")
@@ -153,7 +180,8 @@ def area(shot: Shot) -> Floats:
 
 
 def principals(shot: Shot, moved: Mapping[int, Any], first: int | None) -> set[int]:
-    """The important balls: all that move, or if many do, the cue ball, the first ball that it meets, and those that are potted."""
+    """The important balls: all that move, or if many do, the cue ball, the first ball that it meets, and
+    those that are potted."""
     if len(moved) <= MOST_PATHS or first is None:
         return set(moved)
     met = [contact.other for contact in contacts(shot, first) if contact.kind == EventKind.BALL_BALL]
@@ -161,12 +189,18 @@ def principals(shot: Shot, moved: Mapping[int, Any], first: int | None) -> set[i
 
 
 def draw_path(sketch: Sketch, path: Sequence[Piece], ball: int, colour: Any = None) -> None:
-    """The path of a ball in its colour: striped while it slides, plain while it rolls, dotted while it falls."""
+    """The path of a ball in its colour: striped while it slides, plain while it rolls, dotted while it
+    falls."""
     colour = PALE[ball] if colour is None else colour
     for piece in path:
         style: dict[str, Any] = {"gid": f"{piece.kind}-{ball}"}
         if piece.kind == "slide":
-            style |= {"ls": DASHES, "gapcolor": rgb(SLIDES), "dash_capstyle": "butt", "solid_capstyle": "butt"}
+            style |= {
+                "ls": DASHES,
+                "gapcolor": rgb(SLIDES),
+                "dash_capstyle": "butt",
+                "solid_capstyle": "butt",
+            }
         elif piece.kind == "fall":
             style |= {"ls": ":"}
         sketch.line(piece.points, colour, level=5.0 + 0.3 * (ball == 0), **style)
@@ -199,7 +233,8 @@ def _write_speeds(sketch, shot, first, start):
 
 
 def _draw_cut(sketch, shot, contact):
-    """The cut as an angle, if balls are large enough: the old direction, the line of centres, and an arc between them."""
+    """The cut as an angle, if balls are large enough: the old direction, the line of centres, and an arc
+    between them."""
     if sketch.R * sketch.points_per_metre < 5.0:
         return
     v, line = velocity_before(shot, contact.ball, contact.time), contact.place - contact.centre
@@ -211,10 +246,18 @@ def _draw_cut(sketch, shot, contact):
         points = contact.centre + far * np.stack([np.cos(ray), np.sin(ray)], axis=1)
         if ray is not rays:
             points[0] = contact.centre
-        sketch.ax.plot(*flipped(points).T, color=rgb("aim"), lw=1.0, ls="-" if ray is rays else (0, (3, 2)), zorder=6.5, gid="cut")
+        sketch.ax.plot(
+            *flipped(points).T,
+            color=rgb("aim"),
+            lw=1.0,
+            ls="-" if ray is rays else (0, (3, 2)),
+            zorder=6.5,
+            gid="cut",
+        )
 
 
-# the strip under the table -------------------------------------------------------------------------------------------------------
+# the strip under the table
+# -------------------------------------------------------------------------------------------------------
 
 
 def _tip(cue: Mapping[str, float] | None, shot: Shot, first: int | None) -> Tip | None:
@@ -229,7 +272,12 @@ def _tip(cue: Mapping[str, float] | None, shot: Shot, first: int | None) -> Tip 
                 raise refuse("keys of cue", list(cue), f"must hold {key!r}")
         speed = cue.get("speed", 0.0 if first is None else float(np.hypot(*shot.at(0.0)[1][first])))
         side, top = number("cue.side", cue["side"], -1, 1), number("cue.top", cue["top"], -1, 1)
-        return Tip(side, top, number("cue.speed", speed, 0), number("cue.elevation", cue.get("elevation", 0.0), 0, 1.5))
+        return Tip(
+            side,
+            top,
+            number("cue.speed", speed, 0),
+            number("cue.elevation", cue.get("elevation", 0.0), 0, 1.5),
+        )
     if first is None:
         return None
     _, v, w = shot.at(0.0)
@@ -247,8 +295,11 @@ def tip_words(tip: Tip) -> str:
     return ", ".join(words) or "centre ball"
 
 
-def draw_tip(sketch: Sketch, tip: Tip | None, middle: tuple[float, float], radius: float, limit: float) -> None:
-    """The cue ball as the player sees it, and where the tip struck it. ``middle``: (y, x) [m]; ``limit``: offset of a miscue over R."""
+def draw_tip(
+    sketch: Sketch, tip: Tip | None, middle: tuple[float, float], radius: float, limit: float
+) -> None:
+    """The cue ball as the player sees it, and where the tip struck it. ``middle``: (y, x) [m]; ``limit``:
+    offset of a miscue over R."""
     from matplotlib.patches import Circle
 
     (y, x), add = middle, sketch.ax.add_patch
@@ -257,21 +308,42 @@ def draw_tip(sketch: Sketch, tip: Tip | None, middle: tuple[float, float], radiu
     for line in ([(y - radius, y + radius), (x, x)], [(y, y), (x - radius, x + radius)]):
         sketch.ax.plot(*line, color=rgb("text_quiet", 0.6), lw=0.6, zorder=9.35)
     if tip is not None:
-        add(Circle((y + tip.side * radius, x - tip.top * radius), 0.13 * radius, fc=rgb("bar_accent"), ec="none", zorder=9.4, gid="tip"))
+        add(
+            Circle(
+                (y + tip.side * radius, x - tip.top * radius),
+                0.13 * radius,
+                fc=rgb("bar_accent"),
+                ec="none",
+                zorder=9.4,
+                gid="tip",
+            )
+        )
 
 
-def _write_strip(sketch: Sketch, shot: Shot, first: int | None, tip: Tip | None, known: bool, *, short: bool) -> None:
+def _write_strip(
+    sketch: Sketch, shot: Shot, first: int | None, tip: Tip | None, known: bool, *, short: bool
+) -> None:
     rows, left = sketch.rows(4 if short else 3), sketch.region.low_y + 0.12 * sketch.depth
     facts = summary(shot, first)
     if first is not None:
         radius = (0.32 if short else 0.40) * sketch.depth
-        draw_tip(sketch, tip, (left + radius, sketch.region.high_x + sketch.depth / 2), radius, shot.physics.max_offset)
+        draw_tip(
+            sketch,
+            tip,
+            (left + radius, sketch.region.high_x + sketch.depth / 2),
+            radius,
+            shot.physics.max_offset,
+        )
         left += 2 * radius + 0.16 * sketch.depth
         if tip is None:
             lines = ["a spin that no tip gives"]
         else:
             raised = f", butt raised {np.degrees(tip.elevation):.0f}°" if tip.elevation > 0.005 else ""
-            source = "as it was struck" if known else "worked out from the spin" + ("" if tip.elevation else ", cue level")
+            source = (
+                "as it was struck"
+                if known
+                else "worked out from the spin" + ("" if tip.elevation else ", cue level")
+            )
             lines = [tip_words(tip), f"{tip.speed:.2f} m/s{raised}", *([] if short else [source])]
         sketch.text(left, rows[0], lines[0], weight="bold")
         for x, words in zip(rows[1:], lines[1:] + (facts[::2] if short else []), strict=False):
@@ -290,15 +362,29 @@ def summary(shot: Shot, first: int | None) -> list[str]:
     met = next((contact for contact in contacts(shot, first) if contact.kind == EventKind.BALL_BALL), None)
     if met is not None:
         other = contact_of(shot, met)
-        lines.append(f"{name(met.other)}: cut {np.degrees(cut_angle(shot, met)):.0f}°, leaves with {other.after:.2f} m/s")
+        lines.append(
+            f"{name(met.other)}: cut {np.degrees(cut_angle(shot, met)):.0f}°, leaves with {other.after:.2f} m/s"
+        )
         lines.append(f"cue ball: {met.speed:.2f} m/s before, {met.after:.2f} after")
-    pots = [f"{name(ball)} into {pocket(shot, int(shot.potted[ball]))}" for ball in np.flatnonzero(shot.potted >= 0).tolist()]
-    return [*lines, "; ".join(pots[:2]) + (" ..." if len(pots) > 2 else "") if pots else f"at rest after {shot.duration:.1f} s"]
+    pots = [
+        f"{name(ball)} into {pocket(shot, int(shot.potted[ball]))}"
+        for ball in np.flatnonzero(shot.potted >= 0).tolist()
+    ]
+    return [
+        *lines,
+        "; ".join(pots[:2]) + (" ..." if len(pots) > 2 else "")
+        if pots
+        else f"at rest after {shot.duration:.1f} s",
+    ]
 
 
 def contact_of(shot: Shot, met: Meeting) -> Meeting:
     """The same meeting of two balls from the side of the other ball."""
-    return next(contact for contact in contacts(shot, met.other) if contact.time == met.time and contact.other == met.ball)
+    return next(
+        contact
+        for contact in contacts(shot, met.other)
+        if contact.time == met.time and contact.other == met.ball
+    )
 
 
 def name(ball: int) -> str:

@@ -1,7 +1,8 @@
-"""What does a diagram show of a shot? Its paths in pieces that slide or roll, its contacts with their speeds, and where the tip struck.
+"""What does a diagram show of a shot? Its paths in pieces that slide or roll, its contacts with their speeds,
+and where the tip struck.
 
-Without a drawing library, in metres. A piece of a path has so many points that the straight lines between them are within ``STRAY`` of it:
-a rolling ball moves straight, a sliding one on a parabola.
+Without a drawing library, in metres. A piece of a path has so many points that the straight lines between
+them are within ``STRAY`` of it: a rolling ball moves straight, a sliding one on a parabola.
 """
 
 from collections.abc import Iterator
@@ -54,10 +55,15 @@ class Meeting(NamedTuple):
 
 
 def pieces(shot: Shot, ball: int) -> list[Piece]:
-    """The path of a ball; empty if it never moves. Pieces of the same kind without an impact between them are joined."""
+    """The path of a ball; empty if it never moves. Pieces of the same kind without an impact between them are
+    joined."""
     rows = shot.segments[shot.segments[:, SEGMENT_BALL] == ball]
     ends = np.append(rows[1:, T0], shot.duration)
-    impacts = set(shot.events["time"][_is_impact(shot) & ((shot.events["i"] == ball) | (shot.events["j"] == ball))].tolist())
+    impacts = set(
+        shot.events["time"][
+            _is_impact(shot) & ((shot.events["i"] == ball) | (shot.events["j"] == ball))
+        ].tolist()
+    )
     phases: list[tuple[Kind, list[float]]] = []
     for row, end in zip(rows, ends, strict=True):
         kind = _KINDS.get(int(row[SEGMENT_STATE]))
@@ -73,11 +79,15 @@ def pieces(shot: Shot, ball: int) -> list[Piece]:
         return []
     at = shot.at(np.concatenate([times for _, times in phases]))[0][:, ball]
     cuts = np.cumsum([len(times) for _, times in phases])[:-1]
-    return [Piece(kind, np.array(times), points) for (kind, times), points in zip(phases, np.split(at, cuts), strict=True)]
+    return [
+        Piece(kind, np.array(times), points)
+        for (kind, times), points in zip(phases, np.split(at, cuts), strict=True)
+    ]
 
 
 def _steps(row, duration):
-    """The number of straight lines that replace a segment: the distance of a parabola from its chord is at most a dt^2 / 8."""
+    """The number of straight lines that replace a segment: the distance of a parabola from its chord is at
+    most a dt^2 / 8."""
     if row[SEGMENT_STATE] in (ROLL, FALLING):  # straight, without a turning point
         return 1
     return int(np.clip(np.ceil(duration * np.sqrt(np.hypot(row[AX], row[AY]) / (8 * STRAY))), 1, 256))
@@ -91,7 +101,11 @@ def paths(shot: Shot) -> dict[int, list[Piece]]:
     """The pieces of each ball that moved, by its id."""
     check_path(shot)
     every = {ball: pieces(shot, ball) for ball in range(len(shot.positions))}
-    return {ball: parts for ball, parts in every.items() if any(np.ptp(piece.points, axis=0).max() > STILL for piece in parts)}
+    return {
+        ball: parts
+        for ball, parts in every.items()
+        if any(np.ptp(piece.points, axis=0).max() > STILL for piece in parts)
+    }
 
 
 def cue_ball(shot: Shot) -> int | None:
@@ -110,7 +124,8 @@ def velocity_before(shot: Shot, ball: int, time: float) -> Floats:
 
 
 def contacts(shot: Shot, ball: int) -> Iterator[Meeting]:
-    """The meetings of a ball in order of time. ``ball`` is ``Meeting.ball``, also where the other ball struck it."""
+    """The meetings of a ball in order of time. ``ball`` is ``Meeting.ball``, also where the other ball struck
+    it."""
     R = shot.physics.R
     for time, number, i, j in shot.events[_is_impact(shot)].tolist():
         kind = EventKind(number)
@@ -131,11 +146,14 @@ def contacts(shot: Shot, ball: int) -> Iterator[Meeting]:
         elif shot.table is not None and kind == EventKind.POT:
             place = shot.table.falls[other, [FALL_X, FALL_Y]]
         before, after = velocity_before(shot, ball, time), v[ball]
-        yield Meeting(time, kind, ball, other, place, centre, float(np.hypot(*before)), float(np.hypot(*after)))
+        yield Meeting(
+            time, kind, ball, other, place, centre, float(np.hypot(*before)), float(np.hypot(*after))
+        )
 
 
 def cut_angle(shot: Shot, contact: Meeting) -> float:
-    """Cut angle of a contact with a ball [rad]: between the ball's direction just before and the line of centres; 0 is a full contact."""
+    """Cut angle of a contact with a ball [rad]: between the ball's direction just before and the line of
+    centres; 0 is a full contact."""
     v, line = velocity_before(shot, contact.ball, contact.time), contact.place - contact.centre
     return float(np.arctan2(abs(v[0] * line[1] - v[1] * line[0]), v @ line))
 
@@ -157,7 +175,12 @@ def tip_of(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
     elevation = float(np.arctan2(about_path * np.sign(about_up), abs(about_up))) if about_up else 0.0
     elevation = elevation if elevation > 1e-9 else 0.0  # no cue has a negative one
     q = 2.5 * v / np.cos(elevation) / physics.R
-    return Tip(about_up / np.cos(elevation) / q, float(spin[1] * c - spin[0] * s) / q, v / float(np.cos(elevation)), elevation)
+    return Tip(
+        about_up / np.cos(elevation) / q,
+        float(spin[1] * c - spin[0] * s) / q,
+        v / float(np.cos(elevation)),
+        elevation,
+    )
 
 
 def arrow_places(points: Floats, spacing: float) -> list[tuple[Floats, Floats]]:

@@ -1,7 +1,9 @@
-"""How is a table drawn with matplotlib? By a ``Sketch``: axes in metres, baulk left and black right, with cloth, cushions, balls and marks.
+"""How is a table drawn with matplotlib? By a ``Sketch``: axes in metres, baulk left and black right, with
+cloth, cushions, balls and marks.
 
-The horizontal axis of the picture is y [m] to the right, the vertical one x [m] down, as from above on television: a point (x, y) of the
-table is drawn by ``ax.plot(y, x)``. Everything is drawn on the table's own colours, so that light and dark pages show it alike.
+The horizontal axis of the picture is y [m] to the right, the vertical one x [m] down, as from above on
+television: a point (x, y) of the table is drawn by ``ax.plot(y, x)``. Everything is drawn on the table's own
+colours, so that light and dark pages show it alike.
 """
 
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -21,11 +23,13 @@ if TYPE_CHECKING:
 WIDTH = 8.3
 """Width of a new figure [inches]: 830 pixels, the width of a README."""
 PATH_WIDTH, OUTLINE = 2.16, 1.6
-"""Width of a path [points], 3 pixels at 100 dots per inch; and by how much its dark outline is wider [points]."""
+"""Width of a path [points], 3 pixels at 100 dots per inch; and by how much its dark outline is wider
+[points]."""
 TABLE = "snooker-table"
 """The gid of the parts that a sketch draws once on its axes."""
 CAPTIONS = {"full": 0.118, "short": 0.2, "none": 0.0}
-"""Height of the strip for text under the picture over the width of the picture: for wide axes, for axes of half the width, and none."""
+"""Height of the strip for text under the picture over the width of the picture: for wide axes, for axes of
+half the width, and none."""
 
 _MARGIN = 0.02  # floor shown around the rails [m]
 
@@ -65,8 +69,11 @@ class Region(NamedTuple):
         return cls(low_x - rim, high_x + rim, low_y - rim, high_y + rim)
 
     @classmethod
-    def around(cls, points: Floats, table: Table, margin: float = 0.18, ratio: tuple[float, float] = (1.35, 2.1)) -> "Region":
-        """The region around points (m, 2) [m]: at least 1 m wide, width over height within ``ratio``, and inside the table's picture."""
+    def around(
+        cls, points: Floats, table: Table, margin: float = 0.18, ratio: tuple[float, float] = (1.35, 2.1)
+    ) -> "Region":
+        """The region around points (m, 2) [m]: at least 1 m wide, width over height within ``ratio``, and
+        inside the table's picture."""
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         height, width = high - low
         width, height = max(width, 1.0, ratio[0] * height), height
@@ -85,7 +92,8 @@ class Region(NamedTuple):
 
 
 def is_closed(table: Table) -> bool:
-    """Whether there is a cushion on each side. If so, the table has a wooden frame; if not, cloth fills the picture."""
+    """Whether there is a cushion on each side. If so, the table has a wooden frame; if not, cloth fills the
+    picture."""
     return bool(np.isfinite(table.bounds).all())
 
 
@@ -103,7 +111,15 @@ def flipped(points: Any) -> Floats:
 class Sketch:
     """Axes with a table on them; ``ax`` None makes a new figure, one with a sketch stays as it is."""
 
-    def __init__(self, table: Table, R: float, region: Region | None = None, ax: "Axes | None" = None, *, strip: float = 0.0):
+    def __init__(
+        self,
+        table: Table,
+        R: float,
+        region: Region | None = None,
+        ax: "Axes | None" = None,
+        *,
+        strip: float = 0.0,
+    ):
         plt = pyplot()
         region = Region.of_table(table) if region is None else region
         self.table: Table = table
@@ -111,7 +127,9 @@ class Sketch:
         depth = strip * region.width
         axes: Any = ax
         if axes is None:
-            figure = plt.figure(figsize=(WIDTH, WIDTH * (region.height + depth) / region.width), facecolor=rgb("floor"))
+            figure = plt.figure(
+                figsize=(WIDTH, WIDTH * (region.height + depth) / region.width), facecolor=rgb("floor")
+            )
             axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
         self.ax: Axes = axes
         self.fresh: bool = not any(artist.get_gid() == TABLE for artist in axes.get_children())
@@ -124,8 +142,12 @@ class Sketch:
             (low_y, high_y), (bottom, low_x) = axes.get_xlim(), axes.get_ylim()
             self.region, self.depth = Region(low_x, bottom, low_y, high_y), 0.0
         room, points = axes.get_window_extent(), 72 / axes.figure.dpi
-        self.points_per_metre: float = points * min(room.width / self.region.width, room.height / (self.region.height + self.depth))
-        self.font: float = float(np.clip(9.0 * self.points_per_metre * self.region.width / (72 * WIDTH), 7.5, 11.0))
+        self.points_per_metre: float = points * min(
+            room.width / self.region.width, room.height / (self.region.height + self.depth)
+        )
+        self.font: float = float(
+            np.clip(9.0 * self.points_per_metre * self.region.width / (72 * WIDTH), 7.5, 11.0)
+        )
         self._taken: list[tuple[float, float, float, float]] = []
         self._busy: list[Floats] = []
 
@@ -140,7 +162,8 @@ class Sketch:
         for spine in ax.spines.values():
             spine.set_visible(False)
 
-    # the table ---------------------------------------------------------------------------------------------------------------
+    # the table
+    # ---------------------------------------------------------------------------------------------------------------
 
     def _draw_table(self):
         from matplotlib.patches import Circle, FancyBboxPatch, Polygon, Rectangle
@@ -156,29 +179,52 @@ class Sketch:
                 patch.set_clip_path(clip)
 
         def box(extra, kind: Any = Rectangle, **more):
-            return kind((low_y - extra, low_x - extra), high_y - low_y + 2 * extra, high_x - low_x + 2 * extra, **more)
+            return kind(
+                (low_y - extra, low_x - extra), high_y - low_y + 2 * extra, high_x - low_x + 2 * extra, **more
+            )
 
         def rail(extra, radius, colour, level):
-            add(box(extra, FancyBboxPatch, boxstyle=f"round,pad=0,rounding_size={radius}", fc=rgb(colour), ec="none"), level)
+            add(
+                box(
+                    extra,
+                    FancyBboxPatch,
+                    boxstyle=f"round,pad=0,rounding_size={radius}",
+                    fc=rgb(colour),
+                    ec="none",
+                ),
+                level,
+            )
 
         if is_closed(self.table):
             rail(RAIL, 0.09, "wood_edge", 0.0)
             rail(RAIL - 0.010, 0.08, "wood", 0.05)
             rail(RAIL - 0.022, 0.07, [min(255, round(1.13 * part)) for part in PALETTE["wood"]], 0.06)
             add(box(CUSHION + 0.008, fc=rgb("wood_edge"), ec="none"), 0.1)
-            for rim, colour, level in ((0.014, "leather_edge", 0.15), (0.011, "leather", 0.16), (0.0, "hole", 0.2)):
+            for rim, colour, level in (
+                (0.014, "leather_edge", 0.15),
+                (0.011, "leather", 0.16),
+                (0.0, "hole", 0.2),
+            ):
                 for x0, y0, x1, y1, half in parts.throats:
                     along = np.array([x1 - x0, y1 - y0]) / np.hypot(x1 - x0, y1 - y0)
                     across = (half + rim) * np.array([-along[1], along[0]])
                     a, b = np.array([x0, y0]), np.array([x1, y1])
-                    add(Polygon(flipped([a + across, b + across, b - across, a - across]), fc=rgb(colour), ec="none"), level)
+                    add(
+                        Polygon(
+                            flipped([a + across, b + across, b - across, a - across]),
+                            fc=rgb(colour),
+                            ec="none",
+                        ),
+                        level,
+                    )
                     add(Circle((y1, x1), half + rim, fc=rgb(colour), ec="none"), level)
             left, top = max(low_y - CUSHION, w.low_y), max(low_x - CUSHION, w.low_x)
             right, bottom = min(high_y + CUSHION, w.high_y), min(high_x + CUSHION, w.high_x)
         else:  # cloth fills the picture
             left, top, right, bottom = w.low_y, w.low_x, w.high_y, w.high_x
         add(Rectangle((left, top), right - left, bottom - top, fc=rgb("cloth"), ec="none"), 0.3)
-        cloth = Rectangle((left, top), right - left, bottom - top, transform=ax.transData)  # clips what is drawn on it
+        # clips what is drawn on it
+        cloth = Rectangle((left, top), right - left, bottom - top, transform=ax.transData)
         for x, y, radius in parts.falls:
             add(Circle((y, x), radius + 0.006, fc=rgb("cloth_edge"), ec="none"), 0.4, cloth)
             add(Circle((y, x), radius, fc=rgb("hole"), ec="none"), 0.45, cloth)
@@ -188,16 +234,26 @@ class Sketch:
             for x, y in SPOT_MARKS:
                 add(Circle((y, x), 0.007, fc=rgb("line"), ec="none"), 0.5)
         for nose in parts.noses:
-            (shade,) = ax.plot(*flipped(nose).T, color=rgb("shadow", 0.28), lw=0.03 * scale, zorder=0.55, gid=TABLE)
+            (shade,) = ax.plot(
+                *flipped(nose).T, color=rgb("shadow", 0.28), lw=0.03 * scale, zorder=0.55, gid=TABLE
+            )
             shade.set_clip_path(cloth)
         for polygon, nose in zip(parts.cushions, parts.noses, strict=True):
             add(Polygon(flipped(polygon), fc=rgb("cushion"), ec="none"), 0.6, cloth)
-            ax.plot(*flipped(nose).T, color=rgb("nose"), lw=0.005 * scale, zorder=0.65, gid=TABLE, solid_capstyle="butt")
+            ax.plot(
+                *flipped(nose).T,
+                color=rgb("nose"),
+                lw=0.005 * scale,
+                zorder=0.65,
+                gid=TABLE,
+                solid_capstyle="butt",
+            )
         if self.depth:
             add(Rectangle((w.low_y, w.high_x), w.width, self.depth, fc=rgb("bar"), ec="none"), 9.0)
             ax.plot([w.low_y, w.high_y], [w.high_x] * 2, color=rgb("bar_edge"), lw=1.0, zorder=9.1, gid=TABLE)
 
-    # things on the table -----------------------------------------------------------------------------------------------------
+    # things on the table
+    # -----------------------------------------------------------------------------------------------------
 
     def ball(self, ball: int, place: Vector, *, label: bool = False) -> None:
         """A ball at rest, with a highlight; ``label``: with its letter."""
@@ -206,20 +262,45 @@ class Sketch:
         (y, x), R, colour = flipped(place), self.R, COLOURS[ball % N_BALLS]
         add = self.ax.add_patch
         add(Circle((y + 0.25 * R, x + 0.3 * R), 1.08 * R, fc=rgb("shadow", 0.4), ec="none", zorder=6.9))
-        add(Circle((y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), lw=0.4, zorder=7.0, gid=f"ball-{ball}"))
+        add(
+            Circle(
+                (y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), lw=0.4, zorder=7.0, gid=f"ball-{ball}"
+            )
+        )
         for k in range(1, 13):
             away = 0.029 * k * R
-            add(Circle((y - away, x - away), R * (1 - 0.065 * k), fc=(1, 1, 1, 0.022), ec="none", zorder=7.0 + 0.005 * k))
+            add(
+                Circle(
+                    (y - away, x - away),
+                    R * (1 - 0.065 * k),
+                    fc=(1, 1, 1, 0.022),
+                    ec="none",
+                    zorder=7.0 + 0.005 * k,
+                )
+            )
         add(Circle((y - 0.36 * R, x - 0.40 * R), 0.17 * R, fc=rgb("lamp", 0.85), ec="none", zorder=7.1))
         self.keep_clear(np.asarray(place)[None], 2 * R)
         if label:
             dark = colour @ [0.30, 0.59, 0.11] < 130
             ink = (1, 1, 1) if dark else (0, 0, 0)
             size = max(5.0, 1.15 * R * self.points_per_metre)
-            self.ax.text(y, x, LETTERS[ball % N_BALLS], color=ink, size=size, weight="bold", ha="center", va="center_baseline", zorder=7.2)
+            self.ax.text(
+                y,
+                x,
+                LETTERS[ball % N_BALLS],
+                color=ink,
+                size=size,
+                weight="bold",
+                ha="center",
+                va="center_baseline",
+                zorder=7.2,
+            )
 
-    def ghost(self, ball: int, place: Vector, alpha: float = 0.4, *, radius: float | None = None, level: float = 6.0) -> None:
-        """A faded ball with a rim, for a moment of the shot or its end. ``radius``: another size than the ball's [m]."""
+    def ghost(
+        self, ball: int, place: Vector, alpha: float = 0.4, *, radius: float | None = None, level: float = 6.0
+    ) -> None:
+        """A faded ball with a rim, for a moment of the shot or its end. ``radius``: another size than the
+        ball's [m]."""
         from matplotlib.patches import Circle
 
         (y, x), colour = flipped(place), COLOURS[ball % N_BALLS]
@@ -228,41 +309,75 @@ class Sketch:
         self.ax.add_patch(Circle((y, x), size, fc=rgb(colour, alpha), ec=rim, lw=0.9, zorder=level, gid=gid))
         self.keep_clear(np.asarray(place)[None], 2 * size)
 
-    def line(self, points: Floats, colour: Any, *, level: float = 5.0, width: float = PATH_WIDTH, **style: Any) -> None:
+    def line(
+        self, points: Floats, colour: Any, *, level: float = 5.0, width: float = PATH_WIDTH, **style: Any
+    ) -> None:
         """A line (m, 2) [m] with a dark outline."""
-        under = {"color": rgb("path_edge", 0.85), "lw": width + OUTLINE, "zorder": level - 0.5, "solid_capstyle": "round"}
+        under = {
+            "color": rgb("path_edge", 0.85),
+            "lw": width + OUTLINE,
+            "zorder": level - 0.5,
+            "solid_capstyle": "round",
+        }
         self.ax.plot(*flipped(points).T, **under, gid="outline")
         self.ax.plot(
-            *flipped(points).T, **{"color": rgb(colour), "lw": width, "zorder": level, "solid_capstyle": "round", "gid": "path"} | style
+            *flipped(points).T,
+            **{"color": rgb(colour), "lw": width, "zorder": level, "solid_capstyle": "round", "gid": "path"}
+            | style,
         )
         self.keep_clear(points, 0.0)
 
-    def arrow(self, place: Floats, direction: Floats, colour: Any, size: float = 10.0, level: float = 5.6) -> None:
+    def arrow(
+        self, place: Floats, direction: Floats, colour: Any, size: float = 10.0, level: float = 5.6
+    ) -> None:
         """An arrowhead at a place, ``size`` long [points], pointing along a unit vector."""
         from matplotlib.patches import Polygon
 
-        head = np.array([(0.5, 0.0), (-0.35, 0.32), (-0.17, 0.0), (-0.35, -0.32)]) * size / self.points_per_metre
+        head = (
+            np.array([(0.5, 0.0), (-0.35, 0.32), (-0.17, 0.0), (-0.35, -0.32)]) * size / self.points_per_metre
+        )
         points = place + head @ np.array([direction, [-direction[1], direction[0]]])
-        self.ax.add_patch(Polygon(flipped(points), fc=rgb(colour), ec=rgb("path_edge"), lw=0.8, zorder=level, gid="arrow"))
+        self.ax.add_patch(
+            Polygon(flipped(points), fc=rgb(colour), ec=rgb("path_edge"), lw=0.8, zorder=level, gid="arrow")
+        )
 
-    def mark(self, place: Vector, marker: Any, colour: Any, size: float = 6.0, level: float = 8.0, **more: Any) -> None:
+    def mark(
+        self, place: Vector, marker: Any, colour: Any, size: float = 6.0, level: float = 8.0, **more: Any
+    ) -> None:
         """A small sign at a place."""
         y, x = flipped(place)
-        style = {"mfc": rgb(colour), "mec": rgb("path_edge"), "mew": 0.9, "ls": "none", "zorder": level} | more
+        style = {
+            "mfc": rgb(colour),
+            "mec": rgb("path_edge"),
+            "mew": 0.9,
+            "ls": "none",
+            "zorder": level,
+        } | more
         self.ax.plot(y, x, marker=marker, ms=size, **style)
 
-    # words -------------------------------------------------------------------------------------------------------------------
+    # words
+    # -------------------------------------------------------------------------------------------------------------------
 
     def keep_clear(self, points: Floats, size: float) -> None:
-        """Keep labels away from these points (m, 2), each ``size`` wide [m], and for a line from the points between them."""
+        """Keep labels away from these points (m, 2), each ``size`` wide [m], and for a line from the points
+        between them."""
         if len(points) > 1:
             steps = np.maximum(1, np.ceil(np.hypot(*np.diff(points, axis=0).T) / 0.02).astype(int))
-            points = np.concatenate([np.linspace(a, b, n) for a, b, n in zip(points[:-1], points[1:], steps, strict=True)])
+            points = np.concatenate(
+                [np.linspace(a, b, n) for a, b, n in zip(points[:-1], points[1:], steps, strict=True)]
+            )
         self._busy.append(np.column_stack([points, np.full(len(points), size)]))
 
-    def text(self, y: float, x: float, words: str, colour: Any = "text", size: float = 1.0, **more: Any) -> None:
+    def text(
+        self, y: float, x: float, words: str, colour: Any = "text", size: float = 1.0, **more: Any
+    ) -> None:
         """Text at a place of the picture; ``size`` in units of the usual font."""
-        self.ax.text(y, x, words, **{"color": rgb(colour), "size": self.font * size, "zorder": 9.5, "va": "center"} | more)
+        self.ax.text(
+            y,
+            x,
+            words,
+            **{"color": rgb(colour), "size": self.font * size, "zorder": 9.5, "va": "center"} | more,
+        )
 
     def rows(self, n: int) -> list[float]:
         """The x of n lines of text in the strip under the picture [m]."""
@@ -275,14 +390,16 @@ class Sketch:
         if words:
             w, line = self.region, 1.5 * self.font / self.points_per_metre
             within = w.low_x < extent(self.table)[0, 0] - CUSHION  # on the rail, else on the cloth
-            y = w.low_y + (0.055 * w.width if w.low_y < extent(self.table)[1, 0] - CUSHION else 0.5 * line)  # right of the pocket
+            # right of the pocket
+            y = w.low_y + (0.055 * w.width if w.low_y < extent(self.table)[1, 0] - CUSHION else 0.5 * line)
             x = w.low_x + (0.072 if within else 0.7 * line)
             stroke = [withStroke(linewidth=2.2, foreground=rgb("path_edge", 0.85))]
             self.text(y, x, words, weight="bold", size=1.1, gid="title", path_effects=stroke)
             self._taken.append((w.low_y, w.low_y + 0.66 * line * len(words), w.low_x, w.low_x + 1.3 * line))
 
     def label(self, place: Vector, words: str, colour: Any = "text") -> bool:
-        """Write text near a place, where it covers least, with a line to it; False if there is no room for it."""
+        """Write text near a place, where it covers least, with a line to it; False if there is no room for
+        it."""
         from matplotlib.patheffects import withStroke
 
         high = 1.25 * self.font / self.points_per_metre
@@ -292,7 +409,10 @@ class Sketch:
         best, least = None, np.inf
         for far in (1.6, 2.3, 3.2, 4.4):
             for angle in np.arange(0, 2 * np.pi, np.pi / 8):
-                cy, cx = y + np.cos(angle) * (wide / 2 + 0.45 * far * high), x + np.sin(angle) * 0.8 * far * high
+                cy, cx = (
+                    y + np.cos(angle) * (wide / 2 + 0.45 * far * high),
+                    x + np.sin(angle) * 0.8 * far * high,
+                )
                 box = cy - wide / 2, cy + wide / 2, cx - high / 2, cx + high / 2
                 cost = self._cost(box, busy) + 0.4 * far
                 if cost < least:
@@ -305,7 +425,14 @@ class Sketch:
         if np.hypot(near[0] - y, near[1] - x) > 0.7 * high:
             self.ax.plot([y, near[0]], [x, near[1]], color=rgb("text", 0.7), lw=0.7, zorder=8.4, gid="leader")
         stroke = [withStroke(linewidth=2.4, foreground=rgb("path_edge", 0.9))]
-        style = {"color": rgb(colour), "size": self.font, "ha": "center", "va": "center", "zorder": 8.6, "weight": "bold"}
+        style = {
+            "color": rgb(colour),
+            "size": self.font,
+            "ha": "center",
+            "va": "center",
+            "zorder": 8.6,
+            "weight": "bold",
+        }
         self.ax.text(cy, cx, words, **style, path_effects=stroke, gid="label")
         return True
 
@@ -315,7 +442,12 @@ class Sketch:
         w = self.region
         out = max(w.low_y - left, right - w.high_y, w.low_x - top, bottom - w.high_x, 0.0)
         half = busy[:, 2] / 2
-        inside = (busy[:, 1] > left - half) & (busy[:, 1] < right + half) & (busy[:, 0] > top - half) & (busy[:, 0] < bottom + half)
+        inside = (
+            (busy[:, 1] > left - half)
+            & (busy[:, 1] < right + half)
+            & (busy[:, 0] > top - half)
+            & (busy[:, 0] < bottom + half)
+        )
         weight = float((inside * np.where(busy[:, 2] > 0, 6.0, 1.0)).sum())
         over = sum(100.0 for l, r, t, b in self._taken if l < right and left < r and t < bottom and top < b)  # noqa: E741
         return weight + over + (1000.0 if out else 0.0)

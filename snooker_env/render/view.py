@@ -1,4 +1,5 @@
-"""How do metres map to pixels? The table is in the middle of the picture, +y to the right and +x down; the score bar is below it."""
+"""How do metres map to pixels? The table is in the middle of the picture, +y to the right and +x down; the
+score bar is below it."""
 
 from typing import NamedTuple
 
@@ -34,7 +35,8 @@ class View(NamedTuple):
 
     @classmethod
     def of(cls, table: Table, height: int | None = None, size: tuple[int, int] | None = None) -> "View":
-        """The view of a table. ``size`` (width, height): as large as fits; ``height``: with the width of that table; neither: ``SIZE``."""
+        """The view of a table. ``size`` (width, height): as large as fits; ``height``: with the width of that
+        table; neither: ``SIZE``."""
         low, high = extent(table).T
         (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + _MARGIN), (low + high) / 2
         if height is not None and size is not None:
@@ -48,7 +50,14 @@ class View(NamedTuple):
             width, height = _checked(SIZE if size is None else size)
             bar = round(_BAR * min(height, width * SIZE[1] / SIZE[0]))
             scale = min((height - bar) / tall, width / wide)
-        return cls(width, height, bar, float(scale), float(width / 2 - scale * middle_y), float((height - bar) / 2 - scale * middle_x))
+        return cls(
+            width,
+            height,
+            bar,
+            float(scale),
+            float(width / 2 - scale * middle_y),
+            float((height - bar) / 2 - scale * middle_x),
+        )
 
     def __call__(self, points: Floats) -> Floats:
         """Column and row of points (..., 2) [m]."""

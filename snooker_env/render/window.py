@@ -35,9 +35,12 @@ _INVISIBLE = ("dummy", "offscreen")  # drivers of SDL
 
 
 def display_missing() -> bool:
-    """Whether nobody could see a window. ``SDL_VIDEODRIVER=dummy`` allows a window without a screen, as in tests."""
+    """Whether nobody could see a window. ``SDL_VIDEODRIVER=dummy`` allows a window without a screen, as in
+    tests."""
     linux = not (sys.platform.startswith("win") or sys.platform == "darwin")
-    return linux and not any(os.environ.get(name) for name in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY"))
+    return linux and not any(
+        os.environ.get(name) for name in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY")
+    )
 
 
 def require_display() -> None:
@@ -54,9 +57,12 @@ def _no_display(why):
 
 
 class Window:
-    """A window with a table, opened by the first ``draw``; closed by the user, it stays so until ``close``."""
+    """A window with a table, opened by the first ``draw``; closed by the user, it stays so until
+    ``close``."""
 
-    def __init__(self, height: int | None = None, title: str = "snooker", *, size: tuple[int, int] | None = None):
+    def __init__(
+        self, height: int | None = None, title: str = "snooker", *, size: tuple[int, int] | None = None
+    ):
         View.of(Table.of(None), height, size)  # raises for a wrong size now, not when the window opens
         self._height, self._size, self._title = height, size, title
         self._screen: Any = None
@@ -176,7 +182,9 @@ class Window:
         self._screen = pygame.display.get_surface()  # a new one after the window was resized
         width, height = self._screen.get_size()
         hint = self._hint
-        scene = dataclasses.replace(scene, lettered=scene.lettered or self._letters, paths=scene.paths if self._paths else {})
+        scene = dataclasses.replace(
+            scene, lettered=scene.lettered or self._letters, paths=scene.paths if self._paths else {}
+        )
         pixels = draw(scene, View.of(scene.table, size=(max(width, 100), max(height - hint, 100))))
         self._screen.fill(PALETTE["floor"])
         self._screen.blit(pygame.image.frombuffer(pixels, pixels.shape[1::-1], "RGB"), (0, 0))
@@ -212,7 +220,8 @@ class _FilmReel:
 
 
 class _SceneReel:
-    """The same for an iterable of scenes: at speeds above 1 some are left out, below 1 some are shown again."""
+    """The same for an iterable of scenes: at speeds above 1 some are left out, below 1 some are shown
+    again."""
 
     def __init__(self, scenes: Iterable[Scene]):
         self._scenes, self._due = iter(scenes), 0.0

@@ -1,4 +1,5 @@
-"""What does the score bar show at each stroke? Two bars for each stroke: one during it, and one after the referee's decision."""
+"""What does the score bar show at each stroke? Two bars for each stroke: one during it, and one after the
+referee's decision."""
 
 from collections.abc import Iterable, Sequence
 
@@ -11,7 +12,8 @@ from .words import on_words, pots_of, sentence
 
 
 def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreBar, ScoreBar]]:
-    """For each stroke of one episode, in order: the bar during it and the bar after it. ``players``: their names."""
+    """For each stroke of one episode, in order: the bar during it and the bar after it. ``players``: their
+    names."""
     made, names = [], tuple(players)
     potted: list[int] | None = []  # in this break; None: it began before the first recorded stroke
     run = 0

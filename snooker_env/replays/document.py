@@ -1,4 +1,5 @@
-"""What is a replay? Strokes in their order, as data, as a page that any browser plays from disk, and as a film."""
+"""What is a replay? Strokes in their order, as data, as a page that any browser plays from disk, and as a
+film."""
 
 import html
 import json
@@ -24,7 +25,8 @@ SUFFIXES = (".html", ".json", ".mp4", ".gif")
 
 
 class Replay:
-    """A sequence of strokes that can be shown: as a page (``html``, ``save``), in a notebook (as the value of a cell), or as a film.
+    """A sequence of strokes that can be shown: as a page (``html``, ``save``), in a notebook (as the value of
+    a cell), or as a film.
 
     ``snooker_env.replay`` makes replays from shots, histories, positions and environments.
 
@@ -35,7 +37,8 @@ class Replay:
     title : str, optional
         Title of the page; default none.
     players : iterable of str, optional
-        Names of the players: two for a frame, one for a visit, none for bare shots. Default: "Player 1" and "Player 2", or "Player".
+        Names of the players: two for a frame, one for a visit, none for bare shots. Default: "Player 1" and
+        "Player 2", or "Player".
     table : str, Table or None, optional
         The table on which the strokes were played; default: that of the shots, or "match".
 
@@ -53,7 +56,8 @@ class Replay:
     Raises
     ------
     ValueError
-        If there is no stroke, if strokes differ in ball radius, spin deceleration or table, or if an argument is invalid.
+        If there is no stroke, if strokes differ in ball radius, spin deceleration or table, or if an argument
+        is invalid.
 
     Examples
     --------
@@ -64,11 +68,22 @@ class Replay:
     (Replay(2 strokes, 'twice'), (), 'match')
     """
 
-    def __init__(self, strokes: Iterable[Shot | Played], *, title: str = "", players: Iterable[str] = (), table: TableLike = None):
+    def __init__(
+        self,
+        strokes: Iterable[Shot | Played],
+        *,
+        title: str = "",
+        players: Iterable[str] = (),
+        table: TableLike = None,
+    ):
         self.strokes: tuple[Shot | Played, ...] = tuple(strokes)
         for k, stroke in enumerate(self.strokes):
             if not isinstance(stroke, Shot | Played):
-                raise refuse_what(f"strokes[{k}]", f"a {type(stroke).__name__}", "must be a Shot, or a stroke of env.history")
+                raise refuse_what(
+                    f"strokes[{k}]",
+                    f"a {type(stroke).__name__}",
+                    "must be a Shot, or a stroke of env.history",
+                )
         if not self.strokes:
             raise refuse("strokes", [], "must hold at least one stroke")
         self.title: str = checked_text("title", title)
@@ -79,8 +94,15 @@ class Replay:
             raise refuse_what("players", f"{len(names)} names", allowed)
         self.players: tuple[str, ...] = names or usual
         for k, shot in enumerate(self.shots):
-            if (shot.physics.R, shot.physics.spin_decel) != (self.shots[0].physics.R, self.shots[0].physics.spin_decel):
-                raise refuse_what(f"strokes[{k}]", "a shot with other physics", "must have the R and the spin_decel of the first")
+            if (shot.physics.R, shot.physics.spin_decel) != (
+                self.shots[0].physics.R,
+                self.shots[0].physics.spin_decel,
+            ):
+                raise refuse_what(
+                    f"strokes[{k}]",
+                    "a shot with other physics",
+                    "must have the R and the spin_decel of the first",
+                )
         tables = [shot.table for shot in self.shots if shot.table is not None]
         if table is not None:
             self.table: Table = Table.of(table)
@@ -88,12 +110,22 @@ class Replay:
             self.table = tables[0] if tables else Table.preset("match")
             for k, other in enumerate(tables):
                 if not _same(other, self.table):
-                    raise refuse_what(f"strokes[{k}]", "a shot on another table", "must be on the table of the first, or pass table=...")
+                    raise refuse_what(
+                        f"strokes[{k}]",
+                        "a shot on another table",
+                        "must be on the table of the first, or pass table=...",
+                    )
         self._data: dict[str, Any] | None = None
 
     def _usual_players(self) -> tuple[str, ...]:
         judged = [stroke for stroke in self.strokes if isinstance(stroke, Played)]
-        return ("Player 1", "Player 2") if judged and len(judged[0].scores) == 2 else ("Player",) if judged else ()
+        return (
+            ("Player 1", "Player 2")
+            if judged and len(judged[0].scores) == 2
+            else ("Player",)
+            if judged
+            else ()
+        )
 
     @property
     def shots(self) -> list[Shot]:
@@ -174,7 +206,9 @@ class Replay:
             'style="width: 100%; aspect-ratio: 16 / 10; border: 0"></iframe>'
         )
 
-    def frames(self, *, fps: float = 30.0, speed: float = 1.0, size: tuple[int, int] = (1920, 1080)) -> Iterator[NDArray[np.uint8]]:
+    def frames(
+        self, *, fps: float = 30.0, speed: float = 1.0, size: tuple[int, int] = (1920, 1080)
+    ) -> Iterator[NDArray[np.uint8]]:
         """Iterate over the pictures of the film.
 
         Parameters
@@ -189,7 +223,8 @@ class Replay:
         Returns
         -------
         iterator of numpy.ndarray
-            uint8 (height, width, 3). Treat them as read-only: while nothing moves, the same array comes again.
+            uint8 (height, width, 3). Treat them as read-only: while nothing moves, the same array comes
+            again.
 
         Raises
         ------
@@ -208,10 +243,11 @@ class Replay:
         Parameters
         ----------
         path : str or Path
-            ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra ``render``. The file is written
-            whole or not at all.
+            ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra
+            ``render``. The file is written whole or not at all.
         **film
-            ``fps``, ``speed`` and ``size`` of a film, as in ``frames``. Default for ``.gif``: 640 x 360 at 15 pictures per second.
+            ``fps``, ``speed`` and ``size`` of a film, as in ``frames``. Default for ``.gif``: 640 x 360 at 15
+            pictures per second.
 
         Returns
         -------
@@ -266,4 +302,6 @@ def checked_players(players: Any) -> tuple[str, ...]:
 
 
 def _same(a: Table, b: Table) -> bool:
-    return a is b or all(np.array_equal(x, y) for x, y in ((a.noses, b.noses), (a.jaws, b.jaws), (a.falls, b.falls)))
+    return a is b or all(
+        np.array_equal(x, y) for x, y in ((a.noses, b.noses), (a.jaws, b.jaws), (a.falls, b.falls))
+    )

@@ -1,7 +1,9 @@
-"""How is a stroke encoded for a browser? As the closed forms of its phases of motion: small, and exact at every time.
+"""How is a stroke encoded for a browser? As the closed forms of its phases of motion: small, and exact at
+every time.
 
-The numbers of a path are binary in base64. Positions, velocities and accelerations have 64 bits, so that the browser computes the same
-positions as ``Shot.at``. Spins have 32 bits, because they are only displayed. docs/play/replay.md describes the format.
+The numbers of a path are binary in base64. Positions, velocities and accelerations have 64 bits, so that the
+browser computes the same positions as ``Shot.at``. Spins have 32 bits, because they are only displayed.
+docs/play/replay.md describes the format.
 """
 
 import base64
@@ -24,19 +26,27 @@ _WHICH = [cloth.SEGMENT_BALL, cloth.SEGMENT_STATE]
 
 def packed(values: Any, kind: str) -> str:
     """Numbers as base64 of little-endian ``kind``: "f8", "f4" or "u1", row after row."""
-    return base64.b64encode(np.ascontiguousarray(values, np.dtype(kind).newbyteorder("<")).tobytes()).decode("ascii")
+    return base64.b64encode(np.ascontiguousarray(values, np.dtype(kind).newbyteorder("<")).tobytes()).decode(
+        "ascii"
+    )
 
 
 def encoded_shot(shot: Shot) -> dict[str, Any]:
-    """The motion of a shot, up to the key "pots". ValueError if it has no path, or more balls than snooker."""
+    """The motion of a shot, up to the key "pots". ValueError if it has no path, or more balls than
+    snooker."""
     n = len(shot.positions)
     if n > N_BALLS:
         raise refuse_what("shot", f"{n} balls", f"must have at most {N_BALLS}: their colours are snooker's")
     if not len(shot.segments):
-        raise refuse_what("shot", "a Shot without its path", "must be of sn.simulate, or of an environment with keep_history = True")
+        raise refuse_what(
+            "shot",
+            "a Shot without its path",
+            "must be of sn.simulate, or of an environment with keep_history = True",
+        )
     first, states = shot.segments[:n], shot.segments[:, cloth.SEGMENT_STATE]
     idle = (states == cloth.REST) | (states == cloth.GONE)
-    waits = (np.arange(len(states)) < n) & idle & (shot.segments[:, cloth.WZ] == 0.0)  # at rest from the start: its place is in ``start``
+    # at rest from the start: its place is in ``start``
+    waits = (np.arange(len(states)) < n) & idle & (shot.segments[:, cloth.WZ] == 0.0)
     moves = shot.segments[~waits]
     return {
         "n": n,
@@ -87,8 +97,14 @@ def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, A
 def _after(item: Played) -> dict[str, Any] | None:
     """The table before the next stroke, if it differs from the balls at rest."""
     on_table = item.on_table
-    same = np.array_equal(on_table, item.shot.on_table) and np.array_equal(item.positions[on_table], item.shot.positions[on_table])
-    return None if same else {"places": packed(_places(item.positions), "f8"), "on_table": np.flatnonzero(on_table).tolist()}
+    same = np.array_equal(on_table, item.shot.on_table) and np.array_equal(
+        item.positions[on_table], item.shot.positions[on_table]
+    )
+    return (
+        None
+        if same
+        else {"places": packed(_places(item.positions), "f8"), "on_table": np.flatnonzero(on_table).tolist()}
+    )
 
 
 def _places(positions: Floats) -> Floats:

@@ -1,4 +1,5 @@
-"""How does a replay become a film? Picture after picture is sent to the encoder, so that only one is in memory at a time."""
+"""How does a replay become a film? Picture after picture is sent to the encoder, so that only one is in
+memory at a time."""
 
 import subprocess
 from collections.abc import Callable, Iterable, Iterator
@@ -44,7 +45,9 @@ def shown(
         yield filmed(table, stroke, during, after, "" if during else title)
 
 
-def filmed(table: Table, stroke: Shot | Played, during: ScoreBar | None, after: ScoreBar | None, text: str = "") -> tuple[Film, Scene]:
+def filmed(
+    table: Table, stroke: Shot | Played, during: ScoreBar | None, after: ScoreBar | None, text: str = ""
+) -> tuple[Film, Scene]:
     """A stroke as a film, and the table after it; ``during`` and ``after`` are the bars of ``bars``."""
     shot, judged = (stroke.shot, True) if isinstance(stroke, Played) else (stroke, False)
     film = Film(table, shot, trail=(0, *pots_of(shot)), spots=(0,), faded=(0,), bar=during, text=text)
@@ -52,7 +55,14 @@ def filmed(table: Table, stroke: Shot | Played, during: ScoreBar | None, after: 
     where, on_table = (stroke.positions, stroke.on_table) if judged else (shot.positions, shot.on_table)
     placed = judged and not np.array_equal(stroke.positions[0], shot.positions[0])
     turns = {0: UNTURNED} if placed else last.turns
-    over = {"ball_radius": shot.physics.R, "paths": last.paths, "ghosts": last.ghosts, "turns": turns, "bar": after, "text": text}
+    over = {
+        "ball_radius": shot.physics.R,
+        "paths": last.paths,
+        "ghosts": last.ghosts,
+        "turns": turns,
+        "bar": after,
+        "text": text,
+    }
     return film, scene(table, where, on_table, **over)
 
 
@@ -111,7 +121,14 @@ def _encode(pictures: Iterator[NDArray[np.uint8]], path: Path, fps: float, size:
     first = next(pictures)
     colours = path.with_name(f"{path.stem}.colours.png")
     try:
-        _pipe(iter([_swatches(first)]), "rgb24", (256, 256), 1.0, ["-vf", "palettegen=stats_mode=single"], colours)
+        _pipe(
+            iter([_swatches(first)]),
+            "rgb24",
+            (256, 256),
+            1.0,
+            ["-vf", "palettegen=stats_mode=single"],
+            colours,
+        )
         chosen = ["-i", str(colours), "-lavfi", "paletteuse=dither=none:diff_mode=rectangle", "-loop", "0"]
         _pipe(chain([first], pictures), "rgb24", size, fps, chosen, path)
     finally:
@@ -128,16 +145,28 @@ def _in_video_colours(pictures: Iterator[NDArray[np.uint8]]) -> Iterator[NDArray
 
 
 def _swatches(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The colours of a picture as a picture (256, 256, 3), with rare ones much enlarged: a ball is small, and its colour matters."""
+    """The colours of a picture as a picture (256, 256, 3), with rare ones much enlarged: a ball is small, and
+    its colour matters."""
     coarse = (picture >> 2).astype(np.uint32)
-    codes, counts = np.unique((coarse[..., 0] << 12) | (coarse[..., 1] << 6) | coarse[..., 2], return_counts=True)
+    codes, counts = np.unique(
+        (coarse[..., 0] << 12) | (coarse[..., 1] << 6) | coarse[..., 2], return_counts=True
+    )
     share = np.cumsum(counts**0.25)
-    taken = codes[np.searchsorted(share, np.linspace(0.0, share[-1], 256 * 256, endpoint=False), side="right")]
+    taken = codes[
+        np.searchsorted(share, np.linspace(0.0, share[-1], 256 * 256, endpoint=False), side="right")
+    ]
     shades = np.stack([taken >> 12, (taken >> 6) & 63, taken & 63], axis=-1)
     return ((shades << 2) | 2).astype(np.uint8).reshape(256, 256, 3)
 
 
-def _pipe(pictures: Iterator[NDArray[np.uint8]], kind: str, size: tuple[int, int], fps: float, wanted: list[str], path: Path) -> None:
+def _pipe(
+    pictures: Iterator[NDArray[np.uint8]],
+    kind: str,
+    size: tuple[int, int],
+    fps: float,
+    wanted: list[str],
+    path: Path,
+) -> None:
     """Send pictures through ffmpeg into a file."""
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
@@ -158,4 +187,6 @@ def _pipe(pictures: Iterator[NDArray[np.uint8]], kind: str, size: tuple[int, int
             encoder.kill()
             raise
     if encoder.returncode:
-        raise OSError(f"the film could not be written: {complaint.strip() or f'ffmpeg ended with {encoder.returncode}'}")
+        raise OSError(
+            f"the film could not be written: {complaint.strip() or f'ffmpeg ended with {encoder.returncode}'}"
+        )

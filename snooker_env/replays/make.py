@@ -1,4 +1,5 @@
-"""How is a replay made? From a shot, from several, from the strokes of an episode, or from the environment that played it."""
+"""How is a replay made? From a shot, from several, from the strokes of an episode, or from the environment
+that played it."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -16,23 +17,32 @@ from .document import Replay
 _ALLOWED = "must be a Shot, a list of shots or of strokes of env.history, a Position, a Replay, or an environment that keeps its history"
 
 
-def replay(source: Any, path: str | Path | None = None, *, title: str = "", players: Iterable[str] = (), table: TableLike = None) -> Replay:
+def replay(
+    source: Any,
+    path: str | Path | None = None,
+    *,
+    title: str = "",
+    players: Iterable[str] = (),
+    table: TableLike = None,
+) -> Replay:
     """Make a replay of what was played, and write it to a file if ``path`` is given.
 
     Parameters
     ----------
     source : Shot, Played, sequence of Shot or Played, Position, Replay, or environment
         * A ``Shot`` of ``sn.simulate``, or several in the order in which they were played.
-        * The strokes of an episode: ``env.history`` of ``SnookerEnv`` or of a match; or the environment itself, wrapped or not, if it has
-          a render mode or its ``keep_history`` was set to True.
+        * The strokes of an episode: ``env.history`` of ``SnookerEnv`` or of a match; or the environment
+          itself, wrapped or not, if it has a render mode or its ``keep_history`` was set to True.
         * A ``Position`` is shown as it stands.
         * A ``Replay`` is copied, with the other arguments applied.
     path : str or Path, optional
-        Where to write it, see ``Replay.save``: a file that ends in ``.html``, ``.json``, ``.mp4`` or ``.gif``. Default None: nowhere.
+        Where to write it, see ``Replay.save``: a file that ends in ``.html``, ``.json``, ``.mp4`` or
+        ``.gif``. Default None: nowhere.
     title : str, optional
         Title of the page; default none.
     players : iterable of str, optional
-        Names of the players: two for a frame, one for a visit. Default: "Player 1" and "Player 2", or "Player".
+        Names of the players: two for a frame, one for a visit. Default: "Player 1" and "Player 2", or
+        "Player".
     table : str, Table or None, optional
         The table on which the shots were played; default None: the table stored in them.
 
@@ -59,7 +69,12 @@ def replay(source: Any, path: str | Path | None = None, *, title: str = "", play
     Replay(1 strokes, 'one stroke')
     """
     if isinstance(source, Replay):
-        strokes, title, players, table = source.strokes, title or source.title, players or source.players, table or source.table
+        strokes, title, players, table = (
+            source.strokes,
+            title or source.title,
+            players or source.players,
+            table or source.table,
+        )
     else:
         strokes = _strokes(source, table)
     made = Replay(strokes, title=title, players=players, table=table)
@@ -72,7 +87,13 @@ def _still(position: Position, table: TableLike) -> Shot:
     """The shot in which nothing moves."""
     places, on_table, _ = position.arrays()
     nothing = np.zeros((len(places), 3))
-    return simulate(places, nothing[:, :2], nothing, table=Table.of("match" if table is None else table), on_table=on_table)
+    return simulate(
+        places,
+        nothing[:, :2],
+        nothing,
+        table=Table.of("match" if table is None else table),
+        on_table=on_table,
+    )
 
 
 def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
@@ -92,5 +113,7 @@ def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
             "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in sn.RecordReplay",
         )
     if not env.history:
-        raise refuse_what("source", "an environment without a stroke since its reset", "must have played at least one")
+        raise refuse_what(
+            "source", "an environment without a stroke since its reset", "must have played at least one"
+        )
     return env.history

@@ -1,4 +1,5 @@
-"""How are an environment's episodes written to files? ``RecordReplay``: a wrapper that writes a replay for each wanted episode."""
+"""How are an environment's episodes written to files? ``RecordReplay``: a wrapper that writes a replay for
+each wanted episode."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -11,10 +12,11 @@ from .document import SUFFIXES, Replay, checked_players
 
 
 class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):
-    """Records the strokes of ``Snooker-v0`` and writes each wanted episode as a replay: ``FOLDER/PREFIX-episode-0.html``, and so on.
+    """Records the strokes of ``Snooker-v0`` and writes each wanted episode as a replay:
+    ``FOLDER/PREFIX-episode-0.html``, and so on.
 
-    An episode is written when it ends, or when the next one or ``close()`` cuts it short. An episode without a stroke gives no file. No
-    render mode is needed. An existing file of that name is overwritten.
+    An episode is written when it ends, or when the next one or ``close()`` cuts it short. An episode without
+    a stroke gives no file. No render mode is needed. An existing file of that name is overwritten.
 
     Parameters
     ----------
@@ -23,7 +25,8 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     folder : str or Path
         Folder of the files; it is created if it does not exist.
     episode_trigger : callable, optional
-        ``episode_trigger(number) -> bool``: whether to write the episode with this number, from 0. Default None: all.
+        ``episode_trigger(number) -> bool``: whether to write the episode with this number, from 0. Default
+        None: all.
     name_prefix : str, optional
         Beginning of the files' names; default "snooker".
     suffix : {".html", ".json", ".mp4", ".gif"}, optional
@@ -65,7 +68,12 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         players: Iterable[str] = (),
     ):
         gymnasium.utils.RecordConstructorArgs.__init__(
-            self, folder=str(folder), episode_trigger=episode_trigger, name_prefix=name_prefix, suffix=suffix, players=players
+            self,
+            folder=str(folder),
+            episode_trigger=episode_trigger,
+            name_prefix=name_prefix,
+            suffix=suffix,
+            players=players,
         )
         super().__init__(env)
         inner = env.unwrapped
@@ -73,9 +81,15 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
             raise refuse_what("env", f"a {type(inner).__name__}", "must be a Snooker-v0 of one table")
         inner.keep_history = True  # type: ignore[attr-defined]
         self.paths: list[Path] = []
-        self._folder, self._prefix, self._suffix = Path(folder), name_prefix, choice("suffix", suffix, SUFFIXES)
+        self._folder, self._prefix, self._suffix = (
+            Path(folder),
+            name_prefix,
+            choice("suffix", suffix, SUFFIXES),
+        )
         if not isinstance(name_prefix, str) or Path(name_prefix + suffix).name != name_prefix + suffix:
-            raise refuse("name_prefix", name_prefix, "must be the beginning of a file's name, without folders")
+            raise refuse(
+                "name_prefix", name_prefix, "must be the beginning of a file's name, without folders"
+            )
         frame = inner.options.task != "visit"  # type: ignore[attr-defined]
         self._wanted, self._players = episode_trigger, checked_players(players)
         if len(self._players) not in (0, 1 + frame):
@@ -83,7 +97,9 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         self._number, self._written = -1, True
         self._folder.mkdir(parents=True, exist_ok=True)
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
         """Begin a new episode, after writing what there is of the last one.
 
         Parameters

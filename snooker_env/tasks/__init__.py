@@ -1,4 +1,5 @@
-"""Tasks: strokes of visits and frames on one table or many. Public here: what actions, observations and execution errors mean.
+"""Tasks: strokes of visits and frames on one table or many. Public here: what actions, observations and
+execution errors mean.
 
 >>> from snooker_env.tasks import CHOICES, LEVELS, choice_of
 >>> CHOICES, choice_of(pot=0, speed=4, side=1, top=2), LEVELS["club"].aim_deg
@@ -16,6 +17,21 @@ from .observations import space as observation_space
 from .opponent_pool import OpponentPool
 
 __all__ = [
-    "CHOICES", "LEVELS", "MAX_SPEED", "MIN_SPEED", "OBSERVATIONS", "OBSERVATION_SIZE", "POTS", "SIDES", "SPEEDS", "STATE_ENTRIES",
-    "STROKES", "TOPS", "Noise", "OpponentPool", "choice_of", "observation_space", "shaped_observations",
-]  # fmt: skip
+    "CHOICES",
+    "LEVELS",
+    "MAX_SPEED",
+    "MIN_SPEED",
+    "OBSERVATIONS",
+    "OBSERVATION_SIZE",
+    "POTS",
+    "SIDES",
+    "SPEEDS",
+    "STATE_ENTRIES",
+    "STROKES",
+    "TOPS",
+    "Noise",
+    "OpponentPool",
+    "choice_of",
+    "observation_space",
+    "shaped_observations",
+]

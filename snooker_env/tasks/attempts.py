@@ -1,8 +1,10 @@
-"""What does the miss rule need to know of a stroke that failed? Its clear paths and, with ``miss="attempt"``, whether it was an attempt.
+"""What does the miss rule need to know of a stroke that failed? Its clear paths and, with ``miss="attempt"``,
+whether it was an attempt.
 
-Both are found on shots just played, before the referee rules. To judge attempts, only the strokes in question are played once more, with
-the path of the cue ball: those without a clear path to a ball on that struck no ball on first. The second time costs as much as the first;
-it is no shot of an agent and is not counted. All other strokes cost nothing.
+Both are found on shots just played, before the referee rules. To judge attempts, only the strokes in question
+are played once more, with the path of the cue ball: those without a clear path to a ball on that struck no
+ball on first. The second time costs as much as the first; it is no shot of an agent and is not counted. All
+other strokes cost nothing.
 """
 
 from typing import TYPE_CHECKING
@@ -29,11 +31,13 @@ _BALL_BALL, _OK = int(EventKind.BALL_BALL), int(Status.OK)
 
 @entry(what="the paths of the miss rule", seconds=2)
 def remember(which, tables, saved, shots, noses, jaws):
-    """Record what the miss rule needs of the tables ``which``, after the shots and before the referee moves a ball.
+    """Record what the miss rule needs of the tables ``which``, after the shots and before the referee moves a
+    ball.
 
-    The position, and which paths were clear before a stroke that failed to strike a ball on first; of others ``seen`` says that one was.
-    S3 R14(c) speaks of every ball "that is or could be on": after a red of all colours, whichever the striker has nominated.
-    ``tables``, ``saved``, ``shots``: the parts of ``TableArrays``, ``Layouts`` and ``PlayedArrays``.
+    The position, and which paths were clear before a stroke that failed to strike a ball on first; of others
+    ``seen`` says that one was. S3 R14(c) speaks of every ball "that is or could be on": after a red of all
+    colours, whichever the striker has nominated. ``tables``, ``saved``, ``shots``: the parts of
+    ``TableArrays``, ``Layouts`` and ``PlayedArrays``.
     """
     tables, saved, shots = TableArrays(*tables), Layouts(*saved), PlayedArrays(*shots)
     for j in range(which.shape[0]):
@@ -56,7 +60,8 @@ def remember(which, tables, saved, shots, noses, jaws):
 
 @entry(what="the strokes of snookered strikers", seconds=1)
 def question(which, on_table, game, status, seen, asked):
-    """Find the shots whose attempt must be judged: ``asked[j]``. All others count as attempts. ``remember`` has seen them."""
+    """Find the shots whose attempt must be judged: ``asked[j]``. All others count as attempts. ``remember``
+    has seen them."""
     for j in range(which.shape[0]):
         k = which[j]
         asked[j] = False
@@ -81,7 +86,13 @@ def gap_of(positions, on_table, row, shots, path, j):
 
 
 def judge_attempts(
-    which: Ints, buffers: ShotBuffers, positions: Floats, on_table: Bools, game: Ints, rules: "Rules", phys: Floats
+    which: Ints,
+    buffers: ShotBuffers,
+    positions: Floats,
+    on_table: Bools,
+    game: Ints,
+    rules: "Rules",
+    phys: Floats,
 ) -> dict[int, float]:
     """Write into ``buffers.seen`` whether the shots just played on the tables ``which`` were attempts.
 
@@ -92,7 +103,9 @@ def judge_attempts(
     gaps = {}
     for j in np.flatnonzero(asked).tolist():
         k = which[j]
-        one, at = (b, j) if b.segments.shape[1] else (with_path(b, j, positions[k], on_table[k], rules, phys), 0)
+        one, at = (
+            (b, j) if b.segments.shape[1] else (with_path(b, j, positions[k], on_table[k], rules, phys), 0)
+        )
         gaps[j] = gap_of(positions[k], on_table[k], game[k], one.played, (one.segments, one.n_segments), at)
         b.seen[j, ATTEMPT] = gaps[j] <= ATTEMPT_GAP
     return gaps

@@ -1,4 +1,5 @@
-"""What shot does an action mean? The vector in [-1, 1]^k as cue speed, tip offset, aim, elevation, place in the D."""
+"""What shot does an action mean? The vector in [-1, 1]^k as cue speed, tip offset, aim, elevation, place in
+the D."""
 
 from collections.abc import Collection
 from math import atan2, hypot, pi, radians, sqrt
@@ -20,9 +21,11 @@ from .lines import LINE_ROWS, aim_along, find_lines, line_of, new_work
 
 AIMS = ("absolute", "target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
-"""Smallest and largest cue speed [m/s], for -1 and +1 of an action: from a ball just rolled to the hardest power shot."""
+"""Smallest and largest cue speed [m/s], for -1 and +1 of an action: from a ball just rolled to the hardest
+power shot."""
 TARGET_SPAN = radians(3.0)
-"""With ``aim="target"``: angle off the target line for +-1 of an action [rad]. The largest throw and a club player's errors are smaller.
+"""With ``aim="target"``: angle off the target line for +-1 of an action [rad]. The largest throw and a club
+player's errors are smaller.
 """
 MAX_ELEVATION = radians(30.0)
 
@@ -44,14 +47,16 @@ def place_of(a, options):
 
 @kernel
 def place_anywhere_of(a, options):
-    """The place anywhere on the table (x, y) [m] that they mean where the cue ball may stand anywhere: shares of half its width, length."""
+    """The place anywhere on the table (x, y) [m] that they mean where the cue ball may stand anywhere: shares
+    of half its width, length."""
     at = 5 if options[A_ELEVATION] else 4
     return HALF_WIDTH * a[at], HALF_LENGTH * a[at + 1]
 
 
 @kernel(uses=(aim_along,))
 def _target(positions, on_table, on, stroke, law, work):
-    """Direction [rad] from which ``aim="target"`` is measured for a stroke: the straight line of the widest pot, else the first line."""
+    """Direction [rad] from which ``aim="target"`` is measured for a stroke: the straight line of the widest
+    pot, else the first line."""
     lines = work.lines
     if find_pots(positions, on_table, on, BALL_RADIUS, lines[:1]):
         return atan2(lines[0, GHOST_Y] - positions[0, 1], lines[0, GHOST_X] - positions[0, 0])
@@ -121,7 +126,9 @@ class Actions:
     size: int
     """Number of components of an action."""
 
-    def __init__(self, aim: str, elevation: bool, placement: bool, physics: Physics, says: Collection[str] = ()):
+    def __init__(
+        self, aim: str, elevation: bool, placement: bool, physics: Physics, says: Collection[str] = ()
+    ):
         self.aim = choice("aim", aim, AIMS)
         self.elevation, self.placement = truth("elevation", elevation), truth("placement", placement)
         self.nominate, self.decision, self.concede, self.claim, self.lot = (name in says for name in SAYS)
@@ -135,7 +142,8 @@ class Actions:
         return self.concede or self.claim or self.lot
 
     def check(self, action: Action) -> list[float]:
-        """The action as a list of floats; ValueError unless it is finite, has the right shape and lies within [-1, 1]."""
+        """The action as a list of floats; ValueError unless it is finite, has the right shape and lies within
+        [-1, 1]."""
         allowed = f"must have shape ({self.size},), real numbers"
         try:
             a = np.asarray(action)
@@ -151,7 +159,8 @@ class Actions:
         return a
 
     def check_many(self, actions: Any, n: int) -> Floats:
-        """The actions of n tables as a new float64 array (n, size); ValueError names the first table with an invalid action."""
+        """The actions of n tables as a new float64 array (n, size); ValueError names the first table with an
+        invalid action."""
         allowed = f"must have shape ({n}, {self.size}), real numbers"
         try:
             a = np.asarray(actions)
@@ -171,11 +180,20 @@ class Actions:
         """The options for the kernels: float64, in the columns ``A_*`` of ``declarations``."""
         limits = self.physics.end_mass_ratio, self.physics.max_offset
         last = self.size - self.declares  # the components before the declaration
-        where = [last - 1 - self.decision if self.nominate else -1, last - 1 if self.decision else -1, last if self.declares else -1]
+        where = [
+            last - 1 - self.decision if self.nominate else -1,
+            last - 1 if self.decision else -1,
+            last if self.declares else -1,
+        ]
         spoken = [self.concede, self.claim, self.lot]
-        return np.array([self.aim == "target", self.elevation, self.placement, *limits, False, *where, *spoken], np.float64)
+        return np.array(
+            [self.aim == "target", self.elevation, self.placement, *limits, False, *where, *spoken],
+            np.float64,
+        )
 
-    def shot(self, a: Any, positions: Vectors, on_table: Flags, on: int) -> tuple[float, float, float, float, float]:
+    def shot(
+        self, a: Any, positions: Vectors, on_table: Flags, on: int
+    ) -> tuple[float, float, float, float, float]:
         """(speed, side, top, aim, elevation) of an action list; the aim is the cue's direction [rad]."""
         table = np.array(positions, np.float64), np.array(on_table, np.bool_), int(on)
         return _shot(np.array(a, np.float64), *table, self.pack(), self.physics.pack())
@@ -184,7 +202,8 @@ class Actions:
 def line(positions: Vectors, on_table: Flags, on: int) -> float:
     """Direction [rad] of the target line, which ``aim="target"`` is measured from.
 
-    It runs from the cue ball to the ghost ball of the direct pot with the widest tolerance (``game.pots``) among the balls on. If there is
-    no direct pot, it is the first of the other lines (``lines``), over cushions that of a rolling ball.
+    It runs from the cue ball to the ghost ball of the direct pot with the widest tolerance (``game.pots``)
+    among the balls on. If there is no direct pot, it is the first of the other lines (``lines``), over
+    cushions that of a rolling ball.
     """
     return _line(np.array(positions, np.float64), np.array(on_table, np.bool_), int(on))

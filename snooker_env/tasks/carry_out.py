@@ -1,4 +1,5 @@
-"""How are the strokes of players carried out in frames? What is said with each, its place, the stroke itself: up to the strike."""
+"""How are the strokes of players carried out in frames? What is said with each, its place, the stroke itself:
+up to the strike."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -45,10 +46,11 @@ if TYPE_CHECKING:
 
 @entry(what="the strokes of players in frames", seconds=3)
 def _carry_out(which, said, tables, saved, packed, codes, shots, playing):
-    """The strokes of the tables ``which``; ``playing[:m]``: those with one, whose shots are 0 to m - 1. Returns m.
+    """The strokes of the tables ``which``; ``playing[:m]``: those with one, whose shots are 0 to m - 1.
+    Returns m.
 
-    ``said``: values, place, nominate, decision, declare of ``players.Strokes``, one row for each table. ``packed``:
-    options, noise. ``codes``: of the rule set and the reward.
+    ``said``: values, place, nominate, decision, declare of ``players.Strokes``, one row for each table.
+    ``packed``: options, noise. ``codes``: of the rule set and the reward.
     """
     values, places, nominate, decisions, declared = said
     tables, saved, shots = TableArrays(*tables), Layouts(*saved), StruckArrays(*shots)
@@ -71,7 +73,9 @@ def _carry_out(which, said, tables, saved, packed, codes, shots, playing):
             wish = 0.0 if decisions[k] == PLAY else -1.0 if decisions[k] == PLAY_AGAIN else 1.0
             if not choose_as(k, wish, rules, tables, saved):
                 continue
-        tables.nominated[k] = AUTO if nominate[k] < 0 else nominated_ball(max(0, nominate[k] - YELLOW + 1), row)
+        tables.nominated[k] = (
+            AUTO if nominate[k] < 0 else nominated_ball(max(0, nominate[k] - YELLOW + 1), row)
+        )
         if row[IN_HAND] and not np.isnan(places[k, 0]):
             if row[ANYWHERE]:
                 place_anywhere(p, on, places[k, 0], places[k, 1])
@@ -89,9 +93,22 @@ def _carry_out(which, said, tables, saved, packed, codes, shots, playing):
 def carry_out(frames: "Frames", which: Ints, said: tuple[Any, ...], buffers: ShotBuffers, side: int) -> Ints:
     """Carry out what players do on the tables ``which``, up to the strike; returns the tables with a stroke.
 
-    ``said``: the arrays of ``players.Strokes``, with a row for each table; ``side``: of the seat whose errors are made.
+    ``said``: the arrays of ``players.Strokes``, with a row for each table; ``side``: of the seat whose errors
+    are made.
     """
-    playing, codes = np.empty(len(which), np.int64), (frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward))
-    m = _carry_out(which, said, frames.arrays, frames.saved_arrays, frames.packs[side][:2], codes, buffers.struck, playing)
+    playing, codes = (
+        np.empty(len(which), np.int64),
+        (frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward)),
+    )
+    m = _carry_out(
+        which,
+        said,
+        frames.arrays,
+        frames.saved_arrays,
+        frames.packs[side][:2],
+        codes,
+        buffers.struck,
+        playing,
+    )
     frames.hold_late(playing[:m], buffers)
     return playing[:m]

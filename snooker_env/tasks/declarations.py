@@ -1,12 +1,25 @@
-"""What does a player say beside his stroke? The colour that he nominates, and whether he concedes, claims or lets the other begin.
+"""What does a player say beside his stroke? The colour that he nominates, and whether he concedes, claims or
+lets the other begin.
 
-Inner kernels that read it from an action. The packed options of an action space say where: ``A_NOMINATE``, ``A_DECISION`` and
-``A_DECLARATION`` hold the index of a component of a box action, or -1; of discrete actions, ``A_NOMINATE`` is 0 or -1.
+Inner kernels that read it from an action. The packed options of an action space say where: ``A_NOMINATE``,
+``A_DECISION`` and ``A_DECLARATION`` hold the index of a component of a box action, or -1; of discrete
+actions, ``A_NOMINATE`` is 0 or -1.
 """
 
 from .._jit import kernel
 from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
-from ..game.frame_columns import BALL_ON, CHOICE, FREE_BALL, LOT, ON_TABLE, OVER, PHASE, STROKE, may_claim, strikeable
+from ..game.frame_columns import (
+    BALL_ON,
+    CHOICE,
+    FREE_BALL,
+    LOT,
+    ON_TABLE,
+    OVER,
+    PHASE,
+    STROKE,
+    may_claim,
+    strikeable,
+)
 from ..game.ruling import AUTO
 
 # Columns of the packed options of an action space.
@@ -38,8 +51,9 @@ STROKE_CHOICES = 540
 def nominated_ball(n, row):
     """The ball that the nomination ``n`` means for the striker of a frame: 0 none, 1 to 6 yellow to black.
 
-    After a red: that colour or, if it is not on the table, the next one that is. With a free ball: that colour; 0, the ball on itself, if
-    n is 0 or the colour is on anyway or not on the table. At other times AUTO: nothing is nominated.
+    After a red: that colour or, if it is not on the table, the next one that is. With a free ball: that
+    colour; 0, the ball on itself, if n is 0 or the colour is on anyway or not on the table. At other times
+    AUTO: nothing is nominated.
     """
     if row[BALL_ON] == 0:
         for c in range(COLOURS):
@@ -63,7 +77,8 @@ def may_nominate(n, row):
 
 @kernel
 def nomination_of(a, options, row):
-    """The ball that the action ``a`` nominates in the frame ``row``: a colour, 0 for a free ball declined, or AUTO."""
+    """The ball that the action ``a`` nominates in the frame ``row``: a colour, 0 for a free ball declined, or
+    AUTO."""
     if options[A_NOMINATE] < 0:
         return AUTO
     if options[A_DISCRETE]:
@@ -77,7 +92,8 @@ def nomination_of(a, options, row):
 
 @kernel
 def playable(row, mask, nominated):
-    """Mask of the balls in ``mask`` that may be struck first once ``nominated`` has been said: a colour, 0 for none, or AUTO."""
+    """Mask of the balls in ``mask`` that may be struck first once ``nominated`` has been said: a colour, 0
+    for none, or AUTO."""
     if nominated > 0:
         return (1 << nominated) & mask
     return balls_on_kernel(row[BALL_ON], mask) if nominated == 0 else strikeable(row, mask)

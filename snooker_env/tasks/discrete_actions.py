@@ -1,8 +1,9 @@
-"""Which shots does ``action="discrete"`` choose from? One number means a pot, a speed, a side and a top; the aim is solved for them.
+"""Which shots does ``action="discrete"`` choose from? One number means a pot, a speed, a side and a top; the
+aim is solved for them.
 
-The pots are the widest direct ones on the table (``game.pots``). If no aim can be solved for one, it is played along its straight line. If
-the table has no direct pot, the other lines of the cue ball stand in their places (``lines``): what it sees of the balls on, or escapes.
-``action_masks`` says how many there are.
+The pots are the widest direct ones on the table (``game.pots``). If no aim can be solved for one, it is
+played along its straight line. If the table has no direct pot, the other lines of the cue ball stand in their
+places (``lines``): what it sees of the balls on, or escapes. ``action_masks`` says how many there are.
 """
 
 from collections.abc import Collection
@@ -47,7 +48,8 @@ TOPS = (-0.4, -0.2, 0.0, 0.2, 0.4)
 STROKES = len(SPEEDS) * len(SIDES) * len(TOPS)
 """Number of strokes at one pot: speeds x sides x tops."""
 SIZE = POTS * STROKES
-"""Number of strokes to choose from; without options of frames, all choices. Public as ``snooker_env.tasks.CHOICES``."""
+"""Number of strokes to choose from; without options of frames, all choices. Public as
+``snooker_env.tasks.CHOICES``."""
 
 
 def choice_of(pot: int, speed: int, side: int, top: int) -> int:
@@ -82,7 +84,9 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
 def chosen(index, positions, on_table, on, law, work):
     """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``."""
     lines = work.lines
-    index = index % SIZE  # what else the choice says is read by ``declarations``; one that may not be said now is played as a stroke
+    # what else the choice says is read by ``declarations``; one that may not be said now is played as a
+    # stroke
+    index = index % SIZE
     pot, stroke = index // STROKES, index % STROKES
     speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]
     side, top = SIDES[stroke // len(TOPS) % len(SIDES)], TOPS[stroke % len(TOPS)]
@@ -100,7 +104,8 @@ def chosen(index, positions, on_table, on, law, work):
 
 @entry
 def masks(which, positions, on_table, game, options, out):
-    """Available choices on the tables ``which``: one row of ``out`` each, bool (choices,). ``game`` (n, columns): of visits or frames."""
+    """Available choices on the tables ``which``: one row of ``out`` each, bool (choices,). ``game`` (n,
+    columns): of visits or frames."""
     found = np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k, parts = which[j], 1 + COLOURS if options[A_NOMINATE] >= 0 else 1
@@ -121,9 +126,10 @@ def masks(which, positions, on_table, game, options, out):
 class Choices:
     """The discrete action space and its meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``choice_of``.
 
-    With ``nominate``, n * 540 + that: n = 0 nominates nothing, 1 to 6 yellow to black, and the pots are those of the ball that is then on.
-    The last choices, as far as the options are on: concede, claim, let the other player begin after the lot. A declaration that is not
-    allowed, and a nomination of nothing after a red, is played as the stroke of the same remainder: ``action_masks`` says what is allowed.
+    With ``nominate``, n * 540 + that: n = 0 nominates nothing, 1 to 6 yellow to black, and the pots are those
+    of the ball that is then on. The last choices, as far as the options are on: concede, claim, let the other
+    player begin after the lot. A declaration that is not allowed, and a nomination of nothing after a red, is
+    played as the stroke of the same remainder: ``action_masks`` says what is allowed.
     """
 
     size: int = 1
@@ -156,7 +162,8 @@ class Choices:
         return [float(a.item())]
 
     def check_many(self, actions: Any, n: int) -> Floats:
-        """The choices of n tables, float64 (n, 1); ValueError names the first table with an invalid choice."""
+        """The choices of n tables, float64 (n, 1); ValueError names the first table with an invalid
+        choice."""
         a = np.asarray(actions)
         if a.dtype.kind not in "iu" or a.shape not in ((n,), (n, 1)):
             raise refuse_what("actions", f"array of {a.dtype} and shape {a.shape}", f"must be {n} integers")
@@ -171,4 +178,6 @@ class Choices:
         """The options for the kernels, in the columns ``A_*`` of ``declarations``."""
         physics, spoken = self.physics, [self.concede, self.claim, self.lot]
         limits = [physics.end_mass_ratio, physics.max_offset]
-        return np.array([False, False, False, *limits, True, 0 if self.nominate else -1, -1, -1, *spoken], np.float64)
+        return np.array(
+            [False, False, False, *limits, True, 0 if self.nominate else -1, -1, -1, *spoken], np.float64
+        )

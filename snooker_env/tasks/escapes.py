@@ -1,12 +1,15 @@
-"""Over which cushions does the cue ball reach a ball on that it does not see? A quick search, and the aim of one stroke; kernels.
+"""Over which cushions does the cue ball reach a ball on that it does not see? A quick search, and the aim of
+one stroke; kernels.
 
-Search. A cue ball that leaves a cushion slides along a curve before it rolls again, so a plain mirror image misses by up to 20 degrees.
-What becomes of a ball that rolls into a cushion depends on its angle alone, up to a scale: its velocity in proportion to that before, the
-length of its curve to the square of it. ``_REBOUND`` holds this, from shots in the simulator, for a ball struck ``ROLLING`` above its
-middle, where it rolls at once. The table holds for the physics "paper" at any speed and for "match" up to 2 m/s.
+Search. A cue ball that leaves a cushion slides along a curve before it rolls again, so a plain mirror image
+misses by up to 20 degrees. What becomes of a ball that rolls into a cushion depends on its angle alone, up to
+a scale: its velocity in proportion to that before, the length of its curve to the square of it. ``_REBOUND``
+holds this, from shots in the simulator, for a ball struck ``ROLLING`` above its middle, where it rolls at
+once. The table holds for the physics "paper" at any speed and for "match" up to 2 m/s.
 
-Aim. Another speed, height or side of the strike turns the escape. So for a stroke the cue ball alone is played with the models of the
-engine, cloth and cushions, until it meets a ball, in directions about the one found, and is sent along the middle of those that succeed.
+Aim. Another speed, height or side of the strike turns the escape. So for a stroke the cue ball alone is
+played with the models of the engine, cloth and cushions, until it meets a ball, in directions about the one
+found, and is sent along the middle of those that succeed.
 """
 
 from math import atan2, cos, hypot, pi, sin, sqrt
@@ -30,18 +33,26 @@ ROLL = 0.25
 ROLLING = 0.4
 """Tip offset over R with which a ball rolls from the start."""
 LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH = range(4)
-"""Columns of a line of the cue ball: its direction and by how much it may err [rad]; the cue speed of an escape [m/s], 0 for what is seen;
-its worth among escapes."""
+"""Columns of a line of the cue ball: its direction and by how much it may err [rad]; the cue speed of an
+escape [m/s], 0 for what is seen; its worth among escapes."""
 
 _ANGLES = 9
 """The rows of ``_REBOUND`` are 10 degrees apart."""
 _REBOUND = (
-    (0.583, 0.000, 0.1190, 0.0000), (0.574, 0.104, 0.1162, 0.0164), (0.552, 0.206, 0.1074, 0.0312), (0.519, 0.313, 0.0934, 0.0440),
-    (0.466, 0.444, 0.0756, 0.0563), (0.388, 0.583, 0.0555, 0.0645), (0.296, 0.714, 0.0350, 0.0643), (0.199, 0.831, 0.0171, 0.0535),
-    (0.099, 0.928, 0.0046, 0.0317), (0.000, 1.000, 0.0000, 0.0000),
-)  # fmt: skip
-"""A ball rolls into a cushion at speed v, at an angle of 0, 10, .. 90 degrees to its normal. When it rolls again: its velocity along the
-normal and along the cushion, over v, and how far it has come along each, over v^2 [s^2/m]."""
+    (0.583, 0.000, 0.1190, 0.0000),
+    (0.574, 0.104, 0.1162, 0.0164),
+    (0.552, 0.206, 0.1074, 0.0312),
+    (0.519, 0.313, 0.0934, 0.0440),
+    (0.466, 0.444, 0.0756, 0.0563),
+    (0.388, 0.583, 0.0555, 0.0645),
+    (0.296, 0.714, 0.0350, 0.0643),
+    (0.199, 0.831, 0.0171, 0.0535),
+    (0.099, 0.928, 0.0046, 0.0317),
+    (0.000, 1.000, 0.0000, 0.0000),
+)
+"""A ball rolls into a cushion at speed v, at an angle of 0, 10, .. 90 degrees to its normal. When it rolls
+again: its velocity along the normal and along the cushion, over v, and how far it has come along each, over
+v^2 [s^2/m]."""
 _MOUTH = 0.12
 """No cushion is used within this distance of a pocket's nominal place, along the cushion [m]."""
 _DIRECTIONS = 720
@@ -54,13 +65,25 @@ _LEGS = 4
 _SAME = 0.1
 """Escapes whose directions differ by less are one [rad]."""
 
-_BED = np.array([(axis, side, half, -9.0, 9.0) for axis, half in ((AXIS_X, HALF_WIDTH), (AXIS_Y, HALF_LENGTH)) for side in (-1.0, 1.0)])
+_BED = np.array(
+    [
+        (axis, side, half, -9.0, 9.0)
+        for axis, half in ((AXIS_X, HALF_WIDTH), (AXIS_Y, HALF_LENGTH))
+        for side in (-1.0, 1.0)
+    ]
+)
 _NO_JAWS, _NO_FALLS = np.empty((0, 6)), np.empty((0, 3))
 for _constant in (_BED, _NO_JAWS, _NO_FALLS):
     _constant.setflags(write=False)
-_CLEAR = (BALL_RADIUS - HALF_WIDTH, HALF_WIDTH - BALL_RADIUS, BALL_RADIUS - HALF_LENGTH, HALF_LENGTH - BALL_RADIUS)
+_CLEAR = (
+    BALL_RADIUS - HALF_WIDTH,
+    HALF_WIDTH - BALL_RADIUS,
+    BALL_RADIUS - HALF_LENGTH,
+    HALF_LENGTH - BALL_RADIUS,
+)
 _STEP, _STEPS = 0.0087, (30, 75)
-"""Directions about an escape that are tried for a stroke: their distance [rad]; their number on either side, and if none succeeds."""
+"""Directions about an escape that are tried for a stroke: their distance [rad]; their number on either side,
+and if none succeeds."""
 _HALVINGS = 3
 """How often that distance is halved to find where a window ends."""
 
@@ -79,14 +102,17 @@ def _rebound(cosine):
     s = at - k
     low, high = _REBOUND[k], _REBOUND[k + 1]
     return (
-        low[0] + s * (high[0] - low[0]), low[1] + s * (high[1] - low[1]),
-        low[2] + s * (high[2] - low[2]), low[3] + s * (high[3] - low[3]),
-    )  # fmt: skip
+        low[0] + s * (high[0] - low[0]),
+        low[1] + s * (high[1] - low[1]),
+        low[2] + s * (high[2] - low[2]),
+        low[3] + s * (high[3] - low[3]),
+    )
 
 
 @kernel
 def _reaches(positions, on_table, on, ux, uy, speed):
-    """Whether the cue ball, rolling along u, meets a ball on first: the worth of the direction, less for each cushion; 0 if it does not."""
+    """Whether the cue ball, rolling along u, meets a ball on first: the worth of the direction, less for each
+    cushion; 0 if it does not."""
     x, y, v2 = positions[0, 0], positions[0, 1], speed * speed
     width, length = HALF_WIDTH - BALL_RADIUS, HALF_LENGTH - BALL_RADIUS
     worth = 1.0
@@ -127,7 +153,8 @@ def _reaches(positions, on_table, on, ux, uy, speed):
 
 @kernel
 def _keep(lines, first, count, aim, half, speed, worth):
-    """Insert an escape into the rows ``first`` to ``count`` of ``lines``, the best one first; returns the new ``count``."""
+    """Insert an escape into the rows ``first`` to ``count`` of ``lines``, the best one first; returns the new
+    ``count``."""
     for k in range(first, count):
         if abs(turned(lines[k, LINE_AIM] - aim)) < _SAME:
             if lines[k, LINE_WORTH] >= worth:
@@ -146,17 +173,26 @@ def _keep(lines, first, count, aim, half, speed, worth):
     for k in range(count - 1, at, -1):
         for c in range(4):
             lines[k, c] = lines[k - 1, c]
-    lines[at, LINE_AIM], lines[at, LINE_ROOM], lines[at, LINE_SPEED], lines[at, LINE_WORTH] = turned(aim), half, speed, worth
+    lines[at, LINE_AIM], lines[at, LINE_ROOM], lines[at, LINE_SPEED], lines[at, LINE_WORTH] = (
+        turned(aim),
+        half,
+        speed,
+        worth,
+    )
     return count
 
 
 @kernel
 def find_escapes(positions, on_table, on, lines, first):
-    """Write the escapes with the widest windows of directions into the rows of ``lines`` from ``first`` on; returns the rows in use."""
+    """Write the escapes with the widest windows of directions into the rows of ``lines`` from ``first`` on;
+    returns the rows in use."""
     turn, count = 2.0 * pi / _DIRECTIONS, first
     for s in range(len(_SPEEDS)):
         begin = 0
-        while begin < _DIRECTIONS and _reaches(positions, on_table, on, cos(begin * turn), sin(begin * turn), _SPEEDS[s]) > 0.0:
+        while (
+            begin < _DIRECTIONS
+            and _reaches(positions, on_table, on, cos(begin * turn), sin(begin * turn), _SPEEDS[s]) > 0.0
+        ):
             begin += 1  # a window must not be cut in two where the directions begin
         worth, run = 0.0, 0
         for k in range(begin, begin + _DIRECTIONS + 1):
@@ -164,7 +200,9 @@ def find_escapes(positions, on_table, on, lines, first):
             if here > 0.0:
                 worth, run = worth + here, run + 1
             elif run:
-                count = _keep(lines, first, count, (k - 0.5 * (run + 1)) * turn, 0.5 * run * turn, _SPEEDS[s], worth)
+                count = _keep(
+                    lines, first, count, (k - 0.5 * (run + 1)) * turn, 0.5 * run * turn, _SPEEDS[s], worth
+                )
                 worth, run = 0.0, 0
         if count > first and lines[first, LINE_WORTH] >= _WIDE:
             break
@@ -173,7 +211,8 @@ def find_escapes(positions, on_table, on, lines, first):
 
 @kernel(seconds=1, uses=(collide_cushion,))
 def _played(aim, stroke, positions, on_table, law, work):
-    """The ball that the cue ball meets first, sent in the direction ``aim``, by the models of the engine; 0: none, or a pocket first.
+    """The ball that the cue ball meets first, sent in the direction ``aim``, by the models of the engine; 0:
+    none, or a pocket first.
 
     ``stroke``: (speed, side, top). ``law``: a ``Law``, but cushion impacts are of the fidelity "fast".
     """
@@ -189,9 +228,12 @@ def _played(aim, stroke, positions, on_table, law, work):
         for i in range(1, N_BALLS):
             x, y, d = positions[i, 0], positions[i, 1], 2.0 * R
             if (
-                not on_table[i] or x + d < motion[0, cloth.LO_X] or x - d > motion[0, cloth.HI_X]
-                or y + d < motion[0, cloth.LO_Y] or y - d > motion[0, cloth.HI_Y]
-            ):  # fmt: skip
+                not on_table[i]
+                or x + d < motion[0, cloth.LO_X]
+                or x - d > motion[0, cloth.HI_X]
+                or y + d < motion[0, cloth.LO_Y]
+                or y - d > motion[0, cloth.HI_Y]
+            ):
                 continue
             cloth.begin(motion, state, 1, 0.0, (x, y), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
             t = pair_time(motion, state, 0, 1, now, d)
@@ -226,10 +268,11 @@ def _succeeds(aim, stroke, positions, on_table, on, law, work):
 
 @kernel(uses=(_succeeds,))
 def escape_aim(about, stroke, positions, on_table, on, law, work):
-    """Direction [rad] in which the stroke meets a ball on: the middle of the widest window about the direction ``about``.
+    """Direction [rad] in which the stroke meets a ball on: the middle of the widest window about the
+    direction ``about``.
 
-    Of equally wide windows it is the nearest one. It is sought farther away if there is none nearby, as with much side; if no direction
-    succeeds at all, it is ``about``.
+    Of equally wide windows it is the nearest one. It is sought farther away if there is none nearby, as with
+    much side; if no direction succeeds at all, it is ``about``.
     """
     best, low, high = 0.0, about, about
     for steps in _STEPS:

@@ -1,18 +1,20 @@
-"""How is a frame played, on one table or on thousands? Turns of two players by the rules of ``game.frame_columns``, each table on its own.
+"""How is a frame played, on one table or on thousands? Turns of two players by the rules of
+``game.frame_columns``, each table on its own.
 
-A turn of the striker: ``frame_kernels.decide`` (after a foul of the opponent), ``stroke.address``, ``stroke.run``, then the referee,
-``frame_kernels.conclude``. A step of the frame task is the agent's turn and all turns of the opponent up to the agent's next one. The agent
-is player 0, the opponent player 1.
+A turn of the striker: ``frame_kernels.decide`` (after a foul of the opponent), ``stroke.address``,
+``stroke.run``, then the referee, ``frame_kernels.conclude``. A step of the frame task is the agent's turn and
+all turns of the opponent up to the agent's next one. The agent is player 0, the opponent player 1.
 
-With ``opponent="none"`` the table returns to the agent at once whenever it would go to the opponent. Penalties still go to the opponent's
-score, and after a foul the agent plays on from where the balls lie, without a free ball. A match is played turn by turn by both players.
+With ``opponent="none"`` the table returns to the agent at once whenever it would go to the opponent.
+Penalties still go to the opponent's score, and after a foul the agent plays on from where the balls lie,
+without a free ball. A match is played turn by turn by both players.
 
-Nothing is ever dealt again. A frame that ends in the opponent's first visit, in a reset, is shown by that reset, and the next step plays
-nothing: it reports the end and pays its reward (``Frames.due``).
+Nothing is ever dealt again. A frame that ends in the opponent's first visit, in a reset, is shown by that
+reset, and the next step plays nothing: it reports the end and pays its reward (``Frames.due``).
 
-A cue ball in hand is placed at once on the free place of the D nearest to its usual one (``balls.SPOTS``), so that it can be seen. The
-player may place it elsewhere before the stroke. The physics is planar: no ball leaves the table and the cue ball cannot jump over a ball,
-so those fouls never occur.
+A cue ball in hand is placed at once on the free place of the D nearest to its usual one (``balls.SPOTS``), so
+that it can be seen. The player may place it elsewhere before the stroke. The physics is planar: no ball
+leaves the table and the cue ball cannot jump over a ball, so those fouls never occur.
 """
 
 from collections.abc import Callable, Sequence
@@ -68,26 +70,34 @@ class Frames(Tables):
     COLUMNS = COLUMNS
 
     nominated: Ints
-    """(n,) The colour that the striker has nominated after a red or as his free ball, 0 for a free ball declined. AUTO, as always between
-    two strokes: the colour first struck. Code that sets it must check it; the referee resets it after the stroke.
+    """(n,) The colour that the striker has nominated after a red or as his free ball, 0 for a free ball
+    declined. AUTO, as always between two strokes: the colour first struck. Code that sets it must check it;
+    the referee resets it after the stroke.
     """
     due: Bools
     """(n,) Which episodes have ended in a reset, so that the next step reports their end."""
 
     seats: tuple[Seat, ...]
-    """The agent's seat, and the other player's; without the second the agent plays alone. A seat without a player is played by ``turn``."""
+    """The agent's seat, and the other player's; without the second the agent plays alone. A seat without a
+    player is played by ``turn``."""
     packs: tuple[Any, ...]
     """``packed`` of each seat."""
 
-    def __init__(self, rules: Rules | Options, n: int = 1, *, limit: int = NEVER, seats: Sequence[Seat] | None = None):
+    def __init__(
+        self, rules: Rules | Options, n: int = 1, *, limit: int = NEVER, seats: Sequence[Seat] | None = None
+    ):
         rules = rules.rules if isinstance(rules, Options) else rules
         super().__init__(rules, n, limit=limit)
         self.seats = (Seat.of(rules),) if seats is None else tuple(seats)
         self.packs = tuple(seat.packed(rules) for seat in self.seats)
         self.packed: tuple[Floats, Floats, Floats] = self.packs[AGENT]
-        self._lot = self.packed[0].copy()  # the winner of the lot is asked if either player can say who begins
+        # the winner of the lot is asked if either player can say who begins
+        self._lot = self.packed[0].copy()
         self._lot[A_LOT] = any(pack[0][A_LOT] for pack in self.packs)
-        self._saved_positions, self._saved_on_table = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS), np.bool_)
+        self._saved_positions, self._saved_on_table = (
+            np.zeros((n, N_BALLS, 2)),
+            np.zeros((n, N_BALLS), np.bool_),
+        )
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
         self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
@@ -122,15 +132,26 @@ class Frames(Tables):
         return *self._numbers, options, self._jaws
 
     def _columns(self) -> tuple[str, ...]:
-        return (*super()._columns(), "_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due")
+        return (
+            *super()._columns(),
+            "_saved_positions",
+            "_saved_on_table",
+            "_replies",
+            "_played",
+            "nominated",
+            "due",
+        )
 
     def frame(self, k: int) -> Frame:
         """The ``game.frame.Frame`` on table k."""
         return frame_of(self.game[k], self.rules.miss, self.saved, k, self.rules.game)
 
     def on(self, k: int) -> int:
-        """The mask of the balls that may be struck first on table k: the balls on and, with a free ball, every colour."""
-        return super().on(k) | (COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, FREE_BALL] else 0)
+        """The mask of the balls that may be struck first on table k: the balls on and, with a free ball,
+        every colour."""
+        return super().on(k) | (
+            COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, FREE_BALL] else 0
+        )
 
     def lead(self) -> Ints:
         """The agent's scores minus the opponent's: (n,)."""
@@ -152,10 +173,12 @@ class Frames(Tables):
         """A step or reset was cut short: tables at which it is the opponent's turn need a reset."""
         self.begun[self.game[:, STRIKER] != AGENT] = False
 
-    # a turn ----------------------------------------------------------------------------------------------------------------
+    # a turn
+    # ----------------------------------------------------------------------------------------------------------------
 
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = AGENT) -> Ints:
-        """Take the decisions on the tables ``which`` and carry the strokes out up to the strike; returns the tables with a stroke.
+        """Take the decisions on the tables ``which`` and carry the strokes out up to the strike; returns the
+        tables with a stroke.
 
         ``side``: the seat by which the actions are read and executed.
         """
@@ -167,21 +190,35 @@ class Frames(Tables):
         return which
 
     def hold_late(self, which: Ints, buffers: ShotBuffers) -> None:
-        """In a game with a shot clock: shots of the tables ``which`` that would not be begun within it are not played."""
+        """In a game with a shot clock: shots of the tables ``which`` that would not be begun within it are
+        not played."""
         if self.rules.rule_set.clock:
             b, code = buffers, self.rules.rule_set.code
             frame_kernels.hold_late(which, self.game, code, self.rules.time_to_play, b.v, b.w, b.shots)
 
     def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
-        """What the strikers of the tables ``which`` say before their strokes; returns which of them play one."""
+        """What the strikers of the tables ``which`` say before their strokes; returns which of them play
+        one."""
         plays = np.empty(len(which), np.bool_)
-        frame_kernels.decide(which, actions, self.arrays, self.saved_arrays, self._setting_of(self.packs[side][0]), plays)
+        frame_kernels.decide(
+            which, actions, self.arrays, self.saved_arrays, self._setting_of(self.packs[side][0]), plays
+        )
         return plays
 
-    def complete(self, which: Ints, out: StepOutput, buffers: ShotBuffers, crew: Crew, *, own: bool, alone: bool = False) -> None:
+    def complete(
+        self,
+        which: Ints,
+        out: StepOutput,
+        buffers: ShotBuffers,
+        crew: Crew,
+        *,
+        own: bool,
+        alone: bool = False,
+    ) -> None:
         """Play and judge the shots of the tables ``which`` that have been struck.
 
-        ``own``: ``out`` reports the strokes; otherwise they are only counted. ``alone``: the table returns to the agent.
+        ``own``: ``out`` reports the strokes; otherwise they are only counted. ``alone``: the table returns to
+        the agent.
         """
         if not len(which):
             return
@@ -193,17 +230,26 @@ class Frames(Tables):
 
     def _conclude(self, which, b, out, own, alone):
         if self.rules.misses:
-            remember(which, self.arrays, self.saved_arrays, b.played, self.rules.table.noses, self.rules.table.jaws)
+            remember(
+                which, self.arrays, self.saved_arrays, b.played, self.rules.table.noses, self.rules.table.jaws
+            )
         if self._miss == ATTEMPTS:
             judge_attempts(which, b, self.positions, self.on_table, self.game, self.rules, self.packed[2])
         played = self._played if own else self._replies
         frame_kernels.conclude(which, self.arrays, b.played, self._setting, own, alone, played, out.arrays)
 
-    def turn(self, prepare: Callable[[Ints, ShotBuffers], Ints], out: StepOutput, crew: Crew, which: Ints | None = None) -> Bools:
-        """One turn of the striker on the tables ``which`` (those that go on), of two players. Returns where there was a stroke, (n,) bool.
+    def turn(
+        self,
+        prepare: Callable[[Ints, ShotBuffers], Ints],
+        out: StepOutput,
+        crew: Crew,
+        which: Ints | None = None,
+    ) -> Bools:
+        """One turn of the striker on the tables ``which`` (those that go on), of two players. Returns where
+        there was a stroke, (n,) bool.
 
-        ``prepare(which, buffers)``: takes decisions and carries strokes out up to the strike, as the method ``prepare``; the tables with a
-        stroke. ``out`` gets the infos.
+        ``prepare(which, buffers)``: takes decisions and carries strokes out up to the strike, as the method
+        ``prepare``; the tables with a stroke. ``out`` gets the infos.
         """
         playing = np.flatnonzero(~self.ended()) if which is None else which
         self._played[playing] = 0
@@ -212,7 +258,8 @@ class Frames(Tables):
         return self._played > 0
 
     def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> None:
-        """One turn on each table that goes on, of two players, into ``out`` as player 0 sees it; ``actions``: of each side (n, k)."""
+        """One turn on each table that goes on, of two players, into ``out`` as player 0 sees it; ``actions``:
+        of each side (n, k)."""
         going, striker = ~self.ended(), self.game[:, STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
@@ -228,19 +275,24 @@ class Frames(Tables):
         return self.prepare(which, actions, buffers, side)
 
     def go_on(self, which: Ints) -> None:
-        """After each turn on the tables ``which``: the next frame of a match, where one has ended. Here there is none."""
+        """After each turn on the tables ``which``: the next frame of a match, where one has ended. Here there
+        is none."""
         return
 
-    # steps and resets of the frame task --------------------------------------------------------------------------------------
+    # steps and resets of the frame task
+    # --------------------------------------------------------------------------------------
 
-    def step(self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False) -> None:
+    def step(
+        self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
+    ) -> None:
         """One step of all tables: checked actions (n, k) float64, results into ``out``.
 
-        ``waiting`` (n,) bool: tables that begin a new frame instead of playing. ``same_step``: tables whose frame ends begin a new one at
-        once.
+        ``waiting`` (n,) bool: tables that begin a new frame instead of playing. ``same_step``: tables whose
+        frame ends begin a new one at once.
 
-        Raises SimulationError if a shot cannot be computed. Its balls are then left as they lay, except for a cue ball that was placed; a
-        decision already taken stands; other tables may have been played. Errors raised by an opponent are passed on.
+        Raises SimulationError if a shot cannot be computed. Its balls are then left as they lay, except for a
+        cue ball that was placed; a decision already taken stands; other tables may have been played. Errors
+        raised by an opponent are passed on.
         """
         anew, alone = bool(waiting.any()), len(self.seats) == 1
         playing = np.flatnonzero(~waiting) if anew else np.arange(self.n)
@@ -251,7 +303,8 @@ class Frames(Tables):
             self.complete(self.prepare(acting, actions, buffers), out, buffers, crew, own=True, alone=alone)
             self.go_on(acting)
             if alone:
-                self.game[acting, STRIKER] = AGENT  # also after a decision or lot of a state in which there were two players
+                # also after a decision or lot of a state in which there were two players
+                self.game[acting, STRIKER] = AGENT
                 self._finish(which, out)
 
         crew(playing, play)
@@ -260,7 +313,8 @@ class Frames(Tables):
             crew(playing, lambda which, _: self._finish(which, out))
         if same_step:
             ended = np.flatnonzero(out.terminated | out.truncated)
-            crew(ended, lambda which, _: self.show_masks(which, out.last_masks))  # of the table as it lies, before the next rack
+            # of the table as it lies, before the next rack
+            crew(ended, lambda which, _: self.show_masks(which, out.last_masks))
             self._start(ended, out, crew)
         elif anew:
             self._start(np.flatnonzero(waiting), out, crew)
@@ -271,7 +325,8 @@ class Frames(Tables):
         frame_kernels.finish(which, self.arrays, self.saved_arrays, self._setting, *counted, out.arrays)
 
     def _reply(self, which, out, crew):
-        """All strokes of the opponent on the tables ``which`` until it is the agent's turn or the frame has ended."""
+        """All strokes of the opponent on the tables ``which`` until it is the agent's turn or the frame has
+        ended."""
         opponent = self.seats[1].player
         assert opponent is not None  # ``turn`` plays for two without
         while len(which := which[(self.game[which, STRIKER] != AGENT) & ~self.ended()[which]]):
@@ -284,7 +339,8 @@ class Frames(Tables):
                 crew(tables, play)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew, *, breakers: Ints | None = None) -> None:
-        """New frames on the tables ``wanted`` (n,) bool; the results for all tables into ``out``. ``breakers``: see ``deal``."""
+        """New frames on the tables ``wanted`` (n,) bool; the results for all tables into ``out``.
+        ``breakers``: see ``deal``."""
         self.begun[wanted] = False  # until the opponent has played, if he breaks
         self._start(np.flatnonzero(wanted), out, crew, breakers)
         crew(np.flatnonzero(~wanted), lambda which, _: self._show(which, out, fresh=False))
@@ -320,7 +376,8 @@ class Frames(Tables):
         frame_kernels.show(which, fresh, *tables, self._replies, out.arrays, out.last)
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
-        """The info of the first table as ``player`` sees it; ``last``: the output of the last stroke, or None if there is none."""
+        """The info of the first table as ``player`` sees it; ``last``: the output of the last stroke, or None
+        if there is none."""
         out = self.output()  # the entries that depend on the player
         frame_kernels.inform(player, self.game, out.arrays)
         if last is not None:
@@ -346,15 +403,21 @@ class Frames(Tables):
         frame_kernels.observe(which, player, self.arrays, self.saved_arrays, self._setting, rows)
         return rows
 
-    # states ----------------------------------------------------------------------------------------------------------------
+    # states
+    # ----------------------------------------------------------------------------------------------------------------
 
     def get_state(self, k: int) -> dict[str, Any]:
         """Table k as JSON types: the fields of a ``states.FrameState`` except "rng"."""
         return {
-            "positions": self.positions[k].tolist(), "on_table": self.on_table[k].tolist(), "frame": self.frame(k).to_dict(),
-            "strokes": int(self.game[k, STROKES]), "opponent": int(self.game[k, OPPONENT]), "unpaid": self._unpaid(k),
-            "due": bool(self.due[k]), "stream": self.streams[k].tolist(),
-        }  # fmt: skip
+            "positions": self.positions[k].tolist(),
+            "on_table": self.on_table[k].tolist(),
+            "frame": self.frame(k).to_dict(),
+            "strokes": int(self.game[k, STROKES]),
+            "opponent": int(self.game[k, OPPONENT]),
+            "unpaid": self._unpaid(k),
+            "due": bool(self.due[k]),
+            "stream": self.streams[k].tolist(),
+        }
 
     def _unpaid(self, k):
         """What the agent has earned and no reward has paid yet."""
@@ -364,10 +427,13 @@ class Frames(Tables):
         """What the agent has earned in the episode so far, as its reward counts."""
         return self.game[k, SCORE_0 + AGENT] - self.game[k, SCORE_1 - AGENT]
 
-    def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False) -> FrameState:
+    def checked(
+        self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False
+    ) -> FrameState:
         """The ``states.FrameState`` that a dict describes.
 
-        ValueError if it is invalid, if no stroke is left with ``to_play``, or if the striker is not the agent, unless ``either``.
+        ValueError if it is invalid, if no stroke is left with ``to_play``, or if the striker is not the
+        agent, unless ``either``.
         """
         sound = checked_frame(state, self.rules, generator)
         over, stopped = sound.frame.phase == "over", sound.strokes >= self.rules.max_strokes
@@ -376,12 +442,22 @@ class Frames(Tables):
         if sound.due:
             return sound
         if to_play and over:
-            raise refuse("state.frame.phase", "over", 'must not be "over": there is no shot to play from this state')
+            raise refuse(
+                "state.frame.phase", "over", 'must not be "over": there is no shot to play from this state'
+            )
         if to_play and stopped:
             limit = self.rules.max_strokes
-            raise refuse("state.strokes", sound.strokes, f"must be below max_strokes = {limit}: there is no shot left to play")
+            raise refuse(
+                "state.strokes",
+                sound.strokes,
+                f"must be below max_strokes = {limit}: there is no shot left to play",
+            )
         if not either and sound.frame.striker != AGENT and not (over or stopped):
-            raise refuse("state.frame.striker", sound.frame.striker, f"must be {AGENT}, the agent, as always between two steps")
+            raise refuse(
+                "state.frame.striker",
+                sound.frame.striker,
+                f"must be {AGENT}, the agent, as always between two steps",
+            )
         return sound
 
     def set_state(self, k: int, state: FrameState) -> None:
@@ -398,21 +474,31 @@ class Frames(Tables):
         """The fields of ``Played`` that the frame on table k determines."""
         frame = self.frame(k)
         return {
-            "next_player": frame.striker, "scores": frame.scores, "break_points": frame.break_points, "choice": frame.phase == "choice",
-            "winner": frame.winner, "next_free_ball": frame.free_ball,
-        }  # fmt: skip
+            "next_player": frame.striker,
+            "scores": frame.scores,
+            "break_points": frame.break_points,
+            "choice": frame.phase == "choice",
+            "winner": frame.winner,
+            "next_free_ball": frame.free_ball,
+        }
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """Begin a frame on table k with a valid position; ``game`` is the row of a visit.
 
-        Player 0 is at the table, both scores are 0, and the points of the visit are his break so far. The random stream goes on.
+        Player 0 is at the table, both scores are 0, and the points of the visit are his break so far. The
+        random stream goes on.
         """
         ball_on, in_hand, points = game[[BALL_ON, IN_HAND, POINTS]].tolist()
         balls = mask_of_present(on_table) & ~CUE_BIT
         frame = Frame(
-            break_points=points, on_table=balls, ball_on=BallOn(ball_on), in_hand=bool(in_hand), miss=self.rules.miss,
-            rules=self.rules.game, rack=balls,
-        )  # fmt: skip
+            break_points=points,
+            on_table=balls,
+            ball_on=BallOn(ball_on),
+            in_hand=bool(in_hand),
+            miss=self.rules.miss,
+            rules=self.rules.game,
+            rack=balls,
+        )
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, False, AUTO

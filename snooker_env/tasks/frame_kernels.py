@@ -1,4 +1,5 @@
-"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos, as kernels over tables.
+"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos, as kernels
+over tables.
 
 ``tasks.frame`` calls them in the order of a turn. ``which``: the tables concerned; row j of a shot's arrays
 belongs to which[j]. ``tables``, ``saved``, ``shots``, ``output``, ``setting``: the parts of ``TableArrays``,
@@ -59,7 +60,7 @@ from ..game.frame_columns import (
     may_replace,
     needs_snookers,
     strikeable,
-)  # fmt: skip
+)
 from ..game.philox import pair
 from ..game.rule_sets import SHOOT_OUT, SIX_RED
 from ..game.ruling import AUTO, FLAG, OUTCOME, Facts
@@ -93,7 +94,7 @@ from .stroke import (
     reached_cushion,
     see,
     write_ruling,
-)  # fmt: skip
+)
 from .tables import COUNTS, I_BREAK, REALS, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
@@ -135,7 +136,9 @@ def choose_as(k, wish, rules, tables, saved):
     row = tables.game[k]
     what = PLAY_AGAIN if wish < -1.0 / 3.0 else PLAY
     if wish > 1.0 / 3.0:
-        what = REPLACE if may_replace(row, rules) else PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
+        what = (
+            REPLACE if may_replace(row, rules) else PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
+        )
     choose(row, what)
     if what == REPLACE:
         p, on, back, back_on = tables.positions[k], tables.on_table[k], saved.positions[k], saved.on_table[k]
@@ -148,7 +151,8 @@ def choose_as(k, wish, rules, tables, saved):
 def give_up(row, reward):
     """Charge the loser of a frame that was given up, or lost by a third miss, with the points left.
 
-    S4 R5(b), for matches in which points are added up: eight for each red, and the colours. Otherwise it would pay to give up at once.
+    S4 R5(b), for matches in which points are added up: eight for each red, and the colours. Otherwise it
+    would pay to give up at once.
     """
     if reward != FRAMES_PAID:
         left = available(row[ON_TABLE], -1, 0)
@@ -157,7 +161,8 @@ def give_up(row, reward):
 
 @entry(what="the decisions of frames", seconds=2)
 def decide(which, actions, tables, saved, setting, plays):
-    """What the strikers of the tables ``which`` say before a stroke: declarations, decisions after a foul, nominations.
+    """What the strikers of the tables ``which`` say before a stroke: declarations, decisions after a foul,
+    nominations.
 
     A decision below -1/3: the offender plays again; above 1/3: from the position before, if a miss was
     called, or, after the last one that may be, the striker from anywhere on the table. ``plays[j]``: whether
@@ -195,7 +200,8 @@ def _hand_back(row):
 
 @kernel
 def _leave_the_black(positions, on_table):
-    """Before a re-spotted black: nothing else is on the table, also where the time was up with more of the balls on it."""
+    """Before a re-spotted black: nothing else is on the table, also where the time was up with more of the
+    balls on it."""
     for i in range(1, N_BALLS):
         on_table[i] = i == BLACK
     positions[BLACK, 0], positions[BLACK, 1] = SPOTS[BLACK, 0], SPOTS[BLACK, 1]
@@ -203,7 +209,8 @@ def _leave_the_black(positions, on_table):
 
 @entry
 def hold_late(which, game, rules, time_to_play, v, w, shots):
-    """Shots of the tables ``which`` that would not be begun within the shot clock are not played: the cue ball is not struck."""
+    """Shots of the tables ``which`` that would not be begun within the shot clock are not played: the cue
+    ball is not struck."""
     for j in range(which.shape[0]):
         if is_late(game[which[j]], rules, time_to_play):
             v[j, CUE, 0] = v[j, CUE, 1] = w[j, CUE, 0] = w[j, CUE, 1] = w[j, CUE, 2] = 0.0
@@ -212,7 +219,8 @@ def hold_late(which, game, rules, time_to_play, v, w, shots):
 
 @entry(what="the referee of frames", seconds=6)
 def conclude(which, tables, shots, setting, own, alone, played, output):
-    """Judge the shots that came to rest and update tables and frames. ``own``: infos report the strokes; ``played`` counts them.
+    """Judge the shots that came to rest and update tables and frames. ``own``: infos report the strokes;
+    ``played`` counts them.
 
     What each striker has nominated is AUTO afterwards. ``alone``: the table returns to the agent.
     """
@@ -280,16 +288,32 @@ def observe_frame_into(out, k, tables, saved, setting, player):
     on = strikeable(row, bits(present) & ~1)
     observe_into(out, tables.positions[k], present, row[BALL_ON], on, row[IN_HAND], row[POINTS])
     mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
-    to_play, left = not row[OVER] and row[STRIKER] == player, available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
+    to_play, left = (
+        not row[OVER] and row[STRIKER] == player,
+        available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL]),
+    )
     clock = min(1.0, row[CLOCK] / setting.clock) if setting.clock else 0.0
     more = (
-        _share(mine, 147.0), _share(other, 147.0), _share(mine - other, 147.0), left / 155.0,
-        1.0 if to_play else 0.0, 1.0 if row[FREE_BALL] else 0.0, 1.0 if row[PHASE] == CHOICE else 0.0, 1.0 if row[MISS_CALLED] else 0.0,
-        1.0 if row[RESPOTTED_BLACK] else 0.0, 1.0 if row[BREAKER] == player else 0.0, row[FAILURES] / 2.0, 1.0 if row[WARNED] else 0.0,
-        1.0 if row[PHASE] == LOT else 0.0, _share(row[FRAMES_0 + player], 1.0), _share(row[FRAMES_1 - player], 1.0),
-        _share(setting.frames, 1.0), clock, _share(row[MISSES], 5.0),
+        _share(mine, 147.0),
+        _share(other, 147.0),
+        _share(mine - other, 147.0),
+        left / 155.0,
+        1.0 if to_play else 0.0,
+        1.0 if row[FREE_BALL] else 0.0,
+        1.0 if row[PHASE] == CHOICE else 0.0,
+        1.0 if row[MISS_CALLED] else 0.0,
+        1.0 if row[RESPOTTED_BLACK] else 0.0,
+        1.0 if row[BREAKER] == player else 0.0,
+        row[FAILURES] / 2.0,
+        1.0 if row[WARNED] else 0.0,
+        1.0 if row[PHASE] == LOT else 0.0,
+        _share(row[FRAMES_0 + player], 1.0),
+        _share(row[FRAMES_1 - player], 1.0),
+        _share(setting.frames, 1.0),
+        clock,
+        _share(row[MISSES], 5.0),
         1.0 if row[ANYWHERE] else 0.0,
-    )  # fmt: skip
+    )
     for c in range(len(more)):
         out[SIZE + c] = more[c]
     if out.shape[0] == FRAME_SIZE:
@@ -311,19 +335,28 @@ def observe(which, player, tables, saved, setting, rows):
 
 @kernel
 def _write_frame_info(k, row, player, replies, out):
-    """Write the entries of the info that concern the frame, as ``player`` sees it: a break, a choice and a free ball are the striker's."""
+    """Write the entries of the info that concern the frame, as ``player`` sees it: a break, a choice and a
+    free ball are the striker's."""
     reals, counts = out.reals, out.counts
     mine, other, at_table = row[SCORE_0 + player], row[SCORE_1 - player], row[STRIKER] == player
-    reals[k, I_BREAK], reals[k, I_SCORE], reals[k, I_OPPONENT_SCORE] = row[POINTS] if at_table else 0, mine, other
+    reals[k, I_BREAK], reals[k, I_SCORE], reals[k, I_OPPONENT_SCORE] = (
+        row[POINTS] if at_table else 0,
+        mine,
+        other,
+    )
     counts[k, I_STROKES], counts[k, I_REPLIES], counts[k, I_WINNER] = row[STROKES], replies, row[WINNER]
-    counts[k, I_CHOICE], counts[k, I_FREE_BALL] = at_table and row[PHASE] == CHOICE, at_table and row[FREE_BALL]
+    counts[k, I_CHOICE], counts[k, I_FREE_BALL] = (
+        at_table and row[PHASE] == CHOICE,
+        at_table and row[FREE_BALL],
+    )
     counts[k, I_NEEDS_SNOOKERS] = needs_snookers(row, player)
     reals[k, I_CLOCK] = row[CLOCK] / 1000.0
     counts[k, I_ANYWHERE], counts[k, I_WARNED] = row[ANYWHERE], row[WARNED]
     counts[k, I_MISSES], counts[k, I_FAILURES] = row[MISSES], row[FAILURES]
     if counts.shape[1] > I_FRAME:
         counts[k, I_FRAMES_WON], counts[k, I_OPPONENT_FRAMES] = row[FRAMES_0 + player], row[FRAMES_1 - player]
-        counts[k, I_FRAME] = row[FRAMES_0] + row[FRAMES_1] - row[OVER]  # from 0: the last one of a match that is over, too
+        # from 0: the last one of a match that is over, too
+        counts[k, I_FRAME] = row[FRAMES_0] + row[FRAMES_1] - row[OVER]
 
 
 @kernel
@@ -368,8 +401,8 @@ def inform(player, game, output):
 def begin(which, drawn, breakers, in_hand, on_table, game, streams):
     """New frames on the tables ``which``, already dealt.
 
-    ``drawn``: who breaks is drawn, otherwise it is the agent. ``breakers`` (n,): who breaks instead, -1 for nobody; something is drawn all
-    the same, so that the errors of the strokes do not depend on it.
+    ``drawn``: who breaks is drawn, otherwise it is the agent. ``breakers`` (n,): who breaks instead, -1 for
+    nobody; something is drawn all the same, so that the errors of the strokes do not depend on it.
     """
     for j in range(which.shape[0]):
         k = which[j]
@@ -392,7 +425,8 @@ def count_frames(which, game, needed, goes_on):
 
 @entry(what="the next frame of a match", seconds=1)
 def begin_next(which, alone, reward, in_hand, on_table, game):
-    """The next frames of the matches on the tables ``which``, already dealt: the players break in turn. What was not paid remains so."""
+    """The next frames of the matches on the tables ``which``, already dealt: the players break in turn. What
+    was not paid remains so."""
     for j in range(which.shape[0]):
         k = which[j]
         row = game[k]

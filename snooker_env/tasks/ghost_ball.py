@@ -1,4 +1,5 @@
-"""How does the built-in opponent "ghost_ball" play? The widest direct pot, softly; without one, a plain stroke. A kernel over tables."""
+"""How does the built-in opponent "ghost_ball" play? The widest direct pot, softly; without one, a plain
+stroke. A kernel over tables."""
 
 from math import atan2, cos, hypot, sin, sqrt
 from typing import TYPE_CHECKING, Any
@@ -22,7 +23,7 @@ from ..game.frame_columns import (
     draw,
     may_place_anywhere,
     strikeable,
-)  # fmt: skip
+)
 from ..game.philox import pair
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..game.rule_sets import SHOOT_OUT
@@ -40,19 +41,24 @@ from .stroke import ShotBuffers, place, place_anywhere, strike
 if TYPE_CHECKING:
     from .frame import Frames
 
-_PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8))
+_PLACES = tuple(
+    (x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8)
+)
 _BEHIND = 0.3
 """How far behind the ghost ball the cue ball is placed, where it may stand anywhere [m]."""
 DRIVE = 4.0
-"""How much farther than needed a plain stroke would roll where some ball must reach a cushion [m]. A ball struck full comes half as far.
+"""How much farther than needed a plain stroke would roll where some ball must reach a cushion [m]. A ball
+struck full comes half as far.
 """
 
 
 @kernel
 def _put_on_bed(positions, on_table, mask, found):
-    """Place a cue ball that may stand anywhere behind the ball of the easiest pot; without a pot, where most of a ball on is seen.
+    """Place a cue ball that may stand anywhere behind the ball of the easiest pot; without a pot, where most
+    of a ball on is seen.
 
-    The places tried lie on the straight line from each pocket through each of the balls in ``mask``, or as near as the bed allows.
+    The places tried lie on the straight line from each pocket through each of the balls in ``mask``, or as
+    near as the bed allows.
     """
     widest, best_x, best_y = 0.0, positions[0, 0], positions[0, 1]
     for tries in range(2):
@@ -60,9 +66,14 @@ def _put_on_bed(positions, on_table, mask, found):
             if not (on_table[ball] and (mask >> ball) & 1):
                 continue
             for k in range(POCKET_AIMS.shape[0]):
-                dx, dy = positions[ball, 0] - POCKET_AIMS[k, AIM_X], positions[ball, 1] - POCKET_AIMS[k, AIM_Y]
+                dx, dy = (
+                    positions[ball, 0] - POCKET_AIMS[k, AIM_X],
+                    positions[ball, 1] - POCKET_AIMS[k, AIM_Y],
+                )
                 far = (2.0 * BALL_RADIUS + _BEHIND) / max(1e-9, hypot(dx, dy))
-                place_anywhere(positions, on_table, positions[ball, 0] + far * dx, positions[ball, 1] + far * dy)
+                place_anywhere(
+                    positions, on_table, positions[ball, 0] + far * dx, positions[ball, 1] + far * dy
+                )
                 worth = 0.0
                 if tries == 1:
                     _, _, _, worth = soft(positions, on_table, 1 << ball, 0, DRIVE, found)
@@ -77,9 +88,11 @@ def _put_on_bed(positions, on_table, mask, found):
 
 @kernel
 def put(positions, on_table, mask, anywhere, found, stream):
-    """Place a cue ball in hand where the widest pot of the balls in ``mask`` is; without a pot, where most of a ball on is seen.
+    """Place a cue ball in hand where the widest pot of the balls in ``mask`` is; without a pot, where most of
+    a ball on is seen.
 
-    For the break-off it is placed to the left or right of the brown, as the stream decides. ``anywhere``: not in the D only.
+    For the break-off it is placed to the left or right of the brown, as the stream decides. ``anywhere``: not
+    in the D only.
     """
     if anywhere:
         _put_on_bed(positions, on_table, mask, found)
@@ -105,10 +118,11 @@ def put(positions, on_table, mask, anywhere, found, stream):
 
 @kernel
 def stroke_at(positions, on_table, on, in_hand, failed, drive, found, stream):
-    """The shot of the geometric player at the balls in the mask ``on``: (speed, side, top, direction of the cue ball).
+    """The shot of the geometric player at the balls in the mask ``on``: (speed, side, top, direction of the
+    cue ball).
 
-    ``in_hand``: the cue ball has just been placed; ``failed``: a stroke from this position has failed; ``drive``: how much farther than
-    needed a stroke without a pot is to roll [m].
+    ``in_hand``: the cue ball has just been placed; ``failed``: a stroke from this position has failed;
+    ``drive``: how much farther than needed a stroke without a pot is to roll [m].
     """
     end_red = racked(positions, on_table) if in_hand else 0
     if end_red:
@@ -116,16 +130,30 @@ def stroke_at(positions, on_table, on, in_hand, failed, drive, found, stream):
     touching = touching_balls(positions, on_table)
     x, y = positions[0, 0], positions[0, 1]
     if not failed and find_pots(positions, on_table, on & ~touching, BALL_RADIUS, found[:1]):
-        ball, pocket, gx, gy = int(found[0, POT_BALL]), int(found[0, POT_POCKET]), found[0, GHOST_X], found[0, GHOST_Y]
-        run = hypot(POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1])
-        needed = SLIDE * sqrt(ROLL * (run + 0.6)) / max(found[0, COS_CUT], 0.2)  # of the cue ball at the impact
-        return min(6.0, SLIDE * sqrt(ROLL * hypot(gx - x, gy - y) + needed * needed)), 0.0, 0.0, atan2(gy - y, gx - x)
+        ball, pocket, gx, gy = (
+            int(found[0, POT_BALL]),
+            int(found[0, POT_POCKET]),
+            found[0, GHOST_X],
+            found[0, GHOST_Y],
+        )
+        run = hypot(
+            POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
+        )
+        # of the cue ball at the impact
+        needed = SLIDE * sqrt(ROLL * (run + 0.6)) / max(found[0, COS_CUT], 0.2)
+        return (
+            min(6.0, SLIDE * sqrt(ROLL * hypot(gx - x, gy - y) + needed * needed)),
+            0.0,
+            0.0,
+            atan2(gy - y, gx - x),
+        )
     return plain(positions, on_table, on, touching, failed, drive, found, stream)
 
 
 @kernel
 def named(positions, on_table, row, aim):
-    """The ball that the geometric player nominates: the colour that its line meets first; without one, the cheapest, or no free ball."""
+    """The ball that the geometric player nominates: the colour that its line meets first; without one, the
+    cheapest, or no free ball."""
     dx, dy, near, ball = cos(aim), sin(aim), np.inf, 0
     for i in range(1, N_BALLS):
         x, y = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
@@ -137,9 +165,11 @@ def named(positions, on_table, row, aim):
 
 @kernel
 def geometric_turn(positions, on_table, row, rules, found, stream):
-    """A turn of the geometric player: (speed, side, top, aim, what it nominates, what it decides after a foul).
+    """A turn of the geometric player: (speed, side, top, aim, what it nominates, what it decides after a
+    foul).
 
-    ``row``: of a visit or a frame, after its decision; a cue ball in hand is placed. ``rules``: the code of the rule set.
+    ``row``: of a visit or a frame, after its decision; a cue ball in hand is placed. ``rules``: the code of
+    the rule set.
     """
     frame, decision = row.shape[0] > ANYWHERE, PLAY
     if frame and row[PHASE] == CHOICE:
@@ -160,7 +190,8 @@ def geometric_turn(positions, on_table, row, rules, found, stream):
 
 @entry(what="the geometric opponent", seconds=3)
 def _ghost_ball(which, tables, shots, packed, rules):
-    """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike. ``rules``: the code of the rule set."""
+    """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike. ``rules``: the code of
+    the rule set."""
     positions, on_table, game, streams, nominated = tables
     shots, (options, noise, _), found = StruckArrays(*shots), packed, np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
@@ -175,13 +206,16 @@ def _ghost_ball(which, tables, shots, packed, rules):
 
 @entry(what="the geometric player", seconds=3)
 def geometric_strokes(positions, on_table, game, rules, streams, strokes, nominated, decisions):
-    """The strokes (n, 5) of the geometric player, what it nominates and decides (n,), for rows of visits or frames.
+    """The strokes (n, 5) of the geometric player, what it nominates and decides (n,), for rows of visits or
+    frames.
 
     The arrays are changed: cue balls in hand are placed. ``rules``: the code of the rule set.
     """
     found = np.empty((LINE_ROWS, POT_COLUMNS))
     for k in range(len(game)):
-        speed, side, top, aim, colour, decision = geometric_turn(positions[k], on_table[k], game[k], rules, found, streams[k])
+        speed, side, top, aim, colour, decision = geometric_turn(
+            positions[k], on_table[k], game[k], rules, found, streams[k]
+        )
         nominated[k], decisions[k] = colour, decision
         strokes[k, 0], strokes[k, 1], strokes[k, 2], strokes[k, 3], strokes[k, 4] = speed, side, top, aim, 0.0
 
@@ -194,21 +228,31 @@ def put_in_hand(positions, on_table, game, streams):
         row = game[k]
         if row[IN_HAND]:
             anywhere = row.shape[0] > ANYWHERE and row[ANYWHERE] != 0
-            put(positions[k], on_table[k], strikeable(row, bits(on_table[k]) & ~1), anywhere, found, streams[k])
+            put(
+                positions[k],
+                on_table[k],
+                strikeable(row, bits(on_table[k]) & ~1),
+                anywhere,
+                found,
+                streams[k],
+            )
 
 
 class GhostBallOpponent(Opponent):
-    """The geometric player ``ghost_ball`` as a kernel: the widest direct pot (``game.pots``), as softly as possible.
+    """The geometric player ``ghost_ball`` as a kernel: the widest direct pot (``game.pots``), as softly as
+    possible.
 
-    * Without a pot it plays a plain stroke (``plain_stroke``): the break-off, a soft stroke at a ball on that it sees, an escape.
-    * It nominates the colour that its line meets first. It never concedes or claims, and begins if it wins the lot.
-    * With the cue ball in hand it takes the best of ten places in the D. Where it may stand anywhere, it is placed straight
-      behind the ball of the easiest pot. After a foul it always plays the table as it lies.
+    * Without a pot it plays a plain stroke (``plain_stroke``): the break-off, a soft stroke at a ball on that
+      it sees, an escape.
+    * It nominates the colour that its line meets first. It never concedes or claims, and begins if it wins
+      the lot.
+    * With the cue ball in hand it takes the best of ten places in the D. Where it may stand anywhere, it is
+      placed straight behind the ball of the easiest pot. After a foul it always plays the table as it lies.
     * In the Shoot Out its plain strokes are harder, so that a ball reaches a cushion.
     * It allows for neither throw nor position.
-    * Its speed varies by a tenth (at the break-off by a fiftieth), and the direction of a plain stroke within the window
-      that strikes the ball. From a position that was restored after its miss it tries no pot, and varies more: two exact
-      players cannot repeat one failing stroke for ever.
+    * Its speed varies by a tenth (at the break-off by a fiftieth), and the direction of a plain stroke within
+      the window that strikes the ball. From a position that was restored after its miss it tries no pot, and
+      varies more: two exact players cannot repeat one failing stroke for ever.
     """
 
     def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:

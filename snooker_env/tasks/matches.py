@@ -1,7 +1,8 @@
-"""How is a match of several frames played, on one table or on thousands? Best of N frames, in which the players break in turn.
+"""How is a match of several frames played, on one table or on thousands? Best of N frames, in which the
+players break in turn.
 
-A frame that ends is followed at once by the next rack, in the same step. The match ends with the frame that decides it. A frame that the
-referee stops (``max_strokes``) truncates the match.
+A frame that ends is followed at once by the next rack, in the same step. The match ends with the frame that
+decides it. A frame that the referee stops (``max_strokes``) truncates the match.
 """
 
 from typing import Any
@@ -24,7 +25,8 @@ class Matches(Frames):
     COUNTS: tuple[str, ...] = (*Frames.COUNTS, "frames_won", "opponent_frames", "frame")
 
     def go_on(self, which: Ints) -> None:
-        """Count the frames that have just ended on the tables ``which``, and set up the next ones unless the match is decided."""
+        """Count the frames that have just ended on the tables ``which``, and set up the next ones unless the
+        match is decided."""
         ended = which[self.game[which, OVER] != 0]
         if not len(ended):
             return
@@ -45,7 +47,11 @@ class Matches(Frames):
     def get_state(self, k: int) -> dict[str, Any]:
         """Table k as JSON types: the fields of a ``states.FrameState`` except "rng"."""
         won = self.game[k, [FRAMES_0, FRAMES_1]].tolist()
-        return super().get_state(k) | {"frames": won, "first_break": int(self.game[k, FIRST_BREAK]), "best_of": self.rules.frames}
+        return super().get_state(k) | {
+            "frames": won,
+            "first_break": int(self.game[k, FIRST_BREAK]),
+            "best_of": self.rules.frames,
+        }
 
     def set_state(self, k: int, state: FrameState) -> None:
         """Restore a valid ``states.FrameState`` on table k."""

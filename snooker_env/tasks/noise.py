@@ -1,8 +1,9 @@
 """How accurately does a player execute a shot? Gaussian errors of aim, speed, tip offset and elevation.
 
-What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): the aim error plus the squirt of a tip that is
-off to the side. No measurement of a snooker player's errors in these units was found. So the levels are set by what players achieve, on
-the pockets of this package. ``python -m benchmarks.execution`` prints their pot rates beside the published figures, and with ``--fit`` the
+What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): the aim error
+plus the squirt of a tip that is off to the side. No measurement of a snooker player's errors in these units
+was found. So the levels are set by what players achieve, on the pockets of this package.
+``python -m benchmarks.execution`` prints their pot rates beside the published figures, and with ``--fit`` the
 errors that reproduce them.
 
 =============== ========================= ===========================================================================================
@@ -15,31 +16,35 @@ level           error of direction [deg]  set by
 "olympiad"      0.149                     the definition of the Computer Olympiad's billiards
 =============== ========================= ===========================================================================================
 
-* "professional": the mean over three long pots of our choice lies in that range (26, 62 and 84 %). A player who always takes the likeliest
-  pot then makes, in play, about 88 % of the pots that it tries, and 91 % of those with a chance of half or more. Professionals are said to
-  make 88 to 95 % of the pots that they choose.
-* "amateur", "club": the published aim errors were derived as total errors for pockets with an effective half window of 22 mm. These levels
-  give the same mean rate of four pots on these pockets. All figures quoted so far are from secondary sources: no statistics behind them
-  were found.
-* "robot": the robot of Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and left the cue ball 100 to 200 mm
-  from the planned place. The abstract says no more. The pots ("moderate" in the benchmark) are our choice. So is putting the whole error of
-  position into the speed, which therefore includes the error of the robot's own predictions.
-* "olympiad": aim 0.125 deg, elevation 0.1 deg, speed 0.075 m/s, offsets 0.5 mm, as defined there. The squirt of the offset is added to the
-  aim.
+* "professional": the mean over three long pots of our choice lies in that range (26, 62 and 84 %). A player
+  who always takes the likeliest pot then makes, in play, about 88 % of the pots that it tries, and 91 % of
+  those with a chance of half or more. Professionals are said to make 88 to 95 % of the pots that they choose.
+* "amateur", "club": the published aim errors were derived as total errors for pockets with an effective half
+  window of 22 mm. These levels give the same mean rate of four pots on these pockets. All figures quoted so
+  far are from secondary sources: no statistics behind them were found.
+* "robot": the robot of Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and left
+  the cue ball 100 to 200 mm from the planned place. The abstract says no more. The pots ("moderate" in the
+  benchmark) are our choice. So is putting the whole error of position into the speed, which therefore
+  includes the error of the robot's own predictions.
+* "olympiad": aim 0.125 deg, elevation 0.1 deg, speed 0.075 m/s, offsets 0.5 mm, as defined there. The squirt
+  of the offset is added to the aim.
 
-A pot that loses the cue ball counts as missed, also in the fit: 17 % of a professional's strokes at the longest straight pot, without spin,
-end that way. If it counted as made, as in the published derivation, the fit would give about 0.040, 0.056 and 0.122 deg. The aim errors
-published for professionals, 0.02 to 0.03 deg, make 83 to 92 % of those four pots; this level makes 76 %. Both figures cannot be met at
-once, and we chose the long pots.
+A pot that loses the cue ball counts as missed, also in the fit: 17 % of a professional's strokes at the
+longest straight pot, without spin, end that way. If it counted as made, as in the published derivation, the
+fit would give about 0.040, 0.056 and 0.122 deg. The aim errors published for professionals, 0.02 to 0.03 deg,
+make 83 to 92 % of those four pots; this level makes 76 %. Both figures cannot be met at once, and we chose
+the long pots.
 
 Our choices:
 
 * Aim and squirt have half of the variance each; no measurement separates them.
-* The errors are drawn independently, so the tip error is small. A real cue turns about the bridge. If the bridge is R over the squirt's
-  slope (0.35 m) behind the ball, squirt cancels the turn, and a real tip may well be off by more.
+* The errors are drawn independently, so the tip error is small. A real cue turns about the bridge. If the
+  bridge is R over the squirt's slope (0.35 m) behind the ball, squirt cancels the turn, and a real tip may
+  well be off by more.
 * The vertical tip error equals the horizontal one.
-* Speed: 1.75 % (professional), 2.5 % (amateur), 4 % (club). Of pool players it is said that a good one rolls a ball the length of a table
-  to within an inch or two, 0.5 to 1 % of the speed, and a beginner to within a diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009).
+* Speed: 1.75 % (professional), 2.5 % (amateur), 4 % (club). Of pool players it is said that a good one rolls
+  a ball the length of a table to within an inch or two, 0.5 to 1 % of the speed, and a beginner to within a
+  diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009).
 * Elevation: 0.1 to 0.3 deg; it hardly matters with a level cue.
 """
 
@@ -56,13 +61,15 @@ from ..game.philox import normals
 from ..physics.cue import MAX_ELEVATION
 from ..physics.parameters import Physics, PhysicsLike
 
-# Columns of the packed deviations: 1 if there is no noise, then speed [m/s], speed (relative), tip offset over R, aim, elevation [rad].
+# Columns of the packed deviations: 1 if there is no noise, then speed [m/s], speed (relative), tip offset
+# over R, aim, elevation [rad].
 (N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION) = range(6)
 
 
 @kernel
 def with_errors(speed, side, top, aim, elevation, errors, noise):
-    """The shot under the standard normal ``errors`` (5,): speed, side, top, aim, elevation. The only law of errors; see ``executed``."""
+    """The shot under the standard normal ``errors`` (5,): speed, side, top, aim, elevation. The only law of
+    errors; see ``executed``."""
     return (
         max(0.0, speed + errors[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
         side + errors[1] * noise[N_TIP],
@@ -98,7 +105,8 @@ def executed(speed, side, top, aim, elevation, noise, stream):
     noise : float64 (k,)
         Standard deviations of the errors, as ``Noise.pack`` returns them.
     stream : uint64 (2,)
-        Stream of random numbers: key and counter. Three blocks are drawn from it, or nothing if ``noise`` has no errors.
+        Stream of random numbers: key and counter. Three blocks are drawn from it, or nothing if ``noise`` has
+        no errors.
 
     Returns
     -------
@@ -117,7 +125,8 @@ def _errors(streams, out):
 
 
 def errors_of(streams: Words) -> Floats:
-    """The errors that shots would draw from ``streams`` (n, 2), which stay as they are: standard normal (n, 5), as of ``with_errors``."""
+    """The errors that shots would draw from ``streams`` (n, 2), which stay as they are: standard normal (n,
+    5), as of ``with_errors``."""
     out = np.empty((len(streams), 5))
     _errors(streams.copy(), out)
     return out
@@ -169,7 +178,8 @@ class Noise:
         Parameters
         ----------
         noise : str, dict or Noise
-            The name of a level (a key of ``LEVELS``), or a dict of fields of ``Noise``; fields left out are 0.
+            The name of a level (a key of ``LEVELS``), or a dict of fields of ``Noise``; fields left out are
+            0.
 
         Returns
         -------
@@ -194,7 +204,14 @@ class Noise:
                 choice("noise field", key, [f.name for f in fields(cls)])
             return cls(**noise)
         if not isinstance(noise, str) or noise not in LEVELS:
-            raise refuse("noise", noise, "must be one of " + ", ".join(map(repr, LEVELS)) + " or a dict of " + str(list(asdict(cls()))))
+            raise refuse(
+                "noise",
+                noise,
+                "must be one of "
+                + ", ".join(map(repr, LEVELS))
+                + " or a dict of "
+                + str(list(asdict(cls()))),
+            )
         return LEVELS[noise]
 
     @property
@@ -203,11 +220,12 @@ class Noise:
         return not (self.aim_deg or self.speed_rel or self.speed_abs or self.offset_mm or self.elevation_deg)
 
     def direction_deg(self, physics: PhysicsLike = None) -> float:
-        """Return the total error of the cue ball's direction: aim and squirt, as the root of the sum of squares.
+        """Return the total error of the cue ball's direction: aim and squirt, as the root of the sum of
+        squares.
 
-        A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a small offset [TP A.31]. With the
-        usual ratio of 30 that is 0.163 deg for each millimetre. The result holds for strokes without intended side; the swerve of a nearly
-        level cue is neglected.
+        A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a
+        small offset [TP A.31]. With the usual ratio of 30 that is 0.163 deg for each millimetre. The result
+        holds for strokes without intended side; the swerve of a nearly level cue is neglected.
 
         Parameters
         ----------
@@ -249,7 +267,17 @@ class Noise:
         [0.0, 0.0, 0.02, 0.0, 0.0, 0.0]
         """
         tip = self.offset_mm * 1e-3 / R
-        return np.array([self.silent, self.speed_abs, self.speed_rel, tip, radians(self.aim_deg), radians(self.elevation_deg)], np.float64)
+        return np.array(
+            [
+                self.silent,
+                self.speed_abs,
+                self.speed_rel,
+                tip,
+                radians(self.aim_deg),
+                radians(self.elevation_deg),
+            ],
+            np.float64,
+        )
 
 
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
@@ -263,6 +291,6 @@ LEVELS: dict[str, Noise] = {
     "robot": Noise(aim_deg=0.033, speed_rel=0.08, offset_mm=0.2, elevation_deg=0.1),
     "olympiad": Noise(aim_deg=0.125, speed_abs=0.075, offset_mm=0.5, elevation_deg=0.1),
 }
-"""The named levels of execution noise: "none", "professional", "amateur", "club", "robot" and "olympiad", as ``Noise``. The module's
-docstring gives their sources.
+"""The named levels of execution noise: "none", "professional", "amateur", "club", "robot" and "olympiad", as
+``Noise``. The module's docstring gives their sources.
 """

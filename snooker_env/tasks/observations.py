@@ -13,36 +13,68 @@ from ..geometry import HALF_LENGTH, HALF_WIDTH
 from .declarations import STROKE_CHOICES
 
 OBSERVATIONS = ("flat", "balls", "masked")
-"""The kinds of observations: "flat", one array; "balls", a dict of two; "masked", a dict of the flat one and the available choices."""
+"""The kinds of observations: "flat", one array; "balls", a dict of two; "masked", a dict of the flat one and
+the available choices."""
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
-"""Columns of the table of balls: x / 0.889 m and y / 1.7845 m (0 when off the table), 1 if on the table, value / 7, 1 if it may be struck
-first (a ball on).
+"""Columns of the table of balls: x / 0.889 m and y / 1.7845 m (0 when off the table), 1 if on the table,
+value / 7, 1 if it may be struck first (a ball on).
 """
 STATE_ENTRIES = (
-    "reds", "any_colour", "red", "yellow", "green", "brown", "blue", "pink", "black", "in_hand", "break",
-)  # fmt: skip
-"""Entries of the state of the game: reds left / 15; the ball on as one-hot, from "any_colour" to "black"; 1 if the cue ball is in hand;
-points of this break / 155.
+    "reds",
+    "any_colour",
+    "red",
+    "yellow",
+    "green",
+    "brown",
+    "blue",
+    "pink",
+    "black",
+    "in_hand",
+    "break",
+)
+"""Entries of the state of the game: reds left / 15; the ball on as one-hot, from "any_colour" to "black"; 1
+if the cue ball is in hand; points of this break / 155.
 """
 
 FRAME_ENTRIES = (
-    "score", "opponent_score", "lead", "available", "to_play", "free_ball", "choice", "miss_called", "respotted_black", "broke", "failures",
-    "warned", "in_lot", "frames_won", "opponent_frames", "frames_needed", "clock", "misses", "anywhere",
-)  # fmt: skip
-"""Entries that a frame adds, from one player's point of view, in [-1, 1] and never clipped. His score s and the opponent's, each
-s / (s + 147); the difference d / (abs(d) + 147); points on the table / 155. Flags: it is his turn, the striker has a free ball, the other
-player has just fouled (a decision is open), the foul was called a miss, the black was re-spotted, he broke off in this frame. Failures in
-succession from one position / 2, and whether the next one loses the frame. Whether the lot is won and its winner decides who begins. Of a
-match, each f / (f + 1): the frames that he has won, those of the opponent, those that win the match (1 in a single frame). The share of the
-frame's time that has been played (0 without a clock); misses m in succession, m / (m + 5); whether the cue ball in hand may be placed
-anywhere. With a free ball, "ball_on" is 1 for every colour too.
+    "score",
+    "opponent_score",
+    "lead",
+    "available",
+    "to_play",
+    "free_ball",
+    "choice",
+    "miss_called",
+    "respotted_black",
+    "broke",
+    "failures",
+    "warned",
+    "in_lot",
+    "frames_won",
+    "opponent_frames",
+    "frames_needed",
+    "clock",
+    "misses",
+    "anywhere",
+)
+"""Entries that a frame adds, from one player's point of view, in [-1, 1] and never clipped. His score s and
+the opponent's, each s / (s + 147); the difference d / (abs(d) + 147); points on the table / 155. Flags: it is
+his turn, the striker has a free ball, the other player has just fouled (a decision is open), the foul was
+called a miss, the black was re-spotted, he broke off in this frame. Failures in succession from one position
+/ 2, and whether the next one loses the frame. Whether the lot is won and its winner decides who begins. Of a
+match, each f / (f + 1): the frames that he has won, those of the opponent, those that win the match (1 in a
+single frame). The share of the frame's time that has been played (0 without a clock); misses m in succession,
+m / (m + 5); whether the cue ball in hand may be placed anywhere. With a free ball, "ball_on" is 1 for every
+colour too.
 """
 REPLACED_COLUMNS = ("x", "y", "on_table")
-"""Columns of the layout that "replace" restores, one row a ball as in the table of balls; 0 unless a miss has just been called."""
+"""Columns of the layout that "replace" restores, one row a ball as in the table of balls; 0 unless a miss has
+just been called."""
 
 REACH = 1.1
-"""Bound of the spaces that hold places. The noses are at 1, and a ball that rests in the mouth of a pocket may lie past them: on snooker's
-own tables at 1.013, on any table that an environment takes within this bound (``table_fit``)."""
+"""Bound of the spaces that hold places. The noses are at 1, and a ball that rests in the mouth of a pocket
+may lie past them: on snooker's own tables at 1.013, on any table that an environment takes within this bound
+(``table_fit``)."""
 
 _COLUMNS = len(BALL_COLUMNS)
 BALLS_SIZE = N_BALLS * _COLUMNS
@@ -55,27 +87,31 @@ REPLACED_SIZE = N_BALLS * len(REPLACED_COLUMNS)
 """Numbers that a miss rule adds to it (66): the layout that "replace" restores."""
 
 
-def space(kind: ObservationKind, *, frame: bool = False, replaced: bool = False, choices: int = STROKE_CHOICES) -> spaces.Box | spaces.Dict:
+def space(
+    kind: ObservationKind, *, frame: bool = False, replaced: bool = False, choices: int = STROKE_CHOICES
+) -> spaces.Box | spaces.Dict:
     """Return the observation space.
 
     Parameters
     ----------
     kind : {"flat", "balls", "masked"}
-        "flat": a Box with shape (121,); "balls": a Dict of the boxes "balls" (22, 5) and "state" (11,); "masked": a Dict of the boxes
-        "observations", that of "flat", and "action_mask" (choices,), int8 in {0, 1}.
+        "flat": a Box with shape (121,); "balls": a Dict of the boxes "balls" (22, 5) and "state" (11,);
+        "masked": a Dict of the boxes "observations", that of "flat", and "action_mask" (choices,), int8 in
+        {0, 1}.
     frame : bool, optional
-        Whether the 19 entries of a frame or match follow the eleven of a visit: shapes (140,) and (30,). Default False.
+        Whether the 19 entries of a frame or match follow the eleven of a visit: shapes (140,) and (30,).
+        Default False.
     replaced : bool, optional
-        Whether the layout that "replace" restores follows, as in a frame with a miss rule: 66 more numbers, (206,) in all, or the box
-        "replaced" (22, 3). Default False.
+        Whether the layout that "replace" restores follows, as in a frame with a miss rule: 66 more numbers,
+        (206,) in all, or the box "replaced" (22, 3). Default False.
     choices : int, optional
         Number of discrete actions, the length of "action_mask". Default 540, those that only choose a stroke.
 
     Returns
     -------
     gymnasium.spaces.Box or gymnasium.spaces.Dict
-        The space of float32 numbers, and of the mask. Places in the mouths of pockets are a little beyond 1, so that the bounds are 1.1
-        wherever there are balls; all other numbers are in [-1, 1].
+        The space of float32 numbers, and of the mask. Places in the mouths of pockets are a little beyond 1,
+        so that the bounds are 1.1 wherever there are balls; all other numbers are in [-1, 1].
 
     Raises
     ------
@@ -95,7 +131,11 @@ def space(kind: ObservationKind, *, frame: bool = False, replaced: bool = False,
     state = spaces.Box(-1.0, 1.0, (entries,), np.float32)
     if kind == "balls":
         parts: dict[str, spaces.Space[Any]] = {"balls": balls, "state": state}
-        return spaces.Dict(parts | {"replaced": spaces.Box(-REACH, REACH, (N_BALLS, len(REPLACED_COLUMNS)), np.float32)} if more else parts)
+        return spaces.Dict(
+            parts | {"replaced": spaces.Box(-REACH, REACH, (N_BALLS, len(REPLACED_COLUMNS)), np.float32)}
+            if more
+            else parts
+        )
     flat = spaces.Box(-REACH, REACH, (BALLS_SIZE + entries + more,), np.float32)
     if kind == "masked":
         return spaces.Dict({"observations": flat, "action_mask": spaces.Box(0, 1, (choices,), np.int8)})
@@ -104,7 +144,8 @@ def space(kind: ObservationKind, *, frame: bool = False, replaced: bool = False,
 
 @kernel
 def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
-    """Write the flat observation (SIZE,) float32. ``ball_on``: a BallOn, ``on``: the mask of the balls on, ``points``: the break so far."""
+    """Write the flat observation (SIZE,) float32. ``ball_on``: a BallOn, ``on``: the mask of the balls on,
+    ``points``: the break so far."""
     for i in range(N_BALLS):
         at, here = i * _COLUMNS, on_table[i]
         row[at] = positions[i, 0] / HALF_WIDTH if here else 0.0
@@ -136,9 +177,9 @@ def shaped(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = N
     Returns
     -------
     numpy.ndarray or dict
-        With "flat": ``rows`` itself. With "balls": a dict of new arrays, "balls" (..., 22, 5), "state" (..., 11 or 30) and, with a
-        miss rule, "replaced" (..., 22, 3). With "masked": a dict of ``rows`` itself, "observations", and of "action_mask", int8: ``masks``
-        itself, or a new array if they are bool.
+        With "flat": ``rows`` itself. With "balls": a dict of new arrays, "balls" (..., 22, 5), "state" (...,
+        11 or 30) and, with a miss rule, "replaced" (..., 22, 3). With "masked": a dict of ``rows`` itself,
+        "observations", and of "action_mask", int8: ``masks`` itself, or a new array if they are bool.
 
     Raises
     ------

@@ -1,4 +1,5 @@
-"""How does one train against several opponents? ``OpponentPool``: one of them is drawn for each frame, from the table's own stream."""
+"""How does one train against several opponents? ``OpponentPool``: one of them is drawn for each frame, from
+the table's own stream."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -15,11 +16,12 @@ if TYPE_CHECKING:
 
 
 class OpponentPool:
-    """Several opponents, one of whom is drawn for each table and frame, with chances in proportion to their weights.
+    """Several opponents, one of whom is drawn for each table and frame, with chances in proportion to their
+    weights.
 
-    The draw comes from the table's own stream of random numbers and is part of its state: the same seed meets the same opponents, whatever
-    happens on other tables, and a saved state plays on exactly. Members may be added at any time, for instance past selves during training:
-    frames that begin later may draw them.
+    The draw comes from the table's own stream of random numbers and is part of its state: the same seed meets
+    the same opponents, whatever happens on other tables, and a saved state plays on exactly. Members may be
+    added at any time, for instance past selves during training: frames that begin later may draw them.
 
     Parameters
     ----------
@@ -38,7 +40,8 @@ class OpponentPool:
     Raises
     ------
     ValueError
-        If ``members`` are given and empty, there is not one weight for each, or a weight is wrong or none is above 0.
+        If ``members`` are given and empty, there is not one weight for each, or a weight is wrong or none is
+        above 0.
 
     Examples
     --------
@@ -56,7 +59,9 @@ class OpponentPool:
         self._weights: list[float] = []
         given = [] if members is None else list(members)
         if members is not None and not given:
-            raise refuse("members", given, "must hold one member at least; leave them out where add(...) follows")
+            raise refuse(
+                "members", given, "must hold one member at least; leave them out where add(...) follows"
+            )
         each = [1.0] * len(given) if weights is None else list(weights)
         if len(each) != len(given):
             raise refuse("weights", each, f"must be {len(given)} numbers, one for each member")
@@ -98,8 +103,14 @@ class OpponentPool:
         >>> pool.members
         ('ghost_ball',)
         """
-        if isinstance(member, OpponentPool) or member is None or (isinstance(member, str) and member == "none"):
-            raise refuse("member", member, "must be one opponent: a name, a model's file, a callable or a player")
+        if (
+            isinstance(member, OpponentPool)
+            or member is None
+            or (isinstance(member, str) and member == "none")
+        ):
+            raise refuse(
+                "member", member, "must be one opponent: a name, a model's file, a callable or a player"
+            )
         weight = number("weight", weight, 0.0)
         self._members.append(member)
         self._weights.append(weight)
@@ -150,7 +161,9 @@ class PoolOpponent(Opponent):
         """Nothing: its members play."""
         return which[:0]
 
-    def turns(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> list[tuple[Opponent, Ints, Any]]:
+    def turns(
+        self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]
+    ) -> list[tuple[Opponent, Ints, Any]]:
         """As ``Opponent.turns``: one entry for each member that plays on some of the tables ``which``."""
         self._complete()
         self._draw(frames, which)
@@ -158,7 +171,11 @@ class PoolOpponent(Opponent):
         turns: list[tuple[Opponent, Ints, Any]] = []
         for number_ in np.unique(playing).tolist():
             if number_ > len(self._ready):
-                raise refuse("opponent", f"member {number_ - 1} of a pool", f"must be below {len(self._ready)}, as many as the pool has")
+                raise refuse(
+                    "opponent",
+                    f"member {number_ - 1} of a pool",
+                    f"must be below {len(self._ready)}, as many as the pool has",
+                )
             turns += self._ready[number_ - 1].turns(frames, which[playing == number_], generators)
         return turns
 

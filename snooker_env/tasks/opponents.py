@@ -1,7 +1,8 @@
 """Who plays the other side of a frame? What an opponent is, and a callable as one.
 
-For all tables at which it is the opponent's turn, ``ask(frames, which, generators)`` is called once, in Python.
-``prepare(frames, which, asked, buffers)`` then carries what it returned out up to the strike, on several threads.
+For all tables at which it is the opponent's turn, ``ask(frames, which, generators)`` is called once, in
+Python. ``prepare(frames, which, asked, buffers)`` then carries what it returned out up to the strike, on
+several threads.
 """
 
 from abc import ABC, abstractmethod
@@ -40,7 +41,9 @@ class Opponent(ABC):
     def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
         """Carry the strokes out up to the strike; returns the tables with a stroke."""
 
-    def turns(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> "list[tuple[Opponent, Ints, Any]]":
+    def turns(
+        self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]
+    ) -> "list[tuple[Opponent, Ints, Any]]":
         """Who plays on which of the tables ``which``, and what: [(opponent, tables, asked), ...]."""
         return [(self, which, self.ask(frames, which, generators))]
 
@@ -55,15 +58,17 @@ def drawn(which, streams, out):
 class AskedOpponent(Opponent):
     """A policy, ``policy(observation, rng) -> action``, in the spaces of the environment's own agent.
 
-    A policy with a method ``many(observations, generators, masks) -> actions`` is called once for all tables that wait:
-    observations with a leading axis, as many generators, and the masks of discrete actions (None for box actions).
+    A policy with a method ``many(observations, generators, masks) -> actions`` is called once for all tables
+    that wait: observations with a leading axis, as many generators, and the masks of discrete actions (None
+    for box actions).
     """
 
     def __init__(self, policy: Policy):
         self.policy = policy
 
     def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
-        """Its actions on the tables ``which``: (n, k). Raises ValueError, naming "opponent's action", for an invalid one."""
+        """Its actions on the tables ``which``: (n, k). Raises ValueError, naming "opponent's action", for an
+        invalid one."""
         actions, k_of = frames.seats[SIDE].actions, which.tolist()
         seen = frames.observe(which, SIDE)
         wished = self._wishes(frames, which, seen, [generators[k] for k in k_of])
@@ -82,10 +87,14 @@ class AskedOpponent(Opponent):
     def _wishes(self, frames, which, seen, generators):
         kind, many = frames.rules.observation, getattr(self.policy, "many", None)
         discrete = isinstance(frames.seats[SIDE].actions, Choices)
-        masks = frames.action_masks(which, SIDE) if discrete and (many is not None or kind == "masked") else None
+        masks = (
+            frames.action_masks(which, SIDE) if discrete and (many is not None or kind == "masked") else None
+        )
         if many is None:
             shown = [None] * len(seen) if masks is None else masks
-            views = [observations.shaped(kind, row.copy(), mask) for row, mask in zip(seen, shown, strict=True)]
+            views = [
+                observations.shaped(kind, row.copy(), mask) for row, mask in zip(seen, shown, strict=True)
+            ]
             return [self.policy(view, rng) for view, rng in zip(views, generators, strict=True)]
         wished = many(observations.shaped(kind, seen, masks), generators, masks)
         if not hasattr(wished, "__len__") or len(wished) != len(which):

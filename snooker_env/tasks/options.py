@@ -1,7 +1,8 @@
-"""How is the game of an environment configured? All options in one immutable object, validated together when it is made.
+"""How is the game of an environment configured? All options in one immutable object, validated together when
+it is made.
 
-``SnookerEnv``, ``SnookerVectorEnv``, ``MatchEnv``, ``SnookerVecEnv`` and ``planning.Planner`` take an ``Options``, or its fields as
-keywords.
+``SnookerEnv``, ``SnookerVectorEnv``, ``MatchEnv``, ``SnookerVecEnv`` and ``planning.Planner`` take an
+``Options``, or its fields as keywords.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -31,16 +32,18 @@ from .table_fit import fitted, table_of
 
 TASKS = ("visit", "frame", "match")
 MOST_TIME = 15.0
-"""The most time to play [s]: the longest shot clock. With more no stroke would ever be in time, and the frame's clock would not start."""
+"""The most time to play [s]: the longest shot clock. With more no stroke would ever be in time, and the
+frame's clock would not start."""
 TIME_TO_PLAY = 9.0
-"""Default time [s] from the rest of the balls to the next stroke, in a game with a clock. With the strokes' own duration some 14 s a
-stroke, as in the Shoot Out of professionals."""
+"""Default time [s] from the rest of the balls to the next stroke, in a game with a clock. With the strokes'
+own duration some 14 s a stroke, as in the Shoot Out of professionals."""
 ACTIONS = ("box", "discrete")
 LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 """What layout="default" means in each task."""
 MAX_STROKES = 1000
-"""Default number of strokes of both players after which the referee stops a frame. Uniformly random players that aim near a pot needed 284
-on average, and never more than 560 in 2,000 frames (``benchmarks.frames``). Players that only foul, or only pass the turn, never finish.
+"""Default number of strokes of both players after which the referee stops a frame. Uniformly random players
+that aim near a pot needed 284 on average, and never more than 560 in 2,000 frames (``benchmarks.frames``).
+Players that only foul, or only pass the turn, never finish.
 """
 FRAMES = 7
 """Default length of a match: best of 7."""
@@ -102,7 +105,8 @@ class Rules:
 
 
 def _about(group: str, values: str, *, only: str | None = None) -> dict[str, Any]:
-    """The metadata of an option: its group, the values that it may have (Markdown), and the only task that has it."""
+    """The metadata of an option: its group, the values that it may have (Markdown), and the only task that
+    has it."""
     return {"group": group, "values": values, "only": only}
 
 
@@ -119,28 +123,33 @@ def _said(says: Any, flags: Mapping[str, Any]) -> tuple[str, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together. An ``Options`` is immutable.
+    """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together. An
+    ``Options`` is immutable.
 
     Parameters
     ----------
     task : {"visit", "frame", "match"}, optional
-        "visit" (default): build a break until the first miss or foul. "frame": play a whole frame. "match": the best of several frames;
-        what is said below of a frame holds for a match, too.
+        "visit" (default): build a break until the first miss or foul. "frame": play a whole frame. "match":
+        the best of several frames; what is said below of a frame holds for a match, too.
     layout : str, optional
-        How tables are dealt: "opened", "held_out", "break_off", "line_up", "colours", "random:N" (N reds), "snookered", "pots:easy",
-        "pots:medium" or "pots:hard". "default": "opened" in a visit, "break_off" in a frame.
+        How tables are dealt: "opened", "held_out", "break_off", "line_up", "colours", "random:N" (N reds),
+        "snookered", "pots:easy", "pots:medium" or "pots:hard". "default": "opened" in a visit, "break_off" in
+        a frame.
     action : {"box", "discrete"}, optional
-        "box" (default): numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a top, in [0, 540) unless options
-        of frames add more.
+        "box" (default): numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a
+        top, in [0, 540) unless options of frames add more.
     aim : {"absolute", "target"}, optional
-        Reference direction of the aim in a box action: +x (default), or the line of the best pot or, without one, of a fair stroke.
+        Reference direction of the aim in a box action: +x (default), or the line of the best pot or, without
+        one, of a fair stroke.
     observation : {"flat", "balls", "masked"}, optional
-        "flat" (default): one array. "balls": a dict of two arrays. "masked", with ``action="discrete"``: a dict of the flat array and the
-        available choices.
+        "flat" (default): one array. "balls": a dict of two arrays. "masked", with ``action="discrete"``: a
+        dict of the flat array and the available choices.
     noise : str, dict or Noise, optional
-        Execution errors: the name of a level, or standard deviations, see ``snooker_env.tasks.Noise``. Default "none".
+        Execution errors: the name of a level, or standard deviations, see ``snooker_env.tasks.Noise``.
+        Default "none".
     reward : {"points", "points_and_fouls", "pots", "legal", "win", "frames"}, optional
-        Default "points". The first four are available in a visit, "points" and "win" in a frame, "frames" also in a match.
+        Default "points". The first four are available in a visit, "points" and "win" in a frame, "frames"
+        also in a match.
     elevation : bool, optional
         Whether a box action holds the elevation of the cue; default False.
     placement : bool, optional
@@ -152,27 +161,31 @@ class Options:
     fidelity : str, optional
         How impacts are solved: "fast", "standard" (default), "reference" or "euler:N".
     opponent : str or Path, optional
-        In a frame: "none" (default), or what ``snooker_env.player`` takes: the name of a player, a model's ``.zip``, ... Environments
-        also take objects as their keyword ``opponent`` (docs/environment/opponents.md); their options then say "object".
+        In a frame: "none" (default), or what ``snooker_env.player`` takes: the name of a player, a model's
+        ``.zip``, ... Environments also take objects as their keyword ``opponent``
+        (docs/environment/opponents.md); their options then say "object".
     miss : {"off", "clear_path", "attempt"}, optional
         In a frame: the rule for a foul and a miss (docs/environment/rules.md). Default "off".
     max_strokes : int or None, optional
-        In a frame: number of strokes of both players after which the referee stops it; default 1000, None for never. A match stops with it.
+        In a frame: number of strokes of both players after which the referee stops it; default 1000, None for
+        never. A match stops with it.
     one_stroke : bool, optional
         In a visit: whether it ends after its first stroke; default False.
     trust : bool, optional
         In a frame: whether code in an opponent's ``.zip`` may run; default False.
     says : sequence of str, optional
-        In a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a free ball; else the colour
-        struck first is taken as the one nominated), "decision" (after a foul of the opponent, of box actions only), "concede" (the frame),
-        "claim" (the frame, where the rules allow it) and "lot" (whether the winner of the lot for a re-spotted black lets the other
-        player begin; else it begins). Default: nothing.
+        In a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a
+        free ball; else the colour struck first is taken as the one nominated), "decision" (after a foul of
+        the opponent, of box actions only), "concede" (the frame), "claim" (the frame, where the rules allow
+        it) and "lot" (whether the winner of the lot for a re-spotted black lets the other player begin; else
+        it begins). Default: nothing.
     nominate, decision, concede, claim, lot : bool, optional
         Whether ``says`` has them: ``decision=True`` adds "decision" to it. To be read as attributes, too.
     game : {"snooker", "six_red", "shoot_out"}, optional
         In a frame: the rules of the game (``snooker_env.game.rule_sets``). Default "snooker".
     time_to_play : float, optional
-        In a frame of the Shoot Out: the time from the rest of the balls to the next stroke [s], at most 15; default 9.
+        In a frame of the Shoot Out: the time from the rest of the balls to the next stroke [s], at most 15;
+        default 9.
     frames : int, optional
         In a match: the most frames that it can have, an odd number; default 7.
 
@@ -195,57 +208,98 @@ class Options:
     """
 
     task: Literal["visit", "frame", "match"] = field(
-        default="visit", metadata=_about("task", '"visit", "frame", "match" (all that is of a frame is of a match, too)')
+        default="visit",
+        metadata=_about("task", '"visit", "frame", "match" (all that is of a frame is of a match, too)'),
     )
-    layout: str = field(default="default", metadata=_about("task", '"opened", of a frame "break_off"; see Layouts'))
+    layout: str = field(
+        default="default", metadata=_about("task", '"opened", of a frame "break_off"; see Layouts')
+    )
     action: Literal["box", "discrete"] = field(default="box", metadata=_about("action", '"box", "discrete"'))
-    aim: Literal["absolute", "target"] = field(default="absolute", metadata=_about("action", '"absolute", "target"'))
-    observation: ObservationKind = field(default="flat", metadata=_about("view", '"flat", "balls"; with discrete actions "masked"'))
+    aim: Literal["absolute", "target"] = field(
+        default="absolute", metadata=_about("action", '"absolute", "target"')
+    )
+    observation: ObservationKind = field(
+        default="flat", metadata=_about("view", '"flat", "balls"; with discrete actions "masked"')
+    )
     noise: NoiseLike = field(
         default="none",
-        metadata=_about("shot", '"none", "professional", "amateur", "club", "robot", "olympiad", or a dict of `snooker_env.tasks.Noise`'),
+        metadata=_about(
+            "shot",
+            '"none", "professional", "amateur", "club", "robot", "olympiad", or a dict of `snooker_env.tasks.Noise`',
+        ),
     )
     reward: Literal["points", "points_and_fouls", "pots", "legal", "win", "frames"] = field(
         default="points",
-        metadata=_about("task", '"points"; of a visit "points_and_fouls", "pots", "legal"; of a frame "win"; of a match "frames", too'),
+        metadata=_about(
+            "task",
+            '"points"; of a visit "points_and_fouls", "pots", "legal"; of a frame "win"; of a match "frames", too',
+        ),
     )
-    elevation: bool = field(default=False, metadata=_about("action", "whether box actions hold the elevation of the cue"))
-    placement: bool = field(default=False, metadata=_about("action", "whether box actions hold the place of a cue ball in hand"))
+    elevation: bool = field(
+        default=False, metadata=_about("action", "whether box actions hold the elevation of the cue")
+    )
+    placement: bool = field(
+        default=False, metadata=_about("action", "whether box actions hold the place of a cue ball in hand")
+    )
     physics: PhysicsLike = field(
-        default="paper", metadata=_about("shot", '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)')
+        default="paper",
+        metadata=_about("shot", '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)'),
     )
     table: TableLike = field(
-        default="match", metadata=_about("shot", '"match", "tight", or a `Table` whose noses are where snooker\'s are')
+        default="match",
+        metadata=_about("shot", '"match", "tight", or a `Table` whose noses are where snooker\'s are'),
     )
-    fidelity: Fidelity = field(default="standard", metadata=_about("shot", '"fast", "standard", "reference", "euler:N"'))
-    one_stroke: bool = field(default=False, metadata=_about("task", "whether it ends with its first stroke", only="visit"))
+    fidelity: Fidelity = field(
+        default="standard", metadata=_about("shot", '"fast", "standard", "reference", "euler:N"')
+    )
+    one_stroke: bool = field(
+        default=False, metadata=_about("task", "whether it ends with its first stroke", only="visit")
+    )
     opponent: str | Path = field(
         default="none",
         metadata=_about(
-            "task", '"none", "random", "ghost_ball", another name of a player, a `.zip`; or an object: see Opponents', only="frame"
+            "task",
+            '"none", "random", "ghost_ball", another name of a player, a `.zip`; or an object: see Opponents',
+            only="frame",
         ),
     )
-    trust: bool = field(default=False, metadata=_about("task", "whether the code in an opponent's `.zip` may run", only="frame"))
+    trust: bool = field(
+        default=False,
+        metadata=_about("task", "whether the code in an opponent's `.zip` may run", only="frame"),
+    )
     miss: MissRule = field(
-        default="off", metadata=_about("frame", '"off", "clear_path", "attempt": the rule for a foul and a miss', only="frame")
+        default="off",
+        metadata=_about(
+            "frame", '"off", "clear_path", "attempt": the rule for a foul and a miss', only="frame"
+        ),
     )
     max_strokes: int | None = field(
-        default=MAX_STROKES, metadata=_about("frame", "strokes after which the frame is stopped; None for never", only="frame")
+        default=MAX_STROKES,
+        metadata=_about("frame", "strokes after which the frame is stopped; None for never", only="frame"),
     )
     says: Sequence[str] = field(
         default=(),
         metadata=_about(
-            "action", 'some of "nominate", "decision", "concede", "claim", "lot": what actions say beside the stroke', only="frame"
+            "action",
+            'some of "nominate", "decision", "concede", "claim", "lot": what actions say beside the stroke',
+            only="frame",
         ),
     )
     game: RulesName = field(
-        default="snooker", metadata=_about("frame", '"snooker", "six_red", "shoot_out": the rules of the game', only="frame")
+        default="snooker",
+        metadata=_about("frame", '"snooker", "six_red", "shoot_out": the rules of the game', only="frame"),
     )
     time_to_play: float = field(
         default=TIME_TO_PLAY,
-        metadata=_about("frame", "the time from the rest of the balls to the next stroke in the Shoot Out [s], at most 15", only="frame"),
+        metadata=_about(
+            "frame",
+            "the time from the rest of the balls to the next stroke in the Shoot Out [s], at most 15",
+            only="frame",
+        ),
     )
-    frames: int = field(default=FRAMES, metadata=_about("task", "an odd number: the best of so many", only="match"))
+    frames: int = field(
+        default=FRAMES, metadata=_about("task", "an odd number: the best of so many", only="match")
+    )
     nominate: InitVar[bool] = _UNSAID
     decision: InitVar[bool] = _UNSAID
     concede: InitVar[bool] = _UNSAID
@@ -267,10 +321,20 @@ class Options:
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
             layout = f"break_off:{rule_set(self.game).reds}"
         plan = fitted(layout, table)
-        if choice("observation", self.observation, observations.OBSERVATIONS) == "masked" and not isinstance(actions, Choices):
-            raise refuse("observation", self.observation, 'must be "flat" or "balls" with action="box": a Box has no masks')
+        if choice("observation", self.observation, observations.OBSERVATIONS) == "masked" and not isinstance(
+            actions, Choices
+        ):
+            raise refuse(
+                "observation",
+                self.observation,
+                'must be "flat" or "balls" with action="box": a Box has no masks',
+            )
         truth("trust", self.trust)
-        choice("reward", self.reward, {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}[self.task])
+        choice(
+            "reward",
+            self.reward,
+            {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}[self.task],
+        )
         one_stroke = truth("one_stroke", self.one_stroke)
         limit = NEVER
         self._check_task()
@@ -281,23 +345,49 @@ class Options:
             choice("miss", self.miss, MISS_RULES)
             choice("game", self.game, RULES)
             if rule_set(self.game).anywhere and self.miss != "off":
-                raise refuse("miss", self.miss, f'must be "off" with game="{self.game}", in which no miss is called')
+                raise refuse(
+                    "miss", self.miss, f'must be "off" with game="{self.game}", in which no miss is called'
+                )
             if not rule_set(self.game).clock and self.time_to_play != TIME_TO_PLAY:
-                raise refuse("time_to_play", self.time_to_play, f'must be {TIME_TO_PLAY} with game="{self.game}", which has no clock')
+                raise refuse(
+                    "time_to_play",
+                    self.time_to_play,
+                    f'must be {TIME_TO_PLAY} with game="{self.game}", which has no clock',
+                )
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
             if not isinstance(self.opponent, str | Path) or not str(self.opponent):
-                raise refuse("opponent", self.opponent, f"{OPPONENTS}; Options hold text: pass an object to the environment, beside them")
+                raise refuse(
+                    "opponent",
+                    self.opponent,
+                    f"{OPPONENTS}; Options hold text: pass an object to the environment, beside them",
+                )
             object.__setattr__(self, "opponent", str(self.opponent))
         read = Rules(
-            actions, noise, physics, table, fidelity, plan, self.reward, self.observation, self.miss, limit, one_stroke, frames,
-            self.game, round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME)),
-        )  # fmt: skip
+            actions,
+            noise,
+            physics,
+            table,
+            fidelity,
+            plan,
+            self.reward,
+            self.observation,
+            self.miss,
+            limit,
+            one_stroke,
+            frames,
+            self.game,
+            round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME)),
+        )
         object.__setattr__(self, "rules", read)
 
     def _physics(self) -> Physics:
         physics = Physics.of(self.physics)
         if physics.R != BALL_RADIUS:
-            raise refuse("physics.R", physics.R, f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it")
+            raise refuse(
+                "physics.R",
+                physics.R,
+                f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it",
+            )
         physics.check_stopping()
         return physics
 
@@ -317,8 +407,12 @@ class Options:
             if only is None or self.task == only or (self.task == "match" and only == "frame"):
                 continue
             if not isinstance(value, (type(f.default), np.bool_)) or value != f.default:
-                name, value, usual = (self.says[0], True, False) if f.name == "says" else (f.name, value, f.default)
-                raise refuse(name, value, f'must be {usual!r} with task="{self.task}"; it belongs to task="{only}"')
+                name, value, usual = (
+                    (self.says[0], True, False) if f.name == "says" else (f.name, value, f.default)
+                )
+                raise refuse(
+                    name, value, f'must be {usual!r} with task="{self.task}"; it belongs to task="{only}"'
+                )
 
     @classmethod
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
@@ -327,8 +421,8 @@ class Options:
         Parameters
         ----------
         name : {"task", "action", "view", "shot", "frame"}
-            "task": what is played, how it begins and what it pays. "action", "view": how the agent acts and sees. "shot": what decides the
-            outcome of a shot. "frame": the rules of frames.
+            "task": what is played, how it begins and what it pays. "action", "view": how the agent acts and
+            sees. "shot": what decides the outcome of a shot. "frame": the rules of frames.
         task : {"visit", "frame", "match"}, optional
             Leaves out the options that this task does not have; default None: none of them.
 
@@ -349,8 +443,14 @@ class Options:
         ['noise', 'physics', 'table', 'fidelity']
         """
         choice("name", name, GROUPS)
-        own = TASKS if task is None else {"match": ("frame", "match")}.get(choice("task", task, TASKS), (task,))
-        return {f.name: f.default for f in _FIELDS if f.metadata["group"] == name and f.metadata["only"] in (None, *own)}
+        own = (
+            TASKS if task is None else {"match": ("frame", "match")}.get(choice("task", task, TASKS), (task,))
+        )
+        return {
+            f.name: f.default
+            for f in _FIELDS
+            if f.metadata["group"] == name and f.metadata["only"] in (None, *own)
+        }
 
     def but(self, **changes: Any) -> "Options":
         """Return a copy with some options changed.
@@ -376,7 +476,8 @@ class Options:
         >>> Options().but(layout="line_up").layout
         'line_up'
         """
-        flags = {} if "says" not in changes else dict.fromkeys(SAYS, _UNSAID)  # else they are those of this one
+        # else they are those of this one
+        flags = {} if "says" not in changes else dict.fromkeys(SAYS, _UNSAID)
         return replace(self, **flags | changes)
 
 
@@ -409,21 +510,30 @@ def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:
     """The observation space of a game with these options."""
     rules = options.rules
     choices = rules.actions.choices if isinstance(rules.actions, Choices) else 0
-    return observations.space(options.observation, frame=options.task != "visit", replaced=rules.misses, choices=choices)
+    return observations.space(
+        options.observation, frame=options.task != "visit", replaced=rules.misses, choices=choices
+    )
 
 
 def options_of(options: Options | None, given: Mapping[str, Any]) -> Options:
-    """The ``Options`` of an environment that was given ``options`` (None or an ``Options``) and the keywords ``given``.
+    """The ``Options`` of an environment that was given ``options`` (None or an ``Options``) and the keywords
+    ``given``.
 
     Raises ValueError for invalid values, TypeError for an unknown keyword.
     """
     if options is None:
         for name in given:
             if name not in NAMES:
-                raise TypeError(f"got an unexpected keyword argument {name!r}; the options are {', '.join(NAMES)}")
+                raise TypeError(
+                    f"got an unexpected keyword argument {name!r}; the options are {', '.join(NAMES)}"
+                )
         return Options(**given)
     if not isinstance(options, Options):
         raise refuse("options", options, "must be an Options or None")
     if given:
-        raise refuse_what("options", "an Options", f"must be None with the keywords {sorted(given)}: change them with options.but(...)")
+        raise refuse_what(
+            "options",
+            "an Options",
+            f"must be None with the keywords {sorted(given)}: change them with options.but(...)",
+        )
     return options

@@ -1,7 +1,9 @@
-"""What does a plain player do without a pot? The break-off, a soft stroke at what it sees, else an escape over cushions; kernels.
+"""What does a plain player do without a pot? The break-off, a soft stroke at what it sees, else an escape
+over cushions; kernels.
 
-No shot is simulated: what is seen is known from straight lines (``windows``), and escapes from a table of rebounds (``escapes``). An escape
-is struck ``ROLLING`` above the middle of the cue ball, where it rolls at once, as that table supposes.
+No shot is simulated: what is seen is known from straight lines (``windows``), and escapes from a table of
+rebounds (``escapes``). An escape is struck ``ROLLING`` above the middle of the cue ball, where it rolls at
+once, as that table supposes.
 """
 
 from math import atan2, cos, hypot, sin, sqrt
@@ -17,23 +19,25 @@ from .windows import open_part, open_windows
 SLIDE = 1.4
 """Initial speed of a ball struck in its middle, over the speed with which it rolls on."""
 BREAK_X = float(SPOTS[0, 0])
-"""Where the cue ball stands for the break-off: so far from the brown spot along the baulk line, on either side [m]."""
+"""Where the cue ball stands for the break-off: so far from the brown spot along the baulk line, on either
+side [m]."""
 _BREAK_SPEED, _BREAK_SIDE, _BREAK_TOP = 3.4, 0.42, 0.1
-"""Of the break-off: a third of the end red, with running side, so that the cue ball comes back to baulk over three cushions. Chosen, with
-``lines.THIN``, among 6,000 random ones: of those that return the cue ball to baulk in each of 40 trials of a professional, one that leaves
-hardly a pot."""
+"""Of the break-off: a third of the end red, with running side, so that the cue ball comes back to baulk over
+three cushions. Chosen, with ``lines.THIN``, among 6,000 random ones: of those that return the cue ball to
+baulk in each of 40 trials of a professional, one that leaves hardly a pot."""
 _NUDGE = 0.3
 """How much faster than needed a cue ball is rolled at a ball [m/s]; its speed varies by a tenth."""
 _STOP = 6.1
-"""Squared speed of a ball struck 0.4 R below its middle that slides so far without spin left, over the distance [m/s^2]: 0.32 of it, over
-the cloth's sliding friction of 2 m/s^2."""
+"""Squared speed of a ball struck 0.4 R below its middle that slides so far without spin left, over the
+distance [m/s^2]: 0.32 of it, over the cloth's sliding friction of 2 m/s^2."""
 _NEAR_POCKET = 0.09
 """A cue ball that passes so near to a pocket's aim point is taken to go in [m]."""
 
 
 @kernel
 def break_off(positions, end_red):
-    """The stroke from the place of the cue ball: (speed, side, top, direction of the cue ball), at the end red on its side.
+    """The stroke from the place of the cue ball: (speed, side, top, direction of the cue ball), at the end
+    red on its side.
 
     ``end_red``: that on the right.
     """
@@ -43,7 +47,8 @@ def break_off(positions, end_red):
 
 @kernel
 def _goes_in(positions, ball, ux, uy, v2):
-    """Whether a cue ball that rolls along u with the squared speed v2 [m^2/s^2] into ``ball`` is likely to go on into a pocket."""
+    """Whether a cue ball that rolls along u with the squared speed v2 [m^2/s^2] into ``ball`` is likely to go
+    on into a pocket."""
     x, y = positions[0, 0], positions[0, 1]
     bx, by = positions[ball, 0] - x, positions[ball, 1] - y
     along, across = bx * ux + by * uy, bx * uy - by * ux
@@ -51,7 +56,8 @@ def _goes_in(positions, ball, ux, uy, v2):
     x, y = x + run * ux, y + run * uy
     nx, ny = (positions[ball, 0] - x) / (2.0 * BALL_RADIUS), (positions[ball, 1] - y) / (2.0 * BALL_RADIUS)
     fullness = ux * nx + uy * ny
-    gx, gy = ux - fullness * nx * 5.0 / 7.0, uy - fullness * ny * 5.0 / 7.0  # where it rolls after the impact, over the speed before
+    # where it rolls after the impact, over the speed before
+    gx, gy = ux - fullness * nx * 5.0 / 7.0, uy - fullness * ny * 5.0 / 7.0
     left = hypot(gx, gy)
     end = left * left * v2 / ROLL + 2.0 * BALL_RADIUS
     for k in range(POCKET_AIMS.shape[0]):
@@ -64,12 +70,14 @@ def _goes_in(positions, ball, ux, uy, v2):
 
 @kernel
 def soft(positions, on_table, on, touching, drive, found):
-    """The soft stroke at the nearest ball on that is seen well: (speed, top, direction) and half its window [rad]; no window: none is.
+    """The soft stroke at the nearest ball on that is seen well: (speed, top, direction) and half its window
+    [rad]; no window: none is.
 
-    It is aimed at the middle of what is seen; where the cue ball would follow into a pocket, halfway to an edge, or so that it stops at
-    the ball, without spin at the impact. ``touching``: mask of the balls that touch the cue ball, none of them on. ``drive``: how much
-    farther than needed it rolls [m]. found (LINE_ROWS, POT_COLUMNS): work space. A ball on is the nearer the better among those that offer
-    a window that a player cannot miss.
+    It is aimed at the middle of what is seen; where the cue ball would follow into a pocket, halfway to an
+    edge, or so that it stops at the ball, without spin at the impact. ``touching``: mask of the balls that
+    touch the cue ball, none of them on. ``drive``: how much farther than needed it rolls [m]. found
+    (LINE_ROWS, POT_COLUMNS): work space. A ball on is the nearer the better among those that offer a window
+    that a player cannot miss.
     """
     x, y = positions[0, 0], positions[0, 1]
     best, speed, top, aim, window, windows = -1e9, 0.0, 0.0, 0.0, 0.0, found[POTS:]
@@ -83,9 +91,15 @@ def soft(positions, on_table, on, touching, drive, found):
         dx, dy = positions[ball, 0] - x, positions[ball, 1] - y
         far = hypot(dx, dy)
         run = max(0.0, far - 2.0 * BALL_RADIUS)
-        arrival = _NUDGE * _NUDGE + 2.0 * _NUDGE * sqrt(ROLL * far) + ROLL * drive  # its squared speed at the ball
+        # its squared speed at the ball
+        arrival = _NUDGE * _NUDGE + 2.0 * _NUDGE * sqrt(ROLL * far) + ROLL * drive
         for way in range(4):
-            angle, seen, wanted, spin = middle + (0.0, 0.5, -0.5, 0.0)[way] * half, 0.5 * half, SLIDE * (sqrt(ROLL * far) + _NUDGE), 0.0
+            angle, seen, wanted, spin = (
+                middle + (0.0, 0.5, -0.5, 0.0)[way] * half,
+                0.5 * half,
+                SLIDE * (sqrt(ROLL * far) + _NUDGE),
+                0.0,
+            )
             worth = 0.0
             if way == 0:
                 seen = half
@@ -104,7 +118,8 @@ def soft(positions, on_table, on, touching, drive, found):
 
 @kernel
 def _escape(positions, on_table, on, vary, lines, stream):
-    """The escape with the widest window: (speed, direction) and half the window [rad]; no window: none is known.
+    """The escape with the widest window: (speed, direction) and half the window [rad]; no window: none is
+    known.
 
     ``vary``: the windows are weighted at random, so that another one is tried after a failure.
     """
@@ -115,28 +130,41 @@ def _escape(positions, on_table, on, vary, lines, stream):
             u, _ = pair(stream)
             weight = 0.3 + 0.7 * u
         if weight * lines[k, LINE_WORTH] > best:
-            best, speed, aim, window = weight * lines[k, LINE_WORTH], lines[k, LINE_SPEED], lines[k, LINE_AIM], lines[k, LINE_ROOM]
+            best, speed, aim, window = (
+                weight * lines[k, LINE_WORTH],
+                lines[k, LINE_SPEED],
+                lines[k, LINE_AIM],
+                lines[k, LINE_ROOM],
+            )
     return speed, aim, window
 
 
 @kernel
 def plain(positions, on_table, on, touching, vary, drive, found, stream):
-    """A stroke without a pot, from where the cue ball lies: (speed, side, top, direction of the cue ball), at the balls in the mask ``on``.
+    """A stroke without a pot, from where the cue ball lies: (speed, side, top, direction of the cue ball), at
+    the balls in the mask ``on``.
 
-    * Straight away from a ball on that touches the cue ball (in the mask ``touching``), which counts as striking it.
+    * Straight away from a ball on that touches the cue ball (in the mask ``touching``), which counts as
+      striking it.
     * A soft stroke at the nearest ball on of which enough can be struck.
     * Else an escape over up to three cushions.
     * Else the direction in which it sees a little of a ball on, else that of the nearest one.
 
-    ``vary``: a stroke from this position has failed, so another one is played. The direction varies within its window in any case.
-    ``drive``: how much farther than needed it is to roll, over no cushion [m]. found (LINE_ROWS, POT_COLUMNS): work space.
+    ``vary``: a stroke from this position has failed, so another one is played. The direction varies within
+    its window in any case. ``drive``: how much farther than needed it is to roll, over no cushion [m]. found
+    (LINE_ROWS, POT_COLUMNS): work space.
     """
     u, _ = pair(stream)
     shift = (1.6 if vary else 0.5) * (u - 0.5)
     for ball in range(1, N_BALLS):
         if ((touching & on) >> ball) & 1:
             speed = 0.6 if drive == 0.0 else sqrt(0.36 + SLIDE * SLIDE * ROLL * drive)
-            return speed, 0.0, 0.0, atan2(positions[0, 1] - positions[ball, 1], positions[0, 0] - positions[ball, 0]) + shift
+            return (
+                speed,
+                0.0,
+                0.0,
+                atan2(positions[0, 1] - positions[ball, 1], positions[0, 0] - positions[ball, 0]) + shift,
+            )
     speed, top, aim, window = soft(positions, on_table, on, touching, drive, found)
     if window < NARROW:
         over, other, wide = _escape(positions, on_table, on, vary, found[:POTS], stream)

@@ -19,7 +19,8 @@ class Played:
     shot : Shot
         The simulated shot, with its path if that was recorded.
     cue : dict of str to float
-        The strike, execution errors included: "speed" [m/s], "side", "top" (tip offset over R, right and up), "aim", "elevation" [rad].
+        The strike, execution errors included: "speed" [m/s], "side", "top" (tip offset over R, right and up),
+        "aim", "elevation" [rad].
     player : int
         Who played it: 0, or in a frame 0 or 1.
     ball_on : BallOn
@@ -97,12 +98,19 @@ class Played:
 def judged(seen: list[int]) -> dict[str, Any]:
     """The fields of ``Played`` that a row of ``ShotBuffers.seen`` holds."""
     return {
-        "player": seen[PLAYER], "ball_on": BallOn(seen[WAS_ON]), "free_ball": bool(seen[FREE]), "first": ids_of(seen[FIRST]),
-        "points": seen[SCORED], "penalty": seen[COST], "fouls": Foul(seen[FOULS]),
+        "player": seen[PLAYER],
+        "ball_on": BallOn(seen[WAS_ON]),
+        "free_ball": bool(seen[FREE]),
+        "first": ids_of(seen[FIRST]),
+        "points": seen[SCORED],
+        "penalty": seen[COST],
+        "fouls": Foul(seen[FOULS]),
         "break_before": seen[BREAK] - seen[SCORED],
-    }  # fmt: skip
+    }
 
 
 def struck(buffers: ShotBuffers, j: int) -> dict[str, float]:
     """The field ``cue`` of ``Played``, for shot j."""
-    return dict(zip(("speed", "side", "top", "aim", "elevation"), buffers.shots[j, CUE_SPEED:].tolist(), strict=True))
+    return dict(
+        zip(("speed", "side", "top", "aim", "elevation"), buffers.shots[j, CUE_SPEED:].tolist(), strict=True)
+    )

@@ -1,9 +1,11 @@
-"""In which direction must the cue ball leave to pot a ball? The line of a pot, corrected for throw, swerve and the object ball's own curve.
+"""In which direction must the cue ball leave to pot a ball? The line of a pot, corrected for throw, swerve
+and the object ball's own curve.
 
-The geometric line (``game.pots``) sends the cue ball's centre straight to the ghost ball. Side spin under an elevated cue, or spin across
-the path, bends that line. Friction throws the object ball off the line of centres, and its spin then bends its path. All of this follows
-from the models themselves: the two balls alone are played on unbounded cloth until the object ball rolls, and secant steps correct the
-direction by how far the ball passes the pocket's aim point. One trial takes a microsecond instead of a whole shot.
+The geometric line (``game.pots``) sends the cue ball's centre straight to the ghost ball. Side spin under an
+elevated cue, or spin across the path, bends that line. Friction throws the object ball off the line of
+centres, and its spin then bends its path. All of this follows from the models themselves: the two balls alone
+are played on unbounded cloth until the object ball rolls, and secant steps correct the direction by how far
+the ball passes the pocket's aim point. One trial takes a microsecond instead of a whole shot.
 """
 
 from math import atan2, hypot, pi
@@ -46,7 +48,9 @@ def _passes(aim, stroke, c, b, p, law, work):
     d = hypot(nx, ny)
     still, impact = (0.0, 0.0, 0.0), Law(phys, law.fidelity, law.n_steps)
     ball = (v[0], v[1], 0.0)
-    _v1, _w1, v2, w2, solved = collide_balls(ball, w, still, still, (nx / d, ny / d), impact, phys[P_E_B], work.series)
+    _v1, _w1, v2, w2, solved = collide_balls(
+        ball, w, still, still, (nx / d, ny / d), impact, phys[P_E_B], work.series
+    )
     if not solved:
         return 9.0
     cloth.begin(motion, state, 1, t, (bx, by), (v2[0], v2[1]), w2, phys)
@@ -57,7 +61,8 @@ def _passes(aim, stroke, c, b, p, law, work):
     qx, qy = px - bx, py - by
     away = hypot(qx, qy)
     T = 0.0
-    while state[1] == cloth.BEND:  # by the nap: the chord of the piece that ends past the pocket is accurate enough
+    # by the nap: the chord of the piece that ends past the pocket is accurate enough
+    while state[1] == cloth.BEND:
         T = motion[1, cloth.T_END] - motion[1, cloth.T0]
         (x, y), _v, _w = cloth.evaluate(motion, state, 1, motion[1, cloth.T_END], phys)
         if (x - bx) * qx + (y - by) * qy >= away * away:
@@ -65,13 +70,18 @@ def _passes(aim, stroke, c, b, p, law, work):
         cloth.next_phase(motion, state, 1, phys)
         T = 0.0
     gx, gy = motion[1, cloth.X] - bx, motion[1, cloth.Y] - by
-    ux, uy = motion[1, cloth.VX] + 0.5 * motion[1, cloth.AX] * T, motion[1, cloth.VY] + 0.5 * motion[1, cloth.AY] * T
-    if T == 0.0 and gx * qx + gy * qy > 0.9 * away * away:  # still sliding at the pocket: its chord is accurate enough
+    ux, uy = (
+        motion[1, cloth.VX] + 0.5 * motion[1, cloth.AX] * T,
+        motion[1, cloth.VY] + 0.5 * motion[1, cloth.AY] * T,
+    )
+    # still sliding at the pocket: its chord is accurate enough
+    if T == 0.0 and gx * qx + gy * qy > 0.9 * away * away:
         ux, uy = gx, gy
     else:
         qx, qy = qx - gx, qy - gy
     ahead = qx * ux + qy * uy
-    # relative to where the ball lay, even if it begins to roll near the pocket: so the correction's slope hardly changes
+    # relative to where the ball lay, even if it begins to roll near the pocket: so the correction's slope
+    # hardly changes
     return (qx * uy - qy * ux) / (hypot(ux, uy) * away) if ahead > 0.0 else 9.0
 
 
@@ -85,7 +95,8 @@ def solved_aim(positions, ball, target, ghost, stroke, law, work):
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     line = atan2(gy - cy, gx - cx)
-    # an error of the cue ball's direction turns the object ball's the other way, magnified by path / (2 R cos cut)
+    # an error of the cue ball's direction turns the object ball's the other way, magnified by path / (2 R cos
+    # cut)
     far = hypot(gx - cx, gy - cy)
     run = hypot(px - bx, py - by)
     cut = ((gx - cx) * (px - bx) + (gy - cy) * (py - by)) / (far * run)

@@ -1,8 +1,10 @@
-"""How is a model's file read safely? As plain data first, without running anything; it is unpickled only with consent.
+"""How is a model's file read safely? As plain data first, without running anything; it is unpickled only with
+consent.
 
-A zip of Stable-Baselines3 or sb3-contrib holds weights and ``data``: JSON in which everything but plain values is a pickle (of cloudpickle,
-in base64). Loading it whole, as ``PPO.load`` does, runs the code in these pickles, whatever it is. ``SavedModel`` reads only the plain
-values, which suffices to refuse a model that does not fit. ``SavedModel.network`` alone unpickles, and requires consent.
+A zip of Stable-Baselines3 or sb3-contrib holds weights and ``data``: JSON in which everything but plain
+values is a pickle (of cloudpickle, in base64). Loading it whole, as ``PPO.load`` does, runs the code in these
+pickles, whatever it is. ``SavedModel`` reads only the plain values, which suffices to refuse a model that
+does not fit. ``SavedModel.network`` alone unpickles, and requires consent.
 """
 
 import json
@@ -21,24 +23,28 @@ from .._install import missing
 __all__ = ["PLAIN", "SavedModel", "by_train", "entries", "one_thread", "outline", "part"]
 
 MOST = 2**26
-"""Largest number of bytes of JSON that are read (SB3 stores the last observations there). A small zip can unpack to more than a machine's
-memory, and JSON to objects 25 times as large.
+"""Largest number of bytes of JSON that are read (SB3 stores the last observations there). A small zip can
+unpack to more than a machine's memory, and JSON to objects 25 times as large.
 """
 PLAIN = "model.json"
 """Name of the part that replaces ``data`` in zips written by ``agents.publish``, which hold no pickles."""
 
 _ALGORITHMS = (
-    ("sb3_contrib", "TQC", {"top_quantiles_to_drop_per_net"}), ("sb3_contrib", "TRPO", {"cg_max_steps"}),
-    ("sb3_contrib", "CrossQ", {"target_entropy", "policy_delay"}), ("stable_baselines3", "SAC", {"target_entropy"}),
-    ("stable_baselines3", "TD3", {"policy_delay"}), ("stable_baselines3", "DQN", {"exploration_fraction"}),
+    ("sb3_contrib", "TQC", {"top_quantiles_to_drop_per_net"}),
+    ("sb3_contrib", "TRPO", {"cg_max_steps"}),
+    ("sb3_contrib", "CrossQ", {"target_entropy", "policy_delay"}),
+    ("stable_baselines3", "SAC", {"target_entropy"}),
+    ("stable_baselines3", "TD3", {"policy_delay"}),
+    ("stable_baselines3", "DQN", {"exploration_fraction"}),
     ("stable_baselines3", "PPO", {"clip_range", "rollout_buffer_class"}),
     ("stable_baselines3", "A2C", {"gae_lambda", "rollout_buffer_class"}),
-)  # fmt: skip
-"""Library, class, and the names that only its models save, in addition to those of the classes above. A recurrent model has no class of
-rollout buffers.
+)
+"""Library, class, and the names that only its models save, in addition to those of the classes above. A
+recurrent model has no class of rollout buffers.
 """
 _PLAYED = ("policy_class", "policy_kwargs", "observation_space", "action_space")
-"""The pickles that playing needs. The others, of schedules, callbacks and buffers, stay text: they may name packages that are missing."""
+"""The pickles that playing needs. The others, of schedules, callbacks and buffers, stay text: they may name
+packages that are missing."""
 _UNPICKLED = {"learning_rate": 0.0, "clip_range": 0.2, "train_freq": 1, "target_entropy": 0.0}
 """What takes the place of a pickle that is left out; else None. Nothing is learned by these."""
 
@@ -47,8 +53,9 @@ _UNPICKLED = {"learning_rate": 0.0, "clip_range": 0.2, "train_freq": 1, "target_
 def one_thread() -> Iterator[None]:
     """Let PyTorch compute on the calling thread alone, as a context: where a model that plays decides.
 
-    PyTorch shares out even small products among a thread for each core; networks of a few layers are slower so, and each core that another
-    process holds makes them wait. Afterwards the number of threads is what it was.
+    PyTorch shares out even small products among a thread for each core; networks of a few layers are slower
+    so, and each core that another process holds makes them wait. Afterwards the number of threads is what it
+    was.
 
     Returns
     -------
@@ -158,7 +165,8 @@ def entries(path: str | Path) -> dict[str, Any]:
 
 
 def by_train(found: dict[str, Any]) -> bool:
-    """Return whether a model was written by the repository's ``train.py``, which stores what it needs as plain data.
+    """Return whether a model was written by the repository's ``train.py``, which stores what it needs as
+    plain data.
 
     Parameters
     ----------
@@ -218,7 +226,8 @@ def _described_outline(described):
 
 @dataclass(frozen=True)
 class SavedModel:
-    """A model's file of Stable-Baselines3 or sb3-contrib, read without unpickling anything. Made by ``SavedModel.of``.
+    """A model's file of Stable-Baselines3 or sb3-contrib, read without unpickling anything. Made by
+    ``SavedModel.of``.
 
     Attributes
     ----------
@@ -269,12 +278,17 @@ class SavedModel:
         Raises
         ------
         ValueError
-            If the file is no model of Stable-Baselines3, or one of ``train.py``, whose agents observe more than the environment shows.
+            If the file is no model of Stable-Baselines3, or one of ``train.py``, whose agents observe more
+            than the environment shows.
         """
         try:
             data = entries(path)
             ours = by_train(data)
-            outlines = [] if ours else [_described_outline(data[key]) for key in ("observation_space", "action_space")]
+            outlines = (
+                []
+                if ours
+                else [_described_outline(data[key]) for key in ("observation_space", "action_space")]
+            )
         except Exception as error:  # zipfile and json raise many kinds for other files
             raise refuse(field, str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
         if ours:
@@ -299,7 +313,8 @@ class SavedModel:
 
     @property
     def algorithm(self) -> tuple[str, str]:
-        """Library and class that saved the model, (str, str), recognised by the names in ``data``; ValueError for an unknown one."""
+        """Library and class that saved the model, (str, str), recognised by the names in ``data``; ValueError
+        for an unknown one."""
         held = {name for name, value in self.data.items() if value is not None}
         for library, name, own in _ALGORITHMS:
             if own <= held:
@@ -341,11 +356,20 @@ class SavedModel:
                 import stable_baselines3 as module
         except ImportError as error:
             raise missing(f"{self.field} = {str(self.path)!r} needs {library}", "train") from error
-        only_played = {"seed": None, "n_envs": 1, "buffer_size": 1}  # keep the caller's random state; no learning
-        pickled = [key for key, value in self.data.items() if isinstance(value, dict) and ":serialized:" in value]
+        # keep the caller's random state; no learning
+        only_played = {"seed": None, "n_envs": 1, "buffer_size": 1}
+        pickled = [
+            key for key, value in self.data.items() if isinstance(value, dict) and ":serialized:" in value
+        ]
         left_out = {key: _UNPICKLED.get(key) for key in pickled if key not in _PLAYED}
         try:
-            return getattr(module, name).load(self.path, device="cpu", custom_objects=left_out, **only_played).policy
+            return (
+                getattr(module, name)
+                .load(self.path, device="cpu", custom_objects=left_out, **only_played)
+                .policy
+            )
         except Exception as error:  # the file's own code may raise anything
             why = str(error).partition("\n")[0]
-            raise self.refused(f"must be a model that {name} can load ({type(error).__name__}: {why})") from error
+            raise self.refused(
+                f"must be a model that {name} can load ({type(error).__name__}: {why})"
+            ) from error

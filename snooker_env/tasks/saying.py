@@ -1,10 +1,20 @@
-"""What do actions of frames say beside the stroke? Nominations, decisions after a foul and declarations, for many frames."""
+"""What do actions of frames say beside the stroke? Nominations, decisions after a foul and declarations, for
+many frames."""
 
 import numpy as np
 
 from .._jit import entry
 from .._types import Floats, Ints
-from ..game.frame_columns import CHOICE, PHASE, PLACE_ANYWHERE, PLAY, PLAY_AGAIN, REPLACE, may_place_anywhere, may_replace
+from ..game.frame_columns import (
+    CHOICE,
+    PHASE,
+    PLACE_ANYWHERE,
+    PLAY,
+    PLAY_AGAIN,
+    REPLACE,
+    may_place_anywhere,
+    may_replace,
+)
 from .declarations import A_DECISION, declaration_of, nomination_of
 from .options import Rules
 
@@ -25,7 +35,8 @@ def _said(actions, options, game, rules, nominated, decisions, declared):
 
 
 def said(rules: Rules, actions: Floats, game: Ints) -> tuple[Ints, Ints, Ints]:
-    """Nominations, decisions and declarations (n,), as in ``players.Strokes``, of checked actions (n, k) in n frames."""
+    """Nominations, decisions and declarations (n,), as in ``players.Strokes``, of checked actions (n, k) in n
+    frames."""
     nominated, decisions, declared = np.empty((3, len(game)), np.int64)
     _said(actions, rules.actions.pack(), game, rules.rule_set.code, nominated, decisions, declared)
     return nominated, decisions, declared

@@ -1,4 +1,5 @@
-"""Is a saved state valid? Checks every part of the result of ``get_state``, for visits and frames, before any of it is used."""
+"""Is a saved state valid? Checks every part of the result of ``get_state``, for visits and frames, before any
+of it is used."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -8,7 +9,17 @@ import numpy as np
 
 from .._check import array, flags, integer, refuse, refuse_what, truth
 from .._types import Bools, Floats
-from ..game.balls import CUE, CUE_BIT, N_BALLS, REDS_MASK, BallOn, balls_on, mask_of_present, next_on, points_available
+from ..game.balls import (
+    CUE,
+    CUE_BIT,
+    N_BALLS,
+    REDS_MASK,
+    BallOn,
+    balls_on,
+    mask_of_present,
+    next_on,
+    points_available,
+)
 from ..game.frame import MOST_BREAK, Frame
 from ..game.in_hand import within_d
 from ..physics.table import Table
@@ -17,7 +28,8 @@ if TYPE_CHECKING:
     from .options import Rules
 
 MOST = 2**53 - 1
-"""Largest score and number of strokes in a saved frame. A float, as in observations and infos, still represents every integer up to here.
+"""Largest score and number of strokes in a saved frame. A float, as in observations and infos, still
+represents every integer up to here.
 """
 FAR = 1000.0
 """Limit of the coordinates of a ball off the table [m]. They have no meaning, but must not overflow."""
@@ -70,20 +82,33 @@ def check_keys(state: Any, keys: Collection[str]) -> None:
     if not isinstance(state, dict):
         raise refuse("state", state, "must be a state of get_state(), a dict")
     if missing := sorted(set(keys) - set(state)):
-        raise refuse_what("state", f"a dict without {missing}", f"must be a state of get_state() here, with the keys {list(keys)}")
+        raise refuse_what(
+            "state",
+            f"a dict without {missing}",
+            f"must be a state of get_state() here, with the keys {list(keys)}",
+        )
     if unknown := [key for key in state if key not in keys]:
-        raise refuse_what("state", f"a dict with {unknown}", f"must be a state of get_state() here, with the keys {list(keys)} only")
+        raise refuse_what(
+            "state",
+            f"a dict with {unknown}",
+            f"must be a state of get_state() here, with the keys {list(keys)} only",
+        )
 
 
-def checked_layout(names: tuple[str, str], positions: Any, on_table: Any, table: Table, R: float) -> tuple[Floats, Bools]:
-    """The arrays positions (22, 2) and on_table (22,); ValueError, with one of the two ``names``, unless they are a valid layout."""
+def checked_layout(
+    names: tuple[str, str], positions: Any, on_table: Any, table: Table, R: float
+) -> tuple[Floats, Bools]:
+    """The arrays positions (22, 2) and on_table (22,); ValueError, with one of the two ``names``, unless they
+    are a valid layout."""
     field = names[0]
     places, present = array(field, positions, (N_BALLS, 2)), flags(names[1], on_table, (N_BALLS,))
     for i, place in enumerate(positions):
         if any(isinstance(x, bool | np.bool_) for x in place):  # NumPy converts them to 0 and 1
             raise refuse(f"{field}[{i}]", list(place), "must be two real numbers")
     if len(far := np.flatnonzero(np.abs(places).max(axis=1) > FAR)):
-        raise refuse(f"{field}[{far[0]}]", places[far[0]].tolist(), f"must be within {FAR:g} m, also off the table")
+        raise refuse(
+            f"{field}[{far[0]}]", places[far[0]].tolist(), f"must be within {FAR:g} m, also off the table"
+        )
     table.check(places, R, field, present)
     return places, present
 
@@ -92,11 +117,16 @@ def check_in_hand(field: str, in_hand: bool, name: str, positions: Floats) -> No
     """Raise ValueError if a cue ball in hand does not lie in the D, where it is shown until it is placed."""
     if in_hand and not within_d(*positions[CUE]):
         x, y = positions[CUE].tolist()
-        raise refuse(field, in_hand, f"must be False with the cue ball at {name}[{CUE}] = ({x:g}, {y:g}), outside the D")
+        raise refuse(
+            field,
+            in_hand,
+            f"must be False with the cue ball at {name}[{CUE}] = ({x:g}, {y:g}), outside the D",
+        )
 
 
 def _check_like(field, value, known):
-    """Raise ValueError unless ``value`` has the structure of ``known``: dicts with the same keys, and values of the same types."""
+    """Raise ValueError unless ``value`` has the structure of ``known``: dicts with the same keys, and values
+    of the same types."""
     if not isinstance(known, dict):
         if type(value) is not type(known):
             raise refuse(field, value, f"must be of type {type(known).__name__}")
@@ -108,13 +138,16 @@ def _check_like(field, value, known):
 
 
 def check_rng(rng: Any, generator: np.random.Generator) -> None:
-    """Raise ValueError unless ``rng`` is a state that the NumPy ``generator`` could take. The generator is not changed."""
+    """Raise ValueError unless ``rng`` is a state that the NumPy ``generator`` could take. The generator is
+    not changed."""
     trial = type(generator.bit_generator)()
     _check_like("state.rng", rng, trial.state)
     try:
         trial.state = rng
     except (TypeError, ValueError, OverflowError) as error:
-        raise refuse("state.rng", rng, f"must be the state of a {type(trial).__name__} generator ({error})") from None
+        raise refuse(
+            "state.rng", rng, f"must be the state of a {type(trial).__name__} generator ({error})"
+        ) from None
 
 
 def check_stream(stream: Any) -> list[int]:
@@ -124,32 +157,53 @@ def check_stream(stream: Any) -> list[int]:
     return [integer(f"state.stream[{k}]", word, 0, 2**64 - 1) for k, word in enumerate(stream)]
 
 
-def checked(state: Any, table: Table, R: float, generator: np.random.Generator, *, to_play: bool = False) -> State:
-    """The ``State`` that a dict describes; ValueError names the first invalid part, or says that no shot is left with ``to_play``.
+def checked(
+    state: Any, table: Table, R: float, generator: np.random.Generator, *, to_play: bool = False
+) -> State:
+    """The ``State`` that a dict describes; ValueError names the first invalid part, or says that no shot is
+    left with ``to_play``.
 
     ``generator``: the NumPy generator for the part "rng"; it is not changed.
     """
     check_keys(state, State._fields)
-    positions, on_table = checked_layout(("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R)
+    positions, on_table = checked_layout(
+        ("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R
+    )
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
     ball_on = BallOn(integer("state.ball_on", state["ball_on"], BallOn.NOTHING, BallOn.BLACK))
     balls = mask_of_present(on_table)
     if not over:  # then there must be a shot to play
         lowest = next_on(balls)
         if not on_table[CUE]:
-            raise refuse("state.on_table", on_table.tolist(), "must hold the cue ball while the visit goes on")
+            raise refuse(
+                "state.on_table", on_table.tolist(), "must hold the cue ball while the visit goes on"
+            )
         if not balls_on(ball_on, balls):
-            raise refuse("state.ball_on", ball_on.name, "must name balls of which one is on the table (state.on_table)")
+            raise refuse(
+                "state.ball_on", ball_on.name, "must name balls of which one is on the table (state.on_table)"
+            )
         if ball_on > BallOn.RED and balls & REDS_MASK:
-            raise refuse("state.ball_on", ball_on.name, "must be RED or ANY_COLOUR while reds are on the table (state.on_table)")
+            raise refuse(
+                "state.ball_on",
+                ball_on.name,
+                "must be RED or ANY_COLOUR while reds are on the table (state.on_table)",
+            )
         if ball_on not in (BallOn.ANY_COLOUR, lowest):
-            raise refuse("state.ball_on", ball_on.name, f"must be ANY_COLOUR or {BallOn(lowest).name}, the lowest of state.on_table")
+            raise refuse(
+                "state.ball_on",
+                ball_on.name,
+                f"must be ANY_COLOUR or {BallOn(lowest).name}, the lowest of state.on_table",
+            )
         check_in_hand("state.in_hand", in_hand, "state.positions", positions)
     check_rng(state["rng"], generator)
     points, stream = integer("state.points", state["points"], 0, MOST_BREAK), check_stream(state["stream"])
     more = points_available(balls, ball_on)
     if points + more > MOST_BREAK:
-        raise refuse("state.points", points, f"must be at most {MOST_BREAK - more}: state.on_table and state.ball_on offer {more} more")
+        raise refuse(
+            "state.points",
+            points,
+            f"must be at most {MOST_BREAK - more}: state.on_table and state.ball_on offer {more} more",
+        )
     if over and to_play:
         raise refuse("state.over", True, "must be False: there is no shot to play from this state")
     return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"])
@@ -162,7 +216,9 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
     """
     check_keys(state, MATCH_KEYS if rules.frames else FRAME_KEYS)
     miss, table, R = rules.miss, rules.table, rules.physics.R
-    positions, on_table = checked_layout(("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R)
+    positions, on_table = checked_layout(
+        ("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R
+    )
     frame = Frame.from_dict(state["frame"], "state.frame")
     strokes = integer("state.strokes", state["strokes"], 0, MOST)
     for k, points in enumerate(frame.scores):
@@ -172,11 +228,21 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
     if frame.rules != rules.game:
         raise refuse("state.frame.rules", frame.rules, f"must be {rules.game!r}, as this environment plays")
     if frame.phase == "lot" and not rules.actions.lot:
-        raise refuse("state.frame.phase", frame.phase, "must not be between two steps: the lot is drawn in the step of the stroke before")
+        raise refuse(
+            "state.frame.phase",
+            frame.phase,
+            "must not be between two steps: the lot is drawn in the step of the stroke before",
+        )
     if frame.phase != "over":
         if mask_of_present(on_table) != frame.on_table | CUE_BIT:
-            raise refuse("state.on_table", on_table.tolist(), "must hold the cue ball and the balls of state.frame.on_table, no others")
-        check_in_hand("state.frame.in_hand", frame.in_hand and not frame.anywhere, "state.positions", positions)
+            raise refuse(
+                "state.on_table",
+                on_table.tolist(),
+                "must hold the cue ball and the balls of state.frame.on_table, no others",
+            )
+        check_in_hand(
+            "state.frame.in_hand", frame.in_hand and not frame.anywhere, "state.positions", positions
+        )
     if frame.saved is not None:
         frame = replace(frame, saved=_checked_saved(frame, table, R))
     stream = check_stream(state["stream"])
@@ -200,7 +266,11 @@ def _checked_match(state, frame, best_of):
     won = integer("state.frames[0]", won[0], 0, needed), integer("state.frames[1]", won[1], 0, needed)
     for k, n in enumerate(won):
         if (n == needed) != (frame.winner == k):
-            raise refuse(f"state.frames[{k}]", n, f"must be {needed} for the winner of a match that is over, else below")
+            raise refuse(
+                f"state.frames[{k}]",
+                n,
+                f"must be {needed} for the winner of a match that is over, else below",
+            )
     return won, integer("state.first_break", state["first_break"], 0, 1)
 
 
@@ -215,7 +285,11 @@ def _checked_saved(frame, table, R):
         raise refuse(field, saved.layout, "must be positions and on_table, as they were before the foul")
     positions, on_table = checked_layout((f"{field}[0]", f"{field}[1]"), *saved.layout, table, R)
     if mask_of_present(on_table) != saved.on_table | CUE_BIT:
-        raise refuse(f"{field}[1]", on_table.tolist(), "must hold the cue ball and the balls of state.frame.saved.on_table, no others")
+        raise refuse(
+            f"{field}[1]",
+            on_table.tolist(),
+            "must hold the cue ball and the balls of state.frame.saved.on_table, no others",
+        )
     check_in_hand("state.frame.saved.in_hand", saved.in_hand and not saved.anywhere, f"{field}[0]", positions)
     return replace(saved, layout=layout_of(positions, on_table))
 

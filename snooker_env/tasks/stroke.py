@@ -1,8 +1,10 @@
-"""How is one stroke played, on one table or on thousands? From the action to the balls at rest, and the facts for the referee.
+"""How is one stroke played, on one table or on thousands? From the action to the balls at rest, and the facts
+for the referee.
 
-Visits and frames play their strokes here: ``address`` (placement, action, execution error, strike), then ``engine.run_batch``; each task
-has its own referee. Kernels loop over the tables named by ``which``; row j of the ``ShotBuffers`` is the shot on table which[j]. Each table
-draws from its own stream (``game.philox``), so that no table's result depends on another, on their number or on the threads.
+Visits and frames play their strokes here: ``address`` (placement, action, execution error, strike), then
+``engine.run_batch``; each task has its own referee. Kernels loop over the tables named by ``which``; row j of
+the ``ShotBuffers`` is the shot on table which[j]. Each table draws from its own stream (``game.philox``), so
+that no table's result depends on another, on their number or on the threads.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -34,14 +36,30 @@ if TYPE_CHECKING:
 AT_ONCE = 1e-9
 """Contacts within this time [s] are simultaneous."""
 
-# Columns of a strike: the cue ball's velocity and spin after it, the intended speed, and the strike itself, errors included.
+# Columns of a strike: the cue ball's velocity and spin after it, the intended speed, and the strike itself,
+# errors included.
 (VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
 STRIKE_COLUMNS = 11
 
-# Columns of the referee's facts of a stroke: masks of balls, then the clear paths before a stroke that failed (where misses are called)
-# and whether it was an attempt (only with miss="attempt"); and of his decision: the player, the ball on (a ``BallOn``), whether he had a
-# free ball, his break with it, points, penalty, fouls.
-(FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, ATTEMPT, PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS) = range(14)
+# Columns of the referee's facts of a stroke: masks of balls, then the clear paths before a stroke that failed
+# (where misses are called) and whether it was an attempt (only with miss="attempt"); and of his decision: the
+# player, the ball on (a ``BallOn``), whether he had a free ball, his break with it, points, penalty, fouls.
+(
+    FIRST,
+    TOUCHING,
+    MOVED,
+    DOWN,
+    CLEAR_PATH,
+    FULL_PATH,
+    ATTEMPT,
+    PLAYER,
+    WAS_ON,
+    FREE,
+    BREAK,
+    SCORED,
+    COST,
+    FOULS,
+) = range(14)
 SEEN_COLUMNS = 14
 
 _BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW)
@@ -54,22 +72,27 @@ _WHY = {
 
 @kernel
 def _played_into(positions, ball, vx, vy, time):
-    """Whether the cue ball, struck with (vx, vy) [m/s] and in contact with the touching ``ball`` at ``time`` [s], was played into it.
+    """Whether the cue ball, struck with (vx, vy) [m/s] and in contact with the touching ``ball`` at ``time``
+    [s], was played into it.
 
-    It was if its straight line leads into the ball, however small the gap and however slow the stroke, or if they met at once: the physics
-    lets balls without a gap meet along the tangent, too.
+    It was if its straight line leads into the ball, however small the gap and however slow the stroke, or if
+    they met at once: the physics lets balls without a gap meet along the tangent, too.
     """
     dx, dy = positions[ball, 0] - positions[CUE, 0], positions[ball, 1] - positions[CUE, 1]
     speed = np.hypot(vx, vy)
-    return vx * dx + vy * dy > 0.0 and (abs(vx * dy - vy * dx) < 2.0 * BALL_RADIUS * speed or time * speed <= 10.0 * TOUCH)
+    return vx * dx + vy * dy > 0.0 and (
+        abs(vx * dy - vy * dx) < 2.0 * BALL_RADIUS * speed or time * speed <= 10.0 * TOUCH
+    )
 
 
 @kernel
 def first_struck(event_time, event_what, n_events, touching, positions, vx, vy):
-    """From the log of a shot played with (vx, vy) [m/s]: the masks of the balls struck first, and of touching balls moved.
+    """From the log of a shot played with (vx, vy) [m/s]: the masks of the balls struck first, and of touching
+    balls moved.
 
-    The second mask holds those of the balls ``touching`` the cue ball before the shot that it was played into: a push stroke. A touching
-    ball that the cue ball is played away from, and that it meets later off a cushion, is struck but not moved in leaving.
+    The second mask holds those of the balls ``touching`` the cue ball before the shot that it was played
+    into: a push stroke. A touching ball that the cue ball is played away from, and that it meets later off a
+    cushion, is struck but not moved in leaving.
     """
     first, moved, start = 0, 0, np.inf
     for e in range(n_events):
@@ -90,7 +113,8 @@ def first_struck(event_time, event_what, n_events, touching, positions, vx, vy):
 
 @kernel
 def place(positions, on_table, x, y):
-    """Put a cue ball in hand on the free place of the D nearest to (x, y); it stays where it is if there is none."""
+    """Put a cue ball in hand on the free place of the D nearest to (x, y); it stays where it is if there is
+    none."""
     on_table[CUE] = False
     x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS)
     on_table[CUE] = True
@@ -119,11 +143,14 @@ def reached_cushion(event_what, n_events):
 
 @kernel
 def strike(intended, positions, on_table, stream, options, noise, j, shots):
-    """Shot j: the table as it lies, and the cue ball struck as ``intended`` = (speed, side, top, aim, elevation), errors included."""
+    """Shot j: the table as it lies, and the cue ball struck as ``intended`` = (speed, side, top, aim,
+    elevation), errors included."""
     speed, side, top, aim, elevation = executed(*intended, noise, stream)
     side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
     shot, r, v, w, here = shots.shots[j], shots.r, shots.v, shots.w, shots.here
-    (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS])
+    (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = cue.struck(
+        speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS]
+    )
     shot[SPEED] = intended[0]
     shot[CUE_SPEED], shot[SIDE], shot[TOP], shot[AIM], shot[ELEVATION] = speed, side, top, aim, elevation
     for i in range(N_BALLS):
@@ -138,13 +165,16 @@ def _same_table(positions, on_table, other, other_on):
     """Whether the balls lie at the same places on two tables."""
     differ = 0
     for i in range(N_BALLS):
-        differ += on_table[i] != other_on[i] or positions[i, 0] != other[i, 0] or positions[i, 1] != other[i, 1]
+        differ += (
+            on_table[i] != other_on[i] or positions[i, 0] != other[i, 0] or positions[i, 1] != other[i, 1]
+        )
     return differ == 0
 
 
 @entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen, shot_of))
 def address(which, actions, tables, shots, packed, fidelity):
-    """Carry the actions (n, k) of the tables ``which`` out up to the strike: shot j is that of table which[j].
+    """Carry the actions (n, k) of the tables ``which`` out up to the strike: shot j is that of table
+    which[j].
 
     ``tables``, ``shots``: the parts of ``TableArrays`` and ``StruckArrays``; ``packed``: ``Tables.packed``.
     """
@@ -213,7 +243,8 @@ class ShotBuffers:
     v: Floats
     w: Floats
     here: Bools
-    """(m, 22, 2) [m], (m, 22, 2) [m/s], (m, 22, 3) [rad/s], (m, 22): the balls before the shots, then after them."""
+    """(m, 22, 2) [m], (m, 22, 2) [m/s], (m, 22, 3) [rad/s], (m, 22): the balls before the shots, then after
+    them."""
     potted: Ints
     """(m, 22) the pocket of each ball, or -1."""
     shots: Floats
@@ -238,7 +269,11 @@ class ShotBuffers:
 
     def __init__(self, m: int, log: int = 512, *, path: bool = False):
         self.log = log
-        self.r, self.v, self.w = np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 3))
+        self.r, self.v, self.w = (
+            np.zeros((m, N_BALLS, 2)),
+            np.zeros((m, N_BALLS, 2)),
+            np.zeros((m, N_BALLS, 3)),
+        )
         self.here, self.potted = np.zeros((m, N_BALLS), np.bool_), np.zeros((m, N_BALLS), np.int64)
         self.shots, self.seen = np.zeros((m, STRIKE_COLUMNS)), np.zeros((m, SEEN_COLUMNS), np.int64)
         self.event_time, self.event_what = np.zeros((m, log)), np.zeros((m, log, 3), np.int32)
@@ -254,7 +289,8 @@ class ShotBuffers:
         return len(self.duration)
 
     def again(self, j: int, log: int, *, path: bool = False) -> "ShotBuffers":
-        """Work space for shot j alone with a log of that length: struck as before, ``r`` and ``here`` still to be filled.
+        """Work space for shot j alone with a log of that length: struck as before, ``r`` and ``here`` still
+        to be filled.
 
         ``path``: record its path in any case.
         """
@@ -276,7 +312,8 @@ class ShotBuffers:
 
 
 def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
-    """Play the first m shots of the buffers until all balls are at rest; ``phys``: the packed ``rules.physics``."""
+    """Play the first m shots of the buffers until all balls are at rest; ``phys``: the packed
+    ``rules.physics``."""
     count(m)
     _simulated(buffers, m, rules, phys)
 
@@ -292,8 +329,11 @@ def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> No
     engine.run_batch(balls, setup, MAX_EVENTS, log, ends, 0, m)
 
 
-def run_again(buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats) -> ShotBuffers:
-    """Play shot j, on table k, once more with a longer log, from the table as it lies. Returns its own buffers.
+def run_again(
+    buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats
+) -> ShotBuffers:
+    """Play shot j, on table k, once more with a longer log, from the table as it lies. Returns its own
+    buffers.
 
     Raises SimulationError if a full log is not why it did not end.
     """
@@ -309,8 +349,11 @@ def run_again(buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table:
     return one
 
 
-def with_path(buffers: ShotBuffers, j: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats) -> ShotBuffers:
-    """Play shot j, which came to rest, once more from the same table, with its path. Returns its own buffers; it is not counted."""
+def with_path(
+    buffers: ShotBuffers, j: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats
+) -> ShotBuffers:
+    """Play shot j, which came to rest, once more from the same table, with its path. Returns its own buffers;
+    it is not counted."""
     one = buffers.again(j, buffers.log, path=True)
     one.r[0], one.here[0] = positions, on_table
     _simulated(one, 1, rules, phys)

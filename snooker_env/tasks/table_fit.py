@@ -1,4 +1,5 @@
-"""Do the layouts fit a table? Snooker-v0 deals balls on snooker's bed: a custom table must have that bed, with any pockets."""
+"""Do the layouts fit a table? Snooker-v0 deals balls on snooker's bed: a custom table must have that bed,
+with any pockets."""
 
 from functools import lru_cache
 
@@ -17,18 +18,23 @@ ROUNDING = 1e-9
 
 
 def table_of(table: TableLike) -> Table:
-    """The ``Table`` of an environment's argument. Raises ValueError unless every place that a layout may deal is free on it.
+    """The ``Table`` of an environment's argument. Raises ValueError unless every place that a layout may deal
+    is free on it.
 
-    Spots, rack, D, random balls and respotted balls all lie where a ball's centre is between the noses, |x| <= 0.86275 and |y| <= 1.75825.
-    So the noses must be where snooker's are, and no jaw or fall may reach a ball there. Only the opened tables have balls in the mouths of
-    pockets: see ``fitted``.
+    Spots, rack, D, random balls and respotted balls all lie where a ball's centre is between the noses, |x|
+    <= 0.86275 and |y| <= 1.75825. So the noses must be where snooker's are, and no jaw or fall may reach a
+    ball there. Only the opened tables have balls in the mouths of pockets: see ``fitted``.
     """
     cloth = Table.of(table)
     if cloth is UNBOUNDED:
         raise refuse("table", table, 'must be "match", "tight" or a Table')
     if cloth.ball_radius is not None and abs(cloth.ball_radius - BALL_RADIUS) > SAME_BALL:
         made = f"this one is made for balls of radius {cloth.ball_radius:g} m, snooker's have {BALL_RADIUS:g}"
-        raise refuse("table", cloth.name, f'must be "match", "tight" or a Table of snooker\'s bed in Snooker-v0: {made}')
+        raise refuse(
+            "table",
+            cloth.name,
+            f'must be "match", "tight" or a Table of snooker\'s bed in Snooker-v0: {made}',
+        )
     _check_noses(cloth)
     _check_pockets(cloth)
     past, most = deepest(cloth.jaws, cloth.falls, cloth.bounds, BALL_RADIUS), (REACH - 1.0) * HALF_WIDTH
@@ -51,7 +57,10 @@ def _check_noses(cloth: Table) -> None:
 
 def _check_pockets(cloth: Table) -> None:
     room = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS
-    for name, circles, reach in (("jaws", cloth.jaws, cloth.jaws[:, 2] + BALL_RADIUS), ("falls", cloth.falls, cloth.falls[:, 2])):
+    for name, circles, reach in (
+        ("jaws", cloth.jaws, cloth.jaws[:, 2] + BALL_RADIUS),
+        ("falls", cloth.falls, cloth.falls[:, 2]),
+    ):
         inside = reach - np.hypot(*np.maximum(np.abs(circles[:, :2]) - room, 0.0).T)
         if len(inside) and inside.max() > ROUNDING:
             k = int(inside.argmax())
@@ -63,7 +72,8 @@ def _check_pockets(cloth: Table) -> None:
 
 
 def fitted(layout: str, cloth: Table) -> Plan:
-    """The ``Plan`` of a layout on a table that passed ``table_of``: without the opened tables that do not fit its pockets."""
+    """The ``Plan`` of a layout on a table that passed ``table_of``: without the opened tables that do not fit
+    its pockets."""
     plan = plan_of(layout)
     return plan_of(layout, _unfit(cloth)) if len(plan.tables) else plan
 

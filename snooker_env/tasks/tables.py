@@ -1,6 +1,8 @@
-"""What do visits and frames share? n tables side by side: reset, step, infos, states. ``visit`` and ``frame`` hold the differences.
+"""What do visits and frames share? n tables side by side: reset, step, infos, states. ``visit`` and ``frame``
+hold the differences.
 
-A step of n tables is the same for every caller: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with thousands, on threads.
+A step of n tables is the same for every caller: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with
+thousands, on threads.
 """
 
 from abc import ABC, abstractmethod
@@ -74,13 +76,14 @@ Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
 
 
 Watch: TypeAlias = Callable[[int, stroke.ShotBuffers, int, bool], None]
-"""Called as ``watch(k, buffers, j, own)`` after each stroke on table k, which is shot j of the buffers. ``own``: it is the agent's; in a
-match, either player's.
+"""Called as ``watch(k, buffers, j, own)`` after each stroke on table k, which is shot j of the buffers.
+``own``: it is the agent's; in a match, either player's.
 """
 
 
 class StepOutput:
-    """The results of a step or reset of n tables, in new arrays; ``last`` only if one step both ends and starts episodes."""
+    """The results of a step or reset of n tables, in new arrays; ``last`` only if one step both ends and
+    starts episodes."""
 
     observations: Singles
     """(n, size)"""
@@ -99,7 +102,16 @@ class StepOutput:
     last_masks: Masks
     """(n, choices) The available choices, likewise; without rows unless the observations hold them."""
 
-    def __init__(self, n: int, size: int, reals: Sequence[str], counts: Sequence[str], *, last: bool = False, choices: int = 0):
+    def __init__(
+        self,
+        n: int,
+        size: int,
+        reals: Sequence[str],
+        counts: Sequence[str],
+        *,
+        last: bool = False,
+        choices: int = 0,
+    ):
         self.observations = np.zeros((n, size), np.float32)
         self.rewards = np.zeros(n)
         self.terminated, self.truncated = np.zeros(n, np.bool_), np.zeros(n, np.bool_)
@@ -107,7 +119,9 @@ class StepOutput:
         m = n if last else 0
         self.last_observations = np.zeros((m, size), np.float32)
         self.last_reals, self.last_counts = np.zeros((m, len(reals))), np.zeros((m, len(counts)), np.int64)
-        self.masks, self.last_masks = (np.zeros((rows if choices else 0, choices), np.int8) for rows in (n, m))
+        self.masks, self.last_masks = (
+            np.zeros((rows if choices else 0, choices), np.int8) for rows in (n, m)
+        )
 
     @property
     def arrays(self) -> tuple[Any, ...]:
@@ -121,10 +135,11 @@ class StepOutput:
 
 
 class Crew:
-    """Runs tasks on tables, possibly on several threads: ``crew(which, task)`` calls ``task(part, buffers)`` for parts of ``which``.
+    """Runs tasks on tables, possibly on several threads: ``crew(which, task)`` calls ``task(part, buffers)``
+    for parts of ``which``.
 
-    This class runs everything in one call. ``generators``: one for each table, for an opponent in Python. ``watch``: called after each
-    stroke, or None.
+    This class runs everything in one call. ``generators``: one for each table, for an opponent in Python.
+    ``watch``: called after each stroke, or None.
     """
 
     buffers: Any
@@ -132,7 +147,12 @@ class Crew:
     generators: Sequence[Any]
     watch: Watch | None
 
-    def __init__(self, buffers: stroke.ShotBuffers | None = None, generators: Sequence[Any] = (), watch: Watch | None = None):
+    def __init__(
+        self,
+        buffers: stroke.ShotBuffers | None = None,
+        generators: Sequence[Any] = (),
+        watch: Watch | None = None,
+    ):
         self.buffers, self.generators, self.watch = buffers, generators, watch
 
     def __call__(self, which: Ints, task: Task) -> None:
@@ -154,7 +174,8 @@ STROKES_ONLY = Choices(Physics()).pack()
 
 
 class Tables(ABC):
-    """n tables, each in the middle of its own episode, with common ``Rules``; ``limit``: steps after which an episode is truncated."""
+    """n tables, each in the middle of its own episode, with common ``Rules``; ``limit``: steps after which an
+    episode is truncated."""
 
     REALS: tuple[str, ...] = REALS
     COUNTS: tuple[str, ...] = COUNTS
@@ -219,8 +240,11 @@ class Tables(ABC):
         return info | {"foul": info["fouls"] != 0}
 
     def infos(self, reals: Floats, counts: Ints, there: Bools) -> dict[str, Any]:
-        """Infos in the format of Gymnasium's vector environments: one array for each key, and a mask of the tables that it holds for."""
-        infos: dict[str, Any] = {name: column * there for name, column in zip(self.REALS, reals.T, strict=True)}
+        """Infos in the format of Gymnasium's vector environments: one array for each key, and a mask of the
+        tables that it holds for."""
+        infos: dict[str, Any] = {
+            name: column * there for name, column in zip(self.REALS, reals.T, strict=True)
+        }
         infos |= {name: column * there for name, column in zip(self.COUNTS, counts.T, strict=True)}
         infos |= {name: infos[name] != 0 for name in self.FLAGS}
         infos["foul"] = infos["fouls"] != 0
@@ -232,9 +256,16 @@ class Tables(ABC):
         if seen[stroke.SCORED]:
             standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
         return Played(
-            shot=buffers.shot(j, self.rules), cue=struck(buffers, j), positions=self.positions[k].copy(), on_table=self.on_table[k].copy(),
-            next_on=BallOn(game[BALL_ON]), in_hand=bool(game[IN_HAND]), over=bool(game[OVER]), **judged(seen), **standing,
-        )  # fmt: skip
+            shot=buffers.shot(j, self.rules),
+            cue=struck(buffers, j),
+            positions=self.positions[k].copy(),
+            on_table=self.on_table[k].copy(),
+            next_on=BallOn(game[BALL_ON]),
+            in_hand=bool(game[IN_HAND]),
+            over=bool(game[OVER]),
+            **judged(seen),
+            **standing,
+        )
 
     def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k."""
@@ -242,17 +273,22 @@ class Tables(ABC):
 
     def action_masks(self, which: Ints | None = None) -> Bools:
         """Available discrete actions on the tables ``which`` (all if None): bool (len(which), choices)."""
-        return self.masks_of(np.arange(self.n) if which is None else which, self.rules.actions, self.packed[0])
+        return self.masks_of(
+            np.arange(self.n) if which is None else which, self.rules.actions, self.packed[0]
+        )
 
     def masks_of(self, which: Ints, actions: Actions | Choices, options: Floats) -> Bools:
         """``action_masks`` of one space of actions; ``options``: packed, of it."""
-        out = np.empty((len(which), actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE), np.bool_)
+        out = np.empty(
+            (len(which), actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE), np.bool_
+        )
         options = options if isinstance(actions, Choices) else STROKES_ONLY
         discrete_actions.masks(which, self.positions, self.on_table, self.game, options, out)
         return out
 
     def show_masks(self, which: Ints, masks: Masks) -> None:
-        """Write the available choices on the tables ``which`` into their rows of ``masks``; nothing if it has no rows."""
+        """Write the available choices on the tables ``which`` into their rows of ``masks``; nothing if it has
+        no rows."""
         if len(masks) and len(which):
             masks[which] = self.action_masks(which)
 
@@ -283,19 +319,23 @@ class Tables(ABC):
         return ("positions", "on_table", "game", "streams", "begun")
 
     def interrupted(self) -> None:
-        """A step or reset was cut short: tables at which it is not the agent's turn need a reset. In a visit there are none."""
+        """A step or reset was cut short: tables at which it is not the agent's turn need a reset. In a visit
+        there are none."""
         return
 
     def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers) -> None:
         """Carry the actions (n, k) of the tables ``which`` out up to the strike."""
         self.strike(which, actions, buffers, self.packed)
 
-    def strike(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: tuple[Floats, Floats, Floats]) -> None:
+    def strike(
+        self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: tuple[Floats, Floats, Floats]
+    ) -> None:
         """``address`` with the options and errors of ``packed``."""
         stroke.address(which, actions, self.arrays, buffers.struck, packed, self.rules.fidelity)
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
-        """Play the shots of the tables ``which`` that have been struck; returns the rows of shots that need ``again``."""
+        """Play the shots of the tables ``which`` that have been struck; returns the rows of shots that need
+        ``again``."""
         m = len(which)
         stroke.run(buffers, m, self.rules, self.packed[2])
         status = buffers.status[:m]
@@ -304,21 +344,28 @@ class Tables(ABC):
     def again(self, which: Ints, j: int, buffers: stroke.ShotBuffers) -> stroke.ShotBuffers:
         """Play shot j once more with a longer log; returns its own buffers."""
         k = which[j]
-        return stroke.run_again(buffers, j, k, self.positions[k], self.on_table[k], self.rules, self.packed[2])
+        return stroke.run_again(
+            buffers, j, k, self.positions[k], self.on_table[k], self.rules, self.packed[2]
+        )
 
-    # what each task implements ------------------------------------------------------------------------------------------------
+    # what each task implements
+    # ------------------------------------------------------------------------------------------------
 
     @abstractmethod
-    def step(self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False) -> None:
+    def step(
+        self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
+    ) -> None:
         """One step of all tables: checked actions (n, k) float64, results into ``out``."""
 
     @abstractmethod
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
-        """New episodes on the tables ``wanted`` (n,) bool; the results of the reset for all tables into ``out``."""
+        """New episodes on the tables ``wanted`` (n,) bool; the results of the reset for all tables into
+        ``out``."""
 
     @abstractmethod
     def observe(self, which: Ints, player: int = 0) -> Singles:
-        """The observations of ``player`` on the tables ``which``: float32 (len(which), SIZE), a new array. A visit has one player."""
+        """The observations of ``player`` on the tables ``which``: float32 (len(which), SIZE), a new array. A
+        visit has one player."""
 
     @abstractmethod
     def get_state(self, k: int) -> dict[str, Any]:
@@ -334,11 +381,13 @@ class Tables(ABC):
 
     @abstractmethod
     def standing(self, k: int) -> dict[str, Any]:
-        """The fields of ``Played`` that the task determines: next_player, next_free_ball, scores, break_points, choice, winner."""
+        """The fields of ``Played`` that the task determines: next_player, next_free_ball, scores,
+        break_points, choice, winner."""
 
     @abstractmethod
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin an episode on table k with a valid position; ``game`` is the row of a visit. The random stream goes on."""
+        """Begin an episode on table k with a valid position; ``game`` is the row of a visit. The random
+        stream goes on."""
 
     @abstractmethod
     def text(self, k: int) -> str:

@@ -1,4 +1,5 @@
-"""How are many tables divided among threads? In chunks, with separate work space for each thread; results do not depend on it."""
+"""How are many tables divided among threads? In chunks, with separate work space for each thread; results do
+not depend on it."""
 
 import os
 import threading
@@ -10,13 +11,15 @@ from .stroke import ShotBuffers
 from .tables import Crew, Task, Watch
 
 CHUNK = 128
-"""Largest number of tables in one call: few enough for the work space to stay in the cache, enough to make calls from Python cheap."""
+"""Largest number of tables in one call: few enough for the work space to stay in the cache, enough to make
+calls from Python cheap."""
 LEAST = 8
 """Smallest number of tables for which another thread or chunk is worth its cost."""
 
 
 def processors() -> int:
-    """Return how many processors this process may use: fewer than the machine has if a scheduler or container limits it.
+    """Return how many processors this process may use: fewer than the machine has if a scheduler or container
+    limits it.
 
     Returns
     -------
@@ -33,7 +36,8 @@ def processors() -> int:
 
 
 class Threads(Crew):
-    """The crew of many tables: chunks divided among threads. Watched strokes keep their paths. Several threads may call it."""
+    """The crew of many tables: chunks divided among threads. Watched strokes keep their paths. Several
+    threads may call it."""
 
     def __init__(self, threads: int, *, watch: Watch | None = None):
         super().__init__(watch=watch)
@@ -59,7 +63,8 @@ class Threads(Crew):
             play()
             return
         with self._lock:
-            if self._pool is None or self._pool_process != os.getpid():  # a forked process has none of its parent's threads
+            # a forked process has none of its parent's threads
+            if self._pool is None or self._pool_process != os.getpid():
                 self._pool, self._pool_process = ThreadPoolExecutor(self.threads - 1, "snooker"), os.getpid()
             others = [self._pool.submit(play) for _ in range(threads - 1)]
         try:
@@ -85,7 +90,11 @@ class Threads(Crew):
         self._pool = None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {k: v for k, v in self.__dict__.items() if k != "_lock"} | {"_pool": None, "_desks": [], "generators": ()}
+        return {k: v for k, v in self.__dict__.items() if k != "_lock"} | {
+            "_pool": None,
+            "_desks": [],
+            "generators": (),
+        }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, _lock=threading.Lock())  # threads and locks belong to one process

@@ -1,4 +1,5 @@
-"""How does the built-in opponent "random" play? Uniformly: any action, or one of the available choices. Kernels over tables."""
+"""How does the built-in opponent "random" play? Uniformly: any action, or one of the available choices.
+Kernels over tables."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
 
 @entry(what="uniform play", seconds=1)
 def _uniform(which, streams, actions):
-    """Each component of the actions of the tables ``which`` uniform in [-1, 1): the rows of ``actions`` (n, k)."""
+    """Each component of the actions of the tables ``which`` uniform in [-1, 1): the rows of ``actions`` (n,
+    k)."""
     size = actions.shape[1]
     for j in range(which.shape[0]):
         k = which[j]
@@ -48,7 +50,8 @@ def _uniform_choice(which, streams, masks, actions):
 
 
 class UniformOpponent(Opponent):
-    """Uniform random play: every component of a box action, the decision included; or one of the available discrete actions.
+    """Uniform random play: every component of a box action, the decision included; or one of the available
+    discrete actions.
 
     It never concedes: its declarations and choices are drawn from the others.
     """

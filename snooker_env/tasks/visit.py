@@ -1,7 +1,8 @@
-"""How is a visit played, on one table or on thousands? Strokes until the first miss, foul or clearance, each table on its own.
+"""How is a visit played, on one table or on thousands? Strokes until the first miss, foul or clearance, each
+table on its own.
 
-A step is ``stroke.address`` and ``stroke.run``, then ``_conclude`` (the referee, reward, observation, info); tables that start anew also go
-through ``layouts.deal_tables`` and ``_begin``.
+A step is ``stroke.address`` and ``stroke.run``, then ``_conclude`` (the referee, reward, observation, info);
+tables that start anew also go through ``layouts.deal_tables`` and ``_begin``.
 """
 
 from typing import Any
@@ -66,7 +67,8 @@ def _conclude(which, positions, on_table, game, shots, rules, output):
 
 @entry(what="the start of a visit", seconds=1)
 def _begin(which, fresh, in_hand, tables, output, last):
-    """Write the results of a reset for the tables ``which``; with ``fresh``, start visits on them (already dealt).
+    """Write the results of a reset for the tables ``which``; with ``fresh``, start visits on them (already
+    dealt).
 
     The arrays ``last`` (``StepOutput.last``) then keep the previous rows of these tables.
     """
@@ -97,14 +99,16 @@ class Visits(Tables):
     SIZE = SIZE
     COLUMNS = VISIT_COLUMNS
 
-    def step(self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False) -> None:
+    def step(
+        self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
+    ) -> None:
         """One step of all tables: checked actions (n, k) float64, results into ``out``.
 
-        ``waiting`` (n,) bool: tables that begin a new visit instead of playing. ``same_step``: tables whose visit ends begin a new one at
-        once.
+        ``waiting`` (n,) bool: tables that begin a new visit instead of playing. ``same_step``: tables whose
+        visit ends begin a new one at once.
 
-        Raises SimulationError if a shot cannot be computed. Its balls are then left as they lay, except for a cue ball that was placed;
-        other tables may have been played.
+        Raises SimulationError if a shot cannot be computed. Its balls are then left as they lay, except for a
+        cue ball that was placed; other tables may have been played.
         """
         anew = bool(waiting.any())
 
@@ -115,7 +119,8 @@ class Visits(Tables):
                 crew.saw(playing, buffers, True)
             if same_step:
                 ended = which[out.terminated[which] | out.truncated[which]]
-                self.show_masks(ended, out.last_masks)  # of the table as it lies, before the next one is dealt
+                # of the table as it lies, before the next one is dealt
+                self.show_masks(ended, out.last_masks)
                 self._begin(ended, out)
             elif anew:
                 self._begin(which[waiting[which]], out)
@@ -142,7 +147,8 @@ class Visits(Tables):
             _begin(which, fresh, plan.in_hand, self.arrays, out.arrays, out.last)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
-        """New visits on the tables ``wanted`` (n,) bool; the results of the reset for all tables into ``out``."""
+        """New visits on the tables ``wanted`` (n,) bool; the results of the reset for all tables into
+        ``out``."""
 
         def begin(which, buffers):
             self._begin(which[wanted[which]], out)
@@ -162,12 +168,18 @@ class Visits(Tables):
         """Table k as JSON types: the fields of a ``states.State`` except "rng"."""
         ball_on, in_hand, points, over, _ = self.game[k].tolist()
         return {
-            "positions": self.positions[k].tolist(), "on_table": self.on_table[k].tolist(), "ball_on": ball_on, "in_hand": bool(in_hand),
-            "points": points, "over": bool(over), "stream": self.streams[k].tolist(),
-        }  # fmt: skip
+            "positions": self.positions[k].tolist(),
+            "on_table": self.on_table[k].tolist(),
+            "ball_on": ball_on,
+            "in_hand": bool(in_hand),
+            "points": points,
+            "over": bool(over),
+            "stream": self.streams[k].tolist(),
+        }
 
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> State:
-        """The ``states.State`` that a dict describes; ValueError if it is invalid, or if no shot is left with ``to_play``."""
+        """The ``states.State`` that a dict describes; ValueError if it is invalid, or if no shot is left with
+        ``to_play``."""
         return checked(state, self.rules.table, self.rules.physics.R, generator, to_play=to_play)
 
     def set_state(self, k: int, state: State) -> None:
@@ -180,7 +192,14 @@ class Visits(Tables):
     def standing(self, k: int) -> dict[str, Any]:
         """The fields of ``Played`` for table k: there is one player, whose break is his score."""
         points = int(self.game[k, POINTS])
-        return {"next_player": 0, "scores": (points,), "break_points": points, "choice": False, "winner": None, "next_free_ball": False}
+        return {
+            "next_player": 0,
+            "scores": (points,),
+            "break_points": points,
+            "choice": False,
+            "winner": None,
+            "next_free_ball": False,
+        }
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """Begin a visit on table k with a valid position; ``game`` is its row. The random stream goes on."""

@@ -1,10 +1,12 @@
-"""In which directions does the cue ball meet a ball on first? Windows between tangents, exact for straight lines; kernels.
+"""In which directions does the cue ball meet a ball on first? Windows between tangents, exact for straight
+lines; kernels.
 
-What is met first can change only at finitely many directions: the tangents of the balls, and those in which the cue ball would meet a ball
-on and one that is not at the same time. Between two neighbouring ones nothing changes, so one direction of each interval tells.
+What is met first can change only at finitely many directions: the tangents of the balls, and those in which
+the cue ball would meet a ball on and one that is not at the same time. Between two neighbouring ones nothing
+changes, so one direction of each interval tells.
 
-A ball on that touches the cue ball counts as struck, whatever the cue ball strikes when it is played away. Then every direction away from
-the touching balls is open.
+A ball on that touches the cue ball counts as struck, whatever the cue ball strikes when it is played away.
+Then every direction away from the touching balls is open.
 """
 
 from math import asin, atan2, cos, floor, hypot, pi, sin, sqrt
@@ -23,7 +25,14 @@ MOST_EDGES = 2 * N_BALLS + 2 * (N_BALLS // 2) ** 2
 @kernel
 def half_width(positions, ball):
     """Half the angle under which the cue ball meets a ball: from its middle to a graze [rad]."""
-    return asin(min(1.0, 2.0 * BALL_RADIUS / hypot(positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1])))
+    return asin(
+        min(
+            1.0,
+            2.0
+            * BALL_RADIUS
+            / hypot(positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1]),
+        )
+    )
 
 
 @kernel
@@ -40,7 +49,8 @@ def turned(angle):
 
 @kernel
 def _edges(positions, on_table, on, windows):
-    """Write the directions at which the ball met first may change, ascending in [0, 2 pi), into column ``EDGE``; returns their number."""
+    """Write the directions at which the ball met first may change, ascending in [0, 2 pi), into column
+    ``EDGE``; returns their number."""
     x, y = positions[0, 0], positions[0, 1]
     n = 0
     for i in range(1, N_BALLS):
@@ -53,8 +63,12 @@ def _edges(positions, on_table, on, windows):
             sx, sy = positions[j, 0] - positions[i, 0], positions[j, 1] - positions[i, 1]
             apart = hypot(sx, sy)
             if on_table[j] and ((on >> i) ^ (on >> j)) & 1 and 0.0 < apart < 4.0 * BALL_RADIUS:
-                height = sqrt(4.0 * BALL_RADIUS * BALL_RADIUS - 0.25 * apart * apart) / apart  # where the cue ball touches both
-                mx, my = 0.5 * (positions[i, 0] + positions[j, 0]) - x, 0.5 * (positions[i, 1] + positions[j, 1]) - y
+                # where the cue ball touches both
+                height = sqrt(4.0 * BALL_RADIUS * BALL_RADIUS - 0.25 * apart * apart) / apart
+                mx, my = (
+                    0.5 * (positions[i, 0] + positions[j, 0]) - x,
+                    0.5 * (positions[i, 1] + positions[j, 1]) - y,
+                )
                 windows[n, EDGE] = atan2(my + height * sx, mx - height * sy)
                 windows[n + 1, EDGE] = atan2(my - height * sx, mx + height * sy)
                 n += 2
@@ -70,7 +84,8 @@ def _edges(positions, on_table, on, windows):
 
 @kernel
 def open_windows(positions, on_table, on, touching, windows):
-    """Write the windows in which the balls in the mask ``on`` are met first, widest first; returns their number.
+    """Write the windows in which the balls in the mask ``on`` are met first, widest first; returns their
+    number.
 
     ``touching``: mask of the balls that touch the cue ball; windows (MOST_EDGES, 3).
     """
@@ -79,7 +94,10 @@ def open_windows(positions, on_table, on, touching, windows):
     wanted = ~touching if away else on & ~touching  # of the ball met first, 0 for none
     count, shut, is_open, low = 0, -1, False, 0.0
     for k in range(2 * n):  # once round, from the first interval that is shut
-        here, end = windows[k % n, EDGE] + 2.0 * pi * (k // n), windows[(k + 1) % n, EDGE] + 2.0 * pi * ((k + 1) // n)
+        here, end = (
+            windows[k % n, EDGE] + 2.0 * pi * (k // n),
+            windows[(k + 1) % n, EDGE] + 2.0 * pi * ((k + 1) // n),
+        )
         angle, was_open = 0.5 * (here + end), is_open
         is_open = (wanted >> met(positions, on_table, x, y, cos(angle), sin(angle), 1e9)) & 1 != 0
         if shut < 0:
@@ -112,7 +130,8 @@ def room(windows, count, angle):
 
 @kernel
 def open_part(positions, ball, windows, count):
-    """The widest part of a ball on that can be struck: (direction of its middle, half its width) [rad]; no width: there is none.
+    """The widest part of a ball on that can be struck: (direction of its middle, half its width) [rad]; no
+    width: there is none.
 
     Another ball on in the way may be struck as well.
     """

@@ -1,4 +1,5 @@
-"""Where are the pages' files, and how is ``table.js`` made? Of the files of ``table/``, one after the other."""
+"""Where are the pages' files, and how is ``table.js`` made? Of the files of ``table/``, one after the
+other."""
 
 import json
 from pathlib import Path
@@ -9,7 +10,10 @@ _TABLE = WEB / "table"
 
 
 def table_js() -> str:
-    """The JavaScript module that draws a table and plays a replay; it imports nothing, so that a page can hold it."""
+    """The JavaScript module that draws a table and plays a replay; it imports nothing, so that a page can
+    hold it."""
     style = json.dumps((_TABLE / "player.css").read_text("utf-8"))
-    parts = [(_TABLE / f"{part}.js").read_text("utf-8") for part in ("decode", "pen", "paint", "draw", "play")]
+    parts = [
+        (_TABLE / f"{part}.js").read_text("utf-8") for part in ("decode", "pen", "paint", "draw", "play")
+    ]
     return "\n".join([*parts, f"const STYLE = {style};\n"])

@@ -1,4 +1,5 @@
-"""Is advice right? Chances and points against independent visits in the environment; its order, its seeds, and every kind of position."""
+"""Is advice right? Chances and points against independent visits in the environment; its order, its seeds,
+and every kind of position."""
 
 import json
 
@@ -16,7 +17,8 @@ AGENTS = ("planner_500", "search", "ghost_ball", "random")
 
 
 def test_chances_are_those_of_the_environment():
-    """Each stroke 2,000 times with other errors: the interval of 95 % holds the share of its pots, and is no wider than due."""
+    """Each stroke 2,000 times with other errors: the interval of 95 % holds the share of its pots, and is no
+    wider than due."""
     advice = sn.advise(ENDGAME, noise="club", n=3, samples=400, visits=0)
     assert advice[0].kind == "pot" and advice[0].ball == 19
     inside = 0
@@ -43,7 +45,10 @@ def test_points_expected_of_the_last_ball_are_its_chance_times_its_value():
 
 def test_points_expected_hold_what_follows():
     """The whole visit again, with other errors: the intervals overlap."""
-    few, many = (sn.advise(OPEN, n=1, samples=s, visits=v, seed=seed)[0] for s, v, seed in ((200, 60, 1), (400, 200, 2)))
+    few, many = (
+        sn.advise(OPEN, n=1, samples=s, visits=v, seed=seed)[0]
+        for s, v, seed in ((200, 60, 1), (400, 200, 2))
+    )
     again = sn.advise(OPEN, n=1, samples=400, visits=200, seed=1)[0]
     assert few.points > 2.0 * few.chance > 0.0
     assert abs(few.points - again.points) < 3.0 * (few.points_interval[1] - few.points)
@@ -53,14 +58,20 @@ def test_points_expected_hold_what_follows():
 
 
 def test_the_same_seed_gives_the_same_advice_and_another_one_other_samples():
-    first, again, other = (sn.advise(OPEN, noise="club", n=3, seed=seed, **QUICK).to_dict()["suggestions"] for seed in (4, 4, 5))
+    first, again, other = (
+        sn.advise(OPEN, noise="club", n=3, seed=seed, **QUICK).to_dict()["suggestions"] for seed in (4, 4, 5)
+    )
     assert first == again and first != other
-    apart = [sn.advise(ENDGAME, agent="ghost_ball", noise="club", n=1, seed=seed, **QUICK)[0].stops for seed in (4, 5)]
+    apart = [
+        sn.advise(ENDGAME, agent="ghost_ball", noise="club", n=1, seed=seed, **QUICK)[0].stops
+        for seed in (4, 5)
+    ]
     assert apart[0] != apart[1]  # of one and the same stroke
 
 
 def test_the_noise_stream_of_a_state_has_no_say():
-    """The trap: a state that is played again meets its own errors again. Advice is that of the seed, whatever the stream."""
+    """The trap: a state that is played again meets its own errors again. Advice is that of the seed, whatever
+    the stream."""
     states = [state_of(OPEN) | {"stream": [key, 0]} for key in (1, 2)]
     one, other = (sn.advise(state, noise="club", n=2, **QUICK).to_dict() for state in states)
     assert one == other == sn.advise(OPEN, noise="club", n=2, **QUICK).to_dict()
@@ -80,10 +91,14 @@ def test_points_of_the_visit_so_far_do_not_count():
 
 
 def test_the_choice_is_the_agents_own():
-    """The strokes are those of its ranking, with its own scores; their order is that of the points that they show."""
+    """The strokes are those of its ranking, with its own scores; their order is that of the points that they
+    show."""
     advice = sn.advise(OPEN, agent="search", n=4, seed=3, **QUICK)
     (ranked,) = sn.player("search").at({"noise": "professional"}).rank(OPEN, [3])
-    scores = {tuple(row): score for row, score in zip(ranked.strokes.values.tolist(), ranked.scores.tolist(), strict=True)}
+    scores = {
+        tuple(row): score
+        for row, score in zip(ranked.strokes.values.tolist(), ranked.scores.tolist(), strict=True)
+    }
     assert all(scores[one.speed, one.side, one.top, one.aim, one.elevation] == one.score for one in advice)
     assert [one.points for one in advice] == sorted((one.points for one in advice), reverse=True)
     (first,) = sn.advise(OPEN, agent="search", n=1, seed=3, **QUICK)
@@ -91,14 +106,21 @@ def test_the_choice_is_the_agents_own():
 
 
 def test_strokes_that_read_the_same_are_given_once():
-    said = [one.words.split(" m/s, ")[1].split(", chance")[0] + str((one.ball, one.pocket)) for one in sn.advise(ENDGAME, n=8, **QUICK)]
+    said = [
+        one.words.split(" m/s, ")[1].split(", chance")[0] + str((one.ball, one.pocket))
+        for one in sn.advise(ENDGAME, n=8, **QUICK)
+    ]
     assert len(set(said)) == len(said) > 2
     assert len({round(one.speed, 3) for one in sn.advise(ENDGAME, n=8, distinct=False, **QUICK)}) > 1
 
 
 def test_the_first_advice_is_good():
-    """The blue goes in nine times out of ten, and the best stroke scores more than the widest pot played without a thought."""
-    best, plain = (sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0] for agent in ("planner_500", "ghost_ball"))
+    """The blue goes in nine times out of ten, and the best stroke scores more than the widest pot played
+    without a thought."""
+    best, plain = (
+        sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0]
+        for agent in ("planner_500", "ghost_ball")
+    )
     assert best.points > plain.points
 
 
@@ -126,20 +148,33 @@ def test_every_built_in_agent_has_a_stroke_at_every_position(name, agent):
 def test_in_hand_a_stroke_has_a_place_in_the_d_that_counts():
     one = sn.advise(IN_HAND, n=1, samples=100, visits=0)[0]
     x, y = one.place
-    assert y <= -1.0475 + 1e-9 and np.hypot(x, y + 1.0475) <= 0.292 + 1e-9 and one.kind == "pot" and "brown spot" in one.words
+    assert (
+        y <= -1.0475 + 1e-9
+        and np.hypot(x, y + 1.0475) <= 0.292 + 1e-9
+        and one.kind == "pot"
+        and "brown spot" in one.words
+    )
     points, _, _ = played(IN_HAND, one.stroke, 400, noise="professional")
     assert abs((points > 0).mean() - one.chance) < 4 * np.sqrt(0.25 / 100)
     assert sn.Position(**{**IN_HAND.to_dict(), "cue": one.place}).in_hand  # no ball is in the way
 
 
 def test_where_nothing_can_be_potted_a_ball_on_is_hit():
-    for position, kind, agent in ((SNOOKERED, "escape", "planner_500"), (ALL["hidden"], "contact", "ghost_ball")):
+    for position, kind, agent in (
+        (SNOOKERED, "escape", "planner_500"),
+        (ALL["hidden"], "contact", "ghost_ball"),
+    ):
         one = sn.advise(position, agent=agent, n=1, samples=60, visits=0)[0]
         assert one.kind == kind and one.pocket == -1 and one.ball == one.first and 1 <= one.ball <= 15
         assert bool(clear_paths(position).any_part[0]) == (kind == "contact")
         points, fouls, _ = played(position, one.stroke, 400, noise="professional")
-        assert abs((~fouls).mean() - one.chance) < 4 * np.sqrt(0.25 / 60) and points.mean() == pytest.approx(one.points, abs=0.3)
-        assert one.words.startswith("escape off the " if kind == "escape" else "contact with the red, ") and " fair " in one.words
+        assert abs((~fouls).mean() - one.chance) < 4 * np.sqrt(0.25 / 60) and points.mean() == pytest.approx(
+            one.points, abs=0.3
+        )
+        assert (
+            one.words.startswith("escape off the " if kind == "escape" else "contact with the red, ")
+            and " fair " in one.words
+        )
 
 
 def test_where_no_ball_can_be_potted_directly_a_plant_is_found():
@@ -166,7 +201,10 @@ def test_advice_is_json_and_a_sequence():
 
 
 def test_physics_table_and_fidelity_may_be_chosen():
-    usual, slow = (sn.advise(ENDGAME, n=1, options=o, **QUICK)[0] for o in (None, {"physics": {"mu_r": 0.02}, "table": "tight"}))
+    usual, slow = (
+        sn.advise(ENDGAME, n=1, options=o, **QUICK)[0]
+        for o in (None, {"physics": {"mu_r": 0.02}, "table": "tight"})
+    )
     assert usual.to_dict() != slow.to_dict()
     env = sn.SnookerEnv(physics={"mu_r": 0.02}, table="tight")
     env.reset(seed=1, options={"state": state_of(ENDGAME)})
@@ -187,14 +225,25 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("given", "field", "value", "allowed"), WRONG, ids=[next(iter(w[0])) + str(i) for i, w in enumerate(WRONG)])
+@pytest.mark.parametrize(
+    ("given", "field", "value", "allowed"),
+    WRONG,
+    ids=[next(iter(w[0])) + str(i) for i, w in enumerate(WRONG)],
+)
 def test_wrong_arguments_are_refused(given, field, value, allowed):
     refused(lambda: sn.advise(OPEN, **given), field, value, allowed)
 
 
 def test_wrong_positions_are_refused():
-    refused(lambda: sn.advise(sn.planning.Positions.of([OPEN, OPEN])), "position", "2 positions", "must be one position")
-    refused(lambda: sn.advise(sn.Position(cue=(0.0, 0.0), over=True)), "position.over", "True", "must be False")
+    refused(
+        lambda: sn.advise(sn.planning.Positions.of([OPEN, OPEN])),
+        "position",
+        "2 positions",
+        "must be one position",
+    )
+    refused(
+        lambda: sn.advise(sn.Position(cue=(0.0, 0.0), over=True)), "position.over", "True", "must be False"
+    )
     with pytest.raises(ValueError, match="key of position = 'cues'"):
         sn.advise({"cue": (0.0, 0.0), "cues": 3})
 

@@ -23,7 +23,11 @@ def test_the_command_prints_advice(tmp_path, capsys):
 def test_what_is_wrong_is_said_in_a_line(tmp_path, capsys):
     file = tmp_path / "one.json"
     ENDGAME.save(file)
-    for wrong, said in ((["--agent", "nobody"], "player = 'nobody'"), (["--n", "0"], "n = 0: must be"), (["--noise", "x"], "noise = 'x'")):
+    for wrong, said in (
+        (["--agent", "nobody"], "player = 'nobody'"),
+        (["--n", "0"], "n = 0: must be"),
+        (["--noise", "x"], "noise = 'x'"),
+    ):
         assert main(["--position", str(file), *wrong]) == 2
         out, error = capsys.readouterr()
         assert not out and error.startswith(f"error: {said}") and error.count("\n") == 1

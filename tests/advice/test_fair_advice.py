@@ -1,4 +1,5 @@
-"""Is what is advised fair, in the order of what is shown, and called what it is? After break-offs, on opened tables, snookered."""
+"""Is what is advised fair, in the order of what is shown, and called what it is? After break-offs, on opened
+tables, snookered."""
 
 from functools import cache
 from math import asin, atan2, hypot
@@ -45,7 +46,9 @@ def foul(one):
 
 
 @pytest.mark.parametrize("positions", [after_break_offs, opened])
-@pytest.mark.parametrize(("agent", "each"), [("random", 2), ("ghost_ball", 2), ("planner_500", 10), ("search", 10)])
+@pytest.mark.parametrize(
+    ("agent", "each"), [("random", 2), ("ghost_ball", 2), ("planner_500", 10), ("search", 10)]
+)
 def test_advice_is_fair_ordered_by_what_it_shows_and_called_what_it_is(positions, agent, each):
     for seed, position in enumerate(positions()[::each]):
         advice = sn.advise(position, agent=agent, seed=seed, **QUICK)
@@ -55,10 +58,17 @@ def test_advice_is_fair_ordered_by_what_it_shows_and_called_what_it_is(positions
         assert [one.points for one in pots] == sorted((one.points for one in pots), reverse=True)
         assert [one.chance for one in others] == sorted((one.chance for one in others), reverse=True)
         for one in pots:
-            assert one.pocket >= 0 and one.words.endswith(" expected") and f"chance {100 * one.chance:.0f} %" in one.words
+            assert (
+                one.pocket >= 0
+                and one.words.endswith(" expected")
+                and f"chance {100 * one.chance:.0f} %" in one.words
+            )
         for one in others:
             assert one.words.startswith({"contact": "contact with the ", "escape": "escape "}[one.kind])
-            assert f"fair {100 * one.chance:.0f} %; no pot intended, its worth as a safety is not judged" in one.words
+            assert (
+                f"fair {100 * one.chance:.0f} %; no pot intended, its worth as a safety is not judged"
+                in one.words
+            )
             assert "points" not in one.words
 
 
@@ -93,7 +103,9 @@ def test_a_foul_is_left_out_where_a_stroke_of_the_agents_is_fair():
 def test_where_none_of_an_agents_strokes_is_fair_it_is_said_and_others_are_judged():
     advice = sn.advise(COVERED, agent=Given(BLUE_FIRST, AWAY), **QUICK)
     assert not advice.own and advice.agent == "given" and not any(map(foul, advice))
-    assert advice.order.startswith("given has no fair stroke here; these are not its own. ") and str(advice).startswith(advice.order)
+    assert advice.order.startswith("given has no fair stroke here; these are not its own. ") and str(
+        advice
+    ).startswith(advice.order)
     assert advice.to_dict()["own"] is False
 
 
@@ -112,8 +124,14 @@ def test_where_no_fair_stroke_is_found_the_least_bad_is_said_to_be_that():
 
 
 def test_a_heading_says_by_what():
-    assert sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="search", **QUICK).order == "Pots by points expected:"
-    assert sn.advise(SNOOKERED, agent="random", **QUICK).order == "Strokes without a pot by how often they are fair:"
+    assert (
+        sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="search", **QUICK).order
+        == "Pots by points expected:"
+    )
+    assert (
+        sn.advise(SNOOKERED, agent="random", **QUICK).order
+        == "Strokes without a pot by how often they are fair:"
+    )
     long = sn.Position(in_hand=True, black=(0.0, 1.4605))
     both = sn.advise(long, agent="random", n=20, **QUICK)
     assert {one.kind == "pot" for one in both} == {True, False} and both[0].kind != "pot"

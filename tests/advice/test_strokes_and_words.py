@@ -1,4 +1,5 @@
-"""Does a stroke mean what it says? As an action of the environment, and in words against what the simulator does."""
+"""Does a stroke mean what it says? As an action of the environment, and in words against what the simulator
+does."""
 
 from math import atan2, cos, pi, sin
 
@@ -20,22 +21,33 @@ def test_a_stroke_is_its_action():
     places, on_table, _ = OPEN.arrays()
     speed, side, top, cue, elevation = actions.shot(a, places, on_table, 2)
     v, _ = sn.strike(speed, cue, side, top, 0.0)
-    assert (speed, side, top, elevation, atan2(v[1], v[0])) == pytest.approx((3.1, -0.2, 0.3, 0.2, 2.5), abs=1e-6)
+    assert (speed, side, top, elevation, atan2(v[1], v[0])) == pytest.approx(
+        (3.1, -0.2, 0.3, 0.2, 2.5), abs=1e-6
+    )
     x, back = a[5], 0.5 * (a[6] + 1.0)
     assert (0.292 * x, -1.0475 - 0.292 * np.sqrt(1 - x * x) * back) == pytest.approx((0.1, -1.2), abs=1e-6)
     assert abs(a[7]) < 1 / 3  # play
     assert CueStroke(speed=1.0, aim=7.0).action()[3] == pytest.approx((7.0 - 2 * pi) / pi)
-    assert CueStroke(speed=1.0, aim=0.0, place=(0.292, -1.0475)).action(placement=True).tolist()[4:] == [1.0, -1.0]
-    assert CueStroke(**stroke.to_dict()) == stroke == CueStroke.of(stroke.to_dict()) and CueStroke.of(stroke) is stroke
+    assert CueStroke(speed=1.0, aim=0.0, place=(0.292, -1.0475)).action(placement=True).tolist()[4:] == [
+        1.0,
+        -1.0,
+    ]
+    assert (
+        CueStroke(**stroke.to_dict()) == stroke == CueStroke.of(stroke.to_dict())
+        and CueStroke.of(stroke) is stroke
+    )
 
 
 def test_a_suggestion_is_a_stroke_as_well():
     (one,) = sn.advise(OPEN, n=1, samples=10, visits=0)
-    assert CueStroke.of(one) is one and one.stroke == CueStroke.of({"speed": one.speed, "aim": one.aim, "side": one.side, "top": one.top})
+    assert CueStroke.of(one) is one and one.stroke == CueStroke.of(
+        {"speed": one.speed, "aim": one.aim, "side": one.side, "top": one.top}
+    )
 
 
 def test_pockets_are_named_as_seen_from_baulk():
-    """The yellow pocket is the corner beside the yellow spot, on the right; the black is between the two top ones."""
+    """The yellow pocket is the corner beside the yellow spot, on the right; the black is between the two top
+    ones."""
     yellow, green = sn.geometry.COLOUR_SPOTS[:2]
     for index, (x, y) in enumerate(sn.geometry.POCKET_PLACES.tolist()):
         name = POCKET_WORDS[index]
@@ -43,10 +55,14 @@ def test_pockets_are_named_as_seen_from_baulk():
             near = min((yellow, green), key=lambda spot: np.hypot(spot[0] - x, spot[1] - y))
             assert name == ("yellow pocket" if near is yellow else "green pocket")
         else:
-            assert name == f"{'top ' if y > 0 else ''}{'right' if x > 0 else 'left'}{'' if y > 0 else ' middle'}"
+            assert (
+                name == f"{'top ' if y > 0 else ''}{'right' if x > 0 else 'left'}{'' if y > 0 else ' middle'}"
+            )
 
 
-@pytest.mark.parametrize(("speed", "top"), [(2.0, 0.0), (1.5, -0.3), (4.0, -0.4), (3.0, 0.3), (2.0, 0.45), (1.0, -0.2), (0.5, 0.0)])
+@pytest.mark.parametrize(
+    ("speed", "top"), [(2.0, 0.0), (1.5, -0.3), (4.0, -0.4), (3.0, 0.3), (2.0, 0.45), (1.0, -0.2), (0.5, 0.0)]
+)
 @pytest.mark.parametrize("distance", [0.0, 0.1, 0.5, 1.2])
 def test_what_is_left_of_the_spin_is_what_the_simulator_says(speed, top, distance):
     physics = sn.Physics()
@@ -65,9 +81,19 @@ def test_spin_in_words():
     say = lambda top, side=0.0, distance=0.3, speed=2.5: words.spin_words(  # noqa: E731
         CueStroke(speed=speed, aim=0.0, top=top, side=side), distance, sn.Physics()
     )
-    assert [say(top) for top in (0.4, 0.2, 0.0, -0.2, -0.45)] == ["top", "follow", "plain", "screw", "deep screw"]
+    assert [say(top) for top in (0.4, 0.2, 0.0, -0.2, -0.45)] == [
+        "top",
+        "follow",
+        "plain",
+        "screw",
+        "deep screw",
+    ]
     assert say(0.0, distance=0.1) == "stun"
-    assert say(0.0, distance=2.0) == "plain" and say(-0.2, distance=2.5) == "drag" and say(-0.2, distance=0.6) == "stun"
+    assert (
+        say(0.0, distance=2.0) == "plain"
+        and say(-0.2, distance=2.5) == "drag"
+        and say(-0.2, distance=0.6) == "stun"
+    )
     assert say(-0.4, 0.3) == "deep screw with right side" and say(0.2, -0.3) == "follow with left side"
     assert say(-0.2, distance=None) == "screw" and say(0.0, distance=None) == "plain"
 
@@ -76,7 +102,11 @@ def test_the_cushion_of_an_escape_is_the_one_that_the_ball_meets():
     rng, seen = np.random.default_rng(1), set()
     for _ in range(40):
         x, y, aim = rng.uniform(-0.7, 0.7), rng.uniform(-1.5, 1.5), rng.uniform(-pi, pi)
-        shot = sn.simulate([(x, y)], [(4.0 * cos(aim), 4.0 * sin(aim))], [(-4.0 / 0.02625 * sin(aim), 4.0 / 0.02625 * cos(aim), 0.0)])
+        shot = sn.simulate(
+            [(x, y)],
+            [(4.0 * cos(aim), 4.0 * sin(aim))],
+            [(-4.0 / 0.02625 * sin(aim), 4.0 / 0.02625 * cos(aim), 0.0)],
+        )
         hits = shot.events[shot.events["kind"] == EventKind.CUSHION]
         jaws = shot.events[np.isin(shot.events["kind"], (EventKind.JAW, EventKind.POT))]
         if not len(hits) or (len(jaws) and jaws["time"][0] < hits["time"][0]):
@@ -93,7 +123,13 @@ def test_contacts_in_words():
     """As seen along the path: a ball whose middle lies to the left of it is struck on its right."""
     reach = 2 * 0.02625
     for aim in (0.0, 1.0, -2.5):
-        for aside, said in ((0.0, "full"), (0.25, "three-quarter ball"), (0.5, "half-ball"), (0.75, "quarter-ball"), (0.95, "thin")):
+        for aside, said in (
+            (0.0, "full"),
+            (0.25, "three-quarter ball"),
+            (0.5, "half-ball"),
+            (0.75, "quarter-ball"),
+            (0.95, "thin"),
+        ):
             for sign, side in ((1, "right"), (-1, "left")):
                 x, y = cos(aim) - sign * aside * reach * sin(aim), sin(aim) + sign * aside * reach * cos(aim)
                 assert words.contact_words(x, y, aim) == (said if said == "full" else f"{said} on the {side}")
@@ -102,18 +138,30 @@ def test_contacts_in_words():
 def test_what_a_stroke_does_in_words():
     say = words.what_words
     assert say("pot", 19, 2, 19) == "blue, right middle" and say("pot", 5, 5, 5) == "red, left middle"
-    assert say("pot", 5, 0, 8) == "red by a plant, green pocket" and say("pot", 21, 4, 1) == "black off the red, top left"
-    assert say("contact", 3, -1, 3, "full") == "contact with the red, full" and say("in-off", 3, -1, 3) == "in-off from the red"
+    assert (
+        say("pot", 5, 0, 8) == "red by a plant, green pocket"
+        and say("pot", 21, 4, 1) == "black off the red, top left"
+    )
+    assert (
+        say("contact", 3, -1, 3, "full") == "contact with the red, full"
+        and say("in-off", 3, -1, 3) == "in-off from the red"
+    )
     assert (
         say("escape", 20, -1, 20, "top cushion") == "escape off the top cushion to the pink"
         and say("escape", 1, -1, 1) == "escape to the red"
     )
-    assert say("foul", -1, -1, -1) == "foul, nothing struck" and say("foul", 16, -1, 16) == "foul, yellow first"
+    assert (
+        say("foul", -1, -1, -1) == "foul, nothing struck" and say("foul", 16, -1, 16) == "foul, yellow first"
+    )
     assert words.figures_words("pot", 0.874, 23.4) == "chance 87 %, 23 points expected"
     for kind in ("contact", "escape"):
-        assert words.figures_words(kind, 0.5, 1.04) == "fair 50 %; no pot intended, its worth as a safety is not judged"
+        assert (
+            words.figures_words(kind, 0.5, 1.04)
+            == "fair 50 %; no pot intended, its worth as a safety is not judged"
+        )
     assert (
-        words.figures_words("foul", 0.03, 0.0) == "fair 3 %" and words.figures_words("pot", 1.0, 1.04) == "chance 100 %, 1 point expected"
+        words.figures_words("foul", 0.03, 0.0) == "fair 3 %"
+        and words.figures_words("pot", 1.0, 1.04) == "chance 100 %, 1 point expected"
     )
     assert words.figures_words("pot", 1.0, 0.26).endswith("0.3 points expected")
     assert (
@@ -125,7 +173,9 @@ def test_what_a_stroke_does_in_words():
 def test_the_words_of_a_suggestion_are_its_data():
     for one in sn.advise(OPEN, n=4, samples=50, visits=5):
         parts = one.words.split(", ")
-        assert parts[0] == "red" and parts[1] == POCKET_WORDS[one.pocket] and parts[2] == f"{one.speed:.1f} m/s"
+        assert (
+            parts[0] == "red" and parts[1] == POCKET_WORDS[one.pocket] and parts[2] == f"{one.speed:.1f} m/s"
+        )
         assert f"chance {100 * one.chance:.0f} %" in parts and one.words.endswith(" expected")
         points, _, (state,) = played(OPEN, one.stroke, 1, noise="none")
         assert points[0] >= 1 and not state["on_table"][one.ball]

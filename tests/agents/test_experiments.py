@@ -1,4 +1,5 @@
-"""Can the commands behind agents/results/*.md be run as agents/experiments.sh writes them? Each is read as its program would read it."""
+"""Can the commands behind agents/results/*.md be run as agents/experiments.sh writes them? Each is read as
+its program would read it."""
 
 import json
 import os
@@ -18,10 +19,14 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def test_every_command_is_one_that_its_program_takes(tmp_path):
     command = ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path)]
-    done = subprocess.run(command, env=os.environ | {"LIST": "1"}, capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run(
+        command, env=os.environ | {"LIST": "1"}, capture_output=True, text=True, check=True, timeout=60
+    )
     lines = [shlex.split(line) for line in done.stdout.splitlines()]
     runs = [line[2:] for line in lines if line[1] == "train.py"]
-    comparisons, curves = ([line[3:] for line in lines if line[2] == f"agents.{name}"] for name in ("evaluate", "curves"))
+    comparisons, curves = (
+        [line[3:] for line in lines if line[2] == f"agents.{name}"] for name in ("evaluate", "curves")
+    )
     assert len(runs) > 25 and len(comparisons) == 16 and len(curves) == 1 and len(runs) + 18 == len(lines)
     assert all(agent.partition("=")[2].startswith(f"{tmp_path}/") for agent in curves[0])
     starts = [run[run.index("--start") + 1] for run in runs if "--start" in run]
@@ -33,7 +38,14 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
         "taught-0",
     ] and 'echo "lineup-$k ' in Path(command[1]).read_text()
     recipes = [train.recipe_of(train.Settings(**train.parse(run)[1])) for run in runs]
-    assert {recipe.name for recipe in recipes} == {"ppo_value", "ppo_foresight", "ppo_mask", "ppo_absolute", "ppo_target", "tqc_target"}
+    assert {recipe.name for recipe in recipes} == {
+        "ppo_value",
+        "ppo_foresight",
+        "ppo_mask",
+        "ppo_absolute",
+        "ppo_target",
+        "tqc_target",
+    }
     for comparison in comparisons:
         parsed = parser().parse_args(comparison)
         assert parsed.json.suffix == ".json" and parsed.markdown.with_suffix(".json") == parsed.json
@@ -55,7 +67,11 @@ def test_a_run_that_fails_stops_the_whole(tmp_path):
     fake.chmod(0o755)
     env = os.environ | {"PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}", "ONLY": "tqc-"}
     done = subprocess.run(
-        ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path / "runs")], env=env, capture_output=True, text=True, timeout=60
+        ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path / "runs")],
+        env=env,
+        capture_output=True,
+        text=True,
+        timeout=60,
     )
     assert done.returncode != 0 and "tqc-0 failed" in done.stderr
     assert (tmp_path / "runs/tqc-0.txt").read_text() == "no memory\n"
@@ -64,16 +80,27 @@ def test_a_run_that_fails_stops_the_whole(tmp_path):
 @pytest.mark.parametrize("only", ["nothing-", "mask-(0"])
 def test_a_choice_of_no_run_is_an_error(tmp_path, only):
     command = ["bash", str(ROOT / "agents/experiments.sh"), str(tmp_path / "runs")]
-    done = subprocess.run(command, env=os.environ | {"ONLY": only, "LIST": ""}, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        command, env=os.environ | {"ONLY": only, "LIST": ""}, capture_output=True, text=True, timeout=60
+    )
     assert done.returncode == 2 and f"ONLY='{only}' names no run" in done.stderr
 
 
 def test_the_command_of_the_ladder_is_the_one_that_made_the_file(tmp_path):
     """And a tournament takes it."""
     command = ["bash", str(ROOT / "agents/ladder.sh")]
-    done = subprocess.run(command, env=os.environ | {"LIST": "1"}, capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run(
+        command, env=os.environ | {"LIST": "1"}, capture_output=True, text=True, check=True, timeout=60
+    )
     words = shlex.split(done.stdout)
-    made = shlex.split(json.loads((ROOT / "agents/results/ladder.json").read_text(encoding="utf-8"))["command"])
-    assert words[:3] == made[:3] == ["python", "-m", "agents.tournament"]  # the file is of a version with other names of players
+    made = shlex.split(
+        json.loads((ROOT / "agents/results/ladder.json").read_text(encoding="utf-8"))["command"]
+    )
+    # the file is of a version with other names of players
+    assert words[:3] == made[:3] == ["python", "-m", "agents.tournament"]
     parsed = tournament.parser().parse_intermixed_args(words[3:])
-    assert parsed.resume and parsed.out == Path("agents/results/ladder.json") and parsed.markdown == parsed.out.with_suffix(".md")
+    assert (
+        parsed.resume
+        and parsed.out == Path("agents/results/ladder.json")
+        and parsed.markdown == parsed.out.with_suffix(".md")
+    )

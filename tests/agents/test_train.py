@@ -26,8 +26,20 @@ from snooker_env.progress import Progress
 ROOT = Path(__file__).resolve().parents[2]
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
 TINY = [
-    "--agent", "ppo_mask", "--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512", "--imitate", "0",
-]  # fmt: skip
+    "--agent",
+    "ppo_mask",
+    "--envs",
+    "2",
+    "--eval-visits",
+    "4",
+    "--no-progress",
+    "--parallel",
+    "one",
+    "--steps",
+    "512",
+    "--imitate",
+    "0",
+]
 
 
 def run(out, *options):
@@ -73,9 +85,20 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
     assert list((out / "tb").rglob("events.out.tfevents.*"))
     found = results(out)
     assert set(found) == {
-        "command", "settings", "steps", "seconds", "parts", "start", "learned", "evaluation", "curve", "imitation", "versions",
-        "git_commit", "processors",
-    }  # fmt: skip
+        "command",
+        "settings",
+        "steps",
+        "seconds",
+        "parts",
+        "start",
+        "learned",
+        "evaluation",
+        "curve",
+        "imitation",
+        "versions",
+        "git_commit",
+        "processors",
+    }
     assert found["settings"]["agent"] == agent and found["steps"] == 512
     (part,) = found["parts"]
     assert (part["part"], part["unit"], part["amount"]) == (agent.partition("_")[0].upper(), "shots", 512)
@@ -94,8 +117,12 @@ def test_saved_model_plays_as_it_was_judged(finished, agent):
     assert again == results(finished / agent)["evaluation"]["trained"]
 
 
-@pytest.mark.parametrize(("agent", "at", "number"), [("ppo_mask", 100, signal.SIGTERM), ("tqc_target", 100, signal.SIGINT)])
-def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, tmp_path, capsys, monkeypatch, agent, at, number):
+@pytest.mark.parametrize(
+    ("agent", "at", "number"), [("ppo_mask", 100, signal.SIGTERM), ("tqc_target", 100, signal.SIGINT)]
+)
+def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(
+    finished, tmp_path, capsys, monkeypatch, agent, at, number
+):
     original = callback.RunCallback._on_step  # at 100 shots tqc only gathers yet
 
     def interrupted(self):
@@ -121,7 +148,8 @@ def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, 
     with monkeypatch.context() as patch:
         patch.setattr(callback.RunCallback, "_on_training_start", watched)
         assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0
-    assert np.array_equal(begun, [kept]) and (agent == "tqc_target" or kept[1].any())  # visits go on where they were, with their sums
+    # visits go on where they were, with their sums
+    assert np.array_equal(begun, [kept]) and (agent == "tqc_target" or kept[1].any())
     assert np.array_equal(weights(tmp_path / "run"), weights(finished / agent))
     before, after = results(finished / agent), results(tmp_path / "run")
     for name in ("evaluation", "settings", "steps", "curve", "learned"):
@@ -129,37 +157,70 @@ def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(finished, 
 
 
 def test_it_says_in_a_pipe_what_it_does(tmp_path, capsys, monkeypatch):
-    """A line at the start of each part and every few seconds, with what was measured; the last words give each part its own time."""
+    """A line at the start of each part and every few seconds, with what was measured; the last words give
+    each part its own time."""
     monkeypatch.setattr(progress, "EVERY", 0.02)
     spoken = [word for word in TINY if word != "--no-progress"]
     more = ["--agent", "ppo_foresight", "--imitate", "64", "--steps", "256", "--out", str(tmp_path / "run")]
     assert train.main([*spoken, *more]) == 0
     lines = capsys.readouterr().out.splitlines()
     parts = [
-        ("part 1 of 3, imitation", "64 positions", r"round \d+ of 32, loss [\d.]+, (.* points a visit, )?.*positions/s"),
-        ("part 2 of 3, PPO", "256 shots", r"round 2 of 2, policy loss \S+, value loss \S+, [\d.]+ points a visit, .*shots/s"),
+        (
+            "part 1 of 3, imitation",
+            "64 positions",
+            r"round \d+ of 32, loss [\d.]+, (.* points a visit, )?.*positions/s",
+        ),
+        (
+            "part 2 of 3, PPO",
+            "256 shots",
+            r"round 2 of 2, policy loss \S+, value loss \S+, [\d.]+ points a visit, .*shots/s",
+        ),
         ("part 3 of 3, evaluation", "12 visits", r"(trained|ghost_ball|random), .*visits/s"),
     ]
     for name, total, figures in parts:
         said = [line for line in lines if line.startswith(f"ppo_foresight, {name}: ")]
         assert said[0] == f"ppo_foresight, {name}: 0 of {total}"
         assert re.fullmatch(rf"ppo_foresight, {name}: {total.split()[0]} of {total}, .* elapsed", said[-1])
-        assert [line for line in said[1:-1] if re.search(rf"of {total}, {figures}, [\d:]+ elapsed, [\d:]+ left$", line)], said
+        assert [
+            line
+            for line in said[1:-1]
+            if re.search(rf"of {total}, {figures}, [\d:]+ elapsed, [\d:]+ left$", line)
+        ], said
     found = results(tmp_path / "run")
     assert [(part["part"], part["amount"], part["unit"]) for part in found["parts"]] == [
-        ("imitation", 64, "positions"), ("PPO", 256, "shots"),
-    ]  # fmt: skip
+        ("imitation", 64, "positions"),
+        ("PPO", 256, "shots"),
+    ]
     assert found["seconds"] == pytest.approx(sum(part["seconds"] for part in found["parts"]))
     assert any(re.fullmatch(r"imitation: 64 positions in \d+ s, [\d,]+ a second", line) for line in lines)
-    assert any(re.fullmatch(r"PPO: 256 shots in \d+ s, [\d,]+ a second \(learning included\)", line) for line in lines)
+    assert any(
+        re.fullmatch(r"PPO: 256 shots in \d+ s, [\d,]+ a second \(learning included\)", line)
+        for line in lines
+    )
     seconds = {part["part"]: part["seconds"] for part in found["parts"]}
     assert seconds["imitation"] == pytest.approx(found["imitation"][-1]["seconds"]) and seconds["PPO"] > 0
 
 
 def launch(out, *options):
     """``python train.py`` in a session of its own, once its first checkpoint is there."""
-    command = [sys.executable, str(ROOT / "train.py"), *TINY, "--parallel", "auto", "--out", str(out), *options]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True, cwd=out.parent)
+    command = [
+        sys.executable,
+        str(ROOT / "train.py"),
+        *TINY,
+        "--parallel",
+        "auto",
+        "--out",
+        str(out),
+        *options,
+    ]
+    process = subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+        cwd=out.parent,
+    )
     deadline = time.monotonic() + 120
     while not (out / "checkpoint.pkl").exists():
         assert process.poll() is None, process.stdout.read()
@@ -201,7 +262,9 @@ def test_ctrl_c_ends_it_in_order(tmp_path):
 def test_resume_refuses_other_settings(finished, capsys):
     error = refused(capsys, "--resume", "--out", str(finished / "ppo_mask"), "--noise", "club")
     assert "--noise is 'club'" in error and "has ''" in error
-    assert "--agent is 'tqc_target'" in refused(capsys, "--resume", "--out", str(finished / "ppo_mask"), "--agent", "tqc_target")
+    assert "--agent is 'tqc_target'" in refused(
+        capsys, "--resume", "--out", str(finished / "ppo_mask"), "--agent", "tqc_target"
+    )
 
 
 def test_existing_run_is_not_overwritten(finished, tmp_path, capsys):
@@ -211,15 +274,31 @@ def test_existing_run_is_not_overwritten(finished, tmp_path, capsys):
     (tmp_path / "thesis.txt").write_text("mine")
     assert "thesis.txt" in refused(capsys, "--out", str(tmp_path))
     assert "holds no checkpoint" in refused(capsys, "--resume", "--out", str(tmp_path))
-    assert "noise = 'pro'" in refused(capsys, "--noise", "pro", "--out", str(tmp_path))  # wrong options are reported first
+    # wrong options are reported first
+    assert "noise = 'pro'" in refused(capsys, "--noise", "pro", "--out", str(tmp_path))
 
 
 @pytest.mark.parametrize(
     ("option", "value"),
-    [("layout", "moon"), ("layout", "held_out"), ("noise", "drunk"), ("fidelity", "rough"), ("agent", "dqn"), ("set", "gamma"),
-     ("set", "charm=2"), ("envs", "-1"), ("steps", "-1"), ("eval-visits", "1"), ("eval-visits", "2049"), ("seed", "-1"), ("seed", "x"),
-     ("seed", "4294967296"), ("start", "nowhere"), ("start", __file__)],
-)  # fmt: skip
+    [
+        ("layout", "moon"),
+        ("layout", "held_out"),
+        ("noise", "drunk"),
+        ("fidelity", "rough"),
+        ("agent", "dqn"),
+        ("set", "gamma"),
+        ("set", "charm=2"),
+        ("envs", "-1"),
+        ("steps", "-1"),
+        ("eval-visits", "1"),
+        ("eval-visits", "2049"),
+        ("seed", "-1"),
+        ("seed", "x"),
+        ("seed", "4294967296"),
+        ("start", "nowhere"),
+        ("start", __file__),
+    ],
+)
 def test_bad_option_gives_one_clear_error(tmp_path, capsys, monkeypatch, option, value):
     monkeypatch.setattr(train.snooker_env, "warmup", None)  # nothing is compiled before
     error = refused(capsys, "--out", str(tmp_path / "run"), f"--{option}", value)
@@ -272,7 +351,15 @@ def test_resume_refuses_a_broken_checkpoint(finished, tmp_path, capsys):
     whole = pickle.dumps(state)
     older = pickle.dumps({key: value for key, value in state.items() if key != "running"})
     strange = pickle.dumps(state | {"settings": {"wheels": 4}})
-    for content in (b"junk", b"", whole[: len(whole) // 2], older, strange, pickle.dumps(3), pickle.dumps(state | {"model": b"x"})):
+    for content in (
+        b"junk",
+        b"",
+        whole[: len(whole) // 2],
+        older,
+        strange,
+        pickle.dumps(3),
+        pickle.dumps(state | {"model": b"x"}),
+    ):
         (tmp_path / "checkpoint.pkl").write_bytes(content)
         error = refused(capsys, "--resume", "--out", str(tmp_path))
         assert f"resume = '{tmp_path / 'checkpoint.pkl'}': must be a complete checkpoint" in error
@@ -288,7 +375,9 @@ def test_every_player_meets_the_same_tables():
 
     first, second = (summary(play_visits(Watching(), 3)) for _ in range(2))
     assert first == second
-    assert all(np.array_equal(a, b) for a, b in zip(seen[: len(seen) // 2], seen[len(seen) // 2 :], strict=True))
+    assert all(
+        np.array_equal(a, b) for a, b in zip(seen[: len(seen) // 2], seen[len(seen) // 2 :], strict=True)
+    )
 
 
 def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
@@ -303,9 +392,16 @@ def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
     settings = train.Settings(agent="ppo_mask")
     model = load_player(finished / "ppo_mask").model
     training_summary.evaluate(train.recipe_of(settings), model, 2, silent)
-    level = {"noise": "club", "table": "tight", "physics": {"preset": "paper", "mu_bb": "marlow"}, "fidelity": "fast"}
+    level = {
+        "noise": "club",
+        "table": "tight",
+        "physics": {"preset": "paper", "mu_bb": "marlow"},
+        "fidelity": "fast",
+    }
     given = str({"action": "discrete", "layout": "line_up", "reward": "pots", **level})
-    training_summary.evaluate(train.recipe_of(train.Settings(agent="ppo_mask", set=(f"env_kwargs={given}",))), model, 2, silent)
+    training_summary.evaluate(
+        train.recipe_of(train.Settings(agent="ppo_mask", set=(f"env_kwargs={given}",))), model, 2, silent
+    )
     bare = train.recipe_of(train.Settings(agent="ppo_mask", set=("env_kwargs={'action': 'discrete'}",)))
     training_summary.evaluate(bare, model, 2, silent)
     levels = [{"noise": "professional"}] * 3 + [level] * 3 + [{"noise": "none"}] * 3
@@ -318,12 +414,20 @@ def test_evaluation_plays_under_the_options_of_training(finished, monkeypatch):
 def test_agents_are_judged_at_the_usual_fidelity(finished, agent, monkeypatch):
     """Those whose recipe learns at another too, unless one is asked for."""
     seen = []
-    monkeypatch.setattr(training_summary, "play_visits", lambda player, n, **options: seen.append(options.get("fidelity")))
+    monkeypatch.setattr(
+        training_summary, "play_visits", lambda player, n, **options: seen.append(options.get("fidelity"))
+    )
     monkeypatch.setattr(training_summary, "summary", lambda visits: None)
     model = load_player(finished / "ppo_mask").model
-    for settings in ({}, {"fidelity": "fast"}, {"set": ("env_kwargs={'action': 'discrete', 'fidelity': 'reference'}",)}):
+    for settings in (
+        {},
+        {"fidelity": "fast"},
+        {"set": ("env_kwargs={'action': 'discrete', 'fidelity': 'reference'}",)},
+    ):
         if "set" not in settings or agent in ("ppo_mask", "ppo_value"):
-            training_summary.evaluate(train.recipe_of(train.Settings(agent=agent, **settings)), model, 2, silent)
+            training_summary.evaluate(
+                train.recipe_of(train.Settings(agent=agent, **settings)), model, 2, silent
+            )
     assert seen[:6] == [None] * 3 + ["fast"] * 3 and set(seen[6:]) <= {"reference"}
     assert len(seen) == (9 if agent in ("ppo_mask", "ppo_value") else 6)
 
@@ -369,10 +473,15 @@ def test_whole_rollouts_are_announced_and_a_finished_run_says_so(tmp_path, capsy
     assert run(tmp_path / "run", "--agent", agent, "--steps", "1", *more) == 0
     steps = results(tmp_path / "run")["steps"]
     whole = {"ppo_mask": 64, "tqc_target": 6}[agent]  # two tables
-    assert f": 0 of {steps:,} shots played (1 asked for; whole rollouts of {whole:,})" in capsys.readouterr().out
+    assert (
+        f": 0 of {steps:,} shots played (1 asked for; whole rollouts of {whole:,})" in capsys.readouterr().out
+    )
     assert steps == whole
     assert train.main(["--resume", "--no-progress", "--out", str(tmp_path / "run")]) == 0
-    assert f": {steps:,} of {steps:,} shots played\nAll steps are done: nothing left to train." in capsys.readouterr().out
+    assert (
+        f": {steps:,} of {steps:,} shots played\nAll steps are done: nothing left to train."
+        in capsys.readouterr().out
+    )
 
 
 class AnyAction:
@@ -391,10 +500,13 @@ class AnyAction:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("agent", "steps", "least"), [("ppo_mask", "300000", 2.0), ("ppo_target", "100000", 0.3), ("tqc_target", "15000", 0.3)]
+    ("agent", "steps", "least"),
+    [("ppo_mask", "300000", 2.0), ("ppo_target", "100000", 0.3), ("tqc_target", "15000", 0.3)],
 )
 def test_it_learns(tmp_path, agent, steps, least):
-    assert run(tmp_path / "run", "--agent", agent, "--steps", steps, "--envs", "64", "--eval-visits", "300") == 0
+    assert (
+        run(tmp_path / "run", "--agent", agent, "--steps", steps, "--envs", "64", "--eval-visits", "300") == 0
+    )
     trained = results(tmp_path / "run")["evaluation"]["trained"]
     chance = summary(play_visits(sn.player(AnyAction(load_player(tmp_path / "run"))), 300))
     gain = trained["points_a_visit"] - chance["points_a_visit"]

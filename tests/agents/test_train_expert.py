@@ -1,4 +1,5 @@
-"""Does ``train.py`` train a value and a policy by expert iteration, judge them honestly, and resume at any moment?"""
+"""Does ``train.py`` train a value and a policy by expert iteration, judge them honestly, and resume at any
+moment?"""
 
 import json
 import signal
@@ -13,8 +14,20 @@ from agents.learning.models import load_trained
 from snooker_env.benchmark import play_visits, summary
 
 TINY = [
-    "--agent", "ppo_value", "--envs", "4", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "512", "--imitate", "64",
-]  # fmt: skip
+    "--agent",
+    "ppo_value",
+    "--envs",
+    "4",
+    "--eval-visits",
+    "4",
+    "--no-progress",
+    "--parallel",
+    "one",
+    "--steps",
+    "512",
+    "--imitate",
+    "64",
+]
 
 
 @pytest.fixture(scope="module")
@@ -27,13 +40,18 @@ def finished(tmp_path_factory):
 
 def weights(out):
     """Every parameter of the saved model, flat: policy and value."""
-    return np.concatenate([p.detach().numpy().ravel() for p in load_trained(out, "agent").policy.parameters()])
+    return np.concatenate(
+        [p.detach().numpy().ravel() for p in load_trained(out, "agent").policy.parameters()]
+    )
 
 
 def test_the_run_says_what_the_planner_gains(finished):
     found = json.loads((finished / "results.json").read_text())
     assert set(found["evaluation"]) == {"trained", "ghost_ball", "random", "planner", "search"}
-    assert "after 64 positions of expert iteration, ppo_value" in found["learned"] and "a rule by hand" in found["learned"]
+    assert (
+        "after 64 positions of expert iteration, ppo_value" in found["learned"]
+        and "a rule by hand" in found["learned"]
+    )
     assert found["imitation"][-1]["states"] == 64 and found["imitation"][-1]["value_loss"] > 0
     for name in (f"planner@{finished}", "search"):
         again = summary(play_visits(sn.player(name), 4))
@@ -83,5 +101,8 @@ def test_ppo_without_a_learned_value_is_refused(tmp_path, capsys):
 
 def test_a_run_that_starts_from_a_model_has_its_value(finished, tmp_path):
     out = tmp_path / "run"
-    assert train.main([*TINY[:-2], "--start", str(finished), "--set", "learning_rate=0.0", "--out", str(out)]) == 0
+    assert (
+        train.main([*TINY[:-2], "--start", str(finished), "--set", "learning_rate=0.0", "--out", str(out)])
+        == 0
+    )
     assert np.array_equal(weights(out), weights(finished))

@@ -1,4 +1,5 @@
-"""Does ``train.py`` train what the recipe says, with the changes that were asked for, and refuse those that do not fit it?"""
+"""Does ``train.py`` train what the recipe says, with the changes that were asked for, and refuse those that
+do not fit it?"""
 
 import shutil
 
@@ -23,9 +24,13 @@ def test_a_run_goes_on_with_the_tables_that_it_began_with(tmp_path, monkeypatch)
     assert run(tmp_path / "run", "--steps", "64") == 0
     recipe.write_text(now)
     original = train.training_tables
-    monkeypatch.setattr(train, "training_tables", lambda *args, **options: seen.append(options) or original(*args, **options))
+    monkeypatch.setattr(
+        train, "training_tables", lambda *args, **options: seen.append(options) or original(*args, **options)
+    )
     assert train.main(["--resume", "--no-progress", "--steps", "128", "--out", str(tmp_path / "run")]) == 0
-    assert [options["fidelity"] for options in seen] == ["standard"] and results(tmp_path / "run")["steps"] == 128
+    assert [options["fidelity"] for options in seen] == ["standard"] and results(tmp_path / "run")[
+        "steps"
+    ] == 128
 
 
 def test_agents_with_longer_actions_are_judged(tmp_path):
@@ -47,7 +52,11 @@ def test_imitation_comes_first_and_is_kept(tmp_path):
 
 
 def test_what_starts_from_a_model_does_not_imitate_again(tmp_path, capsys):
-    assert train.recipe_of(train.Settings(start="x")).imitation == 0 < train.recipe_of(train.Settings()).imitation
+    assert (
+        train.recipe_of(train.Settings(start="x")).imitation
+        == 0
+        < train.recipe_of(train.Settings()).imitation
+    )
     error = refused(capsys, "--start", "x", "--imitate", "5", "--out", str(tmp_path / "run"))
     assert "imitate = 5: must be 0 or left out with --start" in error
 
@@ -55,9 +64,16 @@ def test_what_starts_from_a_model_does_not_imitate_again(tmp_path, capsys):
 def test_start_refuses_a_model_with_other_actions(tmp_path, capsys):
     assert run(tmp_path / "run", "--agent", "ppo_target", "--steps", "128") == 0
     error = refused(
-        capsys, "--agent", "ppo_target", "--start", str(tmp_path / "run"), "--out", str(tmp_path / "new"),
-        "--set", "env_kwargs={'aim':'target','elevation':True}",
-    )  # fmt: skip
+        capsys,
+        "--agent",
+        "ppo_target",
+        "--start",
+        str(tmp_path / "run"),
+        "--out",
+        str(tmp_path / "new"),
+        "--set",
+        "env_kwargs={'aim':'target','elevation':True}",
+    )
     assert "start = " in error and "must be a model with actions" in error
 
 
@@ -69,7 +85,10 @@ def test_only_agents_with_masks_can_imitate(tmp_path, capsys):
 
 def test_hyperparameters_can_be_changed(tmp_path):
     assert run(tmp_path / "run", "--set", "gamma=0", "n_steps=32") == 0
-    model = MaskablePPO.load(tmp_path / "run" / "model.zip", device="cpu")  # the zip stays one of Stable-Baselines3
+    # the zip stays one of Stable-Baselines3
+    model = MaskablePPO.load(tmp_path / "run" / "model.zip", device="cpu")
     assert model.gamma == 0 and model.n_steps == 32 and load_player(tmp_path / "run").model.gamma == 0
     assert results(tmp_path / "run")["settings"]["set"] == ["gamma=0", "n_steps=32"]
-    assert results(tmp_path / "run")["command"].endswith("--agent ppo_mask --steps 512 --envs 2 --imitate 0 --set gamma=0 n_steps=32")
+    assert results(tmp_path / "run")["command"].endswith(
+        "--agent ppo_mask --steps 512 --envs 2 --imitate 0 --set gamma=0 n_steps=32"
+    )

@@ -1,4 +1,5 @@
-"""Whom can the benchmark judge? Names, models, classes and programs; and what becomes of those that fail, or of Ctrl-C."""
+"""Whom can the benchmark judge? Names, models, classes and programs; and what becomes of those that fail, or
+of Ctrl-C."""
 
 import json
 import shutil
@@ -34,14 +35,20 @@ def test_the_example_of_a_class_plays(tmp_path, capsys, monkeypatch):
     arguments = ["run", "SnookerBreak-v0", "--agent", "examples.own_player:Softly", "--training-shots", "0"]
     assert main([*arguments, "--episodes", "30", "--out", str(tmp_path)]) == 0
     result = read_result(tmp_path / "SnookerBreak-v0.Softly.json")
-    assert faults(result) == [] and result["agent"]["class"] == "model_free" and result["figures"]["score"]["value"] > 4
+    assert (
+        faults(result) == []
+        and result["agent"]["class"] == "model_free"
+        and result["figures"]["score"]["value"] > 4
+    )
     assert "SnookerBreak-v0  Softly: " in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("task", ["SnookerColours-v0", "SnookerEscape-v0", "SnookerFrame-v0"])
 def test_the_example_of_a_program_plays(tmp_path, task):
     agent = Agent.of(EXAMPLE, training_shots=0, shots_declared=0)
-    result = judge(TASKS[task], agent, episodes=2 if task == "SnookerFrame-v0" else 8, out=tmp_path / "one.json")
+    result = judge(
+        TASKS[task], agent, episodes=2 if task == "SnookerFrame-v0" else 8, out=tmp_path / "one.json"
+    )
     assert result["incomplete"] is None and faults(result) == [], result["incomplete"]
     assert result["agent"]["label"] == "program_player" and result["agent"]["declared"]
     assert result["agent"]["class"] == "model_free"
@@ -110,14 +117,17 @@ def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tm
 
 
 def test_a_program_that_is_not_there(capsys):
-    assert main(["run", "SnookerEscape-v0", "--agent", "program:no-such-program-here", "--episodes", "6"]) == 1
+    assert (
+        main(["run", "SnookerEscape-v0", "--agent", "program:no-such-program-here", "--episodes", "6"]) == 1
+    )
     assert "cannot be started" in capsys.readouterr().err
     with pytest.raises(AgentError, match="cannot be started"):
         sn.player("program:no-such-program-here").at({}).play(sn.Position(cue=(0, 0), black=(0, 1)), [0])
 
 
 def test_a_program_sees_the_state_of_the_protocol(tmp_path):
-    """What it gets is what the server of play answers, for the table of the episode, with a seed for what it draws."""
+    """What it gets is what the server of play answers, for the table of the episode, with a seed for what it
+    draws."""
     kept = tmp_path / "seen.jsonl"
     body = f"for line in sys.stdin:\n open({str(kept)!r}, 'a').write(line)\n {GOOD}"
     task, agent = TASKS["SnookerColours-v0"], Agent.of(program(tmp_path, body), training_shots=0)
@@ -186,13 +196,17 @@ def test_ctrl_c_keeps_what_was_played_and_it_can_be_resumed(tmp_path, capsys):
     assert main(arguments) == 130
     assert f"interrupted after {2 * BATCH} of {many} episodes" in capsys.readouterr().err
     part = read_result(out)
-    assert len(part["rows"]) == 2 * BATCH and part["incomplete"].startswith("interrupted") and faults(part) == []
+    assert (
+        len(part["rows"]) == 2 * BATCH and part["incomplete"].startswith("interrupted") and faults(part) == []
+    )
     assert main([*arguments, "--resume"]) == 0
     whole = read_result(out)
     assert whole["incomplete"] is None and len(whole["rows"]) == many and faults(whole) == []
     assert whole["rows"][: 2 * BATCH] == part["rows"] and len(strokes_of(whole)) == many
     assert main([*arguments, "--resume"]) == 0 and read_result(out) == whole  # left as it is
-    assert main(arguments) == 2 and "must be a new file" in capsys.readouterr().err and read_result(out) == whole
+    assert (
+        main(arguments) == 2 and "must be a new file" in capsys.readouterr().err and read_result(out) == whole
+    )
     assert main([*arguments, "--force"]) == 0 and read_result(out)["rows"] == whole["rows"]
     forged = part | {"rows": [[*row[:2], 1, 1, 1, 1, 0, 1, 0, 1] for row in part["rows"]]}
     for other, why in (
@@ -262,7 +276,10 @@ def test_wrong_agents_are_refused_in_one_line(tmp_path, capsys):
 def test_names_and_what_is_known_of_them():
     agent = Agent.of("search_60")
     assert (agent.label, agent.training_shots, agent.player(HARD).budget) == ("search_60", 0, 60)
-    assert Agent.of("planner_500").training_shots is None and Agent.of("planner_500@club").label == "planner_500_club"
+    assert (
+        Agent.of("planner_500").training_shots is None
+        and Agent.of("planner_500@club").label == "planner_500_club"
+    )
     with pytest.warns(DeprecationWarning):
         assert Agent.of("lookahead_30").player(HARD).kind == "search"
 
@@ -270,7 +287,9 @@ def test_names_and_what_is_known_of_them():
 def test_an_alias_may_stand_under_both_names():
     from snooker_env.benchmark.agents import is_reserved
 
-    assert not is_reserved("lookahead_60", ["lookahead_60"]) and not is_reserved("search_60", ["lookahead_60"])
+    assert not is_reserved("lookahead_60", ["lookahead_60"]) and not is_reserved(
+        "search_60", ["lookahead_60"]
+    )
     assert is_reserved("lookahead", ["search_60"]) and is_reserved("lookahead", ["mine:Player"])
 
 
@@ -335,7 +354,9 @@ def test_without_the_libraries_one_line_says_which_to_install(model, monkeypatch
     arguments = ["run", "SnookerPotHard-v0", "--agent", str(model["SnookerPotHard-v0"]), "--trust"]
     assert main([*arguments, "--options", "aim=target"]) == 1
     error = capsys.readouterr().err
-    assert error.count("\n") == 1 and "needs stable_baselines3" in error and 'pip install -e ".[train]"' in error
+    assert (
+        error.count("\n") == 1 and "needs stable_baselines3" in error and 'pip install -e ".[train]"' in error
+    )
 
 
 def test_a_model_of_the_repository_plays_visits_and_frames():
@@ -357,5 +378,7 @@ def test_what_is_kept_is_what_was_played():
         assert env.step(strokes[0])[1] == row[2]
     tables = sn.SnookerVectorEnv(1, HARD.judged(**VISITS))
     tables.reset(seed=[result["rows"][0][1]])
-    exact = decided(player, tables, np.ones(1, bool), sn.players.decision_seeds(0, np.array([result["rows"][0][1]]), 0))
+    exact = decided(
+        player, tables, np.ones(1, bool), sn.players.decision_seeds(0, np.array([result["rows"][0][1]]), 0)
+    )
     assert np.array_equal(kept[0], exact.astype(np.float32)) and not np.array_equal(kept[0], exact)

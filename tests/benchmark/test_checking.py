@@ -1,4 +1,5 @@
-"""Does ``check`` find what no run writes? Each field out of range, sources that do not fit, and what a page must not repeat."""
+"""Does ``check`` find what no run writes? Each field out of range, sources that do not fit, and what a page
+must not repeat."""
 
 import copy
 from functools import cache
@@ -17,8 +18,11 @@ HUGE = 10**400
 
 @cache
 def sound():
-    """All episodes of random on the colours, by an agent of another name, which ``check`` does not ask again."""
-    return judge(TASKS["SnookerColours-v0"], Agent(label="any", sources=(sn.player("random"),), training_shots=0))
+    """All episodes of random on the colours, by an agent of another name, which ``check`` does not ask
+    again."""
+    return judge(
+        TASKS["SnookerColours-v0"], Agent(label="any", sources=(sn.player("random"),), training_shots=0)
+    )
 
 
 def changed(**fields):
@@ -44,7 +48,9 @@ def test_an_empty_file_is_not_official():
 
 @pytest.mark.parametrize("sources", [[], [""], [7], ["a", None], [["a"]]])
 def test_sources_are_texts(sources):
-    assert "agent.sources: must be texts, one for each training seed" in faults(changed(agent__sources=sources))
+    assert "agent.sources: must be texts, one for each training seed" in faults(
+        changed(agent__sources=sources)
+    )
 
 
 def test_the_same_source_five_times_makes_nothing_surer():
@@ -54,7 +60,9 @@ def test_the_same_source_five_times_makes_nothing_surer():
     found["figures"] = figures_of(TASKS[found["task"]], "any", found["rows"])
     assert faults(found) == ["agent.sources: must be different: the same one twice makes nothing surer"]
     found["agent"]["sources"] = [f"{k}.zip" for k in range(5)]
-    assert faults(found) == ["agent.sources: 0 and 1 must be different training seeds: their strokes are equal"]
+    assert faults(found) == [
+        "agent.sources: 0 and 1 must be different training seeds: their strokes are equal"
+    ]
 
 
 WRONG = [
@@ -74,10 +82,22 @@ WRONG = [
     ("agent__simulated_shots", None, "agent.simulated_shots = None: must be 0.0 by agent.sources"),
     ("agent__simulated_shots", 7, "agent.simulated_shots = 7: must be 0.0 by agent.sources"),
     ("timing__simulated_shots", 7, "agent.simulated_shots = 0.0: must be 0.00"),
-    ("agent__sources", ["program:a"], "agent.class = 'model_free': must be 'undeclared' by agent.simulated_shots"),
-    ("agent__sources", ["search_60"], "strokes: run 0, table 1000000: search_60 begins with another stroke than the file"),
+    (
+        "agent__sources",
+        ["program:a"],
+        "agent.class = 'model_free': must be 'undeclared' by agent.simulated_shots",
+    ),
+    (
+        "agent__sources",
+        ["search_60"],
+        "strokes: run 0, table 1000000: search_60 begins with another stroke than the file",
+    ),
     ("agent__label", "random", "agent.label = 'random': must not be the name of another player"),
-    ("agent__label", "lookahead_120", "agent.label = 'lookahead_120': must not be the name of another player"),
+    (
+        "agent__label",
+        "lookahead_120",
+        "agent.label = 'lookahead_120': must not be the name of another player",
+    ),
     ("machine__cores", 0, "machine.cores = 0: must be between 1"),
     ("machine__load", -1.0, "machine.load = -1.0: must be between 0"),
     ("timing__seconds", float("inf"), "timing.seconds = inf: must be between 0"),
@@ -92,7 +112,9 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("name", "value", "line"), WRONG, ids=[f"{name}-{k}" for k, (name, _, _) in enumerate(WRONG)])
+@pytest.mark.parametrize(
+    ("name", "value", "line"), WRONG, ids=[f"{name}-{k}" for k, (name, _, _) in enumerate(WRONG)]
+)
 def test_a_wrong_value_is_one_line_that_names_its_field(name, value, line):
     said = faults(changed(**{name: value}))
     assert any(one.startswith(line) for one in said), said
@@ -135,17 +157,28 @@ def test_a_replay_is_of_every_training_seed_by_the_same_agent():
     strokes[8] = -strokes[8]
     other["strokes"] = packed(strokes)
     wrong = replayed(other, two, 6)
-    assert len(wrong) == 1 and wrong[0].startswith(f"run 1, table {found['rows'][8][1]}: played again other strokes")
+    assert len(wrong) == 1 and wrong[0].startswith(
+        f"run 1, table {found['rows'][8][1]}: played again other strokes"
+    )
     assert replayed(other, two, 2) == []
     with pytest.raises(ValueError, match="must have the 2 training seeds of the file"):
         replayed(found, Agent.of("random"), 6)
 
 
 def test_no_text_of_a_file_is_markup_of_the_page():
-    found = changed(agent__label="x | y |\n\n# h <script>", machine__cpu="evil\n\n## injected [a](b)", software__snooker_env="999 | <x>")
+    found = changed(
+        agent__label="x | y |\n\n# h <script>",
+        machine__cpu="evil\n\n## injected [a](b)",
+        software__snooker_env="999 | <x>",
+    )
     text = page([found])
     assert not any(line.startswith(("# h", "## injected")) for line in text.splitlines())
-    assert "<script>" not in text and "<x>" not in text and "[a]" not in text and "&lt;script&gt;" not in page([sound()])
+    assert (
+        "<script>" not in text
+        and "<x>" not in text
+        and "[a]" not in text
+        and "&lt;script&gt;" not in page([sound()])
+    )
     cells = [line for line in text.splitlines() if "script" in line]
     assert len(cells) == 2 and all("x \\| y \\| # h &lt;script&gt;" in line for line in cells)
     assert plain("ghost_ball *") == "ghost_ball *" and markdown_table(["a|b"], [["c\\"]])[0] == "| a\\|b |"

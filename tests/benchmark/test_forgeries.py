@@ -1,4 +1,5 @@
-"""Does ``check`` refuse what nobody played? Forged points, strokes, episodes, versions and dates, and a change of every field."""
+"""Does ``check`` refuse what nobody played? Forged points, strokes, episodes, versions and dates, and a
+change of every field."""
 
 import base64
 import copy
@@ -97,7 +98,9 @@ def test_rows_101_to_500(official):
     strokes = strokes_of(official)
     found["strokes"] = packed(strokes[:100] + [np.resize(one, (6, one.shape[1])) for one in strokes[100:]])
     said = faults(found)
-    assert all(line.startswith(("rows[10", "rows[11")) for line in said[:-1]) and said[-1].endswith(" more faults")
+    assert all(line.startswith(("rows[10", "rows[11")) for line in said[:-1]) and said[-1].endswith(
+        " more faults"
+    )
 
 
 @pytest.mark.parametrize("name", ["random", "ghost_ball", "search_30", "ppo_mask"])
@@ -106,14 +109,18 @@ def test_the_name_of_a_known_player_for_other_strokes(name):
     found = judge(HARD, agent(), episodes=30)
     assert faults(found) == []
     found["agent"] |= {"label": name, "sources": [name]}
-    assert faults(found)[0] == f"strokes: run 0, table 1000000: {name} begins with another stroke than the file"
+    assert (
+        faults(found)[0] == f"strokes: run 0, table 1000000: {name} begins with another stroke than the file"
+    )
 
 
 def test_other_strokes_of_a_later_training_seed():
     found = judge(HARD, Agent(label="two", sources=("random", "search_30"), training_shots=0), episodes=4)
     assert faults(found) == []
     found["agent"]["sources"] = ["random", "ghost_ball"]
-    assert faults(found) == ["strokes: run 1, table 1000000: ghost_ball begins with another stroke than the file"]
+    assert faults(found) == [
+        "strokes: run 1, table 1000000: ghost_ball begins with another stroke than the file"
+    ]
 
 
 def test_simulated_shots_that_the_agent_does_not_need():
@@ -159,10 +166,16 @@ def test_another_version(official):
     assert PACKAGES[-1] == sn.__version__
 
 
-@pytest.mark.parametrize("date", ["2999-01-01T00:00:00Z", "2026-11-20T23:59:59Z", "1970-01-01T00:00:00Z", "tomorrow"])
+@pytest.mark.parametrize(
+    "date", ["2999-01-01T00:00:00Z", "2026-11-20T23:59:59Z", "1970-01-01T00:00:00Z", "tomorrow"]
+)
 def test_a_date_in_the_future_or_before_the_project(official, date):
     date = (datetime.now(timezone.utc) + timedelta(days=1)).strftime(DATE) if date == "tomorrow" else date
-    assert [line for line in faults(official | {"date": date}) if line.startswith(f"date = '{date}': must be between 2026-11-21")]
+    assert [
+        line
+        for line in faults(official | {"date": date})
+        if line.startswith(f"date = '{date}': must be between 2026-11-21")
+    ]
 
 
 def test_repeated_keys(official, tmp_path, capsys):
@@ -174,7 +187,10 @@ def test_repeated_keys(official, tmp_path, capsys):
         file.write_text(text.replace(f'"{name}":', f'"{name}": 1,\n "{name}":', 1), encoding="utf-8")
         with pytest.raises(ValueError, match=f"the key '{name}' stands there twice"):
             read_result(file)
-        assert main(["check", str(file)]) == 1 and f"the key '{name}' stands there twice" in capsys.readouterr().out
+        assert (
+            main(["check", str(file)]) == 1
+            and f"the key '{name}' stands there twice" in capsys.readouterr().out
+        )
 
 
 def test_a_truncated_file(official, tmp_path):
@@ -187,7 +203,10 @@ def test_a_truncated_file(official, tmp_path):
             read_result(file)
     short = copy.deepcopy(official)
     short["strokes"]["data"] = short["strokes"]["data"][: len(short["strokes"]["data"]) // 8 * 4]
-    assert faults(short)[0].startswith("strokes.data = more than ") and "or cut off: must be " in faults(short)[0]
+    assert (
+        faults(short)[0].startswith("strokes.data = more than ")
+        and "or cut off: must be " in faults(short)[0]
+    )
 
 
 def test_one_flipped_bit_of_a_stroke(boxes):
@@ -205,7 +224,9 @@ def test_one_flipped_bit_of_a_stroke(boxes):
         other[bit // 8] ^= 1 << bit % 8
         found["strokes"] = boxes["strokes"] | {"data": base64.b64encode(bytes(other)).decode()}
         wrong = faults(found)
-        assert wrong[0].startswith("strokes.") if wrong else zlib.decompress(other) == zlib.decompress(raw), bit
+        assert wrong[0].startswith("strokes.") if wrong else zlib.decompress(other) == zlib.decompress(raw), (
+            bit
+        )
     found["strokes"] = boxes["strokes"] | {"sha256": "0" * 64}
     assert faults(found)[0].startswith("strokes.sha256 = ")
 
@@ -222,7 +243,10 @@ def test_other_strokes_are_found_by_what_they_score(boxes):
 
 
 def test_strokes_too_few_and_too_many(boxes):
-    for more, line in ((1, "rows[3].strokes = 2: must be 1, as its strokes play"), (-1, "rows[3].strokes = 0: must be more: the episode")):
+    for more, line in (
+        (1, "rows[3].strokes = 2: must be 1, as its strokes play"),
+        (-1, "rows[3].strokes = 0: must be more: the episode"),
+    ):
         found, strokes = copy.deepcopy(boxes), strokes_of(boxes)
         found["rows"][3][COLUMNS.index("strokes")] += more
         strokes[3] = np.resize(strokes[3], (1 + more, 7))
@@ -236,7 +260,10 @@ def test_strokes_outside_the_space(boxes, value):
     found, strokes = copy.deepcopy(boxes), [one.copy() for one in strokes_of(boxes)]
     strokes[7][0, 0] = value
     found["strokes"] = packed(strokes)
-    assert faults(found)[0].startswith("strokes.data[") and "must be finite and within [-1, 1]" in faults(found)[0]
+    assert (
+        faults(found)[0].startswith("strokes.data[")
+        and "must be finite and within [-1, 1]" in faults(found)[0]
+    )
 
 
 def test_swapped_episodes_and_other_seeds(boxes):
@@ -253,17 +280,25 @@ def test_swapped_episodes_and_other_seeds(boxes):
     later = copy.deepcopy(boxes)
     for row in later["rows"]:
         row[1] += 1
-    assert faults(later) == ["rows[0]: run 0, table 1000001: must be run 0, table 1000000, as the protocol says"]
+    assert faults(later) == [
+        "rows[0]: run 0, table 1000001: must be run 0, table 1000000, as the protocol says"
+    ]
 
 
 def test_rows_more_or_fewer(boxes):
     strokes = strokes_of(boxes)
-    for rows, some in ((boxes["rows"][:-1], strokes[:-1]), (boxes["rows"] + boxes["rows"][-1:], strokes + strokes[-1:])):
+    for rows, some in (
+        (boxes["rows"][:-1], strokes[:-1]),
+        (boxes["rows"] + boxes["rows"][-1:], strokes + strokes[-1:]),
+    ):
         found = consistent(HARD, boxes | {"rows": rows, "strokes": packed(some)})
-        assert faults(found)[0].startswith(f"rows: must be 24 episodes, 24 for each training seed, not {len(rows)}")
+        assert faults(found)[0].startswith(
+            f"rows: must be 24 episodes, 24 for each training seed, not {len(rows)}"
+        )
 
 
-# every field ---------------------------------------------------------------------------------------------------------------------
+# every field
+# ---------------------------------------------------------------------------------------------------------------------
 
 
 def leaves(value, path=()):
@@ -274,14 +309,27 @@ def leaves(value, path=()):
 
 def others(value):
     """Other values: of the same type, and of another."""
-    near = [value + 1, value - 1, 0, 10**400] if type(value) is int else [value * (1 + 2**-52) + 5e-324] if type(value) is float else []
-    near += [value + "x", value[1:], value.upper()] if type(value) is str else [not value] if type(value) is bool else []
+    near = (
+        [value + 1, value - 1, 0, 10**400]
+        if type(value) is int
+        else [value * (1 + 2**-52) + 5e-324]
+        if type(value) is float
+        else []
+    )
+    near += (
+        [value + "x", value[1:], value.upper()]
+        if type(value) is str
+        else [not value]
+        if type(value) is bool
+        else []
+    )
     wrong = [None, True, "other", 7, -1, 0.5, [], {}, ["a"]]
     return [one for one in near + wrong if type(one) is not type(value) or one != value]
 
 
 def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves(boxes):
-    """All but a few rows and words of the profile are tried; what passes must be a field that the page calls unproved."""
+    """All but a few rows and words of the profile are tried; what passes must be a field that the page calls
+    unproved."""
     passed = set()
     for path in leaves(boxes):
         if path[0] == "rows" and path[1] not in (0, 23):
@@ -291,7 +339,15 @@ def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves(bo
             if faults(found) == []:
                 passed.add(".".join(part for part in path if isinstance(part, str)))
     assert passed <= set(UNPROVED), passed - set(UNPROVED)
-    assert passed >= {"agent.label", "agent.sources", "machine.cpu", "timing.seconds", "command", "commit", "software.numpy"}
+    assert passed >= {
+        "agent.label",
+        "agent.sources",
+        "machine.cpu",
+        "timing.seconds",
+        "command",
+        "commit",
+        "software.numpy",
+    }
 
 
 def at(found, path):
@@ -310,11 +366,23 @@ def test_what_is_called_unproved_can_be_changed_unseen(boxes):
     """All of it at once, as long as the fields fit each other."""
     found = copy.deepcopy(boxes)
     found["agent"] |= {
-        "label": "other", "sources": ["there"], "training_shots": 60_000, "budget": "1M", "simulated_shots": 9.0,
-        "class": "planning", "declared": True,
-    }  # fmt: skip
+        "label": "other",
+        "sources": ["there"],
+        "training_shots": 60_000,
+        "budget": "1M",
+        "simulated_shots": 9.0,
+        "class": "planning",
+        "declared": True,
+    }
     found["software"] |= {name: "1.0" for name in found["software"] if name != "snooker_env"}
-    found["machine"] = {"platform": "one", "cpu": "two", "cores": 3, "load": 4.0, "load_at_end": 5.0, "arithmetic": "0" * 16}
+    found["machine"] = {
+        "platform": "one",
+        "cpu": "two",
+        "cores": 3,
+        "load": 4.0,
+        "load_at_end": 5.0,
+        "arithmetic": "0" * 16,
+    }
     found["timing"] = {"seconds": 1.0, "simulated_shots": 6, "one_table_ms": 2.0}
     found |= {"command": "none", "commit": "0" * 40, "date": "2026-11-22T00:00:00Z", "incomplete": "stopped"}
     assert faults(found) == []
@@ -322,7 +390,8 @@ def test_what_is_called_unproved_can_be_changed_unseen(boxes):
     assert changed == {*UNPROVED, "agent.class", "agent.budget"}
 
 
-# elsewhere -----------------------------------------------------------------------------------------------------------------------
+# elsewhere
+# -----------------------------------------------------------------------------------------------------------------------
 
 CHECK = """
 import sys
@@ -332,26 +401,39 @@ print(arithmetic(), *faults(read_result(sys.argv[1])), sep="\\n")
 
 
 def test_where_strokes_end_otherwise_that_is_said_first(tmp_path):
-    """With the system's functions for processors without fused multiply-add, whose last bits differ: no forger is suspected."""
+    """With the system's functions for processors without fused multiply-add, whose last bits differ: no
+    forger is suspected."""
     file = tmp_path / "one.json"
     judge(TASKS["SnookerFrame-v0"], Agent.of("ghost_ball"), episodes=40, out=file)
     here = os.environ | {"PYTHONPATH": str(Path(sn.__file__).parents[1]), "SNOOKER_ENV_QUIET": "1"}
     said = {}
-    for where, tunables in (("here", ""), ("there", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable")):
-        run = subprocess.run([sys.executable, "-c", CHECK, file], env=here | {"GLIBC_TUNABLES": tunables}, capture_output=True, check=True)
+    for where, tunables in (
+        ("here", ""),
+        ("there", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable"),
+    ):
+        run = subprocess.run(
+            [sys.executable, "-c", CHECK, file],
+            env=here | {"GLIBC_TUNABLES": tunables},
+            capture_output=True,
+            check=True,
+        )
         said[where] = run.stdout.decode().splitlines()
     assert said["here"] == [arithmetic()]
     if said["there"][0] == arithmetic():
         pytest.skip("this system has no such functions, or this processor has no others")
-    assert said["there"][1].startswith(f"machine.arithmetic = {arithmetic()!r}: must be {said['there'][0]!r} to check it here")
+    assert said["there"][1].startswith(
+        f"machine.arithmetic = {arithmetic()!r}: must be {said['there'][0]!r} to check it here"
+    )
     assert said["there"][2].startswith("rows[")
 
 
-# the agent itself ----------------------------------------------------------------------------------------------------------------
+# the agent itself
+# ----------------------------------------------------------------------------------------------------------------
 
 
 def test_fresh_seeds_find_an_agent_that_knew_the_tables():
-    """It remembers the strokes that potted on the judged tables, by where the balls lie; elsewhere it plays anything."""
+    """It remembers the strokes that potted on the judged tables, by where the balls lie; elsewhere it plays
+    anything."""
     known = {}
 
     class Remembers(Aims):
@@ -372,7 +454,9 @@ def test_fresh_seeds_find_an_agent_that_knew_the_tables():
     found = judge(HARD, peeks, episodes=100)
     assert faults(found) == [] and found["figures"]["score"]["value"] > 0.85
     mean, _, said = afresh(found, peeks, 100, 5_000_000)
-    assert mean < 0.7 and said[0].startswith("figures.score.value = ") and said[0].endswith("as on fresh seeds")
+    assert (
+        mean < 0.7 and said[0].startswith("figures.score.value = ") and said[0].endswith("as on fresh seeds")
+    )
     honest = judge(HARD, agent(), episodes=100)
     assert afresh(honest, agent(), 100, 5_000_000)[2] == []
 

@@ -37,7 +37,13 @@ def made(tmp_path_factory):
     """A result of each task by ghost_ball."""
     folder = tmp_path_factory.mktemp("results")
     for name, task in TASKS.items():
-        judge(task, Agent.of("ghost_ball"), episodes=4 if task.frame else EPISODES, out=folder / f"{name}.json", command="a test")
+        judge(
+            task,
+            Agent.of("ghost_ball"),
+            episodes=4 if task.frame else EPISODES,
+            out=folder / f"{name}.json",
+            command="a test",
+        )
     return folder
 
 
@@ -49,11 +55,18 @@ def result(made, name="SnookerBreak-v0"):
 def test_what_is_written_is_sound(made, name):
     found = result(made, name)
     assert faults(found) == []
-    assert found["protocol"]["official"] is False and found["incomplete"] is None and found["agent"]["class"] == "model_free"
+    assert (
+        found["protocol"]["official"] is False
+        and found["incomplete"] is None
+        and found["agent"]["class"] == "model_free"
+    )
     assert [row[1] for row in found["rows"]] == TASKS[name].seeds(len(found["rows"]))
     assert found["timing"]["one_table_ms"] > 0
     written = (made / f"{name}.json").read_text(encoding="utf-8")
-    assert json.loads(written) == found and max(len(line) for line in written.splitlines() if '"data"' not in line) < 140
+    assert (
+        json.loads(written) == found
+        and max(len(line) for line in written.splitlines() if '"data"' not in line) < 140
+    )
 
 
 def test_rows_are_the_visits_that_the_environment_plays(made):
@@ -70,7 +83,12 @@ def test_rows_are_the_visits_that_the_environment_plays(made):
             seeds = decision_seeds(0, np.array([row[1]]), strokes)
             action = player.play(at, seeds).actions(env.options, at).astype(np.float32)
             _, reward, over, _, info = env.step(action[0])
-            points, pots, strokes, fouls = points + info["points"], pots + (reward > 0), strokes + 1, fouls + info["foul"]
+            points, pots, strokes, fouls = (
+                points + info["points"],
+                pots + (reward > 0),
+                strokes + 1,
+                fouls + info["foul"],
+            )
         assert row[2:7] == [points, strokes, points, pots, fouls]
 
 
@@ -78,7 +96,9 @@ def test_figures_are_those_of_the_rows(made):
     found = result(made)
     scores = np.array([row[COLUMNS.index("score")] for row in found["rows"]], float)
     f = found["figures"]
-    assert f["score"]["value"] == pytest.approx(scores.mean()) and f["iqm"]["value"] == pytest.approx(stats.trim_mean(scores, 0.25))
+    assert f["score"]["value"] == pytest.approx(scores.mean()) and f["iqm"]["value"] == pytest.approx(
+        stats.trim_mean(scores, 0.25)
+    )
     assert f["best"] == scores.max() and f["by_run"] == [pytest.approx(scores.mean())]
     rng = np.random.default_rng(5)
     drawn = scores[rng.integers(len(scores), size=(20_000, len(scores)))].mean(axis=1)
@@ -92,11 +112,19 @@ def test_figures_are_those_of_the_rows(made):
 
 def test_several_training_seeds_are_drawn_too():
     rng = np.random.default_rng(0)
-    rows = [[run, table, x, 1, x, 0, 0, 0, 0, 1] for run in range(3) for table, x in enumerate(rng.integers(0, 40, 50) + 20 * run)]
+    rows = [
+        [run, table, x, 1, x, 0, 0, 0, 0, 1]
+        for run in range(3)
+        for table, x in enumerate(rng.integers(0, 40, 50) + 20 * run)
+    ]
     found = figures_of(TASKS["SnookerBreak-v0"], "a", rows)
     alone = figures_of(TASKS["SnookerBreak-v0"], "a", rows[:50])
-    assert found["score"]["high"] - found["score"]["low"] > 2 * (alone["score"]["high"] - alone["score"]["low"])
-    assert found["by_run"] == pytest.approx([np.mean([row[2] for row in rows[50 * k : 50 * k + 50]]) for k in range(3)])
+    assert found["score"]["high"] - found["score"]["low"] > 2 * (
+        alone["score"]["high"] - alone["score"]["low"]
+    )
+    assert found["by_run"] == pytest.approx(
+        [np.mean([row[2] for row in rows[50 * k : 50 * k + 50]]) for k in range(3)]
+    )
     assert figures_of(TASKS["SnookerBreak-v0"], "a", rows[:-1]) is None
 
 
@@ -115,7 +143,11 @@ TAMPERED = [
     (("figures", "by_run"), [1.0, 2.0], "figures.by_run = [1.0, 2.0]: must be "),
     (("rows", 3, 2), 147, "rows[3].score = 147: must be "),
     (("rows", 3, 4), 147, "rows[3].points = 147: must be "),
-    (("rows", 5, 1), HELD_OUT_SEED + 999, f"rows[5]: run 0, table {HELD_OUT_SEED + 999}: must be run 0, table "),
+    (
+        ("rows", 5, 1),
+        HELD_OUT_SEED + 999,
+        f"rows[5]: run 0, table {HELD_OUT_SEED + 999}: must be run 0, table ",
+    ),
     (("rows", 5, 1), HELD_OUT_SEED, "rows[5]: run 0, table 1000000: must be run 0, table 1000005"),
     (("rows", 2, 3), 1001, "rows[2].strokes = 1001: must be between 0 and 1000"),
     (("rows", 2), [1, 2], "rows[2] = [1, 2]: must be 10 whole numbers"),
@@ -124,7 +156,11 @@ TAMPERED = [
     (("protocol", "version"), 7, "protocol.version = 7: must be 1"),
     (("protocol", "official"), True, "protocol.official = True: must be False by the rules"),
     (("task",), "SnookerBreak-v1", "task = 'SnookerBreak-v1': must be one of SnookerBreak-v0"),
-    (("agent", "class"), "planning", "agent.class = 'planning': must be 'model_free' by agent.simulated_shots"),
+    (
+        ("agent", "class"),
+        "planning",
+        "agent.class = 'planning': must be 'model_free' by agent.simulated_shots",
+    ),
     (("agent", "budget"), "1M", "agent.budget = '1M': must be 'none' by agent.training_shots"),
     (("timing", "simulated_shots"), 10**6, "agent.simulated_shots = 0.0: must be "),
     (("software", "numpy"), 2, "software.numpy = 2: must be a text or null"),
@@ -134,7 +170,9 @@ TAMPERED = [
 ]
 
 
-@pytest.mark.parametrize(("path", "value", "line"), TAMPERED, ids=lambda x: ".".join(map(str, x)) if isinstance(x, tuple) else None)
+@pytest.mark.parametrize(
+    ("path", "value", "line"), TAMPERED, ids=lambda x: ".".join(map(str, x)) if isinstance(x, tuple) else None
+)
 def test_a_tampered_file_fails_at_the_right_field(made, path, value, line):
     said = faults(changed(result(made), path, value))
     assert any(one.startswith(line) for one in said), said
@@ -153,7 +191,8 @@ def test_a_missing_field_is_named(made, field):
 
 def test_simulated_shots_are_counted():
     class Thinks(BoundPlayer):
-        """Plays 7 shots on copies of each table before each stroke, 3 more by ``simulate``, and one batch of 5."""
+        """Plays 7 shots on copies of each table before each stroke, 3 more by ``simulate``, and one batch of
+        5."""
 
         def play(self, positions, seeds):
             at, rng = sn.Positions.of(positions), np.random.default_rng(0)
@@ -163,13 +202,22 @@ def test_simulated_shots_are_counted():
                 for _ in range(3):
                     sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)])
                 sn.simulate_batch(np.zeros((5, 1, 2)), np.zeros((5, 1, 2)), np.zeros((5, 1, 3)))
-            return Strokes(np.column_stack([np.full((len(at), 3), [2.0, 0, 0]), rng.uniform(-3, 3, len(at)), np.zeros(len(at))]))
+            return Strokes(
+                np.column_stack(
+                    [np.full((len(at), 3), [2.0, 0, 0]), rng.uniform(-3, 3, len(at)), np.zeros(len(at))]
+                )
+            )
 
     agent = Agent(label="thinks", sources=(Thinks(),), training_shots=40_000)
     found = judge(TASKS["SnookerPotHard-v0"], agent, episodes=9)
     assert sum(row[3] for row in found["rows"]) == 9 and found["timing"]["simulated_shots"] == 9 * 15
-    assert (found["agent"]["simulated_shots"], found["agent"]["class"], found["agent"]["budget"]) == (15.0, "planning", "50k")
-    frames = judge(TASKS["SnookerFrame-v0"], agent, episodes=1)  # the opponent's strokes and the agent's own are not counted
+    assert (found["agent"]["simulated_shots"], found["agent"]["class"], found["agent"]["budget"]) == (
+        15.0,
+        "planning",
+        "50k",
+    )
+    # the opponent's strokes and the agent's own are not counted
+    frames = judge(TASKS["SnookerFrame-v0"], agent, episodes=1)
     assert frames["timing"]["simulated_shots"] == 15 * sum(row[3] for row in frames["rows"]) > 15
     assert faults(found) == faults(frames) == []
 
@@ -194,8 +242,15 @@ def test_a_shot_that_is_played_twice_counts_once(monkeypatch, log):
 
 def test_budgets_are_limits_with_room_for_a_rollout():
     assert [budget_of(n) for n in (None, 0, 1, 51_000, 51_001, 1_020_000, 5_100_000, 5_100_001)] == [
-        "unknown", "none", "50k", "50k", "1M", "1M", "5M", "open"
-    ]  # fmt: skip
+        "unknown",
+        "none",
+        "50k",
+        "50k",
+        "1M",
+        "1M",
+        "5M",
+        "open",
+    ]
 
 
 def test_randomness_is_repeated():
@@ -219,9 +274,15 @@ def test_bounds_of_what_was_always_or_never_seen():
 def test_agents_draw_their_runs_apart():
     """With another label other training seeds are drawn; with the same label the same."""
     task, points = TASKS["SnookerColours-v0"], np.random.default_rng(0).integers(0, 9, 40)
-    rows = [[run, table, x, 1, x, 0, 0, 0, 0, 1] for run in range(5) for table, x in enumerate(points + 5 * run)]
+    rows = [
+        [run, table, x, 1, x, 0, 0, 0, 0, 1] for run in range(5) for table, x in enumerate(points + 5 * run)
+    ]
     one, same, other = (figures_of(task, label, rows)["score"] for label in ("a", "a", "b"))
-    assert one == same and one["value"] == other["value"] and (one["low"], one["high"]) != (other["low"], other["high"])
+    assert (
+        one == same
+        and one["value"] == other["value"]
+        and (one["low"], one["high"]) != (other["low"], other["high"])
+    )
     alone = [figures_of(task, label, rows[:40])["score"] for label in ("a", "b")]
     assert alone[0] == alone[1]  # of one run only the tables are drawn, the same for all agents
 
@@ -233,13 +294,24 @@ def test_tables_fit_100_columns(made, capsys):
     assert max(map(len, out.splitlines())) <= 100 and out.count("ghost_ball *") == 7
     results = [result(made, name) for name in TASKS]
     for one in results:  # as wide as can be
-        one["agent"]["label"], one["agent"]["simulated_shots"], one["agent"]["declared"] = "a" * 20, 99_999.0, True
-        one["agent"]["class"], one["agent"]["budget"], one["agent"]["sources"] = "undeclared", "unknown", ["x"] * 10
+        one["agent"]["label"], one["agent"]["simulated_shots"], one["agent"]["declared"] = (
+            "a" * 20,
+            99_999.0,
+            True,
+        )
+        one["agent"]["class"], one["agent"]["budget"], one["agent"]["sources"] = (
+            "undeclared",
+            "unknown",
+            ["x"] * 10,
+        )
         for figure in (one["figures"]["score"], one["figures"]["iqm"]):
             if figure is not None:
                 figure.update(value=130.0, low=120.0, high=140.0)
         one["figures"]["best"] = 147
-        one["timing"]["seconds"], one["timing"]["one_table_ms"] = 99.9 * sum(row[3] for row in one["rows"]), 99999.0
+        one["timing"]["seconds"], one["timing"]["one_table_ms"] = (
+            99.9 * sum(row[3] for row in one["rows"]),
+            99999.0,
+        )
     assert max(map(len, lines(results))) <= 100
     assert main(["profile", *files]) == 0 and max(map(len, capsys.readouterr().out.splitlines())) <= 100
     assert main(["tasks"]) == 0 and max(map(len, capsys.readouterr().out.splitlines())) <= 100
@@ -249,10 +321,19 @@ def test_tables_fit_100_columns(made, capsys):
 def test_the_order_of_the_table_is_class_budget_score(made):
     rows = []
     for label, shots, training, value in (
-        ("d", 10.0, 0, 99.0), ("b", 0.0, 0, 5.0), ("a", 0.0, 0, 6.0), ("c", 0.0, 1_000_000, 1.0), ("e", 10.0, 50_000, 1.0),
-    ):  # fmt: skip
+        ("d", 10.0, 0, 99.0),
+        ("b", 0.0, 0, 5.0),
+        ("a", 0.0, 0, 6.0),
+        ("c", 0.0, 1_000_000, 1.0),
+        ("e", 10.0, 50_000, 1.0),
+    ):
         one = result(made)
-        one["agent"] |= {"label": label, "simulated_shots": shots, "training_shots": training, "budget": budget_of(training)}
+        one["agent"] |= {
+            "label": label,
+            "simulated_shots": shots,
+            "training_shots": training,
+            "budget": budget_of(training),
+        }
         one["agent"]["class"] = "planning" if shots else "model_free"
         one["figures"]["score"]["value"] = value
         rows.append(one)

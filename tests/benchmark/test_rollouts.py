@@ -5,12 +5,22 @@ import pytest
 
 import snooker_env as sn
 from agents.evaluation import protocol
-from snooker_env.benchmark import FIGURES, HELD_OUT_SEED, Strokes, counts, play_visits, rollouts, summary, tables_of
+from snooker_env.benchmark import (
+    FIGURES,
+    HELD_OUT_SEED,
+    Strokes,
+    counts,
+    play_visits,
+    rollouts,
+    summary,
+    tables_of,
+)
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BallOn
 from snooker_env.game.opened import HELD_OUT
 
-# strokes and counts --------------------------------------------------------------------------------------------------------------
+# strokes and counts
+# --------------------------------------------------------------------------------------------------------------
 
 
 class Watched:
@@ -31,28 +41,61 @@ class Watched:
 def test_counts_of_a_visit_by_hand():
     """Two visits: red, black, red with nothing after; then a miss."""
     s = Strokes(
-        visits=2, visit=np.array([0, 1, 0, 0, 0]), number=np.array([0, 0, 1, 2, 3]), points=np.array([1.0, 0, 7, 1, 0]),
-        foul=np.array([False, False, False, False, True]), ball_on=np.array([BallOn.RED, BallOn.RED, BallOn.ANY_COLOUR, BallOn.RED, 0]),
-        cleared=np.zeros(5, bool), cue=np.zeros((5, 2)), tolerance=np.array([1e-2, 0, 1e-3, 1e-2, 0]), decision_seconds=0.0,
-    )  # fmt: skip
+        visits=2,
+        visit=np.array([0, 1, 0, 0, 0]),
+        number=np.array([0, 0, 1, 2, 3]),
+        points=np.array([1.0, 0, 7, 1, 0]),
+        foul=np.array([False, False, False, False, True]),
+        ball_on=np.array([BallOn.RED, BallOn.RED, BallOn.ANY_COLOUR, BallOn.RED, 0]),
+        cleared=np.zeros(5, bool),
+        cue=np.zeros((5, 2)),
+        tolerance=np.array([1e-2, 0, 1e-3, 1e-2, 0]),
+        decision_seconds=0.0,
+    )
     assert s.following.tolist() == [2, -1, 3, 4, -1]
     c = {name: values.tolist() for name, values in counts(s).items()}
     assert c == {
-        "points": [9, 0], "pots": [3, 0], "strokes": [4, 1], "fouls": [1, 0], "goes_on": [3, 0], "followed": [2, 0], "easy": [2, 0],
-        "colours": [1, 0], "colour_points": [7, 0], "high": [1, 0], "reds": [2, 0], "high_after_red": [1, 0], "clearances": [0, 0],
-        "visits": [1, 1], "centuries": [0, 0], "maximums": [0, 0],
-    }  # fmt: skip
+        "points": [9, 0],
+        "pots": [3, 0],
+        "strokes": [4, 1],
+        "fouls": [1, 0],
+        "goes_on": [3, 0],
+        "followed": [2, 0],
+        "easy": [2, 0],
+        "colours": [1, 0],
+        "colour_points": [7, 0],
+        "high": [1, 0],
+        "reds": [2, 0],
+        "high_after_red": [1, 0],
+        "clearances": [0, 0],
+        "visits": [1, 1],
+        "centuries": [0, 0],
+        "maximums": [0, 0],
+    }
     f = summary(s)
-    assert (f["points_a_visit"], f["pots_a_visit"], f["next_pot_after_a_pot"], f["high_colours"]) == (4.5, 1.5, pytest.approx(2 / 3), 1.0)
+    assert (f["points_a_visit"], f["pots_a_visit"], f["next_pot_after_a_pot"], f["high_colours"]) == (
+        4.5,
+        1.5,
+        pytest.approx(2 / 3),
+        1.0,
+    )
 
 
 def a_clearance_a_foul_and_a_miss():
-    """Three visits: the last ball goes in for a century (points as no shot brings them); it goes in by a foul; it stays."""
+    """Three visits: the last ball goes in for a century (points as no shot brings them); it goes in by a
+    foul; it stays."""
     return Strokes(
-        visits=3, visit=np.array([0, 1, 2, 0]), number=np.array([0, 0, 0, 1]), points=np.array([95.0, 0, 0, 7]),
-        foul=np.array([False, True, False, False]), ball_on=np.array([BallOn.ANY_COLOUR, BallOn.BLACK, BallOn.BLACK, BallOn.BLACK]),
-        cleared=np.array([False, True, False, True]), cue=np.zeros((4, 2)), tolerance=np.zeros(4), decision_seconds=0.0,
-    )  # fmt: skip
+        visits=3,
+        visit=np.array([0, 1, 2, 0]),
+        number=np.array([0, 0, 0, 1]),
+        points=np.array([95.0, 0, 0, 7]),
+        foul=np.array([False, True, False, False]),
+        ball_on=np.array([BallOn.ANY_COLOUR, BallOn.BLACK, BallOn.BLACK, BallOn.BLACK]),
+        cleared=np.array([False, True, False, True]),
+        cue=np.zeros((4, 2)),
+        tolerance=np.zeros(4),
+        decision_seconds=0.0,
+    )
 
 
 def test_a_foul_clears_no_table():
@@ -61,7 +104,9 @@ def test_a_foul_clears_no_table():
     assert f["clearances"] == f["centuries"] == pytest.approx(1 / 3)
 
 
-@pytest.mark.parametrize(("points", "century", "maximum"), [(99, 0, 0), (100, 1, 0), (146, 1, 0), (147, 1, 1)])
+@pytest.mark.parametrize(
+    ("points", "century", "maximum"), [(99, 0, 0), (100, 1, 0), (146, 1, 0), (147, 1, 1)]
+)
 def test_centuries_and_maximums(points, century, maximum):
     s = a_clearance_a_foul_and_a_miss()
     s.points[0] = points - s.points[-1]
@@ -73,12 +118,22 @@ def test_counts_agree_with_the_summary():
     s = play_visits("ghost_ball", 60, noise="professional")
     for strokes in (s, a_clearance_a_foul_and_a_miss()):
         c, f = counts(strokes), summary(strokes)
-        for name in ("points_a_visit", "pots_a_visit", "fouls_a_visit", "pot_rate", "next_pot_after_a_pot", "colour_value", "high_colours",
-                     "centuries", "clearances"):  # fmt: skip
+        for name in (
+            "points_a_visit",
+            "pots_a_visit",
+            "fouls_a_visit",
+            "pot_rate",
+            "next_pot_after_a_pot",
+            "colour_value",
+            "high_colours",
+            "centuries",
+            "clearances",
+        ):
             above, below = FIGURES[name]
             assert c[above].sum() / c[below].sum() == pytest.approx(f[name])
     c, f = counts(s), summary(s)
-    assert f["next_pot_after_a_pot"] > 0.4 and np.all(c["strokes"] - c["pots"] == 1 - c["clearances"])  # a visit ends with its first miss
+    # a visit ends with its first miss
+    assert f["next_pot_after_a_pot"] > 0.4 and np.all(c["strokes"] - c["pots"] == 1 - c["clearances"])
 
 
 def test_the_cue_balls_place_is_kept_unless_it_was_potted(monkeypatch):
@@ -97,12 +152,16 @@ def test_the_cue_balls_place_is_kept_unless_it_was_potted(monkeypatch):
     assert np.isnan(s.cue[~there]).all() and np.array_equal(s.cue[there], places[there])
 
 
-# conditions ----------------------------------------------------------------------------------------------------------------------
+# conditions
+# ----------------------------------------------------------------------------------------------------------------------
 
 USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
 
 
-@pytest.mark.parametrize("change", [{}, {"layout": "colours"}, {"noise": "club"}, {"fidelity": "fast"}, {"physics": "match"}, {"seeds": 7}])
+@pytest.mark.parametrize(
+    "change",
+    [{}, {"layout": "colours"}, {"noise": "club"}, {"fidelity": "fast"}, {"physics": "match"}, {"seeds": 7}],
+)
 def test_an_agent_is_played_under_its_condition(change):
     """Stroke by stroke as ``play_visits`` plays it there; and what is changed changes the play."""
     condition, seeds = USUAL | change, list(range(change.get("seeds", 3), 33))[:20]
@@ -117,7 +176,8 @@ def test_an_agent_is_played_under_its_condition(change):
     assert np.array_equal(strokes.cue, usual.cue, equal_nan=True) == (not change)
 
 
-# tables --------------------------------------------------------------------------------------------------------------------------
+# tables
+# --------------------------------------------------------------------------------------------------------------------------
 
 
 def test_a_control_has_other_errors_and_the_same_first_strokes():

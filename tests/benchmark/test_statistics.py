@@ -14,7 +14,8 @@ def test_iqm_is_scipys_trimmed_mean():
     for n in (4, 8, 400):
         for values in (rng.normal(size=n), rng.integers(0, 6, n).astype(float)):
             assert iqm(values) == pytest.approx(stats.trim_mean(values, 0.25))
-    assert iqm([1, 2, 10]) == pytest.approx((0.25 * 1 + 2 + 0.25 * 10) / 1.5)  # edges count with the part that is inside
+    # edges count with the part that is inside
+    assert iqm([1, 2, 10]) == pytest.approx((0.25 * 1 + 2 + 0.25 * 10) / 1.5)
     assert iqm([3.0]) == 3.0
 
 
@@ -37,7 +38,9 @@ def test_samples_are_those_of_a_plain_bootstrap():
 def test_one_runs_interval_is_scipys():
     x = np.random.default_rng(3).exponential(size=(1, 300))
     ours = interval(Resamples(1, 300, 9000).sums(x) / 300)
-    its = stats.bootstrap((x[0],), np.mean, n_resamples=9000, method="percentile", rng=np.random.default_rng(0)).confidence_interval
+    its = stats.bootstrap(
+        (x[0],), np.mean, n_resamples=9000, method="percentile", rng=np.random.default_rng(0)
+    ).confidence_interval
     assert ours == pytest.approx(tuple(its), abs=0.01)
 
 
@@ -48,12 +51,17 @@ def test_an_interval_without_news_is_none():
 
 
 def coverage(runs, spreads, of_iqm=False, trials=300, tables=200):
-    """How often the interval holds the true mean 0, scores being sums of normal parts: the run's, the table's, the visit's own."""
+    """How often the interval holds the true mean 0, scores being sums of normal parts: the run's, the
+    table's, the visit's own."""
     rng, hits = np.random.default_rng(4), 0
     of_run, of_table, own = spreads
     samples = Resamples(runs, tables, 400)
     for _ in range(trials):
-        x = rng.normal(0, of_run, (runs, 1)) + rng.normal(0, of_table, (1, tables)) + rng.normal(0, own, (runs, tables))
+        x = (
+            rng.normal(0, of_run, (runs, 1))
+            + rng.normal(0, of_table, (1, tables))
+            + rng.normal(0, own, (runs, tables))
+        )
         low, high = interval(samples.iqms(x.round(1)) if of_iqm else samples.sums(x))
         hits += low <= 0 <= high
     return hits / trials
@@ -85,10 +93,17 @@ def test_paired_ratio():
     rng = np.random.default_rng(5)
     base = rng.exponential(10.0, (1, 400))
     exact = played("twice", 2 * base).ratios(played("base", base))["points_a_visit"]
-    assert exact["value"] == pytest.approx(2) and (exact["low"], exact["high"]) in ((None, None), pytest.approx((2, 2)))
-    near = played("near", 2 * base + rng.normal(0, 1, base.shape)).ratios(played("base", base))["points_a_visit"]
+    assert exact["value"] == pytest.approx(2) and (exact["low"], exact["high"]) in (
+        (None, None),
+        pytest.approx((2, 2)),
+    )
+    near = played("near", 2 * base + rng.normal(0, 1, base.shape)).ratios(played("base", base))[
+        "points_a_visit"
+    ]
     apart = played("apart", 2 * rng.permuted(base, axis=1)).ratios(played("base", base))["points_a_visit"]
-    assert near["low"] < 2 < near["high"] and near["high"] - near["low"] < 0.1 * (apart["high"] - apart["low"])
+    assert near["low"] < 2 < near["high"] and near["high"] - near["low"] < 0.1 * (
+        apart["high"] - apart["low"]
+    )
     # the delta method for independent ones: the relative variances add
     spread = base.std() / base.mean() / np.sqrt(400)
     assert apart["high"] - apart["low"] == pytest.approx(2 * 3.92 * np.sqrt(2) * spread, rel=0.2)

@@ -1,4 +1,5 @@
-"""Do the benchmarks behave as commands? Help, Ctrl-C, libraries that are missing, files that cannot be written, a terminal of ASCII."""
+"""Do the benchmarks behave as commands? Help, Ctrl-C, libraries that are missing, files that cannot be
+written, a terminal of ASCII."""
 
 import errno
 import json
@@ -19,7 +20,9 @@ from benchmarks._common import command as _command
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "benchmarks"
 FILES = {file.stem: file for file in FOLDER.glob("*.py") if not file.name.startswith("_")}
-FOLDERS = {file.parent.name: file for file in FOLDER.glob("*/command.py") if not file.parent.name.startswith("_")}
+FOLDERS = {
+    file.parent.name: file for file in FOLDER.glob("*/command.py") if not file.parent.name.startswith("_")
+}
 COMMANDS = sorted(FILES | FOLDERS)
 WITHOUT_CHANCE = ("film", "left_out", "nap", "paper", "pockets", "web")
 
@@ -55,7 +58,12 @@ def test_help_is_printed_and_nothing_is_compiled(tmp_path):
 @pytest.mark.parametrize(("name", "wrong"), [("paper", "--what"), ("make_opened", "--tables=-1")])
 def test_a_wrong_argument_is_an_error_of_usage(name, wrong):
     code, out, err = ended(started(name, wrong))
-    assert code == 2 and out == "" and err.startswith(f"usage: python -m benchmarks.{name}") and "Traceback" not in err
+    assert (
+        code == 2
+        and out == ""
+        and err.startswith(f"usage: python -m benchmarks.{name}")
+        and "Traceback" not in err
+    )
 
 
 def interrupted(process, seconds):
@@ -75,7 +83,9 @@ def test_ctrl_c_is_one_line_and_leaves_no_file(tmp_path):
 
 def test_ctrl_c_while_libraries_are_loaded_is_one_line_too(tmp_path):
     """A numpy that takes long to load and says that it does."""
-    (tmp_path / "numpy.py").write_text(f"import time\nopen({str(tmp_path / 'loading')!r}, 'w').close()\ntime.sleep(60)")
+    (tmp_path / "numpy.py").write_text(
+        f"import time\nopen({str(tmp_path / 'loading')!r}, 'w').close()\ntime.sleep(60)"
+    )
     process = started("make_opened", PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]))
     give_up = time.monotonic() + 60
     while not (tmp_path / "loading").exists() and time.monotonic() < give_up:
@@ -91,34 +101,60 @@ def test_a_file_that_cannot_be_written_is_refused_before_the_work(tmp_path, wher
     start = time.perf_counter()
     code, out, err = ended(started("paper", "--no-pictures", "--json", place))
     assert code == 2 and out == "" and time.perf_counter() - start < 120
-    assert re.search(re.escape(f"error: json = {str(place)!r}: must be a file that can be written (") + r"\S.*\)\n$", err), err
+    assert re.search(
+        re.escape(f"error: json = {str(place)!r}: must be a file that can be written (") + r"\S.*\)\n$", err
+    ), err
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
 def test_a_full_disk_is_said_in_one_line():
     code, out, err = ended(started("paper", "--no-pictures", "--json", "/dev/full"))
-    assert code == 1 and "Tables 1 and 2" in out and err == "/dev/full could not be written: No space left on device\n"
+    assert (
+        code == 1
+        and "Tables 1 and 2" in out
+        and err == "/dev/full could not be written: No space left on device\n"
+    )
     assert Path("/dev/full").is_char_device()
 
 
 def test_what_is_printed_is_written_beside_the_pictures(tmp_path):
-    code, out, err = ended(started("paper", "--out", tmp_path / "new", "--json", tmp_path / "new" / "figures.json"))
+    code, out, err = ended(
+        started("paper", "--out", tmp_path / "new", "--json", tmp_path / "new" / "figures.json")
+    )
     assert (code, err) == (0, "") and (tmp_path / "new" / "paper.txt").read_text() == out
-    assert {file.name for file in (tmp_path / "new").iterdir()} == {"paper.txt", "paper.png", "paper_data.png", "figures.json"}
+    assert {file.name for file in (tmp_path / "new").iterdir()} == {
+        "paper.txt",
+        "paper.png",
+        "paper_data.png",
+        "figures.json",
+    }
     code, out, _ = ended(started("left_out", "--out", tmp_path, "--json", tmp_path / "l.json"))
     assert code == 0 and (tmp_path / "left_out.txt").read_text() == out
-    assert set(json.loads((tmp_path / "l.json").read_text())) == {"air", "level", "unequal", "kicks", "airborne", "double_hits"}
+    assert set(json.loads((tmp_path / "l.json").read_text())) == {
+        "air",
+        "level",
+        "unequal",
+        "kicks",
+        "airborne",
+        "double_hits",
+    }
 
 
 MISSING = [
     ("paper", "scipy", 'scipy is missing; in a clone of the repository:  pip install -e ".[test]"'),
-    ("pictures", "pygame", f'pictures need pygame-ce; install it, in the clone {ROOT}, with: pip install -e ".[render]"'),
+    (
+        "pictures",
+        "pygame",
+        f'pictures need pygame-ce; install it, in the clone {ROOT}, with: pip install -e ".[render]"',
+    ),
 ]
 
 
 @pytest.mark.parametrize(("name", "library", "said"), MISSING)
 def test_a_library_that_is_missing_is_named_and_how_to_install_it(tmp_path, name, library, said):
-    (tmp_path / f"{library}.py").write_text(f"raise ModuleNotFoundError('No module named {library}', name='{library}')")
+    (tmp_path / f"{library}.py").write_text(
+        f"raise ModuleNotFoundError('No module named {library}', name='{library}')"
+    )
     code, out, err = ended(started(name, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])))
     assert (code, out) == (1, "")
     assert err == said + "\n"
@@ -146,7 +182,9 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
 def test_a_picture_on_a_full_disk_is_no_empty_file(tmp_path):
     pixels = np.random.default_rng(0).integers(256, size=(50, 80, 3), dtype=np.uint8)
     _command.save_image(tmp_path / "a.png", pixels)
-    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG") and (tmp_path / "a.png").stat().st_size > 50 * 80 * 3
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG") and (
+        tmp_path / "a.png"
+    ).stat().st_size > 50 * 80 * 3
     if Path("/dev/full").exists():
         (tmp_path / "full.png").symlink_to("/dev/full")
         with pytest.raises(SystemExit, match="could not be written: No space left on device"):

@@ -1,11 +1,22 @@
-"""Are the pockets' windows what they should be? Narrower for firm shots, the same for clean ones, and pool's as Alciatore has them."""
+"""Are the pockets' windows what they should be? Narrower for firm shots, the same for clean ones, and pool's
+as Alciatore has them."""
 
 import numpy as np
 import pytest
 
 import snooker_env as sn
 from benchmarks.pockets import openings, pool_tables, rail_paths
-from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, LonePocket, Paths, alone, drops, endless, windows
+from benchmarks.pockets.windows import (
+    CORNER,
+    MIDDLE,
+    Engine,
+    LonePocket,
+    Paths,
+    alone,
+    drops,
+    endless,
+    windows,
+)
 from snooker_env.game import pots
 from tests.kernels import from_python
 
@@ -17,7 +28,10 @@ SPEEDS = (0.5, 1.0, 6.0)
 def widths(preset, table, pocket, speeds=SPEEDS, rolling=True):
     """Lateral windows [mm] by angle and speed, from 0.3 m."""
     here, angles = alone(sn.Table.preset(table), pocket), np.radians(ANGLES[pocket])[:, None]
-    return 1e3 * windows(here, Paths(angles, 0.3, np.array(speeds), rolling, False), sn.Physics.preset(preset)).width
+    return (
+        1e3
+        * windows(here, Paths(angles, 0.3, np.array(speeds), rolling, False), sn.Physics.preset(preset)).width
+    )
 
 
 @pytest.mark.parametrize("rolling", [True, False])
@@ -40,18 +54,26 @@ def test_a_firm_ball_that_meets_a_jaw_of_a_middle_pocket_may_come_out_again(pres
 def test_the_tight_corners_are_never_wider(preset):
     for rolling in (True, False):
         speeds = (1.0, 2.0, 4.0, 6.0, 9.0)
-        assert (widths(preset, "tight", CORNER, speeds, rolling) < widths(preset, "match", CORNER, speeds, rolling)).all()
+        assert (
+            widths(preset, "tight", CORNER, speeds, rolling)
+            < widths(preset, "match", CORNER, speeds, rolling)
+        ).all()
 
 
 @pytest.mark.parametrize("preset", PRESETS)
 @pytest.mark.parametrize("pocket", [CORNER, MIDDLE])
 @pytest.mark.parametrize("table", TABLES)
 def test_the_clean_opening_is_the_same_at_all_speeds(preset, table, pocket):
-    here, physics, speeds = alone(sn.Table.preset(table), pocket), sn.Physics.preset(preset), (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0)
+    here, physics, speeds = (
+        alone(sn.Table.preset(table), pocket),
+        sn.Physics.preset(preset),
+        (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0),
+    )
     assert openings.all_clean_drop(here, speeds, physics)
     clean, free = openings.clean(here, physics.R), openings.untouched(here, speeds, True, physics)
     assert (free > clean - 5e-5).all()
-    assert (free[np.array(speeds) >= 6.0] < clean + 1e-4).all()  # so far behind the edge a ball still meets a jaw
+    # so far behind the edge a ball still meets a jaw
+    assert (free[np.array(speeds) >= 6.0] < clean + 1e-4).all()
 
 
 def test_a_window_is_what_a_dense_scan_finds():
@@ -64,16 +86,28 @@ def test_a_window_is_what_a_dense_scan_finds():
         assert abs(hit.sum() * step - found.width) < 1.5e-3
         low, high = float(found.low), float(found.high)
         at = np.array([low - 1e-7, low, high, high + 1e-7])
-        assert drops(here, angle, 0.3, speed, True, physics, Engine(), at).tolist() == [False, True, True, False]
+        assert drops(here, angle, 0.3, speed, True, physics, Engine(), at).tolist() == [
+            False,
+            True,
+            True,
+            False,
+        ]
 
 
 def test_pots_are_offered_by_these_windows():
-    """Of a rolling ball at 1.5 m/s: at the angles of the table of ``game.pots`` to a millimetre, between them to 2.5."""
+    """Of a rolling ball at 1.5 m/s: at the angles of the table of ``game.pots`` to a millimetre, between them
+    to 2.5."""
     given, physics = from_python(pots.window), sn.Physics.preset("match")
     for pocket, nodes in ((CORNER, pots._CORNER_ANGLE), (MIDDLE, pots._MIDDLE_ANGLE)):
         for angles, most in ((np.array(nodes), 1e-3), (0.5 * np.add(nodes[1:], nodes[:-1]), 2.5e-3)):
-            found = windows(alone(sn.Table.preset("match"), pocket), Paths(np.radians(angles), 0.3, 1.5, True, False), physics).width
-            assert [given(np.cos(a), pocket == MIDDLE) for a in np.radians(angles)] == pytest.approx(found, abs=most)
+            found = windows(
+                alone(sn.Table.preset("match"), pocket),
+                Paths(np.radians(angles), 0.3, 1.5, True, False),
+                physics,
+            ).width
+            assert [given(np.cos(a), pocket == MIDDLE) for a in np.radians(angles)] == pytest.approx(
+                found, abs=most
+            )
 
 
 def test_no_window_where_the_ball_stops_short():
@@ -84,10 +118,16 @@ def test_no_window_where_the_ball_stops_short():
 
 def test_the_openings_are_those_that_table_py_speaks_of():
     for table, pocket, name, mm in (
-        ("match", CORNER, "throat", 86.0), ("tight", CORNER, "throat", 80.14), ("match", CORNER, "at the fall", 88.68),
-        ("tight", CORNER, "at the fall", 83.95), ("match", MIDDLE, "fall to jaw", 100.96), ("tight", MIDDLE, "fall to jaw", 100.96),
-    ):  # fmt: skip
-        assert 1e3 * openings.openings(alone(sn.Table.preset(table), pocket))[name] == pytest.approx(mm, abs=0.006)
+        ("match", CORNER, "throat", 86.0),
+        ("tight", CORNER, "throat", 80.14),
+        ("match", CORNER, "at the fall", 88.68),
+        ("tight", CORNER, "at the fall", 83.95),
+        ("match", MIDDLE, "fall to jaw", 100.96),
+        ("tight", MIDDLE, "fall to jaw", 100.96),
+    ):
+        assert 1e3 * openings.openings(alone(sn.Table.preset(table), pocket))[name] == pytest.approx(
+            mm, abs=0.006
+        )
 
 
 def test_a_throat_is_moved_by_what_is_asked_and_a_fall_too():
@@ -106,7 +146,8 @@ def test_a_throat_is_moved_by_what_is_asked_and_a_fall_too():
 def test_a_ball_five_millimetres_off_the_rail_drops_softly_and_not_firmly():
     table, physics, offs = sn.Table.preset("match"), sn.Physics.preset("match"), (0.005,)
     found = rail_paths.down_the_rail(table, physics, Engine(), offs, (0.5, 1.5), (1.0, 2.0, 6.0, 10.0))
-    assert found["potted"][0, :, :, 0].tolist() == [[True, True, False, False]] * 2  # rolling; the second index is the distance
+    # rolling; the second index is the distance
+    assert found["potted"][0, :, :, 0].tolist() == [[True, True, False, False]] * 2
 
 
 def test_alciatore_s_target_sizes_by_his_formulas():
@@ -127,5 +168,8 @@ def test_slow_mirrors_are_alciatore_s_pockets_on_the_pool9_table():
         noses = endless(table.noses, *mouth)
         assert len(noses) == 2
         here = LonePocket(sn.Table(kind, noses, jaws, fall[None]), tuple(mouth), float(axis))
-        found = windows(here, Paths(np.radians(angles), pool_tables.DISTANCE, 0.1, False, False), physics).width / pool_tables.INCH
+        found = (
+            windows(here, Paths(np.radians(angles), pool_tables.DISTANCE, 0.1, False, False), physics).width
+            / pool_tables.INCH
+        )
         assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)

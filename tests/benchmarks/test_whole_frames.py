@@ -1,11 +1,15 @@
-"""Do fifty whole frames end by the rules, with every point and ball accounted for, and can the checks of that fail?"""
+"""Do fifty whole frames end by the rules, with every point and ball accounted for, and can the checks of that
+fail?"""
 
 import pytest
 
 from benchmarks import frames
 
 
-@pytest.mark.parametrize(("kind", "miss", "count"), [("random", "off", 30), ("random", "clear_path", 10), ("ghost_ball", "off", 10)])
+@pytest.mark.parametrize(
+    ("kind", "miss", "count"),
+    [("random", "off", 30), ("random", "clear_path", 10), ("ghost_ball", "off", 10)],
+)
 def test_whole_frames_end_by_the_rules_with_every_point_and_ball_accounted_for(kind, miss, count):
     tallies = [frames.play_frame(seed, kind, miss) for seed in range(count)]
     ends = {t.ending for t in tallies}

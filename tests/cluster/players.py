@@ -1,4 +1,5 @@
-"""Which players do the tests of the cluster send? One that writes down what it plays, one that needs too much, one that fails."""
+"""Which players do the tests of the cluster send? One that writes down what it plays, one that needs too
+much, one that fails."""
 
 import os
 import time
@@ -10,9 +11,11 @@ from snooker_env.players.search import SearchPlayer
 
 
 def note(decision, n):
-    """Note this process and its decision for n tables in the file of $NOTED, if there is one, and take the time of $SLOW for it.
+    """Note this process and its decision for n tables in the file of $NOTED, if there is one, and take the
+    time of $SLOW for it.
 
-    If the file of $HANGS is there, a node with $DIES says so in it and hangs: it is to be killed. The others wait until it does.
+    If the file of $HANGS is there, a node with $DIES says so in it and hangs: it is to be killed. The others
+    wait until it does.
     """
     if "NOTED" in os.environ:
         with Path(os.environ["NOTED"]).open("a") as file:
@@ -21,7 +24,9 @@ def note(decision, n):
     hangs, began = Path(os.environ.get("HANGS", "none")), time.monotonic()
     if hangs.exists() and "DIES" in os.environ:
         hangs.write_text(str(os.getpid()))
-    while hangs.exists() and ("DIES" in os.environ or not hangs.read_text()) and time.monotonic() - began < 60:
+    while (
+        hangs.exists() and ("DIES" in os.environ or not hangs.read_text()) and time.monotonic() - began < 60
+    ):
         time.sleep(0.05)
 
 

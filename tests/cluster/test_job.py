@@ -1,4 +1,5 @@
-"""Is a job the same in parts as in one go, and does it go on after it was stopped? Without Ray: every part is played in this process."""
+"""Is a job the same in parts as in one go, and does it go on after it was stopped? Without Ray: every part is
+played in this process."""
 
 import json
 from dataclasses import fields
@@ -69,7 +70,9 @@ def test_a_stopped_job_goes_on_without_playing_anything_twice(tmp_path, stop):
         list(ended(PARTS, SHARED, first, Store(tmp_path)))
     for where in (second, third):
         assert sums(in_order(ended(PARTS, SHARED, where, Store(tmp_path)))) == [0, 0, 1, 3, 6, 10]
-    assert sorted(first.played_parts + second.played_parts) == list(range(6)) and len(first.played_parts) == stop
+    assert (
+        sorted(first.played_parts + second.played_parts) == list(range(6)) and len(first.played_parts) == stop
+    )
     assert not third.played_parts
 
 
@@ -81,7 +84,10 @@ def test_another_job_is_refused_by_name(tmp_path):
     for about, says in (
         ({"noise": ["none"], "agents": {"a": "1"}}, r'its noise is \["club"\], and \["none"\] is asked for'),
         ({"noise": ["club"], "agents": {"a": "2"}}, "its agents is"),
-        ({"noise": ["club"], "agents": {"a": "1"}, "rekey": True}, "its rekey is null, and true is asked for"),
+        (
+            {"noise": ["club"], "agents": {"a": "1"}, "rekey": True},
+            "its rekey is null, and true is asked for",
+        ),
     ):
         with pytest.raises(ValueError, match=says):
             store.join(about)
@@ -96,7 +102,11 @@ def test_another_job_is_refused_by_name(tmp_path):
 def test_other_weights_options_or_seeds_are_other_parts():
     key = lambda part, shared=SHARED: keys_of([part], shared)[0]  # noqa: E731
     first = key(PARTS[1])
-    assert first == key(Part("visits", "x", {"n": 1})) == key(Part("visits", "y", {"n": 1}), {"y": {"weights": b"abc"}})
+    assert (
+        first
+        == key(Part("visits", "x", {"n": 1}))
+        == key(Part("visits", "y", {"n": 1}), {"y": {"weights": b"abc"}})
+    )
     others = [key(PARTS[2]), key(Part("worths", "x", {"n": 1})), key(PARTS[1], {"x": {"weights": b"abd"}})]
     assert len({first, *others}) == 4
 
@@ -131,7 +141,18 @@ def test_a_full_disk_keeps_what_was_written_and_names_the_file(tmp_path, monkeyp
 def test_an_evaluation_goes_on_from_what_it_kept(tmp_path, monkeypatch, capsys):
     """By the command: interrupted, then given again, then with another option."""
     monkeypatch.setattr(visits, "SIZE", 5)
-    command = ["--agent", "random", "--visits", "20", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"]
+    command = [
+        "--agent",
+        "random",
+        "--visits",
+        "20",
+        "--layouts",
+        "held_out",
+        "--noise",
+        "professional",
+        "--resamples",
+        "200",
+    ]
     plain, kept = tmp_path / "plain.json", tmp_path / "kept.json"
     assert protocol.main([*command, "--json", str(plain)]) == 0
     original, calls = visits.play_visits, []
@@ -147,7 +168,10 @@ def test_an_evaluation_goes_on_from_what_it_kept(tmp_path, monkeypatch, capsys):
     capsys.readouterr()
     assert protocol.main([*command, "--json", str(kept)]) == 130
     said = capsys.readouterr().err
-    assert f"what was played is kept in {tmp_path / 'parts'}, the same command goes on" in said and not kept.exists()
+    assert (
+        f"what was played is kept in {tmp_path / 'parts'}, the same command goes on" in said
+        and not kept.exists()
+    )
     assert protocol.main([*command, "--json", str(kept)]) == 0 and len(calls) == 6 + 3
     one, two = (json.loads(file.read_text())["results"] for file in (plain, kept))
     for row in (*one, *two):
@@ -159,4 +183,7 @@ def test_an_evaluation_goes_on_from_what_it_kept(tmp_path, monkeypatch, capsys):
 
 
 def test_digests_know_bytes_from_texts():
-    assert len({digest_of({"a": b"1"}), digest_of({"a": "1"}), digest_of({"a": 1}), digest_of({"a": [b"1"]})}) == 4
+    assert (
+        len({digest_of({"a": b"1"}), digest_of({"a": "1"}), digest_of({"a": 1}), digest_of({"a": [b"1"]})})
+        == 4
+    )

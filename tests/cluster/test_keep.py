@@ -1,4 +1,5 @@
-"""Does the folder in which a job keeps its parts belong to one job at a time? With processes of their own; without Ray."""
+"""Does the folder in which a job keeps its parts belong to one job at a time? With processes of their own;
+without Ray."""
 
 import subprocess
 import sys
@@ -26,7 +27,9 @@ def holder(tmp_path, monkeypatch):
     """Another process with the same job, in whose folder is a part; and that folder."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
-    process = subprocess.Popen([sys.executable, "-c", HOLDS], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-c", HOLDS], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
     yield process, tmp_path / process.stdout.readline().strip()
     process.kill()
     process.communicate()
@@ -34,10 +37,17 @@ def holder(tmp_path, monkeypatch):
 
 def test_a_job_that_another_process_plays_is_refused_by_its_name(holder):
     process, folder = holder
-    with pytest.raises(ValueError, match=rf"keep = '.*{folder.name}'.*: process {process.pid} on .* does.*give another --keep") as error:
+    with pytest.raises(
+        ValueError,
+        match=rf"keep = '.*{folder.name}'.*: process {process.pid} on .* does.*give another --keep",
+    ) as error:
         Keep(None, "10.0.0.1:6379", ABOUT)  # wherever it is played
     assert "\n" not in str(error.value) and (folder / "parts" / "a.npz").read_bytes() == b"a"
-    for url, address, about in (("other", "local", ABOUT), (None, "local", ABOUT | {"noise": ["none"]}), (None, None, ABOUT)):
+    for url, address, about in (
+        ("other", "local", ABOUT),
+        (None, "local", ABOUT | {"noise": ["none"]}),
+        (None, None, ABOUT),
+    ):
         with Keep(url, address, about) as keep:
             assert keep.store is None or Path(keep.store.url).resolve() != folder.resolve()
 

@@ -99,7 +99,9 @@ def test_what_cannot_be_written_is_refused(tmp_path):
     with pytest.raises(ValueError, match=r"keep = .*file/x.*must be a folder or URL that can be written"):
         Store(str(tmp_path / "file" / "x"))
     pytest.importorskip("fsspec")
-    with pytest.raises(ValueError, match="mirror = 'nothing://x': must be a folder or URL that can be written"):
+    with pytest.raises(
+        ValueError, match="mirror = 'nothing://x': must be a folder or URL that can be written"
+    ):
         Store("nothing://x", "mirror")
 
 

@@ -1,4 +1,5 @@
-"""Do the tests of the cluster pass where Ray is installed? In a virtual environment made for them, beside the libraries of this one.
+"""Do the tests of the cluster pass where Ray is installed? In a virtual environment made for them, beside the
+libraries of this one.
 
 ``.ci/run`` runs the short form; the whole takes ten minutes.
 """
@@ -19,7 +20,9 @@ WHOLE = ["tests/cluster", "-m", "slow or not slow", "--deselect", "tests/cluster
 
 def required():
     """What the extra ``cluster`` needs beside this package."""
-    line = re.search(r"^cluster = \[(.*)\]$", (ROOT / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE)
+    line = re.search(
+        r"^cluster = \[(.*)\]$", (ROOT / "pyproject.toml").read_text(encoding="utf-8"), re.MULTILINE
+    )
     assert line is not None
     return [one for one in re.findall(r'"([^"]+)"', line[1]) if not one.startswith("snooker-env")]
 
@@ -31,11 +34,20 @@ def test_the_tests_of_the_cluster_pass(tests, tmp_path):
     venv.create(folder, with_pip=True, symlinks=True)
     python = str(folder / "bin" / "python")
     site = subprocess.run(
-        [python, "-c", "import sysconfig; print(sysconfig.get_paths()['purelib'])"], capture_output=True, text=True, check=True
+        [python, "-c", "import sysconfig; print(sysconfig.get_paths()['purelib'])"],
+        capture_output=True,
+        text=True,
+        check=True,
     ).stdout.strip()
     Path(site, "libraries.pth").write_text(sysconfig.get_paths()["purelib"] + "\n")
     env = os.environ | {"PYTHONPATH": str(ROOT)}
-    done = subprocess.run([python, "-m", "pip", "install", "--quiet", *required()], env=env, capture_output=True, text=True, timeout=600)
+    done = subprocess.run(
+        [python, "-m", "pip", "install", "--quiet", *required()],
+        env=env,
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
     if done.returncode:
         pytest.skip(f"Ray cannot be installed here: {done.stderr.strip().splitlines()[-1]}")
     command = [python, "-m", "pytest", "-n", "0", "-p", "no:cacheprovider", *tests]

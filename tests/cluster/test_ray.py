@@ -1,4 +1,5 @@
-"""Is what a cluster plays what one machine plays, even if a node dies in the middle? On two nodes of Ray on this machine."""
+"""Is what a cluster plays what one machine plays, even if a node dies in the middle? On two nodes of Ray on
+this machine."""
 
 import os
 import socket
@@ -92,7 +93,8 @@ def same(a, b):
 
 
 def results_of(agents, seeds, where, count=None):
-    """The results of all parts of these agents, in their order; ``count`` gets the first visit of each part that has ended."""
+    """The results of all parts of these agents, in their order; ``count`` gets the first visit of each part
+    that has ended."""
     shared = {f"{a.label} {k}": protocol.sent(a, k) for a in agents for k in range(len(a.runs))}
     parts = [one for a in agents for one in visits.parts_of(f"{a.label} 0", 0, AT, seeds, 100, False)]
 
@@ -114,16 +116,23 @@ def test_two_nodes_play_what_one_machine_plays(cluster, monkeypatch):
     assert cluster.cores == 2
     far, near = results_of(agents, seeds, cluster), results_of(agents, seeds, Here())
     for agent in agents:
-        one, other = (protocol.play_agent(agent, AT, seeds, 100, 100, False, results).strokes[0] for results in (far, near))
+        one, other = (
+            protocol.play_agent(agent, AT, seeds, 100, 100, False, results).strokes[0]
+            for results in (far, near)
+        )
         assert same(one, other), agent.label
     assert len({process for process, *_ in noted(Path(os.environ["NOTED"]).parent)} - {os.getpid()}) == 2
 
 
-def test_a_node_killed_amid_an_evaluation_is_survived_and_nothing_counts_twice(nodes, cluster, tmp_path, monkeypatch):
+def test_a_node_killed_amid_an_evaluation_is_survived_and_nothing_counts_twice(
+    nodes, cluster, tmp_path, monkeypatch
+):
     monkeypatch.setattr(visits, "SIZE", 5)
     agent, seeds, done = Entrant.of("tests.cluster.players:Noted"), tables_of("held_out", 60), []
     with killed(nodes, tmp_path, lambda: len(done) >= 3):
-        metrics = protocol.play_agent(agent, AT, seeds, 100, 100, False, results_of([agent], seeds, cluster, done))
+        metrics = protocol.play_agent(
+            agent, AT, seeds, 100, 100, False, results_of([agent], seeds, cluster, done)
+        )
     begun = [process for process, decision, _ in noted(tmp_path) if decision == 0]
     assert sorted(done) == list(range(0, 60, 5)) and len(begun) > 12  # some part was begun twice
     monkeypatch.delenv("NOTED")
@@ -140,7 +149,8 @@ def positions(n):
 
 
 def test_a_node_killed_amid_training_leaves_the_result_as_it_is(nodes, cluster, monkeypatch):
-    """Expert iteration: by this process alone, by two nodes, and by two of which one dies in the third round."""
+    """Expert iteration: by this process alone, by two nodes, and by two of which one dies in the third
+    round."""
     torch = pytest.importorskip("torch")
     from agents.features.views import training_tables
     from agents.learning.expert_iteration import ExpertIteration
@@ -162,12 +172,18 @@ def test_a_node_killed_amid_training_leaves_the_result_as_it_is(nodes, cluster, 
         weights.append({name: one.clone() for name, one in model.policy.state_dict().items()})
         venv.close()
     assert all(torch.equal(one, weights[1][name]) for name, one in weights[0].items())
-    assert cluster.map("agents.learning.self_play:choices", *_some_choices())[0]["gains"].shape == (3,)  # the other node still plays
+    # the other node still plays
+    assert cluster.map("agents.learning.self_play:choices", *_some_choices())[0]["gains"].shape == (3,)
 
 
 def _some_choices():
     at = positions(3)
-    given = {"at": self_play.positions_given(at), "rows": np.arange(3), "picks": np.zeros(3, int), "keys": np.arange(3, dtype=np.uint64)}
+    given = {
+        "at": self_play.positions_given(at),
+        "rows": np.arange(3),
+        "picks": np.zeros(3, int),
+        "keys": np.arange(3, dtype=np.uint64),
+    }
     return {"run": "r", "options": {"noise": "club"}, "value": lambda left: np.ones(len(left))}, [given]
 
 
@@ -221,7 +237,9 @@ def test_a_node_with_other_software_or_none_is_refused(tmp_path, lack):
     """The only node that plays finds another version of a library first, or one that cannot be imported."""
     if lack == "numba is missing":
         (tmp_path / "other" / "numba").mkdir(parents=True)
-        (tmp_path / "other" / "numba" / "__init__.py").write_text("raise ModuleNotFoundError('none', name='numba')\n")
+        (tmp_path / "other" / "numba" / "__init__.py").write_text(
+            "raise ModuleNotFoundError('none', name='numba')\n"
+        )
         says = r"the node [\d.]+ has no numba: install the same clone on every node \(pip install"
     else:
         info = tmp_path / "other" / "numpy-1.2.3.dist-info"
@@ -252,11 +270,15 @@ def test_the_data_of_imitation_are_the_same(cluster, monkeypatch):
     env.reset(seed=5)
     picks = np.array([np.flatnonzero(mask)[[1, 8, 20]] for mask in env.action_masks()])
     there = np.ones(picks.shape, bool)
-    here, there_too = (Expert(env, 1, np.random.default_rng(0), where=where).worth(picks, there) for where in (None, cluster))
+    here, there_too = (
+        Expert(env, 1, np.random.default_rng(0), where=where).worth(picks, there) for where in (None, cluster)
+    )
     assert np.array_equal(here, there_too) and here.any()
 
 
-def test_a_node_killed_amid_a_search_for_data_is_survived_and_nothing_counts_twice(nodes, cluster, tmp_path, monkeypatch):
+def test_a_node_killed_amid_a_search_for_data_is_survived_and_nothing_counts_twice(
+    nodes, cluster, tmp_path, monkeypatch
+):
     shared, done = {"search": sent(Entrant.of("tests.cluster.players:Thinking"), 0)}, []
     parts = searched.parts_of(6 * searched.TABLES * searched.ROUNDS, 0, AT | {"layout": "random:6"}, 30)
     store = Store(tmp_path / "data")
@@ -271,7 +293,9 @@ def test_a_node_killed_amid_a_search_for_data_is_survived_and_nothing_counts_twi
     for key, alone in zip(keys, in_order(ended(parts, shared, Here())), strict=True):
         far = store.part(key)
         assert far.keys() == alone.keys() and len(alone["scores"]) == searched.TABLES * searched.ROUNDS
-        assert all(np.array_equal(one, far[name], equal_nan=one.dtype.kind == "f") for name, one in alone.items())
+        assert all(
+            np.array_equal(one, far[name], equal_nan=one.dtype.kind == "f") for name, one in alone.items()
+        )
 
 
 def test_nothing_is_left_running():

@@ -1,4 +1,5 @@
-"""Do the commands go on after the head of their cluster was lost, and is every fault of an address one line? In processes of their own."""
+"""Do the commands go on after the head of their cluster was lost, and is every fault of an address one line?
+In processes of their own."""
 
 import json
 import os
@@ -16,8 +17,22 @@ from ray.cluster_utils import Cluster as Nodes
 
 ROOT = Path(__file__).resolve().parents[2]
 NODE = {"num_cpus": 2, "object_store_memory": 100 * 2**20, "include_dashboard": False}
-EVALUATE = ["-m", "agents.evaluate", "--agent", "tests.cluster.players:Noted", "--against", "Noted", "--layouts", "held_out",
-            "--visits", "700", "--noise", "professional", "--resamples", "200"]  # fmt: skip
+EVALUATE = [
+    "-m",
+    "agents.evaluate",
+    "--agent",
+    "tests.cluster.players:Noted",
+    "--against",
+    "Noted",
+    "--layouts",
+    "held_out",
+    "--visits",
+    "700",
+    "--noise",
+    "professional",
+    "--resamples",
+    "200",
+]
 TRAIN = [
     "-c",
     "import sys, train, agents.learning.callback as often; often.LEAST, often.SHARE = 1.0, 1.0; sys.exit(train.main(sys.argv[1:]))",
@@ -28,13 +43,25 @@ SHORT = ["--imitate", "3072", "--envs", "128", "--steps", "1", "--eval-visits", 
 
 @pytest.fixture
 def environment(tmp_path, monkeypatch):
-    for name, value in {"PYTHONPATH": ROOT, "OMP_NUM_THREADS": "1", "NOTED": tmp_path / "noted", "SLOW": "0.7"}.items():
+    for name, value in {
+        "PYTHONPATH": ROOT,
+        "OMP_NUM_THREADS": "1",
+        "NOTED": tmp_path / "noted",
+        "SLOW": "0.7",
+    }.items():
         monkeypatch.setenv(name, str(value))
     return dict(os.environ)
 
 
 def started(command, environment, at=ROOT):
-    return subprocess.Popen([sys.executable, *command], cwd=at, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen(
+        [sys.executable, *command],
+        cwd=at,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
 
 
 def finished(command, environment, at=ROOT):
@@ -79,7 +106,10 @@ def test_an_evaluation_goes_on_after(end, tmp_path, environment):
         _, err = process.communicate(timeout=120)
         assert process.returncode == {"the head is lost": 1, "Ctrl-C": 130, "kill -9": -9}[end], err
         if end == "Ctrl-C":
-            assert lines_of(err)[-1].startswith("agents.evaluate: interrupted") and "the same command goes on" in err
+            assert (
+                lines_of(err)[-1].startswith("agents.evaluate: interrupted")
+                and "the same command goes on" in err
+            )
         kept = {file.name: file.stat().st_mtime_ns for file in parts.glob("parts/*.npz")}
         assert 2 <= len(kept) < 7 and not out.exists()
         if end == "the head is lost":
@@ -105,7 +135,11 @@ def test_of_two_equal_jobs_at_once_the_second_is_refused(tmp_path, environment):
         first = started([*command, "--json", str(tmp_path / "out.json")], environment, tmp_path)
         until(lambda: len(list(kept.glob("*/parts/*.npz"))) >= 1, first)
         code, _, err = finished(command, environment, tmp_path)
-        assert code == 2 and f"must be a folder that no other process uses: process {first.pid} on " in err.splitlines()[-1], err
+        assert (
+            code == 2
+            and f"must be a folder that no other process uses: process {first.pid} on "
+            in err.splitlines()[-1]
+        ), err
         _, err = first.communicate(timeout=300)
         assert first.returncode == 0 and not lines_of(err), err
     finally:
@@ -116,32 +150,56 @@ def test_of_two_equal_jobs_at_once_the_second_is_refused(tmp_path, environment):
 
 
 def test_searched_data_are_the_same_files_with_a_cluster_and_without(tmp_path, environment):
-    command = ["-m", "agents.search", "--agent", "lookahead_30", "--positions", "300", "--noise", "club", "--layout", "random:6"]
+    command = [
+        "-m",
+        "agents.search",
+        "--agent",
+        "lookahead_30",
+        "--positions",
+        "300",
+        "--noise",
+        "club",
+        "--layout",
+        "random:6",
+    ]
     nodes = Nodes(initialize_head=True, head_node_args=NODE)
     try:
-        code, out, err = finished([*command, "--out", str(tmp_path / "there"), "--ray", nodes.address], environment)
+        code, out, err = finished(
+            [*command, "--out", str(tmp_path / "there"), "--ray", nodes.address], environment
+        )
     finally:
         nodes.shutdown()
     assert code == 0 and not lines_of(err) and out.startswith("384 positions"), err
     assert finished([*command, "--out", str(tmp_path / "here")], environment)[0] == 0
     here, there = (
-        {file.relative_to(tmp_path / name): file.read_bytes() for file in (tmp_path / name).rglob("*") if file.is_file()}
+        {
+            file.relative_to(tmp_path / name): file.read_bytes()
+            for file in (tmp_path / name).rglob("*")
+            if file.is_file()
+        }
         for name in ("here", "there")
     )
-    assert here == there and sorted(file.name for file in here if file.suffix == ".json") == ["index.json", "job.json"]
+    assert here == there and sorted(file.name for file in here if file.suffix == ".json") == [
+        "index.json",
+        "job.json",
+    ]
     assert len(here) == 2 + 3
 
 
 @pytest.mark.slow
 def test_a_training_goes_on_from_its_mirror_after_the_head_was_lost(tmp_path, environment):
-    """On what could be another machine: with nothing but the mirror. The weights are those of one machine without a fault."""
+    """On what could be another machine: with nothing but the mirror. The weights are those of one machine
+    without a fault."""
     torch = pytest.importorskip("torch")
     from agents.learning.models import load_trained
 
     def weights(out):
         return load_trained(out, "out").policy.state_dict()
 
-    nodes, mirror = Nodes(initialize_head=True, head_node_args=NODE), ["--mirror", str(tmp_path / "mirror"), "--ray"]
+    nodes, mirror = (
+        Nodes(initialize_head=True, head_node_args=NODE),
+        ["--mirror", str(tmp_path / "mirror"), "--ray"],
+    )
     first = started([*TRAIN, *SHORT, "--out", str(tmp_path / "first"), *mirror, nodes.address], environment)
     try:
         until(lambda: (tmp_path / "mirror" / "checkpoint.pkl").exists(), first, 240)
@@ -149,7 +207,17 @@ def test_a_training_goes_on_from_its_mirror_after_the_head_was_lost(tmp_path, en
         _, err = first.communicate(timeout=120)
         assert first.returncode not in (0, None), err
         nodes = Nodes(initialize_head=True, head_node_args=NODE)
-        command = ["train.py", "--resume", "--out", str(tmp_path / "second"), "--eval-visits", "2", "--no-progress", *mirror, nodes.address]
+        command = [
+            "train.py",
+            "--resume",
+            "--out",
+            str(tmp_path / "second"),
+            "--eval-visits",
+            "2",
+            "--no-progress",
+            *mirror,
+            nodes.address,
+        ]
         code, _, err = finished(command, environment)
         assert code == 0, err
     finally:
@@ -158,13 +226,29 @@ def test_a_training_goes_on_from_its_mirror_after_the_head_was_lost(tmp_path, en
         nodes.shutdown()
     assert finished([*TRAIN, *SHORT, "--out", str(tmp_path / "alone")], environment)[0] == 0
     one, other = weights(tmp_path / "alone"), weights(tmp_path / "second")
-    assert one.keys() == other.keys() and all(torch.equal(tensor, other[name]) for name, tensor in one.items())
+    assert one.keys() == other.keys() and all(
+        torch.equal(tensor, other[name]) for name, tensor in one.items()
+    )
 
 
-QUICK = ["-m", "agents.evaluate", "--agent", "random", "--visits", "2", "--layouts", "held_out", "--noise", "none", "--ray"]
+QUICK = [
+    "-m",
+    "agents.evaluate",
+    "--agent",
+    "random",
+    "--visits",
+    "2",
+    "--layouts",
+    "held_out",
+    "--noise",
+    "none",
+    "--ray",
+]
 
 
-@pytest.mark.parametrize("command", [QUICK, ["-m", "agents.tournament", "random", "ghost_ball", "--frames", "2", "--ray"]])
+@pytest.mark.parametrize(
+    "command", [QUICK, ["-m", "agents.tournament", "random", "ghost_ball", "--frames", "2", "--ray"]]
+)
 def test_an_address_without_a_head_is_one_line(command, environment):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
@@ -199,4 +283,9 @@ def test_the_benchmark_prints_what_a_part_costs(tmp_path, environment):
     code, out, err = finished(command, environment)
     assert code == 0 and not lines_of(err), err
     found = json.loads((tmp_path / "f").read_text())
-    assert "cost of a part" in out and "a million positions in" in out and min(found["rates"].values()) > 0 and found["search"] > 0
+    assert (
+        "cost of a part" in out
+        and "a million positions in" in out
+        and min(found["rates"].values()) > 0
+        and found["search"] > 0
+    )

@@ -1,4 +1,5 @@
-"""What does ``python -m agents.search`` write? The same data in one go, interrupted, and by more positions later."""
+"""What does ``python -m agents.search`` write? The same data in one go, interrupted, and by more positions
+later."""
 
 import numpy as np
 import pytest
@@ -35,8 +36,11 @@ def test_an_interrupted_search_goes_on_to_the_same_data(tmp_path, monkeypatch, c
         search_data.read(str(parted))
     assert search_data.main([*COMMAND, "--positions", "36", "--out", str(parted)]) == 0 and len(calls) == 4
     one, two = search_data.read(str(whole)), search_data.read(str(parted))
-    assert len(one["scores"]) == 36 and all(np.array_equal(one[name], two[name], equal_nan=True) for name in one)
-    assert search_data.main([*COMMAND, "--positions", "48", "--out", str(parted)]) == 0 and len(calls) == 5  # only what is new
+    assert len(one["scores"]) == 36 and all(
+        np.array_equal(one[name], two[name], equal_nan=True) for name in one
+    )
+    # only what is new
+    assert search_data.main([*COMMAND, "--positions", "48", "--out", str(parted)]) == 0 and len(calls) == 5
     assert np.array_equal(search_data.read(str(parted))["positions"][:36], one["positions"])
     with pytest.raises(SystemExit):
         search_data.main([*COMMAND, "--positions", "36", "--seed", "1", "--out", str(parted)])
@@ -44,7 +48,8 @@ def test_an_interrupted_search_goes_on_to_the_same_data(tmp_path, monkeypatch, c
 
 
 def test_data_are_what_the_search_plays(tmp_path):
-    """No table is like another, no decision ends without a stroke, and the best strokes score on tables with six reds."""
+    """No table is like another, no decision ends without a stroke, and the best strokes score on tables with
+    six reds."""
     assert search_data.main([*COMMAND, "--positions", "24", "--out", str(tmp_path)]) == 0
     found = search_data.read(str(tmp_path))
     assert found["strokes"].shape == (24, searched.KEPT, 5) and not np.isnan(found["strokes"][:, 0]).any()
@@ -58,10 +63,12 @@ def test_data_are_what_the_search_plays(tmp_path):
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (["--agent", "random"], "must be one player that searches"), (["--positions", "0"], "positions = 0"),
-        (["--layout", "held_out"], "held-out tables are kept"), (["--ray", "x"], "must be local, or HOST:PORT"),
+        (["--agent", "random"], "must be one player that searches"),
+        (["--positions", "0"], "positions = 0"),
+        (["--layout", "held_out"], "held-out tables are kept"),
+        (["--ray", "x"], "must be local, or HOST:PORT"),
     ],
-)  # fmt: skip
+)
 def test_wrong_options_are_refused(change, says, tmp_path, capsys):
     with pytest.raises(SystemExit):
         search_data.main([*COMMAND, "--positions", "12", "--out", str(tmp_path), *change])

@@ -17,7 +17,12 @@ MODULES = ("evaluate", "publish", "curves", "noise_samples", "report")
 def python(*arguments, **variables):
     """What a python process does in the repository."""
     return subprocess.run(
-        [sys.executable, *arguments], capture_output=True, cwd=ROOT, env=os.environ | variables, timeout=300, encoding="utf-8"
+        [sys.executable, *arguments],
+        capture_output=True,
+        cwd=ROOT,
+        env=os.environ | variables,
+        timeout=300,
+        encoding="utf-8",
     )
 
 
@@ -41,7 +46,10 @@ runpy.{start}, run_name="__main__")
 def test_train_says_what_is_missing(package):
     done = without(package, "train.py")
     assert done.returncode == 1
-    assert done.stderr == f'train.py: {package} is missing; in a clone of the repository:  pip install -e ".[train]"\n'
+    assert (
+        done.stderr
+        == f'train.py: {package} is missing; in a clone of the repository:  pip install -e ".[train]"\n'
+    )
 
 
 @pytest.mark.parametrize(
@@ -57,7 +65,10 @@ def test_train_says_what_is_missing(package):
 def test_a_command_says_what_is_missing(package, extra, module, arguments):
     done = without(package, f"agents.{module}", *arguments)
     assert done.returncode == 1
-    assert done.stderr == f'agents.{module}: {package} is missing; in a clone of the repository:  pip install -e ".[{extra}]"\n'
+    assert (
+        done.stderr
+        == f'agents.{module}: {package} is missing; in a clone of the repository:  pip install -e ".[{extra}]"\n'
+    )
 
 
 @pytest.mark.parametrize("module", [f"agents.{name}" for name in MODULES])
@@ -69,8 +80,32 @@ def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
     assert not [file for file in tmp_path.rglob("*") if file.suffix in (".nbi", ".nbc")]
 
 
-QUICK = ["--agent", "random", "--visits", "4", "--layouts", "held_out", "--noise", "professional", "--resamples", "100"]
-TINY = ["--agent", "ppo_mask", "--envs", "2", "--eval-visits", "4", "--parallel", "one", "--steps", "1", "--imitate", "0"]
+QUICK = [
+    "--agent",
+    "random",
+    "--visits",
+    "4",
+    "--layouts",
+    "held_out",
+    "--noise",
+    "professional",
+    "--resamples",
+    "100",
+]
+TINY = [
+    "--agent",
+    "ppo_mask",
+    "--envs",
+    "2",
+    "--eval-visits",
+    "4",
+    "--parallel",
+    "one",
+    "--steps",
+    "1",
+    "--imitate",
+    "0",
+]
 
 
 def test_any_terminal_will_do(tmp_path):
@@ -84,7 +119,14 @@ def test_any_terminal_will_do(tmp_path):
     assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
     assert "Means of 4 held-out visits" in done.stdout
     assert (
-        python("-m", "agents.curves", str(tmp_path / "\u2192"), "--out", str(tmp_path / "\u2192.png"), PYTHONIOENCODING=encoding).returncode
+        python(
+            "-m",
+            "agents.curves",
+            str(tmp_path / "\u2192"),
+            "--out",
+            str(tmp_path / "\u2192.png"),
+            PYTHONIOENCODING=encoding,
+        ).returncode
         == 0
     )
 
@@ -106,6 +148,15 @@ def test_a_reader_that_leaves_ends_a_command_in_one_line_at_most(arguments, tmp_
     reading, writing = os.pipe()
     os.close(reading)
     with open(writing, "w") as nobody:
-        done = subprocess.run([sys.executable, *arguments, *out], cwd=ROOT, stdout=nobody, stderr=subprocess.PIPE, text=True, timeout=300)
+        done = subprocess.run(
+            [sys.executable, *arguments, *out],
+            cwd=ROOT,
+            stdout=nobody,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=300,
+        )
     assert done.returncode == 1 and "Traceback" not in done.stderr
-    assert done.stderr == ("train.py: its output was closed. Nothing was saved yet: start the run again.\n" if out else "")
+    assert done.stderr == (
+        "train.py: its output was closed. Nothing was saved yet: start the run again.\n" if out else ""
+    )

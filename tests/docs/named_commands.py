@@ -1,13 +1,35 @@
-"""Which commands does the documentation name, and how does a test run each? In a short form, or by the test named; one is not run."""
+"""Which commands does the documentation name, and how does a test run each? In a short form, or by the test
+named; one is not run."""
 
 SHORT = {
     "benchmarks.tradeoff": ["--impacts", "30", "--shots", "12", "--repeats", "1", "--out", "{tmp}"],
-    "benchmarks.scene": ["--shots", "12", "--repeats", "1", "--models", "spin decay", "jaw arcs", "--out", "{tmp}"],
+    "benchmarks.scene": [
+        "--shots",
+        "12",
+        "--repeats",
+        "1",
+        "--models",
+        "spin decay",
+        "jaw arcs",
+        "--out",
+        "{tmp}",
+    ],
     "benchmarks.pockets": ["--quick", "--out", "{tmp}"],
     "benchmarks.rack": ["--shots", "2", "--orders", "2", "--racks", "2", "--out", "{tmp}"],
     "benchmarks.stability": ["--fuzz", "2000", "--out", "{tmp}"],
     "benchmarks.speed": [
-        "--shots", "20", "--repeats", "1", "--parts", "impacts", "shots", "growth", "--largest-batch", "64", "--out", "{tmp}",
+        "--shots",
+        "20",
+        "--repeats",
+        "1",
+        "--parts",
+        "impacts",
+        "shots",
+        "growth",
+        "--largest-batch",
+        "64",
+        "--out",
+        "{tmp}",
     ],
     "benchmarks.fit_cushion": [],
     "benchmarks.nap": [],
@@ -31,7 +53,7 @@ SHORT = {
     "tests.oracles.frame_oracle": ["--frames", "2", "--kind", "tables"],
     "docs/pictures/make.py": ["--out", "{tmp}"],
     "docs/films/make.py": ["--only", "pot_easy", "--out", "{tmp}"],
-}  # fmt: skip
+}
 """Module or file -> arguments of a run of a few seconds; "{tmp}" is a folder that is thrown away."""
 
 ELSEWHERE = {
@@ -61,5 +83,7 @@ ELSEWHERE = {
 }
 """Module or file -> the test that runs it."""
 
-NOT_RUN = {"coverage": "it would run this suite within the suite, and it is of the extra dev, which tests do not need"}
+NOT_RUN = {
+    "coverage": "it would run this suite within the suite, and it is of the extra dev, which tests do not need"
+}
 """Module -> why no test runs it."""

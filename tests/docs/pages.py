@@ -1,4 +1,5 @@
-"""What do the pages of the documentation hold? README and ``docs/``: their links, pictures, Python blocks and commands, and the words."""
+"""What do the pages of the documentation hold? README and ``docs/``: their links, pictures, Python blocks and
+commands, and the words."""
 
 import re
 from pathlib import Path
@@ -21,7 +22,9 @@ def blocks(text, kind="python"):
 
 def links(text):
     """Targets of links and pictures, films included, as they are written; not those of other sites."""
-    text = _FENCE.sub(lambda found: f"[]({found[2].split()[1]})\n" if found[2].startswith("{image}") else "", text)
+    text = _FENCE.sub(
+        lambda found: f"[]({found[2].split()[1]})\n" if found[2].startswith("{image}") else "", text
+    )
     text = re.sub(r"`+[^`\n]*`+", "code", text)
     found = re.findall(r"\]\(([^)\s]+)\)", text) + re.findall(r'\b(?:src|href)="([^"]+)"', text)
     found += re.findall(r"^\[[^\]^][^\]]*\]: *(\S+)", text, re.MULTILINE)
@@ -29,7 +32,8 @@ def links(text):
 
 
 def paths(text):
-    """Files and folders of the repository between backticks, as patterns; those that the reader is to name are left out."""
+    """Files and folders of the repository between backticks, as patterns; those that the reader is to name
+    are left out."""
     tops = "tests|benchmarks|agents|snooker_env|docs|examples|commands|leaderboard|[.]github|[.]ci"
     found = re.findall(rf"`((?:{tops})/[\w./*-]+)`", text)
     return [path for path in found if not re.search(r"NAME|\bmy_", path)]
@@ -47,7 +51,12 @@ def anchors(text):
 
 
 def commands(text):
-    """What is run with Python: ("benchmarks.speed", ["--parts", "start"]) for each ``python -m benchmarks.speed --parts start``."""
+    """What is run with Python: ("benchmarks.speed", ["--parts", "start"]) for each
+    ``python -m benchmarks.speed --parts start``."""
     text = re.sub(r"\\\n\s*", " ", text)
     found = [re.sub(r"^-m +", "", command).split() for command in _COMMAND.findall(text)]
-    return [(words[0].rstrip(".,:"), words[1:]) for words in found if not words[0].isupper() and not words[0].endswith("...")]
+    return [
+        (words[0].rstrip(".,:"), words[1:])
+        for words in found
+        if not words[0].isupper() and not words[0].endswith("...")
+    ]

@@ -16,7 +16,9 @@ SOURCE = "\n".join(path.read_text(encoding="utf-8") for path in sorted((DOCS / "
 def test_every_public_name_is_documented(module):
     found = re.findall(rf"^\.\. public:: {re.escape(module)}\n((?:   :.*\n)*)", SOURCE, re.MULTILINE)
     assert found, f"no page has '.. public:: {module}'"
-    chosen = [name for options in found for name in re.findall(r":only: (.*)", options) for name in name.split()]
+    chosen = [
+        name for options in found for name in re.findall(r":only: (.*)", options) for name in name.split()
+    ]
     everything = any(":only:" not in options for options in found)
     assert everything or set(chosen) == set(importlib.import_module(module).__all__)
     assert len(set(chosen)) == len(chosen) and ":but:" not in "".join(found)

@@ -1,4 +1,5 @@
-"""Does the Python of the pages run? Every block by itself, the blocks of a page in one process, in an empty folder, warnings as errors."""
+"""Does the Python of the pages run? Every block by itself, the blocks of a page in one process, in an empty
+folder, warnings as errors."""
 
 import json
 import os
@@ -20,9 +21,16 @@ RUNNER = """if True:
 CODE = [(page, blocks(page.read_text(encoding="utf-8"))) for page in PAGES]
 
 
-@pytest.mark.parametrize(("page", "code"), [(p, c) for p, c in CODE if c], ids=[n for n, (_, c) in zip(NAMES, CODE, strict=True) if c])
+@pytest.mark.parametrize(
+    ("page", "code"),
+    [(p, c) for p, c in CODE if c],
+    ids=[n for n, (_, c) in zip(NAMES, CODE, strict=True) if c],
+)
 def test_python_blocks_run(page, code, tmp_path):
-    env = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]), "MPLBACKEND": "Agg"}
+    env = os.environ | {
+        "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]),
+        "MPLBACKEND": "Agg",
+    }
     command = [sys.executable, "-c", RUNNER]
     env["SDL_VIDEODRIVER"] = "dummy"
     text = {"input": json.dumps(code), "text": True, "capture_output": True}

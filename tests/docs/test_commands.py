@@ -1,4 +1,5 @@
-"""Does each command of the documentation run? In a short form, or in the test named beside it; and does it have the options given?"""
+"""Does each command of the documentation run? In a short form, or in the test named beside it; and does it
+have the options given?"""
 
 import os
 import re
@@ -24,24 +25,40 @@ def test_every_command_is_known():
     assert set(NOT_RUN) <= set(GIVEN) and all(NOT_RUN.values())
 
 
-@pytest.mark.parametrize("name", sorted(set(GIVEN) - set(NOT_RUN) - {"pytest", "sphinx", "venv", "rl_zoo3.train"}))
+@pytest.mark.parametrize(
+    "name", sorted(set(GIVEN) - set(NOT_RUN) - {"pytest", "sphinx", "venv", "rl_zoo3.train"})
+)
 def test_commands_have_the_options_that_are_given(name):
-    """They stand in the source of the command, or in what all commands of its kind share: in quotes, or as fields of a dataclass."""
+    """They stand in the source of the command, or in what all commands of its kind share: in quotes, or as
+    fields of a dataclass."""
     top = name.split("/")[0] if name.endswith(".py") else name.split(".")[0]
-    shared = {"train.py": ("agents", "commands"), "agents": ("agents", "commands"), "benchmarks": ("benchmarks", "commands")}
+    shared = {
+        "train.py": ("agents", "commands"),
+        "agents": ("agents", "commands"),
+        "benchmarks": ("benchmarks", "commands"),
+    }
     files = [file for folder in shared.get(top, (top,)) for file in (ROOT / folder).rglob("*.py")]
     files += [ROOT / name] if name.endswith(".py") else []
     source = "\n".join(file.read_text(encoding="utf-8") for file in files)
     fields = {option: option[2:].replace("-", "_") for option in GIVEN[name]}
-    assert not [option for option in fields if not re.search(rf'"{option}"|^    {fields[option]}: ', source, re.MULTILINE)]
+    assert not [
+        option
+        for option in fields
+        if not re.search(rf'"{option}"|^    {fields[option]}: ', source, re.MULTILINE)
+    ]
 
 
 @pytest.mark.parametrize("name", sorted(set(GIVEN) & set(SHORT)))
 def test_commands_run(name, tmp_path):
     arguments = [a.format(tmp=tmp_path) for a in SHORT[name]]
     command = [sys.executable, name] if name.endswith(".py") else [sys.executable, "-m", name]
-    env = os.environ | {"SDL_VIDEODRIVER": "dummy", "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
-    done = subprocess.run([*command, *arguments], cwd=ROOT, check=True, timeout=300, capture_output=True, text=True, env=env)
+    env = os.environ | {
+        "SDL_VIDEODRIVER": "dummy",
+        "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]),
+    }
+    done = subprocess.run(
+        [*command, *arguments], cwd=ROOT, check=True, timeout=300, capture_output=True, text=True, env=env
+    )
     assert done.stdout.strip()
     if name == "tests.rules_cases":
         assert done.stdout.splitlines()[-1].endswith(", 0 failed")

@@ -1,4 +1,5 @@
-"""Do the pages hold together? Links, anchors, pictures and films are there, films are small, and the words are the field's."""
+"""Do the pages hold together? Links, anchors, pictures and films are there, films are small, and the words
+are the field's."""
 
 import pytest
 
@@ -20,10 +21,16 @@ def test_links_lead_somewhere(page):
 
 
 def test_files_that_pages_name_exist():
-    found = [(page.relative_to(ROOT).as_posix(), path) for page in PAGES for path in paths(page.read_text(encoding="utf-8"))]
+    found = [
+        (page.relative_to(ROOT).as_posix(), path)
+        for page in PAGES
+        for path in paths(page.read_text(encoding="utf-8"))
+    ]
     assert len(found) > 80
     assert not [(page, path) for page, path in found if not any(ROOT.glob(path))]
-    assert paths("`tests/a.py`, `agents/b/*.json` `snooker_env/` `docs/NAME.md` tests/c.py `snooker_env.d`") == [
+    assert paths(
+        "`tests/a.py`, `agents/b/*.json` `snooker_env/` `docs/NAME.md` tests/c.py `snooker_env.d`"
+    ) == [
         "tests/a.py",
         "agents/b/*.json",
     ]
@@ -38,6 +45,8 @@ def test_pictures_and_films_are_no_stubs(page):
 
 def test_every_film_is_shown_and_small():
     films = sorted((DOCS / "_static" / "films").iterdir())
-    shown = {(page.parent / link).resolve() for page in PAGES for link in links(page.read_text(encoding="utf-8"))}
+    shown = {
+        (page.parent / link).resolve() for page in PAGES for link in links(page.read_text(encoding="utf-8"))
+    }
     assert films and set(films) <= shown
     assert max(film.stat().st_size for film in films) <= LARGEST_FILM

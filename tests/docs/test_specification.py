@@ -1,4 +1,5 @@
-"""Does the specification print the options and noise levels of the code? Their names and defaults, and every number of a level."""
+"""Does the specification print the options and noise levels of the code? Their names and defaults, and every
+number of a level."""
 
 import ast
 import dataclasses
@@ -17,13 +18,20 @@ def tables(heading):
     """The tables between that heading and the next of any depth: rows of cells, the first one the head."""
     section = re.split(r"^#+ ", PAGE.partition(f"# {heading}\n")[2], maxsplit=1, flags=re.MULTILINE)[0]
     found = re.findall(r"(?:^\|.*\n)+", section, re.MULTILINE)
-    rows = [[[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()] for table in found]
+    rows = [
+        [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
+        for table in found
+    ]
     return [[table[0], *table[2:]] for table in rows]
 
 
 def defaults(table):
     """Name -> default, of a table of options; a row may have several names."""
-    return {name: ast.literal_eval(row[1].strip("`")) for row in table[1:] for name in re.findall(r"`(\w+)`", row[0])}
+    return {
+        name: ast.literal_eval(row[1].strip("`"))
+        for row in table[1:]
+        for name in re.findall(r"`(\w+)`", row[0])
+    }
 
 
 def test_options_have_the_defaults_that_are_printed():
@@ -37,6 +45,10 @@ def test_options_have_the_defaults_that_are_printed():
 def test_noise_levels_have_the_numbers_that_are_printed():
     ((head, *rows),) = tables("Noise")
     levels = [ast.literal_eval(cell.strip("`")) for cell in head[2:]]
-    assert {*levels, "none"} == set(LEVELS) and [row[0].strip("`") for row in rows] == [field.name for field in dataclasses.fields(Noise)]
+    assert {*levels, "none"} == set(LEVELS) and [row[0].strip("`") for row in rows] == [
+        field.name for field in dataclasses.fields(Noise)
+    ]
     for row in rows:
-        assert [float(cell) for cell in row[2:]] == [getattr(LEVELS[level], row[0].strip("`")) for level in levels], row[0]
+        assert [float(cell) for cell in row[2:]] == [
+            getattr(LEVELS[level], row[0].strip("`")) for level in levels
+        ], row[0]

@@ -1,4 +1,5 @@
-"""Does ``Snooker-v0`` keep Gymnasium's contract? The checkers of two libraries, making it by name and from a spec, pictures."""
+"""Does ``Snooker-v0`` keep Gymnasium's contract? The checkers of two libraries, making it by name and from a
+spec, pictures."""
 
 import json
 import warnings
@@ -20,7 +21,11 @@ IDS = sorted(name for name in gymnasium.registry if name.startswith("Snooker"))
 
 def free(name, arguments):
     """Those of the arguments that an id leaves free: the benchmark's tasks freeze the game itself."""
-    return {key: value for key, value in arguments.items() if name == "Snooker-v0" or key in (*FREE, "render_mode")}
+    return {
+        key: value
+        for key, value in arguments.items()
+        if name == "Snooker-v0" or key in (*FREE, "render_mode")
+    }
 
 
 @pytest.fixture
@@ -41,7 +46,8 @@ def strict():
 def test_gymnasium_checks_it(name, render_mode, observation, aim, screen, strict):
     arguments = {**viewed(observation), "render_mode": render_mode, "aim": aim, "layout": "random:2"}
     env = gymnasium.make(name, **free(name, arguments)).unwrapped
-    every_mode = render_mode is None and aim == "absolute"  # this check builds the environment once more for each render mode
+    # this check builds the environment once more for each render mode
+    every_mode = render_mode is None and aim == "absolute"
     check_env(env, skip_render_check=not every_mode)
     if not every_mode:  # it opens the window too, where the opponent breaks
         assert (len(screen) > 0) == (render_mode == "human")
@@ -67,13 +73,16 @@ def test_a_window_without_a_display_is_refused_at_the_first_stroke(monkeypatch):
     for env, size in ((SnookerEnv(render_mode="human"), 4), (match_env(render_mode="human"), 7)):
         env.reset(seed=1)
         before = env.get_state()
-        with pytest.raises(RuntimeError, match=r'^a window \(render_mode="human"\) needs a display, and there is none'):
+        with pytest.raises(
+            RuntimeError, match=r'^a window \(render_mode="human"\) needs a display, and there is none'
+        ):
             env.step(np.zeros(size, np.float32))
         assert data_equivalence(env.get_state(), before)
 
 
 ALLOWED = {"flat": set(), "masked": set(), "balls": {"Your observation balls has an unconventional shape"}}
-"""The one warning that Stable-Baselines3 gives: a table of balls is neither a vector nor an image. The observation is meant so."""
+"""The one warning that Stable-Baselines3 gives: a table of balls is neither a vector nor an image. The
+observation is meant so."""
 
 
 @pytest.mark.parametrize("name", IDS)
@@ -86,7 +95,10 @@ def test_stable_baselines_checks_it(name, observation, longer, render_mode):
         longer = {key: value for key, value in longer.items() if key == "layout"}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        checker.check_env(gymnasium.make(name, **viewed(observation), render_mode=render_mode, **free(name, longer)), warn=True)
+        checker.check_env(
+            gymnasium.make(name, **viewed(observation), render_mode=render_mode, **free(name, longer)),
+            warn=True,
+        )
     assert {str(w.message).partition(" (")[0] for w in caught} == ALLOWED[observation]
 
 
@@ -110,8 +122,21 @@ def test_the_checker_can_fail(strict):
     "arguments",
     [
         {},
-        {"aim": "target", "observation": "balls", "noise": {"aim_deg": 0.1}, "physics": {"preset": "match", "mu_s": 0.2}, "table": "tight"},
-        {"layout": "break_off", "placement": True, "elevation": True, "reward": "pots", "noise": "club", "fidelity": "euler:50"},
+        {
+            "aim": "target",
+            "observation": "balls",
+            "noise": {"aim_deg": 0.1},
+            "physics": {"preset": "match", "mu_s": 0.2},
+            "table": "tight",
+        },
+        {
+            "layout": "break_off",
+            "placement": True,
+            "elevation": True,
+            "reward": "pots",
+            "noise": "club",
+            "fidelity": "euler:50",
+        },
         {"action": "discrete", "observation": "masked", "layout": "colours"},
     ],
 )

@@ -1,4 +1,5 @@
-"""Do frames and matches go the same way in ``SnookerEnv``, ``SnookerVectorEnv`` and ``MatchEnv``? Random play, replayed bit for bit."""
+"""Do frames and matches go the same way in ``SnookerEnv``, ``SnookerVectorEnv`` and ``MatchEnv``? Random
+play, replayed bit for bit."""
 
 import json
 
@@ -18,13 +19,16 @@ KINDS = {
     "miss": PLAIN | {"task": "frame", "layout": "random:2", "miss": "clear_path", "reward": "win"},
     "everything said": PLAIN | SAID | {"task": "frame", "layout": "random:1", "miss": "clear_path"},
     "a match": PLAIN | SAID | {"task": "match", "frames": 3, "layout": "random:0", "max_strokes": 90},
-    "frames of a match": PLAIN | {"task": "match", "frames": 5, "layout": "colours", "reward": "frames", "miss": "clear_path"},
-    "discrete": SAID | {"task": "match", "frames": 3, "layout": "random:1", "action": "discrete", "noise": "amateur"},
+    "frames of a match": PLAIN
+    | {"task": "match", "frames": 5, "layout": "colours", "reward": "frames", "miss": "clear_path"},
+    "discrete": SAID
+    | {"task": "match", "frames": 3, "layout": "random:1", "action": "discrete", "noise": "amateur"},
 }
 
 
 class Played:
-    """One random frame or match of two players: the actions of each, and what player 0 was shown whenever it was his turn."""
+    """One random frame or match of two players: the actions of each, and what player 0 was shown whenever it
+    was his turn."""
 
     def __init__(self, options, seed):
         env = sn.match_env(**options)
@@ -43,7 +47,11 @@ class Played:
         self.end = _end(env.get_state())
         self.ended = any(env.terminations.values()), any(env.truncations.values())
         info = env.infos[PLAYERS[0]]
-        self.info = {name: info[name] for name in info if name in ("score", "opponent_score", "winner", "frames_won", "strokes", "frame")}
+        self.info = {
+            name: info[name]
+            for name in info
+            if name in ("score", "opponent_score", "winner", "frames_won", "strokes", "frame")
+        }
 
     def _action(self, env, rng):
         if env.options.action == "discrete":
@@ -59,7 +67,8 @@ class Played:
 
 
 def _key(rng):
-    """What identifies the generator of a table: its state after the key of the table's stream was drawn from it."""
+    """What identifies the generator of a table: its state after the key of the table's stream was drawn from
+    it."""
     return json.dumps(rng.bit_generator.state, default=str)
 
 
@@ -73,7 +82,11 @@ class Other:
 
     def __init__(self, played):
         self.left = {one.key: iter(one.actions[1]) for one in played}
-        self.nothing = 0 if isinstance((played[0].actions[0] + played[0].actions[1])[0], int) else 0.0 * played[0].actions[0][0]
+        self.nothing = (
+            0
+            if isinstance((played[0].actions[0] + played[0].actions[1])[0], int)
+            else 0.0 * played[0].actions[0][0]
+        )
 
     def __call__(self, observation, rng):
         return next(self.left[_key(rng)], self.nothing)
@@ -85,26 +98,34 @@ def check_alike(options, seeds):
         env = sn.SnookerEnv(**options, opponent=Other([one]))
         shown, _ = env.reset(seed=seed)
         seen, total = [shown.tobytes()], 0.0
-        for action in one.actions[0] or [0 * one.actions[1][0]]:  # if the opponent has ended it in his first visit, any action
+        # if the opponent has ended it in his first visit, any action
+        for action in one.actions[0] or [0 * one.actions[1][0]]:
             shown, reward, terminated, truncated, info = env.step(action)
             seen.append(shown.tobytes())
             total += reward
         if one.actions[0]:
             assert seen == one.seen
-        assert (terminated, truncated) == one.ended and total == one.total and _end(env.get_state()) == one.end
+        assert (
+            (terminated, truncated) == one.ended and total == one.total and _end(env.get_state()) == one.end
+        )
         assert {name: info[name] for name in one.info} == one.info
     n = len(seeds)
     tables = SnookerVectorEnv(n, **options, opponent=Other(played), threads=1)
     tables.reset(seed=list(seeds))
     totals, over = np.zeros(n), np.zeros(n, bool)
     for step in range(max(len(one.actions[0]) or 1 for one in played)):
-        actions = [one.actions[0][step] if step < len(one.actions[0]) else 0 * (one.actions[0] or one.actions[1])[0] for one in played]
+        actions = [
+            one.actions[0][step] if step < len(one.actions[0]) else 0 * (one.actions[0] or one.actions[1])[0]
+            for one in played
+        ]
         shown, rewards, terminated, truncated, info = tables.step(np.array(actions))
         totals += np.where(over, 0.0, rewards)
         for k in np.flatnonzero((terminated | truncated) & ~over).tolist():
             one, over[k] = played[k], True
             assert step + 1 == max(1, len(one.actions[0])) and shown[k].tobytes() == one.seen[-1]
-            assert (bool(terminated[k]), bool(truncated[k])) == one.ended and _end(tables.get_state()[k]) == one.end
+            assert (bool(terminated[k]), bool(truncated[k])) == one.ended and _end(
+                tables.get_state()[k]
+            ) == one.end
             assert {name: info[name][k].item() for name in one.info} == one.info
     assert over.all() and totals.tolist() == [one.total for one in played]
     return played
@@ -139,7 +160,9 @@ def test_a_match_goes_on_from_its_state_bit_for_bit():
             other.reset(options={"state": state})
         elif state is not None:
             other.step(action)
-            assert json.dumps(other.get_state()) == json.dumps(env.get_state()) and other.rewards == env.rewards
+            assert (
+                json.dumps(other.get_state()) == json.dumps(env.get_state()) and other.rewards == env.rewards
+            )
             assert other.observe("player_1").tobytes() == env.observe("player_1").tobytes()
     assert state is not None and sum(state["frames"]) == 1 and max(env.get_state()["frames"]) == 3
     for change, field in (

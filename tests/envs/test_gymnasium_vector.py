@@ -1,4 +1,5 @@
-"""Do Gymnasium's own vector environments play, bit for bit, what single ones play? (The native one: ``test_vector``.)"""
+"""Do Gymnasium's own vector environments play, bit for bit, what single ones play? (The native one:
+``test_vector``.)"""
 
 import os
 
@@ -20,7 +21,9 @@ def test_vector_environments_play_as_single_ones(kind):
         vector = gymnasium.vector.SyncVectorEnv([make_noisy] * 2)
     else:
         sn.warmup()
-        vector = gymnasium.vector.AsyncVectorEnv([make_noisy] * 2, context="fork" if hasattr(os, "fork") else "spawn")
+        vector = gymnasium.vector.AsyncVectorEnv(
+            [make_noisy] * 2, context="fork" if hasattr(os, "fork") else "spawn"
+        )
     singles = [make_noisy() for _ in range(2)]
     try:
         got, infos = vector.reset(seed=10)
@@ -37,7 +40,12 @@ def test_vector_environments_play_as_single_ones(kind):
                 else:
                     obs, reward, over[k], _, info = env.step(np.zeros(4, np.float32))
                 ends += over[k]
-                assert np.array_equal(got[k], obs) and rewards[k] == reward and terminated[k] == over[k] and not truncated[k]
+                assert (
+                    np.array_equal(got[k], obs)
+                    and rewards[k] == reward
+                    and terminated[k] == over[k]
+                    and not truncated[k]
+                )
                 assert all(infos[name][k] == info[name] for name in INFO)
         assert ends > 1
         assert infos["seconds"].dtype == infos["break"].dtype == np.float64 and infos["foul"].dtype == bool
@@ -60,7 +68,10 @@ def test_the_observation_at_the_end_is_given_with_the_reset():
             obs, _, over, _, info = env.step(np.zeros(4, np.float32))
             if over:
                 ended += 1
-                assert np.array_equal(infos["final_obs"][k], obs) and infos["final_info"]["seconds"][k] == info["seconds"]
+                assert (
+                    np.array_equal(infos["final_obs"][k], obs)
+                    and infos["final_info"]["seconds"][k] == info["seconds"]
+                )
                 obs, _ = env.reset()
                 assert not np.array_equal(infos["final_obs"][k], obs)
             assert np.array_equal(got[k], obs) and terminated[k] == over

@@ -1,4 +1,5 @@
-"""Is what a call is given left as it is, neither written into, repaired nor kept? Arrays, dicts, actions and states."""
+"""Is what a call is given left as it is, neither written into, repaired nor kept? Arrays, dicts, actions and
+states."""
 
 import copy
 
@@ -39,7 +40,8 @@ def test_inputs_of_a_shot_are_left_as_they_are(many):
     here = np.array([True, True])
     here.setflags(write=False)
     if many:
-        r, v, w, here = (np.broadcast_to(a, (3, *a.shape)) for a in (r, v, w, here))  # no memory of their own: writing would show
+        # no memory of their own: writing would show
+        r, v, w, here = (np.broadcast_to(a, (3, *a.shape)) for a in (r, v, w, here))
         before = [a.copy() for a in (r, v, w, here)]
         out = sn.simulate_batch(r, v, w, on_table=here, events=True)
     else:
@@ -57,9 +59,17 @@ def test_inputs_of_a_shot_are_left_as_they_are(many):
 def test_any_real_dtype_and_memory_order_gives_the_same_shot():
     r, v, w = np.array([(0.0, 0.0), (0.5, 0.0625)]), np.array([(2.0, 0.0), (0.0, 0.0)]), np.ones((2, 3))
     want = sn.simulate(r, v, w).positions
-    for change in (np.asfortranarray, list, lambda a: a.astype(np.float32), lambda a: a.astype(">f8"), lambda a: a[::-1][::-1]):
+    for change in (
+        np.asfortranarray,
+        list,
+        lambda a: a.astype(np.float32),
+        lambda a: a.astype(">f8"),
+        lambda a: a[::-1][::-1],
+    ):
         assert np.array_equal(sn.simulate(change(r), change(v), change(w)).positions, want)
-    whole = sn.simulate(np.zeros((1, 2), np.int32), np.array([(1, 0)], np.uint8), np.zeros((1, 3), np.int64)).positions
+    whole = sn.simulate(
+        np.zeros((1, 2), np.int32), np.array([(1, 0)], np.uint8), np.zeros((1, 3), np.int64)
+    ).positions
     assert np.array_equal(whole, sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [Z]).positions)
 
 

@@ -1,4 +1,5 @@
-"""Is the match of two players a sound PettingZoo environment, and whose turn is it? PettingZoo's own tests, turns, decisions, states."""
+"""Is the match of two players a sound PettingZoo environment, and whose turn is it? PettingZoo's own tests,
+turns, decisions, states."""
 
 import json
 import subprocess
@@ -29,7 +30,10 @@ def strict():
         yield
 
 
-@pytest.mark.parametrize("options", [{"aim": "target"}, {"max_strokes": 20}, {"layout": "colours", "aim": "target", "reward": "win"}])
+@pytest.mark.parametrize(
+    "options",
+    [{"aim": "target"}, {"max_strokes": 20}, {"layout": "colours", "aim": "target", "reward": "win"}],
+)
 def test_pettingzoo_checks_its_interface(options, strict, capsys):
     api_test(sn.match_env(**options), num_cycles=200)
     assert "Passed API test" in capsys.readouterr().out
@@ -42,19 +46,28 @@ def test_pettingzoo_checks_its_interface_with_observations_of_balls(capsys):
     assert "Passed API test" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("options", [{}, {"nominate": True, "concede": True, "claim": True, "lot": True}, {"frames": 3}])
+@pytest.mark.parametrize(
+    "options", [{}, {"nominate": True, "concede": True, "claim": True, "lot": True}, {"frames": 3}]
+)
 def test_pettingzoo_checks_its_interface_with_masked_observations(options, capsys):
-    """Its random players take the mask from the observation. Dict observations are warned of, and PettingZoo's own key has no plural."""
+    """Its random players take the mask from the observation. Dict observations are warned of, and
+    PettingZoo's own key has no plural."""
     with pytest.warns(UserWarning, match="Observation"):
-        api_test(sn.match_env(action="discrete", observation="masked", layout="random:3", **options), num_cycles=80)
+        api_test(
+            sn.match_env(action="discrete", observation="masked", layout="random:3", **options), num_cycles=80
+        )
     assert "Passed API test" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("options", [{}, {"action": "discrete"}, {"action": "discrete", "observation": "masked"}, {"frames": 3}])
+@pytest.mark.parametrize(
+    "options", [{}, {"action": "discrete"}, {"action": "discrete", "observation": "masked"}, {"frames": 3}]
+)
 def test_nothing_is_observed_before_the_first_reset(options):
     env = sn.match_env(**options)
     for look in (lambda: env.observe("player_0"), env.last, lambda: env.agent_selection):
-        with pytest.raises(AttributeError, match=r"^agent_selection cannot be read before reset\(\): call reset\(\)"):
+        with pytest.raises(
+            AttributeError, match=r"^agent_selection cannot be read before reset\(\): call reset\(\)"
+        ):
             look()
     if "action" in options:
         with pytest.raises(AttributeError, match=r"before reset\(\)"):
@@ -67,15 +80,22 @@ def test_nothing_is_observed_before_the_first_reset(options):
 
 def test_masked_observations_of_both_players_hold_their_masks():
     """All 0 for the player whose turn it is not, and for both at the end, as in the infos."""
-    env, plain = (sn.match_env(action="discrete", observation=kind, layout="random:0", noise="club") for kind in ("masked", "flat"))
+    env, plain = (
+        sn.match_env(action="discrete", observation=kind, layout="random:0", noise="club")
+        for kind in ("masked", "flat")
+    )
     env.reset(seed=2), plain.reset(seed=2)
     rng, turns = np.random.default_rng(0), set()
     while True:
         for name in env.possible_agents:
             seen, mask = env.observe(name), env.action_mask(name)
-            assert np.array_equal(seen["observations"], plain.observe(name)) and env.observation_space(name).contains(seen)
+            assert np.array_equal(seen["observations"], plain.observe(name)) and env.observation_space(
+                name
+            ).contains(seen)
             assert seen["action_mask"].dtype == np.int8 and np.array_equal(seen["action_mask"], mask)
-            assert np.array_equal(mask, env.infos[name]["action_mask"]) and np.array_equal(mask, plain.action_mask(name))
+            assert np.array_equal(mask, env.infos[name]["action_mask"]) and np.array_equal(
+                mask, plain.action_mask(name)
+            )
             over = any(env.terminations.values())
             assert mask.any() == (name == env.agent_selection and not over)
             seen["action_mask"][:] = 1  # it is the caller's own
@@ -154,7 +174,11 @@ def put(env, places, **fields):
     mask = sum(1 << ball for ball in places if ball)
     frame = Frame(**{"on_table": mask, "in_hand": False, "miss": env.options.miss} | fields)
     env.reset(seed=1)
-    state = env.get_state() | {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
+    state = env.get_state() | {
+        "positions": positions.tolist(),
+        "on_table": on_table.tolist(),
+        "frame": frame.to_dict(),
+    }
     env.reset(options={"state": json.loads(json.dumps(state))})
     return env
 
@@ -162,7 +186,10 @@ def put(env, places, **fields):
 PLACES = {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], PINK: SPOTS[PINK]}
 
 
-@pytest.mark.parametrize(("decision", "turn", "played"), [(0.0, "player_1", True), (1.0, "player_1", True), (-1.0, "player_0", False)])
+@pytest.mark.parametrize(
+    ("decision", "turn", "played"),
+    [(0.0, "player_1", True), (1.0, "player_1", True), (-1.0, "player_0", False)],
+)
 def test_the_decision_after_a_foul_is_part_of_the_action(decision, turn, played):
     """Player 1 comes to the table after a foul: an easy pot if he plays; or player 0 has to play again."""
     env = put(sn.match_env(aim="target"), PLACES, phase="choice", striker=1, scores=(0, 4))
@@ -170,7 +197,9 @@ def test_the_decision_after_a_foul_is_part_of_the_action(decision, turn, played)
     before = env.positions.tobytes()
     env.step(np.array([-0.5, 0, 0, 0, 0, 0, decision], np.float32))
     assert env.agent_selection == turn and (env.positions.tobytes() != before) == played
-    assert env.rewards == ({"player_0": -1.0, "player_1": 1.0} if played else {"player_0": 0.0, "player_1": 0.0})
+    assert env.rewards == (
+        {"player_0": -1.0, "player_1": 1.0} if played else {"player_0": 0.0, "player_1": 0.0}
+    )
     assert env.strokes == played
 
 
@@ -178,7 +207,8 @@ def test_after_a_miss_the_balls_may_be_replaced():
     env = sn.match_env(miss="clear_path", layout="break_off")
     env.reset(seed=3)
     offender, before = env.agent_selection, env.positions.copy()
-    env.step(np.array([-0.9, 0, 0, -0.5, 0.6, -1.0, 0], np.float32))  # with the reds in sight, into the bottom cushion
+    # with the reds in sight, into the bottom cushion
+    env.step(np.array([-0.9, 0, 0, -0.5, 0.6, -1.0, 0], np.float32))
     assert env.frame.miss_called and env.agent_selection != offender
     moved = env.positions.copy()
     env.step(np.array([0, 0, 0, 0, 0, 0, 1.0], np.float32))
@@ -186,7 +216,10 @@ def test_after_a_miss_the_balls_may_be_replaced():
     assert np.array_equal(before[1:], env.positions[1:]) and env.frame.in_hand
 
 
-@pytest.mark.parametrize(("x", "back", "place"), [(0.0, -1.0, (0.0, -1.0475)), (0.0, 1.0, (0.0, -1.3395)), (-1.0, 0.3, (-0.292, -1.0475))])
+@pytest.mark.parametrize(
+    ("x", "back", "place"),
+    [(0.0, -1.0, (0.0, -1.0475)), (0.0, 1.0, (0.0, -1.3395)), (-1.0, 0.3, (-0.292, -1.0475))],
+)
 def test_the_place_in_the_d_is_part_of_the_action(x, back, place):
     env = sn.match_env(render_mode="ansi")
     put(env, PLACES | {CUE: (0.1, -1.2)}, in_hand=True)
@@ -219,7 +252,10 @@ def test_a_saved_match_plays_on_bit_for_bit():
         if any(env.terminations.values()):
             break
         env.step(action), other.step(action)
-        assert json.dumps(env.get_state()) == json.dumps(other.get_state()) and env.agent_selection == other.agent_selection
+        assert (
+            json.dumps(env.get_state()) == json.dumps(other.get_state())
+            and env.agent_selection == other.agent_selection
+        )
         assert env.rewards == other.rewards
 
 
@@ -254,11 +290,16 @@ def test_a_state_repeats_its_errors_and_a_seed_draws_others():
 @pytest.mark.parametrize(
     ("options", "field"),
     [
-        ({"layout": "opene"}, "layout"), ({"reward": "pots"}, "reward"), ({"miss": "on"}, "miss"), ({"max_strokes": 0}, "max_strokes"),
+        ({"layout": "opene"}, "layout"),
+        ({"reward": "pots"}, "reward"),
+        ({"miss": "on"}, "miss"),
+        ({"max_strokes": 0}, "max_strokes"),
         ({"decision": 1}, "decision"),
-        ({"render_mode": "x"}, "render_mode"), ({"observation": "x"}, "observation"), ({"table": None}, "table"),
+        ({"render_mode": "x"}, "render_mode"),
+        ({"observation": "x"}, "observation"),
+        ({"table": None}, "table"),
     ],
-)  # fmt: skip
+)
 def test_wrong_arguments_are_refused(options, field):
     with pytest.raises(ValueError, match=f"^{field} = "):
         sn.match_env(**options)
@@ -282,5 +323,10 @@ def test_pettingzoo_is_loaded_only_when_asked_for_and_its_lack_is_explained():
         "try: sn.match_env()\n"
         "except ImportError as error: print(error)\n"
     )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=120)
-    assert done.stdout.strip() == f'match_env needs PettingZoo; install it, in the clone {ROOT}, with: pip install -e ".[multi]"'
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=120
+    )
+    assert (
+        done.stdout.strip()
+        == f'match_env needs PettingZoo; install it, in the clone {ROOT}, with: pip install -e ".[multi]"'
+    )

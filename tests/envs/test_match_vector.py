@@ -1,4 +1,5 @@
-"""Do two players on many tables play, bit for bit, what ``match_env`` plays table by table? And what do seats that differ mean?"""
+"""Do two players on many tables play, bit for bit, what ``match_env`` plays table by table? And what do seats
+that differ mean?"""
 
 import json
 
@@ -18,7 +19,9 @@ def actions_of(options, rng, masks):
     """Random actions on N tables: near a pot, or available choices."""
     if options.get("action") == "discrete":
         return np.array([rng.choice(np.flatnonzero(mask)) for mask in masks])
-    a = rng.uniform(-1, 1, (N, 6 + sum(bool(options.get(name)) for name in ("nominate", "decision", "concede"))))
+    a = rng.uniform(
+        -1, 1, (N, 6 + sum(bool(options.get(name)) for name in ("nominate", "decision", "concede")))
+    )
     a[:, 1:4] *= 0.3
     if options.get("concede"):
         a[:, -1] = np.where(rng.random(N) < 0.98, np.abs(a[:, -1]), a[:, -1])
@@ -49,9 +52,14 @@ def test_each_table_plays_as_a_match_alone(kind, threads):
                 one.step(int(actions[k]) if discrete else actions[k])
                 assert rewards[k].tolist() == list(one.rewards.values())
                 info = one.infos["player_0"]
-                assert {name: infos[name][k] for name in info if name in infos} == {name: info[name] for name in info if name in infos}
+                assert {name: infos[name][k] for name in info if name in infos} == {
+                    name: info[name] for name in info if name in infos
+                }
                 strokes += 1
-            assert (terminated[k], truncated[k]) == (one.terminations["player_0"], one.truncations["player_0"])
+            assert (terminated[k], truncated[k]) == (
+                one.terminations["player_0"],
+                one.truncations["player_0"],
+            )
             keys = ("positions", "on_table", "frame", "strokes", "stream")
             state = tables.get_state()[k]
             assert {key: state[key] for key in keys} == {key: one.get_state()[key] for key in keys}
@@ -69,9 +77,17 @@ def test_tables_that_have_ended_stand_still_until_they_are_reset():
     assert out[3].all()
     before = json.dumps(tables.get_state())
     _, rewards, terminated, truncated, _ = tables.step(np.zeros((4, 7)))
-    assert json.dumps(tables.get_state()) == before and not rewards.any() and truncated.all() and not terminated.any()
+    assert (
+        json.dumps(tables.get_state()) == before
+        and not rewards.any()
+        and truncated.all()
+        and not terminated.any()
+    )
     _, infos = tables.reset(options={"reset_mask": np.array([True, False, False, True]), "breaker": 1})
-    assert infos["_strokes"].tolist() == [True, False, False, True] and tables.strikers[[0, 3]].tolist() == [1, 1]
+    assert infos["_strokes"].tolist() == [True, False, False, True] and tables.strikers[[0, 3]].tolist() == [
+        1,
+        1,
+    ]
     assert tables.step(np.zeros((4, 7)))[3].tolist() == [False, True, True, False]
 
 
@@ -82,19 +98,25 @@ def test_a_saved_state_plays_on_whoever_is_to_play():
     states = json.loads(json.dumps(tables.get_state()))
     again = sn.MatchVectorEnv(N, **PLAIN, layout="random:3", threads=1)
     seen, _ = again.reset(options={"states": states})
-    assert set(tables.strikers.tolist()) == {0, 1} and np.array_equal(seen[tables.strikers == 1], tables.observe(1)[tables.strikers == 1])
+    assert set(tables.strikers.tolist()) == {0, 1} and np.array_equal(
+        seen[tables.strikers == 1], tables.observe(1)[tables.strikers == 1]
+    )
     for one, other in zip(tables.step(np.zeros((N, 7)))[:4], again.step(np.zeros((N, 7)))[:4], strict=True):
         assert np.array_equal(one, other)
 
 
 def test_seats_differ_in_actions_and_errors():
-    """Player 1 has choices, and exact strokes: on one seed its stroke from one position is the same however often it is asked."""
+    """Player 1 has choices, and exact strokes: on one seed its stroke from one position is the same however
+    often it is asked."""
     seats = ({}, {"action": "discrete", "noise": "none"})
     tables = sn.MatchVectorEnv(N, seats=seats, layout="random:3", noise="club", threads=2)
     alone = [sn.match_env(seats=seats, layout="random:3", noise="club") for _ in range(N)]
     tables.reset(seed=1, options={"breaker": np.arange(N) % 2})
     [one.reset(seed=1 + k, options={"breaker": k % 2}) for k, one in enumerate(alone)]
-    assert alone[0].action_space("player_0") == gymnasium.spaces.Box(-1.0, 1.0, (7,)) and alone[0].action_space("player_1").n == 540
+    assert (
+        alone[0].action_space("player_0") == gymnasium.spaces.Box(-1.0, 1.0, (7,))
+        and alone[0].action_space("player_1").n == 540
+    )
     for _ in range(6):
         for one in alone:
             if not (one.terminations["player_0"] or one.truncations["player_0"]):

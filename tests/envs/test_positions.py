@@ -1,4 +1,5 @@
-"""Do environments start from a position as it says, with random numbers that are not its own, and is a wrong one refused by its field?"""
+"""Do environments start from a position as it says, with random numbers that are not its own, and is a wrong
+one refused by its field?"""
 
 import json
 
@@ -10,7 +11,14 @@ from snooker_env.game.balls import BallOn
 from snooker_env.planning import Planner, Positions
 from tests.refusals import refused
 
-MID_BREAK = sn.Position(cue=(0.1, -0.6), reds=[(0.3, 0.5), (-0.2, 0.9)], blue=(0.0, 0.0), black=(0.0, 1.4605), on="any colour", points=33)
+MID_BREAK = sn.Position(
+    cue=(0.1, -0.6),
+    reds=[(0.3, 0.5), (-0.2, 0.9)],
+    blue=(0.0, 0.0),
+    black=(0.0, 1.4605),
+    on="any colour",
+    points=33,
+)
 IN_HAND = sn.Position(reds=[(0.3, 0.5)], black=(0.0, 1.4605), in_hand=True)
 OPTIONS = {"noise": "professional", "aim": "target"}
 
@@ -27,13 +35,17 @@ def is_there(env, position):
 
 
 @pytest.mark.parametrize("position", [MID_BREAK, IN_HAND], ids=["mid-break", "in hand"])
-@pytest.mark.parametrize("plain", [lambda p: p, lambda p: json.loads(json.dumps(p.to_dict()))], ids=["Position", "dict"])
+@pytest.mark.parametrize(
+    "plain", [lambda p: p, lambda p: json.loads(json.dumps(p.to_dict()))], ids=["Position", "dict"]
+)
 def test_a_visit_starts_where_the_position_says(position, plain):
     env = sn.SnookerEnv(**OPTIONS)
     observation, info = env.reset(seed=1, **start(plain(position)))
     assert is_there(env, position) and info["break"] == position.points and info["points"] == 0.0
     assert np.array_equal(observation, Positions.of(position).observations()[0])
-    with pytest.raises(ValueError, match=r"keys of options = \['state', 'position'\]: must be only one of them"):
+    with pytest.raises(
+        ValueError, match=r"keys of options = \['state', 'position'\]: must be only one of them"
+    ):
         env.reset(options={"state": env.get_state(), "position": position})
 
 
@@ -84,10 +96,24 @@ def test_in_a_frame_the_agent_plays_the_position(opponent, position):
     env.step(np.zeros(4))  # the frame before leaves nothing behind
     _, info = env.reset(seed=1, **start(position))
     assert is_there(env, position)
-    assert (info["score"], info["opponent_score"], info["break"], info["winner"]) == (0, 0, position.points, -1)
-    assert (info["strokes"], info["opponent_strokes"], info["choice"], info["free_ball"]) == (0, 0, False, False)
+    assert (info["score"], info["opponent_score"], info["break"], info["winner"]) == (
+        0,
+        0,
+        position.points,
+        -1,
+    )
+    assert (info["strokes"], info["opponent_strokes"], info["choice"], info["free_ball"]) == (
+        0,
+        0,
+        False,
+        False,
+    )
     frame = env.frame
-    assert frame.striker == frame.breaker == 0 and frame.phase == "stroke" and frame.ball_on == BallOn[position.on.upper()]
+    assert (
+        frame.striker == frame.breaker == 0
+        and frame.phase == "stroke"
+        and frame.ball_on == BallOn[position.on.upper()]
+    )
     again = sn.SnookerEnv(task="frame", opponent=opponent, **OPTIONS)
     again.reset(options={"state": json.loads(json.dumps(env.get_state()))})  # it is a sound state
     assert again.get_state() == env.get_state()
@@ -100,8 +126,14 @@ def test_in_a_match_player_0_plays_the_position():
     match = sn.match_env(noise="club")
     for seed in range(4):
         match.reset(seed=seed, options={"position": MID_BREAK, "of PettingZoo's own": 1})
-        assert match.agent_selection == "player_0" and match.frame.scores == (0, 0) and match.frame.break_points == 33
-        assert np.array_equal(match.positions, MID_BREAK.arrays()[0]) and match.infos["player_0"]["break"] == 33
+        assert (
+            match.agent_selection == "player_0"
+            and match.frame.scores == (0, 0)
+            and match.frame.break_points == 33
+        )
+        assert (
+            np.array_equal(match.positions, MID_BREAK.arrays()[0]) and match.infos["player_0"]["break"] == 33
+        )
         stream = match.get_state()["stream"]
         other = sn.match_env(noise="club")
         other.reset(seed=seed)
@@ -116,7 +148,10 @@ def test_in_a_match_player_0_plays_the_position():
 def test_many_tables_start_from_one_position_or_from_one_each():
     env = sn.SnookerVectorEnv(4, threads=1, **OPTIONS)
     singles = [sn.SnookerEnv(**OPTIONS) for _ in range(4)]
-    for options in ({"position": MID_BREAK}, {"positions": [MID_BREAK, IN_HAND.to_dict(), MID_BREAK, IN_HAND]}):
+    for options in (
+        {"position": MID_BREAK},
+        {"positions": [MID_BREAK, IN_HAND.to_dict(), MID_BREAK, IN_HAND]},
+    ):
         observations, infos = env.reset(seed=11, options=options)
         each = options.get("positions", [MID_BREAK] * 4)
         for k, one in enumerate(singles):
@@ -125,7 +160,9 @@ def test_many_tables_start_from_one_position_or_from_one_each():
         a = np.zeros((4, 4))
         observations, rewards, *_ = env.step(a)
         stepped = [one.step(a[k]) for k, one in enumerate(singles)]
-        assert np.array_equal(observations, [s[0] for s in stepped]) and rewards.tolist() == [s[1] for s in stepped]
+        assert np.array_equal(observations, [s[0] for s in stepped]) and rewards.tolist() == [
+            s[1] for s in stepped
+        ]
         assert len({row.tobytes() for row in observations[::3]}) == 2  # each table draws its own errors
         assert env.get_state() == [one.get_state() for one in singles]
 
@@ -134,7 +171,9 @@ def test_a_mask_keeps_the_other_tables():
     env = sn.SnookerVectorEnv(3, threads=1, task="frame", opponent="ghost_ball", noise="club")
     env.reset(seed=2)
     before = env.get_state()
-    env.reset(options={"reset_mask": np.array([False, True, False]), "positions": [MID_BREAK, IN_HAND, MID_BREAK]})
+    env.reset(
+        options={"reset_mask": np.array([False, True, False]), "positions": [MID_BREAK, IN_HAND, MID_BREAK]}
+    )
     after = env.get_state()
     assert after[0] == before[0] and after[2] == before[2] and after[1] != before[1]
     assert Positions.of(env)[1] == IN_HAND and after[1]["stream"] == before[1]["stream"]
@@ -147,7 +186,10 @@ def test_vectors_of_sb3_take_positions():
     env.reset()
     assert list(Positions.of(env)) == [MID_BREAK, IN_HAND]
     env.set_options([{"position": MID_BREAK}, {"state": {}}])
-    with pytest.raises(ValueError, match=r"keys of options\[1\] = \['state'\]: must be \"state\", \"position\" or \"breaker\" alone"):
+    with pytest.raises(
+        ValueError,
+        match=r"keys of options\[1\] = \['state'\]: must be \"state\", \"position\" or \"breaker\" alone",
+    ):
         env.reset()
 
 
@@ -172,28 +214,59 @@ FAULTS = [
 ]
 
 
-@pytest.mark.parametrize(("position", "field", "value", "allowed"), FAULTS, ids=[f"{field}={value}" for _, field, value, _ in FAULTS])
+@pytest.mark.parametrize(
+    ("position", "field", "value", "allowed"),
+    FAULTS,
+    ids=[f"{field}={value}" for _, field, value, _ in FAULTS],
+)
 def test_a_wrong_position_is_refused_by_its_field_and_changes_nothing(position, field, value, allowed):
     single, match, many = sn.SnookerEnv(), sn.match_env(), sn.SnookerVectorEnv(2, threads=1)
     for env in (single, match):
         env.reset(seed=1)
         before = json.dumps(env.get_state())
-        refused(lambda env=env: env.reset(seed=4, options={"position": position}), f"options[{field}", value, allowed)
+        refused(
+            lambda env=env: env.reset(seed=4, options={"position": position}),
+            f"options[{field}",
+            value,
+            allowed,
+        )
         assert json.dumps(env.get_state()) == before
     many.reset(seed=1)
     before = many.get_state()
     refused(lambda: many.reset(options={"position": position}), f"options[{field}", value, allowed)
     field = field.replace('"position"]', '"positions"][1]')
-    refused(lambda: many.reset(options={"positions": [MID_BREAK, position]}), f"options[{field}", value, allowed)
+    refused(
+        lambda: many.reset(options={"positions": [MID_BREAK, position]}), f"options[{field}", value, allowed
+    )
     assert many.get_state() == before
 
 
 def test_other_mistakes_are_named():
     env, many = sn.SnookerEnv(), sn.SnookerVectorEnv(2, threads=1)
-    refused(lambda: env.reset(options={"position": changed(grey=[0, 0])}), 'keys of options["position"]', "'grey'", "must be one of 'cue'")
-    refused(lambda: many.reset(options={"positions": MID_BREAK}), 'options["positions"]', "Position", "must be a list of 2 positions")
-    refused(lambda: many.reset(options={"positions": [MID_BREAK]}), 'options["positions"]', "list of 1", "must be a list of 2 positions")
-    refused(lambda: env.reset(options={"positions": [MID_BREAK]}), "options", "'positions'", "must be one of 'state', 'position'")
+    refused(
+        lambda: env.reset(options={"position": changed(grey=[0, 0])}),
+        'keys of options["position"]',
+        "'grey'",
+        "must be one of 'cue'",
+    )
+    refused(
+        lambda: many.reset(options={"positions": MID_BREAK}),
+        'options["positions"]',
+        "Position",
+        "must be a list of 2 positions",
+    )
+    refused(
+        lambda: many.reset(options={"positions": [MID_BREAK]}),
+        'options["positions"]',
+        "list of 1",
+        "must be a list of 2 positions",
+    )
+    refused(
+        lambda: env.reset(options={"positions": [MID_BREAK]}),
+        "options",
+        "'positions'",
+        "must be one of 'state', 'position'",
+    )
 
 
 def test_who_breaks_is_said_only_where_balls_are_dealt():
@@ -202,11 +275,21 @@ def test_who_breaks_is_said_only_where_balls_are_dealt():
     many = sn.SnookerVectorEnv(2, threads=1, task="frame", opponent="random")
     single.reset(seed=1)
     for env, key, given in (
-        (single, "position", position), (match, "position", position), (many, "positions", [position] * 2),
+        (single, "position", position),
+        (match, "position", position),
+        (many, "positions", [position] * 2),
         (single, "state", single.get_state()),
-    ):  # fmt: skip
-        field, allowed = 'options["breaker"]', f'must be left out with "{key}": it says who breaks where balls are dealt'
-        refused(lambda env=env, key=key, given=given: env.reset(options={key: given, "breaker": 1}), field, "1", allowed)
+    ):
+        field, allowed = (
+            'options["breaker"]',
+            f'must be left out with "{key}": it says who breaks where balls are dealt',
+        )
+        refused(
+            lambda env=env, key=key, given=given: env.reset(options={key: given, "breaker": 1}),
+            field,
+            "1",
+            allowed,
+        )
 
 
 def test_the_position_is_checked_on_the_table_that_is_played_on():
@@ -214,4 +297,9 @@ def test_the_position_is_checked_on_the_table_that_is_played_on():
     position = sn.Position(cue=(0.0, 0.0), reds=[(0.8183, 1.7610)])
     sn.SnookerEnv().reset(**start(position))
     field = 'options["position"].reds[0]'
-    refused(lambda: sn.SnookerEnv(table="tight").reset(**start(position)), field, "(0.8183, 1.761)", "overlaps jaw")
+    refused(
+        lambda: sn.SnookerEnv(table="tight").reset(**start(position)),
+        field,
+        "(0.8183, 1.761)",
+        "overlaps jaw",
+    )

@@ -1,4 +1,5 @@
-"""Does random play ever lose, double, overlap or misplace a ball? Checked after every shot, wild ones and good ones."""
+"""Does random play ever lose, double, overlap or misplace a ball? Checked after every shot, wild ones and
+good ones."""
 
 import numpy as np
 import pytest
@@ -26,7 +27,9 @@ def check_table(env, before, info):
     assert lost[1:16].tolist() == potted[1:16].tolist()  # a red in a pocket never comes back
     if here.any() and env.ball_on != BallOn.NOTHING:
         gone = before[16:] & ~here[16:]
-        assert gone.sum() <= 1 and (not gone.any() or (info["ball_on"] == 2 + gone.argmax() and not info["foul"] and info["points"]))
+        assert gone.sum() <= 1 and (
+            not gone.any() or (info["ball_on"] == 2 + gone.argmax() and not info["foul"] and info["points"])
+        )
     assert env.over or here[CUE]
     assert env.over == (not info["points"]) or not here[1:].any()
     assert info["break"] == env.points
@@ -38,7 +41,13 @@ def test_random_play_loses_no_ball(layout):
     rng = np.random.default_rng(LAYOUTS.index(layout))
     strokes = most = 0
     for aim in AIMS:
-        arguments = {"aim": aim, "layout": layout, "noise": "club", "fidelity": "fast", "elevation": aim == "absolute"}
+        arguments = {
+            "aim": aim,
+            "layout": layout,
+            "noise": "club",
+            "fidelity": "fast",
+            "elevation": aim == "absolute",
+        }
         env = SnookerEnv(placement=layout == "break_off", reward="points_and_fouls", **arguments)
         obs, _ = env.reset(seed=LAYOUTS.index(layout))
         for _ in range(19):

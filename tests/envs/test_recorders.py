@@ -1,4 +1,5 @@
-"""Do recorders get the motion of the strokes? The recorders of Gymnasium and Stable-Baselines3 as they are, on one table and on many."""
+"""Do recorders get the motion of the strokes? The recorders of Gymnasium and Stable-Baselines3 as they are,
+on one table and on many."""
 
 from itertools import pairwise
 
@@ -51,7 +52,10 @@ def test_record_video_of_gymnasium_films_each_stroke(tmp_path):
 
 def test_the_opponents_strokes_are_filmed_too(tmp_path):
     env = RecordVideo(
-        made(task="frame", opponent="ghost_ball"), str(tmp_path / "films"), episode_trigger=lambda k: True, disable_logger=True
+        made(task="frame", opponent="ghost_ball"),
+        str(tmp_path / "films"),
+        episode_trigger=lambda k: True,
+        disable_logger=True,
     )
     env.reset(seed=2)
     before = len(env.recorded_frames)
@@ -65,9 +69,16 @@ def test_the_opponents_strokes_are_filmed_too(tmp_path):
 
 def test_vector_record_video_films_all_tables_at_once(tmp_path):
     envs = gymnasium.make_vec(
-        "Snooker-v0", num_envs=2, vectorization_mode="vector_entry_point", render_mode="rgb_array", action="discrete", **SMALL
+        "Snooker-v0",
+        num_envs=2,
+        vectorization_mode="vector_entry_point",
+        render_mode="rgb_array",
+        action="discrete",
+        **SMALL,
     )
-    envs = VectorRecordVideo(envs, str(tmp_path / "films"), episode_trigger=lambda k: True, video_length=10**6, disable_logger=True)
+    envs = VectorRecordVideo(
+        envs, str(tmp_path / "films"), episode_trigger=lambda k: True, video_length=10**6, disable_logger=True
+    )
     envs.reset(seed=1)
     info = envs.step(np.array([67, 67]))[4]
     assert len(envs.recorded_frames) == 1 + pictures_of(max(info["seconds"])) + 1
@@ -80,7 +91,11 @@ def test_the_recorder_of_stable_baselines_films_each_stroke(tmp_path, native):
     sb3 = pytest.importorskip("stable_baselines3.common.vec_env")
     from snooker_env.sb3 import SnookerVecEnv
 
-    tables = SnookerVecEnv(1, render_mode="rgb_array", action="discrete", **SMALL) if native else sb3.DummyVecEnv([made])
+    tables = (
+        SnookerVecEnv(1, render_mode="rgb_array", action="discrete", **SMALL)
+        if native
+        else sb3.DummyVecEnv([made])
+    )
     env = sb3.VecVideoRecorder(tables, str(tmp_path / "films"), lambda step: step == 0, video_length=10**6)
     env.seed(1)
     env.reset()
@@ -132,7 +147,9 @@ def test_a_film_that_breaks_off_leaves_no_picture_behind():
 
 def test_the_stroke_that_ends_an_episode_is_filmed_where_the_reset_is_inside_the_step(tmp_path):
     sb3 = pytest.importorskip("stable_baselines3.common.vec_env")
-    env = sb3.VecVideoRecorder(sb3.DummyVecEnv([made]), str(tmp_path), lambda step: step == 0, video_length=10**6)
+    env = sb3.VecVideoRecorder(
+        sb3.DummyVecEnv([made]), str(tmp_path), lambda step: step == 0, video_length=10**6
+    )
     env.seed(1)
     env.reset()
     single = sn.SnookerEnv(action="discrete")
@@ -156,7 +173,10 @@ def test_shots_with_long_logs_are_kept_each_on_its_own_table(monkeypatch):
             envs = sn.SnookerVectorEnv(4, render_mode="ansi", action="discrete", threads=1)
             envs.reset(seed=1)
             envs.step(np.full(4, 67))
-            return [[(p.shot.positions, len(p.shot.events), p.points) for p in table] for table in envs._recent.strokes]
+            return [
+                [(p.shot.positions, len(p.shot.events), p.points) for p in table]
+                for table in envs._recent.strokes
+            ]
 
     long, short = strokes(512), strokes(8)
     assert len({table[0][1] for table in long}) > 1 and max(table[0][1] for table in long) > 8
@@ -165,7 +185,8 @@ def test_shots_with_long_logs_are_kept_each_on_its_own_table(monkeypatch):
 
 
 def test_a_picture_shows_no_stroke_of_another_table():
-    """After set_state, and where a new episode has begun within the step, nothing is drawn of the last stroke."""
+    """After set_state, and where a new episode has begun within the step, nothing is drawn of the last
+    stroke."""
     env = made()
     env.reset(seed=1)
     state, plain = env.unwrapped.get_state(), env.render()

@@ -1,4 +1,5 @@
-"""Is ``SnookerVecEnv`` to Stable-Baselines3 what ``DummyVecEnv`` of monitored single tables is, and does PPO run on it?"""
+"""Is ``SnookerVecEnv`` to Stable-Baselines3 what ``DummyVecEnv`` of monitored single tables is, and does PPO
+run on it?"""
 
 import warnings
 
@@ -82,14 +83,21 @@ def test_a_seed_at_the_start_is_as_one_given_later():
 
 @pytest.mark.parametrize("seed", [-1, 1.0, "1", True, [1, 2], 2**63])
 def test_wrong_seeds_are_refused(seed):
-    refused(lambda: SnookerVecEnv(2, seed=seed), "seed", repr(seed), "must be an integer in [0, 9223372036854775807]")
+    refused(
+        lambda: SnookerVecEnv(2, seed=seed),
+        "seed",
+        repr(seed),
+        "must be an integer in [0, 9223372036854775807]",
+    )
 
 
 def test_infos_are_empty_unless_something_is_to_say():
     env = SnookerVecEnv(8)
     env.reset()
     _, _, done, infos = env.step(np.zeros((8, 4), np.float32))
-    assert [set(info) for info in infos] == [{"episode", "terminal_observation", "TimeLimit.truncated"} if d else set() for d in done]
+    assert [set(info) for info in infos] == [
+        {"episode", "terminal_observation", "TimeLimit.truncated"} if d else set() for d in done
+    ]
     assert env.reset_infos == [{}] * 8
 
 
@@ -100,7 +108,9 @@ def test_terminal_observations_stay_what_they_were():
     infos = env.step(a)[3]
     kept = [info["terminal_observation"].copy() for info in infos]
     following = env.step(a)[3]
-    assert all(np.array_equal(info["terminal_observation"], old) for info, old in zip(infos, kept, strict=True))
+    assert all(
+        np.array_equal(info["terminal_observation"], old) for info, old in zip(infos, kept, strict=True)
+    )
     assert not np.array_equal(following[0]["terminal_observation"], kept[0])
 
 
@@ -117,7 +127,10 @@ def test_states_are_saved_and_restored():
     assert env.env_method("get_state", indices=[1])[0]["stream"] == env.env_method("get_state")[1]["stream"]
     env.set_options([{"state": states[0]}, {}, {"state": states[2]}])
     # not the whole of another's state
-    with pytest.raises(ValueError, match=r"^keys of options\[1\] = \[\]: must be \"state\", \"position\" or \"breaker\" alone"):
+    with pytest.raises(
+        ValueError,
+        match=r"^keys of options\[1\] = \[\]: must be \"state\", \"position\" or \"breaker\" alone",
+    ):
         env.reset()
     env.set_options({"layout": 1})
     with pytest.raises(ValueError, match="options"):
@@ -148,11 +161,18 @@ def test_without_stable_baselines_one_line_says_how_to_get_it():
 
 def test_attributes():
     env = SnookerVecEnv(2)
-    assert env.get_attr("num_envs") == [2, 2] and env.has_attr("options") and not env.has_attr("no_such") and not env.has_attr("last_shot")
+    assert (
+        env.get_attr("num_envs") == [2, 2]
+        and env.has_attr("options")
+        and not env.has_attr("no_such")
+        and not env.has_attr("last_shot")
+    )
     env.seed(3)
     env.reset()
     assert env.get_attr("np_random_seed", [1]) == [4] and env.get_attr("points") == [0, 0]
-    assert [p.tobytes() for p in env.get_attr("positions")] == [p.tobytes() for p in env.tables.tables.positions]
+    assert [p.tobytes() for p in env.get_attr("positions")] == [
+        p.tobytes() for p in env.tables.tables.positions
+    ]
     with pytest.raises(AttributeError, match="cannot be set"):
         env.set_attr("observation", "balls")
     with pytest.raises(ValueError, match="method_name"):

@@ -1,4 +1,5 @@
-"""Does the seed decide everything? The same seed the same game bit for bit, other seeds other tables, nothing from outside."""
+"""Does the seed decide everything? The same seed the same game bit for bit, other seeds other tables, nothing
+from outside."""
 
 import pickle
 
@@ -35,7 +36,8 @@ def test_different_seeds_start_from_different_tables(layout):
     starts = {env.reset(seed=seed)[0].tobytes() for seed in range(8)}
     tables = 2 if layout == "break_off" else 8  # the cue ball left or right of the brown
     assert len(starts) == tables
-    assert len({env.reset()[0].tobytes() for _ in range(8)}) == tables  # nor does the same table come again and again
+    # nor does the same table come again and again
+    assert len({env.reset()[0].tobytes() for _ in range(8)}) == tables
     assert env.reset(seed=3)[0].tobytes() in starts
 
 

@@ -1,4 +1,5 @@
-"""Is every fault of a saved state refused by its name, with nothing changed? Every field of every kind of state, spoilt in every way."""
+"""Is every fault of a saved state refused by its name, with nothing changed? Every field of every kind of
+state, spoilt in every way."""
 
 import copy
 import json
@@ -64,7 +65,8 @@ def must_be_refused(path, value, old, root):
 
 
 def attack(state, load, saved, root="state", play=lambda: None):
-    """Load every mutation: it is refused by name with nothing changed, or it is played. Counts (refused, taken)."""
+    """Load every mutation: it is refused by name with nothing changed, or it is played. Counts (refused,
+    taken)."""
     counts = [0, 0]
     load(state)
     good = frozen(saved())
@@ -94,7 +96,9 @@ def player(env, strokes=2):
         for k in range(strokes):
             if env.over:
                 return
-            observation, reward, *_, info = env.step(np.random.default_rng(k).uniform(-1, 1, env.action_space.shape))
+            observation, reward, *_, info = env.step(
+                np.random.default_rng(k).uniform(-1, 1, env.action_space.shape)
+            )
             assert env.observation_space.contains(observation) and np.isfinite([reward, info["break"]]).all()
 
     return play
@@ -147,7 +151,14 @@ def test_every_fault_of_a_match(name, frame_states):
             assert all(spaces[player].contains(env.observe(player)) for player in env.possible_agents)
 
     def whole():
-        return [env.get_state(), env.agent_selection, env.rewards, env.infos, env.terminations, env.truncations]
+        return [
+            env.get_state(),
+            env.agent_selection,
+            env.rewards,
+            env.infos,
+            env.terminations,
+            env.truncations,
+        ]
 
     refusals, taken = attack(frame_states[name], env.set_state, whole, play=play)
     assert refusals > 800 and taken > 50
@@ -191,26 +202,56 @@ def changed(state, **parts):
 MISS = [
     ({"frame__striker": 1}, "state.frame.striker", "1", "must be 0, the agent"),
     ({"frame__saved__layout": None}, "state.frame.saved.layout", "None", "must be positions and on_table"),
-    ({"frame__saved__layout": [[[5, 5]] * 22, [True] * 22]}, "state.frame.saved.layout[0][0]", "(5.0, 5.0)", "must be on the table"),
-    ({"frame__saved__layout": [[[0, 0]] * 22, [True] * 22]}, "state.frame.saved.layout[0]", "balls 0 and 1", "overlap"),
-    ({"frame__saved__on_table": 1 << BLACK, "frame__saved__ball_on": 7}, "state.frame.saved", "a position", "must have the balls on_table"),
+    (
+        {"frame__saved__layout": [[[5, 5]] * 22, [True] * 22]},
+        "state.frame.saved.layout[0][0]",
+        "(5.0, 5.0)",
+        "must be on the table",
+    ),
+    (
+        {"frame__saved__layout": [[[0, 0]] * 22, [True] * 22]},
+        "state.frame.saved.layout[0]",
+        "balls 0 and 1",
+        "overlap",
+    ),
+    (
+        {"frame__saved__on_table": 1 << BLACK, "frame__saved__ball_on": 7},
+        "state.frame.saved",
+        "a position",
+        "must have the balls on_table",
+    ),
     ({"frame__saved__in_hand": 1}, "state.frame.saved.in_hand", "1", "must be True or False"),
     ({"frame__saved": 3}, "state.frame.saved", "3", "must be a dict with the fields"),
     ({"frame__saved": {}}, "state.frame.saved", "on_table", "must have exactly the fields"),
     ({"frame__respotted_black": NAN}, "state.frame.respotted_black", "nan", "must be True or False"),
     ({"frame__phase": "lot"}, "state.frame.phase", "lot", "must"),
     ({"frame__scores": 3}, "state.frame.scores", "3", "must be a tuple of two integers"),
-    ({"frame__scores": [0, 2**53]}, "state.frame.scores[1]", "9007199254740992", "must be an integer in [0, 9007199254740991]"),
+    (
+        {"frame__scores": [0, 2**53]},
+        "state.frame.scores[1]",
+        "9007199254740992",
+        "must be an integer in [0, 9007199254740991]",
+    ),
     ({"frame__scores": [0, 1, 2]}, "state.frame.scores", "(0, 1, 2)", "must be a tuple of two integers"),
     ({"frame__failures": 3}, "state.frame.failures", "3", "must be an integer in [0, 2]"),
     ({"frame__break_points": 20}, "state.frame.break_points", "20", "must be"),
     ({"frame__warned": True}, "state.frame.warned", "True", "must be False"),
-    ({"rng__state__state": 2**128}, "state.rng", "340282366920938463463374607431768211456", "must be the state of a PCG64"),
+    (
+        {"rng__state__state": 2**128},
+        "state.rng",
+        "340282366920938463463374607431768211456",
+        "must be the state of a PCG64",
+    ),
     ({"rng__state__inc": 1.0}, "state.rng.state.inc", "1.0", "must be of type int"),
     ({"strokes": -1}, "state.strokes", "-1", "must be an integer"),
     ({"strokes": 1000}, "state.strokes", "1000", "must be below max_strokes = 1000: there is no shot left"),
-    ({"ball_on": 1}, "state", "'ball_on'", "must be a state of get_state() here, with the keys ['frame', 'positions', 'on_table',"),
-]  # fmt: skip
+    (
+        {"ball_on": 1},
+        "state",
+        "'ball_on'",
+        "must be a state of get_state() here, with the keys ['frame', 'positions', 'on_table',",
+    ),
+]
 
 
 @pytest.mark.parametrize(("parts", "field", "value", "allowed"), MISS)
@@ -250,7 +291,9 @@ def test_a_layout_is_kept_by_the_rule_of_the_miss_only():
     assert state["frame"]["phase"] == "choice" and state["frame"]["saved"]["layout"] is None
     env.set_state(state)
     state["frame"]["saved"]["layout"] = [state["positions"], state["on_table"]]
-    refused(lambda: env.set_state(state), "state.frame.saved.layout", "a layout", 'must be None with miss = "off"')
+    refused(
+        lambda: env.set_state(state), "state.frame.saved.layout", "a layout", 'must be None with miss = "off"'
+    )
 
 
 @pytest.mark.parametrize(
@@ -258,8 +301,16 @@ def test_a_layout_is_kept_by_the_rule_of_the_miss_only():
     [
         (PLACES, {"in_hand": True}, "state.frame.in_hand"),
         ({CUE: (0, 0), BLUE: (0.5, 0.5), PINK: SPOTS[PINK]}, {"ball_on": BallOn.PINK}, "state.frame.ball_on"),
-        ({CUE: (0, 0), PINK: SPOTS[PINK]}, {"ball_on": BallOn.PINK, "break_points": 150}, "state.frame.break_points"),
-        ({CUE: (0, 0), BLACK: SPOTS[BLACK]}, {"ball_on": BallOn.BLACK, "respotted_black": True, "scores": (7, 8)}, "state.frame.respotted"),
+        (
+            {CUE: (0, 0), PINK: SPOTS[PINK]},
+            {"ball_on": BallOn.PINK, "break_points": 150},
+            "state.frame.break_points",
+        ),
+        (
+            {CUE: (0, 0), BLACK: SPOTS[BLACK]},
+            {"ball_on": BallOn.BLACK, "respotted_black": True, "scores": (7, 8)},
+            "state.frame.respotted",
+        ),
         (PLACES, {"free_ball": True, "break_points": 3}, "state.frame.break_points"),
     ],
 )
@@ -307,14 +358,22 @@ def test_a_ball_off_the_table_is_not_endlessly_far_away():
     env = SnookerEnv(layout="random:3")
     env.reset(seed=1)
     state = plain(env.get_state())
-    refused(lambda: env.set_state(changed(state, positions__9__1=1e300)), "state.positions[9]", "1e+300", "must be within 1000 m")
+    refused(
+        lambda: env.set_state(changed(state, positions__9__1=1e300)),
+        "state.positions[9]",
+        "1e+300",
+        "must be within 1000 m",
+    )
 
 
 def test_a_state_with_nothing_left_to_play_is_for_looking_only(frame_states):
     over = Frame.from_dict(frame_states["a break"]["frame"]).concede(0).to_dict()
     env = frame_env(**FRAME)
     env.reset(seed=1)
-    for state, field in ((frame_states["a break"] | {"frame": over}, "phase"), (frame_states["in_hand"] | {"strokes": 1000}, "strokes")):
+    for state, field in (
+        (frame_states["a break"] | {"frame": over}, "phase"),
+        (frame_states["in_hand"] | {"strokes": 1000}, "strokes"),
+    ):
         before = frozen(env.get_state())
         with pytest.raises(ValueError, match=f"{field} = .*no shot"):
             env.reset(options={"state": state})
@@ -327,7 +386,11 @@ def test_a_match_takes_nothing_from_a_state_whose_end_is_wrong(frame_states):
     env = sn.match_env(miss="clear_path")
     env.reset(seed=4)
     before = frozen(env.get_state())
-    for wrong in ({"rng": {}}, {"strokes": None}, {"rng": frame_states["in_hand"]["rng"] | {"has_uint32": 2**40}}):
+    for wrong in (
+        {"rng": {}},
+        {"strokes": None},
+        {"rng": frame_states["in_hand"]["rng"] | {"has_uint32": 2**40}},
+    ):
         with pytest.raises(ValueError, match=r"^state\."):
             env.set_state(frame_states["in_hand"] | wrong)
         with pytest.raises(ValueError, match=r"^state\."):

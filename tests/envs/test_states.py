@@ -1,4 +1,5 @@
-"""Do a saved state and a copy of the environment play on bit for bit, and is a reset asked for when one is needed?"""
+"""Do a saved state and a copy of the environment play on bit for bit, and is a reset asked for when one is
+needed?"""
 
 import copy
 import json
@@ -34,7 +35,9 @@ def midway(seed=0, **arguments):
     raise AssertionError("no pot in 200 shots")
 
 
-@pytest.mark.parametrize("arguments", [{}, {"observation": "balls"}, {"placement": True, "elevation": True}, viewed("masked")])
+@pytest.mark.parametrize(
+    "arguments", [{}, {"observation": "balls"}, {"placement": True, "elevation": True}, viewed("masked")]
+)
 def test_a_saved_state_plays_on_bit_for_bit(arguments):
     env = midway(**arguments)
     text = json.dumps(env.get_state())
@@ -42,13 +45,21 @@ def test_a_saved_state_plays_on_bit_for_bit(arguments):
     last, _ = copy.deepcopy(env).reset(options={"state": env.get_state()})
     want = shots(env)
     for how in ("set_state", "reset", "elsewhere"):
-        other = env if how in ("set_state", "reset") else SnookerEnv(aim="target", noise="club", layout="random:6", **arguments)
+        other = (
+            env
+            if how in ("set_state", "reset")
+            else SnookerEnv(aim="target", noise="club", layout="random:6", **arguments)
+        )
         if how == "set_state":
             other.set_state(json.loads(text))
         else:
             obs, info = other.reset(options={"state": json.loads(text)})
             assert data_equivalence(obs, last, exact=True)
-            assert info["break"] == other.points and info["ball_on"] == BallOn.ANY_COLOUR and info["points"] == 0.0
+            assert (
+                info["break"] == other.points
+                and info["ball_on"] == BallOn.ANY_COLOUR
+                and info["points"] == 0.0
+            )
         assert json.dumps(other.get_state()) == text
         assert shots(other) == want
 
@@ -64,7 +75,9 @@ def ends_from(env, state, seeds):
 
 
 @pytest.mark.parametrize(
-    "arguments", [{}, {"task": "frame"}, {"task": "frame", "opponent": "ghost_ball", "miss": "clear_path"}], ids=["visit", "alone", "frame"]
+    "arguments",
+    [{}, {"task": "frame"}, {"task": "frame", "opponent": "ghost_ball", "miss": "clear_path"}],
+    ids=["visit", "alone", "frame"],
 )
 def test_a_state_repeats_its_errors_and_a_seed_draws_others(arguments):
     env = SnookerEnv(noise="professional", layout="random:6", **arguments)
@@ -72,15 +85,19 @@ def test_a_state_repeats_its_errors_and_a_seed_draws_others(arguments):
     state = json.loads(json.dumps(env.get_state()))
     assert len(set(ends_from(env, state, [None] * 20))) == 1
     ends = ends_from(env, state, range(300))
-    assert len(set(ends)) > 290  # not always all: in a frame a few end in the same foul, the ball placed at the same spot
+    # not always all: in a frame a few end in the same foul, the ball placed at the same spot
+    assert len(set(ends)) > 290
     assert ends_from(env, state, [7, 299, 7]) == [ends[7], ends[299], ends[7]]
-    assert ends_from(SnookerEnv(noise="professional", layout="random:6", **arguments), state, [7]) == [ends[7]]
+    assert ends_from(SnookerEnv(noise="professional", layout="random:6", **arguments), state, [7]) == [
+        ends[7]
+    ]
     env.reset(seed=7, options={"state": state})
     kept = env.get_state()
     assert {key for key in state if kept[key] != state[key]} == {"rng", "stream"}
     fresh = SnookerEnv(noise="professional", layout="random:6", **arguments)
     fresh.reset(seed=7)
-    assert arguments or kept["stream"] == [fresh.get_state()["stream"][0], 0]  # the key that a visit of that seed has
+    # the key that a visit of that seed has
+    assert arguments or kept["stream"] == [fresh.get_state()["stream"][0], 0]
 
 
 def test_after_a_seed_the_tables_to_come_are_the_seeds_too():
@@ -105,14 +122,17 @@ def test_a_finished_visit_can_be_saved_too():
         other.step(np.zeros(4))
 
 
-@pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))], ids=["deepcopy", "pickle"])
+@pytest.mark.parametrize(
+    "copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))], ids=["deepcopy", "pickle"]
+)
 @pytest.mark.parametrize("render_mode", [None, "rgb_array", "human"])
 def test_copies_play_on_alike_and_apart(copied, render_mode, screen):
     env = midway(render_mode=render_mode)
     twin = copied(env)
     assert twin.table is env.table  # no copy of what never changes
     assert shots(twin) == (want := shots(copied(env)))
-    assert json.dumps(env.get_state()) == json.dumps(copied(env).get_state())  # the twins' shots left it alone
+    # the twins' shots left it alone
+    assert json.dumps(env.get_state()) == json.dumps(copied(env).get_state())
     assert shots(env) == want
     for one in (env, twin):
         one.close()

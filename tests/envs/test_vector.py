@@ -1,4 +1,5 @@
-"""Does the native vector environment play, bit for bit, what ``SyncVectorEnv`` plays, in every mode and for any number of threads?"""
+"""Does the native vector environment play, bit for bit, what ``SyncVectorEnv`` plays, in every mode and for
+any number of threads?"""
 
 import copy
 import pickle
@@ -24,7 +25,9 @@ def native(n, **options):
 
 
 def sync(n, mode, **options):
-    return gymnasium.make_vec("Snooker-v0", n, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **options)
+    return gymnasium.make_vec(
+        "Snooker-v0", n, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **options
+    )
 
 
 def same(a, b):
@@ -32,7 +35,9 @@ def same(a, b):
     if isinstance(a, dict):
         return isinstance(b, dict) and set(a) == set(b) and all(same(a[key], b[key]) for key in a)
     if isinstance(a, np.ndarray) and a.dtype == object:
-        return b.dtype == object and all((x is None) == (y is None) and (x is None or same(x, y)) for x, y in zip(a, b, strict=True))
+        return b.dtype == object and all(
+            (x is None) == (y is None) and (x is None or same(x, y)) for x, y in zip(a, b, strict=True)
+        )
     if isinstance(a, tuple | list):
         return len(a) == len(b) and all(map(same, a, b))
     return data_equivalence(a, b, exact=True)
@@ -61,7 +66,9 @@ def check_equal(n, mode, steps, *, threads=None, seed=3, **options):
             assert same(got, theirs.reset(options={"reset_mask": done.copy()})), step
         a = actions_of(ours, rng, options.get("aim"))
         got, want = ours.step(a), theirs.step(a)
-        for x, y, name in zip(got, want, ("observations", "rewards", "terminated", "truncated", "infos"), strict=True):
+        for x, y, name in zip(
+            got, want, ("observations", "rewards", "terminated", "truncated", "infos"), strict=True
+        ):
             assert same(x, y), (step, name, x, y)
         done = got[2] | got[3]
         ends, cut, scored = ends + done.sum(), cut + got[3].sum(), scored + np.maximum(got[1], 0.0).sum()
@@ -75,11 +82,24 @@ def check_equal(n, mode, steps, *, threads=None, seed=3, **options):
     [
         {},
         {"aim": "target", "noise": "club", "layout": "random:5", "reward": "points_and_fouls"},
-        {"aim": "target", "observation": "balls", "layout": "break_off", "placement": True, "elevation": True, "reward": "pots"},
+        {
+            "aim": "target",
+            "observation": "balls",
+            "layout": "break_off",
+            "placement": True,
+            "elevation": True,
+            "reward": "pots",
+        },
         {"aim": "target", "noise": "olympiad", "layout": "pots:easy", "physics": "match", "table": "tight"},
         {"aim": "target", "max_episode_steps": 2, "layout": "random:3", "observation": "balls"},
         {"noise": {"aim_deg": 0.3}, "layout": "snookered", "fidelity": "fast"},
-        {"action": "discrete", "observation": "masked", "layout": "random:2", "noise": "club", "max_episode_steps": 2},
+        {
+            "action": "discrete",
+            "observation": "masked",
+            "layout": "random:2",
+            "noise": "club",
+            "max_episode_steps": 2,
+        },
     ],
     ids=["plain", "noise", "balls", "match", "limit", "snookered", "masked"],
 )
@@ -91,12 +111,25 @@ def test_it_equals_sync_vector_env(mode, options):
 
 @pytest.mark.parametrize("layout", ["held_out", "line_up", "colours", "random:0", "pots:hard"])
 def test_every_layout_is_dealt_alike(layout):
-    assert check_equal(5, AutoresetMode.SAME_STEP, 20, layout=layout, aim="target", noise="professional")[0] > 10
+    assert (
+        check_equal(5, AutoresetMode.SAME_STEP, 20, layout=layout, aim="target", noise="professional")[0] > 10
+    )
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_hundreds_of_steps_for_any_number_of_threads(threads):
-    assert check_equal(33, AutoresetMode.SAME_STEP, 250, threads=threads, aim="target", noise="amateur", layout="random:4")[0] > 4000
+    assert (
+        check_equal(
+            33,
+            AutoresetMode.SAME_STEP,
+            250,
+            threads=threads,
+            aim="target",
+            noise="amateur",
+            layout="random:4",
+        )[0]
+        > 4000
+    )
 
 
 def test_numbers_of_tables_and_threads_do_not_matter(monkeypatch):
@@ -128,7 +161,8 @@ def test_seeds_none_int_and_list():
     assert np.array_equal(a[[0, 2]], c[[0, 2]]) and not (a[1] == c[1]).all() and not (a[3] == c[3]).all()
     d, _ = env.reset()
     assert not any((x == y).all() for x, y in zip(c, d, strict=True))
-    for read in (lambda env: None, lambda env: env.np_random, lambda env: env.get_state()):  # before the first reset, and without a seed
+    # before the first reset, and without a seed
+    for read in (lambda env: None, lambda env: env.np_random, lambda env: env.get_state()):
         env = native(50, layout="random:3")
         read(env)
         assert len({row.tobytes() for row in env.reset()[0]}) == 50
@@ -138,12 +172,18 @@ def test_seeds_none_int_and_list():
 
 def test_a_mask_resets_only_those():
     for mode in MODES:
-        env, other = native(6, autoreset_mode=mode, aim="target", layout="random:6"), sync(6, mode, aim="target", layout="random:6")
+        env, other = (
+            native(6, autoreset_mode=mode, aim="target", layout="random:6"),
+            sync(6, mode, aim="target", layout="random:6"),
+        )
         assert same(env.reset(seed=1), other.reset(seed=1))
         a = np.zeros((6, 4), np.float32)
         assert same(env.step(a), other.step(a))
         mask = np.array([True, False, True, False, False, True])
-        assert same(env.reset(seed=20, options={"reset_mask": mask.copy()}), other.reset(seed=20, options={"reset_mask": mask.copy()}))
+        assert same(
+            env.reset(seed=20, options={"reset_mask": mask.copy()}),
+            other.reset(seed=20, options={"reset_mask": mask.copy()}),
+        )
 
 
 @pytest.mark.parametrize("mask", [[True, False], np.array([True]), np.array([1, 0]), np.zeros(2, bool)])
@@ -161,7 +201,13 @@ def test_wrong_masks_are_refused(mask):
 @pytest.mark.parametrize("mode", MODES)
 def test_what_is_returned_is_the_callers_own(observation, mode):
     """Spoiling every array that was returned changes nothing that comes later."""
-    options = {**viewed(observation), "autoreset_mode": mode, "noise": "club", "layout": "random:3", "max_episode_steps": 3}
+    options = {
+        **viewed(observation),
+        "autoreset_mode": mode,
+        "noise": "club",
+        "layout": "random:3",
+        "max_episode_steps": 3,
+    }
     clean, spoiled = native(8, **options), native(8, **options)
     want, got = clean.reset(seed=1), spoiled.reset(seed=1)
 
@@ -196,9 +242,21 @@ def test_what_is_returned_is_the_callers_own(observation, mode):
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("threads", [1, 3])
 def test_masks_in_observations_are_those_of_the_tables(mode, threads):
-    """Those of ``action_masks()`` in the next step, and of the table as it lay at the end, for every table and any number of threads."""
-    env = native(70, action="discrete", observation="masked", layout="random:2", noise="club", autoreset_mode=mode, threads=threads)
-    alone = [SnookerEnv(action="discrete", observation="masked", layout="random:2", noise="club") for _ in range(70)]
+    """Those of ``action_masks()`` in the next step, and of the table as it lay at the end, for every table
+    and any number of threads."""
+    env = native(
+        70,
+        action="discrete",
+        observation="masked",
+        layout="random:2",
+        noise="club",
+        autoreset_mode=mode,
+        threads=threads,
+    )
+    alone = [
+        SnookerEnv(action="discrete", observation="masked", layout="random:2", noise="club")
+        for _ in range(70)
+    ]
     seen, rng, ends = env.reset(seed=4)[0], np.random.default_rng(0), 0
     for one, k in zip(alone, range(70), strict=True):
         one.reset(seed=4 + k)
@@ -208,7 +266,9 @@ def test_masks_in_observations_are_those_of_the_tables(mode, threads):
             seen, _ = env.reset(options={"reset_mask": done.copy()})
             for k in np.flatnonzero(done):
                 alone[k].reset()
-        assert seen["action_mask"].dtype == np.int8 and np.array_equal(seen["action_mask"], env.action_masks())
+        assert seen["action_mask"].dtype == np.int8 and np.array_equal(
+            seen["action_mask"], env.action_masks()
+        )
         a = actions_of(env, rng, None)
         seen, _, terminated, truncated, infos = env.step(a)
         for k, one in enumerate(alone):
@@ -238,7 +298,11 @@ def test_spaces_types_and_metadata():
     assert observations in env.observation_space and observations.dtype == np.float32
     observations, rewards, terminated, truncated, infos = env.step(env.action_space.sample())
     assert observations in env.observation_space and rewards.dtype == np.float64 and rewards.shape == (5,)
-    assert terminated.dtype == truncated.dtype == bool and infos["seconds"].dtype == np.float64 and infos["pots"].dtype == np.int64
+    assert (
+        terminated.dtype == truncated.dtype == bool
+        and infos["seconds"].dtype == np.float64
+        and infos["pots"].dtype == np.int64
+    )
     assert gymnasium.make_vec(env.spec).num_envs == 5
     gymnasium.wrappers.vector.RecordEpisodeStatistics(env).reset(seed=1)
 
@@ -266,14 +330,21 @@ def wrong(**changes):
 @pytest.mark.parametrize(
     ("actions", "message"),
     [
-        (wrong(a21=float("nan")), r"actions\[2\] = \[0\.0, nan, 0\.0, 0\.0\]: must be finite and within \[-1, 1\]"),
-        (wrong(a13=1.0001), r"actions\[1\] = "), (wrong(a00=-np.inf, a11=2.0), r"actions\[0\] = "),
-        (np.zeros((2, 4)), r"shape \(2, 4\): must have shape \(3, 4\)"), (np.zeros((3, 5)), r"must have shape \(3, 4\)"),
-        (np.zeros(4), "must have shape"), (None, "must have shape"),
-        ([["a"] * 4] * 3, "real numbers"), ([[0.0] * 4, [0.0]], "must have shape"),
+        (
+            wrong(a21=float("nan")),
+            r"actions\[2\] = \[0\.0, nan, 0\.0, 0\.0\]: must be finite and within \[-1, 1\]",
+        ),
+        (wrong(a13=1.0001), r"actions\[1\] = "),
+        (wrong(a00=-np.inf, a11=2.0), r"actions\[0\] = "),
+        (np.zeros((2, 4)), r"shape \(2, 4\): must have shape \(3, 4\)"),
+        (np.zeros((3, 5)), r"must have shape \(3, 4\)"),
+        (np.zeros(4), "must have shape"),
+        (None, "must have shape"),
+        ([["a"] * 4] * 3, "real numbers"),
+        ([[0.0] * 4, [0.0]], "must have shape"),
         (np.zeros((3, 4), bool), "real numbers"),
     ],
-)  # fmt: skip
+)
 def test_wrong_actions_name_the_table_and_change_nothing(actions, message):
     env = native(3, noise="club")
     env.reset(seed=0)
@@ -286,12 +357,19 @@ def test_wrong_actions_name_the_table_and_change_nothing(actions, message):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"task": "x"}, "task"), ({"options": "frame"}, "options = 'frame': must be an Options or None"),
-        ({"layout": "moon"}, "layout"), ({"threads": 0}, "threads"), ({"max_episode_steps": 0}, "max_episode_steps"),
-        ({"render_mode": "human"}, "render_mode"), ({"reward": "win"}, "reward"), ({"opponent": "random"}, "opponent"),
-        ({"autoreset_mode": "never"}, "never"), ({"observation": "x"}, "observation"), ({"num_envs": 0}, "num_envs"),
+        ({"task": "x"}, "task"),
+        ({"options": "frame"}, "options = 'frame': must be an Options or None"),
+        ({"layout": "moon"}, "layout"),
+        ({"threads": 0}, "threads"),
+        ({"max_episode_steps": 0}, "max_episode_steps"),
+        ({"render_mode": "human"}, "render_mode"),
+        ({"reward": "win"}, "reward"),
+        ({"opponent": "random"}, "opponent"),
+        ({"autoreset_mode": "never"}, "never"),
+        ({"observation": "x"}, "observation"),
+        ({"num_envs": 0}, "num_envs"),
     ],
-)  # fmt: skip
+)
 def test_wrong_arguments(options, message):
     with pytest.raises(ValueError, match=message):
         SnookerVectorEnv(**options)
@@ -323,7 +401,9 @@ def test_states_pass_between_single_tables_and_many():
         many.reset(options={"layout": 3})
 
 
-@pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))], ids=["deepcopy", "pickle"])
+@pytest.mark.parametrize(
+    "copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))], ids=["deepcopy", "pickle"]
+)
 def test_copies_play_on_alike(copied):
     env = native(20, noise="club", threads=2)
     env.reset(seed=3)
@@ -351,7 +431,11 @@ def test_a_log_that_is_too_short_is_enlarged(monkeypatch):
     original, runs = stroke.ShotBuffers.__init__, []
     for log in (512, 3):
         with monkeypatch.context() as patch:
-            patch.setattr(stroke.ShotBuffers, "__init__", lambda self, m, first=log, **more: original(self, m, first, **more))
+            patch.setattr(
+                stroke.ShotBuffers,
+                "__init__",
+                lambda self, m, first=log, **more: original(self, m, first, **more),
+            )
             env = native(20, noise="club", aim="target", autoreset_mode=AutoresetMode.SAME_STEP)
             env.reset(seed=3)
             runs.append([env.step(np.full((20, 4), 0.1))[:4] for _ in range(4)])

@@ -20,7 +20,14 @@ OPTIONS = [
     {},
     {"action": "discrete", "layout": "random:3", "noise": "club"},
     {"action": "discrete", "observation": "masked", "layout": "random:2", "task": "frame"},
-    {"aim": "target", "placement": True, "observation": "balls", "table": "tight", "render_mode": "ansi", "layout": "break_off"},
+    {
+        "aim": "target",
+        "placement": True,
+        "observation": "balls",
+        "table": "tight",
+        "render_mode": "ansi",
+        "layout": "break_off",
+    },
 ]
 IDS = ["plain", "discrete", "masked", "target"]
 METHODS = {"get_state", "action_masks", "has_wrapper_attr"}
@@ -33,8 +40,12 @@ def public(env):
 
 
 def both(mode=AutoresetMode.SAME_STEP, **options):
-    ours = gymnasium.make_vec("Snooker-v0", N, vectorization_mode="vector_entry_point", autoreset_mode=mode, **options)
-    theirs = gymnasium.make_vec("Snooker-v0", N, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **options)
+    ours = gymnasium.make_vec(
+        "Snooker-v0", N, vectorization_mode="vector_entry_point", autoreset_mode=mode, **options
+    )
+    theirs = gymnasium.make_vec(
+        "Snooker-v0", N, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **options
+    )
     return ours, theirs
 
 
@@ -52,7 +63,8 @@ def alike(a, b):
 
 
 def differences(ours, theirs):
-    """Which public names of a table are not the same; those of shared state are ``Tables``, compared by their arrays."""
+    """Which public names of a table are not the same; those of shared state are ``Tables``, compared by their
+    arrays."""
     wrong = []
     for name in public(SnookerEnv()):
         if name in NOT_OF_A_TABLE:
@@ -81,7 +93,11 @@ def test_each_table_has_all_that_a_single_environment_has(mode, options):
     assert differences(ours, theirs) == []
     rng = np.random.default_rng(0)
     for _ in range(6):
-        a = rng.integers(0, ours.single_action_space.n, N) if "action" in options else rng.uniform(-1, 1, ours.action_space.shape)
+        a = (
+            rng.integers(0, ours.single_action_space.n, N)
+            if "action" in options
+            else rng.uniform(-1, 1, ours.action_space.shape)
+        )
         ours.step(a), theirs.step(a)
     assert differences(ours, theirs) == []
 
@@ -104,7 +120,12 @@ def test_what_belongs_to_all_tables_is_refused(name):
 
 @pytest.mark.parametrize("name", ["_work", "__class__", 3, None])
 def test_what_is_not_public_is_refused(name):
-    refused(lambda: SnookerVectorEnv(2).call(name), "name", repr(name), "must be something public that a table has for itself")
+    refused(
+        lambda: SnookerVectorEnv(2).call(name),
+        "name",
+        repr(name),
+        "must be something public that a table has for itself",
+    )
 
 
 def test_what_is_not_there_is_not_there():

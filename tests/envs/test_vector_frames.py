@@ -1,4 +1,5 @@
-"""Do native vector frames play, bit for bit, what ``SyncVectorEnv`` plays? All autoreset modes, threads, opponents, actions, limits."""
+"""Do native vector frames play, bit for bit, what ``SyncVectorEnv`` plays? All autoreset modes, threads,
+opponents, actions, limits."""
 
 import numpy as np
 import pytest
@@ -16,11 +17,14 @@ from tests.refusals import refused
 
 def policy(observation, rng):
     """An opponent in Python that draws from its generator and reads its observation."""
-    return np.clip(rng.uniform(-1.0, 1.0, 7) * (1.0, 0.3, 0.3, 0.5, 1.0, 1.0, 1.0) + 0.01 * observation[0], -1.0, 1.0)
+    return np.clip(
+        rng.uniform(-1.0, 1.0, 7) * (1.0, 0.3, 0.3, 0.5, 1.0, 1.0, 1.0) + 0.01 * observation[0], -1.0, 1.0
+    )
 
 
 class Many:
-    """The same opponent, which says that it can be asked for many tables at once and counts how often it is."""
+    """The same opponent, which says that it can be asked for many tables at once and counts how often it
+    is."""
 
     def __init__(self):
         self.calls = 0
@@ -39,10 +43,22 @@ OPTIONS = {
     "alone": {"layout": "opened", "miss": "clear_path"},
     "alone, few balls": {"layout": "random:0", "aim": "target", "noise": "professional", "max_strokes": 25},
     "random": FULL | {"opponent": "random", "layout": "random:1", "miss": "clear_path"},
-    "ghost_ball": {"opponent": "ghost_ball", "layout": "random:1", "aim": "target", "observation": "balls", "reward": "win"},
+    "ghost_ball": {
+        "opponent": "ghost_ball",
+        "layout": "random:1",
+        "aim": "target",
+        "observation": "balls",
+        "reward": "win",
+    },
     "ghost_ball breaks": FULL | {"opponent": "ghost_ball", "max_episode_steps": 4},
     "callable": FULL | {"opponent": policy, "layout": "random:0", "max_strokes": 15},
-    "discrete": {"opponent": "random", "layout": "colours", "action": "discrete", "noise": "amateur", "max_strokes": 30},
+    "discrete": {
+        "opponent": "random",
+        "layout": "colours",
+        "action": "discrete",
+        "noise": "amateur",
+        "max_strokes": 30,
+    },
     "masked": {
         "opponent": "ghost_ball",
         "layout": "random:1",
@@ -53,8 +69,19 @@ OPTIONS = {
         "miss": "clear_path",
         "max_strokes": 20,
     },
-    "masked, alone": {"layout": "random:1", "action": "discrete", "observation": "masked", "max_strokes": 12, "max_episode_steps": 9},
-    "discrete, ghost_ball": {"opponent": "ghost_ball", "layout": "random:2", "action": "discrete", "max_episode_steps": 5},
+    "masked, alone": {
+        "layout": "random:1",
+        "action": "discrete",
+        "observation": "masked",
+        "max_strokes": 12,
+        "max_episode_steps": 9,
+    },
+    "discrete, ghost_ball": {
+        "opponent": "ghost_ball",
+        "layout": "random:2",
+        "action": "discrete",
+        "max_episode_steps": 5,
+    },
 }
 
 
@@ -68,7 +95,10 @@ def actions_of(env, rng):
 
 
 def check_equal(n, mode, steps, options, threads=None):
-    ours, theirs = native(n, task="frame", autoreset_mode=mode, threads=threads, **options), sync(n, mode, task="frame", **options)
+    ours, theirs = (
+        native(n, task="frame", autoreset_mode=mode, threads=threads, **options),
+        sync(n, mode, task="frame", **options),
+    )
     assert ours.observation_space == theirs.observation_space and ours.action_space == theirs.action_space
     assert same(ours.reset(seed=3), theirs.reset(seed=3))
     rng, done, ends, strokes = np.random.default_rng(1), np.zeros(n, bool), 0, 0
@@ -80,7 +110,9 @@ def check_equal(n, mode, steps, options, threads=None):
             assert np.array_equal(ours.action_masks(), np.array(theirs.call("action_masks")))
         a = actions_of(ours, rng)
         got, want = ours.step(a), theirs.step(a)
-        for x, y, name in zip(got, want, ("observations", "rewards", "terminated", "truncated", "infos"), strict=True):
+        for x, y, name in zip(
+            got, want, ("observations", "rewards", "terminated", "truncated", "infos"), strict=True
+        ):
             assert same(x, y), (step, name, x, y)
         done = got[2] | got[3]
         ends, strokes = ends + int(done.sum()), strokes + int(got[4]["opponent_strokes"].sum())
@@ -100,7 +132,13 @@ def test_they_equal_sync_vector_env(mode, options):
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball", policy])
 def test_any_number_of_threads_and_any_chunks_give_the_same(threads, opponent, monkeypatch):
     monkeypatch.setattr(crew, "CHUNK", 16)
-    check_equal(50, AutoresetMode.SAME_STEP, 8, FULL | {"opponent": opponent, "layout": "random:3", "max_strokes": 9}, threads)
+    check_equal(
+        50,
+        AutoresetMode.SAME_STEP,
+        8,
+        FULL | {"opponent": opponent, "layout": "random:3", "max_strokes": 9},
+        threads,
+    )
 
 
 def test_a_player_of_many_tables_is_called_once_for_all_that_wait():
@@ -114,9 +152,14 @@ def test_a_player_of_many_tables_is_called_once_for_all_that_wait():
         got, want = one.step(a), other.step(a)
         assert all(same(x, y) for x, y in zip(got, want, strict=True))
         longest = int(np.max(got[4]["opponent_strokes"]))
-        assert 0 < many.calls - before <= 2 * longest + 6  # rounds, not tables: handing over and new frames may add a few
-    wrong = SnookerVectorEnv(4, task="frame", opponent=type("Short", (), {"__call__": lambda *_: None, "many": lambda *_: []})())
-    with pytest.raises(ValueError, match=r"opponent's actions = \[\]: must be \d+, one for each table that waits"):
+        # rounds, not tables: handing over and new frames may add a few
+        assert 0 < many.calls - before <= 2 * longest + 6
+    wrong = SnookerVectorEnv(
+        4, task="frame", opponent=type("Short", (), {"__call__": lambda *_: None, "many": lambda *_: []})()
+    )
+    with pytest.raises(
+        ValueError, match=r"opponent's actions = \[\]: must be \d+, one for each table that waits"
+    ):
         [wrong.reset(seed=seed) for seed in range(5)]
 
 
@@ -132,7 +175,14 @@ def test_an_error_of_an_opponent_asks_for_a_reset():
 
 
 def test_states_go_from_one_table_to_many_and_back():
-    options = {"task": "frame", "opponent": "random", "miss": "clear_path", "layout": "random:3", "decision": True, "placement": True}
+    options = {
+        "task": "frame",
+        "opponent": "random",
+        "miss": "clear_path",
+        "layout": "random:3",
+        "decision": True,
+        "placement": True,
+    }
     one, many = SnookerEnv(**options), SnookerVectorEnv(3, **options)
     one.reset(seed=4)
     rng = np.random.default_rng(0)
@@ -153,9 +203,15 @@ def test_states_go_from_one_table_to_many_and_back():
 def test_options_are_checked_once_and_taken_by_every_environment():
     options = Options(task="frame", layout="random:2", noise="club", decision=True)
     keywords = {"task": "frame", "layout": "random:2", "noise": "club", "decision": True}
-    for one, other in ((SnookerEnv(options), SnookerEnv(**keywords)), (SnookerVectorEnv(2, options), SnookerVectorEnv(2, **keywords))):
+    for one, other in (
+        (SnookerEnv(options), SnookerEnv(**keywords)),
+        (SnookerVectorEnv(2, options), SnookerVectorEnv(2, **keywords)),
+    ):
         assert one.options == other.options == options and same(one.reset(seed=2), other.reset(seed=2))
-    assert Options().but(task="frame") == Options(task="frame") and Options(task="frame").but(task="visit").rules.plan.name == "opened"
+    assert (
+        Options().but(task="frame") == Options(task="frame")
+        and Options(task="frame").but(task="visit").rules.plan.name == "opened"
+    )
     level = {"aim_deg": 0.1}
     own = Options(noise=level)
     level["aim_deg"] = 5.0  # what is given may change: what is played does not
@@ -166,7 +222,9 @@ def test_options_are_checked_once_and_taken_by_every_environment():
     assert changed.noise == "none" and options.noise == "club" and changed.rules.noise.silent
     with pytest.raises(AttributeError):
         options.noise = "none"  # pyright: ignore[reportAttributeAccessIssue]
-    with pytest.raises(ValueError, match=r"options = an Options: must be None with the keywords \['layout'\]"):
+    with pytest.raises(
+        ValueError, match=r"options = an Options: must be None with the keywords \['layout'\]"
+    ):
         SnookerEnv(options, layout="colours")
     for make in (SnookerEnv, lambda **k: SnookerVectorEnv(2, **k), Options):
         with pytest.raises(TypeError, match="layuot"):
@@ -176,7 +234,9 @@ def test_options_are_checked_once_and_taken_by_every_environment():
 def test_a_match_takes_them_too():
     pytest.importorskip("pettingzoo")
     env = sn.match_env(Options(task="frame", layout="random:2", aim="target"))
-    assert env.action_space("player_0").shape == (4,) and sn.match_env().action_space("player_0").shape == (7,)
+    assert env.action_space("player_0").shape == (4,) and sn.match_env().action_space("player_0").shape == (
+        7,
+    )
     for wrong in (Options(), Options(task="frame", opponent="random")):
         with pytest.raises(ValueError, match="a match has two players"):
             sn.match_env(wrong)
@@ -223,26 +283,38 @@ def test_discrete_actions_and_their_masks_in_a_match():
 
 
 @pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize("options", [{"layout": "random:2"}, {"task": "frame", "layout": "random:0", "opponent": "random"}])
+@pytest.mark.parametrize(
+    "options", [{"layout": "random:2"}, {"task": "frame", "layout": "random:0", "opponent": "random"}]
+)
 def test_results_are_written_into_the_arrays_given(mode, options):
     n = 6
     plain, given = native(n, autoreset_mode=mode, **options), native(n, autoreset_mode=mode, **options)
     out = {
-        "observations": np.full(plain.observation_space.shape, 9.0, np.float32), "rewards": np.full(n, 9.0),
-        "terminations": np.ones(n, bool), "truncations": np.ones(n, bool),
-    }  # fmt: skip
+        "observations": np.full(plain.observation_space.shape, 9.0, np.float32),
+        "rewards": np.full(n, 9.0),
+        "terminations": np.ones(n, bool),
+        "truncations": np.ones(n, bool),
+    }
     first = given.reset(seed=1, out={"observations": out["observations"]})
     assert first[0] is out["observations"] and same(plain.reset(seed=1), first)
     rng = np.random.default_rng(0)
     for _ in range(12):
         a = actions_of(plain, rng)
         want, got = plain.step(a), given.step(a, out=out)
-        assert got[0] is out["observations"] and got[1] is out["rewards"] and got[2] is out["terminations"] and got[3] is out["truncations"]
+        assert (
+            got[0] is out["observations"]
+            and got[1] is out["rewards"]
+            and got[2] is out["terminations"]
+            and got[3] is out["truncations"]
+        )
         assert all(same(x, y) for x, y in zip(want, got, strict=True))
         done = want[2] | want[3]
         if mode == AutoresetMode.DISABLED and done.any():
             mask = {"reset_mask": done.copy()}
-            assert same(plain.reset(options=mask), given.reset(options=mask, out={"observations": out["observations"]}))
+            assert same(
+                plain.reset(options=mask),
+                given.reset(options=mask, out={"observations": out["observations"]}),
+            )
 
 
 def test_arrays_that_share_memory_are_refused():
@@ -253,20 +325,35 @@ def test_arrays_that_share_memory_are_refused():
 
 
 def test_masked_observations_are_written_too():
-    env, plain = (native(3, action="discrete", observation="masked", autoreset_mode=AutoresetMode.SAME_STEP) for _ in range(2))
-    out = {"observations": {"observations": np.zeros((3, 121), np.float32), "action_mask": np.zeros((3, 540), np.int8)}}
+    env, plain = (
+        native(3, action="discrete", observation="masked", autoreset_mode=AutoresetMode.SAME_STEP)
+        for _ in range(2)
+    )
+    out = {
+        "observations": {
+            "observations": np.zeros((3, 121), np.float32),
+            "action_mask": np.zeros((3, 540), np.int8),
+        }
+    }
     got, _ = env.reset(seed=1, out=out)
     assert got is out["observations"] and same(got, plain.reset(seed=1)[0])
     for choice in (0, 67, 400):
         given, want = env.step(np.full(3, choice), out=out), plain.step(np.full(3, choice))
         assert given[0] is out["observations"] and all(same(x, y) for x, y in zip(given, want, strict=True))
     out["observations"]["action_mask"] = np.zeros((3, 540), bool)
-    refused(lambda: env.reset(out=out), 'out["observations.action_mask"]', "array of bool and shape (3, 540)", "must be a C-contiguous")
+    refused(
+        lambda: env.reset(out=out),
+        'out["observations.action_mask"]',
+        "array of bool and shape (3, 540)",
+        "must be a C-contiguous",
+    )
 
 
 def test_observations_of_balls_are_written_too():
     env, plain = native(3, observation="balls"), native(3, observation="balls")
-    out = {"observations": {"balls": np.zeros((3, 22, 5), np.float32), "state": np.zeros((3, 11), np.float32)}}
+    out = {
+        "observations": {"balls": np.zeros((3, 22, 5), np.float32), "state": np.zeros((3, 11), np.float32)}
+    }
     got, _ = env.reset(seed=1, out=out)
     assert got is out["observations"] and same(got, plain.reset(seed=1)[0])
 
@@ -274,12 +361,16 @@ def test_observations_of_balls_are_written_too():
 @pytest.mark.parametrize(
     ("out", "field"),
     [
-        ([], "out"), ({"infos": 1}, "out"), ({"rewards": np.zeros(3, np.float32)}, 'out["rewards"]'),
-        ({"rewards": [0.0] * 3}, 'out["rewards"]'), ({"observations": np.zeros((3, 120), np.float32)}, 'out["observations"]'),
-        ({"rewards": np.zeros(6)[::2]}, 'out["rewards"]'), ({"observations": np.zeros((121, 3), np.float32).T}, 'out["observations"]'),
+        ([], "out"),
+        ({"infos": 1}, "out"),
+        ({"rewards": np.zeros(3, np.float32)}, 'out["rewards"]'),
+        ({"rewards": [0.0] * 3}, 'out["rewards"]'),
+        ({"observations": np.zeros((3, 120), np.float32)}, 'out["observations"]'),
+        ({"rewards": np.zeros(6)[::2]}, 'out["rewards"]'),
+        ({"observations": np.zeros((121, 3), np.float32).T}, 'out["observations"]'),
         ({"truncations": np.zeros(3)}, 'out["truncations"]'),
     ],
-)  # fmt: skip
+)
 def test_arrays_that_cannot_be_written_into_are_refused_before_anything_is_played(out, field):
     env = native(3, noise="club")
     env.reset(seed=1)
@@ -287,4 +378,6 @@ def test_arrays_that_cannot_be_written_into_are_refused_before_anything_is_playe
     with pytest.raises(ValueError) as info:
         env.step(np.zeros((3, 4)), out=out)
     assert str(info.value).startswith(f"{field} = ") and env.get_state() == before
-    refused(lambda: env.reset(out={"rewards": np.zeros(3)}), "out", "'rewards'", "must be one of 'observations'")
+    refused(
+        lambda: env.reset(out={"rewards": np.zeros(3)}), "out", "'rewards'", "must be one of 'observations'"
+    )

@@ -1,4 +1,5 @@
-"""Do many tables start from states as single ones do, seeded or not, and does a refusal change none of them?"""
+"""Do many tables start from states as single ones do, seeded or not, and does a refusal change none of
+them?"""
 
 import gymnasium
 import numpy as np
@@ -17,7 +18,9 @@ def test_a_state_with_seeds_is_what_single_tables_make_of_it(seed):
         one.reset(seed=1)
     state, a = env.get_state()[2], np.zeros((4, 4), np.float32)
     for _ in range(2):  # the second time from the middle of other visits
-        assert same(env.reset(seed=seed, options={"state": state}), other.reset(seed=seed, options={"state": state}))
+        assert same(
+            env.reset(seed=seed, options={"state": state}), other.reset(seed=seed, options={"state": state})
+        )
         first = env.step(a)
         assert same(first, other.step(a))
         assert len({row.tobytes() for row in first[0]}) == (1 if seed is None else 4 if seed == 40 else 3)
@@ -31,7 +34,12 @@ def test_a_wrong_seed_or_state_changes_no_table():
     env.reset(seed=1)
     before, seeds = env.get_state(), env.np_random_seed
     good = before[0]
-    faults = ([4, -1, 5], {}), ([4, 5, -1], {"state": good}), (9, {"states": [good, good, good | {"points": 400}]}), (9, {"state": {}})
+    faults = (
+        ([4, -1, 5], {}),
+        ([4, 5, -1], {"state": good}),
+        (9, {"states": [good, good, good | {"points": 400}]}),
+        (9, {"state": {}}),
+    )
     for seed, options in faults:
         with pytest.raises((ValueError, gymnasium.error.Error)):
             env.reset(seed=seed, options=options)

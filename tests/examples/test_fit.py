@@ -1,4 +1,5 @@
-"""Does the fit of one's own data find the constants? Made-up data come back, published ones agree, bad files are refused in one line."""
+"""Does the fit of one's own data find the constants? Made-up data come back, published ones agree, bad files
+are refused in one line."""
 
 import importlib.util
 import re
@@ -22,9 +23,17 @@ def given(kind):
     rng = np.random.default_rng(5)
     speed = rng.uniform(0.4, 3.5, ROWS)
     if kind == "throw":
-        return {"cut_deg": rng.uniform(5, 75, ROWS), "speed_m_s": speed, "topspin_rad_s": rng.uniform(-30, 60, ROWS)}
+        return {
+            "cut_deg": rng.uniform(5, 75, ROWS),
+            "speed_m_s": speed,
+            "topspin_rad_s": rng.uniform(-30, 60, ROWS),
+        }
     if kind == "cushion":
-        return {"incident_m_s": speed, "incident_deg": rng.uniform(-60, 60, ROWS), "side_rad_s": rng.uniform(-40, 40, ROWS)}
+        return {
+            "incident_m_s": speed,
+            "incident_deg": rng.uniform(-60, 60, ROWS),
+            "side_rad_s": rng.uniform(-40, 40, ROWS),
+        }
     return {"speed_m_s": speed, "topspin_rad_s": rng.uniform(-50, 80, ROWS)}
 
 
@@ -40,7 +49,10 @@ def measured(kind, constants, noise=0.5, seed=1):
     columns, what = given(kind), fitting.KINDS[kind]
     model = what.predict(columns, sn.Physics.preset("match", **constants))
     rng = np.random.default_rng(seed)
-    return columns | {name: model[name] + noise * column.error * rng.normal(size=ROWS) for name, column in what.measured.items()}
+    return columns | {
+        name: model[name] + noise * column.error * rng.normal(size=ROWS)
+        for name, column in what.measured.items()
+    }
 
 
 @pytest.mark.parametrize("kind", TRUE)
@@ -52,13 +64,19 @@ def test_made_up_data_come_back(kind):
         assert low < true < high and high - low < 0.5 * true, (name, found.values[name], low, high)
     exact = fitting.fit(kind, measured(kind, TRUE[kind], noise=0.0))
     assert exact.values == pytest.approx(TRUE[kind], rel=1e-3)
-    assert [getattr(exact.physics, name) for name in TRUE[kind]] == pytest.approx(list(TRUE[kind].values()), rel=1e-3)
+    assert [getattr(exact.physics, name) for name in TRUE[kind]] == pytest.approx(
+        list(TRUE[kind].values()), rel=1e-3
+    )
 
 
 @pytest.mark.parametrize("kind", TRUE)
 def test_a_model_of_the_wrong_sign_finds_nothing(kind, monkeypatch):
-    """The test above can fail: turn the sign of what is measured, of an angle or of a speed, and the constants are lost."""
-    what, name = fitting.KINDS[kind], {"throw": "throw_deg", "cushion": "rebound_deg", "cloth": "distance_m"}[kind]
+    """The test above can fail: turn the sign of what is measured, of an angle or of a speed, and the
+    constants are lost."""
+    what, name = (
+        fitting.KINDS[kind],
+        {"throw": "throw_deg", "cushion": "rebound_deg", "cloth": "distance_m"}[kind],
+    )
 
     def turned(columns, physics):
         out = what.predict(columns, physics)
@@ -68,7 +86,9 @@ def test_a_model_of_the_wrong_sign_finds_nothing(kind, monkeypatch):
     monkeypatch.setitem(fitting.KINDS, kind, what._replace(predict=turned))
     found = fitting.fit(kind, data)
     ends = [(name, found.intervals[name]) for name in TRUE[kind]]
-    assert any(interval is None or not interval[0] < TRUE[kind][name] < interval[1] for name, interval in ends)
+    assert any(
+        interval is None or not interval[0] < TRUE[kind][name] < interval[1] for name, interval in ends
+    )
     assert np.sqrt(np.mean(found.residuals[name] ** 2)) > 4 * what.measured[name].error
 
 
@@ -76,7 +96,9 @@ def test_marlow_s_law_comes_back():
     true = {"a": 0.02, "b": 0.1, "c": 1.2}
     data = measured("throw", {"mu_bb": tuple(true.values()), "e_b": 0.93}, noise=0.02)
     found = fitting.fit("throw", data, fixed={"e_b": 0.93}, law="marlow")
-    assert found.values == pytest.approx(true, rel=0.1) and found.physics.mu_bb == pytest.approx(tuple(found.values.values()))
+    assert found.values == pytest.approx(true, rel=0.1) and found.physics.mu_bb == pytest.approx(
+        tuple(found.values.values())
+    )
 
 
 def test_bootstrap_and_covariance_agree():
@@ -88,7 +110,8 @@ def test_bootstrap_and_covariance_agree():
 
 
 def test_domenech_s_throw_gives_a_tenth():
-    """The known fit of ``benchmarks.paper``: a constant friction of 0.10 agrees with these 52 shots, 0.05 does not."""
+    """The known fit of ``benchmarks.paper``: a constant friction of 0.10 agrees with these 52 shots, 0.05
+    does not."""
     columns = fitting.read(DATA / "throw_domenech2023.csv", "throw", {"speed_m_s": 0.8})
     found = fitting.fit("throw", columns, fixed=DOMENECH)
     low, high = found.intervals["mu_bb"]
@@ -109,7 +132,17 @@ def test_a_constant_at_the_end_of_its_range_has_no_interval():
 
 
 def test_the_command_prints_a_line_that_runs(capsys):
-    fitting.main(["throw", str(DATA / "throw_domenech2023.csv"), "--column", "speed_m_s=0.8", "--fix", "R=0.0305", "e_b=0.968"])
+    fitting.main(
+        [
+            "throw",
+            str(DATA / "throw_domenech2023.csv"),
+            "--column",
+            "speed_m_s=0.8",
+            "--fix",
+            "R=0.0305",
+            "e_b=0.968",
+        ]
+    )
     line = re.search(r"^physics = .*$", capsys.readouterr().out, re.M)[0]
     scope = {"sn": sn}
     exec(line, scope)
@@ -120,11 +153,17 @@ def test_the_command_prints_a_line_that_runs(capsys):
 GOOD = "cut_deg,speed_m_s,throw_deg\n"
 BAD = {
     "no line": ("", r"= no line: must have a line of names"),
-    "an unknown column": ("cut,throw_deg\n10,1\n", r"line 1, column = 'cut': must be one of 'cut_deg', 'speed_m_s'"),
+    "an unknown column": (
+        "cut,throw_deg\n10,1\n",
+        r"line 1, column = 'cut': must be one of 'cut_deg', 'speed_m_s'",
+    ),
     "a column twice": ("cut_deg,cut_deg\n", r"columns = \['cut_deg', 'cut_deg'\]: must be different"),
     "a word": (GOOD + "10,1,fast\n", r"line 2, throw_deg = 'fast': must be a number"),
     "not finite": (GOOD + "10,1,nan\n", r"line 2, throw_deg = nan: must be a finite number in \[-45, 45\]"),
-    "out of range": (GOOD + "# mine\n\n95,1,1\n", r"line 4, cut_deg = 95\.0: must be a finite number in \[0, 89\.9\]"),
+    "out of range": (
+        GOOD + "# mine\n\n95,1,1\n",
+        r"line 4, cut_deg = 95\.0: must be a finite number in \[0, 89\.9\]",
+    ),
     "too few values": (GOOD + "10,1\n", r"line 2 = 2 values: must be 3: cut_deg, speed_m_s, throw_deg"),
     "no speed": ("cut_deg,throw_deg\n10,1\n", r"must hold speed_m_s, or --column speed_m_s=VALUE"),
     "nothing measured": ("cut_deg,speed_m_s\n10,1\n", r"must hold one of throw_deg, object_speed_m_s"),
@@ -149,7 +188,10 @@ def test_a_bad_file_is_refused_in_one_line(name, tmp_path):
         (["no such.csv"], r"file = 'no such\.csv': must be a CSV file in UTF-8"),
         (["--fix", "mu=1"], r"--fix = 'mu': must be one of"),
         (["--fix", "R"], r"--fix = 'R': must be NAME=VALUE"),
-        (["--fix", "mu_bb=0.1", "--column", "speed_m_s=1"], r"constants = all fixed: must leave something to fit"),
+        (
+            ["--fix", "mu_bb=0.1", "--column", "speed_m_s=1"],
+            r"constants = all fixed: must leave something to fit",
+        ),
         (["--column", "cut=1"], r"--column = 'cut': must be one of"),
         (["--column", "cut_deg=1"], r"--column = 'cut_deg': must not be a column of the file"),
         (["--bootstrap", "-1"], r"--bootstrap = -1: must be an integer in \[0, 100000\]"),

@@ -1,4 +1,5 @@
-"""Does TorchRL collect what the tables play, and does its PPO run? Rollouts against single tables, and a short training."""
+"""Does TorchRL collect what the tables play, and does its PPO run? Rollouts against single tables, and a
+short training."""
 
 import numpy as np
 import pytest
@@ -13,8 +14,9 @@ example = needed("examples.ppo_torchrl")
 
 
 def test_a_rollout_is_what_single_tables_play():
-    """The first observation of the next visit follows the end of one. The last one of a visit is 0: TorchRL 0.14 expects it under another
-    name if observations are a dict. Nothing is learned from it, as visits are terminated and never truncated."""
+    """The first observation of the next visit follows the end of one. The last one of a visit is 0: TorchRL
+    0.14 expects it under another name if observations are a dict. Nothing is learned from it, as visits are
+    terminated and never truncated."""
     tables = example.tables("club", 5)
     torch.manual_seed(0)
 
@@ -38,7 +40,10 @@ def test_a_rollout_is_what_single_tables_play():
             if not terminated or after["observations"].any():
                 assert np.array_equal(after["observations"].numpy(), seen["observations"])
                 assert np.array_equal(after["action_mask"].numpy(), seen["action_mask"].astype(bool))
-            assert after["reward"].item() == reward and after["done"].item() == after["terminated"].item() == terminated
+            assert (
+                after["reward"].item() == reward
+                and after["done"].item() == after["terminated"].item() == terminated
+            )
             if terminated:
                 ends, (seen, _) = ends + 1, env.reset()
     assert ends > 100

@@ -1,4 +1,5 @@
-"""Where do these tests find ``tests.rules_cases``? In the project's root, whatever folder pytest was started in."""
+"""Where do these tests find ``tests.rules_cases``? In the project's root, whatever folder pytest was started
+in."""
 
 import sys
 from pathlib import Path

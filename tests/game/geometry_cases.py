@@ -1,4 +1,5 @@
-"""Does the code place and see as a case says? The kinds "spotting" and "snooker_geometry" of ``tests.rules_cases``."""
+"""Does the code place and see as a case says? The kinds "spotting" and "snooker_geometry" of
+``tests.rules_cases``."""
 
 import numpy as np
 
@@ -16,7 +17,8 @@ def unknown(given, known):
 
 
 def blockers(occupied, no_room):
-    """Centres of balls that occupy the spots named and leave no room between some of them and the top cushion."""
+    """Centres of balls that occupy the spots named and leave no room between some of them and the top
+    cushion."""
     balls = [SPOTS[colour(name)].copy() for name in occupied]
     for name in no_room:
         x, y = SPOTS[colour(name)]
@@ -27,7 +29,11 @@ def blockers(occupied, no_room):
                 break
             # As high as it still bars the lowest free place, but not into the next ball above.
             above = min([b[1] for b in balls if b[0] == x and b[1] > free[0]], default=np.inf)
-            balls.append(np.array([x, min(free[0] + 1.9 * BALL_RADIUS, above - 2 * BALL_RADIUS, HALF_LENGTH - BALL_RADIUS)]))
+            balls.append(
+                np.array(
+                    [x, min(free[0] + 1.9 * BALL_RADIUS, above - 2 * BALL_RADIUS, HALF_LENGTH - BALL_RADIUS)]
+                )
+            )
     return balls
 
 
@@ -46,7 +52,9 @@ def run_spotting(case):
     to_spot = [colour(name) for name in case["to_spot"]]
     positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, dtype=bool)
     spare = [i for i in range(1, N_BALLS) if i not in to_spot]
-    for ball, place in zip(spare, blockers(case["occupied"], case.get("no_room_toward_top", [])), strict=False):
+    for ball, place in zip(
+        spare, blockers(case["occupied"], case.get("no_room_toward_top", [])), strict=False
+    ):
         positions[ball], on_table[ball] = place, True
     positions, on_table = spot_colours(positions, on_table, mask_of(to_spot))
     if not all(on_table[to_spot]):
@@ -81,7 +89,9 @@ def misplaced(place, others, wanted):
     step = 1e-5
     if not all(touched(others, x, np.arange(y, place[1] - sign * step, sign * step), CLEARANCE)):
         return "there is a nearer place"
-    if sign < 0 and not all(touched(others, x, np.arange(y, HALF_LENGTH - BALL_RADIUS - CLEARANCE, step), CLEARANCE)):
+    if sign < 0 and not all(
+        touched(others, x, np.arange(y, HALF_LENGTH - BALL_RADIUS - CLEARANCE, step), CLEARANCE)
+    ):
         return "there is room above"
     return None
 
@@ -93,7 +103,9 @@ def run_snooker_geometry(case):
     positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, dtype=bool)
     on = range(1, 1 + len(case["balls_on"]))
     obstructing = range(N_BALLS - len(case["obstructing"]), N_BALLS)
-    for ball, place in zip([CUE, *on, *obstructing], [case["cue"], *case["balls_on"], *case["obstructing"]], strict=True):
+    for ball, place in zip(
+        [CUE, *on, *obstructing], [case["cue"], *case["balls_on"], *case["obstructing"]], strict=True
+    ):
         positions[ball], on_table[ball] = np.array(place) / 1000, True
     got = is_snookered(positions, on_table, mask_of(on))[0]
     return None if got == case["expect"] else f"expected {case['expect']}, got {got}"

@@ -22,7 +22,8 @@ def test_rack_touches_and_never_overlaps():
 
 
 def test_spots_in_millimetres():
-    # The rules: black 324 from the top cushion, pink and blue on the centre line's quarter and middle, the D of 292 about the brown.
+    # The rules: black 324 from the top cushion, pink and blue on the centre line's quarter and middle, the D
+    # of 292 about the brown.
     spots = [(292, -1047.5), (-292, -1047.5), (0, -1047.5), (0, 0), (0, 892.25), (0, 1460.5)]
     for name, place in zip(balls.COLOUR_NAMES, spots, strict=True):
         assert SPOTS[balls.colour(name)] * 1000 == pytest.approx(place, abs=1e-9)
@@ -55,7 +56,13 @@ def test_masks():
 
 @pytest.mark.parametrize(
     ("on_table", "expected"),
-    [(range(1, 22), BallOn.RED), ([15, 21], BallOn.RED), (range(16, 22), BallOn.YELLOW), ([18, 21], BallOn.BROWN), ([], BallOn.NOTHING)],
+    [
+        (range(1, 22), BallOn.RED),
+        ([15, 21], BallOn.RED),
+        (range(16, 22), BallOn.YELLOW),
+        ([18, 21], BallOn.BROWN),
+        ([], BallOn.NOTHING),
+    ],
 )
 def test_next_on(on_table, expected):
     mask = balls.mask_of(on_table)
@@ -64,16 +71,33 @@ def test_next_on(on_table, expected):
 
 @pytest.mark.parametrize(
     ("ball_on", "expected"),
-    [("RED", [1, 2]), ("ANY_COLOUR", [16, 21]), ("YELLOW", [16]), ("GREEN", []), ("BLACK", [21]), ("NOTHING", [])],
+    [
+        ("RED", [1, 2]),
+        ("ANY_COLOUR", [16, 21]),
+        ("YELLOW", [16]),
+        ("GREEN", []),
+        ("BLACK", [21]),
+        ("NOTHING", []),
+    ],
 )
 def test_balls_on(ball_on, expected):
     mask = balls.mask_of([1, 2, 16, 21])
-    assert balls.balls_on(BallOn[ball_on], mask) == balls_on(int(BallOn[ball_on]), mask) == balls.mask_of(expected)
+    assert (
+        balls.balls_on(BallOn[ball_on], mask)
+        == balls_on(int(BallOn[ball_on]), mask)
+        == balls.mask_of(expected)
+    )
 
 
 @pytest.mark.parametrize(
     ("function", "value"),
-    [(balls.mask_of, [22]), (balls.mask_of, [-1]), (balls.mask_of, [1.0]), (balls.colour, "red"), (balls.ids_of, 1 << 22)],
+    [
+        (balls.mask_of, [22]),
+        (balls.mask_of, [-1]),
+        (balls.mask_of, [1.0]),
+        (balls.colour, "red"),
+        (balls.ids_of, 1 << 22),
+    ],
 )
 def test_wrong_input_is_refused(function, value):
     with pytest.raises(ValueError, match="must be"):

@@ -1,4 +1,5 @@
-"""Does a frame go on as the rules say, from the break to the last black, and does it survive being written down?"""
+"""Does a frame go on as the rules say, from the break to the last black, and does it survive being written
+down?"""
 
 import dataclasses
 import json
@@ -8,7 +9,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game.balls import BLACK, BLUE, COLOURS_MASK, CUE_BIT, GREEN, PINK, REDS_MASK, YELLOW, BallOn, balls_on, ids_of
+from snooker_env.game.balls import (
+    BLACK,
+    BLUE,
+    COLOURS_MASK,
+    CUE_BIT,
+    GREEN,
+    PINK,
+    REDS_MASK,
+    YELLOW,
+    BallOn,
+    balls_on,
+    ids_of,
+)
 from snooker_env.game.frame import Frame, points_available
 from snooker_env.game.referee import FULL_TABLE, Stroke
 from snooker_env.game.ruling import AUTO
@@ -39,20 +52,37 @@ def last(ball_on, scores=(0, 0), **more):
 
 def test_the_start():
     frame = Frame.start(breaker=1)
-    assert (frame.striker, frame.scores, frame.ball_on, frame.in_hand, frame.available) == (1, (0, 0), BallOn.RED, True, 147)
+    assert (frame.striker, frame.scores, frame.ball_on, frame.in_hand, frame.available) == (
+        1,
+        (0, 0),
+        BallOn.RED,
+        True,
+        147,
+    )
     assert Frame.start(on_table=COLOURS_MASK).ball_on == BallOn.YELLOW
 
 
 def test_a_break_grows_and_ends_with_the_visit():
     frame = played(Frame.start(), pot(1), pot(BLACK))
-    assert (frame.scores, frame.break_points, frame.striker, frame.ball_on, frame.in_hand) == ((8, 0), 8, 0, BallOn.RED, False)
+    assert (frame.scores, frame.break_points, frame.striker, frame.ball_on, frame.in_hand) == (
+        (8, 0),
+        8,
+        0,
+        BallOn.RED,
+        False,
+    )
     frame = played(frame, hit(2))
     assert (frame.scores, frame.break_points, frame.striker) == ((8, 0), 0, 1)
 
 
 def test_a_foul_gives_points_and_a_choice():
     frame = played(Frame.start(), pot(1), hit(BLUE, potted=CUE_BIT))
-    assert (frame.scores, frame.striker, frame.phase, frame.choices) == ((1, 5), 1, "choice", ("play", "play_again"))
+    assert (frame.scores, frame.striker, frame.phase, frame.choices) == (
+        (1, 5),
+        1,
+        "choice",
+        ("play", "play_again"),
+    )
     assert frame.in_hand and frame.ball_on == BallOn.RED and frame.on_table & REDS_MASK == REDS_MASK & ~2
 
 
@@ -128,7 +158,12 @@ def test_replacing_restores_the_table_and_keeps_the_penalty():
     foul, _ = frame.play(Stroke(first=4, potted=4, nominated=BLUE), **PATHS, layout=((0.1, 0.2), (0.3, 0.4)))
     assert foul.choices == ("play", "play_again", "replace") and foul.on_table == frame.on_table & ~4
     again = foul.choose("replace")
-    assert (again.striker, again.on_table, again.ball_on, again.scores) == (0, frame.on_table, BallOn.ANY_COLOUR, (1, 5))
+    assert (again.striker, again.on_table, again.ball_on, again.scores) == (
+        0,
+        frame.on_table,
+        BallOn.ANY_COLOUR,
+        (1, 5),
+    )
     assert again.saved.layout == ((0.1, 0.2), (0.3, 0.4))
     assert played(again, pot(PINK)).scores == (7, 5)  # another colour may be nominated
 
@@ -161,7 +196,13 @@ def test_the_second_miss_is_called_whatever_the_scores():
 
 @pytest.mark.parametrize("end", ["play", "play_again"])
 def test_another_position_starts_the_count_again(end):
-    frame = Frame.start(miss="clear_path").play(MISSED, **PATHS)[0].choose("replace").play(MISSED, **PATHS)[0].choose(end)
+    frame = (
+        Frame.start(miss="clear_path")
+        .play(MISSED, **PATHS)[0]
+        .choose("replace")
+        .play(MISSED, **PATHS)[0]
+        .choose(end)
+    )
     assert (frame.failures, frame.warned) == (0, False)
     assert frame.play(MISSED, **PATHS)[0].phase == "choice"
 
@@ -192,7 +233,8 @@ def test_points_available():
     [
         (FULL_TABLE, BallOn.RED, 8),  # the free ball as a red, and a black
         (COLOURS_MASK | 2, BallOn.RED, 8),
-        (COLOURS_MASK, BallOn.YELLOW, 2),  # any colour as the yellow, which comes back: the yellow is still on
+        # any colour as the yellow, which comes back: the yellow is still on
+        (COLOURS_MASK, BallOn.YELLOW, 2),
         (1 << PINK | 1 << BLACK, BallOn.PINK, 6),
         (1 << BLACK, BallOn.BLACK, 0),  # there is no other ball to nominate
     ],
@@ -213,18 +255,40 @@ def points_of_the_best_break_from(frame, ball):
 
 
 def test_what_only_the_striker_may_play_is_not_there_for_the_other_player():
-    """A colour after a red is the striker's, and so is a free ball: the other player trails by more than he could ever score."""
-    colour = Frame(on_table=COLOURS_MASK | 2, ball_on=BallOn.ANY_COLOUR, striker=1, scores=(0, 36), in_hand=False)
-    assert colour.available == 42 and colour.needs_snookers(0) and not replace(colour, scores=(0, 35)).needs_snookers(0)
-    assert not replace(colour, scores=(42, 0)).needs_snookers(1) and replace(colour, scores=(43, 0)).needs_snookers(1)
-    free = Frame(on_table=COLOURS_MASK | 2, ball_on=BallOn.RED, striker=1, scores=(0, 36), in_hand=False, free_ball=True)
+    """A colour after a red is the striker's, and so is a free ball: the other player trails by more than he
+    could ever score."""
+    colour = Frame(
+        on_table=COLOURS_MASK | 2, ball_on=BallOn.ANY_COLOUR, striker=1, scores=(0, 36), in_hand=False
+    )
+    assert (
+        colour.available == 42
+        and colour.needs_snookers(0)
+        and not replace(colour, scores=(0, 35)).needs_snookers(0)
+    )
+    assert not replace(colour, scores=(42, 0)).needs_snookers(1) and replace(
+        colour, scores=(43, 0)
+    ).needs_snookers(1)
+    free = Frame(
+        on_table=COLOURS_MASK | 2,
+        ball_on=BallOn.RED,
+        striker=1,
+        scores=(0, 36),
+        in_hand=False,
+        free_ball=True,
+    )
     assert free.needs_snookers(0) and not replace(free, scores=(43, 0)).needs_snookers(1)
 
 
 @pytest.mark.parametrize(("behind", "called"), [(35, True), (36, False), (42, False)])
 def test_no_miss_when_the_player_who_waits_needs_penalty_points(behind, called):
     """S3 R14: of the 42 points on the table seven are the striker's alone."""
-    frame = Frame(on_table=COLOURS_MASK | 2, ball_on=BallOn.ANY_COLOUR, scores=(behind, 0), in_hand=False, miss="clear_path")
+    frame = Frame(
+        on_table=COLOURS_MASK | 2,
+        ball_on=BallOn.ANY_COLOUR,
+        scores=(behind, 0),
+        in_hand=False,
+        miss="clear_path",
+    )
     assert frame.play(hit(1), **PATHS)[0].miss_called == called
 
 
@@ -311,8 +375,12 @@ def strokes_for(draw, frame):
     on = ids_of(balls_on(frame.ball_on, frame.on_table))
     everything = ids_of(frame.on_table)
     ball = draw(st.sampled_from(on if draw(st.booleans()) else everything))
-    potted = draw(st.sampled_from([0, 1 << ball, 1 << ball, 1 << ball, CUE_BIT, 1 << draw(st.sampled_from(everything))]))
-    return Stroke(first=draw(st.sampled_from([1 << ball] * 5 + [0])), potted=potted, snookered=draw(st.booleans()))
+    potted = draw(
+        st.sampled_from([0, 1 << ball, 1 << ball, 1 << ball, CUE_BIT, 1 << draw(st.sampled_from(everything))])
+    )
+    return Stroke(
+        first=draw(st.sampled_from([1 << ball] * 5 + [0])), potted=potted, snookered=draw(st.booleans())
+    )
 
 
 @settings(max_examples=60, deadline=None)
@@ -324,7 +392,11 @@ def test_a_frame_written_down_goes_on_as_the_same(data, miss):
         total = sum(frame.scores)
         if frame.phase == "stroke":
             stroke = data.draw(strokes_for(frame))
-            options = {"clear_path": data.draw(st.booleans()), "full_ball_path": False, "layout": ((0.5, 0.25), "here")}
+            options = {
+                "clear_path": data.draw(st.booleans()),
+                "full_ball_path": False,
+                "layout": ((0.5, 0.25), "here"),
+            }
             following, verdict = frame.play(stroke, **options)
             assert through_json(frame).play(stroke, **options) == (following, verdict)
             assert sum(following.scores) - total == verdict.points + verdict.penalty
@@ -349,10 +421,19 @@ def test_a_whole_frame_of_the_best_break():
 @pytest.mark.parametrize(
     "wrong",
     [
-        {"striker": 2}, {"scores": [0, 0]}, {"scores": (0, -1)}, {"phase": "end"}, {"miss": "on"}, {"winner": 0},
-        {"phase": "over"}, {"on_table": -1}, {"ball_on": BallOn.YELLOW}, {"failures": -1}, {"break_points": 156},
+        {"striker": 2},
+        {"scores": [0, 0]},
+        {"scores": (0, -1)},
+        {"phase": "end"},
+        {"miss": "on"},
+        {"winner": 0},
+        {"phase": "over"},
+        {"on_table": -1},
+        {"ball_on": BallOn.YELLOW},
+        {"failures": -1},
+        {"break_points": 156},
     ],
-)  # fmt: skip
+)
 def test_impossible_frames_are_refused(wrong):
     with pytest.raises(ValueError, match=" = "):
         Frame(**wrong)
@@ -367,7 +448,12 @@ def test_the_break_at_the_end_of_a_frame():
 
 def test_a_strange_dict_is_refused():
     plain = Frame.start().to_dict()
-    for wrong in (plain | {"more": 1}, {k: v for k, v in plain.items() if k != "miss"}, [], plain | {"ball_on": 9}):
+    for wrong in (
+        plain | {"more": 1},
+        {k: v for k, v in plain.items() if k != "miss"},
+        [],
+        plain | {"ball_on": 9},
+    ):
         with pytest.raises(ValueError):
             Frame.from_dict(wrong)
 

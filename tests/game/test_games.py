@@ -98,7 +98,13 @@ def test_six_red_the_fifth_miss_lets_the_opponent_place_the_cue_ball_anywhere():
     frame, _ = frame.play(Stroke(snookered=True), clear_path=True)
     assert frame.misses == 5 and frame.choices == ("play", "play_again", "anywhere") and frame.free_ball
     placed = frame.choose("anywhere")
-    assert (placed.striker, placed.in_hand, placed.anywhere, placed.free_ball, placed.misses) == (1, True, True, False, 0)
+    assert (placed.striker, placed.in_hand, placed.anywhere, placed.free_ball, placed.misses) == (
+        1,
+        True,
+        True,
+        False,
+        0,
+    )
     after, _ = placed.play(Stroke(first=2))
     assert not after.in_hand and not after.anywhere
     missed, _ = placed.play(MISSED, clear_path=True)  # replaced, he places it anywhere once more
@@ -118,7 +124,8 @@ def test_six_red_not_anywhere_when_snookers_are_required():
 
 
 def test_any_number_of_misses_with_part_of_a_ball_to_be_seen_until_the_scores_decide():
-    """S3 R14 has no limit but for a full ball: penalties add up until they reach what is left, and then no miss is called."""
+    """S3 R14 has no limit but for a full ball: penalties add up until they reach what is left, and then no
+    miss is called."""
     frame, calls = Frame.start(miss="clear_path"), 0
     while True:
         frame, _ = frame.play(MISSED, clear_path=True)
@@ -143,7 +150,13 @@ def shoot_out(**more):
 
 def test_shoot_out_a_foul_gives_the_ball_in_hand_anywhere():
     frame, verdict = shoot_out().play(Stroke(snookered=True))
-    assert (frame.phase, frame.striker, frame.in_hand, frame.anywhere, frame.free_ball) == ("stroke", 1, True, True, False)
+    assert (frame.phase, frame.striker, frame.in_hand, frame.anywhere, frame.free_ball) == (
+        "stroke",
+        1,
+        True,
+        True,
+        False,
+    )
     assert frame.scores == (0, 4) and verdict.in_hand
     frame, _ = frame.play(Stroke(first=2))
     assert not frame.in_hand and not frame.anywhere
@@ -152,7 +165,9 @@ def test_shoot_out_a_foul_gives_the_ball_in_hand_anywhere():
 def test_shoot_out_a_ball_must_be_potted_or_reach_a_cushion():
     assert shoot_out().play(Stroke(first=2, no_cushion=True))[0].scores == (0, 4)
     assert shoot_out().play(Stroke(first=2, potted=2, no_cushion=True))[0].scores == (1, 0)
-    assert shoot_out(ball_on=BallOn.PINK, on_table=3 << 20).play(Stroke(first=1 << 20, no_cushion=True))[0].scores == (0, 6)
+    assert shoot_out(ball_on=BallOn.PINK, on_table=3 << 20).play(Stroke(first=1 << 20, no_cushion=True))[
+        0
+    ].scores == (0, 6)
     assert Frame().play(Stroke(first=2, no_cushion=True))[0].scores == (0, 0)
 
 
@@ -161,7 +176,12 @@ def test_shoot_out_the_clocks():
     assert frame.clock == 6_000  # it starts with the first stroke
     late, verdict = frame.play(Stroke(first=2, potted=2), time_to_play=15_001, duration=6_000)
     assert verdict.penalty == 5 and late.clock == 21_000 and late.anywhere and late.on_table == frame.on_table
-    assert shoot_out(ball_on=BallOn.PINK, on_table=3 << 20, clock=1).play(Stroke(), time_to_play=20_000)[1].penalty == 6
+    assert (
+        shoot_out(ball_on=BallOn.PINK, on_table=3 << 20, clock=1)
+        .play(Stroke(), time_to_play=20_000)[1]
+        .penalty
+        == 6
+    )
     half = shoot_out(clock=300_000)
     assert half.shot_clock == 10_000 and half.play(Stroke(first=2), time_to_play=10_000)[1].penalty == 0
     assert half.play(Stroke(first=2), time_to_play=10_001)[1].penalty == 5
@@ -174,7 +194,9 @@ def test_shoot_out_when_the_time_is_up_the_higher_score_wins(scores, winner):
     assert frame.play(Stroke(first=2), time_to_play=8_000, duration=3_999)[0].phase == "stroke"
     over, _ = frame.play(Stroke(first=2), time_to_play=8_000, duration=4_000)
     assert (over.phase, over.winner, over.clock) == ("over", winner, 592_000)
-    last, _ = shoot_out(scores=(4, 5), clock=585_000).play(Stroke(first=2, potted=14), time_to_play=8_000, duration=2_000)
+    last, _ = shoot_out(scores=(4, 5), clock=585_000).play(
+        Stroke(first=2, potted=14), time_to_play=8_000, duration=2_000
+    )
     assert last.winner == 0  # a stroke begun in time counts
 
 
@@ -182,6 +204,7 @@ def test_shoot_out_level_scores_leave_the_black():
     lot, _ = shoot_out(scores=(5, 5), clock=595_000).play(Stroke(first=2), time_to_play=3_000, duration=5_000)
     assert (lot.phase, lot.on_table, lot.in_hand, lot.anywhere) == ("lot", 1 << 21, True, False)
     frame = lot.draw(1)
-    frame, _ = frame.play(Stroke(first=1 << 21), time_to_play=3_000, duration=5_000)  # no frame clock any more
+    # no frame clock any more
+    frame, _ = frame.play(Stroke(first=1 << 21), time_to_play=3_000, duration=5_000)
     assert frame.phase == "stroke" and frame.striker == 0
     assert frame.play(Stroke(), time_to_play=3_000)[0].winner == 1

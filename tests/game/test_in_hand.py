@@ -1,4 +1,5 @@
-"""Is the place found in the D legal, and the nearest? Named cases, and many places drawn at random as the judge."""
+"""Is the place found in the D legal, and the nearest? Named cases, and many places drawn at random as the
+judge."""
 
 import numpy as np
 import pytest
@@ -64,7 +65,9 @@ def test_beside_one_ball():
 def test_beside_one_ball_on_the_lines_of_the_d():
     # The nearest point of the circle lies beyond the line; the place is where circle and line meet.
     half = np.sqrt(REACH**2 - 0.02**2)
-    assert place_cue(*table((0.0, BAULK_Y - 0.02)), 0.01, BAULK_Y) == pytest.approx((half, BAULK_Y), abs=1e-12)
+    assert place_cue(*table((0.0, BAULK_Y - 0.02)), 0.01, BAULK_Y) == pytest.approx(
+        (half, BAULK_Y), abs=1e-12
+    )
     x, y = place_cue(*table((0.0, BAULK_Y - D_RADIUS + 0.02)), 0.01, BAULK_Y - D_RADIUS)
     assert np.hypot(x, y - BAULK_Y) == pytest.approx(D_RADIUS, abs=1e-12)
     assert np.hypot(x, y - BAULK_Y + D_RADIUS - 0.02) == pytest.approx(REACH, abs=1e-12) and x > 0.0
@@ -83,7 +86,11 @@ def test_the_cue_ball_is_not_in_its_own_way():
 
 
 def test_a_full_d_is_refused():
-    rows = [(x, BAULK_Y - y) for y in (0.02, 0.11, 0.2, 0.28) for x in np.linspace(-0.26, 0.26, 6)[: 6 if y < 0.2 else 5]]
+    rows = [
+        (x, BAULK_Y - y)
+        for y in (0.02, 0.11, 0.2, 0.28)
+        for x in np.linspace(-0.26, 0.26, 6)[: 6 if y < 0.2 else 5]
+    ]
     with pytest.raises(ValueError, match="free place"):
         place_cue(*table(*rows[:21]), 0.0, -1.1, radius=0.08)
 
@@ -130,7 +137,8 @@ on_bed = from_python(in_hand.on_bed)
 @given(st.integers(0, 2**32 - 1), st.integers(0, 21))
 def test_anywhere_no_place_drawn_at_random_is_nearer(seed, number):
     rng = np.random.default_rng(seed)
-    corner = rng.choice([-1, 1], 2) * [0.6, 1.5]  # in one part of the bed, next to a corner pocket or a middle one, so that balls are close
+    # in one part of the bed, next to a corner pocket or a middle one, so that balls are close
+    corner = rng.choice([-1, 1], 2) * [0.6, 1.5]
     balls = []
     for place in corner + rng.uniform([-0.35, -0.3], [0.35, 0.3], (400, 2)):
         if len(balls) < number and all(np.hypot(*(place - ball)) > 2 * BALL_RADIUS for ball in balls):

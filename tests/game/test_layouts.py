@@ -28,7 +28,12 @@ def gaps(positions, on_table):
 @given(seed=st.integers(0, 2**32 - 1))
 def test_every_layout_is_playable(name, seed):
     positions, on_table = layouts.layout(name, np.random.default_rng(seed))
-    assert positions.shape == (22, 2) and positions.dtype == np.float64 and on_table.shape == (22,) and on_table.dtype == np.bool_
+    assert (
+        positions.shape == (22, 2)
+        and positions.dtype == np.float64
+        and on_table.shape == (22,)
+        and on_table.dtype == np.bool_
+    )
     assert on_table[0] and np.all(on_table[YELLOW:])
     assert np.array_equal(positions[YELLOW:], SPOTS[YELLOW:])
     distances = gaps(positions, on_table)
@@ -37,7 +42,9 @@ def test_every_layout_is_playable(name, seed):
     if name != "break_off":
         assert distances.min() >= layouts.GAP - 1e-12
     sprinkled = positions[:16][on_table[:16]] if name.startswith("random") else positions[:1]
-    assert np.all(np.abs(sprinkled) <= np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - layouts.CUSHION_GAP)
+    assert np.all(
+        np.abs(sprinkled) <= np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - layouts.CUSHION_GAP
+    )
     assert all(np.hypot(*(POCKET_PLACES - place).T).min() >= layouts.POCKET_GAP for place in sprinkled)
 
 
@@ -45,7 +52,10 @@ def test_every_layout_is_playable(name, seed):
     ("too_near", "near"),
     [
         ((2 * BALL_RADIUS + 0.9 * layouts.GAP, 0.3), (2 * BALL_RADIUS + 1.1 * layouts.GAP, 0.3)),
-        ((HALF_WIDTH - BALL_RADIUS - 0.9 * layouts.CUSHION_GAP, 0.5), (HALF_WIDTH - BALL_RADIUS - 1.1 * layouts.CUSHION_GAP, 0.5)),
+        (
+            (HALF_WIDTH - BALL_RADIUS - 0.9 * layouts.CUSHION_GAP, 0.5),
+            (HALF_WIDTH - BALL_RADIUS - 1.1 * layouts.CUSHION_GAP, 0.5),
+        ),
         ((HALF_WIDTH - 0.9 * layouts.POCKET_GAP, 0.0), (HALF_WIDTH - 1.1 * layouts.POCKET_GAP, 0.0)),
     ],
 )
@@ -65,7 +75,9 @@ def test_the_generator_decides(name):
     assert not np.array_equal(layouts.layout(name, rng)[0], layouts.layout(name, rng)[0])
 
 
-@pytest.mark.parametrize(("name", "reds"), [("break_off", 15), ("line_up", 15), ("colours", 0), ("random:7", 7)])
+@pytest.mark.parametrize(
+    ("name", "reds"), [("break_off", 15), ("line_up", 15), ("colours", 0), ("random:7", 7)]
+)
 def test_number_of_reds(name, reds):
     assert layouts.layout(name, np.random.default_rng(0))[1][1:16].sum() == reds
 
@@ -86,7 +98,9 @@ def test_line_up_is_a_line_through_which_a_ball_passes():
     assert abs(on_line).max() < HALF_LENGTH - 3 * BALL_RADIUS
 
 
-@pytest.mark.parametrize("name", ["", "no such", "random", "random:", "random:16", "random:-1", "random:N", None, 3])
+@pytest.mark.parametrize(
+    "name", ["", "no such", "random", "random:", "random:16", "random:-1", "random:N", None, 3]
+)
 def test_unknown_names_are_refused(name):
     with pytest.raises(ValueError):
         layouts.layout(name, np.random.default_rng(0))

@@ -14,7 +14,16 @@ TABLE = sn.Table.preset("match")
 
 def scene(**places):
     positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
-    ids = {"cue": CUE, "green": GREEN, "blue": BLUE, "pink": PINK, "black": BLACK, "red": 1, "brown": 18, "yellow": 16}
+    ids = {
+        "cue": CUE,
+        "green": GREEN,
+        "blue": BLUE,
+        "pink": PINK,
+        "black": BLACK,
+        "red": 1,
+        "brown": 18,
+        "yellow": 16,
+    }
     for name, place in places.items():
         positions[ids[name]], on_table[ids[name]] = place, True
     return positions, on_table
@@ -26,13 +35,21 @@ def scene(**places):
         # All of the green that the black leaves is on the cushion's side of it.
         (
             GREEN,
-            {"cue": (0.77383054, 1.144633), "green": (-0.47865361, 1.75807142), "black": (0.02533072, 1.4767108)},
+            {
+                "cue": (0.77383054, 1.144633),
+                "green": (-0.47865361, 1.75807142),
+                "black": (0.02533072, 1.4767108),
+            },
             (False, False),
         ),
         # From the mouth of a corner pocket straight down the rail: the nose stands in the way.
         (
             PINK,
-            {"cue": (-0.86717741, 1.71866203), "pink": (-0.84330693, -1.70098841), "black": (0.29997489, -1.7007613)},
+            {
+                "cue": (-0.86717741, 1.71866203),
+                "pink": (-0.84330693, -1.70098841),
+                "black": (0.29997489, -1.7007613),
+            },
             (False, False),
         ),
         # A ball in the mouth of a middle pocket: a jaw hides its centre, not all of it.
@@ -45,14 +62,20 @@ def test_named_cases(ball, places, expected):
 
 
 def first_met(positions, on_table, angles):
-    """What a cue ball that rolls fast along each angle meets first: a ball's id, or -1 for a cushion or nothing."""
+    """What a cue ball that rolls fast along each angle meets first: a ball's id, or -1 for a cushion or
+    nothing."""
     n = len(angles)
     velocities, spins = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS, 3))
     c, s = np.cos(angles), np.sin(angles)
     velocities[:, CUE] = 20 * np.column_stack([c, s])
     spins[:, CUE, :2] = 20 / R * np.column_stack([-s, c])
     out = sn.simulate_batch(
-        np.repeat(positions[None], n, 0), velocities, spins, "match", on_table=np.repeat(on_table[None], n, 0), events=True
+        np.repeat(positions[None], n, 0),
+        velocities,
+        spins,
+        "match",
+        on_table=np.repeat(on_table[None], n, 0),
+        events=True,
     )
     met = np.full(n, -1)
     for k in range(n):
@@ -68,7 +91,9 @@ def in_mouths_and_at_rails(rng):
         place = rng.uniform([-HALF_WIDTH, -HALF_LENGTH], [HALF_WIDTH, HALF_LENGTH])
         if rng.random() < 0.6:
             side = rng.integers(2)
-            place[side] = np.sign(place[side]) * ((HALF_WIDTH, HALF_LENGTH)[side] - R - rng.exponential(0.003) + 0.004)
+            place[side] = np.sign(place[side]) * (
+                (HALF_WIDTH, HALF_LENGTH)[side] - R - rng.exponential(0.003) + 0.004
+            )
         if rng.random() < 0.4:
             place[1] = rng.choice([-HALF_LENGTH, 0, HALF_LENGTH]) + rng.normal(0, 0.05)
         try:
@@ -79,14 +104,22 @@ def in_mouths_and_at_rails(rng):
 
 
 def test_paths_agree_with_rolled_balls():
-    """Cue ball and target near rails and pockets, two balls between them; 300 directions, then 6,000, over the whole target."""
+    """Cue ball and target near rails and pockets, two balls between them; 300 directions, then 6,000, over
+    the whole target."""
     rng, met = np.random.default_rng(8), {"any": 0, "full": 0, "barred": 0, "partly": 0, "by cushions": 0}
     while met["any"] < 60:
         cue, red = in_mouths_and_at_rails(rng), in_mouths_and_at_rails(rng)
         if rng.random() < 0.7:
             red[0] = cue[0]  # along the same rail
         across = np.array([cue[1] - red[1], red[0] - cue[0]]) / np.hypot(*(red - cue))
-        places = [cue, red, *(cue + rng.uniform(0.1, 0.9) * (red - cue) + rng.uniform(-2.5, 2.5) * R * across for _ in range(2))]
+        places = [
+            cue,
+            red,
+            *(
+                cue + rng.uniform(0.1, 0.9) * (red - cue) + rng.uniform(-2.5, 2.5) * R * across
+                for _ in range(2)
+            ),
+        ]
         try:
             TABLE.check([red], R)
             TABLE.check([places[2]], R)

@@ -34,7 +34,14 @@ def test_no_ghost_lies_in_a_cushion():
     deal = plan_of("opened")
     for seed in range(200):
         positions, on_table = np.zeros((1, 22, 2)), np.zeros((1, 22), bool)
-        deal_tables(np.zeros(1, np.int64), deal.code, deal.tables, stream_of(np.random.default_rng(seed))[None], positions, on_table)
+        deal_tables(
+            np.zeros(1, np.int64),
+            deal.code,
+            deal.tables,
+            stream_of(np.random.default_rng(seed))[None],
+            positions,
+            on_table,
+        )
         found = pots(positions[0], on_table[0], mask_of(range(1, 16)))
         assert (np.abs(found[:, GHOST_X]) <= HALF_WIDTH - BALL_RADIUS + 1e-9).all()
         assert (np.abs(found[:, GHOST_Y]) <= HALF_LENGTH - BALL_RADIUS + 1e-9).all()
@@ -59,7 +66,10 @@ def plainly(positions, on_table, on):
     def clear(a, b, skip, reach):
         others = [positions[i] for i in range(22) if on_table[i] and i not in (0, skip)]
         along = b - a
-        return all(np.hypot(*(p - a - np.clip((p - a) @ along / (along @ along), 0.0, 1.0) * along)) >= reach for p in others)
+        return all(
+            np.hypot(*(p - a - np.clip((p - a) @ along / (along @ along), 0.0, 1.0) * along)) >= reach
+            for p in others
+        )
 
     for ball in range(1, 22):
         for k in range(6) if on_table[ball] and (on >> ball) & 1 else ():
@@ -69,10 +79,18 @@ def plainly(positions, on_table, on):
             ghost = b - d * way
             path = np.hypot(*(ghost - cue))
             cut = (ghost - cue) @ way / path
-            angles, widths = (_MIDDLE_ANGLE, _MIDDLE_WINDOW) if POCKET_AIMS[k, 4] else (_CORNER_ANGLE, _CORNER_WINDOW)
+            angles, widths = (
+                (_MIDDLE_ANGLE, _MIDDLE_WINDOW) if POCKET_AIMS[k, 4] else (_CORNER_ANGLE, _CORNER_WINDOW)
+            )
             width = np.interp(np.degrees(np.arccos(np.clip(way @ axis, -1.0, 1.0))), angles, widths)
             inside = (np.abs(ghost) <= np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS + 1e-9).all()
-            if width > 0.0 and cut >= 0.05 and inside and clear(b, pocket, ball, d) and clear(cue, ghost, ball, d * (1.0 - 1e-9)):
+            if (
+                width > 0.0
+                and cut >= 0.05
+                and inside
+                and clear(b, pocket, ball, d)
+                and clear(cue, ghost, ball, d * (1.0 - 1e-9))
+            ):
                 found.append((width / (2.0 * run) * d * cut / path, ball, k, *ghost, cut))
     return sorted(found, reverse=True)
 
@@ -89,11 +107,15 @@ def test_short_cuts_leave_no_pot_out():
         on = int(rng.choice([mask_of(range(1, 16)), mask_of(range(16, 22)), mask_of([17])]))
         expected = plainly(positions, on_table, on)
         found = pots(positions, on_table, on)
-        assert [(int(p[POT_BALL]), int(p[POT_POCKET])) for p in found] == [(ball, k) for _, ball, k, *_ in expected]
+        assert [(int(p[POT_BALL]), int(p[POT_POCKET])) for p in found] == [
+            (ball, k) for _, ball, k, *_ in expected
+        ]
         if expected:
             columns = np.array([(x, y, cut, width) for width, _, _, x, y, cut in expected])
             assert np.allclose(found[:, GHOST_X:], columns, rtol=1e-9, atol=1e-12)
         assert np.array_equal(pots(positions, on_table, on, most=4), found[:4])
-        assert [_counted(positions, on_table, on, most) for most in (1, 4, 99)] == [min(most, len(found)) for most in (1, 4, 99)]
+        assert [_counted(positions, on_table, on, most) for most in (1, 4, 99)] == [
+            min(most, len(found)) for most in (1, 4, 99)
+        ]
         met += len(found)
     assert met > 1000

@@ -31,7 +31,9 @@ def rule(ball_on="RED", on_table=None, *, free_ball=False, lead=0, **seen):
     for name in MASKS:
         if name in seen:
             seen[name] = mask_of([seen[name]] if isinstance(seen[name], int) else seen[name])
-    return judge(Situation(on_table=mask_of(on_table), ball_on=on, free_ball=free_ball, lead=lead), Stroke(**seen))
+    return judge(
+        Situation(on_table=mask_of(on_table), ball_on=on, free_ball=free_ball, lead=lead), Stroke(**seen)
+    )
 
 
 def assert_fair(verdict, points, ball_on, stays):
@@ -85,14 +87,23 @@ def test_the_sequence_of_colours(ball):
 # First impact
 
 
-@pytest.mark.parametrize(("ball", "penalty"), [(YELLOW, 4), (GREEN, 4), (BROWN, 4), (BLUE, 5), (PINK, 6), (BLACK, 7)])
+@pytest.mark.parametrize(
+    ("ball", "penalty"), [(YELLOW, 4), (GREEN, 4), (BROWN, 4), (BLUE, 5), (PINK, 6), (BLACK, 7)]
+)
 def test_a_colour_struck_instead_of_a_red(ball, penalty):
     assert_foul(rule(first=ball), Foul.WRONG_FIRST, penalty)
 
 
 @pytest.mark.parametrize(
     ("ball_on", "nominated", "penalty"),
-    [("RED", AUTO, 4), ("ANY_COLOUR", YELLOW, 4), ("ANY_COLOUR", PINK, 6), ("BROWN", AUTO, 4), ("BLUE", AUTO, 5), ("PINK", AUTO, 6)],
+    [
+        ("RED", AUTO, 4),
+        ("ANY_COLOUR", YELLOW, 4),
+        ("ANY_COLOUR", PINK, 6),
+        ("BROWN", AUTO, 4),
+        ("BLUE", AUTO, 5),
+        ("PINK", AUTO, 6),
+    ],
 )
 def test_nothing_struck_costs_the_ball_on(ball_on, nominated, penalty):
     after = "RED" if ball_on in ("RED", "ANY_COLOUR") else ball_on
@@ -100,7 +111,8 @@ def test_nothing_struck_costs_the_ball_on(ball_on, nominated, penalty):
 
 
 @pytest.mark.parametrize(
-    ("nominated", "first", "penalty"), [(BLACK, PINK, 7), (YELLOW, BLACK, 7), (YELLOW, 1, 4), (GREEN, YELLOW, 4), (BLUE, 1, 5)]
+    ("nominated", "first", "penalty"),
+    [(BLACK, PINK, 7), (YELLOW, BLACK, 7), (YELLOW, 1, 4), (GREEN, YELLOW, 4), (BLUE, 1, 5)],
 )
 def test_another_ball_than_the_nominated_colour(nominated, first, penalty):
     assert_foul(rule("ANY_COLOUR", first=first, nominated=nominated), Foul.WRONG_FIRST, penalty)
@@ -108,7 +120,13 @@ def test_another_ball_than_the_nominated_colour(nominated, first, penalty):
 
 @pytest.mark.parametrize(
     ("ball_on", "first", "penalty"),
-    [("RED", [1, 2], 0), ("RED", [1, BLACK], 7), ("RED", [1, YELLOW], 4), ("ANY_COLOUR", [PINK, BLACK], 7), ("YELLOW", [YELLOW, BLUE], 5)],
+    [
+        ("RED", [1, 2], 0),
+        ("RED", [1, BLACK], 7),
+        ("RED", [1, YELLOW], 4),
+        ("ANY_COLOUR", [PINK, BLACK], 7),
+        ("YELLOW", [YELLOW, BLUE], 5),
+    ],
 )
 def test_balls_struck_at_the_same_time(ball_on, first, penalty):
     assert rule(ball_on, first=first, nominated=PINK if ball_on == "ANY_COLOUR" else AUTO).penalty == penalty
@@ -140,7 +158,9 @@ def test_only_the_nominated_colour_may_be_potted():
     assert verdict.on_table == FULL_TABLE & ~(1 << 4)
 
 
-@pytest.mark.parametrize(("ball_on", "ball", "penalty"), [("RED", 1, 4), ("ANY_COLOUR", PINK, 6), ("BLUE", BLUE, 5)])
+@pytest.mark.parametrize(
+    ("ball_on", "ball", "penalty"), [("RED", 1, 4), ("ANY_COLOUR", PINK, 6), ("BLUE", BLUE, 5)]
+)
 @pytest.mark.parametrize(("where", "foul"), [("potted", Foul.CUE_POTTED), ("off", Foul.CUE_OFF)])
 def test_the_cue_ball_lost(ball_on, ball, penalty, where, foul):
     verdict = rule(ball_on, first=ball, **{where: CUE})
@@ -184,7 +204,8 @@ def test_a_push_costs_the_ball_concerned():
     assert_foul(rule(first=1, push=True), Foul.PUSH, 4)
     assert_foul(rule(first=BLACK, push=True), Foul.PUSH | Foul.WRONG_FIRST, 7)
     assert_foul(rule(first=1, touching=PINK, moved=PINK), Foul.PUSH, 6)
-    assert_foul(rule(touching=1, first=BLACK, push=True), Foul.PUSH, 7)  # free to meet the black, but not to push it
+    # free to meet the black, but not to push it
+    assert_foul(rule(touching=1, first=BLACK, push=True), Foul.PUSH, 7)
 
 
 def test_seven_points_whatever_is_on():
@@ -222,7 +243,9 @@ def test_the_colour_first_struck_is_the_nominated_one(ball):
     assert verdict.nominated == ball
 
 
-@pytest.mark.parametrize(("first", "foul"), [([], Foul.NO_CONTACT), ([4], Foul.WRONG_FIRST), ([4, 5], Foul.WRONG_FIRST)])
+@pytest.mark.parametrize(
+    ("first", "foul"), [([], Foul.NO_CONTACT), ([4], Foul.WRONG_FIRST), ([4, 5], Foul.WRONG_FIRST)]
+)
 @pytest.mark.parametrize("nominated", [AUTO, 0])
 def test_no_colour_nominated_and_a_foul_is_seven(first, foul, nominated):
     assert_foul(rule("ANY_COLOUR", first=first, nominated=nominated), foul | Foul.NO_NOMINATION, 7)
@@ -247,7 +270,13 @@ def test_auto_takes_a_free_ball_only_when_one_was_played():
 
 @pytest.mark.parametrize(
     ("potted", "points", "left", "respotted"),
-    [([BLUE], 1, 15, [BLUE]), ([1], 1, 14, []), ([BLUE, 1], 2, 14, [BLUE]), ([BLUE, 1, 2], 3, 13, [BLUE]), ([], 0, 15, [])],
+    [
+        ([BLUE], 1, 15, [BLUE]),
+        ([1], 1, 14, []),
+        ([BLUE, 1], 2, 14, [BLUE]),
+        ([BLUE, 1, 2], 3, 13, [BLUE]),
+        ([], 0, 15, []),
+    ],
 )
 def test_a_free_ball_as_a_red(potted, points, left, respotted):
     verdict = rule(free_ball=True, nominated=BLUE, first=BLUE, potted=potted)
@@ -295,7 +324,13 @@ def test_no_snooker_behind_the_free_ball_but_with_pink_and_black():
 @pytest.mark.parametrize(("potted", "points"), [(BLUE, 1), (1, 1), ([BLUE, 1], 2)])
 def test_a_snooker_behind_the_free_ball_is_fair_after_a_stroke_that_scores(potted, points):
     """S3 R12(b)(ii): "after a non-scoring stroke"."""
-    behind = {"free_ball": True, "snookered": True, "behind_free_ball": True, "first": BLUE, "nominated": BLUE}
+    behind = {
+        "free_ball": True,
+        "snookered": True,
+        "behind_free_ball": True,
+        "first": BLUE,
+        "nominated": BLUE,
+    }
     assert_fair(rule(potted=potted, **behind), points, "ANY_COLOUR", True)
     verdict = rule(potted=[BLUE, CUE], **behind)  # a foul scores nothing
     assert verdict.fouls & Foul.BEHIND_FREE_BALL and verdict.penalty == 4

@@ -5,7 +5,19 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game.balls import ALL_MASK, BLACK, BLUE, COLOURS_MASK, REDS_MASK, YELLOW, BallOn, balls_on, ids_of, mask_of, next_on
+from snooker_env.game.balls import (
+    ALL_MASK,
+    BLACK,
+    BLUE,
+    COLOURS_MASK,
+    REDS_MASK,
+    YELLOW,
+    BallOn,
+    balls_on,
+    ids_of,
+    mask_of,
+    next_on,
+)
 from snooker_env.game.referee import FULL_TABLE, Situation, Stroke, judge
 from snooker_env.game.rule_sets import RULES
 from snooker_env.game.ruling import RULE_FLAGS, Flag, Outcome, VisitEnd
@@ -14,7 +26,9 @@ from snooker_env.game.ruling import RULE_FLAGS, Flag, Outcome, VisitEnd
 @st.composite
 def strokes(draw):
     on_table = draw(st.integers(0, FULL_TABLE)) & ~1
-    possible = [on for on in BallOn if on >= 0 and balls_on(on, on_table) and not (on > 1 and on_table & REDS_MASK)]
+    possible = [
+        on for on in BallOn if on >= 0 and balls_on(on, on_table) and not (on > 1 and on_table & REDS_MASK)
+    ]
     assume(possible)
     ball_on = draw(st.sampled_from(possible))
     some = st.sets(st.sampled_from([0, *ids_of(on_table)]), max_size=4).map(mask_of)
@@ -24,7 +38,9 @@ def strokes(draw):
     free_ball = ball_on != BallOn.ANY_COLOUR and draw(st.booleans())
     rules, lead = draw(st.sampled_from(RULES)), draw(st.integers(-10, 10))
     situation = Situation(on_table=on_table, ball_on=ball_on, free_ball=free_ball, lead=lead, rules=rules)
-    return situation, Stroke(first=first, touching=touching, moved=moved, potted=potted, off=draw(some) & ~potted, **flags)
+    return situation, Stroke(
+        first=first, touching=touching, moved=moved, potted=potted, off=draw(some) & ~potted, **flags
+    )
 
 
 @settings(max_examples=400, deadline=None)
@@ -55,10 +71,16 @@ def test_invariants(case):
 @pytest.mark.parametrize(
     "fields",
     [
-        {"on_table": -1}, {"on_table": ALL_MASK + 1}, {"ball_on": BallOn.NOTHING}, {"ball_on": BallOn.YELLOW}, {"ball_on": 8},
-        {"on_table": COLOURS_MASK}, {"ball_on": BallOn.ANY_COLOUR, "free_ball": True}, {"lead": 0.5},
+        {"on_table": -1},
+        {"on_table": ALL_MASK + 1},
+        {"ball_on": BallOn.NOTHING},
+        {"ball_on": BallOn.YELLOW},
+        {"ball_on": 8},
+        {"on_table": COLOURS_MASK},
+        {"ball_on": BallOn.ANY_COLOUR, "free_ball": True},
+        {"lead": 0.5},
     ],
-)  # fmt: skip
+)
 def test_impossible_situations_are_refused(fields):
     with pytest.raises(ValueError, match=" = "):
         Situation(**fields)
@@ -67,10 +89,17 @@ def test_impossible_situations_are_refused(fields):
 @pytest.mark.parametrize(
     "fields",
     [
-        {"first": 1}, {"first": 1 << 22}, {"first": np.float64(2)}, {"touching": 1}, {"moved": 2}, {"potted": 2, "off": 2},
-        {"nominated": 1}, {"nominated": 22}, {"nominated": None},
+        {"first": 1},
+        {"first": 1 << 22},
+        {"first": np.float64(2)},
+        {"touching": 1},
+        {"moved": 2},
+        {"potted": 2, "off": 2},
+        {"nominated": 1},
+        {"nominated": 22},
+        {"nominated": None},
     ],
-)  # fmt: skip
+)
 def test_impossible_strokes_are_refused(fields):
     with pytest.raises(ValueError, match=" = "):
         Stroke(**fields)
@@ -82,7 +111,11 @@ def test_impossible_strokes_are_refused(fields):
         ({"on_table": FULL_TABLE & ~2}, {"first": 2}, "first"),
         ({"on_table": FULL_TABLE & ~2}, {"potted": 2}, "potted"),
         ({}, {"nominated": BLUE}, "nominated"),
-        ({"on_table": 1 << YELLOW | 1 << BLACK, "ball_on": BallOn.YELLOW, "free_ball": True}, {"nominated": YELLOW}, "nominated"),
+        (
+            {"on_table": 1 << YELLOW | 1 << BLACK, "ball_on": BallOn.YELLOW, "free_ball": True},
+            {"nominated": YELLOW},
+            "nominated",
+        ),
         ({"on_table": 2 | 1 << BLACK, "ball_on": BallOn.ANY_COLOUR}, {"nominated": BLUE}, "nominated"),
     ],
 )

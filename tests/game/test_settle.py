@@ -21,7 +21,9 @@ def table(*balls, **places):
 
 def settled(arrays, ball_on, free_ball=False, lead=0, **seen):
     positions, on_table = arrays
-    situation = Situation(on_table=mask_of(np.flatnonzero(on_table)), ball_on=ball_on, free_ball=free_ball, lead=lead)
+    situation = Situation(
+        on_table=mask_of(np.flatnonzero(on_table)), ball_on=ball_on, free_ball=free_ball, lead=lead
+    )
     return settle_table(positions, on_table, situation, Stroke(**seen))
 
 
@@ -36,7 +38,9 @@ def test_reds_go_colours_return_and_the_cue_ball_comes_to_hand():
 
 
 def test_the_array_and_the_verdict_agree():
-    verdict, _, on_table = settled(layouts.break_off(np.random.default_rng(0)), BallOn.RED, first=2, potted=mask_of([1, 2]))
+    verdict, _, on_table = settled(
+        layouts.break_off(np.random.default_rng(0)), BallOn.RED, first=2, potted=mask_of([1, 2])
+    )
     assert mask_of(np.flatnonzero(on_table)) & ~1 == verdict.on_table
 
 
@@ -71,7 +75,9 @@ def test_with_pink_and_black_the_free_ball_may_snooker():
 
 def test_a_free_ball_potted_and_back_on_its_spot_is_no_snooker_laid():
     arrays = table(YELLOW, BLACK, b0=(0.0, 1.2), b16=(0.0, 1.75))
-    verdict = settled(arrays, BallOn.YELLOW, free_ball=True, nominated=BLACK, first=1 << BLACK, potted=1 << BLACK)[0]
+    verdict = settled(
+        arrays, BallOn.YELLOW, free_ball=True, nominated=BLACK, first=1 << BLACK, potted=1 << BLACK
+    )[0]
     assert not verdict.fouls and verdict.points == 2 and verdict.stays
 
 
@@ -91,12 +97,29 @@ def test_it_is_the_referees_verdict():
     rng = np.random.default_rng(0)
     for _ in range(50):
         positions, on_table = layouts.layout("random:5", rng)
-        situation = Situation(on_table=mask_of(np.flatnonzero(on_table)), ball_on=BallOn(int(rng.integers(0, 2))))
+        situation = Situation(
+            on_table=mask_of(np.flatnonzero(on_table)), ball_on=BallOn(int(rng.integers(0, 2)))
+        )
         balls = [0, *range(1, 6), *range(YELLOW, 22)]
-        stroke = Stroke(first=1 << int(rng.choice(balls[1:])), potted=mask_of(rng.choice(balls, int(rng.integers(0, 3)), replace=False)))
+        stroke = Stroke(
+            first=1 << int(rng.choice(balls[1:])),
+            potted=mask_of(rng.choice(balls, int(rng.integers(0, 3)), replace=False)),
+        )
         verdict = settle_table(positions, on_table, situation, stroke)[0]
         alone = judge(situation, stroke)
-        same = ("fouls", "penalty", "points", "respotted", "on_table", "ball_on", "stays", "in_hand", "visit_end", "outcome", "nominated")
+        same = (
+            "fouls",
+            "penalty",
+            "points",
+            "respotted",
+            "on_table",
+            "ball_on",
+            "stays",
+            "in_hand",
+            "visit_end",
+            "outcome",
+            "nominated",
+        )
         assert [getattr(verdict, name) for name in same] == [getattr(alone, name) for name in same]
 
 

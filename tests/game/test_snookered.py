@@ -1,4 +1,5 @@
-"""Are snookers and clear paths seen as the rules define them? Named cases, and a cue ball rolled in small steps as the judge."""
+"""Are snookers and clear paths seen as the rules define them? Named cases, and a cue ball rolled in small
+steps as the judge."""
 
 import time
 
@@ -63,10 +64,12 @@ def test_snookers(reds, others, expected):
 
 
 def test_the_edge_is_that_of_a_graze():
-    # The tangent at 2 R from FAR passes x(y) = 2 R cos / ... ; a ball just 2 R from that line is not in the way, 0.1 mm nearer it is.
+    # The tangent at 2 R from FAR passes x(y) = 2 R cos / ... ; a ball just 2 R from that line is not in the
+    # way, 0.1 mm nearer it is.
     d = 1.6
     s = 2 * R / d
-    normal = np.array([np.sqrt(1 - s * s), -s])  # the tangent on the right goes along (s, cos) from the cue ball
+    # the tangent on the right goes along (s, cos) from the cue ball
+    normal = np.array([np.sqrt(1 - s * s), -s])
     middle = np.array(CUE) + 0.8 * np.array([s, np.sqrt(1 - s * s)])
     assert not snookered(CUE, [FAR], [middle + 2 * R * normal])[0]
     assert snookered(CUE, [FAR], [middle + (2 * R - 1e-4) * normal])[0]
@@ -109,17 +112,24 @@ def test_in_hand_sees_from_any_place():
 
 @pytest.mark.parametrize(("spare", "expected"), [(0.0012, False), (-0.0005, True)])
 def test_in_hand_finds_a_narrow_view(spare, expected):
-    # From straight below, on the baulk line, both edges of the red need a gate of half a way 2 R (1 + a / b), a and b the runs to gate and
-    # red. From beside that place the way shifts at the gate, so that the view is some 10 mm wide; from behind it needs more.
+    # From straight below, on the baulk line, both edges of the red need a gate of half a way 2 R (1 + a / b),
+    # a and b the runs to gate and red. From beside that place the way shifts at the gate, so that the view is
+    # some 10 mm wide; from behind it needs more.
     x, gate, red = 0.12, 0.4, 0.8
     half = 2 * R * (1 + (gate - BAULK_Y) / (red - BAULK_Y)) + spare
     assert snookered(None, [(x, red)], [(x - half, gate), (x + half, gate)])[0] == expected
 
 
 def test_in_hand_finds_a_narrow_view_right_beside_a_ball():
-    # Both edges of the green are in view from the baulk line 0.1 to 0.6 mm beside it, which no grid of places meets.
+    # Both edges of the green are in view from the baulk line 0.1 to 0.6 mm beside it, which no grid of places
+    # meets.
     green, brown = (-0.292, BAULK_Y), (-0.27029115608194443, -1.0993258680927571)
-    others = [(0.687739087233893, -0.6279441785695304), (-0.6521780571937696, -0.4790269154178912), (0.0, 0.0), brown]
+    others = [
+        (0.687739087233893, -0.6279441785695304),
+        (-0.6521780571937696, -0.4790269154178912),
+        (0.0, 0.0),
+        brown,
+    ]
     assert not snookered((-0.2392, BAULK_Y), [green], others)[0]
     assert not snookered(None, [green], others)[0]
 
@@ -141,7 +151,10 @@ def test_in_hand_agrees_with_places_drawn_at_random():
     seen = {True: 0, False: 0}
     for _ in range(60):
         red = np.array([rng.uniform(-0.8, 0.8), rng.uniform(-0.9, 1.7)])
-        others = [red + rng.uniform(2 * R, 0.4) * np.array([np.sin(a), -np.cos(a)]) for a in rng.uniform(-1.0, 1.0, 2)]
+        others = [
+            red + rng.uniform(2 * R, 0.4) * np.array([np.sin(a), -np.cos(a)])
+            for a in rng.uniform(-1.0, 1.0, 2)
+        ]
         places = rng.uniform([-D_RADIUS, -D_RADIUS], [D_RADIUS, 0.0], (300, 2))
         places = places[np.hypot(*places.T) <= D_RADIUS] + [0.0, BAULK_Y]
         legal = [p for p in places if all(np.hypot(*(p - b)) > 2 * R + 1e-3 for b in [red, *others])]
@@ -153,7 +166,9 @@ def test_in_hand_agrees_with_places_drawn_at_random():
 
 
 def test_in_hand_is_fast_enough():
-    positions, on_table, on = table(None, [(x, 1.6) for x in np.linspace(-0.8, 0.8, 15)], [(x, 1.5) for x in np.linspace(-0.7, 0.7, 6)])
+    positions, on_table, on = table(
+        None, [(x, 1.6) for x in np.linspace(-0.8, 0.8, 15)], [(x, 1.5) for x in np.linspace(-0.7, 0.7, 6)]
+    )
     is_snookered(positions, on_table, on)
     start = time.perf_counter()
     is_snookered(positions, on_table, on)
@@ -164,7 +179,8 @@ def test_in_hand_is_fast_enough():
 
 
 def rolls_into(cue, angle, reach, balls):
-    """Index of the ball that a cue ball rolling along ``angle`` meets first within ``reach``, or None: tried every 0.2 mm."""
+    """Index of the ball that a cue ball rolling along ``angle`` meets first within ``reach``, or None: tried
+    every 0.2 mm."""
     path = np.array(cue) + np.arange(0.0, reach, 2e-4)[:, None] * [np.cos(angle), np.sin(angle)]
     distance = np.hypot(*(path[:, None] - np.array(balls)).T).T
     meets = np.argwhere(distance < 2 * R - 1e-7)
@@ -199,10 +215,17 @@ def test_paths_agree_with_rolling(scene):
 
 
 def swept(reds, others, directions):
-    """Does a sweep over each red find a direction in which a ball rolls into it? Other reds do not obstruct, so they are taken away."""
+    """Does a sweep over each red find a direction in which a ball rolls into it? Other reds do not obstruct,
+    so they are taken away."""
     spread = np.linspace(-0.999, 0.999, directions)
     return any(
-        rolls_into((0.0, 0.0), np.arctan2(red[1], red[0]) + part * np.arcsin(min(1.0, 2 * R / np.hypot(*red))), 1.0, [red, *others]) == 0
+        rolls_into(
+            (0.0, 0.0),
+            np.arctan2(red[1], red[0]) + part * np.arcsin(min(1.0, 2 * R / np.hypot(*red))),
+            1.0,
+            [red, *others],
+        )
+        == 0
         for red in reds
         for part in spread
     )
@@ -218,7 +241,9 @@ def test_snookers_agree_with_rolling(scene):
         edges = np.arctan2(red[1], red[0]) + np.array([-1, 1]) * np.arcsin(2 * R / d)
         run = np.sqrt(d * d - 4 * R * R)
         steps = np.linspace(0.0, run, 4000)[:, None]
-        nearest = [np.hypot(*(steps * [np.cos(a), np.sin(a)] - b).T).min() for a in edges for b in np.array(others)]
+        nearest = [
+            np.hypot(*(steps * [np.cos(a), np.sin(a)] - b).T).min() for a in edges for b in np.array(others)
+        ]
         assume(abs(np.array(nearest) - 2 * R).min() > 1e-5)
         open_reds.append(min(nearest) >= 2 * R)
     assert snookered((0.0, 0.0), reds, others)[0] != any(open_reds)
@@ -230,7 +255,8 @@ def test_snookers_agree_with_rolling(scene):
 @pytest.mark.parametrize(
     ("colours", "reds", "expected"),
     [
-        # Two colours in one line of sight, both of which could be on: the nearer one half hidden by a red, the farther one by the nearer.
+        # Two colours in one line of sight, both of which could be on: the nearer one half hidden by a red,
+        # the farther one by the nearer.
         ([FAR, (0.03, 0.3)], [(0.06, -0.3)], (True, False)),
         ([FAR, (0.03, 0.3)], [(0.2, -0.3)], (True, True)),  # the nearer one has nothing before it
         ([FAR, (0.06, 0.3)], [(0.09, -0.3)], (True, True)),  # nor has the farther one
@@ -238,7 +264,8 @@ def test_snookers_agree_with_rolling(scene):
     ],
 )
 def test_a_colour_is_met_full_only_with_nothing_at_all_before_it(colours, reds, expected):
-    """S3 R14: of colours that could be on, the nominated one alone is on; only a red may lie before another red."""
+    """S3 R14: of colours that could be on, the nominated one alone is on; only a red may lie before another
+    red."""
     positions, on_table, _ = table(CUE, reds, colours)
     assert paths(positions, on_table, COLOURS_MASK & mask_of(np.flatnonzero(on_table))) == expected
 
@@ -246,11 +273,14 @@ def test_a_colour_is_met_full_only_with_nothing_at_all_before_it(colours, reds, 
 @settings(max_examples=60, deadline=None)
 @given(scenes())
 def test_full_paths_to_colours_agree_with_rolling(scene):
-    """The balls of ``scenes``, each a colour that could be on or a red that is not: a cue ball rolled at each centre must meet it first."""
+    """The balls of ``scenes``, each a colour that could be on or a red that is not: a cue ball rolled at each
+    centre must meet it first."""
     on, others = scene
     positions, on_table, _ = table((0.0, 0.0), others, on)
     balls = np.array([*on, *others])
-    margins = [abs(abs(b[0] * t[1] - b[1] * t[0]) / np.hypot(*t) - 2 * R) for t in on for b in balls if tuple(b) != t]
+    margins = [
+        abs(abs(b[0] * t[1] - b[1] * t[0]) / np.hypot(*t) - 2 * R) for t in on for b in balls if tuple(b) != t
+    ]
     assume(min(margins) > 1e-4)
     fulls = [rolls_into((0.0, 0.0), np.arctan2(t[1], t[0]), 1.0, balls) == k for k, t in enumerate(on)]
     assert paths(positions, on_table, COLOURS_MASK & mask_of(np.flatnonzero(on_table)))[1] == any(fulls)
@@ -258,10 +288,12 @@ def test_full_paths_to_colours_agree_with_rolling(scene):
 
 @pytest.mark.parametrize("side", [-1, 1])
 def test_a_view_that_ends_where_the_cue_ball_would_meet_two_balls_at_once(side):
-    # Open between the edge of the near ball and the direction in which red and neighbour are met together: 0.0300 to 0.0313 rad.
+    # Open between the edge of the near ball and the direction in which red and neighbour are met together:
+    # 0.0300 to 0.0313 rad.
     red, neighbour, near = (0.0, 1.0), (side * 0.06, 1.0), (-side * 0.03756, 0.49859)
     assert paths(*table((0.0, 0.0), [red], [neighbour, near])) == (True, False)
-    assert paths(*table((0.0, 0.0), [red], [neighbour, (-side * 0.0355, 0.498)])) == (False, False)  # that edge at 0.034 rad
+    # that edge at 0.034 rad
+    assert paths(*table((0.0, 0.0), [red], [neighbour, (-side * 0.0355, 0.498)])) == (False, False)
 
 
 @pytest.mark.parametrize("across", [-0.05, -0.03, 0.0, 0.01, 0.0524])

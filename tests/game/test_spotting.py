@@ -18,7 +18,7 @@ from snooker_env.game.balls import (
     SPOTS,
     YELLOW,
     mask_of,
-)  # fmt: skip
+)
 from snooker_env.game.spotting import spot_colours
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from snooker_env.tasks.stroke import touching_balls
@@ -75,7 +75,10 @@ def test_the_way_up_passes_over_a_second_ball_beside_the_line():
     assert y == pytest.approx(0.08 + np.sqrt((2 * BALL_RADIUS + CLEARANCE) ** 2 - 0.04**2), abs=1e-12)
 
 
-@pytest.mark.parametrize(("ball", "reds"), [(BLACK, [1.56, 1.66, 1.752]), (PINK, [0.99, 1.09, 1.19, 1.29, 1.38, 1.56, 1.66, 1.752])])
+@pytest.mark.parametrize(
+    ("ball", "reds"),
+    [(BLACK, [1.56, 1.66, 1.752]), (PINK, [0.99, 1.09, 1.19, 1.29, 1.38, 1.56, 1.66, 1.752])],
+)
 def test_no_room_above_goes_below_on_the_centre_line(ball, reds):
     x, y = spotted(ball, *SPOTS[16:], *((0.0, y) for y in reds))
     assert x == 0.0
@@ -94,11 +97,18 @@ def test_the_last_room_above_must_clear_the_cushion():
 @settings(max_examples=60, deadline=None)
 @given(st.data(), st.sampled_from(SIX), st.booleans())
 def test_no_spotted_colour_touches_in_the_eyes_of_the_referee(data, ball, crowded):
-    """The cue ball lies at the edge of where the colour goes: on its spot, on another or, with all spots occupied, beside a ball."""
-    gap, turn = data.draw(st.sampled_from([0.0, 2e-6, 1e-5, 4.9e-5, 5.1e-5, 9e-5, 2e-4])), data.draw(st.floats(0, 2 * np.pi))
+    """The cue ball lies at the edge of where the colour goes: on its spot, on another or, with all spots
+    occupied, beside a ball."""
+    gap, turn = (
+        data.draw(st.sampled_from([0.0, 2e-6, 1e-5, 4.9e-5, 5.1e-5, 9e-5, 2e-4])),
+        data.draw(st.floats(0, 2 * np.pi)),
+    )
     reds = [SPOTS[k] for k in SIX if k != ball] if crowded else []
     positions, on_table = table(*reds)
-    positions[0], on_table[0] = SPOTS[ball] + (2 * BALL_RADIUS + gap) * np.array([np.cos(turn), np.sin(turn)]), True
+    positions[0], on_table[0] = (
+        SPOTS[ball] + (2 * BALL_RADIUS + gap) * np.array([np.cos(turn), np.sin(turn)]),
+        True,
+    )
     for _ in range(2):  # the second time the first place is taken, too
         positions, on_table = spot_colours(positions, on_table, 1 << ball)
         assert not touching(positions, on_table)
@@ -142,7 +152,12 @@ def test_only_colours_can_be_spotted(mask):
 
 def test_wrong_arrays_are_refused():
     positions, on_table = table()
-    for bad in ((positions[:21], on_table), (positions, on_table[:21]), (positions, on_table.astype(int)), (positions * np.nan, on_table)):
+    for bad in (
+        (positions[:21], on_table),
+        (positions, on_table[:21]),
+        (positions, on_table.astype(int)),
+        (positions * np.nan, on_table),
+    ):
         with pytest.raises(ValueError):
             spot_colours(*bad, 1 << BLACK)
 
@@ -152,7 +167,12 @@ def crowded(draw):
     """A legal table, dense about the spots and the lines above them, and a set of colours to return."""
     waiting = draw(st.sets(st.integers(YELLOW, BLACK), min_size=1))
     columns = st.sampled_from([0.0, 0.0, 0.0, SPOTS[YELLOW, 0], SPOTS[GREEN, 0]])
-    near = st.builds(lambda x, dx, y: (x + dx, y), columns, st.floats(-0.05, 0.05), st.floats(-1.1, HALF_LENGTH - BALL_RADIUS))
+    near = st.builds(
+        lambda x, dx, y: (x + dx, y),
+        columns,
+        st.floats(-0.05, 0.05),
+        st.floats(-1.1, HALF_LENGTH - BALL_RADIUS),
+    )
     on_spot = st.sampled_from([tuple(SPOTS[i]) for i in SIX])
     places = []
     for place in draw(st.lists(st.one_of(near, on_spot), max_size=60)):
@@ -177,7 +197,10 @@ def test_every_colour_returns_and_none_overlaps(case):
         others = present.copy()
         others[ball] = False
         assert np.all(np.hypot(*(placed[others] - placed[ball]).T) > 2 * BALL_RADIUS)
-        assert abs(placed[ball, 0]) + BALL_RADIUS < HALF_WIDTH and abs(placed[ball, 1]) + BALL_RADIUS < HALF_LENGTH
+        assert (
+            abs(placed[ball, 0]) + BALL_RADIUS < HALF_WIDTH
+            and abs(placed[ball, 1]) + BALL_RADIUS < HALF_LENGTH
+        )
 
 
 @settings(max_examples=100, deadline=None)
@@ -194,8 +217,13 @@ def test_one_colour_is_where_a_search_in_small_steps_finds_it(case):
         return not others or np.hypot(*(np.array(others) - place).T).min() >= reach + CLEARANCE
 
     spots = [ball, *range(BLACK, YELLOW - 1, -1)]
-    # Skip tables on which a ball is within rounding of touching a spot: the search and the rule may read it differently.
-    assume(all(abs(np.hypot(*(np.array(others) - SPOTS[i]).T).min() - reach) > 2 * CLEARANCE for i in spots) if others else True)
+    # Skip tables on which a ball is within rounding of touching a spot: the search and the rule may read it
+    # differently.
+    assume(
+        all(abs(np.hypot(*(np.array(others) - SPOTS[i]).T).min() - reach) > 2 * CLEARANCE for i in spots)
+        if others
+        else True
+    )
     target = next((i for i in spots if free(SPOTS[i])), None)
     if target is not None:
         assert np.array_equal(placed[ball], SPOTS[target])

@@ -1,4 +1,5 @@
-"""Are the random numbers of the kernels the generator's that they say, uniform, normal, and independent between streams?"""
+"""Are the random numbers of the kernels the generator's that they say, uniform, normal, and independent
+between streams?"""
 
 import numba
 import numpy as np
@@ -54,7 +55,9 @@ def test_blocks_are_those_of_a_plain_reading_of_the_paper():
         return c
 
     for words in np.random.default_rng(0).integers(0, 2**32, (50, 6), dtype=np.uint64):
-        assert [int(w) for w in block(words)] == plain([int(w) for w in words[:4]], [int(w) for w in words[4:]])
+        assert [int(w) for w in block(words)] == plain(
+            [int(w) for w in words[:4]], [int(w) for w in words[4:]]
+        )
 
 
 def test_a_draw_takes_one_block_and_can_be_found_again():
@@ -63,8 +66,12 @@ def test_a_draw_takes_one_block_and_can_be_found_again():
     pairs(state, out)
     assert state.tolist() == [7, 2**40 + 3]
     assert np.array_equal(drawn(pairs, 7, 1, 2**40 + 2)[0], out[2])
-    words = [int(w) for w in block(np.array([0, 2**8, 0, 0, 7, 0], np.uint64))]  # counter 2^40 = 2^8 in the upper word
-    assert out[0].tolist() == [(words[0] + (words[1] << 32) >> 11) * 2.0**-53, (words[2] + (words[3] << 32) >> 11) * 2.0**-53]
+    # counter 2^40 = 2^8 in the upper word
+    words = [int(w) for w in block(np.array([0, 2**8, 0, 0, 7, 0], np.uint64))]
+    assert out[0].tolist() == [
+        (words[0] + (words[1] << 32) >> 11) * 2.0**-53,
+        (words[2] + (words[3] << 32) >> 11) * 2.0**-53,
+    ]
 
 
 def test_uniform_numbers_are_uniform():
@@ -83,7 +90,8 @@ def test_normal_numbers_are_normal():
         assert stats.kstest(column, "norm").pvalue > 1e-3
     n = z.size
     moments = [(z**k).mean() for k in (1, 2, 3, 4)]
-    assert moments == pytest.approx([0, 1, 0, 3], abs=4 * np.sqrt(96 / n))  # the fourth power has variance 96, the others less
+    # the fourth power has variance 96, the others less
+    assert moments == pytest.approx([0, 1, 0, 3], abs=4 * np.sqrt(96 / n))
     assert abs(np.corrcoef(z.T)[0, 1]) < 4 / np.sqrt(len(z))
 
 

@@ -1,4 +1,5 @@
-"""Slow, trusted reference computations that the tests compare the package against; nothing in the package imports them.
+"""Slow, trusted reference computations that the tests compare the package against; nothing in the package
+imports them.
 
 ``ball_ball``        one frictional impact of two balls, to about 1e-12 of the incoming speed.
 ``paper_equations``  the same by the paper's own equations, in multi-precision arithmetic.
@@ -10,13 +11,16 @@
 ``motions``          what the oracles' own tests share.
 ``frame_oracle``     whole frames judged by the rules of snooker, stroke by stroke; a command. Its parts begin with the same name.
 
-The oracles are derived from rigid-body mechanics alone and share no code, formula or constant with ``snooker_env.physics``.
+The oracles are derived from rigid-body mechanics alone and share no code, formula or constant with
+``snooker_env.physics``.
 
-Model of an impact. It is instantaneous; the accumulated normal impulse ``P`` takes the place of time. Every contact obeys Coulomb's law,
-and at zero slip the law is decided by the forces: the contact sticks if the friction that holds it is within the limit, else it slips in
-the direction the other forces drive it. Cloth and ball obey ``N >= 0``, ``v_z >= 0``, ``N v_z = 0``. Restitution is energetic (Stronge
-2000, *Impact Mechanics*): the normal force gives back ``e^2`` of the work it took in.
+Model of an impact. It is instantaneous; the accumulated normal impulse ``P`` takes the place of time. Every
+contact obeys Coulomb's law, and at zero slip the law is decided by the forces: the contact sticks if the
+friction that holds it is within the limit, else it slips in the direction the other forces drive it. Cloth
+and ball obey ``N >= 0``, ``v_z >= 0``, ``N v_z = 0``. Restitution is energetic (Stronge 2000, *Impact
+Mechanics*): the normal force gives back ``e^2`` of the work it took in.
 
-Units are SI. Table frame: right-handed, z up; ``v`` [m/s] and ``w`` [rad/s] are arrays of shape (3,). R (radius) only scales ``w`` and
-M (mass) only scales the impulse, which is not returned: both cancel but are parameters, as of every model of the package.
+Units are SI. Table frame: right-handed, z up; ``v`` [m/s] and ``w`` [rad/s] are arrays of shape (3,). R
+(radius) only scales ``w`` and M (mass) only scales the impulse, which is not returned: both cancel but are
+parameters, as of every model of the package.
 """

@@ -1,7 +1,8 @@
-"""What do the velocities of two balls become in one frictional impact? Two oracles: this file's, in floats, and ``paper_equations``.
+"""What do the velocities of two balls become in one frictional impact? Two oracles: this file's, in floats,
+and ``paper_equations``.
 
-Source: Mathavan, Jackson & Parkin (2014), *Sports Engineering* 17, 227-237, as corrected in ``shared/reference/physics.md``; model and
-units: ``tests/oracles/__init__.py``; method: ``march``.
+Source: Mathavan, Jackson & Parkin (2014), *Sports Engineering* 17, 227-237, as corrected in
+``shared/reference/physics.md``; model and units: ``tests/oracles/__init__.py``; method: ``march``.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ Friction = float | Callable[[float], float]
 
 
 class _BallBall:
-    """Two balls in contact at ``+R n`` of ball 1; the ball that the friction between them presses into the cloth is found at the start."""
+    """Two balls in contact at ``+R n`` of ball 1; the ball that the friction between them presses into the
+    cloth is found at the start."""
 
     def __init__(self, normal: Vector, mu_bb: Friction, mu_s: float, state: list[float]):
         self.n, self.mu_s = normal, mu_s
@@ -52,7 +54,8 @@ class _BallBall:
     def regime(self, y) -> Regime:
         between, cloth = self.slips(y)
         speed = norm(between)
-        # Zero slip between the balls stays: the normal impulse does not drive it and the cloth acts only through the friction there.
+        # Zero slip between the balls stays: the normal impulse does not drive it and the cloth acts only
+        # through the friction there.
         if speed <= AT_ZERO:
             return Regime("stick", "off")
         f = self.friction(between, speed)
@@ -60,10 +63,12 @@ class _BallBall:
             return Regime("slip", "off")
         if norm(cloth) > AT_ZERO:
             return Regime("slip", "slip")
-        # Coulomb's law at zero cloth slip: the rate at which the other forces drive it, against the friction there. The rate is at least
-        # 1 + 5/2 |f_z|, so that 7/2 mu_s |f_z| cannot hold it while mu_s <= 5/7 (nor while mu_s mu_bb < 2/7).
+        # Coulomb's law at zero cloth slip: the rate at which the other forces drive it, against the friction
+        # there. The rate is at least 1 + 5/2 |f_z|, so that 7/2 mu_s |f_z| cannot hold it while mu_s <= 5/7
+        # (nor while mu_s mu_bb < 2/7).
         drive = self.slips(self.apply(f, 0.0, (0.0, 0.0, 0.0)))[1]
-        if 3.5 * self.mu_s * abs(f[2]) >= norm(drive):  # a friction impulse changes the cloth slip by 7/2 of itself per unit mass
+        # a friction impulse changes the cloth slip by 7/2 of itself per unit mass
+        if 3.5 * self.mu_s * abs(f[2]) >= norm(drive):
             raise ValueError("the cloth contact would stick (mu_s > 5/7 and more): outside this oracle")
         return Regime("slip", "slip", None, normalized(drive))
 
@@ -80,7 +85,8 @@ class _BallBall:
         return [*self.apply(f, reaction, cloth_friction), self.closing(y)]
 
     def apply(self, f: Vector, reaction: float, cloth_friction: Vector) -> list[float]:
-        """Rates of the twelve velocities per unit of P/M. ``f``: friction on ball 1 from ball 2; the rest acts on the pressed ball."""
+        """Rates of the twelve velocities per unit of P/M. ``f``: friction on ball 1 from ball 2; the rest
+        acts on the pressed ball."""
         n = self.n
         on_1 = add(scale(-1.0, n), f)
         on_2 = scale(-1.0, on_1)
@@ -98,23 +104,40 @@ class _BallBall:
         return {}
 
 
-def ball_ball(v1, w1, v2, w2, normal, *, R: float, M: float, e: float, mu_bb: Friction, mu_s: float, digits: int | None = None):
+def ball_ball(
+    v1,
+    w1,
+    v2,
+    w2,
+    normal,
+    *,
+    R: float,
+    M: float,
+    e: float,
+    mu_bb: Friction,
+    mu_s: float,
+    digits: int | None = None,
+):
     """Velocities and spins after the frictional impact of two equal balls on a rough cloth.
 
-    Source: Mathavan, Jackson & Parkin (2014), section 2, as corrected in physics.md 1.1. While ball 1's surface slips upwards past
-    ball 2's, friction presses ball 1 into the cloth and lifts ball 2 (downwards: the reverse); the cloth answers with a reaction that
-    holds the pressed ball's height and with friction against its slip on the cloth. Energetic restitution.
+    Source: Mathavan, Jackson & Parkin (2014), section 2, as corrected in physics.md 1.1. While ball 1's
+    surface slips upwards past ball 2's, friction presses ball 1 into the cloth and lifts ball 2 (downwards:
+    the reverse); the cloth answers with a reaction that holds the pressed ball's height and with friction
+    against its slip on the cloth. Energetic restitution.
 
-    v1, w1, v2, w2 : velocities [m/s] and spins [rad/s], shape (3,), table frame (z up); vertical velocities must be 0.
+    v1, w1, v2, w2 : velocities [m/s] and spins [rad/s], shape (3,), table frame (z up); vertical velocities
+    must be 0.
     normal : horizontal unit vector from the centre of ball 1 to that of ball 2.
     R, M : radius [m] and mass [kg]. ``e`` : restitution, 0..1. ``mu_s`` : ball-cloth friction.
-    mu_bb : ball-ball friction, a number or a callable of the slip speed [m/s] (with ``digits`` it is called with an mpmath number, and
+    mu_bb : ball-ball friction, a number or a callable of the slip speed [m/s] (with ``digits`` it is called
+    with an mpmath number, and
         its own precision limits the result).
-    digits : None for the float oracle (within 1e-13 of the incoming speed); a number of decimal digits (20 or more) for the second,
+    digits : None for the float oracle (within 1e-13 of the incoming speed); a number of decimal digits (20 or
+    more) for the second,
         multi-precision one (steps and stops to 1e-16 of it, a second or so).
 
-    Returns (v1, w1, v2, w2) as float64 arrays. The vertical velocity of the lifted ball is part of the result. If the balls do not
-    approach (normal closing speed <= 0) the inputs come back unchanged.
+    Returns (v1, w1, v2, w2) as float64 arrays. The vertical velocity of the lifted ball is part of the
+    result. If the balls do not approach (normal closing speed <= 0) the inputs come back unchanged.
     """
     v1, w1, v2, w2 = (np.array(a, dtype=float) for a in (v1, w1, v2, w2))
     on_the_cloth(v1, v2)

@@ -1,7 +1,7 @@
 """What do the velocity and the spin of a ball become in one frictional impact on a cushion?
 
-Source: Mathavan, Jackson & Parkin (2010), *Proc. IMechE C* 224, 1863-1873, as corrected in ``shared/reference/physics.md``; model and
-units: ``tests/oracles/__init__.py``; method: ``march``.
+Source: Mathavan, Jackson & Parkin (2010), *Proc. IMechE C* 224, 1863-1873, as corrected in
+``shared/reference/physics.md``; model and units: ``tests/oracles/__init__.py``; method: ``march``.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from .vectors import Vector, Z, add, cross, dot, norm, normalized, on_the_cloth,
 
 
 class _BallCushion:
-    """One ball against a cushion whose nose is above the centre; ``m`` is the unit vector from the centre to the contact."""
+    """One ball against a cushion whose nose is above the centre; ``m`` is the unit vector from the centre to
+    the contact."""
 
     def __init__(self, normal: Vector, mu_w: float, mu_s: float, sin_theta: float):
         cos_theta = math.sqrt(1.0 - sin_theta**2)
@@ -35,24 +36,28 @@ class _BallCushion:
         return at_nose, (at_cloth[0], at_cloth[1], 0.0)
 
     def apply(self, f: Vector, reaction: float, cloth_friction: Vector) -> list[float]:
-        """Rates of the six velocities per unit of P/M under the cushion's push -m and friction f, and the cloth's answer."""
+        """Rates of the six velocities per unit of P/M under the cushion's push -m and friction f, and the
+        cloth's answer."""
         from_nose = add(scale(-1.0, self.m), f)
         from_cloth = add(cloth_friction, scale(reaction, Z))
         spin = scale(2.5, add(cross(self.m, from_nose), cross(scale(-1.0, Z), from_cloth)))
         return [*add(from_nose, from_cloth), *spin]
 
     def cloth_answer(self, f: Vector, law: str, direction: Vector | None = None) -> tuple[float, Vector]:
-        """Reaction N' that holds the ball's height and the cloth's friction, for a nose friction ``f``; affine in ``f``."""
+        """Reaction N' that holds the ball's height and the cloth's friction, for a nose friction ``f``;
+        affine in ``f``."""
         if law == "off":
             return 0.0, (0.0, 0.0, 0.0)
         reaction = dot(self.m, Z) - f[2]
         if law == "slip":
             return reaction, scale(-self.mu_s * reaction, direction)
         drive = self.slips(self.apply(f, reaction, (0.0, 0.0, 0.0)))[1]
-        return reaction, scale(-2.0 / 7.0, drive)  # the friction that holds: it changes the cloth slip by 7/2 of itself
+        # the friction that holds: it changes the cloth slip by 7/2 of itself
+        return reaction, scale(-2.0 / 7.0, drive)
 
     def coulomb(self, f: Vector, airborne: bool, cloth_slip: Vector | None):
-        """Law, reaction, friction and starting direction of the cloth contact for a given ``f``; ``cloth_slip`` None: it is zero."""
+        """Law, reaction, friction and starting direction of the cloth contact for a given ``f``;
+        ``cloth_slip`` None: it is zero."""
         if airborne or dot(self.m, Z) - f[2] <= 0.0:
             return "off", 0.0, (0.0, 0.0, 0.0), None
         if cloth_slip is not None:
@@ -79,7 +84,8 @@ class _BallCushion:
         return self.tangent(float(a), float(b))
 
     def holding_any(self, airborne: bool, cloth_slip: Vector | None) -> Vector:
-        """The nose friction that keeps the nose's slip constant when the cloth's law depends on it (Coulomb, N' >= 0)."""
+        """The nose friction that keeps the nose's slip constant when the cloth's law depends on it (Coulomb,
+        N' >= 0)."""
         candidates = ["off"] if airborne else ["slip" if cloth_slip is not None else "stick", "off"]
         direction = None if cloth_slip is None else normalized(cloth_slip)
         for law in candidates:
@@ -99,7 +105,8 @@ class _BallCushion:
         return self.tangent(*(float(c) for c in solution.x))
 
     def start_direction(self, airborne: bool, cloth_slip: Vector | None) -> Vector:
-        """Unit vector d of a slip that starts from zero: its rate under the friction -mu_w d is along d itself."""
+        """Unit vector d of a slip that starts from zero: its rate under the friction -mu_w d is along d
+        itself."""
 
         def rate(angle):
             d = self.tangent(math.cos(angle), math.sin(angle))
@@ -136,8 +143,11 @@ class _BallCushion:
                 main, nose_start = "slip", self.start_direction(airborne, cloth_slip)
                 f = scale(-self.mu_w, nose_start)
         law, _reaction, _friction, cloth_start = self.coulomb(f, airborne, cloth_slip)
-        if main == law == "stick":  # no slip at either contact leaves v_y = 0 and nothing that would end the impact
-            raise ValueError("the ball is wedged between cushion and cloth (mu_w, mu_s too high): outside this oracle")
+        # no slip at either contact leaves v_y = 0 and nothing that would end the impact
+        if main == law == "stick":
+            raise ValueError(
+                "the ball is wedged between cushion and cloth (mu_w, mu_s too high): outside this oracle"
+            )
         return Regime(main, law, nose_start, cloth_start)
 
     def nose_friction(self, y, regime: Regime, cloth_direction: Vector | None) -> Vector:
@@ -176,19 +186,22 @@ class _BallCushion:
 
 
 def ball_cushion(v, w, normal, *, R: float, M: float, e: float, mu_w: float, mu_s: float, sin_theta: float):
-    """Velocity and spin after the frictional impact of a ball on a cushion, the cloth's reaction and friction included.
+    """Velocity and spin after the frictional impact of a ball on a cushion, the cloth's reaction and friction
+    included.
 
-    Source: Mathavan, Jackson & Parkin (2010), with Coulomb's law at zero slip as in physics.md 1.4: the contact sticks only if the friction
-    that holds it is within ``mu_w``; if not, it slips in the direction in which the other forces drive it. The cushion pushes the ball
-    into the cloth (N' >= 0); where its friction would lift the ball instead, N' = 0 and the ball rises.
+    Source: Mathavan, Jackson & Parkin (2010), with Coulomb's law at zero slip as in physics.md 1.4: the
+    contact sticks only if the friction that holds it is within ``mu_w``; if not, it slips in the direction in
+    which the other forces drive it. The cushion pushes the ball into the cloth (N' >= 0); where its friction
+    would lift the ball instead, N' = 0 and the ball rises.
 
     v, w : velocity [m/s] (horizontal) and spin [rad/s], shape (3,), table frame (z up).
     normal : horizontal unit vector INTO the cushion.
-    R, M : radius [m] and mass [kg]. ``e`` : energetic restitution. ``mu_w``, ``mu_s`` : friction of ball on cushion and on cloth.
+    R, M : radius [m] and mass [kg]. ``e`` : energetic restitution. ``mu_w``, ``mu_s`` : friction of ball on
+    cushion and on cloth.
     sin_theta : height of the cushion's nose above the ball's centre over R.
 
-    Returns (v, w) as float64 arrays, the vertical velocity of a ball that was lifted included. A ball that does not approach comes back
-    unchanged.
+    Returns (v, w) as float64 arrays, the vertical velocity of a ball that was lifted included. A ball that
+    does not approach comes back unchanged.
     """
     v, w = np.array(v, dtype=float), np.array(w, dtype=float)
     on_the_cloth(v)

@@ -1,12 +1,14 @@
-"""Does ``snooker_env`` judge whole frames as the rules say? Plays frames of each kind and checks every stroke against an oracle.
+"""Does ``snooker_env`` judge whole frames as the rules say? Plays frames of each kind and checks every stroke
+against an oracle.
 
     python -m tests.oracles.frame_oracle [--frames 2000] [--kind NAME ...] [--seed 0] [--out FILE] [--mutants]
     python -m tests.oracles.frame_oracle --table FILE
 
-Prints, for each kind, the strokes, the disagreements (there must be none), the decisions that rounding decides, and how often each
-rule was met, so that one sees what was left untested. ``--mutants`` puts errors into the rules one at a time and prints after how many
-strokes each is seen. ``--out`` adds a line of JSON for each kind to a file; ``--table`` sums such a file up as a table in Markdown.
-The oracle is ``frame_oracle_rules`` and ``frame_oracle_geometry``: written from the rules, not from ``snooker_env.game``.
+Prints, for each kind, the strokes, the disagreements (there must be none), the decisions that rounding
+decides, and how often each rule was met, so that one sees what was left untested. ``--mutants`` puts errors
+into the rules one at a time and prints after how many strokes each is seen. ``--out`` adds a line of JSON for
+each kind to a file; ``--table`` sums such a file up as a table in Markdown. The oracle is
+``frame_oracle_rules`` and ``frame_oracle_geometry``: written from the rules, not from ``snooker_env.game``.
 """
 
 from __future__ import annotations
@@ -37,7 +39,9 @@ def check(name: str, frames: int, seed: int) -> Checker:
 def report(name: str, checker: Checker, seconds: float) -> None:
     """Print what was compared and exercised."""
     tally = checker.tally
-    print(f"{name}: {tally.frames} frames, {tally.strokes} strokes, {len(tally.disagreements)} disagreements, {seconds:.0f} s")
+    print(
+        f"{name}: {tally.frames} frames, {tally.strokes} strokes, {len(tally.disagreements)} disagreements, {seconds:.0f} s"
+    )
     print(f"  rounding decides: {dict(tally.undecidable) or 'nothing'}")
     print("  " + ", ".join(f"{what} {many}" for what, many in sorted(tally.seen.items())))
     kinds = Counter((what, *names) for what, names, *_ in tally.disagreements)
@@ -50,10 +54,17 @@ def line(name: str, checker: Checker, seconds: float, seed: int) -> dict:
     """The figures of one run."""
     tally = checker.tally
     return {
-        "kind": name, "seed": seed, "frames": tally.frames, "strokes": tally.strokes, "seconds": round(seconds, 1),
-        "rounding": dict(tally.undecidable), "exercised": dict(sorted(tally.seen.items())),
-        "disagreements": [[what, *names, f"seed {data[0]}"] for what, names, _, _, data in tally.disagreements],
-    }  # fmt: skip
+        "kind": name,
+        "seed": seed,
+        "frames": tally.frames,
+        "strokes": tally.strokes,
+        "seconds": round(seconds, 1),
+        "rounding": dict(tally.undecidable),
+        "exercised": dict(sorted(tally.seen.items())),
+        "disagreements": [
+            [what, *names, f"seed {data[0]}"] for what, names, _, _, data in tally.disagreements
+        ],
+    }
 
 
 COLUMNS = {
@@ -78,7 +89,10 @@ def table(lines: list[dict]) -> str:
         for one in mine:
             seen.update(one["exercised"])
         sums = [sum(one[name] for one in mine) for name in ("frames", "strokes")]
-        sums += [sum(len(one["disagreements"]) for one in mine), sum(sum(one["rounding"].values()) for one in mine)]
+        sums += [
+            sum(len(one["disagreements"]) for one in mine),
+            sum(sum(one["rounding"].values()) for one in mine),
+        ]
         sums += [sum(many for what, many in seen.items() if counts(what)) for counts in COLUMNS.values()]
         rows.append(f"| {kind} | " + " | ".join(f"{many:,}" for many in sums) + " |")
     return "\n".join(rows)
@@ -100,7 +114,9 @@ def recorded(frames: int, tables: int, seed: int = 0) -> list[Case]:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command; the number of disagreements, at most 1, is its exit status."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--frames", type=int, default=2000, help="of each kind")
     parser.add_argument("--kind", action="append", choices=[*KINDS], help="one or more; default all")
     parser.add_argument("--seed", type=int, default=0)

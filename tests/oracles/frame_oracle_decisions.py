@@ -1,4 +1,5 @@
-"""What do players say, and what does it change? Nominations, concessions, claims, the lot and the choices after a foul, for the oracle."""
+"""What do players say, and what does it change? Nominations, concessions, claims, the lot and the choices
+after a foul, for the oracle."""
 
 from __future__ import annotations
 
@@ -38,13 +39,20 @@ def ended(state: State, winner: int) -> State:
 def play_again(state: State) -> State:
     """Section 3 Rule 13: the offender plays from the position left; a free ball is void."""
     after = deepcopy(state)
-    after.striker, after.phase, after.free_ball, after.miss_called, after.saved = 1 - state.striker, "stroke", False, False, None
+    after.striker, after.phase, after.free_ball, after.miss_called, after.saved = (
+        1 - state.striker,
+        "stroke",
+        False,
+        False,
+        None,
+    )
     after.failures, after.warned = 0, False
     return after
 
 
 def anywhere(state: State) -> State | None:
-    """Six-red snooker, after the fifth miss: the player places the cue ball anywhere; None where snookers are required."""
+    """Six-red snooker, after the fifth miss: the player places the cue ball anywhere; None where snookers are
+    required."""
     if state.misses < 5 or abs(state.scores[0] - state.scores[1]) > available(state):
         return None
     after = play_on(state)
@@ -57,7 +65,12 @@ def replace(state: State) -> State:
     assert state.saved is not None
     after = deepcopy(state.saved)
     after.scores, after.break_points, after.phase = list(state.scores), 0, "stroke"
-    after.failures, after.warned, after.saved, after.miss_called = state.failures, state.failures == 2, None, False
+    after.failures, after.warned, after.saved, after.miss_called = (
+        state.failures,
+        state.failures == 2,
+        None,
+        False,
+    )
     after.misses = state.misses
     return after
 
@@ -65,6 +78,12 @@ def replace(state: State) -> State:
 def play_on(state: State) -> State:
     """The player who was fouled plays himself: the offender's failures are forgotten."""
     after = deepcopy(state)
-    after.phase, after.miss_called, after.saved, after.failures, after.warned = "stroke", False, None, 0, False
+    after.phase, after.miss_called, after.saved, after.failures, after.warned = (
+        "stroke",
+        False,
+        None,
+        0,
+        False,
+    )
     after.misses = 0
     return after

@@ -1,8 +1,10 @@
-"""What does a referee see on a table at rest? Snookers, clear paths, spots and places in the D, for the oracle of frames.
+"""What does a referee see on a table at rest? Snookers, clear paths, spots and places in the D, for the
+oracle of frames.
 
-Written from the rules of snooker (Section 2 Rules 17 and 18, Section 3 Rules 5, 7, 12 and 14) and from the table's drawing, in metres,
-with no use of ``snooker_env.game``. Every function that decides takes ``slack``: all balls that may obstruct are larger by it. ``decided``
-asks with a slack of both signs; where the answers differ, rounding decides, and the answer is None.
+Written from the rules of snooker (Section 2 Rules 17 and 18, Section 3 Rules 5, 7, 12 and 14) and from the
+table's drawing, in metres, with no use of ``snooker_env.game``. Every function that decides takes ``slack``:
+all balls that may obstruct are larger by it. ``decided`` asks with a slack of both signs; where the answers
+differ, rounding decides, and the answer is None.
 """
 
 from __future__ import annotations
@@ -17,9 +19,17 @@ R = 0.02625
 D2 = 2 * R
 HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
 BAULK, D_RADIUS = -1.0475, 0.292
-SPOTS = {16: (0.292, BAULK), 17: (-0.292, BAULK), 18: (0.0, BAULK), 19: (0.0, 0.0), 20: (0.0, 0.89225), 21: (0.0, 1.4605)}
+SPOTS = {
+    16: (0.292, BAULK),
+    17: (-0.292, BAULK),
+    18: (0.0, BAULK),
+    19: (0.0, 0.0),
+    20: (0.0, 0.89225),
+    21: (0.0, 1.4605),
+}
 TOUCH, CLEARANCE = 50e-6, 1e-4
-"""A referee sees no gap below the first [m]; a ball that is put down beside another, so that it does not touch, is this far off it [m]."""
+"""A referee sees no gap below the first [m]; a ball that is put down beside another, so that it does not
+touch, is this far off it [m]."""
 NEAR = 1e-9
 """Two lengths that differ by less are equal to rounding [m]."""
 
@@ -29,7 +39,8 @@ JAWS = np.array(
     + [(a * (HALF_WIDTH + 0.0889), b * (HALF_LENGTH - 0.0976346), 0.0889) for a, b in _SIGNS]
     + [(a * (HALF_WIDTH + 0.0669), b * 0.109185, 0.0669) for a, b in _SIGNS]
 )
-"""Curved faces of the cushions: centre x, y and radius of each arc [m]; the rest of each circle lies inside its cushion."""
+"""Curved faces of the cushions: centre x, y and radius of each arc [m]; the rest of each circle lies inside
+its cushion."""
 
 
 def decided(question: Callable[[float], bool], slack: float = NEAR) -> bool | None:
@@ -39,7 +50,8 @@ def decided(question: Callable[[float], bool], slack: float = NEAR) -> bool | No
 
 
 def enter(origin, direction, centre, radius):
-    """Distance along a ray at which it enters a circle; inf if it never does, 0 from the inside if it goes further in."""
+    """Distance along a ray at which it enters a circle; inf if it never does, 0 from the inside if it goes
+    further in."""
     to = np.asarray(centre) - origin
     along = float(to @ direction)
     square = along * along - float(to @ to) + radius * radius
@@ -49,7 +61,8 @@ def enter(origin, direction, centre, radius):
 
 
 def edges(cue, ball):
-    """The two straight strokes that just touch a ball: direction and length of each. None where the cue ball touches it already."""
+    """The two straight strokes that just touch a ball: direction and length of each. None where the cue ball
+    touches it already."""
     to = np.asarray(ball) - cue
     far = float(np.hypot(*to))
     if far <= D2:
@@ -57,13 +70,18 @@ def edges(cue, ball):
     length = math.sqrt(far * far - D2 * D2)
     sine, cosine = D2 / far, length / far
     u = to / far
-    return [(np.array([cosine * u[0] - s * sine * u[1], s * sine * u[0] + cosine * u[1]]), length) for s in (1, -1)]
+    return [
+        (np.array([cosine * u[0] - s * sine * u[1], s * sine * u[0] + cosine * u[1]]), length)
+        for s in (1, -1)
+    ]
 
 
 def blockers(cue, ball, others, slack=0.0):
-    """Indices of the balls in ``others`` (k, 2) that stop the stroke at either extreme edge of ``ball`` (Section 2 Rule 17).
+    """Indices of the balls in ``others`` (k, 2) that stop the stroke at either extreme edge of ``ball``
+    (Section 2 Rule 17).
 
-    None of them if the curved face of a cushion stops one of the two strokes and is nearer than any of the balls (17(e)).
+    None of them if the curved face of a cushion stops one of the two strokes and is nearer than any of the
+    balls (17(e)).
     """
     found, nearest, curved = set(), math.inf, math.inf
     for direction, length in edges(cue, ball):
@@ -80,7 +98,8 @@ def blockers(cue, ball, others, slack=0.0):
 def snookered_on(cue, ball, others, slack=0.0):
     """Whether an extreme edge of one ball on is hidden by a ball not on.
 
-    A ball on that the cue ball touches is hit by playing away from it (Section 3 Rule 8), so nothing can hide it.
+    A ball on that the cue ball touches is hit by playing away from it (Section 3 Rule 8), so nothing can hide
+    it.
     """
     if np.hypot(*(np.asarray(ball) - cue)) <= D2 + 50e-6:
         return False
@@ -98,7 +117,8 @@ def snookered(cue, balls_on, others, slack=0.0):
 
 
 def effective_snookering_balls(cue, balls_on, others, slack=0.0):
-    """Indices of the effective snookering balls: those nearest of what hides each ball on, if it is the same for all of them."""
+    """Indices of the effective snookering balls: those nearest of what hides each ball on, if it is the same
+    for all of them."""
     nearest = []
     for ball in balls_on:
         found = blockers(cue, ball, others, slack)
@@ -111,7 +131,8 @@ def effective_snookering_balls(cue, balls_on, others, slack=0.0):
 
 
 def _margins(places, ball, others):
-    """How far (m,) the worse of a ball's two edges is from being hidden at each place [m]; not positive: hidden. Jaws are left out."""
+    """How far (m,) the worse of a ball's two edges is from being hidden at each place [m]; not positive:
+    hidden. Jaws are left out."""
     to = ball - places
     far = np.maximum(np.hypot(*to.T), D2)
     length = np.sqrt(far**2 - D2**2)
@@ -148,10 +169,13 @@ GRID = _d_grid(0.008)
 def snookered_in_hand(balls_on, others, everything):
     """Whether the cue ball is snookered wherever it may stand in the D, with the best margin found [m].
 
-    A search, not a formula: a grid over the D, then steps that halve around its best places. Places where the cue ball would touch
-    another ball are no places. Returns (snookered, margin); a margin near 0 says that the answer is not certain.
+    A search, not a formula: a grid over the D, then steps that halve around its best places. Places where the
+    cue ball would touch another ball are no places. Returns (snookered, margin); a margin near 0 says that
+    the answer is not certain.
     """
-    balls_on, others, everything = (np.asarray(a, float).reshape(-1, 2) for a in (balls_on, others, everything))
+    balls_on, others, everything = (
+        np.asarray(a, float).reshape(-1, 2) for a in (balls_on, others, everything)
+    )
     if not len(others):
         return False, math.inf
 
@@ -175,7 +199,9 @@ def snookered_in_hand(balls_on, others, everything):
         near[:, 1] = np.minimum(near[:, 1], BAULK)
         off = near - [0, BAULK]
         far = np.hypot(*off.T)
-        near = np.where((far > D_RADIUS)[:, None], [0, BAULK] + off * (D_RADIUS / np.maximum(far, 1e-12))[:, None], near)
+        near = np.where(
+            (far > D_RADIUS)[:, None], [0, BAULK] + off * (D_RADIUS / np.maximum(far, 1e-12))[:, None], near
+        )
         at = value(near)
         best = max(best, float(at.max()))
         if best > NEAR:
@@ -208,8 +234,8 @@ def _stops(cue, direction, ball, others, slack):
 def clear_path(cue, balls_on, others, slack=0.0):
     """Whether the cue ball can go straight to some part of a ball on, past all balls not on and all cushions.
 
-    Between two neighbouring critical directions (tangents, and those that hit two balls at once) nothing changes, so one direction between
-    each two of them decides.
+    Between two neighbouring critical directions (tangents, and those that hit two balls at once) nothing
+    changes, so one direction between each two of them decides.
     """
     cue = np.asarray(cue, float)
     for ball in balls_on:
@@ -223,7 +249,9 @@ def clear_path(cue, balls_on, others, slack=0.0):
         def mark(x, y, marks=marks, middle=middle):
             marks.add((math.atan2(y, x) - middle + math.pi) % (2 * math.pi) - math.pi)
 
-        obstacles = [(np.asarray(o, float), D2 + slack) for o in others] + [(jaw[:2], jaw[2] + R) for jaw in JAWS]
+        obstacles = [(np.asarray(o, float), D2 + slack) for o in others] + [
+            (jaw[:2], jaw[2] + R) for jaw in JAWS
+        ]
         for centre, radius in obstacles:
             off = centre - cue
             distance = float(np.hypot(*off))
@@ -262,7 +290,8 @@ def clear_path(cue, balls_on, others, slack=0.0):
 
 
 def full_ball(cue, balls_on, others, slack=0.0):
-    """Whether a ball on can be hit full in the middle: the stroke along the line of centres meets no ball not on and no cushion."""
+    """Whether a ball on can be hit full in the middle: the stroke along the line of centres meets no ball not
+    on and no cushion."""
     cue = np.asarray(cue, float)
     for ball in balls_on:
         to = np.asarray(ball) - cue
@@ -279,7 +308,8 @@ def free(place, others, slack=0.0):
 
 
 def free_anywhere(place, others, slack=0.0):
-    """Whether the cue ball in hand anywhere may stand at ``place``: on the bed, 0.15 m from the pockets and 0.1 mm from the balls."""
+    """Whether the cue ball in hand anywhere may stand at ``place``: on the bed, 0.15 m from the pockets and
+    0.1 mm from the balls."""
     x, y = np.abs(place)
     corner, middle = np.hypot(x - HALF_WIDTH, y - HALF_LENGTH), np.hypot(x - HALF_WIDTH, y)
     bed = x <= HALF_WIDTH - R - slack and y <= HALF_LENGTH - R - slack and min(corner, middle) >= 0.15 + slack
@@ -305,7 +335,8 @@ def spotted_place(ball, others, slack=0.0):
 
 
 def nearest_in_d(wish, others):
-    """The nearest place to ``wish`` where the cue ball may stand in the D without touching a ball: one of finitely many candidates."""
+    """The nearest place to ``wish`` where the cue ball may stand in the D without touching a ball: one of
+    finitely many candidates."""
     wish, others = np.asarray(wish, float), np.asarray(others, float).reshape(-1, 2)
     if free(wish, others, TOUCH):
         return wish
@@ -327,7 +358,11 @@ def nearest_in_d(wish, others):
                 h = math.sqrt(max(0.0, ra * ra - along * along))
                 u = (b - a) / d
                 points += [a + along * u + s * h * np.array([-u[1], u[0]]) for s in (1, -1)]
-    allowed = [p for p in points if p[1] <= BAULK + NEAR and np.hypot(*(p - centre)) <= D_RADIUS + NEAR and free(p, others, -NEAR)]
+    allowed = [
+        p
+        for p in points
+        if p[1] <= BAULK + NEAR and np.hypot(*(p - centre)) <= D_RADIUS + NEAR and free(p, others, -NEAR)
+    ]
     return min(allowed, key=lambda p: float(np.hypot(*(p - wish))))
 
 

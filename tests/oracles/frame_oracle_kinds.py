@@ -22,7 +22,13 @@ KINDS = {
         Kind("shoot_out", "steady", {"game": "shoot_out"}),
         Kind("shoot_out_late", "steady", {"game": "shoot_out", "time_to_play": 12.0}),
         Kind("tables", "steady", {"miss": "clear_path"}, tables=True),
-        Kind("tables_nominate", "steady", {"miss": "clear_path", "nominate": True, "claim": True, "lot": True}, tables=True),
+        Kind(
+            "tables_nominate",
+            "steady",
+            {"miss": "clear_path", "nominate": True, "claim": True, "lot": True},
+            tables=True,
+        ),
     )
 }
-"""By name. "steady" pots now and then, so that frames are short; "tables" begins from random tables with touching balls and taken spots."""
+"""By name. "steady" pots now and then, so that frames are short; "tables" begins from random tables with
+touching balls and taken spots."""

@@ -1,6 +1,8 @@
-"""Does ``SnookerEnv`` with a built-in opponent judge as the oracle does? Checks the strokes of both players from ``env.history``.
+"""Does ``SnookerEnv`` with a built-in opponent judge as the oracle does? Checks the strokes of both players
+from ``env.history``.
 
-What an opponent chose after a foul is not shown; it is inferred from who played next, and from where. All else is compared.
+What an opponent chose after a foul is not shown; it is inferred from who played next, and from where. All
+else is compared.
 """
 
 from __future__ import annotations
@@ -21,8 +23,17 @@ class OpponentChecker(Checker):
     """Frames of an agent against a built-in opponent."""
 
     def __init__(self, kind: Kind, record: bool = False):
-        super().__init__(Kind(kind.name, kind.player, {k: v for k, v in kind.options.items() if k != "opponent"}), record)
-        given = {"task": "frame", "aim": "target", "max_strokes": None, "placement": True, "decision": True, **kind.options}
+        super().__init__(
+            Kind(kind.name, kind.player, {k: v for k, v in kind.options.items() if k != "opponent"}), record
+        )
+        given = {
+            "task": "frame",
+            "aim": "target",
+            "max_strokes": None,
+            "placement": True,
+            "decision": True,
+            **kind.options,
+        }
         self.env = sn.SnookerEnv(**given)
         self.env.keep_history = True
 
@@ -67,7 +78,9 @@ class OpponentChecker(Checker):
             info = {"fouls": int(played.fouls), "penalty": played.penalty, "points": played.points}
             stroke = stroke_of(played.shot)
             case = Case(state, stroke, self.rules, found, info)
-            verdict, expected, names = case.compare(skip=("miss_called", "failures", "warned", "respotted_black"))
+            verdict, expected, names = case.compare(
+                skip=("miss_called", "failures", "warned", "respotted_black")
+            )
             self.count(state, stroke, verdict, expected)
             if state.in_hand and not self._in_d(stroke.cue, state):
                 names.append("placed")
@@ -116,7 +129,12 @@ class OpponentChecker(Checker):
             int(played.next_on),
             played.in_hand,
         )
-        found.free_ball, found.phase, found.winner, found.break_points = played.next_free_ball, phase, played.winner, played.break_points
+        found.free_ball, found.phase, found.winner, found.break_points = (
+            played.next_free_ball,
+            phase,
+            played.winner,
+            played.break_points,
+        )
         return found
 
     def _in_d(self, at, state):

@@ -1,7 +1,9 @@
-"""Does the environment judge as the oracle does? Plays frames through ``MatchEnv`` and compares every stroke and decision.
+"""Does the environment judge as the oracle does? Plays frames through ``MatchEnv`` and compares every stroke
+and decision.
 
-The oracle is fed with what the environment shows to anyone: ``get_state`` before and after, the action, and the ``Shot`` (events, balls
-potted, positions at rest). Its own state goes on from one stroke to the next and takes over only where balls came to rest.
+The oracle is fed with what the environment shows to anyone: ``get_state`` before and after, the action, and
+the ``Shot`` (events, balls potted, positions at rest). Its own state goes on from one stroke to the next and
+takes over only where balls came to rest.
 """
 
 from __future__ import annotations
@@ -20,8 +22,16 @@ from . import frame_oracle_rules as oracle
 from .frame_oracle_rules import Rules, State, Stroke
 from .frame_oracle_tables import table
 
-FOULS = {1: oracle.NO_CONTACT, 2: oracle.WRONG_FIRST, 4: oracle.WRONG_POT, 8: oracle.CUE_POTTED, 128: oracle.PUSH, 4096: oracle.BEHIND,
-         32768: oracle.NO_CUSHION, 65536: oracle.LATE}  # fmt: skip
+FOULS = {
+    1: oracle.NO_CONTACT,
+    2: oracle.WRONG_FIRST,
+    4: oracle.WRONG_POT,
+    8: oracle.CUE_POTTED,
+    128: oracle.PUSH,
+    4096: oracle.BEHIND,
+    32768: oracle.NO_CUSHION,
+    65536: oracle.LATE,
+}
 PLACE = 3e-6
 """How far apart two places of a ball may be that the two sides computed [m]."""
 FOLLOWS = {
@@ -31,8 +41,23 @@ FOLLOWS = {
     "behind": [],
 }
 """What follows from a decision that hangs on rounding."""
-LIKE = ("scores", "striker", "ball_on", "in_hand", "free_ball", "respotted_black", "phase", "winner", "break_points", "miss_called",
-        "failures", "warned", "misses", "clock", "anywhere")  # fmt: skip
+LIKE = (
+    "scores",
+    "striker",
+    "ball_on",
+    "in_hand",
+    "free_ball",
+    "respotted_black",
+    "phase",
+    "winner",
+    "break_points",
+    "miss_called",
+    "failures",
+    "warned",
+    "misses",
+    "clock",
+    "anywhere",
+)
 
 
 @dataclass
@@ -62,10 +87,21 @@ def state_of(saved: dict) -> State:
     frame = saved["frame"]
     last = frame.get("saved")
     state = State(
-        np.array(saved["positions"], float), np.array(saved["on_table"], bool), list(frame["scores"]), frame["striker"], frame["ball_on"],
-        frame["in_hand"], frame["free_ball"], frame["respotted_black"], frame["phase"], frame["winner"], frame["break_points"],
-        frame["miss_called"], frame["failures"], frame["warned"],
-    )  # fmt: skip
+        np.array(saved["positions"], float),
+        np.array(saved["on_table"], bool),
+        list(frame["scores"]),
+        frame["striker"],
+        frame["ball_on"],
+        frame["in_hand"],
+        frame["free_ball"],
+        frame["respotted_black"],
+        frame["phase"],
+        frame["winner"],
+        frame["break_points"],
+        frame["miss_called"],
+        frame["failures"],
+        frame["warned"],
+    )
     state.saved = last
     state.misses, state.clock, state.anywhere = frame["misses"], frame["clock"], frame["anywhere"]
     return state
@@ -84,13 +120,21 @@ def stroke_of(shot, nominated=None) -> Stroke:
     at, velocities, _ = shot.at(0.0)
     cushion = bool(((events["kind"] == sn.EventKind.CUSHION) | (events["kind"] == sn.EventKind.JAW)).any())
     return Stroke(
-        at[0], first, potted, np.array(shot.positions), leaving, velocities[0], nominated=nominated, cushion=cushion,
+        at[0],
+        first,
+        potted,
+        np.array(shot.positions),
+        leaving,
+        velocities[0],
+        nominated=nominated,
+        cushion=cushion,
         duration=round(1000 * shot.duration),
-    )  # fmt: skip
+    )
 
 
 def path_of(shot) -> np.ndarray:
-    """The cue ball's way up to its first impact with a ball, or to rest; close enough to know its distances to some nm."""
+    """The cue ball's way up to its first impact with a ball, or to rest; close enough to know its distances
+    to some nm."""
     own = shot.events[(shot.events["i"] == 0) & (shot.events["kind"] == sn.EventKind.BALL_BALL)]
     end = float(own["time"][0]) if len(own) else shot.duration
     knots = shot.events["time"][(shot.events["i"] == 0) & (shot.events["time"] < end)]
@@ -100,7 +144,8 @@ def path_of(shot) -> np.ndarray:
 
 
 def differences(expected: State, found: State, unsure=(), skip=()) -> list[str]:
-    """The names of what differs between the oracle's state and the environment's, without what rounding decides."""
+    """The names of what differs between the oracle's state and the environment's, without what rounding
+    decides."""
     if "behind" in unsure:
         return []
     excused = set(skip) | {name for reason in unsure for name in FOLLOWS[reason]}
@@ -154,11 +199,19 @@ class Checker:
         self._seed = 0
         self.env = sn.match_env(**{"aim": "target", "max_strokes": None, **kind.options})
         self.env.keep_history = True
-        given = {name: kind.options[name] for name in ("miss", "nominate", "concede", "claim", "lot", "game") if name in kind.options}
+        given = {
+            name: kind.options[name]
+            for name in ("miss", "nominate", "concede", "claim", "lot", "game")
+            if name in kind.options
+        }
         if "time_to_play" in kind.options:
             given["time_to_play"] = round(1000 * kind.options["time_to_play"])
         self.rules = Rules(**given)
-        names = ["speed", "side", "top", "aim", "across", "back"] + ["nominate"] * self.rules.nominate + ["decision"]
+        names = (
+            ["speed", "side", "top", "aim", "across", "back"]
+            + ["nominate"] * self.rules.nominate
+            + ["decision"]
+        )
         names += ["declaration"] * (self.rules.concede or self.rules.claim or self.rules.lot)
         self.at = {name: k for k, name in enumerate(names)}
         """The number of an action that says what."""
@@ -184,13 +237,16 @@ class Checker:
         self.tally.frames += 1
 
     def _next_frame(self, expected, found, before):
-        """A match: the frame counts, and the next begins at once, with the other player's break, or the match is decided."""
+        """A match: the frame counts, and the next begins at once, with the other player's break, or the match
+        is decided."""
         after = self._last
         won = list(before["frames"])
         won[expected.winner] += 1
         self.tally.seen[f"frame won, {min(won)} to {max(won)}"] += 1
         if after["frames"] != won:
-            self._disagree("frames won", [f"{after['frames']}, oracle {won}"], expected, found, (before, None, None))
+            self._disagree(
+                "frames won", [f"{after['frames']}, oracle {won}"], expected, found, (before, None, None)
+            )
         if max(won) > self.kind.options["frames"] // 2:
             if found.phase != "over":
                 self._disagree("end of the match", ["phase"], expected, found, (before, None, None))
@@ -221,7 +277,11 @@ class Checker:
         found = state_of(self._last)
         shot = env.last_shot
         player = self._decide(state, action)
-        in_time = oracle.late(player, self.rules) if player.phase == "stroke" and self.rules.game == "shoot_out" else None
+        in_time = (
+            oracle.late(player, self.rules)
+            if player.phase == "stroke" and self.rules.game == "shoot_out"
+            else None
+        )
         if in_time is not None:
             verdict, expected = in_time
             names, unsure = differences(expected, found, verdict.unsure), verdict.unsure
@@ -243,8 +303,13 @@ class Checker:
         return self._go_on(expected, found)
 
     def _decide(self, state, action):
-        """The state in which a stroke is played, after a decision; or the one that a decision alone leaves."""
-        says = decisions.declared(state, float(action[self.at["declaration"]]), self.rules) if "declaration" in self.at else None
+        """The state in which a stroke is played, after a decision; or the one that a decision alone
+        leaves."""
+        says = (
+            decisions.declared(state, float(action[self.at["declaration"]]), self.rules)
+            if "declaration" in self.at
+            else None
+        )
         if says:
             self.tally.seen[says] += 1
         if says in ("concede", "claim"):
@@ -278,7 +343,10 @@ class Checker:
             self._anywhere(state, action, stroke.cue)
         elif state.in_hand:
             x = float(action[self.at["across"]]) * geometry.D_RADIUS
-            y = geometry.BAULK - np.sqrt(max(0.0, geometry.D_RADIUS**2 - x * x)) * (float(action[self.at["back"]]) + 1) / 2
+            y = (
+                geometry.BAULK
+                - np.sqrt(max(0.0, geometry.D_RADIUS**2 - x * x)) * (float(action[self.at["back"]]) + 1) / 2
+            )
             wish = geometry.nearest_in_d((x, y), state.positions[state.balls])
             if np.hypot(*(wish - stroke.cue)) > PLACE:
                 self._disagree("placed", ["placed"], state, state, (wish, stroke.cue))
@@ -292,9 +360,15 @@ class Checker:
         return expected, names, verdict.unsure
 
     def _anywhere(self, state, action, cue):
-        """Where a cue ball that may stand anywhere was placed: where the player wished it, or no farther away than need be."""
+        """Where a cue ball that may stand anywhere was placed: where the player wished it, or no farther away
+        than need be."""
         self.tally.seen["stroke from anywhere"] += 1
-        wish = np.array([geometry.HALF_WIDTH * float(action[self.at["across"]]), geometry.HALF_LENGTH * float(action[self.at["back"]])])
+        wish = np.array(
+            [
+                geometry.HALF_WIDTH * float(action[self.at["across"]]),
+                geometry.HALF_LENGTH * float(action[self.at["back"]]),
+            ]
+        )
         bed = np.array([geometry.HALF_WIDTH, geometry.HALF_LENGTH]) - geometry.R
         wish = np.clip(wish, -bed, bed)
         others = state.positions[state.balls]
@@ -311,7 +385,9 @@ class Checker:
         seen = self.tally.seen
         seen.update(f"foul: {name}" for name in verdict.fouls)
         seen.update(verdict.notes)
-        seen.update([f"penalty {verdict.penalty}"] if verdict.penalty else [f"points {min(verdict.points, 8)}"])
+        seen.update(
+            [f"penalty {verdict.penalty}"] if verdict.penalty else [f"points {min(verdict.points, 8)}"]
+        )
         if state.free_ball:
             seen["stroke with a free ball"] += 1
         if expected.free_ball:
@@ -321,12 +397,19 @@ class Checker:
         if state.in_hand:
             seen["stroke from the D"] += 1
         if expected.phase == "over":
-            how = "re-spotted black" if state.respotted_black else "third miss" if "third miss" in verdict.notes else "black"
+            how = (
+                "re-spotted black"
+                if state.respotted_black
+                else "third miss"
+                if "third miss" in verdict.notes
+                else "black"
+            )
             seen[f"end: {how}, {'foul' if verdict.fouls else 'score'}"] += 1
         self.tally.undecidable.update(verdict.unsure)
 
     def _go_on(self, expected, found):
-        """The oracle's own state, with the places of the balls as they lie; who plays a re-spotted black is drawn by lot."""
+        """The oracle's own state, with the places of the balls as they lie; who plays a re-spotted black is
+        drawn by lot."""
         expected.positions = found.positions
         if expected.phase == "drawn":
             expected.phase, expected.striker = found.phase, found.striker

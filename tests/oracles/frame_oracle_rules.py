@@ -1,10 +1,13 @@
-"""What does a referee decide after a stroke? The rules of a frame in plain Python, for the oracle that checks ``snooker_env``.
+"""What does a referee decide after a stroke? The rules of a frame in plain Python, for the oracle that checks
+``snooker_env``.
 
-Written from the rules of snooker (WPBSA; references in the code are to their sections and rules) and from the documented options of the
-environment, with no use of ``snooker_env.game``. Geometry is in ``frame_oracle_geometry``.
+Written from the rules of snooker (WPBSA; references in the code are to their sections and rules) and from the
+documented options of the environment, with no use of ``snooker_env.game``. Geometry is in
+``frame_oracle_geometry``.
 
-Balls have the ids of the environment: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow to black. What is on is -1 nothing, 0 any colour,
-1 a red, 2 to 7 yellow to black. A decision that hangs on rounding is None, and everything that follows from it is in ``unsure``.
+Balls have the ids of the environment: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow to black. What is on
+is -1 nothing, 0 any colour, 1 a red, 2 to 7 yellow to black. A decision that hangs on rounding is None, and
+everything that follows from it is in ``unsure``.
 """
 
 from __future__ import annotations
@@ -17,18 +20,27 @@ import numpy as np
 from . import frame_oracle_geometry as geometry
 from .frame_oracle_state import ANY, BLACK, COLOURS, RED, REDS, YELLOW, Rules, State, Stroke, Verdict, value
 
-NO_CONTACT, WRONG_FIRST, WRONG_POT, CUE_POTTED, PUSH, BEHIND = "no contact", "wrong first", "wrong pot", "cue potted", "push", "behind"
+NO_CONTACT, WRONG_FIRST, WRONG_POT, CUE_POTTED, PUSH, BEHIND = (
+    "no contact",
+    "wrong first",
+    "wrong pot",
+    "cue potted",
+    "push",
+    "behind",
+)
 NO_CUSHION, LATE = "no cushion", "late"
 TOUCH = 50e-6
 """A referee sees no gap below this [m]."""
 
 
 ATTEMPT = geometry.D2
-"""``miss="attempt"``: the cue ball that comes as near as this to a ball on shows the best effort [m], by the documentation."""
+"""``miss="attempt"``: the cue ball that comes as near as this to a ball on shows the best effort [m], by the
+documentation."""
 
 
 def available(state: State) -> int:
-    """Points that are left on the table for the striker; a free ball is one more red with its black, or the ball on once more."""
+    """Points that are left on the table for the striker; a free ball is one more red with its black, or the
+    ball on once more."""
     seven = 7 if state.ball_on == ANY else 0
     extra = 0
     if state.free_ball and set(state.balls) - set(state.on()):
@@ -37,8 +49,8 @@ def available(state: State) -> int:
 
 
 def short(state: State) -> bool:
-    """Whether a player needs penalty points, of whom only the striker has the colour after a red and the free ball; or just as many are
-    left on the table as the players differ by.
+    """Whether a player needs penalty points, of whom only the striker has the colour after a red and the free
+    ball; or just as many are left on the table as the players differ by.
     """
     lead = state.scores[state.striker] - state.scores[1 - state.striker]
     for_both = 8 * state.reds + sum(value(i) for i in state.balls if i in COLOURS)
@@ -51,7 +63,8 @@ def touching(state: State, cue: np.ndarray) -> list[int]:
 
 
 def _into(ball: np.ndarray, stroke: Stroke, time: float) -> bool:
-    """Whether the cue ball was played into a touching ball: its straight line meets it, or they met at once."""
+    """Whether the cue ball was played into a touching ball: its straight line meets it, or they met at
+    once."""
     speed = float(np.hypot(*stroke.velocity))
     ahead = math.isfinite(geometry.enter(stroke.cue, stroke.velocity / speed, ball, geometry.D2))
     return ahead or (time * speed <= 10e-6 and float(stroke.velocity @ (ball - stroke.cue)) > 0)
@@ -74,7 +87,8 @@ def judge(state: State, stroke: Stroke, rules: Rules) -> tuple[Verdict, State]:
     pushed = [i for i, time in stroke.leaving if i in touched and _into(state.positions[i], stroke, time)]
     if pushed:  # Section 3 Rule 8: he must play away from it without moving it
         verdict.fouls.add(PUSH)
-        costs += [base, *(value(i) for i in pushed if i not in nominee)]  # a free ball has the value of the ball on
+        # a free ball has the value of the ball on
+        costs += [base, *(value(i) for i in pushed if i not in nominee)]
     else:
         declared = [i for i in touched if i in (nominee if nominee and rules.nominate else legal)]
         if declared:
@@ -161,7 +175,11 @@ def _spot(colours: list[int], after: State, verdict: Verdict) -> None:
     for own in (True, False):
         for i in list(waiting):
             others = after.positions[standing]
-            is_free = geometry.decided(lambda slack, i=i, others=others: geometry.free(geometry.SPOTS[i], others, geometry.TOUCH + slack))
+            is_free = geometry.decided(
+                lambda slack, i=i, others=others: geometry.free(
+                    geometry.SPOTS[i], others, geometry.TOUCH + slack
+                )
+            )
             if is_free is None:
                 verdict.unsure.add("spot")
             if own and not is_free:
@@ -198,7 +216,8 @@ def _snookered(after: State, verdict: Verdict) -> bool:
 
 
 def _behind(state: State, after: State, nominee: int, verdict: Verdict, rules: Rules) -> None:
-    """Section 3 Rule 12(b)(ii): the next player snookered behind the free ball; not with only pink and black left."""
+    """Section 3 Rule 12(b)(ii): the next player snookered behind the free ball; not with only pink and black
+    left."""
     after = deepcopy(after)
     after.ball_on = after.next_on()
     if set(after.balls) == {20, 21} and rules.game != "six_red":
@@ -219,7 +238,13 @@ def _behind(state: State, after: State, nominee: int, verdict: Verdict, rules: R
 
 def _fair(state: State, after: State, stroke: Stroke, verdict: Verdict, real: list[int]) -> None:
     other = 1 - state.striker
-    after.phase, after.miss_called, after.failures, after.warned, after.saved = "stroke", False, 0, False, None
+    after.phase, after.miss_called, after.failures, after.warned, after.saved = (
+        "stroke",
+        False,
+        0,
+        False,
+        None,
+    )
     after.misses = 0
     after.scores[state.striker] += verdict.points
     after.break_points = state.break_points + verdict.points if verdict.points else 0
@@ -235,10 +260,17 @@ def _fair(state: State, after: State, stroke: Stroke, verdict: Verdict, real: li
 
 
 def _last_black(after: State, verdict: Verdict) -> None:
-    """Section 3 Rule 4: the first score or foul with only the black left ends the frame, unless the scores are equal."""
+    """Section 3 Rule 4: the first score or foul with only the black left ends the frame, unless the scores
+    are equal."""
     if after.scores[0] == after.scores[1]:
         verdict.notes.add("black re-spotted")
-        after.respotted_black, after.ball_on, after.in_hand, after.free_ball, after.phase = True, BLACK, True, False, "drawn"
+        after.respotted_black, after.ball_on, after.in_hand, after.free_ball, after.phase = (
+            True,
+            BLACK,
+            True,
+            False,
+            "drawn",
+        )
         after.on_table[1:21], after.on_table[[0, 21]] = False, True
         after.positions[21] = geometry.SPOTS[21]
         after.break_points = 0
@@ -252,7 +284,8 @@ def over(after: State, winner: int) -> None:
 
 
 def _shoot_out(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: Rules) -> None:
-    """The Shoot Out: in hand anywhere after a foul; the clock, from the first stroke on, which does not end a re-spotted black."""
+    """The Shoot Out: in hand anywhere after a foul; the clock, from the first stroke on, which does not end a
+    re-spotted black."""
     if verdict.fouls and after.phase == "stroke":
         after.in_hand = after.anywhere = after.on_table[0] = True
     after.clock = state.clock + stroke.duration + (rules.time_to_play if state.clock else 0)
@@ -263,7 +296,8 @@ def _shoot_out(state: State, after: State, stroke: Stroke, verdict: Verdict, rul
 
 
 def late(state: State, rules: Rules) -> tuple[Verdict, State] | None:
-    """The Shoot Out: the verdict on a stroke that was not begun in time, and the frame after it; None if it is in time."""
+    """The Shoot Out: the verdict on a stroke that was not begun in time, and the frame after it; None if it
+    is in time."""
     limit = 15_000 if state.clock < 300_000 else 10_000
     if rules.game != "shoot_out" or not state.clock or rules.time_to_play <= limit:
         return None
@@ -275,7 +309,9 @@ def late(state: State, rules: Rules) -> tuple[Verdict, State] | None:
     return verdict, after
 
 
-def _foul(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: Rules, legal: list[int]) -> None:
+def _foul(
+    state: State, after: State, stroke: Stroke, verdict: Verdict, rules: Rules, legal: list[int]
+) -> None:
     other = 1 - state.striker
     after.scores[other] += verdict.penalty
     after.break_points, after.miss_called, after.saved = 0, False, None
@@ -327,7 +363,9 @@ def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
         verdict.notes.add("no sixth miss in succession")
         called = False
     if poor and needed:
-        verdict.notes.add("no miss: penalty points needed" if not again else "miss although penalty points are needed")
+        verdict.notes.add(
+            "no miss: penalty points needed" if not again else "miss although penalty points are needed"
+        )
     if not called:
         after.failures, after.warned, after.misses = 0, False, 0
         return
@@ -344,19 +382,27 @@ def _miss(state: State, after: State, stroke: Stroke, verdict: Verdict, rules: R
     after.saved = deepcopy(state)
 
 
-def _best_in_hand(state: State, on: list[int], others: list[int], clear: bool | None) -> tuple[bool | None, bool | None]:
-    """Whether there is a clear and a full-ball path from some place in hand; ``clear``: from that played from. None: none was found."""
+def _best_in_hand(
+    state: State, on: list[int], others: list[int], clear: bool | None
+) -> tuple[bool | None, bool | None]:
+    """Whether there is a clear and a full-ball path from some place in hand; ``clear``: from that played
+    from. None: none was found."""
     found: bool | None = clear or None
     for place in (geometry.BED if state.anywhere else geometry.GRID)[::7]:
         if geometry.free(place, state.positions[state.balls], TOUCH):
             if _full_ball(state, on, others, place, geometry.NEAR):
                 return True, True
-            found = found or geometry.clear_path(place, state.positions[on], state.positions[others], geometry.NEAR) or None
+            found = (
+                found
+                or geometry.clear_path(place, state.positions[on], state.positions[others], geometry.NEAR)
+                or None
+            )
     return found, None
 
 
 def _full_ball(state: State, on: list[int], others: list[int], cue: np.ndarray, slack: float) -> bool:
-    """Section 3 Rule 14(d): "central, full-ball contact"; of a red, its complete diameter, which other reds do not obstruct."""
+    """Section 3 Rule 14(d): "central, full-ball contact"; of a red, its complete diameter, which other reds
+    do not obstruct."""
     for i in on:
         between = others if i in REDS else [k for k in state.balls if k != i]
         if geometry.full_ball(cue, state.positions[[i]], state.positions[between], slack):

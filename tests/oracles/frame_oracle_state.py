@@ -1,4 +1,5 @@
-"""What does the oracle of frames know of a frame, a stroke and a verdict? Its data, as ``frame_oracle_rules`` explains them."""
+"""What does the oracle of frames know of a frame, a stroke and a verdict? Its data, as ``frame_oracle_rules``
+explains them."""
 
 from __future__ import annotations
 
@@ -82,7 +83,8 @@ class Stroke:
     velocity: np.ndarray = field(default_factory=lambda: np.zeros(2))
     """Of the cue ball as it is struck [m/s]."""
     path: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
-    """Of the cue ball's centre up to its first impact with a ball, or to rest, at close points [m]; only for ``miss="attempt"``."""
+    """Of the cue ball's centre up to its first impact with a ball, or to rest, at close points [m]; only for
+    ``miss="attempt"``."""
     nominated: int | None = None
     """The colour named; None where players name none and the one struck first counts."""
     cushion: bool = True

@@ -1,4 +1,5 @@
-"""From which tables does the oracle see what whole frames show seldom? Random tables with touching balls, taken spots and level scores."""
+"""From which tables does the oracle see what whole frames show seldom? Random tables with touching balls,
+taken spots and level scores."""
 
 from __future__ import annotations
 
@@ -33,17 +34,24 @@ def table(state: dict, rng: np.random.Generator) -> dict:
     scores = [low + max(lead, 0), low + max(-lead, 0)]
     frame = dict(state["frame"])
     frame |= {
-        "scores": scores, "striker": int(rng.integers(2)), "break_points": 1 if ball_on == 0 else 0, "ball_on": ball_on, "in_hand": in_hand,
-        "free_ball": bool(ball_on != 0 and first < 21 and rng.random() < 0.3), "respotted_black": False,
-        "on_table": int(sum(1 << int(i) for i in np.flatnonzero(on_table) if i)), "rack": 0x3FFFFE,
-    }  # fmt: skip
+        "scores": scores,
+        "striker": int(rng.integers(2)),
+        "break_points": 1 if ball_on == 0 else 0,
+        "ball_on": ball_on,
+        "in_hand": in_hand,
+        "free_ball": bool(ball_on != 0 and first < 21 and rng.random() < 0.3),
+        "respotted_black": False,
+        "on_table": int(sum(1 << int(i) for i in np.flatnonzero(on_table) if i)),
+        "rack": 0x3FFFFE,
+    }
     if ball_on == 0:
         frame["scores"][frame["striker"]] += 1
     return state | {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame}
 
 
 def with_free_ball(state: dict, rng: np.random.Generator) -> dict:
-    """The colours with a free ball; two of them hang before one pocket: the ball on and another go down now and then, alone or together."""
+    """The colours with a free ball; two of them hang before one pocket: the ball on and another go down now
+    and then, alone or together."""
     state = table(state, rng)
     positions, pocket = np.array(state["positions"], float), POCKETS[rng.integers(4)]
     on_table = np.zeros(22, bool)
@@ -57,9 +65,12 @@ def with_free_ball(state: dict, rng: np.random.Generator) -> dict:
         if inside.all() and apart.min() > geometry.D2 + 1.5e-6:
             break
     frame = state["frame"] | {
-        "ball_on": 2, "free_ball": True, "in_hand": False, "break_points": 0,
+        "ball_on": 2,
+        "free_ball": True,
+        "in_hand": False,
+        "break_points": 0,
         "on_table": int(sum(1 << int(i) for i in np.flatnonzero(on_table) if i)),
-    }  # fmt: skip
+    }
     return state | {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame}
 
 
@@ -84,7 +95,9 @@ def _place(i, placed, crowd, rng):
         elif kind < 0.8 and placed:  # beside another ball, as near as balls come to rest, or in its shadow
             turn = rng.uniform(0, 2 * np.pi)
             gap = rng.choice([2e-6, 20e-6, 45e-6, 80e-6, 1e-3, 0.03])
-            at = placed[rng.integers(len(placed))] + (geometry.D2 + gap) * np.array([np.cos(turn), np.sin(turn)])
+            at = placed[rng.integers(len(placed))] + (geometry.D2 + gap) * np.array(
+                [np.cos(turn), np.sin(turn)]
+            )
         elif crowd is not None and tries < 20:  # many before one pocket: several go down in one stroke
             at = crowd * (0.75 if i == 0 else 1.0) + rng.normal(0, 0.05, 2)
         else:

@@ -1,12 +1,16 @@
-"""How is a frictional impact carried from first touch to parting, through every change of slip and stick? For both float oracles.
+"""How is a frictional impact carried from first touch to parting, through every change of slip and stick? For
+both float oracles.
 
-Method. Twelve (cushion: six) velocities as 3D vectors in the table frame, with cross products. The independent variable is ``tau``,
-``dP/M = dtau / (1 + 1/s + 1/b)`` with ``P`` the normal impulse and ``s``, ``b`` the slip speeds of the contacts that slip: an approach of
-either to zero is then an exponential and not a singularity, so that an eighth-order Runge-Kutta method (scipy's DOP853, rtol 3e-14)
-passes it in ordinary steps. Each switch of regime is a located event, solved for by integrating again up to the trial point (no
-interpolation). One place needs a stiff method (Radau) instead: a sticking cushion contact that is released, see ``_march_until_event``.
+Method. Twelve (cushion: six) velocities as 3D vectors in the table frame, with cross products. The
+independent variable is ``tau``, ``dP/M = dtau / (1 + 1/s + 1/b)`` with ``P`` the normal impulse and ``s``,
+``b`` the slip speeds of the contacts that slip: an approach of either to zero is then an exponential and not
+a singularity, so that an eighth-order Runge-Kutta method (scipy's DOP853, rtol 3e-14) passes it in ordinary
+steps. Each switch of regime is a located event, solved for by integrating again up to the trial point (no
+interpolation). One place needs a stiff method (Radau) instead: a sticking cushion contact that is released,
+see ``_march_until_event``.
 
-A state is a list: per ball v (3) and R w (3), all in units of the largest incoming speed, then the work of the normal impulse.
+A state is a list: per ball v (3) and R w (3), all in units of the largest incoming speed, then the work of
+the normal impulse.
 """
 
 from __future__ import annotations
@@ -21,13 +25,14 @@ from scipy.optimize import brentq
 
 from .vectors import Vector, dot, norm
 
-# In units of the largest incoming speed: a slip that falls to ZERO_SLIP has reached zero, and what is within AT_ZERO when a regime is
-# chosen is zero (twice as much: the state at the event is rounded). Rounding of the velocities is about 1e-16; a slip starts at
-# 10 ZERO_SLIP.
+# In units of the largest incoming speed: a slip that falls to ZERO_SLIP has reached zero, and what is within
+# AT_ZERO when a regime is chosen is zero (twice as much: the state at the event is rounded). Rounding of the
+# velocities is about 1e-16; a slip starts at 10 ZERO_SLIP.
 ZERO_SLIP = 3e-15
 AT_ZERO = 2.0 * ZERO_SLIP
-# A sticking contact is released once the friction that would hold it exceeds the limit by this fraction, not at the very limit, where the
-# slip it would start with has no rate yet. The impulse that passes meanwhile is of the same order, the error of its square.
+# A sticking contact is released once the friction that would hold it exceeds the limit by this fraction, not
+# at the very limit, where the slip it would start with has no rate yet. The impulse that passes meanwhile is
+# of the same order, the error of its square.
 RELEASE = 1e-9
 SLOW = 0.05  # a slip that starts from zero with a lower rate per unit of P/M needs the stiff method
 RTOL, ATOL = 3e-14, 1e-15
@@ -35,16 +40,19 @@ RTOL, ATOL = 3e-14, 1e-15
 
 @dataclass(frozen=True)
 class Regime:
-    """What each contact does until the next event. ``main``: ball-ball or ball-cushion; ``cloth``: under the ball."""
+    """What each contact does until the next event. ``main``: ball-ball or ball-cushion; ``cloth``: under the
+    ball."""
 
     main: str  # "slip" or "stick"
     cloth: str  # "slip", "stick" or "off" (no reaction)
-    main_start: Vector | None = None  # direction in which a slip starts from zero, None if it slips already (or sticks)
+    # direction in which a slip starts from zero, None if it slips already (or sticks)
+    main_start: Vector | None = None
     cloth_start: Vector | None = None
 
 
 def march(state: list[float], problem, e: float) -> list[float]:
-    """Carry ``state`` from first touch to parting. ``problem`` has ``closing``, ``slips``, ``regime``, ``rates`` and ``margins``."""
+    """Carry ``state`` from first touch to parting. ``problem`` has ``closing``, ``slips``, ``regime``,
+    ``rates`` and ``margins``."""
     state = [*state, 0.0]
     compressing, target = True, 0.0
     for _ in range(400):
@@ -53,7 +61,9 @@ def march(state: list[float], problem, e: float) -> list[float]:
         slow_start = None
         if starts != (None, None):
             rate = problem.rates(state, regime)
-            growth = [math.inf if d is None else dot(r, d) for r, d in zip(problem.slips(rate), starts, strict=True)]
+            growth = [
+                math.inf if d is None else dot(r, d) for r, d in zip(problem.slips(rate), starts, strict=True)
+            ]
             if growth[0] < SLOW:
                 slow_start = regime.main_start
                 growth[0] = math.inf
@@ -75,15 +85,20 @@ def march(state: list[float], problem, e: float) -> list[float]:
 def _march_until_event(y0, problem, regime, compressing, target, slow_start=None):
     """Integrate in tau from ``y0`` to the first event; returns the state there and the name of the event.
 
-    ``slow_start``: direction in which the slip at the main contact starts from zero with hardly any rate (a stick that is released: it
-    grows like P^2). Its direction then follows the forces stiffly; the slip's size and angle join the state, P takes the place of tau for
-    that contact, and Radau's method that of DOP853, until the slip is large.
+    ``slow_start``: direction in which the slip at the main contact starts from zero with hardly any rate (a
+    stick that is released: it grows like P^2). Its direction then follows the forces stiffly; the slip's size
+    and angle join the state, P takes the place of tau for that contact, and Radau's method that of DOP853,
+    until the slip is large.
     """
     slow = slow_start is not None
     size = len(y0)
 
     def regime_at(y) -> Regime:
-        return Regime("slip", regime.cloth, problem.tangent(math.cos(y[size + 1]), math.sin(y[size + 1]))) if slow else regime
+        return (
+            Regime("slip", regime.cloth, problem.tangent(math.cos(y[size + 1]), math.sin(y[size + 1])))
+            if slow
+            else regime
+        )
 
     def derivative(_tau, y):
         main, cloth = problem.slips(y)
@@ -95,7 +110,9 @@ def _march_until_event(y0, problem, regime, compressing, target, slow_start=None
         rates = problem.rates(y, regime_at(y))
         if slow:
             growth = problem.slips(rates)[0]
-            along, across = (problem.tangent(math.cos(a), math.sin(a)) for a in (y[size + 1], y[size + 1] + 0.5 * math.pi))
+            along, across = (
+                problem.tangent(math.cos(a), math.sin(a)) for a in (y[size + 1], y[size + 1] + 0.5 * math.pi)
+            )
             rates = [*rates, dot(growth, along), dot(growth, across) / y[size]]
         return np.array(rates) / slowness
 
@@ -126,7 +143,8 @@ def _march_until_event(y0, problem, regime, compressing, target, slow_start=None
         y += [ZERO_SLIP, math.atan2(dot(slow_start, problem.t2), dot(slow_start, problem.t1))]
     solver = method(derivative, 0.0, np.array(y), 1e9, max_step=2.0, first_step=1e-7 if slow else None)
     before, g_before = solver.y, gauges(solver.y)
-    for event in ("closing", "work"):  # together with the event before: a ball that slips at neither contact has no closing speed left
+    # together with the event before: a ball that slips at neither contact has no closing speed left
+    for event in ("closing", "work"):
         if g_before.get(event, 1.0) <= 0.0:
             return list(before[:size]), event
     for _ in range(100_000):
@@ -143,7 +161,9 @@ def _march_until_event(y0, problem, regime, compressing, target, slow_start=None
             def gauge(tau, k, start=start, tau0=tau0, known=known):
                 return known[tau][k] if tau in known else gauges(reach(tau0, start, tau))[k]
 
-            tau, event = min((brentq(gauge, tau0, tau1, args=(k,), xtol=1e-16, rtol=1e-15), k) for k in crossed)
+            tau, event = min(
+                (brentq(gauge, tau0, tau1, args=(k,), xtol=1e-16, rtol=1e-15), k) for k in crossed
+            )
             there = start if tau == tau0 else end if tau == tau1 else reach(tau0, start, tau)
             if slow and abs(norm(problem.slips(there)[0]) - there[size]) > 1e-11:
                 raise RuntimeError("the slow start of a slip was not resolved in the impact oracle")

@@ -24,7 +24,9 @@ def rolling(v, share=1.0, side=0.0):
 
 def energy(*velocities_and_spins):
     """Kinetic energy over M; ``v, w`` alternate."""
-    return sum((0.5 if k % 2 == 0 else 0.2 * R * R) * float(a @ a) for k, a in enumerate(velocities_and_spins))
+    return sum(
+        (0.5 if k % 2 == 0 else 0.2 * R * R) * float(a @ a) for k, a in enumerate(velocities_and_spins)
+    )
 
 
 def in_speeds(state):

@@ -1,10 +1,12 @@
-"""What do the paper's own equations make of an impact of two balls? In multi-precision arithmetic, as a second oracle.
+"""What do the paper's own equations make of an impact of two balls? In multi-precision arithmetic, as a
+second oracle.
 
-Source: Mathavan, Jackson & Parkin (2014), *Sports Engineering* 17, 227-237, as corrected in ``shared/reference/physics.md``.
+Source: Mathavan, Jackson & Parkin (2014), *Sports Engineering* 17, 227-237, as corrected in
+``shared/reference/physics.md``.
 
-Method. The paper's scalar equations (3) and (4) in its contact frame, the normal impulse ``P`` itself as the independent variable, mpmath
-arithmetic, extrapolated modified midpoint (Gragg-Bulirsch-Stoer, order 16) with steps graded towards the singular points, stops found
-by Newton's method on the step length.
+Method. The paper's scalar equations (3) and (4) in its contact frame, the normal impulse ``P`` itself as the
+independent variable, mpmath arithmetic, extrapolated modified midpoint (Gragg-Bulirsch-Stoer, order 16) with
+steps graded towards the singular points, stops found by Newton's method on the step length.
 """
 
 from __future__ import annotations
@@ -14,7 +16,8 @@ import numpy as np
 
 
 def multiprecision(v1, w1, v2, w2, n, R, e, mu_bb, mu_s, digits):
-    """The paper's equations (3), (4) in its frame, X tangent, Y from ball C = 1 to ball O = 2, Z up; ``digits`` decimal digits."""
+    """The paper's equations (3), (4) in its frame, X tangent, Y from ball C = 1 to ball O = 2, Z up;
+    ``digits`` decimal digits."""
     with mpmath.workdps(digits):
         mpf = mpmath.mpf
         nx, ny = mpf(n[0]), mpf(n[1])
@@ -37,7 +40,8 @@ def multiprecision(v1, w1, v2, w2, n, R, e, mu_bb, mu_s, digits):
 
 
 class _PaperImpact:
-    """State: C's velocity (0-2) and R w (3-5), O's velocity (6-8) and R w (9-11), work (12); variable P/M. The paper's frame."""
+    """State: C's velocity (0-2) and R w (3-5), O's velocity (6-8) and R w (9-11), work (12); variable P/M.
+    The paper's frame."""
 
     COLUMNS = 8  # of the extrapolation table: order 16
 
@@ -84,12 +88,20 @@ class _PaperImpact:
                 cx, cy, cn = k * bx, k * by, -p2  # eq. (7a), (8a), (8b)
         half5 = mpmath.mpf(5) / 2
         return [
-            p1 + cx, cy - 1, p2 + cn,  # eq. (3a)-(3c)
-            half5 * (p2 + cy), -half5 * cx, -half5 * p1,  # eq. (3d)-(3f), times R
-            ox - p1, oy + 1, on - p2,  # eq. (4) and its five companions
-            half5 * (p2 + oy), -half5 * ox, -half5 * p1,
+            p1 + cx,
+            cy - 1,
+            p2 + cn,  # eq. (3a)-(3c)
+            half5 * (p2 + cy),
+            -half5 * cx,
+            -half5 * p1,  # eq. (3d)-(3f), times R
+            ox - p1,
+            oy + 1,
+            on - p2,  # eq. (4) and its five companions
+            half5 * (p2 + oy),
+            -half5 * ox,
+            -half5 * p1,
             y[1] - y[7],  # eq. (10a)
-        ]  # fmt: skip
+        ]
 
     def extrapolate(self, y, h):
         """One Gragg-Bulirsch-Stoer step of length h; returns the new state and its error estimate."""
@@ -99,7 +111,10 @@ class _PaperImpact:
             step = h / n
             previous, now = y, [a + step * f for a, f in zip(y, first, strict=True)]
             for _ in range(n - 1):
-                previous, now = now, [a + 2 * step * f for a, f in zip(previous, self.rates(now), strict=True)]
+                previous, now = (
+                    now,
+                    [a + 2 * step * f for a, f in zip(previous, self.rates(now), strict=True)],
+                )
             row = [[(a + b + step * f) / 2 for a, b, f in zip(previous, now, self.rates(now), strict=True)]]
             for j in range(1, column):
                 weight = 1 / ((mpmath.mpf(n) / (n - 2 * j)) ** 2 - 1)
@@ -108,7 +123,8 @@ class _PaperImpact:
         return table[-1][-1], max(abs(a - b) for a, b in zip(table[-1][-1], table[-1][-2], strict=True))
 
     def longest_step(self, y, remaining):
-        """A fraction of the impulse to the nearest singular point (slip at A zero, cloth slip zero), or what remains."""
+        """A fraction of the impulse to the nearest singular point (slip at A zero, cloth slip zero), or what
+        remains."""
         h = remaining
         p1, p2 = self.impulses(y)
         if p1 != 0 or p2 != 0:
@@ -118,7 +134,8 @@ class _PaperImpact:
         return h
 
     def leave_zero_cloth_slip(self, y):
-        """From zero cloth slip the friction is against the driving rate: a midpoint step so short that its error is nothing."""
+        """From zero cloth slip the friction is against the driving rate: a midpoint step so short that its
+        error is nothing."""
         p1, p2 = self.impulses(y)
         half5 = mpmath.mpf(5) / 2
         self.cloth_direction = (-p1, 1 + half5 * p2) if self.o_pressed else (p1, -1 + half5 * p2)
@@ -141,7 +158,8 @@ class _PaperImpact:
             h /= 2
 
     def solve_for(self, y, h, gauge, slope):
-        """From the last state before a stop, Newton on the step length (first guess h) until ``gauge`` is zero."""
+        """From the last state before a stop, Newton on the step length (first guess h) until ``gauge`` is
+        zero."""
         for _ in range(12):
             new, _error = self.extrapolate(y, h)
             correction = gauge(new) / slope(new)
@@ -158,8 +176,8 @@ class _PaperImpact:
             rate = self.rates(y)
             return rate[1] - rate[7]
 
-        # Both loops: guess the impulse to the stop as if the closing speed fell at 2 per unit (so it does but for the cloth), step
-        # towards a little beyond it, and solve from the last state before it.
+        # Both loops: guess the impulse to the stop as if the closing speed fell at 2 per unit (so it does but
+        # for the cloth), step towards a little beyond it, and solve from the last state before it.
         y = self.y
         while True:
             guess = closing(y) / 2

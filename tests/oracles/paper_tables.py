@@ -1,6 +1,8 @@
-"""What do the paper's Tables 1 and 2 hold, and which impact is each row? Its numbers, and the way from an impact to its columns.
+"""What do the paper's Tables 1 and 2 hold, and which impact is each row? Its numbers, and the way from an
+impact to its columns.
 
-Source: Mathavan, Jackson & Parkin (2014), *Sports Engineering* 17, 227-237, with the slip that is noted below.
+Source: Mathavan, Jackson & Parkin (2014), *Sports Engineering* 17, 227-237, with the slip that is noted
+below.
 """
 
 from __future__ import annotations
@@ -13,9 +15,11 @@ import numpy as np
 
 @dataclass(frozen=True)
 class PaperRow:
-    """One shot of the paper's Tables 1 and 2; ``_c`` the cue ball, ``_o`` the object ball, predicted unless ``measured_``.
+    """One shot of the paper's Tables 1 and 2; ``_c`` the cue ball, ``_o`` the object ball, predicted unless
+    ``measured_``.
 
-    Speeds [m/s] and angles [deg, from the cue ball's incoming direction] after the slip; ``w_t`` topspin [rad/s]; ``cut`` angle [deg].
+    Speeds [m/s] and angles [deg, from the cue ball's incoming direction] after the slip; ``w_t`` topspin
+    [rad/s]; ``cut`` angle [deg].
     """
 
     v0: float
@@ -44,21 +48,30 @@ PAPER_ROWS = (
 
 
 def incoming(row: PaperRow):
-    """(v1, w1, v2, w2, normal) of a row: cue ball along +x with topspin, the object ball at rest at the cut angle to its left."""
+    """(v1, w1, v2, w2, normal) of a row: cue ball along +x with topspin, the object ball at rest at the cut
+    angle to its left."""
     cut = math.radians(row.cut)
     still = np.zeros(3)
-    return np.array([row.v0, 0.0, 0.0]), np.array([0.0, row.w_t, 0.0]), still, still.copy(), np.array([math.cos(cut), math.sin(cut), 0.0])
+    return (
+        np.array([row.v0, 0.0, 0.0]),
+        np.array([0.0, row.w_t, 0.0]),
+        still,
+        still.copy(),
+        np.array([math.cos(cut), math.sin(cut), 0.0]),
+    )
 
 
 def velocity_after_slip(v, w, *, R: float) -> np.ndarray:
-    """Horizontal velocity (2,) [m/s] once the slip on the cloth has ended: v - 2/7 u, u = v + w x (-R z) (physics.md 1.3)."""
+    """Horizontal velocity (2,) [m/s] once the slip on the cloth has ended: v - 2/7 u, u = v + w x (-R z)
+    (physics.md 1.3)."""
     v, w = np.asarray(v, dtype=float), np.asarray(w, dtype=float)
     slip = v[:2] + R * np.array([-w[1], w[0]])
     return v[:2] - 2.0 / 7.0 * slip
 
 
 def after_slip(v1, w1, v2, w2, direction, *, R: float) -> tuple[float, float, float, float]:
-    """The tables' columns: speeds [m/s] of balls 1 and 2 after slip, their angles [deg, >= 0] from ``direction`` (the incoming one)."""
+    """The tables' columns: speeds [m/s] of balls 1 and 2 after slip, their angles [deg, >= 0] from
+    ``direction`` (the incoming one)."""
     speeds, angles = [], []
     dx, dy = float(direction[0]), float(direction[1])
     for v, w in ((v1, w1), (v2, w2)):

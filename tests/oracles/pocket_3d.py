@@ -1,30 +1,37 @@
-"""Does a ball that comes to a pocket fall in? One sphere in three dimensions, moved by small steps of the forces.
+"""Does a ball that comes to a pocket fall in? One sphere in three dimensions, moved by small steps of the
+forces.
 
-An oracle for the engine. Nothing is predicted: no event is located and no impact is resolved in closed form. A step drifts by dt/2, applies
-the impulses of the forces where the ball then is, and drifts by dt/2 again (leapfrog, second order in the normal forces).
+An oracle for the engine. Nothing is predicted: no event is located and no impact is resolved in closed form.
+A step drifts by dt/2, applies the impulses of the forces where the ball then is, and drifts by dt/2 again
+(leapfrog, second order in the normal forces).
 
 Forces per unit of mass, on a sphere of radius R whose centre is at ``r`` (moment of inertia 2/5 R^2):
 
 * Gravity ``-g z``.
-* Each jaw with the rail before it and the straight facing behind it is one smooth horizontal curve, the nose, at height ``H = (1 +
-  sin_theta) R``. The sphere touches it when the distance from its centre to the curve is below R. Where a ball on the bed touches the nose
-  its centre is R from the table's nose line and jaw arcs (that is how ``Table`` gives them), so the curve itself is ``R (1 - cos theta)``
-  nearer to the ball (``PROUD``). Compressed by ``x``, the nose pushes with ``k x``; from the largest compression ``X`` on, with
-  ``(k / e^2) (x - (1 - e^2) X)``: a share ``e^2`` of the work comes back, Stronge's energetic restitution, at every speed and angle
-  (Walton & Braun 1986, *J. Rheology* 30, 949). ``k = (pi / nose_time)^2``: the ball is pressed in for ``nose_time / 2``.
-  ``e`` may fall with the horizontal closing speed v of the impact: ``nose_e (v / nose_knee)^-nose_power`` above the knee.
-* The slate: a plane up to the circle of ``Table.falls``, from there rounded with radius ``edge`` and then a vertical wall. A spring and a
-  dashpot that only push, of half period ``slate_time`` and of the damping that gives a given restitution (``damping``: Schwager &
-  Poeschel 2007, *Granular Matter* 9, 465, a contact that ends when the force is zero).
-* Coulomb friction at both, ``mu`` times the normal impulse of the step against the slip, at most what ends the slip (2/7 of it). Where the
-  slate holds the ball without slip, a torque ``7/5 mu_r N R`` against the spin: it slows a rolling ball by ``mu_r g``. Where the slate
-  touches the ball, the spin about its normal decays at ``spin_decel``.
+* Each jaw with the rail before it and the straight facing behind it is one smooth horizontal curve, the nose,
+  at height ``H = (1 + sin_theta) R``. The sphere touches it when the distance from its centre to the curve is
+  below R. Where a ball on the bed touches the nose its centre is R from the table's nose line and jaw arcs
+  (that is how ``Table`` gives them), so the curve itself is ``R (1 - cos theta)`` nearer to the ball
+  (``PROUD``). Compressed by ``x``, the nose pushes with ``k x``; from the largest compression ``X`` on, with
+  ``(k / e^2) (x - (1 - e^2) X)``: a share ``e^2`` of the work comes back, Stronge's energetic restitution, at
+  every speed and angle (Walton & Braun 1986, *J. Rheology* 30, 949). ``k = (pi / nose_time)^2``: the ball is
+  pressed in for ``nose_time / 2``. ``e`` may fall with the horizontal closing speed v of the impact:
+  ``nose_e (v / nose_knee)^-nose_power`` above the knee.
+* The slate: a plane up to the circle of ``Table.falls``, from there rounded with radius ``edge`` and then a
+  vertical wall. A spring and a dashpot that only push, of half period ``slate_time`` and of the damping that
+  gives a given restitution (``damping``: Schwager & Poeschel 2007, *Granular Matter* 9, 465, a contact that
+  ends when the force is zero).
+* Coulomb friction at both, ``mu`` times the normal impulse of the step against the slip, at most what ends
+  the slip (2/7 of it). Where the slate holds the ball without slip, a torque ``7/5 mu_r N R`` against the
+  spin: it slows a rolling ball by ``mu_r g``. Where the slate touches the ball, the spin about its normal
+  decays at ``spin_decel``.
 
-Left out is the leather: the back of the pocket keeps what reaches it. Below its nose the cushion recedes: by default so far that nothing
-but the nose can be touched (``undercut`` 1), else as a plane face whose normal points down by the angle of that sine.
+Left out is the leather: the back of the pocket keeps what reaches it. Below its nose the cushion recedes: by
+default so far that nothing but the nose can be touched (``undercut`` 1), else as a plane face whose normal
+points down by the angle of that sine.
 
-Units are SI, spins in rad/s. Table frame: right-handed, z up, the slate's top at z = 0; the centre of a ball at rest is at z = R, less the
-40 nm by which its weight presses it into the slate.
+Units are SI, spins in rad/s. Table frame: right-handed, z up, the slate's top at z = 0; the centre of a ball
+at rest is at z = R, less the 40 nm by which its weight presses it into the slate.
 """
 
 from __future__ import annotations
@@ -45,7 +52,8 @@ AWAY = 0.12  # [m] a ball that moves away from the pocket so far outside the fal
 
 
 def damping(e: float, time: float) -> float:
-    """The dashpot 2 b [1/s] at which a contact x'' + 2 b x' + (pi / time)^2 x = 0 that only pushes has restitution e > 0."""
+    """The dashpot 2 b [1/s] at which a contact x'' + 2 b x' + (pi / time)^2 x = 0 that only pushes has
+    restitution e > 0."""
     w0 = math.pi / time
 
     def restitution(b):
@@ -75,21 +83,27 @@ class Model(NamedTuple):
 
 
 def stiff(speed: float, **fields) -> Model:
-    """A model for balls of about this speed [m/s] that comes near rigid surfaces: the nose is compressed by 0.3 mm at most, for 0.5 ms.
+    """A model for balls of about this speed [m/s] that comes near rigid surfaces: the nose is compressed by
+    0.3 mm at most, for 0.5 ms.
 
-    The slate must be much stiffer than the nose that presses the ball on to it, else it throws the ball up: off a rail with 8 % of its
-    speed at a slate_time of 0.4 nose_time, with less than 1 % at a twelfth. And a contact must be too short for the cloth's friction under
-    the ball's weight: one of 2 ms takes 15 mm/s of slip, which turns the path of a slow ball that grazes a rail.
+    The slate must be much stiffer than the nose that presses the ball on to it, else it throws the ball up:
+    off a rail with 8 % of its speed at a slate_time of 0.4 nose_time, with less than 1 % at a twelfth. And a
+    contact must be too short for the cloth's friction under the ball's weight: one of 2 ms takes 15 mm/s of
+    slip, which turns the path of a slow ball that grazes a rail.
     """
     time = 1e-3 / max(speed, 2.0)
-    return Model(**{"nose_time": time, "slate_time": time / 12.0, "slate_damping": damping(0.5, time / 12.0), **fields})
+    return Model(
+        **{"nose_time": time, "slate_time": time / 12.0, "slate_damping": damping(0.5, time / 12.0), **fields}
+    )
 
 
 @numba.njit
 def _nose(x, y, jaw):
-    """Horizontal distance to the nose curve of one jaw and the unit vector towards it. jaw: centre, radius, normals of rail and facing."""
+    """Horizontal distance to the nose curve of one jaw and the unit vector towards it. jaw: centre, radius,
+    normals of rail and facing."""
     px, py = x - jaw[0], y - jaw[1]
-    turn = math.copysign(1.0, jaw[3] * jaw[6] - jaw[4] * jaw[5])  # from the rail's normal to the facing's, anticlockwise or not
+    # from the rail's normal to the facing's, anticlockwise or not
+    turn = math.copysign(1.0, jaw[3] * jaw[6] - jaw[4] * jaw[5])
     if turn * (jaw[3] * py - jaw[4] * px) < 0.0:
         return px * jaw[3] + py * jaw[4] - jaw[2], -jaw[3], -jaw[4]
     if turn * (jaw[5] * py - jaw[6] * px) > 0.0:
@@ -112,7 +126,8 @@ def _slate(x, y, z, fall, edge):
 
 @numba.njit
 def _push(v, w, n, p, mu):
-    """Normal impulse p at R n against n, then friction against the slip; does the friction hold? -> v, w, held."""
+    """Normal impulse p at R n against n, then friction against the slip; does the friction hold? -> v, w,
+    held."""
     v = (v[0] - p * n[0], v[1] - p * n[1], v[2] - p * n[2])
     sx = v[0] + R * (w[1] * n[2] - w[2] * n[1])
     sy = v[1] + R * (w[2] * n[0] - w[0] * n[2])
@@ -125,13 +140,18 @@ def _push(v, w, n, p, mu):
     f = min(mu * p, 2.0 / 7.0 * s)
     fx, fy, fz = -f * sx / s, -f * sy / s, -f * sz / s
     q = 2.5 / R
-    w = (w[0] + q * (n[1] * fz - n[2] * fy), w[1] + q * (n[2] * fx - n[0] * fz), w[2] + q * (n[0] * fy - n[1] * fx))
+    w = (
+        w[0] + q * (n[1] * fz - n[2] * fy),
+        w[1] + q * (n[2] * fx - n[0] * fz),
+        w[2] + q * (n[0] * fy - n[1] * fx),
+    )
     return (v[0] + fx, v[1] + fy, v[2] + fz), w, f < mu * p
 
 
 @numba.njit
 def _touch(z, gap, undercut):
-    """Distance from the centre to the cushion whose nose is ``gap`` away, and the horizontal and vertical share of its direction."""
+    """Distance from the centre to the cushion whose nose is ``gap`` away, and the horizontal and vertical
+    share of its direction."""
     rise, level = HEIGHT - z, math.sqrt(1.0 - undercut * undercut)
     if rise * level > gap * undercut:
         return gap * level + rise * undercut, level, undercut
@@ -141,7 +161,8 @@ def _touch(z, gap, undercut):
 
 @numba.njit
 def step(s, jaws, fall, m, dt):
-    """Advance the state by dt, in place. s: r (3), v (3), w (3), then for each jaw the largest compression and the restitution."""
+    """Advance the state by dt, in place. s: r (3), v (3), w (3), then for each jaw the largest compression
+    and the restitution."""
     h = 0.5 * dt
     for c in range(3):
         s[c] += h * s[3 + c]
@@ -185,7 +206,8 @@ def step(s, jaws, fall, m, dt):
 
 @numba.njit
 def energy(s, jaws, fall, m):
-    """Kinetic, potential and elastic energy per unit of mass [J/kg], over that of a ball's centre at the slate's level."""
+    """Kinetic, potential and elastic energy per unit of mass [J/kg], over that of a ball's centre at the
+    slate's level."""
     total = G * s[2]
     for c in range(3):
         total += 0.5 * s[3 + c] ** 2 + 0.2 * R * R * s[6 + c] ** 2
@@ -214,7 +236,8 @@ def trace(s, jaws, fall, m, dt, n, every):
 
 @numba.njit
 def _approach(s, jaws, fall, m, dt):
-    """Roll or slide a ball on the cloth, in steps of dt, until it is near a nose or the edge, at rest, or away."""
+    """Roll or slide a ball on the cloth, in steps of dt, until it is near a nose or the edge, at rest, or
+    away."""
     while True:
         dx, dy = s[0] - fall[0], s[1] - fall[1]
         reach = math.sqrt(s[3] ** 2 + s[4] ** 2) * dt + CLEAR
@@ -244,7 +267,8 @@ def _approach(s, jaws, fall, m, dt):
 
 @numba.njit
 def _fate(s, jaws, fall, back, m, dt, most):
-    """POTTED, BACK or UNDECIDED after ``most`` [s]. back: unit vector outward and how far along it the back of the pocket keeps a ball."""
+    """POTTED, BACK or UNDECIDED after ``most`` [s]. back: unit vector outward and how far along it the back
+    of the pocket keeps a ball."""
     for n in range(int(most / dt)):
         if n % 100 == 0 and abs(s[5]) < 1e-4 and abs(s[2] - R) < 1e-6:
             _approach(s, jaws, fall, m, 1e-4)
@@ -272,7 +296,8 @@ def _fates(states, jaws, fall, back, m, dt, most):
 
 
 def pocket(table, index: int):
-    """One pocket of a ``Table``: its jaws (2, 7) as ``step`` reads them, its fall (3,), and its back (3,) as ``_fate`` reads it."""
+    """One pocket of a ``Table``: its jaws (2, 7) as ``step`` reads them, its fall (3,), and its back (3,) as
+    ``_fate`` reads it."""
     fall = np.array(table.falls[index])
     near = [jaw for jaw in table.jaws if math.hypot(jaw[0] - fall[0], jaw[1] - fall[1]) < 0.2]
     jaws = []
@@ -287,7 +312,8 @@ def pocket(table, index: int):
 
 
 def at_rest(positions, velocities, spins, m: Model, n_jaws: int):
-    """States (b, 9 + 2 n_jaws) of balls on the bed, pressed into it by their weight. positions, velocities (b, 2), spins (b, 3)."""
+    """States (b, 9 + 2 n_jaws) of balls on the bed, pressed into it by their weight. positions, velocities
+    (b, 2), spins (b, 3)."""
     states = np.zeros((len(positions), 9 + 2 * n_jaws))
     states[:, :2], states[:, 3:5], states[:, 6:9] = positions, velocities, spins
     states[:, 2] = R - G * (m.slate_time / math.pi) ** 2
@@ -299,10 +325,15 @@ def default_step(m: Model) -> float:
     return min(m.nose_time / 50.0, m.slate_time / 10.0)
 
 
-def fates(positions, velocities, spins, table, index: int, m: Model, dt: float | None = None, most: float = 4.0):
+def fates(
+    positions, velocities, spins, table, index: int, m: Model, dt: float | None = None, most: float = 4.0
+):
     """What becomes of balls that start on the bed: an array of POTTED, BACK, UNDECIDED (b,).
 
-    positions, velocities (b, 2) [m, m/s]; spins (b, 3); table: a ``Table``; index: the pocket; dt [s]: step; most [s]: give up after it.
+    positions, velocities (b, 2) [m, m/s]; spins (b, 3); table: a ``Table``; index: the pocket; dt [s]: step;
+    most [s]: give up after it.
     """
     jaws, fall, back = pocket(table, index)
-    return _fates(at_rest(positions, velocities, spins, m, len(jaws)), jaws, fall, back, m, dt or default_step(m), most)
+    return _fates(
+        at_rest(positions, velocities, spins, m, len(jaws)), jaws, fall, back, m, dt or default_step(m), most
+    )

@@ -1,4 +1,5 @@
-"""Are the two oracles of a ball-ball impact right? Against each other, the paper's tables, closed forms, symmetries and invariants."""
+"""Are the two oracles of a ball-ball impact right? Against each other, the paper's tables, closed forms,
+symmetries and invariants."""
 
 from __future__ import annotations
 
@@ -27,7 +28,14 @@ IMPACTS = {
     "over-spun follow, side": (V, rolling(V, 1.6, 60.0), STILL, STILL, 0.94, alciatore),
     "both move": (V, rolling(V), np.array([0.4, -0.3, 0.0]), np.array([20.0, 5.0, -30.0]), 0.89, 0.05),
     "both roll head-on": (STRAIGHT, rolling(STRAIGHT), BACK, rolling(BACK), 0.94, 0.05),
-    "cloth slip passes zero closely": (STRAIGHT, rolling(STRAIGHT), np.add(BACK, [1e-7, 0, 0]), rolling(BACK), 0.94, 0.05),
+    "cloth slip passes zero closely": (
+        STRAIGHT,
+        rolling(STRAIGHT),
+        np.add(BACK, [1e-7, 0, 0]),
+        rolling(BACK),
+        0.94,
+        0.05,
+    ),
     "head-on": (STRAIGHT, rolling(STRAIGHT), STILL, STILL, 0.89, 0.05),
     "graze": (heading(2.0, 1.57), rolling(heading(2.0, 1.57)), STILL, STILL, 0.89, 0.05),
     "stun": (V, STILL, STILL, STILL, 0.89, alciatore),
@@ -51,7 +59,9 @@ def test_two_computations_of_the_ball_ball_impact_agree(name):
 
 @pytest.mark.parametrize("row", PAPER_ROWS, ids=lambda r: f"V0={r.v0}")
 def test_the_papers_tables(row):
-    v_c, v_o, angle_c, angle_o = after_slip(*ball_ball(*incoming(row), **PAPER_PARAMETERS), (1.0, 0.0), R=PAPER_PARAMETERS["R"])
+    v_c, v_o, angle_c, angle_o = after_slip(
+        *ball_ball(*incoming(row), **PAPER_PARAMETERS), (1.0, 0.0), R=PAPER_PARAMETERS["R"]
+    )
     assert abs(v_c - row.v_c) <= 1e-3 and abs(v_o - row.v_o) <= 1e-3
     assert abs(angle_c - row.angle_c) <= 0.02 and abs(angle_o - row.angle_o) <= 0.02
 
@@ -84,7 +94,8 @@ def test_a_vertical_slip_without_cloth_friction_follows_the_closed_form(share):
     mu, e = 0.05, 0.89
     slip = -share * 2.0  # up, ball 1 relative to ball 2
     pn = (1 + e) / 2 * 2.0
-    pt = -math.copysign(min(mu * pn, abs(slip) / 6), slip)  # the ball that is lifted moves, the other cannot: 6, not 7
+    # the ball that is lifted moves, the other cannot: 6, not 7
+    pt = -math.copysign(min(mu * pn, abs(slip) / 6), slip)
     v1, w1, v2, w2 = ball_ball(v, rolling(v, share), STILL, STILL, NORTH, **BALLS, e=e, mu_bb=mu, mu_s=0.0)
     np.testing.assert_allclose(v1, [0, 2.0 - pn, max(pt, 0.0)], rtol=0, atol=1e-13)
     np.testing.assert_allclose(v2, [0, pn, max(-pt, 0.0)], rtol=0, atol=1e-13)
@@ -93,9 +104,29 @@ def test_a_vertical_slip_without_cloth_friction_follows_the_closed_form(share):
 
 
 def test_the_lifted_ball_keeps_its_vertical_velocity():
-    v1, _, v2, _ = ball_ball(heading(2.0, 0.5), rolling(heading(2.0, 0.5)), STILL, STILL, NORTH, **BALLS, e=0.89, mu_bb=0.05, mu_s=0.21)
+    v1, _, v2, _ = ball_ball(
+        heading(2.0, 0.5),
+        rolling(heading(2.0, 0.5)),
+        STILL,
+        STILL,
+        NORTH,
+        **BALLS,
+        e=0.89,
+        mu_bb=0.05,
+        mu_s=0.21,
+    )
     assert v2[2] == 0.0 and 0.02 * 2.0 < v1[2] < 0.05 * 2.0
-    v1, _, v2, _ = ball_ball(heading(2.0, 0.5), rolling(heading(2.0, 0.5), -1), STILL, STILL, NORTH, **BALLS, e=0.89, mu_bb=0.05, mu_s=0.21)
+    v1, _, v2, _ = ball_ball(
+        heading(2.0, 0.5),
+        rolling(heading(2.0, 0.5), -1),
+        STILL,
+        STILL,
+        NORTH,
+        **BALLS,
+        e=0.89,
+        mu_bb=0.05,
+        mu_s=0.21,
+    )
     assert v1[2] == 0.0 and 0.02 * 2.0 < v2[2] < 0.05 * 2.0
 
 
@@ -112,7 +143,9 @@ def test_ball_ball_symmetries_and_invariants(seed):
     swapped = ball_ball(v2, w2, v1, w1, -normal, **options)
     np.testing.assert_allclose(in_speeds(swapped), in_speeds((*out[2:], *out[:2])), rtol=0, atol=1e-12)
     mirror, spin_mirror = np.array([-1.0, 1.0, 1.0]), np.array([1.0, -1.0, -1.0])
-    mirrored = ball_ball(mirror * v1, spin_mirror * w1, mirror * v2, spin_mirror * w2, mirror * normal, **options)
+    mirrored = ball_ball(
+        mirror * v1, spin_mirror * w1, mirror * v2, spin_mirror * w2, mirror * normal, **options
+    )
     back = [a * (spin_mirror if k % 2 else mirror) for k, a in enumerate(mirrored)]
     np.testing.assert_allclose(in_speeds(back), in_speeds(out), rtol=0, atol=1e-12)
     # The vertical spin is touched by the friction between the balls alone, which turns both balls alike.
@@ -130,4 +163,6 @@ def test_what_is_outside_the_model_is_refused():
     with pytest.raises(ValueError, match="5/7"):
         ball_ball(V, rolling(V), STILL, STILL, NORTH, **BALLS, e=0.9, mu_bb=0.9, mu_s=5.0)
     with pytest.raises(ValueError, match="vertical"):
-        ball_ball(np.add(V, [0, 0, 0.1]), rolling(V), STILL, STILL, NORTH, **BALLS, e=0.9, mu_bb=0.05, mu_s=0.2)
+        ball_ball(
+            np.add(V, [0, 0, 0.1]), rolling(V), STILL, STILL, NORTH, **BALLS, e=0.9, mu_bb=0.05, mu_s=0.2
+        )

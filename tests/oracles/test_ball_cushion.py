@@ -1,4 +1,5 @@
-"""Is the oracle of a ball-cushion impact right? Against an exact piecewise solution, smoothed friction, symmetries and invariants."""
+"""Is the oracle of a ball-cushion impact right? Against an exact piecewise solution, smoothed friction,
+symmetries and invariants."""
 
 from __future__ import annotations
 
@@ -15,7 +16,8 @@ CUSHION = {"R": R, "M": M, "e": 0.98, "mu_w": 0.14, "mu_s": 0.212, "sin_theta": 
 
 
 def perpendicular_cushion(v, u, e, mu_w, mu_s, sin_theta):
-    """A perpendicular ball without side spin, exactly: (v_y, R w_x) after. The rates are constant between events.
+    """A perpendicular ball without side spin, exactly: (v_y, R w_x) after. The rates are constant between
+    events.
 
     Along the cushion's tangent t2 (upwards) and the cloth the slips are q = -v sin + u and b = v + u.
     """
@@ -37,7 +39,8 @@ def perpendicular_cushion(v, u, e, mu_w, mu_s, sin_theta):
             if f * slope < 0:
                 return f  # it slips on, against this friction
         (f0, r0), (f1, r1) = at
-        return f0 - r0 * (f1 - f0) / (r1 - r0)  # q' is linear in f while b has one sign: the friction that holds
+        # q' is linear in f while b has one sign: the friction that holds
+        return f0 - r0 * (f1 - f0) / (r1 - r0)
 
     work, floor = 0.0, None
     for _ in range(20):
@@ -71,7 +74,9 @@ def perpendicular_cushion(v, u, e, mu_w, mu_s, sin_theta):
     ],
 )
 def test_a_perpendicular_ball_follows_the_piecewise_linear_solution(v, roll, e, mu_w, mu_s):
-    out_v, out_w = ball_cushion([0, v, 0], [-roll * v / R, 0, 0], NORTH, **{**CUSHION, "e": e, "mu_w": mu_w, "mu_s": mu_s})
+    out_v, out_w = ball_cushion(
+        [0, v, 0], [-roll * v / R, 0, 0], NORTH, **{**CUSHION, "e": e, "mu_w": mu_w, "mu_s": mu_s}
+    )
     expected = perpendicular_cushion(v, -roll * v, e, mu_w, mu_s, 0.4)
     np.testing.assert_allclose([out_v[1], R * out_w[0]], expected, rtol=0, atol=1e-12 * v)
     assert abs(out_v[[0, 2]]).max() <= 1e-14 and abs(out_w[1:]).max() <= 1e-12
@@ -86,7 +91,8 @@ def test_a_perpendicular_rolling_ball_keeps_0_9107(speed):
 
 
 def smoothed_cushion(v, w, width, *, e, mu_w, mu_s, sin_theta):
-    """The same impact with Coulomb's law smoothed to slip / hypot(slip, width), in the scalar components of physics.md 1.4."""
+    """The same impact with Coulomb's law smoothed to slip / hypot(slip, width), in the scalar components of
+    physics.md 1.4."""
     s, c = sin_theta, math.sqrt(1 - sin_theta**2)
 
     def rates(_p, y):
@@ -114,7 +120,12 @@ def smoothed_cushion(v, w, width, *, e, mu_w, mu_s, sin_theta):
 SMOOTHED = {
     # name: v, w, mu_w, largest difference at a width of 1e-6 of the speed
     "slips throughout": (heading(1.5, 0.7), rolling(heading(1.5, 0.7), 1.0, 20.0), 0.14, 1e-6),
-    "backspin and side: sticks, cloth slip vanishes": (heading(5.5, 0.0), rolling(heading(5.5, 0.0), -0.5, -63.0), 0.2, 3e-6),
+    "backspin and side: sticks, cloth slip vanishes": (
+        heading(5.5, 0.0),
+        rolling(heading(5.5, 0.0), -0.5, -63.0),
+        0.2,
+        3e-6,
+    ),
     "sticks, then slips again": (np.array([0.925, 1.415, 0.0]), np.array([10.93, -10.59, 13.76]), 0.14, 3e-5),
     "sticks to the end": (heading(1.0, 0.4), np.array([8.0, 9.0, 3.0]), 0.4, 3e-6),
     "lifted, comes down": (heading(1.0, 0.2), rolling(heading(1.0, 0.2)), 0.8, 3e-6),
@@ -142,7 +153,9 @@ def test_cushion_symmetries_and_invariants(seed):
     np.testing.assert_allclose(in_speeds(turned(-1.1, *turned_out)), in_speeds(out), rtol=0, atol=1e-12)
     mirror, spin_mirror = np.array([-1.0, 1.0, 1.0]), np.array([1.0, -1.0, -1.0])
     mirrored = ball_cushion(mirror * v, spin_mirror * w, NORTH, **CUSHION)
-    np.testing.assert_allclose(in_speeds((mirrored[0] * mirror, mirrored[1] * spin_mirror)), in_speeds(out), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(
+        in_speeds((mirrored[0] * mirror, mirrored[1] * spin_mirror)), in_speeds(out), rtol=0, atol=1e-12
+    )
 
 
 def test_a_ball_that_leaves_the_cushion_comes_back_unchanged():

@@ -1,4 +1,5 @@
-"""Are the pot rates of ``benchmarks.execution`` right? Monte Carlo apart from the environment: errors, strike, geometry typed anew."""
+"""Are the pot rates of ``benchmarks.execution`` right? Monte Carlo apart from the environment: errors,
+strike, geometry typed anew."""
 
 from __future__ import annotations
 
@@ -14,7 +15,11 @@ from snooker_env.tasks.noise import LEVELS
 
 R, END_MASS_RATIO, MU_ROLL, G = 0.02625, 30.0, 0.0127, 9.81
 POTS = {pot.name: pot for pot in pot_shots.POTS}
-STRAIGHT, RED, HALF = "long: baulk line, 1 m to go, straight", "red 0.6 m, 20 deg, 1.1 m to go", "half ball 1.2 m, 30 deg, 1.0 m to go"
+STRAIGHT, RED, HALF = (
+    "long: baulk line, 1 m to go, straight",
+    "red 0.6 m, 20 deg, 1.1 m to go",
+    "half ball 1.2 m, 30 deg, 1.0 m to go",
+)
 N = 4000
 CASES = [(name, level) for name in (STRAIGHT, RED, HALF) for level in ("professional", "club", "olympiad")]
 
@@ -25,7 +30,8 @@ def squirt(b):
 
 
 def errors(level, speed, n, seed):
-    """(n,) each: speed [m/s], aim [rad], side and top over R, elevation [rad], for a level stroke without spin."""
+    """(n,) each: speed [m/s], aim [rad], side and top over R, elevation [rad], for a level stroke without
+    spin."""
     noise, rng = LEVELS[level], np.random.default_rng(seed)
     speeds = speed + rng.normal(size=n) * math.hypot(noise.speed_rel * speed, noise.speed_abs)
     side, top = rng.normal(size=(2, n)) * noise.offset_mm / (1e3 * R)
@@ -41,7 +47,8 @@ def close(share, other, n, slack=0.0):
 
 @pytest.mark.parametrize(("name", "level"), CASES)
 def test_the_same_pots_by_strokes_typed_anew(name, level):
-    """Spin (5/2) v b / R about the axis across the cue, the cue raised by the elevation; only the shot itself is the engine's."""
+    """Spin (5/2) v b / R about the axis across the cue, the cue raised by the elevation; only the shot itself
+    is the engine's."""
     shot = pot_shots.aimed(POTS[name], sn.Physics(), "match")
     speed, aim, side, top, raised = errors(level, shot.stroke[0], N, 11)
     way = shot.stroke[1] + aim + squirt(side)
@@ -59,7 +66,8 @@ def test_the_same_pots_by_strokes_typed_anew(name, level):
 
 
 def window(ball, speed):
-    """Directions [rad] between which one ball, struck from there at that speed, falls into the top right corner pocket."""
+    """Directions [rad] between which one ball, struck from there at that speed, falls into the top right
+    corner pocket."""
     middle = math.atan2(*(POCKET_AIMS[3, :2] - ball)[::-1])
     fan = middle + np.linspace(-0.06, 0.06, 2401)
     velocities = speed * np.column_stack([np.cos(fan), np.sin(fan)])
@@ -72,8 +80,9 @@ def window(ball, speed):
 
 @pytest.mark.parametrize(("name", "level"), CASES)
 def test_the_same_pots_by_two_circles(name, level):
-    """No shot is played: the direction of the cue ball errs, the line of centres at contact is the object ball's path, and the window is
-    that of a ball alone. Left out: what a stroke's spin and speed do to the throw and to the window, less than 4 % of the pots."""
+    """No shot is played: the direction of the cue ball errs, the line of centres at contact is the object
+    ball's path, and the window is that of a ball alone. Left out: what a stroke's spin and speed do to the
+    throw and to the window, less than 4 % of the pots."""
     shot = pot_shots.aimed(POTS[name], sn.Physics(), "match")
     cue, ball = shot.pot.positions
     path = math.dist(cue, ball) - 2 * R

@@ -1,4 +1,5 @@
-"""Does the environment judge frames as an oracle does that was written from the rules? And would the oracle see an error?"""
+"""Does the environment judge frames as an oracle does that was written from the rules? And would the oracle
+see an error?"""
 
 import pytest
 
@@ -11,7 +12,9 @@ MANY = 300
 
 def agrees(name, frames, seed):
     tally = check(name, frames, seed).tally
-    assert not tally.disagreements, [(what, names, before) for what, names, *_, before in tally.disagreements[:3]]
+    assert not tally.disagreements, [
+        (what, names, before) for what, names, *_, before in tally.disagreements[:3]
+    ]
     assert tally.frames >= frames and tally.strokes >= 5 * frames
     assert sum(tally.undecidable.values()) <= tally.strokes / 1000
     return tally
@@ -26,7 +29,12 @@ def test_every_stroke_is_judged_as_the_rules_say(name):
 @pytest.mark.parametrize("name", KINDS)
 def test_every_stroke_of_many_frames_is_judged_as_the_rules_say(name):
     seen = agrees(name, MANY, 2000).seen
-    assert seen["foul: no contact"] and seen["foul: wrong first"] and seen["foul: cue potted"] and seen["own spot"]
+    assert (
+        seen["foul: no contact"]
+        and seen["foul: wrong first"]
+        and seen["foul: cue potted"]
+        and seen["own spot"]
+    )
 
 
 @pytest.fixture(scope="module")

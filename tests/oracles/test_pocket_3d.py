@@ -1,7 +1,7 @@
 """Is the three-dimensional oracle of a pocket right, and does the engine pot what it pots?
 
-The oracle against: its own energy, half the step, the rebound of a rigid nose (``collide_cushion``), and the two closed forms of a ball at
-a sharp edge. Then the engine's windows against the oracle's.
+The oracle against: its own energy, half the step, the rebound of a rigid nose (``collide_cushion``), and the
+two closed forms of a ball at a sharp edge. Then the engine's windows against the oracle's.
 """
 
 from __future__ import annotations
@@ -16,15 +16,33 @@ from scipy.integrate import solve_ivp
 import snooker_env as sn
 
 from .motions import rolling
-from .pocket_3d import BACK, HEIGHT, POTTED, PROUD, UNDECIDED, G, Model, R, at_rest, damping, default_step, fates, pocket, stiff, trace
+from .pocket_3d import (
+    BACK,
+    HEIGHT,
+    POTTED,
+    PROUD,
+    UNDECIDED,
+    G,
+    Model,
+    R,
+    at_rest,
+    damping,
+    default_step,
+    fates,
+    pocket,
+    stiff,
+    trace,
+)
 
 MATCH = sn.Table.preset("match")
 MIDDLE, CORNER = 2, 3
-AIM = {MIDDLE: (np.array([0.8874, 0.0]), 0.0), CORNER: (np.array([0.87376, 1.76926]), math.pi / 4)}  # point and axis of the two pockets
+# point and axis of the two pockets
+AIM = {MIDDLE: (np.array([0.8874, 0.0]), 0.0), CORNER: (np.array([0.87376, 1.76926]), math.pi / 4)}
 
 
 def towards(index, angle, offsets, away=0.25):
-    """Starts (b, 2) and the direction (2,) of parallel paths, ``offsets`` beside the one through the aim point, ``angle`` off the axis."""
+    """Starts (b, 2) and the direction (2,) of parallel paths, ``offsets`` beside the one through the aim
+    point, ``angle`` off the axis."""
     aim, axis = AIM[index]
     d = np.array([math.cos(axis + angle), math.sin(axis + angle)])
     return aim - away * d + np.asarray(offsets)[:, None] * np.array([-d[1], d[0]]), d
@@ -56,9 +74,11 @@ def test_energy_never_rises_and_half_the_step_gives_the_same_path(index, speed, 
 @pytest.mark.parametrize("share", [1.0, 0.0, -0.5])
 @pytest.mark.parametrize("angle", [0.0, 0.8, 1.2])
 def test_a_rail_throws_a_ball_back_as_a_rigid_one_does(angle, share):
-    """In the limit of a short contact on a far stiffer slate. What is left: the slate's give, of the order of slate_time / nose_time."""
+    """In the limit of a short contact on a far stiffer slate. What is left: the slate's give, of the order of
+    slate_time / nose_time."""
     m = Model(nose_time=1e-5, slate_time=4e-7, slate_damping=damping(0.5, 4e-7), mu_r=0.0)
-    rail = np.array([[10.0 + R, -50.0, 10.0 + PROUD, -1.0, 0.0, 0.0, -1.0]])  # an arc and its facing far below: here it is straight
+    # an arc and its facing far below: here it is straight
+    rail = np.array([[10.0 + R, -50.0, 10.0 + PROUD, -1.0, 0.0, 0.0, -1.0]])
     fall = np.array([-50.0, -50.0, 0.01])
     for speed in (0.5, 4.0):
         v = speed * np.array([math.cos(angle), math.sin(angle), 0.0])
@@ -87,7 +107,8 @@ def over_the_edge(speed, m):
 @pytest.mark.parametrize("speed", [0.1, 0.3])
 @pytest.mark.parametrize("mu", [0.21, 5.0])
 def test_a_slow_ball_turns_about_the_edge(speed, mu):
-    """theta'' = 5/7 g/L sin(theta), L = R + edge, as long as the friction 2/7 g sin(theta) is within mu (g cos(theta) - L theta'^2)."""
+    """theta'' = 5/7 g/L sin(theta), L = R + edge, as long as the friction 2/7 g sin(theta) is within mu (g
+    cos(theta) - L theta'^2)."""
     m = stiff(1.0, slate_mu=mu, mu_r=0.0)
     length = R + m.edge
 
@@ -95,8 +116,15 @@ def test_a_slow_ball_turns_about_the_edge(speed, mu):
         return mu * (G * math.cos(y[0]) - length * y[1] ** 2) - 2.0 / 7.0 * G * math.sin(y[0])
 
     slips.terminal = True
-    turn = solve_ivp(lambda _t, y: [y[1], 5.0 / 7.0 * G / length * math.sin(y[0])], (0, 1), [0.0, speed / length], events=slips,
-                     rtol=1e-9, atol=1e-12, dense_output=True)  # fmt: skip
+    turn = solve_ivp(
+        lambda _t, y: [y[1], 5.0 / 7.0 * G / length * math.sin(y[0])],
+        (0, 1),
+        [0.0, speed / length],
+        events=slips,
+        rtol=1e-9,
+        atol=1e-12,
+        dense_output=True,
+    )
     t, x, z = over_the_edge(speed, m)
     held = t < turn.t[-1]
     theta = turn.sol(t[held])[0]
@@ -143,9 +171,14 @@ PATHS = [(CORNER, 0), (CORNER, 20), (CORNER, 40), (MIDDLE, 0), (MIDDLE, 30), (MI
 
 @functools.cache
 def alone(index):
-    """A table with this pocket and its two rails only, so long that no ball comes round their ends: it falls nowhere else."""
+    """A table with this pocket and its two rails only, so long that no ball comes round their ends: it falls
+    nowhere else."""
     fall = MATCH.falls[index]
-    rails = [n.copy() for n in MATCH.noses if n[1] == 1.0 and (n[0] == 0.0 if index == MIDDLE else n[0] == 1.0 or n[4] > 0.5)]
+    rails = [
+        n.copy()
+        for n in MATCH.noses
+        if n[1] == 1.0 and (n[0] == 0.0 if index == MIDDLE else n[0] == 1.0 or n[4] > 0.5)
+    ]
     for rail in rails:
         along = fall[1] if rail[0] == 0.0 else fall[0]
         far = 3 if abs(rail[4] - along) < abs(rail[3] - along) else 4
@@ -166,7 +199,8 @@ def by_engine(positions, v, w, index):
 
 
 def window(fate, index, angle, speed, rolls, grid=1e-3, halvings=2):
-    """Width [m] of the window: of all parallel paths, those whose ball is potted. On a grid, the ends between its points by halving."""
+    """Width [m] of the window: of all parallel paths, those whose ball is potted. On a grid, the ends between
+    its points by halving."""
 
     def potted(offsets):
         starts, d = towards(index, math.radians(angle), offsets)
@@ -194,17 +228,22 @@ def window(fate, index, angle, speed, rolls, grid=1e-3, halvings=2):
 
 
 TOLERANCE = 6e-3
-"""Of the width of a window [m]. Measured: 5 mm for rolling balls at 4 m/s straight at a middle pocket, where some that have struck a jaw
-bounce out of the hole off the slate's edge (the engine's edge has no friction); at most 4 mm elsewhere."""
+"""Of the width of a window [m]. Measured: 5 mm for rolling balls at 4 m/s straight at a middle pocket, where
+some that have struck a jaw bounce out of the hole off the slate's edge (the engine's edge has no friction);
+at most 4 mm elsewhere."""
 
 
 @pytest.mark.parametrize("rolls", [True, False], ids=["rolling", "sliding"])
 @pytest.mark.parametrize(("index", "angle"), PATHS)
 def test_the_engines_windows_are_those_of_the_oracle(index, angle, rolls):
     speeds = SPEEDS if rolls else (2.0, 6.0)
-    oracle, engine = (np.array([window(fate, index, angle, s, rolls) for s in speeds]) for fate in (by_oracle, by_engine))
+    oracle, engine = (
+        np.array([window(fate, index, angle, s, rolls) for s in speeds]) for fate in (by_oracle, by_engine)
+    )
     np.testing.assert_allclose(engine, oracle, rtol=0, atol=TOLERANCE)
     for a in range(len(speeds)):
         for b in range(a):
             if abs(oracle[a] - oracle[b]) > TOLERANCE:
-                assert (engine[a] - engine[b]) * (oracle[a] - oracle[b]) > 0.0, f"{speeds[b]} to {speeds[a]} m/s"
+                assert (engine[a] - engine[b]) * (oracle[a] - oracle[b]) > 0.0, (
+                    f"{speeds[b]} to {speeds[a]} m/s"
+                )

@@ -1,15 +1,17 @@
-"""Where do the balls of a shot come to rest on an unbounded cloth? An integrator with small fixed steps, as an oracle for the event engine.
+"""Where do the balls of a shot come to rest on an unbounded cloth? An integrator with small fixed steps, as
+an oracle for the event engine.
 
-Method. Every ball is moved by the forces of the moment: in each step of length ``dt`` the friction acts against the slip (or the motion) as
-it is at the step's start, velocities and positions advance under that constant force, and the direction is worked out anew at the
-next step. A step in which a slip, a roll or a spin would reverse is cut there, so the end of a phase is found inside its step. Nothing is
-predicted beyond a step and no collision time is computed from a polynomial: two balls meet when they are found to overlap, or to
+Method. Every ball is moved by the forces of the moment: in each step of length ``dt`` the friction acts
+against the slip (or the motion) as it is at the step's start, velocities and positions advance under that
+constant force, and the direction is worked out anew at the next step. A step in which a slip, a roll or a
+spin would reverse is cut there, so the end of a phase is found inside its step. Nothing is predicted beyond a
+step and no collision time is computed from a polynomial: two balls meet when they are found to overlap, or to
 have been closest, within a step, and the moment is bisected.
 
-Forces (``shared/reference/physics.md`` 1.3; the cloth touches at ``-R z``): slip ``u = v + w x (-R z)``; sliding friction
-``-mu_s M g u/|u|`` at that point, which turns the ball with moment of inertia 2/5 M R^2; when rolling (u = 0), a deceleration ``mu_r g``
-and ``w`` with ``v``; ``w_z`` towards 0 at ``spin_decel`` in every state. Balls stay on the cloth: vertical velocities after an impact are
-dropped.
+Forces (``shared/reference/physics.md`` 1.3; the cloth touches at ``-R z``): slip ``u = v + w x (-R z)``;
+sliding friction ``-mu_s M g u/|u|`` at that point, which turns the ball with moment of inertia 2/5 M R^2;
+when rolling (u = 0), a deceleration ``mu_r g`` and ``w`` with ``v``; ``w_z`` towards 0 at ``spin_decel`` in
+every state. Balls stay on the cloth: vertical velocities after an impact are dropped.
 
 SI units; table frame, right-handed, z up.
 """
@@ -98,7 +100,8 @@ def _contact(a, b, h, diameter, radius, mu_s_g, mu_r_g, spin_decel):
             hi = near
             gap1 = _gap_after(a, b, hi, diameter, radius, mu_s_g, mu_r_g, spin_decel)[0]
     else:
-        if rate1 >= -APPROACH:  # apart or moving apart all the time (rounding may show an overlap of touching balls)
+        # apart or moving apart all the time (rounding may show an overlap of touching balls)
+        if rate1 >= -APPROACH:
             return np.inf
         near, far = 0.0, h  # it went and came back: the farthest moment
         for _ in range(60):
@@ -127,7 +130,8 @@ def _contact(a, b, h, diameter, radius, mu_s_g, mu_r_g, spin_decel):
 def _run_to_contact(balls, time, into_step, dt, max_time, diameter, radius, mu_s_g, mu_r_g, spin_decel):
     """Step all balls, in place, until two meet or all are at rest.
 
-    ``into_step``: how much of the current step has passed. Returns (time, into_step, i, j), i = -1 at rest, -2 if max_time is past.
+    ``into_step``: how much of the current step has passed. Returns (time, into_step, i, j), i = -1 at rest,
+    -2 if max_time is past.
     """
     n = balls.shape[0]
     while time < max_time:
@@ -135,7 +139,9 @@ def _run_to_contact(balls, time, into_step, dt, max_time, diameter, radius, mu_s
         fastest, moving = 0.0, False
         for i in range(n):
             speed = math.sqrt(balls[i, 2] ** 2 + balls[i, 3] ** 2)
-            slip = math.sqrt((balls[i, 2] - radius * balls[i, 5]) ** 2 + (balls[i, 3] + radius * balls[i, 4]) ** 2)
+            slip = math.sqrt(
+                (balls[i, 2] - radius * balls[i, 5]) ** 2 + (balls[i, 3] + radius * balls[i, 4]) ** 2
+            )
             fastest = max(fastest, speed)
             moving = moving or speed > 0.0 or slip > ZERO_SLIP
         if not moving:
@@ -178,19 +184,24 @@ def simulate(
     max_time: float = 120.0,
     log: list | None = None,
 ) -> np.ndarray:
-    """Final positions, shape (n, 2) [m], of n balls on an unbounded cloth without cushions, once all are at rest.
+    """Final positions, shape (n, 2) [m], of n balls on an unbounded cloth without cushions, once all are at
+    rest.
 
     positions, velocities : shape (n, 2) [m], [m/s]. spins : shape (n, 3) [rad/s].
-    R, M : radius [m], mass [kg]. g [m/s^2]. mu_s, mu_r : sliding and rolling friction of ball on cloth. spin_decel [rad/s^2].
+    R, M : radius [m], mass [kg]. g [m/s^2]. mu_s, mu_r : sliding and rolling friction of ball on cloth.
+    spin_decel [rad/s^2].
     e, mu_bb : restitution and friction between balls, used by the default ``impact`` only.
-    dt : step [s]. The result does not depend on it beyond rounding unless a phase of motion and a contact begin and end within one step;
+    dt : step [s]. The result does not depend on it beyond rounding unless a phase of motion and a contact
+    begin and end within one step;
         halve it to see.
-    impact : callable (v1, w1, v2, w2, normal) -> (v1, w1, v2, w2), arrays (3,), normal (3,) from ball 1 to ball 2; ``ball_ball.ball_ball``
+    impact : callable (v1, w1, v2, w2, normal) -> (v1, w1, v2, w2), arrays (3,), normal (3,) from ball 1 to
+    ball 2; ``ball_ball.ball_ball``
         with the given parameters if None. Vertical velocities it returns are dropped.
     log : if a list is given, (time, i, j) of each impact is appended.
 
-    Contacts in one step are resolved in order of time; at equal times (a touching cluster) the pair with the lowest indices goes first.
-    Raises RuntimeError if the balls still move after ``max_time`` [s] or after 10000 impacts.
+    Contacts in one step are resolved in order of time; at equal times (a touching cluster) the pair with the
+    lowest indices goes first. Raises RuntimeError if the balls still move after ``max_time`` [s] or after
+    10000 impacts.
     """
     if impact is None:
 
@@ -200,7 +211,9 @@ def simulate(
     balls = np.concatenate([np.asarray(a, dtype=float) for a in (positions, velocities, spins)], axis=1)
     time = into_step = 0.0
     for _ in range(10_000):
-        time, into_step, i, j = _run_to_contact(balls, time, into_step, dt, max_time, 2.0 * R, R, mu_s * g, mu_r * g, spin_decel)
+        time, into_step, i, j = _run_to_contact(
+            balls, time, into_step, dt, max_time, 2.0 * R, R, mu_s * g, mu_r * g, spin_decel
+        )
         if i == -1:
             return balls[:, :2].copy()
         if i == -2:

@@ -1,4 +1,5 @@
-"""How are 3D vectors computed with in the float oracles? As tuples (x, y, z); table frame, right-handed, z up."""
+"""How are 3D vectors computed with in the float oracles? As tuples (x, y, z); table frame, right-handed, z
+up."""
 
 from __future__ import annotations
 
@@ -29,7 +30,8 @@ def norm(a: Vector) -> float:
 
 
 def normalized(a: Vector) -> Vector:
-    """``a`` over its length; zero for zero, which happens only inside a step that runs past the event at ZERO_SLIP."""
+    """``a`` over its length; zero for zero, which happens only inside a step that runs past the event at
+    ZERO_SLIP."""
     length = norm(a)
     return scale(1.0 / length, a) if length > 0.0 else a
 
@@ -45,4 +47,6 @@ def unit_horizontal(normal) -> Vector:
 
 def on_the_cloth(*velocities) -> None:
     if any(v[2] != 0.0 for v in velocities):
-        raise ValueError("the balls must be on the cloth: a vertical velocity before the impact is not modelled")
+        raise ValueError(
+            "the balls must be on the cloth: a vertical velocity before the impact is not modelled"
+        )

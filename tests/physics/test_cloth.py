@@ -1,4 +1,5 @@
-"""Does a lone ball move as the closed forms say? Slide, roll, spin, curve; the cue; positions between events."""
+"""Does a lone ball move as the closed forms say? Slide, roll, spin, curve; the cue; positions between
+events."""
 
 import numpy as np
 import pytest
@@ -30,8 +31,9 @@ def test_centre_ball_hit():
 @pytest.mark.parametrize("side", [0.0, 40.0])
 @pytest.mark.parametrize("angle", [0.0, 0.7, np.pi / 2, 2.4])
 def test_draw_stun_follow_and_massé(top, side, angle):
-    """Final velocity v0 - (2/7) u0, the place where rolling starts and where the ball stops, for any spin, also about the direction of
-    motion (a curve). A wrong sign in the cloth's friction hides from top spin and shows at once in draw."""
+    """Final velocity v0 - (2/7) u0, the place where rolling starts and where the ball stops, for any spin,
+    also about the direction of motion (a curve). A wrong sign in the cloth's friction hides from top spin and
+    shows at once in draw."""
     d, n = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
     v0 = 1.7 * d
     w_h = top * 1.7 / R * n + 25.0 * d  # 25 rad/s about the direction of motion: the path must curve
@@ -88,7 +90,8 @@ def test_strike():
     v, w = sn.strike(2.0, 0.0, side=0.4, elevation=0.5, physics={"end_mass_ratio": 1e12})
     assert v == pytest.approx([2 * np.cos(0.5), 0, 0], abs=1e-9)
     assert w[2] == pytest.approx(2.5 * 2 * 0.4 / R * np.cos(0.5))
-    # right side with the butt raised swerves the ball to the right: spin about +x drives the contact point to the left
+    # right side with the butt raised swerves the ball to the right: spin about +x drives the contact point to
+    # the left
     assert w[0] > 0
     assert sn.simulate([(0, 0)], [v[:2]], [w], table=None).positions[0, 1] < -0.05
 

@@ -1,4 +1,5 @@
-"""Does a ball that lies at a nose, an arc or a facing stay on the table, whatever its spin? And what is said of one that does not?"""
+"""Does a ball that lies at a nose, an arc or a facing stay on the table, whatever its spin? And what is said
+of one that does not?"""
 
 import numpy as np
 import pytest
@@ -12,12 +13,21 @@ from snooker_env.physics.engine import Status
 from snooker_env.physics.impact import contact
 
 ONCE_LOST = {
-    "along the nose on to the arc": ("match", (0.8627500000000002, -0.10918499267057788), (-1.2616299763651636e-16, -0.6867993706395235),
-                                     (-65.8744884755337, 88.97522259106857, 54.57121794455416)),
-    "a spin on the spot at a facing": ("pool9", (-0.5474992876727734, 1.241424999999999), (0.0, 0.0),
-                                       (-114.81115743507378, -65.3133852508739, 72.06993360002431)),
-}  # fmt: skip
-"""States of contact, each with its table. The first ball once went 16 cm deep into the cushion and came out again, the second 1.6 mm."""
+    "along the nose on to the arc": (
+        "match",
+        (0.8627500000000002, -0.10918499267057788),
+        (-1.2616299763651636e-16, -0.6867993706395235),
+        (-65.8744884755337, 88.97522259106857, 54.57121794455416),
+    ),
+    "a spin on the spot at a facing": (
+        "pool9",
+        (-0.5474992876727734, 1.241424999999999),
+        (0.0, 0.0),
+        (-114.81115743507378, -65.3133852508739, 72.06993360002431),
+    ),
+}
+"""States of contact, each with its table. The first ball once went 16 cm deep into the cushion and came out
+again, the second 1.6 mm."""
 
 
 def depth(table, place, R):
@@ -30,7 +40,10 @@ def depth(table, place, R):
     for x, y, radius, ux, uy, cos_half in table.jaws:
         half = np.arccos(cos_half)
         turn = np.arctan2(uy, ux) + np.linspace(-half, half, 2 + int(2 * half * radius / 1e-5))
-        deepest = max(deepest, R - np.hypot(x + radius * np.cos(turn) - place[0], y + radius * np.sin(turn) - place[1]).min())
+        deepest = max(
+            deepest,
+            R - np.hypot(x + radius * np.cos(turn) - place[0], y + radius * np.sin(turn) - place[1]).min(),
+        )
     return deepest
 
 
@@ -47,14 +60,17 @@ def test_a_ball_in_contact_is_handed_from_one_piece_of_the_cushion_to_the_next(c
 
 @pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9", "carom", "rectangle"])
 def test_balls_held_at_the_boundary_keep_every_law(name):
-    """At noses, arcs, facings and their seams, at rest or slow, with any spin: 10 batches of the fuzz's scene, 2,000 shots a table."""
+    """At noses, arcs, facings and their seams, at rest or slow, with any spin: 10 batches of the fuzz's
+    scene, 2,000 shots a table."""
     for k in range(10):
         rng = np.random.default_rng([77, k])
         table = fuzz.rectangle(rng) if name == "rectangle" else Table.preset(name)
         physics = sn.Physics.preset("match", **{"R": 0.02625} | table.ball)
         p = fuzz.layouts(rng, "held", 1 + k % 2, table, R=physics.R)
         v, w = fuzz.motions(rng, "held", p, physics.R)
-        found = invariants.play((p, v, w, np.ones(p.shape[:2], bool)), physics, table, contact.parse_fidelity("standard"))
+        found = invariants.play(
+            (p, v, w, np.ones(p.shape[:2], bool)), physics, table, contact.parse_fidelity("standard")
+        )
         assert (found.status == Status.OK).all()
         assert (found.worst <= fuzz.allowed("standard")).all()
 
@@ -72,7 +88,9 @@ def test_there_is_no_crack_where_a_nose_meets_its_arc(way, off):
             assert np.abs(x).max() < 0.889 - 0.02625 + 1e-9
 
 
-OPEN = Table("open", np.array([(0, 1, 0.5, -0.2, 0.2), (1, 1, 1.0, -1.0, 1.0)]), np.zeros((0, 6)), np.zeros((0, 3)))
+OPEN = Table(
+    "open", np.array([(0, 1, 0.5, -0.2, 0.2), (1, 1, 1.0, -1.0, 1.0)]), np.zeros((0, 6)), np.zeros((0, 3))
+)
 """A nose with nothing beyond its ends."""
 
 
@@ -88,10 +106,17 @@ def test_a_ball_that_leaves_the_table_is_an_error():
 
 @pytest.mark.parametrize(
     ("name", "place"),
-    [("match", (0.889, 0.5)), ("match", (0.87, 0.11)), ("pool9", (-0.5475, 1.25)), ("match", (3.0, -8.0)), ("carom", (0.0, 1.43))],
+    [
+        ("match", (0.889, 0.5)),
+        ("match", (0.87, 0.11)),
+        ("pool9", (-0.5475, 1.25)),
+        ("match", (3.0, -8.0)),
+        ("carom", (0.0, 1.43)),
+    ],
 )
 def test_wherever_a_ball_has_gone_astray_the_next_event_finds_it(name, place):
-    """In a nose, an arc, a facing, outside: put there behind the back of every check, moving and at rest after it."""
+    """In a nose, an arc, a facing, outside: put there behind the back of every check, moving and at rest
+    after it."""
     table = Table.preset(name)
     physics = sn.Physics.preset("match", **table.ball)
     state = [np.array([a]) for a in ([place], [(1e-3, 1e-3)], [(0.0, 0.0, 0.0)], [True])]
@@ -100,12 +125,14 @@ def test_wherever_a_ball_has_gone_astray_the_next_event_finds_it(name, place):
 
 
 def test_a_place_in_a_mouth_is_not_in_the_facing_of_another_pocket():
-    """Far behind a middle pocket's facing lies a corner pocket's mouth: a ball there was once said to be deep in that facing."""
+    """Far behind a middle pocket's facing lies a corner pocket's mouth: a ball there was once said to be deep
+    in that facing."""
     table = Table.rectangular(
-        2.0, 1.0,
+        2.0,
+        1.0,
         corner=Pocket.corner(mouth=0.15, shelf=0.05, fall_radius=0.07, jaw_radius=0.03),
         middle=Pocket.middle(mouth=0.15, shelf=0.05, fall_radius=0.08),
-    )  # fmt: skip
+    )
     R, found = 0.02625, 0
     rng = np.random.default_rng(0)
     for place in rng.uniform((0.5 - R, 0.85), (0.53, 1.0), (600, 2)):

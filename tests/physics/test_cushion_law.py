@@ -1,4 +1,5 @@
-"""Does a faster ball always come off a cushion faster? The law e(v) and the whole impact, and the fit behind ``"match"``."""
+"""Does a faster ball always come off a cushion faster? The law e(v) and the whole impact, and the fit behind
+``"match"``."""
 
 import dataclasses
 
@@ -23,12 +24,16 @@ STRAIGHT, SLANTED = (0.0, 1.0, 0.0), (np.sqrt(0.5), np.sqrt(0.5), 0.0)
 
 laws = st.builds(
     lambda e_c, knee, power: {"e_c": e_c, "e_c_knee": knee, "e_c_power": power},
-    st.floats(0.05, 1.0), st.floats(-3.0, 3.0).map(lambda x: 10.0**x), st.one_of(st.floats(0.0, MOST_POWER), st.just(MOST_POWER)),
-)  # fmt: skip
+    st.floats(0.05, 1.0),
+    st.floats(-3.0, 3.0).map(lambda x: 10.0**x),
+    st.one_of(st.floats(0.0, MOST_POWER), st.just(MOST_POWER)),
+)
 cushions = st.builds(
     lambda mu_c, mu_s, sin_theta: {"mu_c": mu_c, "mu_s": mu_s, "sin_theta": sin_theta},
-    st.floats(0.0, 0.5), st.floats(0.0, 0.5), st.floats(0.0, 0.5),
-)  # fmt: skip
+    st.floats(0.0, 0.5),
+    st.floats(0.0, 0.5),
+    st.floats(0.0, 0.5),
+)
 
 
 def restitution(physics, speeds):
@@ -43,7 +48,8 @@ def rebound(physics, speed, direction, rolling, fidelity="reference"):
     return -sn.collide_cushion(v, w, (0, 1, 0), physics, fidelity)[0][1]
 
 
-# the law -------------------------------------------------------------------------------------------------------------------------
+# the law
+# -------------------------------------------------------------------------------------------------------------------------
 
 
 @some
@@ -87,14 +93,16 @@ def test_a_power_of_0_is_a_constant_to_the_last_bit(fidelity):
         assert np.array_equal(one, two)
 
 
-# the whole impact ----------------------------------------------------------------------------------------------------------------
+# the whole impact
+# ----------------------------------------------------------------------------------------------------------------
 
 
 @some
 @given(laws, cushions, st.sampled_from((STRAIGHT, SLANTED)), st.booleans())
 def test_the_rebound_rises_with_speed(law, cushion, direction, rolling):
     physics = sn.Physics(**law, **cushion)
-    speeds = [v for v in SPEEDS if v < 1e4 * law["e_c_knee"]]  # beyond, e may be under what the solver resolves
+    # beyond, e may be under what the solver resolves
+    speeds = [v for v in SPEEDS if v < 1e4 * law["e_c_knee"]]
     out = np.array([rebound(physics, v, direction, rolling) for v in speeds])
     assert (np.diff(out) > 0.0).all()
 
@@ -108,7 +116,8 @@ def test_the_rebound_of_match_rises_with_speed(direction, rolling, fidelity):
 
 
 def test_the_rebound_goes_as_no_higher_power_of_e_than_the_bound_of_the_power_allows():
-    """d log(rebound) / d log(e) <= 1 / 0.8: what ``e_c_power`` <= 0.8 rests on. The largest are near (0.5, 0.45, 0.5), e about 0.1."""
+    """d log(rebound) / d log(e) <= 1 / 0.8: what ``e_c_power`` <= 0.8 rests on. The largest are near (0.5,
+    0.45, 0.5), e about 0.1."""
     rng, largest = np.random.default_rng(8), 0.0
     for k in range(4000):
         least = 0.4 if k % 2 else 0.0
@@ -120,7 +129,8 @@ def test_the_rebound_goes_as_no_higher_power_of_e_than_the_bound_of_the_power_al
     assert 1.05 < largest < 1.0 / MOST_POWER
 
 
-# the preset ----------------------------------------------------------------------------------------------------------------------
+# the preset
+# ----------------------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -144,7 +154,8 @@ def test_match_is_the_fit_to_the_data(data):
     shipped = np.array([rebound(preset, s, STRAIGHT, True) for s in speed]) - measured
     assert np.sum(shipped**2) < 1.01 * np.sum(residuals(fit_cushion.power_law, knee, power) ** 2)
     found = fit_cushion.interval(residuals, len(speed), draws=400)
-    assert found.power == (pytest.approx(0.21, abs=0.01), pytest.approx(0.46, abs=0.01))  # as the docstring of ``preset`` says
+    # as the docstring of ``preset`` says
+    assert found.power == (pytest.approx(0.21, abs=0.01), pytest.approx(0.46, abs=0.01))
     assert np.abs(found.e.T - ((0.70, 0.80), (0.60, 0.75), (0.51, 0.69))).max() < 0.006
     assert found.power_bootstrap[0] < found.power[1] and found.power_bootstrap[1] < MOST_POWER
 
@@ -155,4 +166,7 @@ def test_a_harder_stroke_travels_further():
     slides, rolls = 12 / 49 / (0.21 * 9.81), 25 / 49 / (2 * 0.0127 * 9.81)  # at 1 m/s it reaches no cushion
     assert lengths(1.0, sn.Physics()) == pytest.approx((slides + rolls) / 3.569, rel=1e-9)
     smooth = dataclasses.replace(sn.Physics(), mu_r=1e-3)
-    assert past_pink(smooth, 0.05) > past_pink(sn.Physics(), 0.05) and path(RAMP, smooth, rolling=True).max() < 3.569 / 2 - R + 1e-6
+    assert (
+        past_pink(smooth, 0.05) > past_pink(sn.Physics(), 0.05)
+        and path(RAMP, smooth, rolling=True).max() < 3.569 / 2 - R + 1e-6
+    )

@@ -1,4 +1,5 @@
-"""Is one impact right? The paper's tables, an independent oracle, published throw, invariants, and the cases that trip solvers."""
+"""Is one impact right? The paper's tables, an independent oracle, published throw, invariants, and the cases
+that trip solvers."""
 
 import numpy as np
 import pytest
@@ -15,7 +16,13 @@ M = 0.1406
 
 def worst(got, want, speed):
     """Largest difference of velocities and R * spins, in units of the incoming speed."""
-    return max(np.abs((g - w) * (R if k % 2 else 1.0)).max() for k, (g, w) in enumerate(zip(got, want, strict=True))) / speed
+    return (
+        max(
+            np.abs((g - w) * (R if k % 2 else 1.0)).max()
+            for k, (g, w) in enumerate(zip(got, want, strict=True))
+        )
+        / speed
+    )
 
 
 def physics_of(case):
@@ -23,7 +30,9 @@ def physics_of(case):
 
 
 def play(case, fidelity, physics=None):
-    return sn.collide_balls(case["v1"], case["w1"], case["v2"], case["w2"], case["normal"], physics or physics_of(case), fidelity)
+    return sn.collide_balls(
+        case["v1"], case["w1"], case["v2"], case["w2"], case["normal"], physics or physics_of(case), fidelity
+    )
 
 
 def speed_of(case):
@@ -34,7 +43,8 @@ def energy(v, w):
     return 0.5 * v @ v + 0.2 * R * R * w @ w
 
 
-# the paper ---------------------------------------------------------------------------------------------------------------------
+# the paper
+# ---------------------------------------------------------------------------------------------------------------------
 
 
 def predicted(row, fidelity):
@@ -45,7 +55,8 @@ def predicted(row, fidelity):
 
 @pytest.mark.parametrize("row", PAPER_ROWS, ids=lambda row: f"V0={row.v0}")
 def test_euler_10000_gives_the_printed_tables(row):
-    """Tables 1 and 2, row 4 as corrected: 20 numbers as printed, speeds to a millimetre a second, angles to a hundredth of a degree."""
+    """Tables 1 and 2, row 4 as corrected: 20 numbers as printed, speeds to a millimetre a second, angles to a
+    hundredth of a degree."""
     got = predicted(row, "euler:10000")
     assert np.round(got[:2], 3).tolist() == [row.v_c, row.v_o]
     assert np.round(got[2:], 2).tolist() == [row.angle_c, row.angle_o]
@@ -59,21 +70,27 @@ def test_reference_is_close_to_the_printed_tables(row):
 
 
 def test_euler_converges_to_reference_at_first_order():
-    """The error falls tenfold from N to 10 N, seen over many impacts (a single one jumps with where the last step falls)."""
+    """The error falls tenfold from N to 10 N, seen over many impacts (a single one jumps with where the last
+    step falls)."""
     cases = impacts(60, seed=3)
     errors = []
     for n in (100, 1000, 10000):
-        errors.append(np.mean([worst(play(c, f"euler:{n}"), play(c, "reference"), speed_of(c)) for c in cases]))
+        errors.append(
+            np.mean([worst(play(c, f"euler:{n}"), play(c, "reference"), speed_of(c)) for c in cases])
+        )
     orders = np.log10(np.array(errors[:-1]) / errors[1:])
     assert np.all((orders > 0.8) & (orders < 1.2)), (errors, orders)
 
 
-# the oracle --------------------------------------------------------------------------------------------------------------------
+# the oracle
+# --------------------------------------------------------------------------------------------------------------------
 
 
 def truth_of(case, mu_bb):
     c = case
-    return ball_ball(c["v1"], c["w1"], c["v2"], c["w2"], c["normal"], R=R, M=M, e=c["e"], mu_bb=mu_bb, mu_s=c["mu_s"])
+    return ball_ball(
+        c["v1"], c["w1"], c["v2"], c["w2"], c["normal"], R=R, M=M, e=c["e"], mu_bb=mu_bb, mu_s=c["mu_s"]
+    )
 
 
 @pytest.fixture(scope="module")
@@ -96,20 +113,30 @@ def test_standard_keeps_its_promise_against_the_oracle(judged):
 
 @pytest.mark.parametrize("preset", ["paper", "match"])
 def test_standard_keeps_its_promise_on_many_impacts(preset):
-    """Against ``reference``, itself held to the oracle above: 3,000 impacts, both balls moving in a third of them."""
+    """Against ``reference``, itself held to the oracle above: 3,000 impacts, both balls moving in a third of
+    them."""
     physics = sn.Physics.preset(preset)
-    errors = [worst(play(c, "standard", physics), play(c, "reference", physics), speed_of(c)) for c in impacts(3000, seed=11)]
+    errors = [
+        worst(play(c, "standard", physics), play(c, "reference", physics), speed_of(c))
+        for c in impacts(3000, seed=11)
+    ]
     assert np.quantile(errors, 0.99) < 1e-6
     assert max(errors) < 1e-5
 
 
 @pytest.mark.parametrize("preset", ["paper", "match", None])
 def test_standard_keeps_its_promise_at_cushions(preset):
-    """Against ``reference``: with the constants of play, and (None) with any, for which docs/physics/model.md promises less."""
+    """Against ``reference``: with the constants of play, and (None) with any, for which docs/physics/model.md
+    promises less."""
     errors = []
     for c in cushion_impacts(2000, seed=7):
-        physics = sn.Physics.preset(preset) if preset else sn.Physics(e_c=c["e"], mu_c=c["mu_w"], mu_s=c["mu_s"])
-        found, truth = (sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity) for fidelity in ("standard", "reference"))
+        physics = (
+            sn.Physics.preset(preset) if preset else sn.Physics(e_c=c["e"], mu_c=c["mu_w"], mu_s=c["mu_s"])
+        )
+        found, truth = (
+            sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity)
+            for fidelity in ("standard", "reference")
+        )
         errors.append(worst(found, truth, np.linalg.norm(c["v"])))
     assert np.quantile(errors, 0.99) < (1e-6 if preset else 1.3e-6)
     assert max(errors) < 1e-5
@@ -127,14 +154,23 @@ def test_cushion_agrees_with_the_oracle():
     errors = {"reference": [], "standard": []}
     for c in cushion_impacts(100, seed=7):
         physics = sn.Physics(e_c=c["e"], mu_c=c["mu_w"], mu_s=c["mu_s"])
-        truth = ball_cushion(c["v"], c["w"], c["normal"], R=R, M=M, e=c["e"], mu_w=c["mu_w"], mu_s=c["mu_s"], sin_theta=0.4)
+        truth = ball_cushion(
+            c["v"], c["w"], c["normal"], R=R, M=M, e=c["e"], mu_w=c["mu_w"], mu_s=c["mu_s"], sin_theta=0.4
+        )
         for fidelity, found in errors.items():
-            found.append(worst(sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity), truth, np.linalg.norm(c["v"])))
+            found.append(
+                worst(
+                    sn.collide_cushion(c["v"], c["w"], c["normal"], physics, fidelity),
+                    truth,
+                    np.linalg.norm(c["v"]),
+                )
+            )
     assert max(errors["reference"]) < 1e-9
     assert max(errors["standard"]) < 1e-5
 
 
-# published numbers -------------------------------------------------------------------------------------------------------------
+# published numbers
+# -------------------------------------------------------------------------------------------------------------
 
 CUTS = (5, 10, 15, 20, 25, 30, 35, 40, 50, 60, 70, 80)
 THROW = {
@@ -152,7 +188,9 @@ def test_fast_is_the_closed_form_of_tp_a14(kind, speed):
     for cut, want in zip(CUTS, THROW[kind, speed], strict=True):
         c = np.radians(cut)
         w1 = (0, speed / 0.0286, 0) if kind == "roll" else (0, 0, 0)
-        v2 = sn.collide_balls((speed, 0, 0), w1, (0, 0, 0), (0, 0, 0), (np.cos(c), np.sin(c), 0), physics, "fast")[2]
+        v2 = sn.collide_balls(
+            (speed, 0, 0), w1, (0, 0, 0), (0, 0, 0), (np.cos(c), np.sin(c), 0), physics, "fast"
+        )[2]
         assert cut - np.degrees(np.arctan2(v2[1], v2[0])) == pytest.approx(want, abs=0.02)
 
 
@@ -160,38 +198,57 @@ def test_fast_is_the_closed_form_of_tp_a14(kind, speed):
 @pytest.mark.parametrize("speed", [0.01, 1.0, 20.0])
 @pytest.mark.parametrize("fidelity", ["standard", "reference", "euler:100000"])
 def test_rolling_ball_straight_into_a_cushion(mu_s, ratio, speed, fidelity):
-    """0.9107 V at every speed: the slip at the nose reverses, which "no friction at zero slip" would miss (0.946 V)."""
+    """0.9107 V at every speed: the slip at the nose reverses, which "no friction at zero slip" would miss
+    (0.946 V)."""
     v, _ = sn.collide_cushion((0, speed, 0), (-speed / R, 0, 0), (0, 1, 0), sn.Physics(mu_s=mu_s), fidelity)
     assert v[1] == pytest.approx(-ratio * speed, rel=2e-5)
     assert v[0] == 0.0
 
 
 def test_a_slip_at_the_nose_that_all_but_dies():
-    """Friction and drive nearly balance while the slip is 2e-8 of the speed, then it grows again: this impact once did not end."""
-    v, w = (1.0759713279651137, -1.4959097348741595, 0), (-22.56663782046656, 27.344353647657716, 30.45180306810722)
+    """Friction and drive nearly balance while the slip is 2e-8 of the speed, then it grows again: this impact
+    once did not end."""
+    v, w = (
+        (1.0759713279651137, -1.4959097348741595, 0),
+        (-22.56663782046656, 27.344353647657716, 30.45180306810722),
+    )
     normal = (0.9481813328601938, -0.3177296964645681, 0)
-    reference, standard = (sn.collide_cushion(v, w, normal, "paper", fidelity) for fidelity in ("reference", "standard"))
+    reference, standard = (
+        sn.collide_cushion(v, w, normal, "paper", fidelity) for fidelity in ("reference", "standard")
+    )
     assert worst(standard, reference, np.linalg.norm(v)) < 1e-5
 
 
 def test_match_cushion_follows_the_measured_rebounds():
     """Fig. 7a of Mathavan 2010: 0.89 to 0.95 below 2 m/s, 0.80 at 3.4 m/s."""
-    ratio = [-sn.collide_cushion((0, s, 0), (-s / R, 0, 0), (0, 1, 0), "match")[0][1] / s for s in (0.5, 1.5, 3.4)]
+    ratio = [
+        -sn.collide_cushion((0, s, 0), (-s / R, 0, 0), (0, 1, 0), "match")[0][1] / s for s in (0.5, 1.5, 3.4)
+    ]
     assert 0.89 < ratio[0] < 0.95
     assert 0.89 < ratio[1] < 0.95
     assert ratio[2] == pytest.approx(0.80, abs=0.02)
 
 
-# closed forms ------------------------------------------------------------------------------------------------------------------
+# closed forms
+# ------------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("fidelity", ["fast", "standard", "reference"])
 @pytest.mark.parametrize("cut", [5, 30, 60, 85])
 @pytest.mark.parametrize("e", [0.3, 0.89, 1.0])
 def test_frictionless_stun(fidelity, cut, e):
-    """tan(angle of the cue ball from the line of centres) = 2 tan(cut) / (1 - e): the 90 degree rule at e = 1."""
+    """tan(angle of the cue ball from the line of centres) = 2 tan(cut) / (1 - e): the 90 degree rule at e =
+    1."""
     c = np.radians(cut)
-    v1, _, v2, _ = sn.collide_balls((0, 2, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (np.sin(c), np.cos(c), 0), {"mu_bb": 0, "e_b": e}, fidelity)
+    v1, _, v2, _ = sn.collide_balls(
+        (0, 2, 0),
+        (0, 0, 0),
+        (0, 0, 0),
+        (0, 0, 0),
+        (np.sin(c), np.cos(c), 0),
+        {"mu_bb": 0, "e_b": e},
+        fidelity,
+    )
     along, across = v1 @ (np.sin(c), np.cos(c), 0), v1 @ (np.cos(c), -np.sin(c), 0)
     assert along == pytest.approx((1 - e) / 2 * 2 * np.cos(c), abs=1e-6)
     assert abs(across) == pytest.approx(2 * np.sin(c), abs=1e-9)
@@ -200,18 +257,25 @@ def test_frictionless_stun(fidelity, cut, e):
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
 def test_gearing_side_throws_nothing(fidelity):
-    """R w_z = v sin(cut), no other spin: the surfaces do not slip, and the object ball leaves along the line of centres."""
+    """R w_z = v sin(cut), no other spin: the surfaces do not slip, and the object ball leaves along the line
+    of centres."""
     c = np.radians(35)
     normal = (np.cos(c), np.sin(c), 0)
-    _, _, v2, w2 = sn.collide_balls((1.5, 0, 0), (0, 0, 1.5 * np.sin(c) / R), (0, 0, 0), (0, 0, 0), normal, "paper", fidelity)
-    assert np.degrees(np.arctan2(v2[1], v2[0])) == pytest.approx(35, abs=0.02 if fidelity.startswith("euler") else 1e-6)
-    assert np.abs(w2).max() * R < (2e-3 if fidelity.startswith("euler") else 1e-6)  # Euler chatters about zero slip by one step
+    _, _, v2, w2 = sn.collide_balls(
+        (1.5, 0, 0), (0, 0, 1.5 * np.sin(c) / R), (0, 0, 0), (0, 0, 0), normal, "paper", fidelity
+    )
+    assert np.degrees(np.arctan2(v2[1], v2[0])) == pytest.approx(
+        35, abs=0.02 if fidelity.startswith("euler") else 1e-6
+    )
+    # Euler chatters about zero slip by one step
+    assert np.abs(w2).max() * R < (2e-3 if fidelity.startswith("euler") else 1e-6)
 
 
 @pytest.mark.parametrize("side", [-1, 1])
 def test_draw_follow_and_side_throw_the_right_way(side):
-    """A draw shot lifts the cue ball's front: the object ball gets top spin, a follow shot gives it back spin; right side
-    (anticlockwise) drives the object ball's contact point to the right and spins it clockwise."""
+    """A draw shot lifts the cue ball's front: the object ball gets top spin, a follow shot gives it back
+    spin; right side (anticlockwise) drives the object ball's contact point to the right and spins it
+    clockwise."""
     v2, w2 = sn.collide_balls((2, 0, 0), (0, side * 2 / R, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))[2:]
     assert np.sign(w2[1]) == -side
     assert abs(v2[1]) < 1e-12
@@ -220,12 +284,14 @@ def test_draw_follow_and_side_throw_the_right_way(side):
     assert np.sign(v2[1]) == side
 
 
-# invariants --------------------------------------------------------------------------------------------------------------------
+# invariants
+# --------------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
 def test_invariants(fidelity):
-    """Momentum along the normal (less the cloth's share), energy never up, the balls part, definition of e without friction."""
+    """Momentum along the normal (less the cloth's share), energy never up, the balls part, definition of e
+    without friction."""
     slack = 0.02 if fidelity.startswith("euler") else 1e-6  # its end is not located: one step in 400 and more
     for c in impacts(150, seed=23):
         v1, w1, v2, w2 = play(c, fidelity)
@@ -234,7 +300,8 @@ def test_invariants(fidelity):
         assert (v2 - v1) @ c["normal"] > -slack * speed
         before = energy(c["v1"], c["w1"]) + energy(c["v2"], c["w2"])
         assert energy(v1, w1) + energy(v2, w2) <= before * (1 + slack)
-        push = np.linalg.norm((v1 + v2 - c["v1"] - c["v2"])[:2])  # only the cloth takes momentum, at most mu_s mu_bb of the impulse
+        # only the cloth takes momentum, at most mu_s mu_bb of the impulse
+        push = np.linalg.norm((v1 + v2 - c["v1"] - c["v2"])[:2])
         impulse = np.linalg.norm(v2 - c["v2"])
         assert push <= c["mu_s"] * c["mu_bb"] * impulse * 1.2 + 1e-12
         assert fidelity != "fast" or push < 1e-12 * speed
@@ -242,7 +309,9 @@ def test_invariants(fidelity):
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
 def test_everything_may_be_turned_mirrored_or_renamed(fidelity):
-    turn = lambda a, x: np.array([np.cos(a) * x[0] - np.sin(a) * x[1], np.sin(a) * x[0] + np.cos(a) * x[1], x[2]])  # noqa: E731
+    turn = lambda a, x: np.array(
+        [np.cos(a) * x[0] - np.sin(a) * x[1], np.sin(a) * x[0] + np.cos(a) * x[1], x[2]]
+    )
     tol = 0.02 if fidelity.startswith("euler") else 1e-6  # rounding may move its last step
     for c in impacts(30, seed=29):
         got, speed = play(c, fidelity), speed_of(c)
@@ -251,7 +320,14 @@ def test_everything_may_be_turned_mirrored_or_renamed(fidelity):
         flip_v, flip_w = np.array([-1, 1, 1]), np.array([1, -1, -1])  # mirror x -> -x: spins are axial
         flips = {"v1": flip_v, "v2": flip_v, "normal": flip_v, "w1": flip_w, "w2": flip_w}
         mirrored = {k: x * flips[k] if k in flips else x for k, x in c.items()}
-        assert worst(play(mirrored, fidelity), [x * f for x, f in zip(got, (flip_v, flip_w, flip_v, flip_w), strict=True)], speed) < tol
+        assert (
+            worst(
+                play(mirrored, fidelity),
+                [x * f for x, f in zip(got, (flip_v, flip_w, flip_v, flip_w), strict=True)],
+                speed,
+            )
+            < tol
+        )
         renamed = c | {"v1": c["v2"], "w1": c["w2"], "v2": c["v1"], "w2": c["w1"], "normal": -c["normal"]}
         assert worst(play(renamed, fidelity), [got[k] for k in (2, 3, 0, 1)], speed) < tol
 
@@ -262,7 +338,9 @@ def test_no_closing_speed_changes_nothing(fidelity, closing):
     args = [np.array(a, float) for a in ((closing, 0.5, 0), (3, -4, 5), (0, -0.2, 0), (1, 2, 3))]
     for got, want in zip(sn.collide_balls(*args, (1, 0, 0), fidelity=fidelity), args, strict=True):
         assert (got == want).all()
-    for got, want in zip(sn.collide_cushion(args[0], args[1], (1, 0, 0), fidelity=fidelity), args, strict=False):
+    for got, want in zip(
+        sn.collide_cushion(args[0], args[1], (1, 0, 0), fidelity=fidelity), args, strict=False
+    ):
         assert (got == want).all()
 
 
@@ -284,7 +362,9 @@ def test_extreme_constants_end(mu_bb, mu_s, e):
         for fidelity in ("standard", "reference"):
             v1, w1, v2, w2 = play(c, fidelity, sn.Physics(mu_bb=mu_bb, mu_s=mu_s, e_b=e))
             assert np.isfinite([v1, w1, v2, w2]).all()
-            assert energy(v1, w1) + energy(v2, w2) <= (energy(c["v1"], c["w1"]) + energy(c["v2"], c["w2"])) * (1 + 1e-6)
+            assert energy(v1, w1) + energy(v2, w2) <= (
+                energy(c["v1"], c["w1"]) + energy(c["v2"], c["w2"])
+            ) * (1 + 1e-6)
 
 
 @pytest.mark.parametrize("mu_c", [0.0, 0.5, 1.0])
@@ -300,10 +380,17 @@ def test_extreme_cushions_end(mu_c, mu_s):
 @pytest.mark.parametrize("fidelity", ["fast", "standard", "reference"])
 @pytest.mark.parametrize(
     ("mu_c", "mu_s", "sin_theta", "wedged"),
-    [(0.5, 0.21, 0.7, False), (0.5, 0.21, 0.6, False), (0.3, 0.8, 0.4, False), (0.9, 0.3, 0.4, False), (0.7, 0.7, 0.4, True)],
+    [
+        (0.5, 0.21, 0.7, False),
+        (0.5, 0.21, 0.6, False),
+        (0.3, 0.8, 0.4, False),
+        (0.9, 0.3, 0.4, False),
+        (0.7, 0.7, 0.4, True),
+    ],
 )
 def test_a_ball_wedges_only_where_both_frictions_hold_it(mu_c, mu_s, sin_theta, wedged, fidelity):
-    """The nose's force goes through both contacts, half the nose's angle off each normal: both frictions must reach its tangent."""
+    """The nose's force goes through both contacts, half the nose's angle off each normal: both frictions must
+    reach its tangent."""
     half = np.tan(0.5 * (np.pi / 2 - np.arcsin(sin_theta)))
     assert wedged == (min(mu_c, mu_s) > half)
     physics = sn.Physics(mu_c=mu_c, mu_s=mu_s, sin_theta=sin_theta)
@@ -329,7 +416,10 @@ def test_without_restitution_the_balls_close_no_more():
 
 def test_a_very_thin_impact_of_a_ball_that_all_but_rolls_is_solved():
     """Its slip is 30,000 times the closing speed: high terms of a series in it overflow."""
-    args = (0.08358090371814696, 0.37146166544987175, 0), (-14.150920588566544, 3.1840344273579793, 71.65426314348102)
+    args = (
+        (0.08358090371814696, 0.37146166544987175, 0),
+        (-14.150920588566544, 3.1840344273579793, 71.65426314348102),
+    )
     normal = (0.9756088862876504, -0.2195160609080128, 0)
     one, two = (np.array(sn.collide_cushion(*args, normal, "paper", f)) for f in ("standard", "reference"))
     assert np.isfinite(two).all() and one == pytest.approx(two, abs=1e-6)

@@ -1,4 +1,5 @@
-"""Are the constants of an impact those of rigid spheres? Derived again from Newton's and Euler's laws, and compared symbolically."""
+"""Are the constants of an impact those of rigid spheres? Derived again from Newton's and Euler's laws, and
+compared symbolically."""
 
 import pytest
 from sympy import Matrix, Rational, diff, expand, nsimplify, simplify, solve, symbols
@@ -19,7 +20,8 @@ def python_of(function):
 
 
 class Sphere:
-    """A solid sphere, at rest before the impact. ``push``: an impulse per unit mass at the point R n of its surface, n a unit vector."""
+    """A solid sphere, at rest before the impact. ``push``: an impulse per unit mass at the point R n of its
+    surface, n a unit vector."""
 
     def __init__(self):
         self.v, self.w = Matrix([0, 0, 0]), Matrix([0, 0, 0])
@@ -47,7 +49,8 @@ def two_balls():
 
 
 def ball_and_nose():
-    """The contact R sin(t) above the centre. The ball's vertical velocity is Z, with the load N that this takes."""
+    """The contact R sin(t) above the centre. The ball's vertical velocity is Z, with the load N that this
+    takes."""
     from sympy import cos, sin
 
     ball = Sphere()
@@ -63,7 +66,9 @@ def ball_and_nose():
 def as_used(contact):
     """The slips and the load as the kernels compute them, symbolically."""
     contact = Contact(*(nsimplify(value, rational=True) for value in contact))
-    after = python_of(inertia.slips_after)(Impulses(F1, F2, G1, G2, P, 0, LIFT), Slips(0, 0, 0, 0, 0), contact)
+    after = python_of(inertia.slips_after)(
+        Impulses(F1, F2, G1, G2, P, 0, LIFT), Slips(0, 0, 0, 0, 0), contact
+    )
     return [nsimplify(value, rational=True) for value in after], contact.n_p * P + contact.n_f * F2
 
 
@@ -79,14 +84,27 @@ def wrong(contact, derived):
     load = load.subs(LIFT, 0)  # a lifted ball has no load
     used, load_used = as_used(contact)
     names = (*Slips._fields, "load")
-    return [n for n, u, d in zip(names, (*used, load_used), (*slips, load), strict=True) if simplify(expand(u - d)) != 0]
+    return [
+        n
+        for n, u, d in zip(names, (*used, load_used), (*slips, load), strict=True)
+        if simplify(expand(u - d)) != 0
+    ]
 
 
 CASES = {"balls": (lambda: inertia.BALLS, two_balls), "cushion": (of_cushion, ball_and_nose)}
 SEEN_IN = {
-    "k1": ["a1"], "k2": ["a2"], "c1": ["a1", "b1"], "c2": ["a2", "b2"], "d_a": ["a2", "closing"], "d_b": ["b2", "closing"],
-    "d_n": ["closing"], "n_p": ["load"], "n_f": ["load"], "l_a": ["a2"], "l_n": ["closing"],
-}  # fmt: skip
+    "k1": ["a1"],
+    "k2": ["a2"],
+    "c1": ["a1", "b1"],
+    "c2": ["a2", "b2"],
+    "d_a": ["a2", "closing"],
+    "d_b": ["b2", "closing"],
+    "d_n": ["closing"],
+    "n_p": ["load"],
+    "n_f": ["load"],
+    "l_a": ["a2"],
+    "l_n": ["closing"],
+}
 
 
 @pytest.mark.parametrize("kind", CASES)
@@ -105,7 +123,15 @@ def test_a_constant_that_is_off_is_found(kind, field):
 
 @pytest.mark.parametrize("kind", CASES)
 def test_what_does_not_act_on_a_slip_is_left_out_rightly(kind):
-    """Each slip depends on just the impulses that its equation names, and the constant under the pressed ball is 7/2 in both."""
+    """Each slip depends on just the impulses that its equation names, and the constant under the pressed ball
+    is 7/2 in both."""
     slips, _ = CASES[kind][1]()
-    assert [simplify(diff(slips[k], of)) for k, of in ((0, F2), (0, G2), (0, P), (1, F1), (1, G1), (2, F2), (2, G2), (2, P))] == [0] * 8
-    assert [simplify(diff(slips[k], of)) for k, of in ((2, G1), (3, G2))] == [Rational(7, 2)] * 2 == [nsimplify(K_CLOTH, rational=True)] * 2
+    assert [
+        simplify(diff(slips[k], of))
+        for k, of in ((0, F2), (0, G2), (0, P), (1, F1), (1, G1), (2, F2), (2, G2), (2, P))
+    ] == [0] * 8
+    assert (
+        [simplify(diff(slips[k], of)) for k, of in ((2, G1), (3, G2))]
+        == [Rational(7, 2)] * 2
+        == [nsimplify(K_CLOTH, rational=True)] * 2
+    )

@@ -1,4 +1,5 @@
-"""Which laws hold for every impact, every phase on the cloth and every shot? Properties, tried on what hypothesis draws."""
+"""Which laws hold for every impact, every phase on the cloth and every shot? Properties, tried on what
+hypothesis draws."""
 
 import numpy as np
 import pytest
@@ -25,10 +26,12 @@ spins = st.one_of(st.just(0.0), st.floats(0.1, 3), st.just(50.0))
 """Of R w over the speed."""
 constants = st.builds(
     sn.Physics,
-    mu_s=st.floats(0.02, 0.5), mu_bb=st.one_of(st.just("marlow"), st.floats(0, 0.5)),
+    mu_s=st.floats(0.02, 0.5),
+    mu_bb=st.one_of(st.just("marlow"), st.floats(0, 0.5)),
     e_b=st.one_of(st.sampled_from([0.0, 1.0]), st.floats(0, 1)),
-    e_c=st.one_of(st.sampled_from([0.0, 1.0]), st.floats(0, 1)), mu_c=st.floats(0, 0.4),
-)  # fmt: skip
+    e_c=st.one_of(st.sampled_from([0.0, 1.0]), st.floats(0, 1)),
+    mu_c=st.floats(0, 0.4),
+)
 
 
 def horizontal(angle):
@@ -73,17 +76,22 @@ def energy(rows):
 
 def far(got, want):
     """Largest difference of velocities and R * spins."""
-    return max(np.abs(np.subtract(a, b)).max() * (R if k % 2 else 1.0) for k, (a, b) in enumerate(zip(got, want, strict=True)))
+    return max(
+        np.abs(np.subtract(a, b)).max() * (R if k % 2 else 1.0)
+        for k, (a, b) in enumerate(zip(got, want, strict=True))
+    )
 
 
-# impacts of two balls ------------------------------------------------------------------------------------------------------------
+# impacts of two balls
+# ------------------------------------------------------------------------------------------------------------
 
 
 @many
 @given(ball_impacts(), constants, st.sampled_from(FIDELITIES))
 def test_two_balls_gain_no_energy_and_keep_their_momentum(case, physics, fidelity):
-    """The pair's momentum changes by what the cloth's friction can give at the most, mu_s mu_bb of the impulse; its angular momentum
-    about the line of centres not at all, but for the cloth; and the balls part."""
+    """The pair's momentum changes by what the cloth's friction can give at the most, mu_s mu_bb of the
+    impulse; its angular momentum about the line of centres not at all, but for the cloth; and the balls
+    part."""
     v1, w1, v2, w2, n = case
     out = sn.collide_balls(*case, physics, fidelity)
     size, a, b, _ = size_of(case), *physics.friction_law
@@ -94,7 +102,8 @@ def test_two_balls_gain_no_energy_and_keep_their_momentum(case, physics, fidelit
     share = 0.0 if fidelity == "fast" else physics.mu_s * (a + b)
     assert np.hypot(*change) <= share * (impulse + np.hypot(*change)) + tol * size
     assert (out[2] - out[0]) @ n >= -1e-6 * (v1 - v2) @ n - 1e-13 * size
-    # equal balls, equal arms: friction at the contact turns both alike about the vertical, and the cloth turns neither
+    # equal balls, equal arms: friction at the contact turns both alike about the vertical, and the cloth
+    # turns neither
     assert (out[1] - w1)[2] == pytest.approx((out[3] - w2)[2], abs=1e-9 * size / R)
     # the free ball's velocity and spin change by one and the same impulse: dw = (5/2) n x dv / R
     if fidelity == "fast":
@@ -107,8 +116,11 @@ def test_two_balls_gain_no_energy_and_keep_their_momentum(case, physics, fidelit
 def test_without_friction_e_is_the_ratio_of_parting_to_closing(case, e, fidelity):
     v1, w1, v2, w2, n = case
     out = sn.collide_balls(*case, {"mu_bb": 0.0, "e_b": e}, fidelity)
-    tol = {"fast": 1e-12, "standard": 2e-5, "reference": 1e-7}[fidelity]  # e^2 is what is solved for: near e = 0 the root of the tolerance
-    assert (out[2] - out[0]) @ n == pytest.approx(e * (v1 - v2) @ n, abs=tol * (v1 - v2) @ n + 1e-13 * size_of(case))
+    # e^2 is what is solved for: near e = 0 the root of the tolerance
+    tol = {"fast": 1e-12, "standard": 2e-5, "reference": 1e-7}[fidelity]
+    assert (out[2] - out[0]) @ n == pytest.approx(
+        e * (v1 - v2) @ n, abs=tol * (v1 - v2) @ n + 1e-13 * size_of(case)
+    )
     assert far((out[1], out[1], out[3], out[3]), (w1, w1, w2, w2)) <= 1e-12 * size_of(case)
     along = 0.5 * (1 + e) * ((v1 - v2) @ n) * n
     assert far(out[::2], (v1 - along, v2 + along)) <= max(tol, 1e-12) * size_of(case)
@@ -131,9 +143,15 @@ def test_an_impact_is_the_same_mirrored_turned_and_swapped(case, physics, fideli
 
 
 @many
-@given(ball_impacts(), constants.filter(lambda p: p.mu_bb != "marlow"), st.sampled_from(FIDELITIES), st.sampled_from([0.25, 2.0, 1024.0]))
+@given(
+    ball_impacts(),
+    constants.filter(lambda p: p.mu_bb != "marlow"),
+    st.sampled_from(FIDELITIES),
+    st.sampled_from([0.25, 2.0, 1024.0]),
+)
 def test_an_impact_scales_with_its_speed(case, physics, fidelity, k):
-    """With constant friction and restitution all speeds scale together: exactly, where k is a power of two."""
+    """With constant friction and restitution all speeds scale together: exactly, where k is a power of
+    two."""
     out = sn.collide_balls(*case, physics, fidelity)
     faster = sn.collide_balls(*(k * a for a in case[:-1]), case[-1], physics, fidelity)
     assert far(faster, [k * a for a in out]) <= 1e-12 * k * size_of(case)
@@ -153,14 +171,16 @@ def test_of_free_balls_only_the_relative_motion_matters(case, mu, e, direction, 
 @many
 @given(ball_impacts(), constants)
 def test_the_three_fidelities_agree_as_far_as_they_promise(case, physics):
-    """standard and reference solve the same equations; fast leaves out the cloth, whose friction is at most mu_s mu_bb of the impulse."""
+    """standard and reference solve the same equations; fast leaves out the cloth, whose friction is at most
+    mu_s mu_bb of the impulse."""
     fast, standard, reference = (sn.collide_balls(*case, physics, f) for f in FIDELITIES)
     assert far(standard, reference) <= 1e-5 * size_of(case)
     if physics.mu_bb == 0:
         assert far(fast, reference) <= 1e-6 * size_of(case)
 
 
-# cushions ------------------------------------------------------------------------------------------------------------------------
+# cushions
+# ------------------------------------------------------------------------------------------------------------------------
 
 
 @many
@@ -168,7 +188,8 @@ def test_the_three_fidelities_agree_as_far_as_they_promise(case, physics):
 def test_a_cushion_takes_energy_gives_none_and_has_no_preferred_direction(case, physics, fidelity, by):
     v, w, n = case
     out, size = sn.collide_cushion(*case, physics, fidelity), size_of(case)
-    tol = {"fast": 0.1, "standard": 1e-5, "reference": 1e-8}[fidelity]  # "fast" integrates with a loose tolerance here
+    # "fast" integrates with a loose tolerance here
+    tol = {"fast": 0.1, "standard": 1e-5, "reference": 1e-8}[fidelity]
     assert energy(out) <= energy((v, w)) * (1 + 1e-9)
     assert out[0] @ n <= 1e-3 * v @ n
     mirrored = sn.collide_cushion(v * (-1, 1, 1), w * (1, -1, -1), n * (-1, 1, 1), physics, fidelity)
@@ -180,14 +201,17 @@ def test_a_cushion_takes_energy_gives_none_and_has_no_preferred_direction(case, 
 @many
 @given(nose_impacts(), st.floats(0, 1), st.sampled_from(FIDELITIES))
 def test_without_friction_a_cushion_returns_e_of_the_speed(case, e, fidelity):
-    """The nose pushes along its own slanted normal and the cloth holds the ball down: v n goes to -e v n, nothing else changes."""
+    """The nose pushes along its own slanted normal and the cloth holds the ball down: v n goes to -e v n,
+    nothing else changes."""
     v, w, n = case
     out = sn.collide_cushion(*case, {"mu_c": 0.0, "mu_s": 0.0, "e_c": e}, fidelity)
-    tol = {"fast": 1e-2, "standard": 2e-5, "reference": 1e-7}[fidelity]  # e near 0: the parting is a root of what is left of the work
+    # e near 0: the parting is a root of what is left of the work
+    tol = {"fast": 1e-2, "standard": 2e-5, "reference": 1e-7}[fidelity]
     assert far(out, (v - (1 + e) * (v @ n) * n, w)) <= tol * np.linalg.norm(v)
 
 
-# the cloth -----------------------------------------------------------------------------------------------------------------------
+# the cloth
+# -----------------------------------------------------------------------------------------------------------------------
 
 
 @st.composite
@@ -201,8 +225,8 @@ def lone_balls(draw):
 @many
 @given(lone_balls(), st.floats(0.02, 1), st.floats(0.003, 0.2), st.floats(0, 1))
 def test_cloth_friction_brakes_along_the_slip_and_turns_the_ball_about_its_contact(ball, mu_s, mu_r, at):
-    """While it slides: dv/dt = -mu_s g u/|u|, and the angular momentum about the contact with the cloth, v + (2/5) R (w_y, -w_x), stays.
-    Energy falls throughout; when it rolls, the slip is zero."""
+    """While it slides: dv/dt = -mu_s g u/|u|, and the angular momentum about the contact with the cloth, v +
+    (2/5) R (w_y, -w_x), stays. Energy falls throughout; when it rolls, the slip is zero."""
     v0, w0 = ball
     shot = sn.simulate([(0, 0)], [v0], [w0], None, {"mu_s": mu_s, "mu_r": mu_r})
     slip = v0 + R * np.array([-w0[1], w0[0]])
@@ -226,7 +250,8 @@ def test_cloth_friction_brakes_along_the_slip_and_turns_the_ball_about_its_conta
 @many
 @given(lone_balls(), st.floats(0.01, 0.99))
 def test_a_ball_stopped_and_started_again_goes_on_as_before(ball, at):
-    """Time may be cut anywhere: the state at any time, played on, comes to rest in the same place at the same time."""
+    """Time may be cut anywhere: the state at any time, played on, comes to rest in the same place at the same
+    time."""
     whole = sn.simulate([(0, 0)], [ball[0]], [ball[1]], None)
     t = at * whole.duration
     rest = sn.simulate(*whole.at(t), None)
@@ -234,24 +259,36 @@ def test_a_ball_stopped_and_started_again_goes_on_as_before(ball, at):
     assert t + rest.duration == pytest.approx(whole.duration, abs=1e-10)
 
 
-# whole shots ---------------------------------------------------------------------------------------------------------------------
+# whole shots
+# ---------------------------------------------------------------------------------------------------------------------
 
 PLACES = np.array([(0.0, 0.0), (0.3, 0.02), (0.45, -0.3), (-0.2, 0.5), (0.42, 0.045), (0.62, 0.3)])
 
 
 @st.composite
 def shots(draw, table=True, touching=True):
-    """positions, velocities, spins of 1 to 6 balls: apart, or (``touching``) some frozen to the one before; the first is struck."""
+    """positions, velocities, spins of 1 to 6 balls: apart, or (``touching``) some frozen to the one before;
+    the first is struck."""
     n = draw(st.integers(1, 6))
     shift = draw(st.tuples(st.floats(-0.2, 0.2), st.floats(-1.0, 1.0)))
-    p = PLACES[:n] + [draw(st.tuples(st.floats(-0.02, 0.02), st.floats(-0.02, 0.02))) for _ in range(n)] + shift
+    p = (
+        PLACES[:n]
+        + [draw(st.tuples(st.floats(-0.02, 0.02), st.floats(-0.02, 0.02))) for _ in range(n)]
+        + shift
+    )
     for k in range(2, n):
         if touching and draw(st.booleans()):
-            p[k] = p[k - 1] + (np.nextafter(D, 1) + draw(st.sampled_from([0, 1e-12, 1e-9]))) * horizontal(draw(angles))[:2]
+            p[k] = (
+                p[k - 1]
+                + (np.nextafter(D, 1) + draw(st.sampled_from([0, 1e-12, 1e-9])))
+                * horizontal(draw(angles))[:2]
+            )
     gaps = np.hypot(*(p[:, None] - p[None]).transpose(2, 0, 1)) + np.eye(n)
     assume(gaps.min() >= D and (not table or np.abs(p[:, 0]).max() < 0.86))
     v, w = np.zeros((n, 2)), np.zeros((n, 3))
-    aim = np.arctan2(*(p[-1 if draw(st.booleans()) else min(1, n - 1)] - p[0])[::-1]) + draw(st.floats(-0.1, 0.1))
+    aim = np.arctan2(*(p[-1 if draw(st.booleans()) else min(1, n - 1)] - p[0])[::-1]) + draw(
+        st.floats(-0.1, 0.1)
+    )
     velocity, w[0] = sn.strike(draw(st.floats(0.05, 7)), aim, draw(part) * 0.35, draw(part) * 0.35)
     v[0] = velocity[:2]
     if n > 2 and draw(st.booleans()):
@@ -268,9 +305,15 @@ def in_play(shot, t):
 
 
 @some
-@given(shots(), st.sampled_from(["match", "tight", None]), constants, st.sampled_from([*FIDELITIES, "euler:1000"]))
+@given(
+    shots(),
+    st.sampled_from(["match", "tight", None]),
+    constants,
+    st.sampled_from([*FIDELITIES, "euler:1000"]),
+)
 def test_a_shot_keeps_every_law(shot, table, physics, fidelity):
-    """Between and at events: no overlap, no energy gained, nobody off the table but through a pocket; at the end everything rests."""
+    """Between and at events: no overlap, no energy gained, nobody off the table but through a pocket; at the
+    end everything rests."""
     end = sn.simulate(*shot, table, physics, fidelity)
     times = np.union1d(end.events["time"], np.linspace(0, end.duration, 200))
     r, v, w = end.at(times)
@@ -281,7 +324,9 @@ def test_a_shot_keeps_every_law(shot, table, physics, fidelity):
         here = in_play(end, t)
         now = now[here]
         if len(now) > 1:
-            assert (np.hypot(*(now[:, None] - now[None]).transpose(2, 0, 1)) + np.eye(len(now))).min() > D - 1e-9
+            assert (
+                np.hypot(*(now[:, None] - now[None]).transpose(2, 0, 1)) + np.eye(len(now))
+            ).min() > D - 1e-9
         if table:
             beside = np.abs(np.abs(now[:, 1]) - 0.9) < 0.7  # of a long cushion, clear of the pockets
             assert (np.abs(now[beside, 0]) <= 0.889 - R + 1e-9).all()
@@ -302,9 +347,14 @@ def test_a_shot_keeps_every_law(shot, table, physics, fidelity):
     st.sampled_from([0.0, 1e-12, 1e-9]),
 )
 def test_a_ball_held_by_its_spin_hops_at_the_spins_expense(angle, axis, spin, physics, table, gap):
-    """A ball that spins on the spot against a frozen ball, or a cushion: a lasting contact. It ends, and no hop gains energy."""
+    """A ball that spins on the spot against a frozen ball, or a cushion: a lasting contact. It ends, and no
+    hop gains energy."""
     p = np.array(
-        [(0.889 - R - gap, 0.5), (0.889 - R - gap, 0.5) - (np.nextafter(D, 1) + gap) * np.array([abs(np.cos(angle)), np.sin(angle)])]
+        [
+            (0.889 - R - gap, 0.5),
+            (0.889 - R - gap, 0.5)
+            - (np.nextafter(D, 1) + gap) * np.array([abs(np.cos(angle)), np.sin(angle)]),
+        ]
     )
     w = np.zeros((2, 3))
     w[0] = spin * np.array(axis)
@@ -339,7 +389,9 @@ def test_on_unbounded_cloth_no_place_or_direction_is_special(shot, by, shift):
     flat = lambda a: turned(np.column_stack([a, np.zeros(len(a))]), by)[:, :2]  # noqa: E731
     two = sn.simulate(flat(p) + shift, flat(v), turned(w, by), None, fidelity="reference")
     kinds = [(e["kind"], e["i"], e["j"]) for e in one.events[contacts]]
-    assert kinds == [(e["kind"], e["i"], e["j"]) for e in two.events[two.events["kind"] == EventKind.BALL_BALL]]
+    assert kinds == [
+        (e["kind"], e["i"], e["j"]) for e in two.events[two.events["kind"] == EventKind.BALL_BALL]
+    ]
     assert np.abs(two.positions - flat(one.positions) - shift).max() < 1e-5
 
 
@@ -366,20 +418,56 @@ def test_a_shot_stopped_and_started_again_goes_on_as_before(shot, at):
     assert t + two.duration == pytest.approx(one.duration, abs=1e-6)
 
 
-# what the fuzz found ---------------------------------------------------------------------------------------------------------------
+# what the fuzz found
+# ---------------------------------------------------------------------------------------------------------------
 
 UNSOLVED = (  # v, w, normal, mu_s, mu_c, sin_theta, e_c
-    ((-0.0037727559465330724, 0.33474473152165324), (15.946283824890289, -3.103489430192995, -4.040993500703731), (0, 1),
-     0.7, 0.14, 0.4, 0.98),
-    ((-0.03150012916185054, 0.16182982301995855), (-5.631742292193911, -0.9135289056240937, 9.235027324826552), (0, 1),
-     0.3, 0.3, 0.6, 0.98),
-    ((0.1892598335095641, -0.022659902199318786), (0.8632343694978586, 7.209898419411966, 4.553909051496761), (0, -1),
-     0.37435603872240425, 0.0960303469577783, 0.5986740392033739, 0.45095779299471095),
-    ((0.6852182528384435, 0.3014285607836339), (-11.482992791757482, 26.10355248908356, -45.77952915771147), (1, 0),
-     0.371821773133134, 0.2176661633068515, 0.5294182367993291, 0.4692885555332693),
-    ((1.7571646438865136, -0.4642600144717246), (17.686095789399033, 66.939605481391, 45.636404073107386), (1, 0),
-     0.24694609284162072, 0.39121172612894456, 0.5299161939002829, 0.027594006678478555),
-)  # fmt: skip
+    (
+        (-0.0037727559465330724, 0.33474473152165324),
+        (15.946283824890289, -3.103489430192995, -4.040993500703731),
+        (0, 1),
+        0.7,
+        0.14,
+        0.4,
+        0.98,
+    ),
+    (
+        (-0.03150012916185054, 0.16182982301995855),
+        (-5.631742292193911, -0.9135289056240937, 9.235027324826552),
+        (0, 1),
+        0.3,
+        0.3,
+        0.6,
+        0.98,
+    ),
+    (
+        (0.1892598335095641, -0.022659902199318786),
+        (0.8632343694978586, 7.209898419411966, 4.553909051496761),
+        (0, -1),
+        0.37435603872240425,
+        0.0960303469577783,
+        0.5986740392033739,
+        0.45095779299471095,
+    ),
+    (
+        (0.6852182528384435, 0.3014285607836339),
+        (-11.482992791757482, 26.10355248908356, -45.77952915771147),
+        (1, 0),
+        0.371821773133134,
+        0.2176661633068515,
+        0.5294182367993291,
+        0.4692885555332693,
+    ),
+    (
+        (1.7571646438865136, -0.4642600144717246),
+        (17.686095789399033, 66.939605481391, 45.636404073107386),
+        (1, 0),
+        0.24694609284162072,
+        0.39121172612894456,
+        0.5299161939002829,
+        0.027594006678478555,
+    ),
+)
 """Cushion impacts that "standard" or "reference" once did not end."""
 
 
@@ -395,4 +483,6 @@ def test_cushion_impacts_that_once_did_not_end(case):
 @pytest.mark.parametrize("depth", [0.9, 1.1, 1.49, 1.51])
 def test_touching_balls_that_creep_together_meet_however_deep(depth):
     """Pressed between 1 and 1.5 skins deep they once never met, and went on into each other."""
-    assert from_python(detection.distance_crossing)(D - depth * SKIN, 0.0, -4e-5, 0.0, 0.0, 0.0, D, 1.0) < 1e-3
+    assert (
+        from_python(detection.distance_crossing)(D - depth * SKIN, 0.0, -4e-5, 0.0, 0.0, 0.0, D, 1.0) < 1e-3
+    )

@@ -1,4 +1,5 @@
-"""Are four numbers side by side four numbers? To the last bit. (Without numba: ``test_work.py`` plays shots so.)"""
+"""Are four numbers side by side four numbers? To the last bit. (Without numba: ``test_work.py`` plays shots
+so.)"""
 
 import numba
 import numpy as np
@@ -18,7 +19,9 @@ def sums(array, out):
 
 @pytest.mark.parametrize("seed", range(5))
 def test_each_lane_is_computed_as_a_number_of_its_own(seed):
-    array = np.random.default_rng(seed).normal(size=12) * 10.0 ** np.random.default_rng(seed + 9).integers(-60, 60, 12)
+    array = np.random.default_rng(seed).normal(size=12) * 10.0 ** np.random.default_rng(seed + 9).integers(
+        -60, 60, 12
+    )
     out = np.zeros(8)
     total = sums(array, out)
     one_by_one = [array[1 + k] * array[6 + k] + array[1 + k] for k in range(4)]
@@ -30,4 +33,5 @@ def test_infinite_and_missing_numbers_stay_in_their_lane():
     array = np.array([1.0, np.inf, np.nan, -0.0, 2.0, 0.0, 0.0, 1.0, 1.0, 1.0])
     out = np.zeros(8)
     sums(array, out)
-    assert np.isnan(out[2]) and np.isnan(out[3]) and out[4] == 0.0 and out[5] == 4.0  # inf * 0 + inf, nan, -0.0 + -0.0, 2 + 2
+    # inf * 0 + inf, nan, -0.0 + -0.0, 2 + 2
+    assert np.isnan(out[2]) and np.isnan(out[3]) and out[4] == 0.0 and out[5] == 4.0

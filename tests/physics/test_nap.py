@@ -1,4 +1,5 @@
-"""Does a ball that rolls over the nap go where its equation of motion takes it? Against an independent integration of that equation."""
+"""Does a ball that rolls over the nap go where its equation of motion takes it? Against an independent
+integration of that equation."""
 
 import numpy as np
 import pytest
@@ -22,7 +23,8 @@ def rolled(v, nap, start=(0.0, 0.0), table=None):
 
 
 def integrated(v, nap, times):
-    """Place and velocity at ``times``, then the time and place of rest, of dv/dt = -decel v/|v| + nap y by DOP853.
+    """Place and velocity at ``times``, then the time and place of rest, of dv/dt = -decel v/|v| + nap y by
+    DOP853.
 
     The last ``end`` m/s are a ball's that has turned to the nap: the place is theirs to end^2 / decel.
     """
@@ -36,7 +38,9 @@ def integrated(v, nap, times):
         return np.hypot(z[2], z[3]) - end
 
     slow.terminal = True
-    out = solve_ivp(rate, (0, 1e4), (0, 0, *v), "DOP853", events=slow, dense_output=True, rtol=1e-12, atol=1e-14)
+    out = solve_ivp(
+        rate, (0, 1e4), (0, 0, *v), "DOP853", events=slow, dense_output=True, rtol=1e-12, atol=1e-14
+    )
     within = np.minimum(times, out.t[-1])
     return out.sol(within).T, out.t[-1], out.y[:2, -1], end / (DECEL - abs(nap))
 
@@ -64,7 +68,8 @@ def test_stop_place_stop_time_and_the_way_there(share):
         assert w[:, 0, :2] * R == pytest.approx(u[:, 0, ::-1] * (-1, 1), abs=1e-12)
         assert set(shot.events["kind"][:-1]) <= {EventKind.BEND} and shot.events["kind"][-1] == EventKind.STOP
         x, y, ax, ay = shot.segments[-2, [cloth.VX, cloth.VY, cloth.AX, cloth.AY]]
-        assert abs(x * ay - y * ax) < 1e-14 * np.hypot(x, y)  # the piece to rest is straight, as the search for its contacts takes it
+        # the piece to rest is straight, as the search for its contacts takes it
+        assert abs(x * ay - y * ax) < 1e-14 * np.hypot(x, y)
         most = max(most, len(shot.events))
     assert 30 < most < (120 if share < 0.1 else 400)
 
@@ -100,7 +105,9 @@ def test_left_is_the_mirror_of_right_to_the_bit():
     table = Table.preset("match")
     for v, nap in rolls(10, 2, 0.05):
         one, two = (rolled(v * (s, 1), nap, (0.1 * s, 0.2), table) for s in (1, -1))
-        assert np.array_equal(one.events["time"], two.events["time"]) and np.array_equal(one.events["kind"], two.events["kind"])
+        assert np.array_equal(one.events["time"], two.events["time"]) and np.array_equal(
+            one.events["kind"], two.events["kind"]
+        )
         assert np.array_equal(one.positions * (-1, 1), two.positions)
     up, down = (rolled(np.array([0.6, 0.4 * s]), 0.003 * s) for s in (1, -1))
     assert up.positions * (1, -1) == pytest.approx(down.positions, abs=1e-14)
@@ -108,10 +115,15 @@ def test_left_is_the_mirror_of_right_to_the_bit():
 
 def test_without_a_nap_nothing_changes_and_a_tiny_one_changes_little():
     for v, _ in rolls(10, 3, 0.1):
-        plain, named, tiny = rolled(v, 0.0), sn.simulate([(0, 0)], [v], [(-v[1] / R, v[0] / R, 0)], None), rolled(v, 1e-15)
+        plain, named, tiny = (
+            rolled(v, 0.0),
+            sn.simulate([(0, 0)], [v], [(-v[1] / R, v[0] / R, 0)], None),
+            rolled(v, 1e-15),
+        )
         assert np.array_equal(plain.segments, named.segments)
         slowing = -DECEL * v / np.sqrt(v[0] * v[0] + v[1] * v[1])
-        assert plain.segments[0, [cloth.VX, cloth.VY, cloth.AX, cloth.AY]].tolist() == [*v, *slowing]  # to the bit
+        # to the bit
+        assert plain.segments[0, [cloth.VX, cloth.VY, cloth.AX, cloth.AY]].tolist() == [*v, *slowing]
         assert tiny.positions == pytest.approx(plain.positions, abs=1e-10) and len(tiny.events) == 1
     assert rolled((1.0, 1.0), 5e-324).positions == pytest.approx(rolled((1.0, 1.0), 0.0).positions, abs=1e-14)
 
@@ -135,7 +147,9 @@ def test_a_ball_at_rest_in_the_way_of_a_bent_path_is_met_where_the_path_is():
         other = there[:2] + 2 * R * np.array([np.cos(side), np.sin(side)])
         if np.hypot(*other) < 2.1 * R:
             continue
-        shot = sn.simulate([(0, 0), other], [v, (0, 0)], [(-v[1] / R, v[0] / R, 0), (0, 0, 0)], None, {"nap": nap})
+        shot = sn.simulate(
+            [(0, 0), other], [v, (0, 0)], [(-v[1] / R, v[0] / R, 0), (0, 0, 0)], None, {"nap": nap}
+        )
         hits = shot.events["time"][shot.events["kind"] == EventKind.BALL_BALL]
         speed = np.hypot(*there[2:]) * np.cos(side - np.arctan2(there[3], there[2]))
         if speed > 0.01:  # at a creep a micrometre decides when, or whether
@@ -160,7 +174,13 @@ def test_a_ball_that_the_nap_presses_along_a_cushion_stays_within_a_millimetre_o
 
 
 def test_a_nap_that_would_move_a_ball_at_rest_is_refused():
-    for physics in ({"nap": DECEL}, {"nap": -0.2}, {"nap": 1e-9, "mu_r": 0.0}, {"nap": float("nan")}, {"nap": float("inf")}):
+    for physics in (
+        {"nap": DECEL},
+        {"nap": -0.2},
+        {"nap": 1e-9, "mu_r": 0.0},
+        {"nap": float("nan")},
+        {"nap": float("inf")},
+    ):
         with pytest.raises(ValueError, match=r"^physics\.nap"):
             sn.Physics.of(physics)
     assert sn.Physics(mu_r=0.0).nap == 0.0

@@ -1,4 +1,5 @@
-"""Does a ball over a pocket move as a free sphere does? One impact with a nose by small steps, one fall, and what once went wrong."""
+"""Does a ball over a pocket move as a free sphere does? One impact with a nose by small steps, one fall, and
+what once went wrong."""
 
 import numpy as np
 import pytest
@@ -16,7 +17,8 @@ NO_JAWS = np.zeros((0, 6))
 
 
 def by_small_steps(v, w, n, physics, steps=2000):
-    """Velocity and spin of a free sphere pressed on a fixed body at R n: normal impulse in equal parts, Coulomb friction at each."""
+    """Velocity and spin of a free sphere pressed on a fixed body at R n: normal impulse in equal parts,
+    Coulomb friction at each."""
     part = (1.0 + physics.e_j) * (v @ n) / steps
     for _ in range(steps):
         slip = v + np.cross(w, R * n)
@@ -31,7 +33,11 @@ def by_small_steps(v, w, n, physics, steps=2000):
 def test_the_impact_with_a_nose_is_that_of_a_free_sphere_in_small_steps(mu):
     strike, rng = from_python(pocket.strike_jaw), np.random.default_rng(0)
     for _ in range(20):
-        physics, turn, sin_phi = sn.Physics(e_j=rng.uniform(), mu_c=mu), rng.uniform(0, 2 * np.pi), rng.uniform()
+        physics, turn, sin_phi = (
+            sn.Physics(e_j=rng.uniform(), mu_c=mu),
+            rng.uniform(0, 2 * np.pi),
+            rng.uniform(),
+        )
         n = np.array([np.cos(turn), np.sin(turn)])
         at = np.append(np.sqrt(1 - sin_phi**2) * n, sin_phi)
         v, w = rng.normal(size=3) * 2, rng.normal(size=3) * 100
@@ -43,7 +49,8 @@ def test_the_impact_with_a_nose_is_that_of_a_free_sphere_in_small_steps(mu):
 
 
 def test_a_nose_does_not_pull():
-    """The ball falls away from the jaw's nose faster than it grazes towards it: it once took up to 29 % more energy from it."""
+    """The ball falls away from the jaw's nose faster than it grazes towards it: it once took up to 29 % more
+    energy from it."""
     strike, w = from_python(pocket.strike_jaw), (1.0, 2.0, 3.0)
     assert strike((0.1, 0.9, 0.5), w, 1.0, 0.0, 0.6, sn.Physics().pack()) == ((0.1, 0.9, 0.5), w)
     v = np.array([0.901733236439002, 0.4275468027601705])
@@ -59,7 +66,9 @@ def test_a_free_fall_ends_when_the_ball_is_below_the_noses():
     end, _, time, r, v = fly((0.0, 0.01, 0.0), (0.3, 0.1, 0.0), (-0.1, 0.0), FALL, 0, NO_JAWS, physics.pack())
     assert end == pocket.LOST
     assert time == pytest.approx(np.sqrt(2 * (1 - SIN) * R / G), abs=pocket.STEP)
-    assert r + v == pytest.approx((0.3 * time, 0.01 + 0.1 * time, 0.5 * G * time**2, 0.3, 0.1, G * time), abs=1e-12)
+    assert r + v == pytest.approx(
+        (0.3 * time, 0.01 + 0.1 * time, 0.5 * G * time**2, 0.3, 0.1, G * time), abs=1e-12
+    )
 
 
 def test_the_way_to_the_first_jaw_is_a_free_fall():
@@ -67,14 +76,19 @@ def test_the_way_to_the_first_jaw_is_a_free_fall():
     end, k, flown, r, v = fly((-0.1, 0.0, 0.0), (3.0, 0.0, 0.0), (-0.1, 0.0), FALL, 0, jaw, physics.pack())
     time = (0.13 - 0.02 - R) / 3.0
     assert (end, k) == (pocket.JAW, 0)
-    assert (flown, *r, *v) == pytest.approx((time, 3.0 * time - 0.1, 0.0, 0.5 * G * time**2, 3.0, 0.0, G * time), abs=1e-12)
+    assert (flown, *r, *v) == pytest.approx(
+        (time, 3.0 * time - 0.1, 0.0, 0.5 * G * time**2, 3.0, 0.0, G * time), abs=1e-12
+    )
 
 
 IN_THE_AIR = (
     [(-0.5424572365214919, -0.1470004012755446), (0.5350227790240875, -0.19510341525335928)],
     [(-1.307665153016971, 0.6983324381859458), (-5.4520706255184015, 0.8684297421029781)],
-    [(104.83410450393391, -78.27540493207012, -30.73312740757775), (-33.08303779439917, -207.6979285911772, 0.0)],
-)  # fmt: skip
+    [
+        (104.83410450393391, -78.27540493207012, -30.73312740757775),
+        (-33.08303779439917, -207.6979285911772, 0.0),
+    ],
+)
 """A fast ball meets a slow one over a middle pocket, which so comes back with more energy than it brought."""
 
 
@@ -93,7 +107,7 @@ FROM_NOTHING = (
     [(0.84710353135693, -0.10921281685196961), (0.8229077045477607, 0.0445875871039423)],
     [(0.5194258654983255, 0.9285623682746166), (2.646667837326085, -0.9057727354293397)],
     [(-35.37380450569968, 19.787652018983827, 0.0), (34.5056280163558, 100.8254414219461, 0.0)],
-)  # fmt: skip
+)
 """Two balls meet at the edge of a middle pocket: they once came to three times the energy of the shot."""
 
 
@@ -106,10 +120,16 @@ def test_two_balls_at_an_edge_keep_the_energy_of_their_shot():
 
 @pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9"])
 def test_no_leg_of_a_flight_gains_energy(name):
-    """Kinetic and potential together. And a ball that meets a jaw gets there with the velocity that brought it, not with what the edge
-    makes of it at the end of the step: its path once had 9 times the difference more."""
+    """Kinetic and potential together. And a ball that meets a jaw gets there with the velocity that brought
+    it, not with what the edge makes of it at the end of the step: its path once had 9 times the difference
+    more."""
     table = sn.Table.preset(name)
-    physics, fly, strike, rng = sn.Physics(**table.ball), from_python(pocket.fly), from_python(pocket.strike_jaw), np.random.default_rng(0)
+    physics, fly, strike, rng = (
+        sn.Physics(**table.ball),
+        from_python(pocket.fly),
+        from_python(pocket.strike_jaw),
+        np.random.default_rng(0),
+    )
     gap, R, phys, ends, short = from_python(pocket.jaw_gap), physics.R, physics.pack(), [], 0
     for _ in range(1500):
         k = int(rng.integers(len(table.falls)))
@@ -126,7 +146,8 @@ def test_no_leg_of_a_flight_gains_energy(name):
             has = 0.5 * (v[0] ** 2 + v[1] ** 2 + v[2] ** 2) - G * r[2]
             assert has <= had + 1e-12 * speed**2
             size = np.sqrt(vx * vx + vy * vy + u * u)
-            if end == pocket.JAW and pocket.SHORTEST < time < min(pocket.STEP, pocket.STRIDE / size):  # within one step: a straight line
+            # within one step: a straight line
+            if end == pocket.JAW and pocket.SHORTEST < time < min(pocket.STEP, pocket.STRIDE / size):
                 short += 1
                 assert (r[0] - x, r[1] - y) == pytest.approx((vx * time, vy * time), abs=1e-12)
                 assert v[:2] == (vx, vy)
@@ -135,5 +156,7 @@ def test_no_leg_of_a_flight_gains_energy(name):
                 break
             _, nx, ny, sin_phi, _ = gap(r, table.jaws, jaw, R, table.ball["sin_theta"])
             v, spin = strike(v, spin, nx, ny, sin_phi, phys)
-    assert {end: ends.count(end) > 10 for end in (pocket.JAW, pocket.LOST, pocket.BACK)} == dict.fromkeys(range(3), True)
+    assert {end: ends.count(end) > 10 for end in (pocket.JAW, pocket.LOST, pocket.BACK)} == dict.fromkeys(
+        range(3), True
+    )
     assert short > 10

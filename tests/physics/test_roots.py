@@ -1,4 +1,5 @@
-"""Is no root missed? Crossings of quadratics and quartics against exact construction, high precision, and dense sampling."""
+"""Is no root missed? Crossings of quadratics and quartics against exact construction, high precision, and
+dense sampling."""
 
 import mpmath
 import numpy as np
@@ -10,11 +11,15 @@ from snooker_env.physics import detection, roots
 from tests.kernels import from_python
 
 distance_crossing = from_python(detection.distance_crossing)
-quadratic_crossing, quartic_crossing = from_python(roots.quadratic_crossing), from_python(roots.quartic_crossing)
+quadratic_crossing, quartic_crossing = (
+    from_python(roots.quadratic_crossing),
+    from_python(roots.quartic_crossing),
+)
 
 
 def numbers(low, high):
-    """Floats in which squares do not underflow, or 0: no speed or acceleration of a ball is smaller and not nothing."""
+    """Floats in which squares do not underflow, or 0: no speed or acceleration of a ball is smaller and not
+    nothing."""
     return st.floats(low, high).map(lambda x: 0.0 if abs(x) < 1e-100 else x)
 
 
@@ -27,7 +32,11 @@ def exact_crossing(coefficients, T):
         if len(c) < 2:
             return np.inf
         slope = [k * x for k, x in zip(range(len(c) - 1, 0, -1), c[:-1], strict=True)]
-        roots = [mpmath.re(z) for z in mpmath.polyroots(c, maxsteps=500, extraprec=400) if abs(mpmath.im(z)) < mpmath.mpf(10) ** -40]
+        roots = [
+            mpmath.re(z)
+            for z in mpmath.polyroots(c, maxsteps=500, extraprec=400)
+            if abs(mpmath.im(z)) < mpmath.mpf(10) ** -40
+        ]
         good = [x for x in roots if 0 <= x <= T and mpmath.polyval(slope, x) < 0]
         return float(min(good)) if good else np.inf
 
@@ -46,7 +55,8 @@ def test_quartic_with_known_real_roots(roots, T, sign):
 @settings(max_examples=300, deadline=None)
 @given(st.tuples(*[numbers(-10, 10)] * 5), st.floats(0.01, 3))
 def test_quartic_never_misses_a_sign_change(q, T):
-    """Where a dense sample sees the value fall through zero, a crossing there or before is found; and what is found is one."""
+    """Where a dense sample sees the value fall through zero, a crossing there or before is found; and what is
+    found is one."""
     got = quartic_crossing(*q, T)
     x = np.linspace(0, T, 2001)
     f = np.polyval(q, x)
@@ -103,4 +113,6 @@ def test_rejection_loses_nothing(c, T):
     if len(inside):
         assert got <= t[inside[0]]
     if np.isfinite(got):
-        assert np.hypot(x0 + x1 * got + x2 * got**2, y0 + y1 * got + y2 * got**2) == pytest.approx(d, abs=1e-9)
+        assert np.hypot(x0 + x1 * got + x2 * got**2, y0 + y1 * got + y2 * got**2) == pytest.approx(
+            d, abs=1e-9
+        )

@@ -1,4 +1,5 @@
-"""Is a whole shot right? Against an integrator of tiny steps, invariants after every event, and the shots that break other engines."""
+"""Is a whole shot right? Against an integrator of tiny steps, invariants after every event, and the shots
+that break other engines."""
 
 import hashlib
 
@@ -60,19 +61,23 @@ def random_table(rng, n):
     """n balls on the table, clear of each other and of cushions."""
     while True:
         p = rng.uniform([-0.85, -1.74], [0.85, 1.74], (n, 2))
-        if (np.hypot(*(p[:, None] - p[None]).transpose(2, 0, 1)) + 9 * np.eye(n)).min() > D + 1e-3 and (np.abs(p[:, 1]) > 0.1).all():
+        if (np.hypot(*(p[:, None] - p[None]).transpose(2, 0, 1)) + 9 * np.eye(n)).min() > D + 1e-3 and (
+            np.abs(p[:, 1]) > 0.1
+        ).all():
             return p
 
 
-# against tiny steps ------------------------------------------------------------------------------------------------------------
+# against tiny steps
+# ------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("seed", range(36))
 def test_agrees_with_tiny_steps(seed):
-    """2 to 4 balls on unbounded cloth with side, screw and curve: at rest within 1e-4 m of an integrator without closed forms.
+    """2 to 4 balls on unbounded cloth with side, screw and curve: at rest within 1e-4 m of an integrator
+    without closed forms.
 
-    Every third shot starts with two balls moving, with spin. Shots whose course hangs on a hair (a grazing contact) are not drawn:
-    the aim is at a ball, a third of it off centre at the most."""
+    Every third shot starts with two balls moving, with spin. Shots whose course hangs on a hair (a grazing
+    contact) are not drawn: the aim is at a ball, a third of it off centre at the most."""
     rng = np.random.default_rng(seed)
     n = 2 + seed % 3
     while True:
@@ -86,14 +91,17 @@ def test_agrees_with_tiny_steps(seed):
     if seed % 3 == 0:
         v[1], w[1] = rng.normal(size=2) * 0.3, rng.normal(size=3) * 20
     got = sn.simulate(p, v, w, table=None, fidelity="reference")
-    want = tiny_steps.simulate(p, v, w, R=R, M=M, g=9.81, mu_s=0.21, mu_r=0.0127, spin_decel=22.0, e=0.89, mu_bb=0.05)
+    want = tiny_steps.simulate(
+        p, v, w, R=R, M=M, g=9.81, mu_s=0.21, mu_r=0.0127, spin_decel=22.0, e=0.89, mu_bb=0.05
+    )
     assert np.abs(got.positions - want).max() < 1e-4
     standard = sn.simulate(p, v, w, table=None)
     assert np.abs(standard.positions - want).max() < 1e-3
     check_shot(got)
 
 
-# invariants --------------------------------------------------------------------------------------------------------------------
+# invariants
+# --------------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("fidelity", ["fast", "standard", "reference", "euler:50"])
@@ -132,7 +140,10 @@ def test_same_input_same_bits_single_batch_and_threads():
         v[k], w[k] = struck(22, rng.uniform(1, 6), rng.uniform(-3, 3), side=0.2, top=-0.2)
     one = sn.simulate_batch(p, v, w, threads=1, events=True)
     two = sn.simulate_batch(p, v, w, threads=2, events=True)
-    digest = [hashlib.sha256(b.positions.tobytes() + b.potted.tobytes() + b.duration.tobytes()).hexdigest() for b in (one, two)]
+    digest = [
+        hashlib.sha256(b.positions.tobytes() + b.potted.tobytes() + b.duration.tobytes()).hexdigest()
+        for b in (one, two)
+    ]
     assert digest[0] == digest[1]
     for k in range(24):
         shot = sn.simulate(p[k], v[k], w[k])
@@ -163,13 +174,15 @@ def test_on_table_leaves_balls_out():
     assert shot.events["j"][shot.events["kind"] == EventKind.BALL_BALL].tolist()[0] == 2
 
 
-# straight shots, exactly along the axes ----------------------------------------------------------------------------------------
+# straight shots, exactly along the axes
+# ----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("axis", [(1, 0), (0, 1), (-1, 0), (0, -1)])
 @pytest.mark.parametrize(("top", "sign"), [(0.4, 1), (0.0, 0), (-0.45, -1)])
 def test_straight_follow_stun_and_draw(axis, top, sign):
-    """Exactly axis-aligned: one collision, nothing leaves the line; follow goes on, stun creeps a little, draw comes back."""
+    """Exactly axis-aligned: one collision, nothing leaves the line; follow goes on, stun creeps a little,
+    draw comes back."""
     axis = np.array(axis, float)
     p = np.array([(0.1 - D - 0.005) * axis, 0.1 * axis])
     v, w = np.zeros((2, 2)), np.zeros((2, 3))
@@ -191,7 +204,8 @@ def test_a_straight_shot_into_a_cushion_comes_back_on_the_line():
     assert (shot.events["kind"] == EventKind.CUSHION).sum() >= 2
 
 
-# contacts at gap zero ----------------------------------------------------------------------------------------------------------
+# contacts at gap zero
+# ----------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("gap", [0.0, 1e-15, 1e-12, 1e-9])
@@ -200,7 +214,9 @@ def test_a_touching_ball_played_away_from_stays(gap, away):
     p = np.array([(0.0, 0.0), (EXACT + gap, 0.0)])
     for tip in ({}, {"side": 0.3}, {"top": 0.4}, {"top": -0.4}):
         for turn in (1, -1):
-            shot = sn.simulate(p, *struck(2, 2.0, turn * away, **tip), table=None, physics={"end_mass_ratio": 1e9})
+            shot = sn.simulate(
+                p, *struck(2, 2.0, turn * away, **tip), table=None, physics={"end_mass_ratio": 1e9}
+            )
             if tip.get("top") == -0.4 or (tip.get("side") and away < 2.0):
                 check_shot(shot)  # it may come back to the ball; it only must not be dragged along at once
                 continue
@@ -228,23 +244,28 @@ def test_a_ball_frozen_to_a_cushion(gap):
     assert along.at(edge)[0][0, 0, 0] == pytest.approx(p[0, 0], abs=1e-9)
     away = sn.simulate(p, [(-1.0, 0.0)], [(0, 0, 0)])
     assert away.events["kind"][0] == EventKind.ROLL
-    pressed = sn.simulate(p, [(0.0, -1.0)], [(1 / R, 40.0, 0)])  # its spin drives it into the cushion as it runs along
+    # its spin drives it into the cushion as it runs along
+    pressed = sn.simulate(p, [(0.0, -1.0)], [(1 / R, 40.0, 0)])
     for shot in (into, along, away, pressed):
         check_shot(shot)
         r = shot.at(np.linspace(0, shot.duration, 500))[0][:, 0]
         along_the_nose = (np.abs(r[:, 1]) > 0.12) & (np.abs(r[:, 1]) < 1.65)  # elsewhere a pocket opens
         assert (r[along_the_nose, 0] <= 0.889 - R + 1e-9).all()
-    between = sn.simulate(np.array([p[0], p[0] - [EXACT, 0]]), [(0, 0), (2.0, 0.0)], np.zeros((2, 3)))  # pinned against the cushion
+    # pinned against the cushion
+    between = sn.simulate(np.array([p[0], p[0] - [EXACT, 0]]), [(0, 0), (2.0, 0.0)], np.zeros((2, 3)))
     check_shot(between)
 
 
 MOUTH = (
-    [(0.862749999, 0.109185)], [(4.96568143491017, -0.9211408927790105)], [(544.6435139163872, 685.8299623356976, 140.11961898623017)],
-)  # fmt: skip
+    [(0.862749999, 0.109185)],
+    [(4.96568143491017, -0.9211408927790105)],
+    [(544.6435139163872, 685.8299623356976, 140.11961898623017)],
+)
 
 
 def test_a_ball_that_comes_out_of_a_middle_pocket_s_mouth_meets_the_nose():
-    """Struck off a jaw beyond the nose's line, then driven back into the cushion by its spin: it once went 17 mm into the nose."""
+    """Struck off a jaw beyond the nose's line, then driven back into the cushion by its spin: it once went 17
+    mm into the nose."""
     shot = sn.simulate(*MOUTH, physics={"e_b": 0.5, "e_c": 0.0, "mu_bb": 0.0, "spin_decel": 2.0})
     r = shot.at(np.linspace(0, shot.duration, 3000))[0][:, 0]
     along_the_nose = (np.abs(r[:, 1]) > 0.12) & (np.abs(r[:, 1]) < 1.65)
@@ -268,7 +289,8 @@ def test_a_ball_frozen_to_a_jaw(k):
         if direction @ n > 0.5:
             assert shot.events["kind"][0] == EventKind.JAW
     d = p / np.hypot(*p)
-    struck_there = sn.simulate([p - (D + 0.1) * d, p], [1.5 * d, (0, 0)], np.zeros((2, 3)))  # a ball resting in the jaws
+    # a ball resting in the jaws
+    struck_there = sn.simulate([p - (D + 0.1) * d, p], [1.5 * d, (0, 0)], np.zeros((2, 3)))
     check_shot(struck_there)
     assert struck_there.events["kind"][0] == EventKind.BALL_BALL
 
@@ -278,14 +300,17 @@ def test_frozen_pairs_lines_and_wedges():
     shot = sn.simulate(line - [0.2, 0], *struck(5, 3.0, 0.0), table=None)
     check_shot(shot)
     assert shot.positions[-1, 0] > 1.0
-    wedge = np.array([(-0.3, 0.0), (0.0, R), (0.0, -np.nextafter(R, 1)), (np.sqrt(3) * R * 1.0000000001, 0.0)])
+    wedge = np.array(
+        [(-0.3, 0.0), (0.0, R), (0.0, -np.nextafter(R, 1)), (np.sqrt(3) * R * 1.0000000001, 0.0)]
+    )
     shot = sn.simulate(wedge, *struck(4, 3.0, 0.0), table=None)
     check_shot(shot)
     assert (shot.events["kind"] == EventKind.BALL_BALL).sum() >= 2
 
 
 def test_two_balls_at_once_follow_the_written_rule():
-    """Ties: the lower ball first. Mirrored, the other one is first; both orders give nearly the mirrored result."""
+    """Ties: the lower ball first. Mirrored, the other one is first; both orders give nearly the mirrored
+    result."""
     p = np.array([(-0.3, 0.0), (0.0, R + 1e-4), (0.0, -R - 1e-4)])
     shot = sn.simulate(p, *struck(3, 2.0, 0.0), table=None)
     hits = shot.events[shot.events["kind"] == EventKind.BALL_BALL]
@@ -294,7 +319,8 @@ def test_two_balls_at_once_follow_the_written_rule():
     check_shot(shot)
 
 
-# pockets -----------------------------------------------------------------------------------------------------------------------
+# pockets
+# -----------------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("pocket", range(6))
@@ -309,12 +335,20 @@ def test_a_ball_rolled_at_a_pocket_drops_in_it(pocket):
     assert not shot.on_table[0]
 
 
-WINDOWS = [("corner", 0, 57), ("corner", 20, 47), ("corner", 40, 19), ("middle", 0, 86), ("middle", 45, 51), ("middle", 60, 28)]
+WINDOWS = [
+    ("corner", 0, 57),
+    ("corner", 20, 47),
+    ("corner", 40, 19),
+    ("middle", 0, 86),
+    ("middle", 45, 51),
+    ("middle", 60, 28),
+]
 
 
 @pytest.mark.parametrize(("kind", "angle", "width"), WINDOWS)
 def test_pocket_acceptance(kind, angle, width):
-    """Full width [mm] of the window of paths that drop, against the expected values (which assume plain jaws of restitution 0.75)."""
+    """Full width [mm] of the window of paths that drop, against the expected values (which assume plain jaws
+    of restitution 0.75)."""
     pocket = np.array([0.889, 1.7845]) if kind == "corner" else np.array([0.889, 0.0])
     base = np.pi / 4 if kind == "corner" else 0.0
     a = base + np.radians(angle)
@@ -331,12 +365,15 @@ def test_pocket_acceptance(kind, angle, width):
 
 
 def test_a_ball_may_lie_still_in_the_mouth_of_a_pocket():
-    """Found in random play: half a millimetre clear of the jaw and of the fall, 10.4 mm past the line of the noses."""
+    """Found in random play: half a millimetre clear of the jaw and of the fall, 10.4 mm past the line of the
+    noses."""
     place = (0.899444997865469, 0.03449467907672166)
     shot = sn.simulate([place, (0.0, 0.0)], [(0.0, 0.0)] * 2, np.zeros((2, 3)))
     assert shot.on_table.all() and tuple(shot.positions[0]) == place
     for wrong in [(0.9145, 0.03449), (0.899444997865469, 0.033), (0.899444997865469, 0.036), (0.91, 0.5)]:
-        with pytest.raises(ValueError, match=r"positions\[0\] = .*(must be on the table|over a pocket|overlaps)"):
+        with pytest.raises(
+            ValueError, match=r"positions\[0\] = .*(must be on the table|over a pocket|overlaps)"
+        ):
             sn.simulate([wrong, (0.0, 0.0)], [(0.0, 0.0)] * 2, np.zeros((2, 3)))
 
 

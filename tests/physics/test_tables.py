@@ -1,4 +1,5 @@
-"""Is a table of one's own taken for what it is? Its name, copies and pickles, its bounds, the balls that it is played with."""
+"""Is a table of one's own taken for what it is? Its name, copies and pickles, its bounds, the balls that it
+is played with."""
 
 import copy
 import pickle
@@ -17,14 +18,21 @@ NONE = {"jaws": np.zeros((0, 6)), "falls": np.zeros((0, 3))}
 
 def walls(left, right, bottom, top, name="mine"):
     """Four straight noses, no pockets."""
-    noses = [(0, -1, -left, bottom, top), (0, 1, right, bottom, top), (1, -1, -bottom, left, right), (1, 1, top, left, right)]
+    noses = [
+        (0, -1, -left, bottom, top),
+        (0, 1, right, bottom, top),
+        (1, -1, -bottom, left, right),
+        (1, 1, top, left, right),
+    ]
     return Table(name, np.array(noses), **NONE)
 
 
 COPIES = {
-    "pickle": lambda t: pickle.loads(pickle.dumps(t)), "copy": copy.copy, "deepcopy": copy.deepcopy,
+    "pickle": lambda t: pickle.loads(pickle.dumps(t)),
+    "copy": copy.copy,
+    "deepcopy": copy.deepcopy,
     "inside": lambda t: copy.deepcopy({"table": [t]})["table"][0],
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("how", COPIES)
@@ -89,14 +97,22 @@ def test_balls_lie_between_the_noses_of_the_table_given(own, inside, outside, al
 def test_a_table_of_pockets_and_jaws_alone_has_no_bounds():
     bare = Table("bare", np.zeros((0, 5)), MATCH.jaws, MATCH.falls)
     assert sn.simulate([(50.0, 50.0)], [(0.1, 0.0)], [Z], bare).positions[0, 0] > 50.0
-    refused(shot(positions=[(0.0, 0.0), (0.895, 0.0)], table=bare), "positions[1]", "(0.895, 0.0)", "is over a pocket")
+    refused(
+        shot(positions=[(0.0, 0.0), (0.895, 0.0)], table=bare),
+        "positions[1]",
+        "(0.895, 0.0)",
+        "is over a pocket",
+    )
 
 
 def own(**parts):
     return lambda: Table(**{"name": "mine", "noses": np.zeros((0, 5)), **NONE} | parts)
 
 
-NOSE, JAW = "must be axis 0 or 1, side -1 or 1, level, and lo <= hi", "must be x, y, radius >= 0, a unit vector (to 1e-6), and a cosine"
+NOSE, JAW = (
+    "must be axis 0 or 1, side -1 or 1, level, and lo <= hi",
+    "must be x, y, radius >= 0, a unit vector (to 1e-6), and a cosine",
+)
 
 
 @pytest.mark.parametrize(
@@ -105,14 +121,21 @@ NOSE, JAW = "must be axis 0 or 1, side -1 or 1, level, and lo <= hi", "must be x
         case(own(name=None), "table.name", "None", "must be a str"),
         case(own(name=3), "table.name", "3", "must be a str"),
         case(own(noses=[(2, 1, 1, -1, 1)]), "table.noses[0]", "(2.0, 1.0, 1.0, -1.0, 1.0)", NOSE),
-        case(own(noses=[(0, 1, 1, -1, 1), (0, 0, 1, -1, 1)]), "table.noses[1]", "(0.0, 0.0, 1.0, -1.0, 1.0)", NOSE),
+        case(
+            own(noses=[(0, 1, 1, -1, 1), (0, 0, 1, -1, 1)]),
+            "table.noses[1]",
+            "(0.0, 0.0, 1.0, -1.0, 1.0)",
+            NOSE,
+        ),
         case(own(noses=[(0, 1, 1, 1, -1)]), "table.noses[0]", "(0.0, 1.0, 1.0, 1.0, -1.0)", NOSE),
         case(own(noses=[(0, 1, np.nan, -1, 1)]), "table.noses[0, 2]", "nan", "must be finite"),
         case(own(jaws=[(0, 0, -0.1, 1, 0, 0)]), "table.jaws[0]", "-0.1", JAW),
         case(own(jaws=[(0, 0, 0.1, 0, 0, 0)]), "table.jaws[0]", "(0.0, 0.0, 0.1, 0.0, 0.0, 0.0)", JAW),
         case(own(jaws=[(0, 0, 0.1, 1, 0, 1.5)]), "table.jaws[0]", "1.5", JAW),
         case(own(falls=[(0, 0, 0)]), "table.falls[0]", "(0.0, 0.0, 0.0)", "must be x, y, and a radius > 0"),
-        case(own(falls=[(0, 0, 0.1), (0, 0, -0.1)]), "table.falls[1]", "-0.1", "must be x, y, and a radius > 0"),
+        case(
+            own(falls=[(0, 0, 0.1), (0, 0, -0.1)]), "table.falls[1]", "-0.1", "must be x, y, and a radius > 0"
+        ),
     ],
 )
 def test_odd_shapes(call, field, value, allowed):
@@ -122,12 +145,28 @@ def test_odd_shapes(call, field, value, allowed):
 @pytest.mark.parametrize(
     ("places", "there", "says"),
     [
-        ([(0.0, 0.0), (0.1, 0.5)], [True], r"on_table = bool array of shape \(1,\): must be bool of shape \(2,\)"),
-        ([(0.0, 0.0), (0.1, 0.5)], [True] * 4, r"on_table = bool array of shape \(4,\): must be bool of shape \(2,\)"),
-        (np.zeros((3, 2, 2)), [True, False], r"on_table = bool array of shape \(2,\): must be bool of shape \(3, 2\)"),
+        (
+            [(0.0, 0.0), (0.1, 0.5)],
+            [True],
+            r"on_table = bool array of shape \(1,\): must be bool of shape \(2,\)",
+        ),
+        (
+            [(0.0, 0.0), (0.1, 0.5)],
+            [True] * 4,
+            r"on_table = bool array of shape \(4,\): must be bool of shape \(2,\)",
+        ),
+        (
+            np.zeros((3, 2, 2)),
+            [True, False],
+            r"on_table = bool array of shape \(2,\): must be bool of shape \(3, 2\)",
+        ),
         ([(0.0, 0.0)], [1], r"on_table = int64 array of shape \(1,\): must be bool of shape \(1,\)"),
         ([0.0, 1.0], None, r"positions = array of shape \(2,\): must have shape \(n, 2\) or \(b, n, 2\)"),
-        ([(0.0, 0.0, 0.0)], None, r"positions = array of shape \(1, 3\): must have shape \(n, 2\) or \(b, n, 2\)"),
+        (
+            [(0.0, 0.0, 0.0)],
+            None,
+            r"positions = array of shape \(1, 3\): must have shape \(n, 2\) or \(b, n, 2\)",
+        ),
     ],
 )
 def test_a_layout_of_another_shape_is_refused_by_name(places, there, says):

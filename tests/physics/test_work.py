@@ -1,8 +1,10 @@
-"""Does a shot cost more work than it did? Events, root searches and impacts of fixed shots, counted and held under ceilings.
+"""Does a shot cost more work than it did? Events, root searches and impacts of fixed shots, counted and held
+under ceilings.
 
-No time is measured. The shots of ``benchmarks.speed`` are played as plain Python in a process of its own (this file, as a script), where
-every call can be seen. A ceiling lies about 10 % above what the engine needed when it was written: a change that crosses it makes the
-engine work harder, and should say why; after one that saves work, lower it.
+No time is measured. The shots of ``benchmarks.speed`` are played as plain Python in a process of its own
+(this file, as a script), where every call can be seen. A ceiling lies about 10 % above what the engine needed
+when it was written: a change that crosses it makes the engine work harder, and should say why; after one that
+saves work, lower it.
 """
 
 import json
@@ -63,10 +65,15 @@ def counted():
     from snooker_env.simulation import MAX_EVENTS, _run
 
     watched = {
-        engine._predict: "balls predicted", detection.may_meet: "pairs looked at", detection.pair_time: "pairs near",
-        detection.boundary_event: "boundaries", roots.quartic_crossing: "quartics", engine._rescan: "rescans",
-        contact.collide_balls: "ball-ball impacts", contact.collide_cushion: "cushion impacts",
-    }  # fmt: skip
+        engine._predict: "balls predicted",
+        detection.may_meet: "pairs looked at",
+        detection.pair_time: "pairs near",
+        detection.boundary_event: "boundaries",
+        roots.quartic_crossing: "quartics",
+        engine._rescan: "rescans",
+        contact.collide_balls: "ball-ball impacts",
+        contact.collide_cushion: "cushion impacts",
+    }
     names, found = {function.__code__: name for function, name in watched.items()}, {}
     for kind, n in SHOTS.items():
         counts = dict.fromkeys(watched.values(), 0)
@@ -79,7 +86,13 @@ def counted():
         state = p, v, w, np.ones(p.shape[:2], bool)
         sys.setprofile(watch)
         with np.errstate(all="ignore"):
-            out = _run(state, sn.Physics.preset("paper"), sn.Table.preset("match"), contact.parse_fidelity("standard"), MAX_EVENTS)
+            out = _run(
+                state,
+                sn.Physics.preset("paper"),
+                sn.Table.preset("match"),
+                contact.parse_fidelity("standard"),
+                MAX_EVENTS,
+            )
         sys.setprofile(None)
         found[kind] = {"events": int(out.n_events.sum())} | counts
     return found
@@ -88,13 +101,19 @@ def counted():
 @pytest.fixture(scope="module")
 def work():
     env = os.environ | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(ROOT)}
-    done = subprocess.run([sys.executable, __file__], cwd=ROOT, env=env, capture_output=True, text=True, timeout=280, check=True)
+    done = subprocess.run(
+        [sys.executable, __file__], cwd=ROOT, env=env, capture_output=True, text=True, timeout=280, check=True
+    )
     return json.loads(done.stdout)
 
 
 @pytest.mark.parametrize("kind", SHOTS)
 def test_a_shot_costs_no_more_work_than_it_did(work, kind):
-    over = {name: (count, CEILINGS[kind][name]) for name, count in work[kind].items() if not 0 < count <= CEILINGS[kind][name]}
+    over = {
+        name: (count, CEILINGS[kind][name])
+        for name, count in work[kind].items()
+        if not 0 < count <= CEILINGS[kind][name]
+    }
     assert not over, f"{SHOTS[kind]} shots, {kind}: (counted, ceiling) {over}"
 
 

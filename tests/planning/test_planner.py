@@ -1,4 +1,5 @@
-"""Does a planned stroke lead where the environment's stroke leads, bit for bit, and is whatever makes no sense refused by name?"""
+"""Does a planned stroke lead where the environment's stroke leads, bit for bit, and is whatever makes no
+sense refused by name?"""
 
 import pickle
 from concurrent.futures import ThreadPoolExecutor
@@ -21,11 +22,13 @@ def actions(n, k, seed=0):
 
 def same(one, other):
     return (
-        np.array_equal(one.points, other.points) and np.array_equal(one.goes_on, other.goes_on)
-        and np.array_equal(one.observations, other.observations) and np.array_equal(one.afterstates.positions, other.afterstates.positions)
+        np.array_equal(one.points, other.points)
+        and np.array_equal(one.goes_on, other.goes_on)
+        and np.array_equal(one.observations, other.observations)
+        and np.array_equal(one.afterstates.positions, other.afterstates.positions)
         and np.array_equal(one.afterstates.on_table, other.afterstates.on_table)
         and np.array_equal(one.afterstates.game, other.afterstates.game)
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize(
@@ -33,7 +36,13 @@ def same(one, other):
     [
         {"aim": "target", "noise": "amateur"},
         {"action": "discrete", "noise": "club", "layout": "random:6"},
-        {"aim": "target", "elevation": True, "placement": True, "layout": "break_off", "noise": "professional"},
+        {
+            "aim": "target",
+            "elevation": True,
+            "placement": True,
+            "layout": "break_off",
+            "noise": "professional",
+        },
         {"aim": "target", "physics": "match", "table": "tight", "fidelity": "fast", "layout": "line_up"},
     ],
 )
@@ -44,19 +53,32 @@ def test_a_planned_stroke_is_the_stroke_of_the_environment(options):
     for k in range(12):
         env.reset(seed=k)
         state = env.get_state()
-        chosen = np.flatnonzero(env.action_masks())[[17]] if env.action_space.shape == () else actions(1, env.action_space.shape[0], seed=k)
+        chosen = (
+            np.flatnonzero(env.action_masks())[[17]]
+            if env.action_space.shape == ()
+            else actions(1, env.action_space.shape[0], seed=k)
+        )
         points, goes_on, left, seen = planner.play(state, [0], chosen, [state["stream"]])
         observation, reward, ended, _, info = env.step(chosen[0])
         assert points[0] == reward and goes_on[0] == (not ended) and np.array_equal(seen[0], observation)
-        assert np.array_equal(left.positions[0], env.positions) and np.array_equal(left.on_table[0], env.on_table)
-        assert (left.ball_on[0], left.in_hand[0], left.points[0], left.over[0]) == (env.ball_on, env.in_hand, info["break"], env.over)
+        assert np.array_equal(left.positions[0], env.positions) and np.array_equal(
+            left.on_table[0], env.on_table
+        )
+        assert (left.ball_on[0], left.in_hand[0], left.points[0], left.over[0]) == (
+            env.ball_on,
+            env.in_hand,
+            info["break"],
+            env.over,
+        )
         assert np.array_equal(left.observations()[0], observation)
         scored += reward > 0
     assert scored or options["layout"] == "break_off"
 
 
 def test_whole_tables_are_read_from_a_vector_environment_and_left_as_they_are():
-    env = gymnasium.make_vec("Snooker-v0", 9, vectorization_mode="vector_entry_point", aim="target", noise="club")
+    env = gymnasium.make_vec(
+        "Snooker-v0", 9, vectorization_mode="vector_entry_point", aim="target", noise="club"
+    )
     env.reset(seed=3)
     before, streams = env.unwrapped.get_state(), [state["stream"] for state in env.unwrapped.get_state()]
     at, strokes = Positions.of(env), actions(9, 4)
@@ -66,14 +88,20 @@ def test_whole_tables_are_read_from_a_vector_environment_and_left_as_they_are():
     assert np.array_equal(at.on_table, kept.on_table) and np.array_equal(at.game, kept.game)
     observations, rewards, ended, _, _ = env.step(strokes)
     assert np.array_equal(played.points, rewards) and np.array_equal(~played.goes_on, ended)
-    assert np.array_equal(played.observations, observations) and not np.array_equal(played.afterstates.positions, at.positions)
+    assert np.array_equal(played.observations, observations) and not np.array_equal(
+        played.afterstates.positions, at.positions
+    )
 
 
 def test_any_number_of_threads_and_any_order_of_strokes_give_the_same():
     env = sn.SnookerVectorEnv(7, aim="target", noise="club")
     env.reset(seed=1)
     rng = np.random.default_rng(2)
-    rows, strokes, keys = rng.integers(0, 7, 333), actions(333, 4), rng.integers(0, 2**64 - 1, 333, dtype=np.uint64)
+    rows, strokes, keys = (
+        rng.integers(0, 7, 333),
+        actions(333, 4),
+        rng.integers(0, 2**64 - 1, 333, dtype=np.uint64),
+    )
     one = Planner(env, threads=1)
     first = one.play(env, rows, strokes, keys)
     assert one.shots == 333 and one.threads == 1
@@ -98,14 +126,18 @@ def test_any_number_of_threads_and_any_order_of_strokes_give_the_same():
     ],
 )
 def test_a_stroke_decoded_is_played_as_its_action(options):
-    """By keys, by the errors that the keys draw, as a stroke or as an action: one law of errors, one decoder; equal but for rounding."""
+    """By keys, by the errors that the keys draw, as a stroke or as an action: one law of errors, one decoder;
+    equal but for rounding."""
     env = sn.SnookerVectorEnv(5, threads=1, **options)
     env.reset(seed=4)
     planner, rows, keys = Planner(env, threads=1), np.arange(60) % 5, np.arange(100, 160)
     chosen = np.arange(60) * 9 if planner.discrete else actions(60, env.single_action_space.shape[0], seed=1)
     strokes, at = planner.strokes_of(env, rows, chosen)
     assert strokes.shape == (60, 5) and len(at) == 60
-    whole, errors = planner.play(env, rows, chosen, keys), errors_of(np.stack([keys, 0 * keys], 1).astype(np.uint64))
+    whole, errors = (
+        planner.play(env, rows, chosen, keys),
+        errors_of(np.stack([keys, 0 * keys], 1).astype(np.uint64)),
+    )
     for other in (
         planner.play(at, np.arange(60), strokes=strokes, keys=keys),
         planner.play(at, np.arange(60), strokes=strokes, errors=errors),
@@ -138,8 +170,14 @@ SOFT = [2.0, 0.0, 0.0, 0.3, 0.0]
         ({"strokes": [SOFT], "keys": [1], "errors": [[0] * 5]}, "keys, errors = both"),
         ({"strokes": [SOFT], "errors": [[0] * 4]}, "errors = array of shape"),
         ({"strokes": [SOFT], "errors": [[np.nan] * 5]}, r"errors\[0, 0\] = nan"),
-        ({"strokes": [SOFT[:4]], "keys": [1]}, r"strokes = float64 array of shape \(1, 4\): must be real numbers of shape \(1, 5\)"),
-        ({"strokes": [[9.0, *SOFT[1:]]], "keys": [1]}, r"strokes\[0\], speed = 9.0: must be a finite number in \[0.2, 7\]"),
+        (
+            {"strokes": [SOFT[:4]], "keys": [1]},
+            r"strokes = float64 array of shape \(1, 4\): must be real numbers of shape \(1, 5\)",
+        ),
+        (
+            {"strokes": [[9.0, *SOFT[1:]]], "keys": [1]},
+            r"strokes\[0\], speed = 9.0: must be a finite number in \[0.2, 7\]",
+        ),
         ({"strokes": [[2.0, 0.0, np.nan, 0.0, 0.0]], "keys": [1]}, r"strokes\[0\], top = nan"),
         ({"strokes": [[2.0, 0.6, 0.0, 0.0, 0.0]], "keys": [1]}, r"strokes\[0\], side = 0.6"),
         ({"strokes": [[2.0, 0.0, 0.0, np.inf, 0.0]], "keys": [1]}, r"strokes\[0\], aim = inf"),
@@ -161,15 +199,21 @@ def test_what_an_action_space_cannot_say_is_refused():
     aimed, position = Planner({"aim": "target"}), Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)])
     with pytest.raises(ValueError, match="positions, rows = None"):
         aimed.actions_of([SOFT])
-    with pytest.raises(ValueError, match=r"strokes\[0\], aim = 0.3: must be within 3 degrees of the target line"):
+    with pytest.raises(
+        ValueError, match=r"strokes\[0\], aim = 0.3: must be within 3 degrees of the target line"
+    ):
         aimed.actions_of([SOFT], positions=position, rows=[0])
 
 
 def test_the_key_alone_decides_the_errors():
     position = Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)])
     planner, stroke = Planner({"noise": "club"}), np.tile(np.float32([[0.0, 0.0, 0.0, 0.3]]), (6, 1))
-    cue = planner.play(position, np.zeros(6, int), stroke, [5, 5, 6, 7, 7, 2**64 - 1]).afterstates.positions[:, 0]
-    assert np.array_equal(cue[0], cue[1]) and np.array_equal(cue[3], cue[4]) and len(np.unique(cue, axis=0)) == 4
+    cue = planner.play(position, np.zeros(6, int), stroke, [5, 5, 6, 7, 7, 2**64 - 1]).afterstates.positions[
+        :, 0
+    ]
+    assert (
+        np.array_equal(cue[0], cue[1]) and np.array_equal(cue[3], cue[4]) and len(np.unique(cue, axis=0)) == 4
+    )
     again = planner.play(position, [0], stroke[:1], np.array([[5, 0]], np.uint64)).afterstates.positions[0, 0]
     assert np.array_equal(again, cue[0])  # a key is a stream at its beginning
     later = planner.play(position, [0], stroke[:1], [[5, 3]]).afterstates.positions[0, 0]
@@ -181,9 +225,14 @@ def test_noise_given_takes_the_place_of_the_environments_own():
     env.reset(seed=0)
     exact, strokes = Planner(env, noise="none"), actions(4, 4)
     assert exact.noise.silent and not Planner(env).noise.silent
-    assert same(exact.play(env, [0] * 4, strokes), Planner(sn.SnookerEnv(aim="target")).play(env, [0] * 4, strokes, [1, 2, 3, 4]))
+    assert same(
+        exact.play(env, [0] * 4, strokes),
+        Planner(sn.SnookerEnv(aim="target")).play(env, [0] * 4, strokes, [1, 2, 3, 4]),
+    )
     loud = Planner(env, noise={"aim_deg": 3.0}).play(env, [0] * 4, strokes, [1, 2, 3, 4])
-    assert not np.array_equal(loud.afterstates.positions, exact.play(env, [0] * 4, strokes).afterstates.positions)
+    assert not np.array_equal(
+        loud.afterstates.positions, exact.play(env, [0] * 4, strokes).afterstates.positions
+    )
 
 
 def test_afterstates_are_positions_to_play_on():
@@ -196,7 +245,9 @@ def test_afterstates_are_positions_to_play_on():
     second = planner.play(first.afterstates, made, np.zeros(len(made), int))
     assert len(second.points) == len(made) and not (first.afterstates.over[made]).any()
     lost = int(np.flatnonzero(~first.goes_on)[0])
-    with pytest.raises(ValueError, match=rf"positions\[{lost}\].over = True: must be False: the visit has ended"):
+    with pytest.raises(
+        ValueError, match=rf"positions\[{lost}\].over = True: must be False: the visit has ended"
+    ):
         planner.play(first.afterstates, [made[0], lost], [0, 0])
 
 
@@ -217,7 +268,11 @@ def test_a_frame_and_a_match_are_planned_as_a_visit():
 
 
 def test_what_may_be_planned_for():
-    for source in (sn.SnookerEnv(aim="target"), {"aim": "target"}, gymnasium.make("Snooker-v0", aim="target", max_episode_steps=3)):
+    for source in (
+        sn.SnookerEnv(aim="target"),
+        {"aim": "target"},
+        gymnasium.make("Snooker-v0", aim="target", max_episode_steps=3),
+    ):
         assert Planner(source).action_space.shape == (4,) and not Planner(source).discrete
     assert Planner({"action": "discrete"}).discrete
     assert Planner({"physics": "match", "table": "tight"}).table.name == "tight"
@@ -270,7 +325,11 @@ def test_keys_may_only_be_left_out_without_noise():
 
 def test_choices_are_integers_in_range():
     planner = Planner({"action": "discrete"})
-    for wrong, complaint in (([540], r"actions\[0\] = 540"), ([0.5], "actions = array of float64"), ([[0, 1]], "actions = ")):
+    for wrong, complaint in (
+        ([540], r"actions\[0\] = 540"),
+        ([0.5], "actions = array of float64"),
+        ([[0, 1]], "actions = "),
+    ):
         with pytest.raises(ValueError, match=complaint):
             planner.play(AT, [0], wrong)
 
@@ -284,8 +343,14 @@ def test_no_strokes_are_no_error():
     ("change", "complaint"),
     [
         (lambda at: at.positions[2, 1].__setitem__(0, np.nan), r"positions\[2\], ball 1 = .*must be finite"),
-        (lambda at: at.positions[2, 1].__setitem__(slice(None), at.positions[2, 0]), r"positions\[2\] = balls 0 and 1: overlap"),
-        (lambda at: at.positions[2, 1].__setitem__(0, 0.9), r"positions\[2\]\[1\] = \(0.9, 0.3\): overlaps the cushion"),
+        (
+            lambda at: at.positions[2, 1].__setitem__(slice(None), at.positions[2, 0]),
+            r"positions\[2\] = balls 0 and 1: overlap",
+        ),
+        (
+            lambda at: at.positions[2, 1].__setitem__(0, 0.9),
+            r"positions\[2\]\[1\] = \(0.9, 0.3\): overlaps the cushion",
+        ),
         (lambda at: at.on_table[2].__setitem__(0, False), r"positions\[2\].cue = None: must be on the table"),
         (lambda at: at.ball_on.__setitem__(2, 9), r"positions\[2\].ball_on = 9: must be in \[-1, 7\]"),
         (lambda at: at.ball_on.__setitem__(2, 7), r"positions\[2\].ball_on = 'black': must name balls"),
@@ -302,13 +367,22 @@ def test_an_unsound_position_is_refused_by_its_row_if_it_is_played(change, compl
             SILENT.play(at, rows, STROKE * len(rows))
 
 
-@pytest.mark.parametrize("options", [{"noise": "club"}, {"noise": "club", "physics": "match", "fidelity": "fast"}])
+@pytest.mark.parametrize(
+    "options", [{"noise": "club"}, {"noise": "club", "physics": "match", "fidelity": "fast"}]
+)
 def test_strokes_in_succession_are_those_played_alone(options):
-    """An aim is solved once for successive equal tables, and anew for another choice, ball on, layout, or a ball that has gone."""
+    """An aim is solved once for successive equal tables, and anew for another choice, ball on, layout, or a
+    ball that has gone."""
     planner = Planner({"action": "discrete", **options}, threads=1)
     spread = {"cue": (0.1, 0.4), "reds": [(0.5, 1.0), (-0.3, 1.1)], "blue": (0.0, 0.0), "black": (-0.5, 0.9)}
-    moved, gone = spread | {"black": (-0.5, 0.90001)}, {name: place for name, place in spread.items() if name != "blue"}
-    each = [Position(**spread, on="red"), *(Position(**balls, on="any_colour") for balls in (spread, moved, gone))]
+    moved, gone = (
+        spread | {"black": (-0.5, 0.90001)},
+        {name: place for name, place in spread.items() if name != "blue"},
+    )
+    each = [
+        Position(**spread, on="red"),
+        *(Position(**balls, on="any_colour") for balls in (spread, moved, gone)),
+    ]
     at = Positions.of(each)
     rows = np.array([0, 0, 0, 1, 1, 2, 3, 3, 0, 1, 0, 0])
     choices = np.array([67, 67, 67, 67, 67, 67, 67, 40, 40, 40, 203, 67])

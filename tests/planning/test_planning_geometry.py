@@ -15,12 +15,23 @@ def test_pots_are_those_of_each_position():
     at.ball_on[10:] = 0
     found = pots(at, most=6)
     for k in range(20):
-        each = one_by_one.pots(at.positions[k], at.on_table[k], mask_of(np.flatnonzero(at.balls_on[k]).tolist()), most=6)
+        each = one_by_one.pots(
+            at.positions[k], at.on_table[k], mask_of(np.flatnonzero(at.balls_on[k]).tolist()), most=6
+        )
         n = len(each)
-        assert found.ball[k, :n].tolist() == each[:, 0].tolist() and found.pocket[k, :n].tolist() == each[:, 1].tolist()
-        assert np.array_equal(found.ghost[k, :n], each[:, 2:4]) and np.array_equal(found.tolerance[k, :n], each[:, 5])
+        assert (
+            found.ball[k, :n].tolist() == each[:, 0].tolist()
+            and found.pocket[k, :n].tolist() == each[:, 1].tolist()
+        )
+        assert np.array_equal(found.ghost[k, :n], each[:, 2:4]) and np.array_equal(
+            found.tolerance[k, :n], each[:, 5]
+        )
         assert np.cos(found.cut[k, :n]) == pytest.approx(each[:, 4], abs=1e-12)
-        assert (found.ball[k, n:] == -1).all() and (found.pocket[k, n:] == -1).all() and not found.tolerance[k, n:].any()
+        assert (
+            (found.ball[k, n:] == -1).all()
+            and (found.pocket[k, n:] == -1).all()
+            and not found.tolerance[k, n:].any()
+        )
     assert (found.ball[:, 0] >= 16).sum() == 10 and np.array_equal(pots(at).ball, found.ball[:, :4])
     with pytest.raises(ValueError, match="most = 0"):
         pots(at, most=0)
@@ -37,7 +48,9 @@ def test_what_is_in_the_way_is_nearer_than_two_radii_to_the_path():
         assert np.array_equal(found[i, sure], (nearest < 0.0525)[sure] & at.on_table[rows[i], sure])
     assert 0.02 < found.mean() < 0.5
     ignored = obstructions(at, rows, starts, ends, ignore=np.stack([np.zeros(200, int), np.full(200, 5)], 1))
-    assert not ignored[:, [0, 5]].any() and np.array_equal(np.delete(ignored, [0, 5], 1), np.delete(found, [0, 5], 1))
+    assert not ignored[:, [0, 5]].any() and np.array_equal(
+        np.delete(ignored, [0, 5], 1), np.delete(found, [0, 5], 1)
+    )
 
 
 def test_bad_paths_are_refused():

@@ -1,4 +1,5 @@
-"""Does a position in words mean what it says, and does it come back from the arrays that planning and environments use?"""
+"""Does a position in words mean what it says, and does it come back from the arrays that planning and
+environments use?"""
 
 import dataclasses
 import json
@@ -27,19 +28,34 @@ FULL = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (-0.3, 0.7)], "pink": (0.2, 0.1
 
 
 def test_a_field_that_there_is_not_is_named_with_those_that_there_are():
-    with pytest.raises(TypeError, match=r"unexpected keyword argument 'red'; the reds are one list, reds=\[\(x, y\), \.\.\.\]"):
+    with pytest.raises(
+        TypeError,
+        match=r"unexpected keyword argument 'red'; the reds are one list, reds=\[\(x, y\), \.\.\.\]",
+    ):
         Position(cue=(0.0, 0.2), red=(0.1, 0.3))
-    with pytest.raises(TypeError, match="'white'; the fields are cue, reds, yellow, green, brown, blue, pink, black, on, "):
+    with pytest.raises(
+        TypeError, match="'white'; the fields are cue, reds, yellow, green, brown, blue, pink, black, on, "
+    ):
         Position(white=(0.0, 0.2))
 
 
 def test_words_and_arrays_say_the_same():
     position = Position(**FULL, on="any colour", points=9)
-    assert position.on == "any_colour" and position.reds == ((0.3, 0.5), (-0.3, 0.7)) and position.yellow is None
+    assert (
+        position.on == "any_colour" and position.reds == ((0.3, 0.5), (-0.3, 0.7)) and position.yellow is None
+    )
     positions, on_table, game = position.arrays()
     assert np.flatnonzero(on_table).tolist() == [0, 1, 2, 20, 21] and game.tolist() == [0, 0, 9, 0, 0]
-    assert positions[[0, 1, 2, 20, 21]].tolist() == [[0.1, -1.2], [0.3, 0.5], [-0.3, 0.7], [0.2, 0.1], [0.0, 1.4605]]
-    assert Position.of_arrays(positions, on_table, game) == position and hash(position) == hash(Position(**FULL, on="any_colour", points=9))
+    assert positions[[0, 1, 2, 20, 21]].tolist() == [
+        [0.1, -1.2],
+        [0.3, 0.5],
+        [-0.3, 0.7],
+        [0.2, 0.1],
+        [0.0, 1.4605],
+    ]
+    assert Position.of_arrays(positions, on_table, game) == position and hash(position) == hash(
+        Position(**FULL, on="any_colour", points=9)
+    )
     assert Position(**json.loads(json.dumps(position.to_dict()))) == position
     assert set(position.to_dict()) == {"cue", "reds", "pink", "black", "on", "in_hand", "points", "over"}
     assert dataclasses.replace(position, pink=None).pink is None
@@ -56,7 +72,9 @@ def test_what_is_on_follows_from_the_balls_if_it_is_not_said():
 def test_a_cue_ball_in_hand_lies_in_the_d():
     assert Position(reds=[(0.3, 0.3)], in_hand=True).cue == pytest.approx(tuple(SPOTS[0]))
     beside = Position(reds=[tuple(SPOTS[0])], in_hand=True)  # its usual place is taken
-    assert np.hypot(beside.cue[0] - SPOTS[0, 0], beside.cue[1] - SPOTS[0, 1]) == pytest.approx(2 * 0.02625, abs=1e-3)
+    assert np.hypot(beside.cue[0] - SPOTS[0, 0], beside.cue[1] - SPOTS[0, 1]) == pytest.approx(
+        2 * 0.02625, abs=1e-3
+    )
     with pytest.raises(ValueError, match="in_hand = True: must be False with the cue ball at"):
         Position(cue=(0.0, 0.0), reds=[(0.3, 0.3)], in_hand=True)
 
@@ -109,7 +127,11 @@ def test_positions_of_states_and_of_environments_are_the_same():
     batch, states = Positions.of(env), Positions.of(env.get_state())
     for name in ("positions", "on_table", "game"):
         assert np.array_equal(getattr(batch, name), getattr(states, name))
-    assert Positions.of(batch) is batch and len(Positions.of(env.get_state()[1])) == 1 and repr(batch) == "Positions(4 rows)"
+    assert (
+        Positions.of(batch) is batch
+        and len(Positions.of(env.get_state()[1])) == 1
+        and repr(batch) == "Positions(4 rows)"
+    )
     assert batch.balls_on.sum(axis=1).tolist() == [5] * 4 and not batch.over.any() and not batch.in_hand.any()
 
 
@@ -118,9 +140,13 @@ def test_one_row_is_words_and_any_other_index_a_batch():
     env.reset(seed=0)
     batch = Positions.of(env)
     assert isinstance(batch[2], Position) and batch[-1] == batch[4] and [p.on for p in batch] == ["red"] * 5
-    assert np.array_equal(Positions.of(list(batch)).observations(), batch.observations())  # reds keep their order here
+    # reds keep their order here
+    assert np.array_equal(Positions.of(list(batch)).observations(), batch.observations())
     for rows in (slice(1, 5, 2), [1, 3], np.array([False, True, False, True, False])):
-        assert np.array_equal(batch[rows].positions, batch.positions[[1, 3]]) and batch[rows].positions.flags.c_contiguous
+        assert (
+            np.array_equal(batch[rows].positions, batch.positions[[1, 3]])
+            and batch[rows].positions.flags.c_contiguous
+        )
     view = batch[1:3]
     view.ball_on[:] = 0
     assert batch.ball_on.tolist() == [1, 0, 0, 1, 1]
@@ -131,11 +157,23 @@ def test_one_row_is_words_and_any_other_index_a_batch():
 @pytest.mark.parametrize(
     ("arrays", "complaint"),
     [
-        ((np.zeros((2, 21, 2)), np.zeros((2, 22), bool), np.zeros((2, 5), int)), "positions = array of shape"),
-        ((np.full((2, 22, 2), np.nan), np.zeros((2, 22), bool), np.zeros((2, 5), int)), r"positions\[0, 0, 0\] = nan"),
+        (
+            (np.zeros((2, 21, 2)), np.zeros((2, 22), bool), np.zeros((2, 5), int)),
+            "positions = array of shape",
+        ),
+        (
+            (np.full((2, 22, 2), np.nan), np.zeros((2, 22), bool), np.zeros((2, 5), int)),
+            r"positions\[0, 0, 0\] = nan",
+        ),
         ((np.zeros((2, 22, 2)), np.zeros((2, 22)), np.zeros((2, 5), int)), "on_table = float64 array"),
-        ((np.zeros((2, 22, 2)), np.zeros((1, 22), bool), np.zeros((2, 5), int)), "on_table = bool array of shape"),
-        ((np.zeros((2, 22, 2)), np.zeros((2, 22), bool), np.zeros((2, 4), int)), "game = int64 array of shape"),
+        (
+            (np.zeros((2, 22, 2)), np.zeros((1, 22), bool), np.zeros((2, 5), int)),
+            "on_table = bool array of shape",
+        ),
+        (
+            (np.zeros((2, 22, 2)), np.zeros((2, 22), bool), np.zeros((2, 4), int)),
+            "game = int64 array of shape",
+        ),
         ((np.zeros((2, 22, 2)), np.zeros((2, 22), bool), np.zeros((2, 5))), "game = float64 array"),
     ],
 )
@@ -154,15 +192,29 @@ def test_positions_of_frames_hold_what_the_striker_may_know():
     saved.positions[1, 0] = (0.1, 0.2)
     at = Positions.of(env)
     assert at.of_frames and at.game.shape == (3, 33) and at.saved.positions[1, 0].tolist() == [0.1, 0.2]
-    assert at.scores.tolist() == [[20, 7], [7, 20], [20, 7]] and at.frames_won.tolist() == [[1, 2], [2, 1], [1, 2]]
+    assert at.scores.tolist() == [[20, 7], [7, 20], [20, 7]] and at.frames_won.tolist() == [
+        [1, 2],
+        [2, 1],
+        [1, 2],
+    ]
     assert [each.tolist() for each in (at.free_ball, at.choice, at.miss_called)] == [[False, True, False]] * 3
     assert [each.tolist() for each in (at.lot, at.respotted_black)] == [[False, False, True]] * 2
-    assert at.balls_on.sum(axis=1).tolist() == [15, 21, 15] and not at.anywhere.any() and not at.game[:, STRIKER].any()
+    assert (
+        at.balls_on.sum(axis=1).tolist() == [15, 21, 15]
+        and not at.anywhere.any()
+        and not at.game[:, STRIKER].any()
+    )
     assert game[1, STRIKER] == 1  # the environment's own rows stay as they are
     part = at[[1]]
-    assert part.free_ball.all() and part.saved.positions[0, 0].tolist() == [0.1, 0.2] and part.copy().saved.on_table.shape == (1, 22)
+    assert (
+        part.free_ball.all()
+        and part.saved.positions[0, 0].tolist() == [0.1, 0.2]
+        and part.copy().saved.on_table.shape == (1, 22)
+    )
     visits = at.as_visits()
-    assert visits.game.shape == (3, 5) and visits.ball_on.tolist() == [1, 0, 1] and visits.as_visits() is visits
+    assert (
+        visits.game.shape == (3, 5) and visits.ball_on.tolist() == [1, 0, 1] and visits.as_visits() is visits
+    )
     assert not (visits.free_ball.any() or visits.choice.any() or visits.scores.any() or visits.of_frames)
     assert at[1].on == "any_colour" and at[0].on == "red"
 

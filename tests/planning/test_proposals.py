@@ -8,7 +8,18 @@ import pytest
 from positions import chances_by_width, tables
 
 from snooker_env.geometry import POCKET_AIMS
-from snooker_env.planning import Planner, Position, Positions, StrokeSearch, at_balls, at_pots, over_cushions, pots, prospects_of, spread_of
+from snooker_env.planning import (
+    Planner,
+    Position,
+    Positions,
+    StrokeSearch,
+    at_balls,
+    at_pots,
+    over_cushions,
+    pots,
+    prospects_of,
+    spread_of,
+)
 from snooker_env.planning.proposals import (
     AIM,
     ANYWHERE,
@@ -50,7 +61,14 @@ def solved(at, row, strokes, ball, pocket, ghost):
     m = len(strokes)
     target, ghosts = np.tile(POCKET_AIMS[pocket, :2], (m, 1)), np.tile(ghost, (m, 1))
     return PLANNER.pot_aim(
-        at, np.full(m, row), np.full(m, ball), target, strokes[:, SPEED], side=strokes[:, SIDE], top=strokes[:, TOP], ghosts=ghosts
+        at,
+        np.full(m, row),
+        np.full(m, ball),
+        target,
+        strokes[:, SPEED],
+        side=strokes[:, SIDE],
+        top=strokes[:, TOP],
+        ghosts=ghosts,
     )
 
 
@@ -59,19 +77,34 @@ def test_strokes_stay_within_their_limits_and_fill_them():
     strokes, chances = spread_strokes(at, 512, seeds(20), SPREAD, DYNAMICS)
     assert strokes.shape == (20, 512, 5) and chances.shape == (20, 512) and np.isfinite(strokes).all()
     speed, side, top = (strokes[..., c] for c in (SPEED, SIDE, TOP))
-    assert speed.min() >= SLOWEST and speed.max() <= FASTEST and speed.min() < 1.02 * SLOWEST and speed.max() > 0.98 * FASTEST
-    assert np.abs(side).max() <= WIDEST and np.abs(top).max() <= HIGHEST and np.hypot(side, top).max() <= RIM + 1e-12
+    assert (
+        speed.min() >= SLOWEST
+        and speed.max() <= FASTEST
+        and speed.min() < 1.02 * SLOWEST
+        and speed.max() > 0.98 * FASTEST
+    )
+    assert (
+        np.abs(side).max() <= WIDEST
+        and np.abs(top).max() <= HIGHEST
+        and np.hypot(side, top).max() <= RIM + 1e-12
+    )
     assert np.abs(side).max() > 0.9 * WIDEST and np.abs(top).max() > 0.98 * HIGHEST
     assert (side == 0.0).mean(axis=1) == pytest.approx(np.full(20, PLAIN), abs=0.03)
-    assert np.abs(side.mean(axis=1)).max() < 0.01 and np.abs(top.mean(axis=1)).max() < 0.01  # as much to the left, as much below
+    # as much to the left, as much below
+    assert np.abs(side.mean(axis=1)).max() < 0.01 and np.abs(top.mean(axis=1)).max() < 0.01
     assert np.abs(np.log(speed).mean(axis=1) - 0.5 * np.log(SLOWEST * FASTEST)).max() < 0.02
     assert ((chances > 0.0) & (chances <= 1.0)).all()
 
 
 def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
-    """Shares in plain Python from the chances of ``prospects_of``; aims by ``Planner.pot_aim``. Of two reds the likelier gets more."""
+    """Shares in plain Python from the chances of ``prospects_of``; aims by ``Planner.pot_aim``. Of two reds
+    the likelier gets more."""
     at, m, several = some(), 150, 0
-    found, likely, chances = pots(at, most=MOST_POTS), prospects_of(at, SPREAD, most=MOST_POTS)[1], chances_by_width(at, SPREAD)
+    found, likely, chances = (
+        pots(at, most=MOST_POTS),
+        prospects_of(at, SPREAD, most=MOST_POTS)[1],
+        chances_by_width(at, SPREAD),
+    )
     proposed = spread_strokes(at, m, seeds(20), SPREAD, DYNAMICS)
     for k in range(20):
         many = int((found.ball[k] >= 0).sum())
@@ -83,7 +116,9 @@ def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
         for j in range(many):
             last = m if j == many - 1 else floor(m * ends[j] + 0.5)
             strokes = proposed.strokes[k, first:last]
-            assert proposed.chances[k, first:last] == pytest.approx(np.full(last - first, chances[k, j]), rel=1e-9)
+            assert proposed.chances[k, first:last] == pytest.approx(
+                np.full(last - first, chances[k, j]), rel=1e-9
+            )
             if last > first:
                 expected = solved(at, k, strokes, found.ball[k, j], found.pocket[k, j], found.ghost[k, j])
                 assert np.array_equal(strokes[:, AIM], expected)
@@ -97,7 +132,8 @@ def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
 
 
 def test_a_chance_is_what_errors_leave_of_the_pot():
-    """Strokes that score without errors, under a professional's: by the chance that they were given, sure ones and doubtful ones."""
+    """Strokes that score without errors, under a professional's: by the chance that they were given, sure
+    ones and doubtful ones."""
     spread, n, m, errors = spread_of(LEVELS["professional"]), 40, 30, 12
     at = Positions.of(tables(n, seed=9))
     strokes, chances = spread_strokes(at, m, seeds(n), spread, DYNAMICS)
@@ -106,7 +142,9 @@ def test_a_chance_is_what_errors_leave_of_the_pot():
     drawn = np.random.default_rng(0).standard_normal((len(rows), 5))
     pots_made = tool.outcomes(at, rows, np.repeat(strokes.reshape(-1, 5), errors, 0), drawn).points > 0
     made, chances = pots_made.reshape(-1, errors).mean(axis=1), chances.ravel()
-    scores = tool.outcomes(at, np.repeat(np.arange(n), m), strokes.reshape(-1, 5), np.zeros((n * m, 5))).points > 0
+    scores = (
+        tool.outcomes(at, np.repeat(np.arange(n), m), strokes.reshape(-1, 5), np.zeros((n * m, 5))).points > 0
+    )
     for some, exact in ((scores & (chances > 0.9), 0.05), (scores & (chances < 0.9), 0.1)):
         assert some.sum() > 30 and made[some].mean() == pytest.approx(chances[some].mean(), abs=exact)
 
@@ -125,10 +163,12 @@ def test_where_there_is_no_pot_the_strokes_hit_the_balls_on_from_thin_to_full():
     assert pots(at).ball[0, 0] == -1 and not at_pots(SEARCH, at, m, [5]).chances.any()
     strokes, chances = (one[0] for one in at_balls(SEARCH, at, m, [5]))
     assert (chances == 1.0).all() and not over_cushions(SEARCH, at, m, [5]).chances.any()
-    first, hard = first_struck(at, strokes), strokes[:, SPEED] > 2.0  # a soft one with backspin does not arrive
+    # a soft one with backspin does not arrive
+    first, hard = first_struck(at, strokes), strokes[:, SPEED] > 2.0
     assert set(first[hard]) == {1, 2} and hard.sum() > 100
     x, y = at.positions[0, 1:3].T - at.positions[0, 0][:, None]
-    off = (strokes[:, AIM, None] - np.arctan2(y, x)) / np.arcsin(2 * 0.02625 / np.hypot(x, y))  # +-1 grazes that red
+    # +-1 grazes that red
+    off = (strokes[:, AIM, None] - np.arctan2(y, x)) / np.arcsin(2 * 0.02625 / np.hypot(x, y))
     for red in (0, 1):
         mine = off[first == red + 1, red]
         assert mine.min() < -0.8 or mine.max() > 0.8  # one side of each is behind the other
@@ -136,17 +176,25 @@ def test_where_there_is_no_pot_the_strokes_hit_the_balls_on_from_thin_to_full():
 
 
 def test_without_a_pot_half_of_the_strokes_are_hard_and_the_others_of_any_speed():
-    """Hard strokes score more often by chance: the density of their speed grows with its square, up to the fastest action."""
+    """Hard strokes score more often by chance: the density of their speed grows with its square, up to the
+    fastest action."""
     strokes = at_balls(SEARCH, Positions.of(NO_POT), 2000, [5]).strokes[0]
     shares = [(strokes[1::2, SPEED] < v).mean() for v in (2.0, 4.0, 6.0)]
     assert shares == pytest.approx([(v / MAX_SPEED) ** 3 for v in (2.0, 4.0, 6.0)], abs=0.01)
-    assert np.histogram(np.log(strokes[::2, SPEED]), 4, np.log([SOFTEST, FASTEST]))[0] == pytest.approx([250] * 4, abs=6)
+    assert np.histogram(np.log(strokes[::2, SPEED]), 4, np.log([SOFTEST, FASTEST]))[0] == pytest.approx(
+        [250] * 4, abs=6
+    )
     assert strokes[:, SPEED].min() >= SOFTEST and 0.99 * MAX_SPEED < strokes[:, SPEED].max() <= MAX_SPEED
 
 
 def test_no_contact_is_tried_that_another_ball_hides():
-    """A colour before the reds: where nothing is in its place, some of the plain strokes would meet it first."""
-    at = Positions.of(Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], yellow=(0.4, 1.4), black=(0.0, -1.0), on="red"))
+    """A colour before the reds: where nothing is in its place, some of the plain strokes would meet it
+    first."""
+    at = Positions.of(
+        Position(
+            cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], yellow=(0.4, 1.4), black=(0.0, -1.0), on="red"
+        )
+    )
     assert pots(at).ball[0, 0] == -1
     strokes = at_balls(SEARCH, at, 400, [3]).strokes[0]
     straight = (strokes[:, SIDE] == 0.0) & (strokes[:, SPEED] > 2.0)
@@ -161,7 +209,9 @@ def test_away_from_a_ball_on_that_touches_the_cue_ball():
     strokes = at_balls(SEARCH, at, 100, [3]).strokes[0]
     assert np.cos(strokes[:, AIM]).max() < 1e-6 and np.ptp(strokes[:, AIM]) > 3.0
     fouls = PLANNER.stops(at, np.zeros(100, int), strokes=strokes)
-    assert (fouls.penalty[(fouls.potted[:, [0, 21]] < 0).all(axis=1)] == 0).all() and (fouls.penalty == 0).mean() > 0.7
+    assert (fouls.penalty[(fouls.potted[:, [0, 21]] < 0).all(axis=1)] == 0).all() and (
+        fouls.penalty == 0
+    ).mean() > 0.7
 
 
 def test_hidden_balls_are_reached_over_cushions():
@@ -189,15 +239,27 @@ def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
     many = (found.ball >= 0).sum(axis=1)
     assert (many > 0).all()
     which = rng.integers(0, 4, (6, 30))
-    given = np.stack([rng.uniform(1.0, 5.0, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30))], axis=2)
+    given = np.stack(
+        [rng.uniform(1.0, 5.0, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30))],
+        axis=2,
+    )
     kept = which.copy(), given.copy()
     strokes, of = strokes_at(at, which, given, seeds(6), SPREAD, DYNAMICS)
-    assert np.array_equal(strokes[..., :AIM], given) and np.array_equal(which, kept[0]) and np.array_equal(given, kept[1])
+    assert (
+        np.array_equal(strokes[..., :AIM], given)
+        and np.array_equal(which, kept[0])
+        and np.array_equal(given, kept[1])
+    )
     for k in range(6):
         for i in range(30):
             j = min(which[k, i], many[k] - 1)  # beyond the last pot: the last one
             assert of[k, i] == pytest.approx(chances[k, j], rel=1e-9)
-            assert strokes[k, i, AIM] == solved(at, k, strokes[k, i : i + 1], found.ball[k, j], found.pocket[k, j], found.ghost[k, j])[0]
+            assert (
+                strokes[k, i, AIM]
+                == solved(
+                    at, k, strokes[k, i : i + 1], found.ball[k, j], found.pocket[k, j], found.ghost[k, j]
+                )[0]
+            )
 
 
 def test_a_position_is_proposed_for_by_itself():
@@ -210,7 +272,9 @@ def test_a_position_is_proposed_for_by_itself():
     assert np.array_equal(again.strokes, strokes[order]) and np.array_equal(again.chances, chances[order])
     other = spread_strokes(at, 40, seeds(8, first=500), SPREAD, DYNAMICS).strokes
     assert all(not np.array_equal(other[k], strokes[k]) for k in range(8))
-    assert all(np.array_equal(getattr(at, name), getattr(kept, name)) for name in ("positions", "on_table", "game"))
+    assert all(
+        np.array_equal(getattr(at, name), getattr(kept, name)) for name in ("positions", "on_table", "game")
+    )
 
 
 @pytest.mark.parametrize("generate", [at_balls, over_cushions])
@@ -227,6 +291,8 @@ def test_other_strokes_are_generated_for_a_position_by_itself(generate):
 
 def test_a_wider_hand_spares_the_doubtful_pots():
     """With larger errors every chance falls, and the likeliest pot's share of the strokes grows."""
-    at = Positions.of(Position(cue=(0.0, 0.9), reds=[(0.5, 1.35), (-0.6, -0.9)], black=(0.0, 1.4605), on="red"))
+    at = Positions.of(
+        Position(cue=(0.0, 0.9), reds=[(0.5, 1.35), (-0.6, -0.9)], black=(0.0, 1.4605), on="red")
+    )
     small, large = (spread_strokes(at, 200, [3], spread, DYNAMICS).chances[0] for spread in (5e-4, 4e-3))
     assert large.max() < small.max() and (large == large.max()).sum() > (small == small.max()).sum() > 0

@@ -1,4 +1,5 @@
-"""Which fixtures do tests of play share? A game without the network, and one behind a server in this process."""
+"""Which fixtures do tests of play share? A game without the network, and one behind a server in this
+process."""
 
 import threading
 

@@ -1,4 +1,5 @@
-"""Does the page play? In a real headless Chromium, by mouse, keys and touch: visits, fouls, positions, advice, agents, undo, all sizes."""
+"""Does the page play? In a real headless Chromium, by mouse, keys and touch: visits, fouls, positions,
+advice, agents, undo, all sizes."""
 
 import time
 
@@ -27,7 +28,9 @@ class Shown:
         self.until("page.state")
 
     def __call__(self, code, argument=None):
-        return self.page.evaluate(f"argument => {{ const page = window.page ?? {{}}; return {code}; }}", argument)
+        return self.page.evaluate(
+            f"argument => {{ const page = window.page ?? {{}}; return {code}; }}", argument
+        )
 
     def until(self, code, argument=None, seconds=120):  # what is not compiled yet takes a while
         """Wait for it from here: the page's policy allows no code from a string."""
@@ -38,15 +41,23 @@ class Shown:
 
     def set_up(self, position, **fields):
         """A position by the protocol, and wait until the page shows it."""
-        self.line("api/players", {"players": ["person", "person"], "noise": ["none", "none"], "practice": False})
+        self.line(
+            "api/players", {"players": ["person", "person"], "noise": ["none", "none"], "practice": False}
+        )
         self.line("api/new", {"layout": "break_off", "seed": 1})
         status, state, _ = self.line("api/position", {"position": position, **fields})
         assert status == 200
-        self.until("page.state.revision >= argument && page.settled === page.state.revision && page.aiming", state["revision"])
+        self.until(
+            "page.state.revision >= argument && page.settled === page.state.revision && page.aiming",
+            state["revision"],
+        )
 
     def at(self, x, y):
         """Where a place [m] is on the screen."""
-        box, (px, py) = self.page.locator("#table").bounding_box(), self("page.view.toScreen(...argument)", [x, y])
+        box, (px, py) = (
+            self.page.locator("#table").bounding_box(),
+            self("page.view.toScreen(...argument)", [x, y]),
+        )
         return box["x"] + px, box["y"] + py
 
     def drag(self, start, end, steps=8):
@@ -60,7 +71,10 @@ class Shown:
         """Cut the motion short and wait until so many strokes are shown."""
         self.until("page.moving || page.state.strokes >= argument", strokes)
         end = time.monotonic() + 120
-        while not self("page.played >= argument && !page.busy && !page.moving && page.settled === page.state.revision", strokes):
+        while not self(
+            "page.played >= argument && !page.busy && !page.moving && page.settled === page.state.revision",
+            strokes,
+        ):
             assert time.monotonic() < end
             self("page.skip()")
             time.sleep(0.02)
@@ -72,7 +86,9 @@ class Shown:
     def close(self):
         self.page.close()
         assert not self.errors
-        assert not [url for url in self.asked if not url.startswith((self.line.server.address, "blob:", "data:"))]
+        assert not [
+            url for url in self.asked if not url.startswith((self.line.server.address, "blob:", "data:"))
+        ]
 
 
 @pytest.fixture
@@ -83,7 +99,8 @@ def shown(chromium, line):  # noqa: F811
 
 
 def test_a_visit_is_played_by_mouse(shown):
-    """Aim by dragging, speed by the slider, strike by the button: a red, the black, then a miss ends the visit."""
+    """Aim by dragging, speed by the slider, strike by the button: a red, the black, then a miss ends the
+    visit."""
     shown.set_up(EASY)
     shown.drag((0.4, 1.0), (0.6, 1.4))
     assert shown("page.aim.wish.aim") == pytest.approx(STRAIGHT, abs=0.01)
@@ -91,17 +108,28 @@ def test_a_visit_is_played_by_mouse(shown):
     assert shown.page.inner_text("#speed-out") == "2.00 m/s"
     shown.page.click("#play")
     shown.until("page.moving")
-    assert shown.page.is_visible("#skip") and not shown.page.is_enabled("#play") and "plays: red" in shown.words
+    assert (
+        shown.page.is_visible("#skip") and not shown.page.is_enabled("#play") and "plays: red" in shown.words
+    )
     moved = shown("[page.moving.stroke.at(0.3).x[0], page.moving.stroke.first[0]]")
     assert abs(moved[0] - moved[1]) > 0.05
     shown.page.click("#skip")
     shown.played(1)
-    assert shown.words == "Player 1's stroke: any colour is on." and "Red potted, 1" in shown.page.inner_text("#last")
+    assert shown.words == "Player 1's stroke: any colour is on." and "Red potted, 1" in shown.page.inner_text(
+        "#last"
+    )
     assert shown.page.inner_text("#side-0 b") == "1" and shown("page.balls.on[1]") == 0
     assert shown.page.is_visible("#nominate")
-    assert shown("[...document.querySelectorAll('#nominate option')].map(one => one.value)") == ["", "pink", "black"]
+    assert shown("[...document.querySelectorAll('#nominate option')].map(one => one.value)") == [
+        "",
+        "pink",
+        "black",
+    ]
     shown.page.select_option("#nominate", "pink")
-    shown("page.aim.set({aim: Math.atan2(argument[1] - page.balls.y[0], argument[0] - page.balls.x[0]), speed: 1})", EASY["pink"])
+    shown(
+        "page.aim.set({aim: Math.atan2(argument[1] - page.balls.y[0], argument[0] - page.balls.x[0]), speed: 1})",
+        EASY["pink"],
+    )
     shown.page.keyboard.press("Enter")
     shown.played(2)
     state = shown("page.state")
@@ -120,8 +148,12 @@ def test_keys_and_dial_change_the_stroke(shown):
     for key in ("ArrowLeft", "Shift+ArrowLeft", "ArrowUp", "Shift+ArrowUp", "w", "w", "d", "e"):
         shown.page.keyboard.press(key)
     wish = shown("page.aim.wish")
-    assert wish["aim"] == pytest.approx(1 + 1.1 * 0.017453293, abs=1e-6) and wish["speed"] == pytest.approx(2.6)
-    assert (wish["side"], wish["top"]) == pytest.approx((0.05, 0.1)) and wish["elevation"] == pytest.approx(0.017453293)
+    assert wish["aim"] == pytest.approx(1 + 1.1 * 0.017453293, abs=1e-6) and wish["speed"] == pytest.approx(
+        2.6
+    )
+    assert (wish["side"], wish["top"]) == pytest.approx((0.05, 0.1)) and wish["elevation"] == pytest.approx(
+        0.017453293
+    )
     box = shown.page.locator("#dial").bounding_box()
     shown.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     shown.page.mouse.down()
@@ -143,11 +175,18 @@ def test_after_a_foul_the_choices_are_shown(shown):
     shown.page.click("#play")
     shown.played(1)
     assert shown.words == "Foul and a miss by Player 1: Player 2 chooses."
-    assert shown("[...document.querySelectorAll('#choices button')].map(b => b.dataset.choice)") == ["play", "play_again", "replace"]
+    assert shown("[...document.querySelectorAll('#choices button')].map(b => b.dataset.choice)") == [
+        "play",
+        "play_again",
+        "replace",
+    ]
     assert shown.page.is_visible("#choices") and not shown.page.is_enabled("#play")
     shown.page.click("#choices button[data-choice=replace]")
     shown.until("page.state.phase === 'stroke' && page.settled === page.state.revision")
-    assert not shown.page.is_visible("#choices") and shown("[page.balls.x[0], page.balls.y[0]]") == COVERED["cue"]
+    assert (
+        not shown.page.is_visible("#choices")
+        and shown("[page.balls.x[0], page.balls.y[0]]") == COVERED["cue"]
+    )
     assert shown("page.state.striker") == 0
     shown.page.click("#undo")
     shown.until("page.state.phase === 'choice'")
@@ -161,7 +200,9 @@ def test_a_ball_is_dragged_in_set_up_and_a_wrong_place_is_reported_beside_it(sho
     shown.page.click("#set")
     shown.drag(EASY["reds"][1], (0.02, 0.90), steps=4)  # onto the pink
     shown.until("!document.getElementById('bubble').hidden")
-    assert shown.page.inner_text("#bubble") == "The pink overlaps the red." and not shown.page.is_enabled("#set-done")
+    assert shown.page.inner_text("#bubble") == "The pink overlaps the red." and not shown.page.is_enabled(
+        "#set-done"
+    )
     assert shown.page.inner_text("#set-wrong") == ""  # it is reported once
     shown.drag((0.02, 0.90), (-0.3, 0.4))
     shown.until("document.getElementById('bubble').hidden && !document.getElementById('set-done').disabled")
@@ -176,7 +217,11 @@ def test_a_ball_is_dragged_in_set_up_and_a_wrong_place_is_reported_beside_it(sho
     shown.until("page.state.striker === 1 && !page.setup.open && page.settled === page.state.revision")
     state = shown("page.state")
     places = state["positions"]
-    assert state["scores"] == [33, 0] and "black" not in places and places["blue"] == pytest.approx([0.3, -0.3], abs=0.003)
+    assert (
+        state["scores"] == [33, 0]
+        and "black" not in places
+        and places["blue"] == pytest.approx([0.3, -0.3], abs=0.003)
+    )
     assert places["red 2"] == pytest.approx([-0.3, 0.4], abs=0.003) and places["red 1"] == EASY["reds"][0]
 
 
@@ -202,7 +247,9 @@ def test_advice_is_shown_drawn_and_taken(shown):
     assert "points expected" in shown.page.inner_text("#advice li:first-child")
     shown.page.hover("#advice li:first-child button")
     shown.until("page.advisor.hover && page.advisor.found && page.advisor.times.length")
-    heat = shown("page.advisor.overlay().heat.map(one => [one.nx * one.ny, one.values.length, one.values.reduce((a, b) => a + b, 0)])")
+    heat = shown(
+        "page.advisor.overlay().heat.map(one => [one.nx * one.ny, one.values.length, one.values.reduce((a, b) => a + b, 0)])"
+    )
     assert len(heat) == 2 and heat[0][0] == heat[0][1] and heat[1][2] == pytest.approx(500, rel=0.02)
     best = shown("page.advisor.hover")
     shown.page.click("#advice li:first-child button")
@@ -260,7 +307,8 @@ def left_after(balls, on):
 
 
 def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
-    """Between two strokes the table is the one left by the first, and on, left, reds, break and score are those of this table."""
+    """Between two strokes the table is the one left by the first, and on, left, reds, break and score are
+    those of this table."""
     shown.set_up(VISIT)
     shown.line("api/players", {"players": ["person", "ghost_ball"], "noise": ["none", "none"]})
     shown.line("api/position", {"position": VISIT, "striker": 1})
@@ -280,26 +328,43 @@ def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
         assert before, f"stroke {k} was not shown"
         for one in before:
             said = f"break {break_} on {stroke['ball_on']} reds {len(balls & {1, 2, 3})} left {left_after(balls, stroke['ball_on'])}"
-            assert one["now"] == said and one["score"] == scores and one["asked"] == f"ghost ball plays: {stroke['ball_on']}"
+            assert (
+                one["now"] == said
+                and one["score"] == scores
+                and one["asked"] == f"ghost ball plays: {stroke['ball_on']}"
+            )
         balls -= {ball for ball in stroke["pots"] if 1 <= ball <= 15}
         break_, scores = stroke["break"], stroke["score"]
         if k + 1 == len(strokes):
             break
-        on, after = strokes[k + 1]["ball_on"], [one for one in drawn if one["k"] == k + 1 and not one["moving"]]
+        on, after = (
+            strokes[k + 1]["ball_on"],
+            [one for one in drawn if one["k"] == k + 1 and not one["moving"]],
+        )
         assert after, f"the table after stroke {k} was not shown"
         for one in after:
             assert set(one["on"]) == balls, f"after stroke {k}"
-            assert one["now"] == f"break {break_} on {on} reds {len(balls & {1, 2, 3})} left {left_after(balls, on)}"
-            assert one["score"] == scores and stroke["words"] in one["last"] and one["asked"] == f"ghost ball's stroke: {on} is on."
+            assert (
+                one["now"]
+                == f"break {break_} on {on} reds {len(balls & {1, 2, 3})} left {left_after(balls, on)}"
+            )
+            assert (
+                one["score"] == scores
+                and stroke["words"] in one["last"]
+                and one["asked"] == f"ghost ball's stroke: {on} is on."
+            )
     shown.page.keyboard.press("v")  # the last stroke again: from the table before it
     shown.until("page.moving && page.moving.start")
-    assert f"left {left_after(balls, strokes[-1]['ball_on'])}" in shown.page.inner_text("#now").replace("\n", " ")
+    assert f"left {left_after(balls, strokes[-1]['ball_on'])}" in shown.page.inner_text("#now").replace(
+        "\n", " "
+    )
     shown("page.skip()")
     shown.until("!page.behind")
 
 
 def test_the_end_of_a_frame_is_seen(shown):
-    """Who has won, the score from the viewer's side, and the next frame, which the other player breaks off."""
+    """Who has won, the score from the viewer's side, and the next frame, which the other player breaks
+    off."""
     shown.set_up(EASY, striker=1, scores=[0, 1])
     state = shown.line("api/players", {"players": ["ghost_ball", "person"]})[1]
     shown.until("page.settled === argument", state["revision"])
@@ -309,11 +374,16 @@ def test_the_end_of_a_frame_is_seen(shown):
     shown.until("page.state.phase === 'over' && page.settled === page.state.revision")
     assert shown.page.inner_text("#over-who") == "ghost ball won the frame"
     assert (
-        shown.page.inner_text("#over-score") == "You 1 : 0 ghost ball" and shown.page.inner_text("#over-last") == "You concede the frame."
+        shown.page.inner_text("#over-score") == "You 1 : 0 ghost ball"
+        and shown.page.inner_text("#over-last") == "You concede the frame."
     )
     assert shown.words == "Frame over: ghost ball won."
     table, over = shown.page.locator("#stage").bounding_box(), shown.page.locator("#over").bounding_box()
-    assert over["y"] >= table["y"] and over["x"] >= table["x"] and over["x"] + over["width"] <= table["x"] + table["width"]
+    assert (
+        over["y"] >= table["y"]
+        and over["x"] >= table["x"]
+        and over["x"] + over["width"] <= table["x"] + table["width"]
+    )
     shown.page.click("#over-close")
     assert not shown.page.is_visible("#over")
     shown.page.click("#undo")
@@ -348,17 +418,23 @@ def test_the_odds_are_those_of_the_errors_of_the_persons_seat(shown):
     found = shown.line("api/destinations", {"speed": 2.0, "aim": STRAIGHT + 0.01, "noise": noise})[1]
     assert found["samples"] == 500
     shown.until("page.advisor.found && !page.advisor.wait.busy")
-    assert shown("[page.advisor.found.samples, page.advisor.found.potted]") == [found["samples"], found["potted"]]
+    assert shown("[page.advisor.found.samples, page.advisor.found.potted]") == [
+        found["samples"],
+        found["potted"],
+    ]
     assert f"red: potted {100 * found['potted']:.0f} %" in shown.page.inner_text("#odds")
     assert noise in shown.page.inner_text("#errors")
     shown.page.click("#advise")
     shown.until("page.advisor.list.length")
-    own = shown.line("api/advise", {"agent": shown.page.input_value("#agent"), "noise": noise})[1]["suggestions"]
+    own = shown.line("api/advise", {"agent": shown.page.input_value("#agent"), "noise": noise})[1][
+        "suggestions"
+    ]
     assert shown("page.advisor.list.map(one => one.words)") == [one["words"] for one in own]
 
 
 def test_two_agents_play_on_by_themselves_until_paused(shown):
-    """Each stroke is seen, then the other agent plays; Pause stops them after the stroke that goes on, Continue lets them play on."""
+    """Each stroke is seen, then the other agent plays; Pause stops them after the stroke that goes on,
+    Continue lets them play on."""
     shown.set_up(EASY)
     shown.line("api/players", {"players": ["ghost_ball", "random"], "noise": ["professional", "amateur"]})
     shown.until("page.state.players[0] === 'ghost_ball'")
@@ -381,7 +457,8 @@ def test_two_agents_play_on_by_themselves_until_paused(shown):
 
 
 def test_the_result_of_a_stroke_is_shown_when_its_balls_rest(shown):
-    """Words, score, break and reds are those before the stroke until then: looked at with every change of the page."""
+    """Words, score, break and reds are those before the stroke until then: looked at with every change of the
+    page."""
     shown.set_up(EASY)
     seen = "document.getElementById(%r).innerText"
     shown(
@@ -399,7 +476,10 @@ def test_the_result_of_a_stroke_is_shown_when_its_balls_rest(shown):
     early = [row for row in shown("window.seen") if row[0]]
     assert early
     for _, score, now, asked, last in early:
-        assert "1" not in score.replace("Player 1", "") and "break 1" not in now and "reds 1" not in now, (score, now)
+        assert "1" not in score.replace("Player 1", "") and "break 1" not in now and "reds 1" not in now, (
+            score,
+            now,
+        )
         assert "any colour" not in asked and "potted" not in last
 
 
@@ -444,9 +524,15 @@ def test_a_suggestion_with_its_place_in_the_d_keeps_the_list(shown):
     assert shown.page.inner_text("#advice-order") == "Pots by points expected:"
     assert "right is the lower side" in shown.page.inner_text("#advice-sides")
     assert "95 % interval" in shown.page.inner_text("#advice li:first-child")
-    names = shown("[...document.querySelectorAll('#pockets span')].map(one => [one.textContent, one.offsetLeft, one.offsetTop])")
+    names = shown(
+        "[...document.querySelectorAll('#pockets span')].map(one => [one.textContent, one.offsetLeft, one.offsetTop])"
+    )
     places = {name: (x, y) for name, x, y in names}
-    assert len(places) == 6 and places["right middle"][1] > places["left middle"][1] and places["top right"][0] > places["yellow pocket"][0]
+    assert (
+        len(places) == 6
+        and places["right middle"][1] > places["left middle"][1]
+        and places["top right"][0] > places["yellow pocket"][0]
+    )
     many, before = shown("page.advisor.list.length"), shown("page.state.revision")
     shown.page.click("#advice li:last-child button")
     shown.until("page.state.revision > argument && page.settled === page.state.revision", before)
@@ -464,7 +550,9 @@ def test_reds_off_leaves_it_to_the_balls_what_is_on(shown):
     shown.until("!document.getElementById('set-done').disabled")
     shown.page.select_option("#set-on", "red")
     shown.until("document.getElementById('set-done').disabled")
-    assert shown.page.inner_text("#set-wrong") == "There is no red left to be on." and not shown.page.is_visible("#bubble")
+    assert shown.page.inner_text(
+        "#set-wrong"
+    ) == "There is no red left to be on." and not shown.page.is_visible("#bubble")
     shown.page.select_option("#set-on", "as the balls say")
     shown.until("!document.getElementById('set-done').disabled")
     shown.page.click("#set-done")
@@ -473,22 +561,32 @@ def test_reds_off_leaves_it_to_the_balls_what_is_on(shown):
 
 @pytest.mark.parametrize("size", [(390, 844), (844, 390), (1280, 720), (1920, 1080)])
 def test_it_fits_every_screen_and_can_be_touched(chromium, line, size):  # noqa: F811
-    shown = Shown(chromium, line, viewport={"width": size[0], "height": size[1]}, has_touch=True, device_scale_factor=1)
+    shown = Shown(
+        chromium, line, viewport={"width": size[0], "height": size[1]}, has_touch=True, device_scale_factor=1
+    )
     shown.set_up(EASY)
     canvas = shown.page.locator("#table").bounding_box()
     assert canvas["width"] >= 0.6 * size[0] and canvas["height"] >= 0.2 * size[1]
-    assert shown("document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight")
+    assert shown(
+        "document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight"
+    )
     shown.page.touchscreen.tap(*shown.at(0.0, 0.89225))
     assert shown("page.aim.wish.aim") == pytest.approx(-2.738, abs=0.02)
     seen = "[...document.querySelectorAll('button, select, input, canvas')].filter(one => one.offsetParent)"
-    assert shown(f"{seen}.filter(one => one.type !== 'checkbox' && one.getBoundingClientRect().height < 28).map(one => one.id)") == []
+    assert (
+        shown(
+            f"{seen}.filter(one => one.type !== 'checkbox' && one.getBoundingClientRect().height < 28).map(one => one.id)"
+        )
+        == []
+    )
     named = "one.textContent.trim() || one.getAttribute('aria-label') || one.title || one.labels?.[0]?.textContent.trim()"
     assert shown(f"{seen}.filter(one => !({named})).map(one => one.id)") == []
     shown.close()
 
 
 def test_one_press_is_one_stroke(shown):
-    """Enter three times before the answer, and Enter held down until the balls rest, play one stroke, not two."""
+    """Enter three times before the answer, and Enter held down until the balls rest, play one stroke, not
+    two."""
     shown.set_up(EASY)
     before = shown("page.state.strokes")
     press = "document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true, repeat: argument }))"

@@ -1,4 +1,5 @@
-"""Does the protocol give a program what it needs, and does it refuse what cannot be? Each route, as a request calls it."""
+"""Does the protocol give a program what it needs, and does it refuse what cannot be? Each route, as a request
+calls it."""
 
 import base64
 import json
@@ -40,8 +41,18 @@ def test_a_state_says_where_everything_is_and_what_may_be_done(game):
         "pink": EASY["pink"],
         "black": EASY["black"],
     }
-    assert (state["ball_on"], state["balls_on"], state["phase"], state["striker"]) == ("red", ["red 1", "red 2"], "stroke", 0)
-    assert (state["scores"], state["reds"], state["available"], state["snookered"]) == ([10, 20], 2, 29, False)
+    assert (state["ball_on"], state["balls_on"], state["phase"], state["striker"]) == (
+        "red",
+        ["red 1", "red 2"],
+        "stroke",
+        0,
+    )
+    assert (state["scores"], state["reds"], state["available"], state["snookered"]) == (
+        [10, 20],
+        2,
+        29,
+        False,
+    )
     assert state["nominations"] == state["choices"] == [] and state["undo"] and not state["redo"]
     assert state["words"] == "Player 1's stroke: red is on."
 
@@ -50,9 +61,13 @@ def test_the_text_gives_a_blind_player_places_lines_and_what_is_in_the_way(game)
     game("players", noise=["club", "none"])
     text = game("position", position=EASY | {"blue": [0.75, 1.602]})["text"]
     for words in (
-        "Player 1's stroke: red is on.", "Score: Player 1 0, Player 2 0; break 0.", "* red 1: (+0.600, +1.400)",
-        "pink: (+0.000, +0.892), on its spot", "black: (+0.000, +1.460), on its spot", "34 points are left",
-    ):  # fmt: skip
+        "Player 1's stroke: red is on.",
+        "Score: Player 1 0, Player 2 0; break 0.",
+        "* red 1: (+0.600, +1.400)",
+        "pink: (+0.000, +0.892), on its spot",
+        "black: (+0.000, +1.460), on its spot",
+        "34 points are left",
+    ):
         assert words in text, words
     line = game.get("state")["lines"]
     mine = next(one for one in line if one["ball"] == "red 1" and one["pocket"] == "top right")
@@ -69,7 +84,12 @@ def test_lines_agree_with_geometry():
     lines = {(line.ball, POCKETS[line.pocket]): line for line in lines_of([at], 0b110, "none")}
     assert len(lines) == 12
     straight = lines[1, "top right"]
-    assert straight.open and straight.cut < 0.01 and straight.aim == pytest.approx(STRAIGHT, abs=1e-3) and straight.chance is None
+    assert (
+        straight.open
+        and straight.cut < 0.01
+        and straight.aim == pytest.approx(STRAIGHT, abs=1e-3)
+        and straight.chance is None
+    )
     assert straight.to_pocket == pytest.approx(np.hypot(0.87376 - 0.6, 1.76926 - 1.4), abs=1e-6)
     away = lines[1, "bottom left"]
     assert not away.open and away.why == "cut too thin"
@@ -78,11 +98,14 @@ def test_lines_agree_with_geometry():
 @pytest.mark.parametrize(
     ("ball", "place", "words"),
     [
-        (19, (0.0, 0.0), "on its spot"), (18, (0.0, 0.0), "on the blue spot"), (1, (0.86, 0.0), "tight on the right cushion"),
-        (1, (-0.86, 0.0), "tight on the left cushion"), (1, (0.3, 1.74), "2 cm from the top cushion"),
+        (19, (0.0, 0.0), "on its spot"),
+        (18, (0.0, 0.0), "on the blue spot"),
+        (1, (0.86, 0.0), "tight on the right cushion"),
+        (1, (-0.86, 0.0), "tight on the left cushion"),
+        (1, (0.3, 1.74), "2 cm from the top cushion"),
         (1, (0.0, -1.5), "in baulk, on the centre line"),
     ],
-)  # fmt: skip
+)
 def test_places_in_words(ball, place, words):
     assert words in where(ball, *place)
 
@@ -90,11 +113,22 @@ def test_places_in_words(ball, place, words):
 def test_a_stroke_is_played_and_described_as_in_a_replay(game):
     game("position", position=EASY)
     answer = game("stroke", speed=2.0, aim=STRAIGHT)
-    assert answer["stroke"]["points"] == 1 and answer["stroke"]["pots"] == [1] and answer["stroke"]["cue"]["speed"] == 2.0
+    assert (
+        answer["stroke"]["points"] == 1
+        and answer["stroke"]["pots"] == [1]
+        and answer["stroke"]["cue"]["speed"] == 2.0
+    )
     state = answer["state"]
-    assert state["scores"] == [1, 0] and state["ball_on"] == "any_colour" and state["nominations"] == ["pink", "black"]
+    assert (
+        state["scores"] == [1, 0]
+        and state["ball_on"] == "any_colour"
+        and state["nominations"] == ["pink", "black"]
+    )
     assert "Red potted, 1" in state["last"]
-    assert game.get("strokes")["strokes"] == [answer["stroke"]] and game.get("strokes", **{"from": 1})["strokes"] == []
+    assert (
+        game.get("strokes")["strokes"] == [answer["stroke"]]
+        and game.get("strokes", **{"from": 1})["strokes"] == []
+    )
 
 
 def test_a_stroke_brings_the_tables_before_and_after_it(game):
@@ -104,7 +138,11 @@ def test_a_stroke_brings_the_tables_before_and_after_it(game):
     own = game("stroke", speed=2.0, aim=STRAIGHT)
     first, then = own["stroke"]["tables"]
     assert first == {name: before[name] for name in first} | {"words": "Your stroke: red is on."}
-    assert then == {name: own["state"][name] for name in then} and (then["available"], then["ball_on"], then["reds"]) == (
+    assert then == {name: own["state"][name] for name in then} and (
+        then["available"],
+        then["ball_on"],
+        then["reds"],
+    ) == (
         28,
         "any_colour",
         1,
@@ -129,18 +167,26 @@ def test_questions_are_answered_for_the_errors_of_the_seat(game):
     for noise, samples in (("club", 500), ("none", 1)):
         game("players", noise=[noise, "professional"])
         found = game("destinations", speed=2.0, aim=STRAIGHT + 0.01)
-        assert found["samples"] == samples and found == game("destinations", speed=2.0, aim=STRAIGHT + 0.01, noise=noise)
+        assert found["samples"] == samples and found == game(
+            "destinations", speed=2.0, aim=STRAIGHT + 0.01, noise=noise
+        )
         asked = game("advise", agent="ghost_ball", n=2)
-        assert asked == game("advise", agent="ghost_ball", n=2, noise=noise) and asked["order"] == "Pots by points expected:"
+        assert (
+            asked == game("advise", agent="ghost_ball", n=2, noise=noise)
+            and asked["order"] == "Pots by points expected:"
+        )
 
 
 def test_an_aim_may_be_given_by_a_pot_and_is_solved(game):
     game("position", position=EASY | {"cue": [0.1, 1.1]})
     assert game("stroke", speed=2.3, top=0.2, aim_at={"pot": ["red 1", "right top"]})["stroke"]["pots"] == [1]
     for given, words in (
-        ({"pot": ["red 1"]}, "aim_at = "), ({"pot": ["cue", "top right"]}, r"aim_at.pot\[0\] = 'cue'"), ("pink", "aim_at = 'pink'"),
-        ({"pot": ["blue", "top right"]}, "must be on the table"), ({"pot": ["pink", "corner"]}, r"aim_at.pot\[1\] = 'corner'"),
-    ):  # fmt: skip
+        ({"pot": ["red 1"]}, "aim_at = "),
+        ({"pot": ["cue", "top right"]}, r"aim_at.pot\[0\] = 'cue'"),
+        ("pink", "aim_at = 'pink'"),
+        ({"pot": ["blue", "top right"]}, "must be on the table"),
+        ({"pot": ["pink", "corner"]}, r"aim_at.pot\[1\] = 'corner'"),
+    ):
         with pytest.raises(ValueError, match=words):
             game("stroke", speed=2.3, aim_at=given)
 
@@ -155,7 +201,11 @@ def test_a_foul_asks_for_a_choice_and_a_nomination_counts(game):
     with pytest.raises(ValueError, match='must be "play" in a request that holds a stroke'):
         game("stroke", speed=1.0, aim=0.0, choice="replace")
     back = game("stroke", choice="replace")
-    assert back["stroke"] is None and back["state"]["striker"] == 0 and back["state"]["positions"]["cue"] == COVERED["cue"]
+    assert (
+        back["stroke"] is None
+        and back["state"]["striker"] == 0
+        and back["state"]["positions"]["cue"] == COVERED["cue"]
+    )
     both = game("undo") and game("stroke", choice="play", speed=1.0, aim=1.0)
     assert both["stroke"]["player"] == 1
 
@@ -163,14 +213,19 @@ def test_a_foul_asks_for_a_choice_and_a_nomination_counts(game):
 def test_a_request_that_is_refused_has_changed_nothing(game):
     before = game.get("state")
     for fields, words in (
-        ({"speed": 9.0, "aim": 1.0, "place": [0.1, -1.2]}, "speed = 9.0"), ({"speed": 1.0, "place": [0.1, -1.2]}, "aim = None"),
-        ({"speed": 1.0, "aim": 0.0, "side": 0.4, "top": 0.4}, "side, top"), ({"speed": 1.0, "aim": "0"}, "aim = '0'"),
-        ({"speed": 1.0, "aim": 0.0, "elevation": 1.0}, "elevation"), ({"speed": True, "aim": 0.0}, "speed = True"),
+        ({"speed": 9.0, "aim": 1.0, "place": [0.1, -1.2]}, "speed = 9.0"),
+        ({"speed": 1.0, "place": [0.1, -1.2]}, "aim = None"),
+        ({"speed": 1.0, "aim": 0.0, "side": 0.4, "top": 0.4}, "side, top"),
+        ({"speed": 1.0, "aim": "0"}, "aim = '0'"),
+        ({"speed": 1.0, "aim": 0.0, "elevation": 1.0}, "elevation"),
+        ({"speed": True, "aim": 0.0}, "speed = True"),
         ({"speed": 1.0, "aim": 0.0, "nominate": "blue"}, "nominate = 'blue'"),
         ({"speed": 1.0, "aim": 0.0, "nominate": "white"}, "nominate = 'white'"),
-        ({"speed": 1.0, "aim": 0.0, "place": [0.1]}, "place = "), ({"choice": "play"}, "choice = 'play'"), ({}, "speed = None"),
+        ({"speed": 1.0, "aim": 0.0, "place": [0.1]}, "place = "),
+        ({"choice": "play"}, "choice = 'play'"),
+        ({}, "speed = None"),
         ({"speed": 1.0, "aim": 0.0, "power": 3}, "field = 'power'"),
-    ):  # fmt: skip
+    ):
         with pytest.raises(ValueError, match=words):
             game("stroke", **fields)
     assert game.get("state") == before
@@ -178,12 +233,19 @@ def test_a_request_that_is_refused_has_changed_nothing(game):
 
 def test_a_position_that_cannot_be_is_refused_by_the_ball(game):
     for change, field in (
-        ({"blue": [0.33, 1.031]}, "blue"), ({"pink": [2.0, 0.0]}, "pink"), ({"reds": [[0.6, 1.4], [0.61, 1.4]]}, "reds[1]"),
-        ({"on": "blue"}, "on"), ({"in_hand": True}, "in_hand"), ({"colour": [0, 0]}, "field of position"), ({"reds": "x"}, "reds"),
+        ({"blue": [0.33, 1.031]}, "blue"),
+        ({"pink": [2.0, 0.0]}, "pink"),
+        ({"reds": [[0.6, 1.4], [0.61, 1.4]]}, "reds[1]"),
+        ({"on": "blue"}, "on"),
+        ({"in_hand": True}, "in_hand"),
+        ({"colour": [0, 0]}, "field of position"),
+        ({"reds": "x"}, "reds"),
         ({"points": 1.5}, "points"),
-    ):  # fmt: skip
+    ):
         found = game("position", position=EASY | change, check=True)
-        assert found["sound"] is False and found["error"]["field"] == field and found["error"]["message"], change
+        assert found["sound"] is False and found["error"]["field"] == field and found["error"]["message"], (
+            change
+        )
         with pytest.raises(ValueError, match=f"^{re.escape(field)} = "):
             game("position", position=EASY | change)
     assert game("position", position=EASY, check=True) == {"sound": True, "error": None}
@@ -223,7 +285,11 @@ def test_an_agent_that_fails_is_reported_and_the_game_waits(game):
     game("position", position=EASY)
     game("players", players=["broken", "person"])
     state = waited(game, lambda s: not s["thinking"])
-    assert state["trouble"].startswith("broken gave no stroke") and state["words"] == state["trouble"] and state["strokes"] == 0
+    assert (
+        state["trouble"].startswith("broken gave no stroke")
+        and state["words"] == state["trouble"]
+        and state["strokes"] == 0
+    )
     game("players", players=["person", "person"])
     assert game.get("state")["trouble"] == ""
 
@@ -240,7 +306,10 @@ class Deciding:
 
     def play(self, positions, seeds):
         self.saw.append(positions)
-        return Strokes(np.array([[0.6, 0.0, 0.0, 0.0, 0.0]]), **{name: np.array(value) for name, value in self.says.items()})
+        return Strokes(
+            np.array([[0.6, 0.0, 0.0, 0.0, 0.0]]),
+            **{name: np.array(value) for name, value in self.says.items()},
+        )
 
 
 def deciding(game, position, *, striker=1, **says):
@@ -253,11 +322,18 @@ def deciding(game, position, *, striker=1, **says):
     return state, [act.what for act in game.session.acts], agent
 
 
-@pytest.mark.parametrize(("decision", "what", "striker"), [(PLAY_AGAIN, "play_again", 0), (REPLACE, "replace", 0), (PLAY, "play", None)])
+@pytest.mark.parametrize(
+    ("decision", "what", "striker"),
+    [(PLAY_AGAIN, "play_again", 0), (REPLACE, "replace", 0), (PLAY, "play", None)],
+)
 def test_an_agent_decides_after_a_foul(game, decision, what, striker):
     state, acts, agent = deciding(game, COVERED, striker=0, decision=[decision])
     choices = [act.detail for act in game.session.acts if act.what == "choice"]
-    assert choices == [what] and agent.saw[0].choice.tolist() == [True] and agent.saw[0].scores.tolist() == [[7, 0]]
+    assert (
+        choices == [what]
+        and agent.saw[0].choice.tolist() == [True]
+        and agent.saw[0].scores.tolist() == [[7, 0]]
+    )
     assert striker is None or state["striker"] == striker
     assert acts[-1] == ("stroke" if what == "play" else "choice")
 
@@ -307,8 +383,15 @@ def test_destinations_spread_with_the_errors(game):
     unpacked = lambda text: np.frombuffer(base64.b64decode(text), "<f4").reshape(-1, 2)  # noqa: E731
     sure = game("destinations", speed=1.5, aim=STRAIGHT, noise="none")
     loose = game("destinations", speed=1.5, aim=STRAIGHT, noise="club", samples=300)
-    assert sure["first"] == loose["first"] == "red 1" and sure["pots"] == [["red 1", "top right"]] and sure["potted"] == 1.0
-    assert len(unpacked(loose["cue"])) + round(300 * loose["in_off"]) == 300 and unpacked(loose["cue"]).std(axis=0).max() > 0.01
+    assert (
+        sure["first"] == loose["first"] == "red 1"
+        and sure["pots"] == [["red 1", "top right"]]
+        and sure["potted"] == 1.0
+    )
+    assert (
+        len(unpacked(loose["cue"])) + round(300 * loose["in_off"]) == 300
+        and unpacked(loose["cue"]).std(axis=0).max() > 0.01
+    )
     assert np.allclose(unpacked(sure["cue"])[0], sure["paths"]["0"][-1], atol=1e-3)
     assert game("destinations", speed=1.5, aim=STRAIGHT, noise="club", samples=300) == loose
     assert game.get("state")["strokes"] == 0
@@ -318,10 +401,17 @@ def test_a_question_about_a_table_that_is_gone_is_refused(game):
     revision = game("position", position=EASY)["revision"]
     assert "cue" in game("destinations", speed=1.0, aim=0.0, samples=8, revision=revision)
     game("stroke", speed=1.0, aim=STRAIGHT)
-    assert game("destinations", speed=1.0, aim=0.0, revision=revision) == {"stale": True} == game("advise", revision=revision)
+    assert (
+        game("destinations", speed=1.0, aim=0.0, revision=revision)
+        == {"stale": True}
+        == game("advise", revision=revision)
+    )
     before = game.get("state")
     assert game("stroke", speed=1.0, aim=0.0, revision=revision) == {"stale": True}
-    assert game.get("state")["strokes"] == before["strokes"] and game.get("state")["revision"] == before["revision"]
+    assert (
+        game.get("state")["strokes"] == before["strokes"]
+        and game.get("state")["revision"] == before["revision"]
+    )
 
 
 def test_undo_redo_new_save_load_and_replay(game):
@@ -330,13 +420,21 @@ def test_undo_redo_new_save_load_and_replay(game):
     game("position", position=EASY)
     game("stroke", speed=2.0, aim=STRAIGHT)
     replay = game.get("replay")
-    assert replay["format"] == "snooker-replay" and len(replay["strokes"]) == 1 and replay["players"] == ["Player 1", "Player 2"]
+    assert (
+        replay["format"] == "snooker-replay"
+        and len(replay["strokes"]) == 1
+        and replay["players"] == ["Player 1", "Player 2"]
+    )
     assert json.loads(json.dumps(replay))["strokes"][0]["words"] in game.get("replay.html")
     saved = game("save")
     assert game("undo")["scores"] == [0, 0] and game("redo")["scores"] == [1, 0]
     fresh = game("new", layout="colours", seed=4)
     assert fresh["reds"] == 0 and fresh["ball_on"] == "yellow" and not fresh["undo"] and fresh["strokes"] == 0
-    assert game("new", layout="colours", seed=4)["positions"] == fresh["positions"] != game("new", layout="colours", seed=5)["positions"]
+    assert (
+        game("new", layout="colours", seed=4)["positions"]
+        == fresh["positions"]
+        != game("new", layout="colours", seed=5)["positions"]
+    )
     assert game("load", saved=saved)["scores"] == [1, 0]
     for fields, words in (
         ({"layout": "x"}, "layout = 'x'"),
@@ -351,10 +449,15 @@ def test_undo_redo_new_save_load_and_replay(game):
 def test_who_waits_hears_of_a_change_and_not_of_none(game):
     revision = game.get("state")["revision"]
     start = time.monotonic()
-    assert game.get("state", after=revision, wait=0.2)["revision"] == revision and time.monotonic() - start >= 0.2
+    assert (
+        game.get("state", after=revision, wait=0.2)["revision"] == revision
+        and time.monotonic() - start >= 0.2
+    )
     game("place", place=[0.0, -1.2])
     start = time.monotonic()
-    assert game.get("state", after=revision, wait=20.0)["revision"] > revision and time.monotonic() - start < 5
+    assert (
+        game.get("state", after=revision, wait=20.0)["revision"] > revision and time.monotonic() - start < 5
+    )
 
 
 def test_every_route_and_field_is_documented():
@@ -364,7 +467,10 @@ def test_every_route_and_field_is_documented():
             assert f"`{method} api/{name}`" in page, name
             part = page.partition(f"`{method} api/{name}`")[2].partition("\n### ")[0]
             for field in route.fields:
-                assert f"`{field}`" in part or ("of a stroke" in part and field in routes.STROKE), (name, field)
+                assert f"`{field}`" in part or ("of a stroke" in part and field in routes.STROKE), (
+                    name,
+                    field,
+                )
 
 
 def test_every_part_of_a_state_is_documented(game):

@@ -1,4 +1,5 @@
-"""Does the server answer those alone who know its address, and stay within its bounds? Hosts, origins, tokens, sizes, forms, time."""
+"""Does the server answer those alone who know its address, and stay within its bounds? Hosts, origins,
+tokens, sizes, forms, time."""
 
 import json
 import signal
@@ -18,7 +19,9 @@ from tests.processes import ROOT
 def refused(found, status, words):
     """Is that an error of this status, as one JSON object, that says these words?"""
     code, body, headers = found
-    assert code == status and set(body) == {"error"} and set(body["error"]) == {"field", "value", "message"}, found[:2]
+    assert (
+        code == status and set(body) == {"error"} and set(body["error"]) == {"field", "value", "message"}
+    ), found[:2]
     assert words in body["error"]["message"] and headers["Content-Type"] == "application/json"
     return body["error"]
 
@@ -38,8 +41,15 @@ def test_the_page_and_the_protocol_are_served_with_headers_that_keep_others_out(
     ):
         status, body, headers = line(name)
         assert status == 200 and body and headers["Content-Type"].startswith(kind)
-        assert "default-src 'none'" in headers["Content-Security-Policy"] and "unsafe" not in headers["Content-Security-Policy"]
-        assert (headers["X-Content-Type-Options"], headers["X-Frame-Options"], headers["Cache-Control"]) == ("nosniff", "DENY", "no-store")
+        assert (
+            "default-src 'none'" in headers["Content-Security-Policy"]
+            and "unsafe" not in headers["Content-Security-Policy"]
+        )
+        assert (headers["X-Content-Type-Options"], headers["X-Frame-Options"], headers["Cache-Control"]) == (
+            "nosniff",
+            "DENY",
+            "no-store",
+        )
         assert headers["Referrer-Policy"] == "no-referrer" and "Python" not in headers["Server"]
     assert all(line(name)[0] == 200 for name in module.FILES)
 
@@ -51,7 +61,16 @@ def test_without_the_token_nothing_is_served(line, token, name):
 
 
 @pytest.mark.parametrize(
-    "host", ["evil.example", "evil.example:80", "127.0.0.1", "127.0.0.1:1", "localhost:0", "", "127.0.0.1.nip.io:PORT"]
+    "host",
+    [
+        "evil.example",
+        "evil.example:80",
+        "127.0.0.1",
+        "127.0.0.1:1",
+        "localhost:0",
+        "",
+        "127.0.0.1.nip.io:PORT",
+    ],
 )
 def test_another_host_is_refused(line, host):
     host = host.replace("PORT", str(line.server.server_port))
@@ -118,11 +137,18 @@ def test_only_known_methods_are_answered(line):
 @pytest.mark.parametrize(
     ("body", "words"),
     [
-        (b"{", "JSON"), (b"[]", "object"), (b"3", "object"), (b"\xff\xfe", "JSON"), (b'{"place": [NaN, 0]}', "NaN"),
-        (b'{"place": [Infinity, 0]}', "Infinity"), (b'{"place": [0, 0], "place": [1, 1]}', "twice"), (b"[" * 30_000, "JSON"),
-        (b'{"place": ' + b"9" * 5000 + b"}", "JSON"), (b'{"a": 1} x', "JSON"),
+        (b"{", "JSON"),
+        (b"[]", "object"),
+        (b"3", "object"),
+        (b"\xff\xfe", "JSON"),
+        (b'{"place": [NaN, 0]}', "NaN"),
+        (b'{"place": [Infinity, 0]}', "Infinity"),
+        (b'{"place": [0, 0], "place": [1, 1]}', "twice"),
+        (b"[" * 30_000, "JSON"),
+        (b'{"place": ' + b"9" * 5000 + b"}", "JSON"),
+        (b'{"a": 1} x', "JSON"),
     ],
-)  # fmt: skip
+)
 def test_what_is_no_json_object_is_refused(line, body, words):
     refused(line("api/place", body), 400, words)
 
@@ -146,21 +172,35 @@ def test_bodies_are_bounded_and_typed(line):
     refused(line("api/undo", {}, headers={"Content-Type": None}), 415, "application/json")
     for wrong in ("x", "-1", "1e3", "", "+2", "0x2"):
         refused(line("api/undo", {}, headers={"Content-Length": wrong}), 411, "bytes")
-    refused(line("api/undo", {}, headers={"Content-Length": None, "Transfer-Encoding": "chunked"}), 411, "Content-Length")
+    refused(
+        line("api/undo", {}, headers={"Content-Length": None, "Transfer-Encoding": "chunked"}),
+        411,
+        "Content-Length",
+    )
     refused(line("api/state", b"{}", method="GET"), 400, "no body")
 
 
 def test_a_post_without_a_body_has_no_fields_and_a_second_slash_does_no_harm(line):
-    for more in ({"Content-Length": None, "Content-Type": None}, {"Content-Length": "0", "Content-Type": None}):
+    for more in (
+        {"Content-Length": None, "Content-Type": None},
+        {"Content-Length": "0", "Content-Type": None},
+    ):
         assert line("api/redo", b"", headers=more)[0] == 200
     assert line("/api/state")[1]["revision"] == line("api/state")[1]["revision"]
     refused(line("/api/state", token="x"), 403, "token")
     refused(line("/etc/passwd"), 404, "nothing")
 
 
-@pytest.mark.parametrize("address, words", [("http://127.0.0.1:9/x/", "no answer"), ("nonsense", "no address")])
+@pytest.mark.parametrize(
+    "address, words", [("http://127.0.0.1:9/x/", "no answer"), ("nonsense", "no address")]
+)
 def test_the_client_says_in_one_line_that_nobody_answers(address, words):
-    done = subprocess.run([sys.executable, ROOT / "examples" / "play_client.py", address], capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        [sys.executable, ROOT / "examples" / "play_client.py", address],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1
 
 
@@ -194,7 +234,8 @@ def test_a_request_that_does_not_end_is_cut_off(line, monkeypatch):
     start = time.monotonic()
     assert raw(line, b"GET /x HTTP/1.1\r\n", b"Host: x\r\n", wait=0.1) == b"" and time.monotonic() - start < 5
     start = time.monotonic()
-    with socket.create_connection(("127.0.0.1", line.server.server_port)) as slow:  # a byte now and then does not help
+    # a byte now and then does not help
+    with socket.create_connection(("127.0.0.1", line.server.server_port)) as slow:
         slow.settimeout(5)
         with pytest.raises(OSError):
             for _ in range(40):
@@ -216,7 +257,10 @@ def closed(connection):
 
 
 def test_connections_at_once_are_bounded(line):
-    held = [socket.create_connection(("127.0.0.1", line.server.server_port)) for _ in range(module.MOST_AT_ONCE + 4)]
+    held = [
+        socket.create_connection(("127.0.0.1", line.server.server_port))
+        for _ in range(module.MOST_AT_ONCE + 4)
+    ]
     try:
         time.sleep(0.3)
         held[-1].settimeout(5)
@@ -244,33 +288,56 @@ def test_one_connection_serves_many_requests(line):
 
 
 def test_the_replay_is_a_file_to_keep(line):
-    assert line("api/position", {"position": {"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}})[0] == 200
+    assert (
+        line("api/position", {"position": {"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}})[0]
+        == 200
+    )
     assert line("api/stroke", {"speed": 1, "aim": 0.5})[0] == 200
     status, body, headers = line("api/replay.html")
-    assert status == 200 and body.startswith(b"<!DOCTYPE html>") and headers["Content-Disposition"].startswith("attachment")
+    assert (
+        status == 200
+        and body.startswith(b"<!DOCTYPE html>")
+        and headers["Content-Disposition"].startswith("attachment")
+    )
 
 
 def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
     start = tmp_path / "position.json"
     start.write_text(json.dumps({"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}))
-    command = [sys.executable, "-m", "snooker_env.play", "--no-browser", "--position", str(start), "--seed", "1"]
+    command = [
+        sys.executable,
+        "-m",
+        "snooker_env.play",
+        "--no-browser",
+        "--position",
+        str(start),
+        "--seed",
+        "1",
+    ]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT)
     assert process.stdout is not None
     lines = [process.stdout.readline() for _ in range(3)]
     assert lines[2].strip().startswith("http://127.0.0.1:") and len(lines[2].strip()) > 50
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=20)
-    assert process.returncode == 0 and err == "Loading the players and the simulator ...\n" and "Traceback" not in out
+    assert (
+        process.returncode == 0
+        and err == "Loading the players and the simulator ...\n"
+        and "Traceback" not in out
+    )
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--position", "nowhere.json"], "nowhere.json"), (["--layout", "x"], "layout = 'x'"), (["--agent", "nobody"], "player = 'nobody'"),
-        (["--position", str(ROOT / "pyproject.toml")], "must be a file of JSON"), (["--port", "99999"], "port"),
+        (["--position", "nowhere.json"], "nowhere.json"),
+        (["--layout", "x"], "layout = 'x'"),
+        (["--agent", "nobody"], "player = 'nobody'"),
+        (["--position", str(ROOT / "pyproject.toml")], "must be a file of JSON"),
+        (["--port", "99999"], "port"),
         (["--seed", "-1"], "seed = -1"),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_is_said_in_one_line(arguments, words, capsys):
     assert main(["--no-browser", *arguments]) == 2
     out, err = capsys.readouterr()
@@ -281,4 +348,8 @@ def test_a_port_in_use_is_said_with_what_to_do(line, capsys):
     port = line.server.server_port
     assert main(["--no-browser", "--port", str(port)]) == 2
     _, err = capsys.readouterr()
-    assert err.startswith(f"snooker_env.play: port = {port}: must be free (") and "another with --port" in err and err.count("\n") == 1
+    assert (
+        err.startswith(f"snooker_env.play: port = {port}: must be free (")
+        and "another with --port" in err
+        and err.count("\n") == 1
+    )

@@ -1,4 +1,5 @@
-"""Is the game in memory the game by the rules? Strokes, choices, nominations, ball in hand, undo, files; against MatchEnv."""
+"""Is the game in memory the game by the rules? Strokes, choices, nominations, ball in hand, undo, files;
+against MatchEnv."""
 
 import json
 from dataclasses import replace
@@ -27,11 +28,20 @@ def standing(position, *, scores=(0, 0), striker=0, free_ball=False):
 
 
 def test_strokes_are_those_of_the_match_environment():
-    """The same strokes, with noise, in both: the same balls, the same frame, the same random numbers, to the last bit."""
+    """The same strokes, with noise, in both: the same balls, the same frame, the same random numbers, to the
+    last bit."""
     pytest.importorskip("pettingzoo")
     from snooker_env.envs.match import MatchEnv
 
-    env = MatchEnv(task="frame", placement=True, decision=True, elevation=True, miss="clear_path", noise="club", max_strokes=None)
+    env = MatchEnv(
+        task="frame",
+        placement=True,
+        decision=True,
+        elevation=True,
+        miss="clear_path",
+        noise="club",
+        max_strokes=None,
+    )
     env.reset(seed=3)
     session = Session(seed=3)
     session.noise[:] = ["club", "club"]
@@ -39,16 +49,25 @@ def test_strokes_are_those_of_the_match_environment():
     rng = np.random.default_rng(0)
     for _ in range(12):
         stroke = CueStroke(
-            speed=rng.uniform(0.5, 6), aim=rng.uniform(-3, 3), side=rng.uniform(-0.3, 0.3), top=rng.uniform(-0.3, 0.3),
+            speed=rng.uniform(0.5, 6),
+            aim=rng.uniform(-3, 3),
+            side=rng.uniform(-0.3, 0.3),
+            top=rng.uniform(-0.3, 0.3),
             elevation=rng.uniform(0, 0.3),
-        )  # fmt: skip
+        )
         if session.frame.in_hand and session.frame.phase == "stroke":
             session.place(0.1, -1.2)
         x, y = session.tables.positions[0, CUE]
         action = [
-            2 * (stroke.speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1, 2 * stroke.side, 2 * stroke.top, stroke.aim / pi,
-            2 * stroke.elevation / MAX_ELEVATION - 1, x / 0.292, 2 * (-1.0475 - y) / np.sqrt(0.292**2 - min(x**2, 0.0852)) - 1, 0.0,
-        ]  # fmt: skip
+            2 * (stroke.speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1,
+            2 * stroke.side,
+            2 * stroke.top,
+            stroke.aim / pi,
+            2 * stroke.elevation / MAX_ELEVATION - 1,
+            x / 0.292,
+            2 * (-1.0475 - y) / np.sqrt(0.292**2 - min(x**2, 0.0852)) - 1,
+            0.0,
+        ]
         if session.frame.phase == "choice":
             session.choose("play")
             if session.frame.in_hand:
@@ -58,7 +77,8 @@ def test_strokes_are_those_of_the_match_environment():
         env.step(np.clip(action, -1, 1))
         assert replace(session.frame, saved=None) == replace(env.frame, saved=None)
         assert np.allclose(session.tables.positions[0], env.positions, rtol=0, atol=1e-9)
-        session._set({k: v for k, v in env.get_state().items() if k in STATE})  # rounding of a place would grow
+        # rounding of a place would grow
+        session._set({k: v for k, v in env.get_state().items() if k in STATE})
     assert session.tables.game[0, STROKES] == 12
 
 
@@ -75,11 +95,14 @@ def test_a_colour_that_was_named_must_be_struck_first():
         session.play(ALONG_X, nominated=named)
         assert session.frame.scores == (0, penalty) and (session.frame.phase == "choice") == bool(penalty)
         assert session.tables.nominated[0] == AUTO
-        assert session.acts[-1].detail == ("" if named == AUTO else {BLUE: "blue", PINK: "pink", BLACK: "black"}[named])
+        assert session.acts[-1].detail == (
+            "" if named == AUTO else {BLUE: "blue", PINK: "pink", BLACK: "black"}[named]
+        )
 
 
 def test_a_miss_is_called_whichever_colour_was_named():
-    """The stroke strikes nothing. The pink is hidden behind the blue, but S3 R14(c) speaks of every ball that could be on."""
+    """The stroke strikes nothing. The pink is hidden behind the blue, but S3 R14(c) speaks of every ball that
+    could be on."""
     for named in (AUTO, BLACK, PINK):
         session = standing(COVERED | {"blue": [0.08, -0.5], "pink": [0.6, -0.5]})
         session.play(AT_NOTHING, nominated=named)
@@ -97,12 +120,15 @@ def test_only_what_is_open_may_be_named():
 
 
 def test_the_choices_after_a_foul():
-    """Play: the other plays on. Play again: the offender. Replace, after a miss: the offender from where the balls were."""
+    """Play: the other plays on. Play again: the offender. Replace, after a miss: the offender from where the
+    balls were."""
     for what, striker, back in (("play", 1, False), ("play_again", 0, False), ("replace", 0, True)):
         session = standing(COVERED)
         before = session.tables.positions[0].copy()
         session.play(CueStroke(speed=1.0, aim=0.5 * pi))
-        assert session.frame.phase == "choice" and session.frame.striker == 1 and session.frame.scores == (0, 7)
+        assert (
+            session.frame.phase == "choice" and session.frame.striker == 1 and session.frame.scores == (0, 7)
+        )
         with pytest.raises(ValueError, match="choose first"):
             session.play(ALONG_X)
         session.choose(what)
@@ -113,11 +139,15 @@ def test_the_choices_after_a_foul():
 
 
 def test_a_free_ball_may_be_named_and_counts_as_the_ball_on():
-    session = standing({"cue": [0.0, -0.5], "reds": [[0.6, 1.4]], "blue": [0.3, -0.5], "black": [-0.6, -0.9]}, free_ball=True)
+    session = standing(
+        {"cue": [0.0, -0.5], "reds": [[0.6, 1.4]], "blue": [0.3, -0.5], "black": [-0.6, -0.9]}, free_ball=True
+    )
     assert session.nominations() == (BLUE, BLACK)
     session.play(ALONG_X, nominated=BLUE)
     assert session.acts[-1].played.fouls == Foul(0)
-    other = standing({"cue": [0.0, -0.5], "reds": [[0.6, 1.4]], "blue": [0.3, -0.5], "black": [-0.6, -0.9]}, free_ball=True)
+    other = standing(
+        {"cue": [0.0, -0.5], "reds": [[0.6, 1.4]], "blue": [0.3, -0.5], "black": [-0.6, -0.9]}, free_ball=True
+    )
     other.play(ALONG_X, nominated=BLACK)
     assert other.acts[-1].played.fouls & Foul.WRONG_FIRST
 

@@ -11,7 +11,15 @@ from snooker_env.planning import Planner, Position, Positions
 from snooker_env.players import FRAMES, VISITS, SeenPlayer, Strokes, decided, decision_seeds
 from snooker_env.players.resolver import BUILT_IN
 
-NAMES = ("random", "ghost_ball", "best_pot_30", "search_30", "planner_30", "planner_value_30", "planner_policy_30")
+NAMES = (
+    "random",
+    "ghost_ball",
+    "best_pot_30",
+    "search_30",
+    "planner_30",
+    "planner_value_30",
+    "planner_policy_30",
+)
 
 
 def of_visits(n, layout="random:6", seed=5):
@@ -22,7 +30,9 @@ def of_visits(n, layout="random:6", seed=5):
 
 def of_frames(n, steps=6):
     """Positions of frames in all phases: after fouls, with free balls, in hand."""
-    tables = sn.SnookerVectorEnv(n, task="frame", opponent="ghost_ball", noise="club", decision=True, threads=1)
+    tables = sn.SnookerVectorEnv(
+        n, task="frame", opponent="ghost_ball", noise="club", decision=True, threads=1
+    )
     tables.reset(seed=3)
     rng = np.random.default_rng(0)
     for _ in range(steps):
@@ -44,7 +54,11 @@ def test_the_package_alone_has_its_players():
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("where", ["visits", "break_off", "frames"])
 def test_equal_positions_and_seeds_give_equal_strokes_however_many_are_asked_for(name, where):
-    at = {"visits": lambda: of_visits(9), "break_off": lambda: of_visits(3, "break_off"), "frames": lambda: of_frames(9)}[where]()
+    at = {
+        "visits": lambda: of_visits(9),
+        "break_off": lambda: of_visits(3, "break_off"),
+        "frames": lambda: of_frames(9),
+    }[where]()
     at = at[~at.over]
     rules = {"noise": "professional"} | ({"task": "frame"} if where == "frames" else {})
     player, seeds = sn.player(name).at(rules), np.arange(len(at)) % 3
@@ -79,7 +93,15 @@ def test_strokes_become_actions_that_mean_them(options):
     """The encoder and the decoder: through an environment and back."""
     options = sn.Options(**options)
     rng, at = np.random.default_rng(2), of_visits(40, "break_off")
-    values = np.stack([rng.uniform(0.2, 7, 40), *rng.uniform(-0.3, 0.3, (2, 40)), rng.uniform(-3.1, 3.1, 40), rng.uniform(0, 0.5, 40)], 1)
+    values = np.stack(
+        [
+            rng.uniform(0.2, 7, 40),
+            *rng.uniform(-0.3, 0.3, (2, 40)),
+            rng.uniform(-3.1, 3.1, 40),
+            rng.uniform(0, 0.5, 40),
+        ],
+        1,
+    )
     values[:, 4] *= options.elevation
     strokes = Strokes(values)
     decoded, start = Planner(options).strokes_of(at, np.arange(len(at)), strokes.actions(options, at))
@@ -147,16 +169,30 @@ def test_a_player_plays_on_tables_with_a_seed_for_each_decision():
 
 def test_seeds_of_decisions_depend_on_the_table_and_the_decision_alone():
     many = decision_seeds(7, np.arange(1000), 3)
-    assert np.array_equal(decision_seeds(7, np.arange(400, 500), 3), many[400:500]) and len(set(many.tolist())) == 1000
-    assert not np.array_equal(decision_seeds(7, np.arange(1000), 4), many) and many.min() >= 0 and many.max() < 2**32
+    assert (
+        np.array_equal(decision_seeds(7, np.arange(400, 500), 3), many[400:500])
+        and len(set(many.tolist())) == 1000
+    )
+    assert (
+        not np.array_equal(decision_seeds(7, np.arange(1000), 4), many)
+        and many.min() >= 0
+        and many.max() < 2**32
+    )
     assert np.array_equal(decision_seeds(7, np.arange(3), np.array([3, 4, 5]))[:1], many[:1])
 
 
 @pytest.mark.parametrize(
     ("name", "why"),
-    [("nobody", "must be one of 'random'"), ("search_7", "budget"), ("search@none", "has learned nothing"),
-     ("planner@nothing", "policy and value"), ("math:sqrt", "math:sqrt"), (7, "must be a player"), ("", "must be one of")],
-)  # fmt: skip
+    [
+        ("nobody", "must be one of 'random'"),
+        ("search_7", "budget"),
+        ("search@none", "has learned nothing"),
+        ("planner@nothing", "policy and value"),
+        ("math:sqrt", "math:sqrt"),
+        (7, "must be a player"),
+        ("", "must be one of"),
+    ],
+)
 def test_what_is_no_player_is_refused(name, why):
     with pytest.raises(ValueError, match=why):
         sn.player(name)

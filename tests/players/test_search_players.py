@@ -1,4 +1,5 @@
-"""Do the players that search play what their names say, each with its own value and proposals, and how well?"""
+"""Do the players that search play what their names say, each with its own value and proposals, and how
+well?"""
 
 import numpy as np
 import pytest
@@ -24,7 +25,11 @@ def held_out(n=4, seed=2):
 def test_a_name_may_end_in_a_number_of_shots(kind):
     for name, budget in ((kind, BUDGET), (f"{kind}_8", 8), (f"{kind}_2000", 2000)):
         player = sn.player(name)
-        assert (player.kind, player.budget, player.name) == (kind, budget, kind if budget == BUDGET else f"{kind}_{budget}")
+        assert (player.kind, player.budget, player.name) == (
+            kind,
+            budget,
+            kind if budget == BUDGET else f"{kind}_{budget}",
+        )
 
 
 def test_each_kind_has_its_value_and_its_proposals():
@@ -66,14 +71,19 @@ def test_the_weights_are_those_of_the_noise_else_of_the_nearest():
     for level in weights.levels():
         assert weights.level_for(LEVELS[level]) == level
     # by the ratio of the errors of direction
-    assert weights.level_for(Noise(aim_deg=10.0)) == "club" and weights.level_for(Noise(aim_deg=1e-5)) == "none"
+    assert (
+        weights.level_for(Noise(aim_deg=10.0)) == "club" and weights.level_for(Noise(aim_deg=1e-5)) == "none"
+    )
     with pytest.raises(ValueError, match="level = 'robot': must be one of none, professional"):
         weights.learned_at("robot")
 
 
 def test_a_value_says_more_for_a_better_player():
     at = held_out(30)
-    values = [sn.player("planner_30").at({"noise": level}).search.value(at).mean() for level in ("none", "professional", "club")]
+    values = [
+        sn.player("planner_30").at({"noise": level}).search.value(at).mean()
+        for level in ("none", "professional", "club")
+    ]
     assert values[0] > values[1] > 1.5 * values[2] > 0
 
 
@@ -82,7 +92,12 @@ def test_the_planner_makes_more_points_than_search_that_more_than_the_best_pot_a
         name: summary(play_visits(sn.player(name), 60, threads=1))["points_a_visit"]
         for name in ("planner_60", "search_60", "best_pot_60", "ghost_ball")
     }
-    assert points["planner_60"] > 1.1 * points["search_60"] > 1.5 * points["best_pot_60"] > 1.5 * points["ghost_ball"]
+    assert (
+        points["planner_60"]
+        > 1.1 * points["search_60"]
+        > 1.5 * points["best_pot_60"]
+        > 1.5 * points["ghost_ball"]
+    )
 
 
 def test_without_errors_search_clears_tables():

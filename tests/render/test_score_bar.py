@@ -1,4 +1,5 @@
-"""Does the score bar say what it is given? Figures evenly set, balls of the break, whose turn it is, and nothing over anything else."""
+"""Does the score bar say what it is given? Figures evenly set, balls of the break, whose turn it is, and
+nothing over anything else."""
 
 import numpy as np
 import pytest
@@ -11,7 +12,14 @@ from snooker_env.render.pygame_view import rgb_array
 from snooker_env.render.scene import ScoreBar, scene
 
 pytest.importorskip("pygame")
-FULL = {"break_points": 57, "potted": (1, 21, 2, 20), "reds_left": 8, "points_on": 91, "ball_on": "any colour", "words": "red 7, one point"}
+FULL = {
+    "break_points": 57,
+    "potted": (1, 21, 2, 20),
+    "reds_left": 8,
+    "points_on": 91,
+    "ball_on": "any colour",
+    "words": "red 7, one point",
+}
 
 
 def pixels(bar, text="", width=1920, height=72):
@@ -30,7 +38,10 @@ def where(one, two):
 def test_figures_are_as_wide_as_each_other(file):
     widths = {typeset(digit * 20, (255, 255, 255), 40, file).get_width() for digit in "0123456789"}
     assert len(widths) == 1
-    assert typeset("iii", (255, 255, 255), 40, file).get_width() < typeset("mmm", (255, 255, 255), 40, file).get_width() / 2
+    assert (
+        typeset("iii", (255, 255, 255), 40, file).get_width()
+        < typeset("mmm", (255, 255, 255), 40, file).get_width() / 2
+    )
 
 
 def test_the_bar_is_under_the_table_and_changes_nothing_else():
@@ -59,14 +70,21 @@ def test_each_thing_has_its_place():
     given = {"players": ("Ann", "Bob"), "scores": (41, 12), "striker": 0, **FULL}
     full = pixels(ScoreBar(**given))
     for change, low, high in [
-        ({"break_points": 58}, 20, 100), ({"potted": (1, 21, 2, 19)}, 100, 300), ({"words": "red 7, two points"}, 100, 700),
-        ({"scores": (42, 12)}, 860, 960), ({"scores": (41, 13)}, 960, 1060), ({"players": ("Eve", "Bob")}, 600, 870),
-        ({"striker": 1}, 600, 1300), ({"reds_left": 7}, 1600, 1890), ({"points_on": 90}, 1700, 1900),
-    ]:  # fmt: skip
+        ({"break_points": 58}, 20, 100),
+        ({"potted": (1, 21, 2, 19)}, 100, 300),
+        ({"words": "red 7, two points"}, 100, 700),
+        ({"scores": (42, 12)}, 860, 960),
+        ({"scores": (41, 13)}, 960, 1060),
+        ({"players": ("Eve", "Bob")}, 600, 870),
+        ({"striker": 1}, 600, 1300),
+        ({"reds_left": 7}, 1600, 1890),
+        ({"points_on": 90}, 1700, 1900),
+    ]:
         left, right = where(full, pixels(ScoreBar(**{**given, **change})))
         assert low <= left <= right < high, change
     accents = [
-        np.flatnonzero(np.all(bar[37] == PALETTE["bar_accent"], axis=1)) for bar in (full, pixels(ScoreBar(**{**given, "striker": 1})))
+        np.flatnonzero(np.all(bar[37] == PALETTE["bar_accent"], axis=1))
+        for bar in (full, pixels(ScoreBar(**{**given, "striker": 1})))
     ]
     assert accents[0].max() < 960 < accents[1].min()  # the box of the score, and the triangle beside the name
     assert accents[0].min() < 780 and accents[1].max() > 1140
@@ -85,7 +103,9 @@ def test_what_is_too_long_is_cut():
     assert not sides[middle[0] - 10 : middle[1] + 10].any()
 
 
-@pytest.mark.parametrize("given", [{}, {"players": ("Ann",), "scores": (7,)}, {"players": ("Ann", "Bob"), "scores": (7, 0)}])
+@pytest.mark.parametrize(
+    "given", [{}, {"players": ("Ann",), "scores": (7,)}, {"players": ("Ann", "Bob"), "scores": (7, 0)}]
+)
 @pytest.mark.parametrize("width", [101, 400, 1000, 4000])
 def test_a_bar_of_any_size_and_with_anything_left_out(given, width):
     for height in (7, 35, 36, 72, 200):
@@ -94,7 +114,9 @@ def test_a_bar_of_any_size_and_with_anything_left_out(given, width):
 
 
 def test_a_low_bar_is_one_line_of_text():
-    bar = ScoreBar(("Ann", "Bob"), (41, 12), striker=1, break_points=16, ball_on="red", points_on=59, words="foul")
+    bar = ScoreBar(
+        ("Ann", "Bob"), (41, 12), striker=1, break_points=16, ball_on="red", points_on=59, words="foul"
+    )
     assert in_words(bar) == "Ann 41, Bob 12 · Bob to play · break 16 · red on · 59 left · foul"
     assert in_words(ScoreBar()) == ""
     assert np.array_equal(pixels(bar, height=30), pixels(None, in_words(bar), height=30))
@@ -102,9 +124,13 @@ def test_a_low_bar_is_one_line_of_text():
 
 def test_a_bar_that_cannot_be_is_refused():
     for given, field in [
-        ({"players": ("a", "b", "c"), "scores": (1, 2, 3)}, "players"), ({"players": ("a",)}, "scores"), ({"striker": 0}, "striker"),
-        ({"players": ("a",), "scores": (1,), "striker": 1}, "striker"), ({"potted": (0,)}, "potted"), ({"potted": (22,)}, "potted"),
+        ({"players": ("a", "b", "c"), "scores": (1, 2, 3)}, "players"),
+        ({"players": ("a",)}, "scores"),
+        ({"striker": 0}, "striker"),
+        ({"players": ("a",), "scores": (1,), "striker": 1}, "striker"),
+        ({"potted": (0,)}, "potted"),
+        ({"potted": (22,)}, "potted"),
         ({"players": (1,), "scores": (1,)}, "players"),
-    ]:  # fmt: skip
+    ]:
         with pytest.raises(ValueError, match=field):
             ScoreBar(**given)

@@ -1,4 +1,5 @@
-"""Do score bars and the referee's words follow the frame? Whole frames of chance, against the ``Frame`` after each stroke."""
+"""Do score bars and the referee's words follow the frame? Whole frames of chance, against the ``Frame`` after
+each stroke."""
 
 from itertools import pairwise
 
@@ -11,12 +12,25 @@ from snooker_env.replays.bars import bars, standing_bar
 
 
 @pytest.fixture(
-    scope="module", params=[("ghost_ball", "colours", "none"), ("random", "colours", "club"), ("ghost_ball", "line_up", "club")]
+    scope="module",
+    params=[
+        ("ghost_ball", "colours", "none"),
+        ("random", "colours", "club"),
+        ("ghost_ball", "line_up", "club"),
+    ],
 )
 def frame(request):
     """A whole frame's strokes, and the frame after each of the agent's steps."""
     opponent, layout, noise = request.param
-    env = sn.SnookerEnv(task="frame", opponent=opponent, layout=layout, noise=noise, action="discrete", miss="clear_path", max_strokes=120)
+    env = sn.SnookerEnv(
+        task="frame",
+        opponent=opponent,
+        layout=layout,
+        noise=noise,
+        action="discrete",
+        miss="clear_path",
+        max_strokes=120,
+    )
     env.keep_history = True
     env.reset(seed=7)
     rng, seen, ended = np.random.default_rng(7), [], False
@@ -46,7 +60,9 @@ def test_a_break_is_the_sum_of_its_strokes(frame):
     for played, (before, after) in zip(env.history, bars(env.history, ("A", "B")), strict=True):
         run = run if played.player == last else 0
         assert before.break_points == run and after.break_points == run + played.points
-        assert len(after.potted) - len(before.potted) == (len(np.flatnonzero(played.shot.potted >= 0)) if played.points else 0)
+        assert len(after.potted) - len(before.potted) == (
+            len(np.flatnonzero(played.shot.potted >= 0)) if played.points else 0
+        )
         if played.points and run:
             assert f"break of {run + played.points}" in after.words
         run, last = run + played.points, played.player if played.points else None
@@ -65,9 +81,20 @@ def test_the_bar_of_a_table_as_it_stands():
     env.keep_history = True
     env.reset(seed=1)
     start = standing_bar(env.tables, 0, ("Ada",))
-    assert (start.scores, start.break_points, start.ball_on, start.reds_left, start.points_on) == ((0,), 0, "red", 15, 147)
+    assert (start.scores, start.break_points, start.ball_on, start.reds_left, start.points_on) == (
+        (0,),
+        0,
+        "red",
+        15,
+        147,
+    )
     env.step(67)
     kept = bars(env.history, ("Ada",))[-1][1]
     now = standing_bar(env.tables, 0, ("Ada",), kept)
-    assert now == kept and now.scores == (1,) and now.potted == kept.potted != () and env.ball_on == BallOn.ANY_COLOUR
+    assert (
+        now == kept
+        and now.scores == (1,)
+        and now.potted == kept.potted != ()
+        and env.ball_on == BallOn.ANY_COLOUR
+    )
     assert standing_bar(env.tables, 0, ()).players == ()

@@ -1,4 +1,5 @@
-"""Are films of replays what was played? Their pictures, their length, their colours, and what cannot be written."""
+"""Are films of replays what was played? Their pictures, their length, their colours, and what cannot be
+written."""
 
 import numpy as np
 import pytest
@@ -26,7 +27,9 @@ def test_the_pictures_show_the_motion_and_then_the_table(replay):
     moving = [len(np.arange(0.0, shot.duration, 0.1)) + 1 for shot in replay.shots]
     assert len(pictures) == sum(moving) + 2 * 8  # 0.8 s after each stroke
     assert all(picture.shape == (180, 320, 3) and picture.dtype == np.uint8 for picture in pictures)
-    assert np.array_equal(pictures[moving[0]], pictures[moving[0] + 7]) and not np.array_equal(pictures[3], pictures[4])
+    assert np.array_equal(pictures[moving[0]], pictures[moving[0] + 7]) and not np.array_equal(
+        pictures[3], pictures[4]
+    )
     fast = list(replay.frames(**SMALL, speed=4.0))
     assert len(fast) == sum(len(np.arange(0.0, shot.duration, 0.4)) + 1 for shot in replay.shots) + 2 * 8
 
@@ -45,8 +48,11 @@ def test_every_ball_keeps_its_colour(replay, tmp_path, suffix):
     view = View.of(Table.preset("match"), size=size)
     for place in replay.shots[0].at(0.0)[0]:
         x, y = np.rint(view(place)).astype(int)
-        seen, drawn = (a[y - 1 : y + 2, x - 1 : x + 2, :3].astype(int).mean(axis=(0, 1)) for a in (film, first))
-        assert np.abs(seen - drawn).max() < 60, (place, seen, drawn)  # a video halves the resolution of colours
+        seen, drawn = (
+            a[y - 1 : y + 2, x - 1 : x + 2, :3].astype(int).mean(axis=(0, 1)) for a in (film, first)
+        )
+        # a video halves the resolution of colours
+        assert np.abs(seen - drawn).max() < 60, (place, seen, drawn)
     assert [p.name for p in tmp_path.iterdir()] == [file.name]
 
 

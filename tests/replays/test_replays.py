@@ -1,4 +1,5 @@
-"""Does a replay hold what was played? Its data decoded here by the format's own words, its words, its files, and what is refused."""
+"""Does a replay hold what was played? Its data decoded here by the format's own words, its words, its files,
+and what is refused."""
 
 import base64
 import json
@@ -68,7 +69,10 @@ def test_the_next_stroke_starts_where_the_last_one_left_the_table(strokes):
     for played, this, following in zip(strokes, data, data[1:], strict=False):
         if played.over:
             continue
-        end, there = places_at(this, np.inf if this["duration"] == 0 else this["duration"]), set(this["on_table"]) - set(this["pots"])
+        end, there = (
+            places_at(this, np.inf if this["duration"] == 0 else this["duration"]),
+            set(this["on_table"]) - set(this["pots"]),
+        )
         if this["after"] is not None:
             end, there = numbers(this["after"]["places"], "f8", 2), set(this["after"]["on_table"])
         assert there == set(following["on_table"])
@@ -98,7 +102,10 @@ def test_what_the_referee_said_is_recorded(strokes, fouls):
         assert stroke["points"] == played.points and stroke["penalty"] == played.penalty
         assert stroke["score"] == list(played.scores)
         if played.fouls:
-            assert stroke["words"].startswith(f"Foul, {played.penalty}: ") and stroke["fouls"] == foul_words(played.fouls) != []
+            assert (
+                stroke["words"].startswith(f"Foul, {played.penalty}: ")
+                and stroke["fouls"] == foul_words(played.fouls) != []
+            )
         elif played.points:
             assert f"potted, {played.points}" in stroke["words"]
         else:
@@ -134,17 +141,26 @@ def test_the_page_holds_everything_and_asks_for_nothing(strokes):
 
 def test_places_to_fill_in_that_a_title_names_are_left_alone(strokes):
     page = sn.replay(strokes[:1], title="{{data}} {{module}}").html()
-    assert page.count("{{data}}") == 2 and page.count('"format":"snooker-replay"') == 1  # in the title and in the data
+    # in the title and in the data
+    assert page.count("{{data}}") == 2 and page.count('"format":"snooker-replay"') == 1
 
 
 def test_a_replay_of_a_replay_takes_another_title(strokes):
     first = sn.replay(strokes[:2], title="one", players=["A"])
     second = sn.replay(first, title="two")
-    assert (second.title, second.players, len(second)) == ("two", ("A",), 2) and sn.replay(first).title == "one"
+    assert (second.title, second.players, len(second)) == ("two", ("A",), 2) and sn.replay(
+        first
+    ).title == "one"
 
 
 def test_a_bare_shot_and_other_tables():
-    shot = sn.simulate([(0.0, -0.5), (0.1, 0.3)], [(0.4, 3.0), (0, 0)], [(0, 0, 0)] * 2, table="pool9", physics={"R": 0.028575})
+    shot = sn.simulate(
+        [(0.0, -0.5), (0.1, 0.3)],
+        [(0.4, 3.0), (0, 0)],
+        [(0, 0, 0)] * 2,
+        table="pool9",
+        physics={"R": 0.028575},
+    )
     replay = sn.replay(shot, title="pool")
     data = replay.to_dict()
     assert data["players"] == [] and data["scene"]["lines"] is None and data["R"] == 0.028575
@@ -221,16 +237,23 @@ def test_a_position_is_shown_as_it_stands():
 @pytest.mark.parametrize(
     ("source", "words"),
     [
-        (3, ("source", "int", "must be a Shot")), ([], ("strokes", "[]", "at least one")), ([1], ("strokes[0]", "int", "must be a Shot")),
+        (3, ("source", "int", "must be a Shot")),
+        ([], ("strokes", "[]", "at least one")),
+        ([1], ("strokes[0]", "int", "must be a Shot")),
     ],
-)  # fmt: skip
+)
 def test_what_is_no_replay_is_refused(source, words):
     refused(lambda: sn.replay(source), *words)
 
 
 def test_bad_arguments_are_refused(strokes, tmp_path):
     other = sn.simulate([(0.0, 0.0)], [(1.0, 0)], [(0, 0, 0)], table="tight")
-    refused(lambda: sn.replay([strokes[0], other]), "strokes[1]", "another table", "must be on the table of the first")
+    refused(
+        lambda: sn.replay([strokes[0], other]),
+        "strokes[1]",
+        "another table",
+        "must be on the table of the first",
+    )
     refused(lambda: sn.replay(strokes, players=["a", "b", "c"]), "players", "'c'", "at most two")
     refused(lambda: sn.replay(strokes, players=["a", "b"]), "players", "2 names", "one for a visit")
     refused(lambda: sn.replay(strokes, title="\ud800"), "title", "ud800", "surrogate")
@@ -238,7 +261,12 @@ def test_bad_arguments_are_refused(strokes, tmp_path):
     refused(lambda: sn.replay([strokes[0], slower]), "strokes[1]", "other physics", "spin_decel")
     refused(lambda: sn.replay(strokes, title=3), "title", "3", "must be a str")
     refused(lambda: sn.replay(strokes, tmp_path / "break.exe"), "suffix", ".exe", ".html")
-    refused(lambda: sn.replay(strokes[0]).save(tmp_path / "a.html", fps=3), "path", "a.html", "must end in .mp4 or .gif")
+    refused(
+        lambda: sn.replay(strokes[0]).save(tmp_path / "a.html", fps=3),
+        "path",
+        "a.html",
+        "must end in .mp4 or .gif",
+    )
     assert list(tmp_path.iterdir()) == []
 
 
@@ -251,7 +279,9 @@ def test_files_are_written_whole(strokes, tmp_path):
 
 
 def test_the_wrapper_writes_each_wanted_episode(tmp_path):
-    env = sn.RecordReplay(gymnasium.make("Snooker-v0", action="discrete"), tmp_path / "new", lambda k: k != 1, suffix=".json")
+    env = sn.RecordReplay(
+        gymnasium.make("Snooker-v0", action="discrete"), tmp_path / "new", lambda k: k != 1, suffix=".json"
+    )
     lengths = []
     for k in range(3):
         env.reset(seed=k)
@@ -266,7 +296,11 @@ def test_the_wrapper_writes_each_wanted_episode(tmp_path):
 
 
 def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
-    env = sn.RecordReplay(gymnasium.wrappers.Autoreset(gymnasium.make("Snooker-v0", action="discrete")), tmp_path, suffix=".json")
+    env = sn.RecordReplay(
+        gymnasium.wrappers.Autoreset(gymnasium.make("Snooker-v0", action="discrete")),
+        tmp_path,
+        suffix=".json",
+    )
     env.reset(seed=1)
     ends = 0
     while ends < 3:
@@ -278,20 +312,25 @@ def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        ({"players": ["a", "b"]}, ("players", "'a', 'b'", "one name")), ({"name_prefix": "a/b"}, ("name_prefix", "a/b", "without folders")),
+        ({"players": ["a", "b"]}, ("players", "'a', 'b'", "one name")),
+        ({"name_prefix": "a/b"}, ("name_prefix", "a/b", "without folders")),
         ({"suffix": ".txt"}, ("suffix", ".txt", ".html")),
     ],
-)  # fmt: skip
+)
 def test_the_wrapper_refuses_at_once_what_it_could_not_write(tmp_path, wrong, words):
     refused(lambda: sn.RecordReplay(gymnasium.make("Snooker-v0"), tmp_path, **wrong), *words)
 
 
 def test_the_wrapper_writes_what_was_cut_short(tmp_path):
-    env = sn.RecordReplay(gymnasium.make("Snooker-v0", action="discrete"), tmp_path, suffix=".json", name_prefix="cut")
+    env = sn.RecordReplay(
+        gymnasium.make("Snooker-v0", action="discrete"), tmp_path, suffix=".json", name_prefix="cut"
+    )
     env.reset(seed=1)
     env.step(67)
     env.reset(seed=2)
     env.step(67)
     env.close()
     assert [p.name for p in env.paths] == ["cut-episode-0.json", "cut-episode-1.json"]
-    refused(lambda: sn.RecordReplay(gymnasium.make("CartPole-v1"), tmp_path), "env", "CartPoleEnv", "Snooker-v0")
+    refused(
+        lambda: sn.RecordReplay(gymnasium.make("CartPole-v1"), tmp_path), "env", "CartPoleEnv", "Snooker-v0"
+    )

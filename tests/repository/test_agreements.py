@@ -1,4 +1,5 @@
-"""Do the rooms agree on what they share? What one takes for granted of another: places, gaps, limits, and columns."""
+"""Do the rooms agree on what they share? What one takes for granted of another: places, gaps, limits, and
+columns."""
 
 import dataclasses
 
@@ -19,7 +20,9 @@ def test_wherever_a_layout_may_put_a_ball_the_table_of_the_physics_has_room(name
     places = np.column_stack([x.ravel(), y.ravel()])
     room = np.array([geometry.HALF_WIDTH, geometry.HALF_LENGTH]) - geometry.BALL_RADIUS - layouts.CUSHION_GAP
     clear = np.all(np.abs(places) <= room, axis=1)
-    clear &= np.all(np.hypot(*(places[:, None] - geometry.POCKET_PLACES).transpose(2, 0, 1)) >= layouts.POCKET_GAP, axis=1)
+    clear &= np.all(
+        np.hypot(*(places[:, None] - geometry.POCKET_PLACES).transpose(2, 0, 1)) >= layouts.POCKET_GAP, axis=1
+    )
     assert clear.sum() > 5000
     Table.preset(name).check(places[clear][:, None], geometry.BALL_RADIUS)  # each by itself
 
@@ -33,24 +36,44 @@ def test_touching_and_overlapping_are_measured_alike():
 def test_actions_reach_to_the_miscue_limit_of_the_physics():
     """Half a radius at the end of the action's scale is what ``Physics.max_offset`` allows by default."""
     actions = Actions("absolute", False, False, Physics())
-    assert actions.shot([0, 1, 0, 0], balls.SPOTS, np.ones(22, bool), 2)[1] == actions.physics.max_offset == 0.5
+    assert (
+        actions.shot([0, 1, 0, 0], balls.SPOTS, np.ones(22, bool), 2)[1] == actions.physics.max_offset == 0.5
+    )
 
 
 def test_observations_have_a_row_for_each_ball_and_an_entry_for_each_thing_on():
     kinds = observations.STATE_ENTRIES[1:9]
     assert kinds == tuple(b.name.lower() for b in balls.BallOn if b >= 0)
-    assert observations.space("flat").shape == (balls.N_BALLS * len(observations.BALL_COLUMNS) + len(observations.STATE_ENTRIES),)
-    assert balls.NAMES[16:] == balls.COLOUR_NAMES and len(balls.NAMES) == balls.N_BALLS == len(balls.VALUES) == len(balls.SPOTS)
+    assert observations.space("flat").shape == (
+        balls.N_BALLS * len(observations.BALL_COLUMNS) + len(observations.STATE_ENTRIES),
+    )
+    assert balls.NAMES[16:] == balls.COLOUR_NAMES and len(balls.NAMES) == balls.N_BALLS == len(
+        balls.VALUES
+    ) == len(balls.SPOTS)
 
 
 def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():
     """Each field changed alone moves exactly its own places of the vector."""
     places = {
-        "R": [p.P_R], "M": [p.P_M], "g": [p.P_G], "mu_s": [p.P_MU_S], "mu_r": [p.P_MU_R], "spin_decel": [p.P_SPIN], "e_b": [p.P_E_B],
-        "e_c": [p.P_E_C], "e_c_knee": [p.P_E_KNEE], "e_c_power": [p.P_E_POWER], "e_j": [p.P_E_J], "mu_c": [p.P_MU_C],
-        "sin_theta": [p.P_SIN], "nap": [p.P_NAP], "end_mass_ratio": [], "max_offset": [],
-    }  # fmt: skip
-    base = Physics(e_c_knee=1.0, e_j=0.9)  # where the power may be changed, and a jaw has a restitution of its own
+        "R": [p.P_R],
+        "M": [p.P_M],
+        "g": [p.P_G],
+        "mu_s": [p.P_MU_S],
+        "mu_r": [p.P_MU_R],
+        "spin_decel": [p.P_SPIN],
+        "e_b": [p.P_E_B],
+        "e_c": [p.P_E_C],
+        "e_c_knee": [p.P_E_KNEE],
+        "e_c_power": [p.P_E_POWER],
+        "e_j": [p.P_E_J],
+        "mu_c": [p.P_MU_C],
+        "sin_theta": [p.P_SIN],
+        "nap": [p.P_NAP],
+        "end_mass_ratio": [],
+        "max_offset": [],
+    }
+    # where the power may be changed, and a jaw has a restitution of its own
+    base = Physics(e_c_knee=1.0, e_j=0.9)
     for field in dataclasses.fields(Physics):
         if field.name == "mu_bb":
             continue

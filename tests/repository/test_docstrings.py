@@ -1,4 +1,5 @@
-"""Is every public name documented as numpy does it? Summary, parameters in the signature's order, what is returned, an example."""
+"""Is every public name documented as numpy does it? Summary, parameters in the signature's order, what is
+returned, an example."""
 
 import ast
 import dataclasses
@@ -38,7 +39,11 @@ def parameters(thing):
     """The names of a function's parameters, with their stars, without the receiver."""
     stars = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
     every = inspect.signature(plain(thing)).parameters.items()
-    return [stars.get(p.kind, "") + name for name, p in every if name not in ("self", "cls") and not name.startswith("_")]
+    return [
+        stars.get(p.kind, "") + name
+        for name, p in every
+        if name not in ("self", "cls") and not name.startswith("_")
+    ]
 
 
 def returns(thing):
@@ -85,29 +90,38 @@ def class_faults(thing):
     if issubclass(thing, enum.Enum):
         described, wanted = re.findall(r"\w+", text), list(thing.__members__)
     elif dataclasses.is_dataclass(thing) or hasattr(thing, "_fields"):
-        fields = [f.name for f in dataclasses.fields(thing)] if dataclasses.is_dataclass(thing) else thing._fields
+        fields = (
+            [f.name for f in dataclasses.fields(thing)] if dataclasses.is_dataclass(thing) else thing._fields
+        )
         wanted = [*parameters(thing), *(name for name in fields if not name.startswith("_"))]
-    elif "__init__" in vars(thing) and not issubclass(thing, BaseException) and not getattr(thing, "_is_protocol", False):
+    elif (
+        "__init__" in vars(thing)
+        and not issubclass(thing, BaseException)
+        and not getattr(thing, "_is_protocol", False)
+    ):
         wanted = parameters(thing.__init__)
     if missing := set(wanted) - set(described):
         yield f"does not describe {sorted(missing)}"
     for name, member in vars(thing).items():
         if name.startswith("_") or (issubclass(thing, enum.Enum) and name in thing.__members__):
             continue
-        if isinstance(member, property):
-            yield from () if inspect.getdoc(member) else [f".{name} has no docstring"]
-        elif inspect.isfunction(plain(member)) and plain(member).__module__.startswith("snooker_env"):
+        if isinstance(member, property) or (
+            inspect.isfunction(plain(member)) and plain(member).__module__.startswith("snooker_env")
+        ):
             yield from () if inspect.getdoc(member) else [f".{name} has no docstring"]
 
 
 def explained(module, name):
-    """The words that stand below a constant where it is made, followed through imports; None if there are none."""
+    """The words that stand below a constant where it is made, followed through imports; None if there are
+    none."""
     path = ROOT / (module.replace(".", "/") + ".py")
     path = path if path.is_file() else ROOT / module.replace(".", "/") / "__init__.py"
     body = ast.parse(path.read_text(encoding="utf-8")).body
     for k, node in enumerate(body):
         targets = getattr(node, "targets", [getattr(node, "target", None)])
-        if name in {part.id for target in targets if target for part in ast.walk(target) if isinstance(part, ast.Name)}:
+        if name in {
+            part.id for target in targets if target for part in ast.walk(target) if isinstance(part, ast.Name)
+        }:
             words = getattr(body[k + 1], "value", None) if k + 1 < len(body) else None
             return words.value if isinstance(words, ast.Constant) and isinstance(words.value, str) else None
         for alias in node.names if isinstance(node, ast.ImportFrom) else ():

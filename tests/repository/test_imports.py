@@ -1,4 +1,5 @@
-"""Does each room import only what stands below it, without circles? The contracts are in pyproject.toml: ``lint-imports``."""
+"""Does each room import only what stands below it, without circles? The contracts are in pyproject.toml:
+``lint-imports``."""
 
 import os
 import subprocess
@@ -14,7 +15,9 @@ def lint(config, at=ROOT):
     pytest.importorskip("importlinter")
     code = f"from importlinter.cli import lint_imports as lint; exit(lint({str(config)!r}, no_cache=True))"
     env = os.environ | {"PYTHONPATH": str(at)}
-    done = subprocess.run([sys.executable, "-c", code], cwd=at, env=env, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=at, env=env, capture_output=True, text=True, check=False
+    )
     return done.returncode, done.stdout + done.stderr
 
 
@@ -27,7 +30,10 @@ def test_import_contracts_are_kept():
 def test_a_broken_contract_is_seen(tmp_path):
     """The lowest room put on top: all others import it, so that the check can fail."""
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
-    first, last = '["benchmarks", "agents", "commands", "snooker_env"]', '["snooker_env", "benchmarks", "agents", "commands"]'
+    first, last = (
+        '["benchmarks", "agents", "commands", "snooker_env"]',
+        '["snooker_env", "benchmarks", "agents", "commands"]',
+    )
     assert first in text
     (tmp_path / "pyproject.toml").write_text(text.replace(first, last), encoding="utf-8")
     code, words = lint(tmp_path / "pyproject.toml")
@@ -35,7 +41,8 @@ def test_a_broken_contract_is_seen(tmp_path):
 
 
 def test_the_built_in_players_load_no_learning_library():
-    """Neither torch nor Stable-Baselines3, nor what reads the recipes: not even to play as the planner does."""
+    """Neither torch nor Stable-Baselines3, nor what reads the recipes: not even to play as the planner
+    does."""
     code = """if True:
         import sys
         import numpy as np, snooker_env as sn

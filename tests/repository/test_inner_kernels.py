@@ -1,4 +1,5 @@
-"""What is compiled of an inner kernel? No machine code of its own; and with a numba whose parts are others, what numba makes by itself."""
+"""What is compiled of an inner kernel? No machine code of its own; and with a numba whose parts are others,
+what numba makes by itself."""
 
 import json
 import operator
@@ -43,15 +44,20 @@ def test_inner_kernels_are_only_linked():
     exec(KERNELS, here)
     assert here["outer"](3.0) == 7.0 and _inner.KNOWN
     ((inner,), (outer,)) = (here[name].overloads.values() for name in ("double", "outer"))
-    assert isinstance(inner.entry_point, _inner.EntryPoint) and not isinstance(outer.entry_point, _inner.EntryPoint)
+    assert isinstance(inner.entry_point, _inner.EntryPoint) and not isinstance(
+        outer.entry_point, _inner.EntryPoint
+    )
 
 
 def test_numba_finds_by_itself_what_is_not_of_an_inner_kernel():
-    """What was found once is for the types alone: of ``max``, which is compiled for its caller's options, nothing is kept."""
+    """What was found once is for the types alone: of ``max``, which is compiled for its caller's options,
+    nothing is kept."""
     here = {}
     exec(KERNELS.replace("2.0 * x", "max(2.0 * x, 1.0)"), here)
     assert here["outer"](3.0) == 7.0 and here["outer"](0.0) == 2.0
-    assert any(called is operator.mul for called, _ in _inner._found) and not any(called is max for called, _ in _inner._found)
+    assert any(called is operator.mul for called, _ in _inner._found) and not any(
+        called is max for called, _ in _inner._found
+    )
     assert getattr(BaseFunction, _inner.FIND) is _inner._find
 
 
@@ -67,8 +73,19 @@ def test_without_the_parts_of_numba_the_results_are_the_same(tmp_path):
         assert text.count("KNOWN = all(") == 1
         if not known:
             file.write_text(text.replace("KNOWN = all(", "KNOWN = False and all("))
-        environment = os.environ | {"PYTHONPATH": str(tree), "NUMBA_CACHE_DIR": str(tmp_path / f"cache{k}"), "SNOOKER_ENV_QUIET": "1"}
-        done = subprocess.run([sys.executable, "-c", SHOT], env=environment, cwd=tree, capture_output=True, text=True, check=True)
+        environment = os.environ | {
+            "PYTHONPATH": str(tree),
+            "NUMBA_CACHE_DIR": str(tmp_path / f"cache{k}"),
+            "SNOOKER_ENV_QUIET": "1",
+        }
+        done = subprocess.run(
+            [sys.executable, "-c", SHOT],
+            env=environment,
+            cwd=tree,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
         results.append(json.loads(done.stdout))
     assert results[0][:2] == [True, ["EntryPoint"]]
     assert results[1][0] is False and "EntryPoint" not in results[1][1]

@@ -1,4 +1,5 @@
-"""Does ``gymnasium.make("Snooker-v0")`` work where the package is installed, without importing it, and at no cost for other programs?"""
+"""Does ``gymnasium.make("Snooker-v0")`` work where the package is installed, without importing it, and at no
+cost for other programs?"""
 
 import compileall
 import os
@@ -23,7 +24,8 @@ HERE = Path(sysconfig.get_paths()["purelib"])
 
 
 class Environment:
-    """A virtual environment: the libraries of this one, without its ``.pth`` files, and what is unpacked into it."""
+    """A virtual environment: the libraries of this one, without its ``.pth`` files, and what is unpacked into
+    it."""
 
     def __init__(self, folder):
         venv.create(folder, with_pip=False, symlinks=True)
@@ -45,10 +47,19 @@ class Environment:
         return self
 
     def run(self, code, *flags, **variables):
-        env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {"PYTHONWARNINGS": "error", "SNOOKER_ENV_QUIET": "1"}
+        env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {
+            "PYTHONWARNINGS": "error",
+            "SNOOKER_ENV_QUIET": "1",
+        }
         command = [self.python, *flags, "-c", code]
         done = subprocess.run(
-            command, cwd=getattr(self, "cwd", "/"), env=env | variables, capture_output=True, text=True, timeout=280, check=False
+            command,
+            cwd=getattr(self, "cwd", "/"),
+            env=env | variables,
+            capture_output=True,
+            text=True,
+            timeout=280,
+            check=False,
         )
         assert done.returncode == 0, done.stderr[-3000:]
         return done.stdout, done.stderr
@@ -85,8 +96,11 @@ def test_the_environment_is_made_without_an_import(installed, flags):
     out, err = installed.run(MAKE, *flags)
     assert err == ""
     assert out.splitlines() == [
-        "snooker_env.envs.snooker:SnookerEnv", "SnookerEnv (121,)", "SnookerVectorEnv (3, 121)", "SnookerEnv []",
-    ]  # fmt: skip
+        "snooker_env.envs.snooker:SnookerEnv",
+        "SnookerEnv (121,)",
+        "SnookerVectorEnv (3, 121)",
+        "SnookerEnv []",
+    ]
 
 
 WORKERS = """
@@ -104,7 +118,9 @@ if __name__ == "__main__":
 @pytest.mark.parametrize("method", ["spawn", "forkserver", "fork"])
 def test_workers_make_it_too(installed, method):
     (installed.cwd / "workers.py").write_text(WORKERS.format(method=method))
-    out, err = installed.run("import runpy; runpy.run_path('workers.py', run_name='__main__')" if method == "fork" else RUN_FILE)
+    out, err = installed.run(
+        "import runpy; runpy.run_path('workers.py', run_name='__main__')" if method == "fork" else RUN_FILE
+    )
     assert out == "[(False, 'Snooker-v0'), (True, 'Snooker-v0')]\n" and err == ""
 
 
@@ -175,31 +191,46 @@ def test_the_wheel_holds_what_belongs_there(tmp_path, monkeypatch):
     monkeypatch.chdir(ROOT)
     with zipfile.ZipFile(tmp_path / hatchling.build_wheel(str(tmp_path))) as wheel:
         names = wheel.namelist()
-        assert wheel.read("_snooker_env_autoregister.py") == (ROOT / "snooker_env/_autoregister.py").read_bytes()
+        assert (
+            wheel.read("_snooker_env_autoregister.py") == (ROOT / "snooker_env/_autoregister.py").read_bytes()
+        )
         assert wheel.read("snooker_env_autoregister.pth").count(b"\n") == 1  # one line: each is run by itself
     assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {
-        "snooker_env", "_snooker_env_autoregister.py", "snooker_env_autoregister.pth",
-    }  # fmt: skip
+        "snooker_env",
+        "_snooker_env_autoregister.py",
+        "snooker_env_autoregister.pth",
+    }
     assert "snooker_env/_registration.py" in names and len(names) == len(set(names))
     assert [name for name in names if name.endswith(".pth")] == ["snooker_env_autoregister.pth"]
 
 
 @pytest.mark.skipif(not (ROOT / ".git").exists(), reason="only a clone can say what belongs to it")
 def test_the_source_distribution_is_a_clone_and_gives_the_same_wheel(tmp_path, monkeypatch):
-    """Tests, agents, weights and documents come with it; what git ignores does not. Data files of the package are in the wheel."""
+    """Tests, agents, weights and documents come with it; what git ignores does not. Data files of the package
+    are in the wheel."""
     monkeypatch.chdir(ROOT)
     with tarfile.open(tmp_path / hatchling.build_sdist(str(tmp_path))) as source:
         source.extractall(tmp_path)
     (tree,) = (path for path in tmp_path.iterdir() if path.is_dir())
     there = {path.relative_to(tree).as_posix() for path in tree.rglob("*") if path.is_file()}
-    listed = subprocess.run(["git", "ls-files", "-z", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True)
+    listed = subprocess.run(
+        ["git", "ls-files", "-z", "-co", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     here = {name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()}
     assert there - here == {"PKG-INFO"} and here <= there, sorted(here ^ there)[:20]
     wheels = []
     for folder in (ROOT, tree):
         monkeypatch.chdir(folder)
         with zipfile.ZipFile(tmp_path / hatchling.build_wheel(str(tmp_path))) as wheel:
-            wheels.append({name: wheel.getinfo(name).CRC for name in wheel.namelist() if not name.endswith("RECORD")})
+            wheels.append(
+                {name: wheel.getinfo(name).CRC for name in wheel.namelist() if not name.endswith("RECORD")}
+            )
     assert wheels[0] == wheels[1]
-    data = {name for name in here if name.startswith("snooker_env/") and not name.endswith(".py")} - {"snooker_env/_autoregister.pth"}
+    data = {name for name in here if name.startswith("snooker_env/") and not name.endswith(".py")} - {
+        "snooker_env/_autoregister.pth"
+    }
     assert data <= set(wheels[0]) and {"snooker_env/py.typed", "snooker_env/game/opened.npz"} <= data

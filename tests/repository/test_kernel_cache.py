@@ -1,4 +1,5 @@
-"""Is kept machine code loaded only where nobody else can write, and does a damaged or full cache do no more harm than a warning?"""
+"""Is kept machine code loaded only where nobody else can write, and does a damaged or full cache do no more
+harm than a warning?"""
 
 import os
 import pickle
@@ -29,7 +30,9 @@ import toy
 print(toy.double(1.5), toy.half(3.0), *(sum(kernel.stats.cache_hits.values()) for kernel in (toy.double, toy.half)))
 """
 FRESH, LOADED, MIXED = "3.0 1.5 0 0", "3.0 1.5 1 1", "3.0 1.5 0 1"
-root_only = pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can give files away")
+root_only = pytest.mark.skipif(
+    not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can give files away"
+)
 
 
 @pytest.fixture
@@ -82,9 +85,16 @@ def folders(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("which", "mode"),
-    [("home", 0o777), ("home", 0o702), ("snooker_env", 0o777), ("snooker_env", 0o1777), ("snooker_env", 0o720), ("hash", 0o702),
-     ("hash", 0o770)],
-)  # fmt: skip
+    [
+        ("home", 0o777),
+        ("home", 0o702),
+        ("snooker_env", 0o777),
+        ("snooker_env", 0o1777),
+        ("snooker_env", 0o720),
+        ("hash", 0o702),
+        ("hash", 0o770),
+    ],
+)
 def test_a_folder_that_others_can_write_to_is_not_used(folders, monkeypatch, which, mode):
     folders[which].chmod(mode)
     message = unsafe(monkeypatch, folders["home"], "others can write to")
@@ -97,7 +107,9 @@ def test_a_folder_that_others_can_write_to_is_not_used(folders, monkeypatch, whi
 @pytest.mark.parametrize("which", ["home", "snooker_env", "hash"])
 def test_a_folder_of_another_user_is_not_used(folders, monkeypatch, which):
     os.chown(folders[which], 12345, -1)
-    assert f"{folders[which]} belongs to another user (uid 12345)" in unsafe(monkeypatch, folders["home"], "belongs to")
+    assert f"{folders[which]} belongs to another user (uid 12345)" in unsafe(
+        monkeypatch, folders["home"], "belongs to"
+    )
 
 
 def test_a_home_that_others_share_is_good_as_long_as_they_cannot_exchange_what_is_ours(folders):
@@ -114,7 +126,9 @@ def test_links_are_followed(folders, monkeypatch, tmp_path):
     folders["snooker_env"].symlink_to(elsewhere)
     assert _cache.cache_folder() == folders["hash"] and (elsewhere / folders["hash"].name).is_dir()
     elsewhere.chmod(0o777)
-    assert f"others can write to {folders['snooker_env']}" in unsafe(monkeypatch, folders["home"], "others can write to")
+    assert f"others can write to {folders['snooker_env']}" in unsafe(
+        monkeypatch, folders["home"], "others can write to"
+    )
 
 
 def test_where_there_are_no_owners_none_are_checked(folders, monkeypatch):
@@ -129,7 +143,9 @@ def test_a_user_without_a_home_has_no_folder(monkeypatch, tmp_path):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(os.path, "expanduser", lambda path: path)
     monkeypatch.chdir(tmp_path)
-    with pytest.warns(RuntimeWarning, match="no home folder: .*every process compiles for itself; set NUMBA_CACHE_DIR"):
+    with pytest.warns(
+        RuntimeWarning, match="no home folder: .*every process compiles for itself; set NUMBA_CACHE_DIR"
+    ):
         assert _cache.cache_folder() is None
     assert not list(tmp_path.iterdir())
 
@@ -172,9 +188,13 @@ def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path, which):
 def damaged(data, how):
     middle = len(data) // 2
     return {
-        "empty": b"", "short": data[:10], "cut": data[:middle], "garbage": b"garbage" * 99, "zeros": bytes(len(data)),
+        "empty": b"",
+        "short": data[:10],
+        "cut": data[:middle],
+        "garbage": b"garbage" * 99,
+        "zeros": bytes(len(data)),
         "one bit": data[:middle] + bytes([data[middle] ^ 4]) + data[middle + 1 :],
-    }[how]  # fmt: skip
+    }[how]
 
 
 @pytest.mark.parametrize("what", ["*double*.nbi", "*double*.nbc"])
@@ -216,26 +236,44 @@ def test_on_a_full_disk_it_works_from_memory(toy):
     out, err = toy(FULL)
     assert out == FRESH and not files(toy, "*.nb?")
     assert err.count("RuntimeWarning") == 1
-    assert "cannot be kept" in err and "No space left on device" in err and "every process compiles for itself" in err
+    assert (
+        "cannot be kept" in err
+        and "No space left on device" in err
+        and "every process compiles for itself" in err
+    )
     assert toy() == (FRESH, "") and toy() == (LOADED, "")
 
 
 @pytest.mark.parametrize("instead", ["nothing", "a file"])
 def test_a_folder_that_is_gone_does_no_harm(toy, instead):
     gone = "import shutil; from snooker_env import _cache; shutil.rmtree(_cache.CACHE_FOLDER.parent)\n"
-    out, err = toy("import toy\n" + gone + ("_cache.CACHE_FOLDER.parent.write_text('')\n" if instead == "a file" else ""))
+    out, err = toy(
+        "import toy\n" + gone + ("_cache.CACHE_FOLDER.parent.write_text('')\n" if instead == "a file" else "")
+    )
     assert out == FRESH
     if instead == "nothing":
         assert err == "" and toy() == (LOADED, "")  # made again
     else:
-        assert err.count("RuntimeWarning") == 1 and "is not read from" in err and "every process compiles for itself" in err
+        assert (
+            err.count("RuntimeWarning") == 1
+            and "is not read from" in err
+            and "every process compiles for itself" in err
+        )
 
 
 def test_processes_that_compile_at_the_same_time_do_not_disturb_each_other(toy, tmp_path):
     paths = os.pathsep.join([str(tmp_path / "toy"), str(ROOT)])
-    env = os.environ | {"NUMBA_CACHE_DIR": str(toy.cache), "PYTHONPATH": paths, "PYTHONWARNINGS": "error", "SNOOKER_ENV_QUIET": "1"}
+    env = os.environ | {
+        "NUMBA_CACHE_DIR": str(toy.cache),
+        "PYTHONPATH": paths,
+        "PYTHONWARNINGS": "error",
+        "SNOOKER_ENV_QUIET": "1",
+    }
     command = [sys.executable, "-c", RUN]
-    running = [subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(4)]
+    running = [
+        subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        for _ in range(4)
+    ]
     for process in running:
         out, err = process.communicate(timeout=120)
         assert out.startswith("3.0 1.5 ") and err == "" and process.returncode == 0
@@ -253,11 +291,25 @@ def test_equal_sources_share_their_machine_code_wherever_they_lie(toy, tmp_path)
 
 @pytest.mark.parametrize("way", ["-c", "-"])
 def test_a_kernel_that_is_in_no_file_is_not_kept(tmp_path, way):
-    """Two versions of it have the same bytecode and place, and no hash that differs: the second would run the machine code of the first."""
-    env = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(ROOT), "SNOOKER_ENV_QUIET": "0"}
+    """Two versions of it have the same bytecode and place, and no hash that differs: the second would run the
+    machine code of the first."""
+    env = os.environ | {
+        "NUMBA_CACHE_DIR": str(tmp_path / "cache"),
+        "PYTHONPATH": str(ROOT),
+        "SNOOKER_ENV_QUIET": "0",
+    }
     for factor in ("2.0", "3.0"):
         code = TOY.replace("2.0", factor) + "print(double(1.0))"
         command, given = ([sys.executable, way, code], None) if way == "-c" else ([sys.executable, way], code)
-        done = subprocess.run(command, cwd=tmp_path, env=env, input=given, capture_output=True, text=True, check=True, timeout=120)
+        done = subprocess.run(
+            command,
+            cwd=tmp_path,
+            env=env,
+            input=given,
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=120,
+        )
         assert done.stdout.strip() == factor
         assert "compiling a toy, about 3 s (for this process only;" in done.stderr

@@ -1,4 +1,5 @@
-"""Do the rooms whose source names the folder of machine code hold all that kernels are made from? A file left out would run old code."""
+"""Do the rooms whose source names the folder of machine code hold all that kernels are made from? A file left
+out would run old code."""
 
 import ast
 from pathlib import Path
@@ -11,16 +12,22 @@ from snooker_env import _cache
 PACKAGE = Path(snooker_env.__file__).resolve().parent
 INSIDE = [p for p in sorted(PACKAGE.rglob("*.py")) if p.relative_to(PACKAGE).parts[0] in _cache.KERNEL_ROOMS]
 NO_CONSTANTS = {"_cache", "_check", "_files", "_install", "_notices", "_shots", "_tables", "_types", "shot"}
-"""What the rooms import besides themselves: errors, files, types and results, of which no kernel takes anything."""
+"""What the rooms import besides themselves: errors, files, types and results, of which no kernel takes
+anything."""
 
 
 def taken(path):
-    """The modules of the package that a file imports names from, as paths: ``from ..game import pots`` is game/pots.py."""
+    """The modules of the package that a file imports names from, as paths: ``from ..game import pots`` is
+    game/pots.py."""
     here = path.relative_to(PACKAGE).parts[:-1]
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.ImportFrom) and node.level:
             base = here[: len(here) - node.level + 1]
-            yield (*base, *(node.module.split(".") if node.module else []), *(a.name for a in node.names if not node.module))
+            yield (
+                *base,
+                *(node.module.split(".") if node.module else []),
+                *(a.name for a in node.names if not node.module),
+            )
 
 
 @pytest.mark.parametrize("path", INSIDE, ids=lambda p: p.relative_to(PACKAGE).as_posix())
@@ -32,5 +39,9 @@ def test_a_room_takes_constants_and_kernels_from_rooms_alone(path):
 def test_every_room_is_there_and_every_kernel_of_more_than_one_file_is_in_one():
     assert all((PACKAGE / room).exists() for room in _cache.KERNEL_ROOMS)
     outside = [p for p in sorted(PACKAGE.rglob("*.py")) if p not in INSIDE and "_jit import" in p.read_text()]
-    made = [p.relative_to(PACKAGE).as_posix() for p in outside if "@entry" in p.read_text() or "@kernel" in p.read_text()]
+    made = [
+        p.relative_to(PACKAGE).as_posix()
+        for p in outside
+        if "@entry" in p.read_text() or "@kernel" in p.read_text()
+    ]
     assert made == ["replays/video_colours.py"]  # it has the folder of the whole package's hash

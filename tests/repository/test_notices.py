@@ -1,4 +1,5 @@
-"""Does a user hear of a long compile before it starts, once and on stderr, and of nothing else? And how far a warm-up is?"""
+"""Does a user hear of a long compile before it starts, once and on stderr, and of nothing else? And how far a
+warm-up is?"""
 
 import importlib
 import os
@@ -46,7 +47,9 @@ def toys(tmp_path):
 
     def run(code, **variables):
         variables = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "SNOOKER_ENV_QUIET": None} | variables
-        out, err = python("from toys import *\n" + code, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]), **variables)
+        out, err = python(
+            "from toys import *\n" + code, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]), **variables
+        )
         assert out == ""
         return err
 
@@ -57,13 +60,18 @@ def toys(tmp_path):
 def test_one_line_before_each_long_compile_and_none_when_it_is_loaded(toys):
     """What large kernels cost is said where they are compiled: with the first that uses them."""
     code = "small(1.0); one(1.0); one(2.0); another(1.0); rest(1.0)"
-    one, other = (f"snooker_env: compiling {what}, once, about {s} s {toys.kept}\n" for what, s in (("one toy", 9), ("another toy", 3)))
+    one, other = (
+        f"snooker_env: compiling {what}, once, about {s} s {toys.kept}\n"
+        for what, s in (("one toy", 9), ("another toy", 3))
+    )
     assert toys(code) == one + other
     assert toys(code) == ""
 
 
 def test_it_is_said_before_the_compile(toys):
-    err = toys("import sys\ndef compile(*args): sys.exit(3)\ntype(one._compiler).compile = compile\ntry: one(1.0)\nexcept SystemExit: pass")
+    err = toys(
+        "import sys\ndef compile(*args): sys.exit(3)\ntype(one._compiler).compile = compile\ntry: one(1.0)\nexcept SystemExit: pass"
+    )
     assert err.startswith("snooker_env: compiling one toy, once, about 9 s ")
 
 
@@ -75,7 +83,10 @@ def test_it_can_be_silenced(toys, quiet):
 def test_without_a_cache_it_says_so(toys, tmp_path):
     (tmp_path / "file").write_text("")
     err = toys("one(1.0)", NUMBA_CACHE_DIR=str(tmp_path / "file"), warn="ignore")
-    assert err == "snooker_env: compiling one toy, about 9 s (for this process only; SNOOKER_ENV_QUIET=1 hides this)\n"
+    assert (
+        err
+        == "snooker_env: compiling one toy, about 9 s (for this process only; SNOOKER_ENV_QUIET=1 hides this)\n"
+    )
 
 
 @pytest.mark.parametrize("without", ["sys.stderr = None", "sys.stderr.close()"])
@@ -99,25 +110,35 @@ def test_a_warm_up_says_which_kernel_of_how_many_it_is_at(toys):
 
 
 LONG = {
-    "snooker_env.physics.engine": ["run_batch"], "snooker_env.impacts": ["_collide_balls", "_collide_cushion"],
-    "snooker_env.tasks.stroke": ["address"], "snooker_env.tasks.visit": ["_conclude", "_begin"],
+    "snooker_env.physics.engine": ["run_batch"],
+    "snooker_env.impacts": ["_collide_balls", "_collide_cushion"],
+    "snooker_env.tasks.stroke": ["address"],
+    "snooker_env.tasks.visit": ["_conclude", "_begin"],
     "snooker_env.tasks.attempts": ["remember"],
     "snooker_env.tasks.frame_kernels": ["decide", "conclude", "observe", "finish", "begin", "show"],
-    "snooker_env.tasks.uniform_opponent": ["_uniform"], "snooker_env.tasks.ghost_ball": ["_ghost_ball"],
+    "snooker_env.tasks.uniform_opponent": ["_uniform"],
+    "snooker_env.tasks.ghost_ball": ["_ghost_ball"],
     "snooker_env.game.layouts": ["deal_tables"],
-    "snooker_env.game.apply_ruling": ["settle_one"], "snooker_env.game.paths": ["best_paths"], "snooker_env.game.snookered": ["_snookered"],
-    "snooker_env.planning.learned.pot_view": ["_add_pots"], "agents.features.indirect_pots": ["_indirect"],
-    "snooker_env.planning.strokes": ["_pot_aim"], "snooker_env.planning.trials": ["_strike"],
+    "snooker_env.game.apply_ruling": ["settle_one"],
+    "snooker_env.game.paths": ["best_paths"],
+    "snooker_env.game.snookered": ["_snookered"],
+    "snooker_env.planning.learned.pot_view": ["_add_pots"],
+    "agents.features.indirect_pots": ["_indirect"],
+    "snooker_env.planning.strokes": ["_pot_aim"],
+    "snooker_env.planning.trials": ["_strike"],
     "snooker_env.planning.geometry": ["_pots", "_clear_paths"],
-}  # fmt: skip
+}
 """The kernels that were seen to take over a second, each compiled first in a fresh process."""
 
 
-@pytest.mark.parametrize(("module", "name"), [(module, name) for module, names in LONG.items() for name in names])
+@pytest.mark.parametrize(
+    ("module", "name"), [(module, name) for module, names in LONG.items() for name in names]
+)
 def test_each_long_kernel_announces_itself(module, name, capsys, monkeypatch):
     monkeypatch.delenv("SNOOKER_ENV_QUIET")
     kernel = getattr(importlib.import_module(module), name)
-    monkeypatch.setattr(_notices.Cost, "_missing", lambda self: set(self.uses))  # as if nothing had been compiled yet
+    # as if nothing had been compiled yet
+    monkeypatch.setattr(_notices.Cost, "_missing", lambda self: set(self.uses))
     event.start_event("numba:compile", data={"dispatcher": kernel})
     err = capsys.readouterr().err
     assert err.count("\n") == 1 and f"compiling {kernel.cost.what}, " in err and kernel in _jit.ENTRIES

@@ -1,4 +1,5 @@
-"""Is the package light to import, whole, and the same everywhere? Imports, names, the cache of machine code, equal bits."""
+"""Is the package light to import, whole, and the same everywhere? Imports, names, the cache of machine code,
+equal bits."""
 
 import importlib
 import inspect
@@ -18,7 +19,18 @@ from tests.processes import CACHE, ROOT, copy_of_package, python, replace
 
 # Imports and names
 
-HEAVY = {"torch", "stable_baselines3", "sb3_contrib", "pygame", "matplotlib", "scipy", "hypothesis", "pettingzoo", "moviepy", "agents"}
+HEAVY = {
+    "torch",
+    "stable_baselines3",
+    "sb3_contrib",
+    "pygame",
+    "matplotlib",
+    "scipy",
+    "hypothesis",
+    "pettingzoo",
+    "moviepy",
+    "agents",
+}
 
 
 def test_the_import_is_light():
@@ -32,7 +44,8 @@ def test_the_import_is_light():
     new = json.loads(out)
     assert "snooker_env.simulation" in new and "snooker_env.physics.engine" in new
     assert not {name.split(".")[0] for name in new} & HEAVY
-    assert not [name for name in new if name.startswith(("snooker_env.envs", "snooker_env.render"))]  # only when an environment is made
+    # only when an environment is made
+    assert not [name for name in new if name.startswith(("snooker_env.envs", "snooker_env.render"))]
 
 
 WITHOUT = f"""
@@ -64,33 +77,58 @@ def test_with_the_core_dependencies_alone_everything_but_pictures_works():
 
 
 def test_what_is_missing_is_installed_as_the_package_was(tmp_path):
-    """In a clone by its project file; the package alone, as a wheel leaves it, by its name: pip adds the extra to what is there."""
+    """In a clone by its project file; the package alone, as a wheel leaves it, by its name: pip adds the
+    extra to what is there."""
     code = "from snooker_env._install import missing\nprint(missing('pictures need pygame-ce', 'render'))"
     out, _ = python(code, at=copy_of_package(tmp_path))
     assert out == 'pictures need pygame-ce; install it with: pip install "snooker-env[render]"\n'
     (tmp_path / "pyproject.toml").touch()
     out, _ = python(code, at=tmp_path)
-    assert out == f'pictures need pygame-ce; install it, in the clone {tmp_path}, with: pip install -e ".[render]"\n'
+    assert (
+        out
+        == f'pictures need pygame-ce; install it, in the clone {tmp_path}, with: pip install -e ".[render]"\n'
+    )
 
 
 def test_public_names_are_all_in_all():
     assert all(hasattr(sn, name) for name in sn.__all__)  # most are loaded when they are asked for
     public = {n for n, v in vars(sn).items() if not n.startswith("_") and not inspect.ismodule(v)}
     assert public | {"planning", "players"} == set(sn.__all__)
-    promised = {"Physics", "collide_balls", "collide_cushion", "strike", "Table", "simulate", "simulate_batch", "EventKind", "warmup"}
+    promised = {
+        "Physics",
+        "collide_balls",
+        "collide_cushion",
+        "strike",
+        "Table",
+        "simulate",
+        "simulate_batch",
+        "EventKind",
+        "warmup",
+    }
     assert promised <= set(sn.__all__)
 
 
 def test_options_keep_the_order_that_was_promised():
     """Users call these with positional arguments: design.md's list is the contract."""
     for function, names in {
-        sn.collide_balls: "v1 w1 v2 w2 normal physics fidelity", sn.collide_cushion: "v w normal physics fidelity",
-        sn.strike: "speed aim side top elevation physics", sn.simulate: "positions velocities spins table physics fidelity",
-        sn.simulate_batch: "positions velocities spins table physics fidelity", sn.warmup: "",
-    }.items():  # fmt: skip
+        sn.collide_balls: "v1 w1 v2 w2 normal physics fidelity",
+        sn.collide_cushion: "v w normal physics fidelity",
+        sn.strike: "speed aim side top elevation physics",
+        sn.simulate: "positions velocities spins table physics fidelity",
+        sn.simulate_batch: "positions velocities spins table physics fidelity",
+        sn.warmup: "",
+    }.items():
         parameters = inspect.signature(function).parameters.values()
         assert " ".join(p.name for p in parameters if p.kind is not p.KEYWORD_ONLY) == names
-        defaults = {"table": "match", "physics": None, "fidelity": "standard", "side": 0.0, "top": 0.0, "elevation": 0.0, "threads": None}
+        defaults = {
+            "table": "match",
+            "physics": None,
+            "fidelity": "standard",
+            "side": 0.0,
+            "top": 0.0,
+            "elevation": 0.0,
+            "threads": None,
+        }
         for p in parameters:
             if p.name in defaults:
                 assert p.default == defaults[p.name], p.name
@@ -131,7 +169,8 @@ def test_the_cache_folder_depends_on_every_source_file_that_kernels_are_made_fro
     assert len(files) > 25
     for path in files:
         text = path.read_bytes()
-        path.write_bytes(text.replace(b"e", b"f", 1) if b"e" in text else text + b"#")  # same size, other content
+        # same size, other content
+        path.write_bytes(text.replace(b"e", b"f", 1) if b"e" in text else text + b"#")
         seen.add(_cache.kernel_hash(root))
         path.write_bytes(text)
         os.utime(path, (1e9, 1e9))  # its age does not matter
@@ -158,7 +197,8 @@ def test_the_cache_is_where_it_is_said_to_be(tmp_path, monkeypatch):
     assert _cache.cache_folder() == tmp_path / "xdg" / "snooker_env" / key
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "numba"))
     assert _cache.cache_folder() == tmp_path / "numba" / "snooker_env" / key
-    assert _cache.cache_folder().is_dir() and not list(_cache.cache_folder().iterdir())  # the trial file is gone
+    # the trial file is gone
+    assert _cache.cache_folder().is_dir() and not list(_cache.cache_folder().iterdir())
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file"))
     with pytest.warns(RuntimeWarning, match="is not writable"):
@@ -176,7 +216,8 @@ print(positions[balls.BLACK, 1], hits, _jit.CACHE_FOLDER)
 
 
 def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
-    """numba checks only the file of the entry kernel (spotting.py); the black's place is frozen in from geometry.py."""
+    """numba checks only the file of the entry kernel (spotting.py); the black's place is frozen in from
+    geometry.py."""
     at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
     runs = [python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() for _ in range(2)]
     assert [run[:2] for run in runs] == [["1.4605", "0"], ["1.4605", "1"]]  # compiled once, then loaded
@@ -185,7 +226,8 @@ def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
     run = python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()
     assert run[:2] == ["1.4005", "0"] and run[2] != runs[0][2]
     replace(at / "snooker_env/geometry.py", "(0.0, 1.4005)", "(0.0, 1.4605)")
-    assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() == runs[1]  # and the old code's cache is good again
+    # and the old code's cache is good again
+    assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() == runs[1]
 
 
 @pytest.mark.parametrize("where", ["NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME"])
@@ -195,7 +237,10 @@ def test_without_a_place_for_the_cache_it_works_from_memory(tmp_path, where):
     variables = dict.fromkeys(CACHE) | {where: str(tmp_path / "file")}
     out, err = python(SPOT, warn="error,default::RuntimeWarning", **variables)
     assert out.split() == ["1.4605", "-1", "None"]
-    assert err.count("Warning") == 1 and "is not writable: every process compiles for itself; set NUMBA_CACHE_DIR" in err
+    assert (
+        err.count("Warning") == 1
+        and "is not writable: every process compiles for itself; set NUMBA_CACHE_DIR" in err
+    )
     assert (tmp_path / "file").read_text() == ""
 
 
@@ -235,11 +280,19 @@ def golden():
     return space
 
 
-@pytest.mark.parametrize("options", [{}, {"physics": "match", "table": "tight"}, {"fidelity": "fast"}], ids=["paper", "match", "fast"])
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"physics": "match", "table": "tight"}, {"fidelity": "fast"}],
+    ids=["paper", "match", "fast"],
+)
 def test_the_same_bits_in_every_process_and_for_any_number_of_threads(golden, options):
     batch = golden["run"](**options)
     want = golden["digest"](batch)
-    assert golden["digest"](golden["run"](threads=2, **options)) == golden["digest"](golden["run"](threads=7, **options)) == want
+    assert (
+        golden["digest"](golden["run"](threads=2, **options))
+        == golden["digest"](golden["run"](threads=7, **options))
+        == want
+    )
     code = GOLDEN + f"options = {options!r}\nprint(digest(run(**options)), digest(run(threads=2, **options)))"
     for _ in range(2):
         assert python(code)[0].split() == [want, want]
@@ -254,7 +307,9 @@ def test_one_shot_is_the_same_alone_and_in_a_batch(golden):
     for k in range(0, 40, 3):
         shot = sn.simulate(r[k], v[k], w[k], on_table=here[k])
         assert shot.positions.tobytes() == batch.positions[k].tobytes() and shot.duration == batch.duration[k]
-        assert np.array_equal(shot.potted, batch.potted[k]) and np.array_equal(shot.on_table, batch.on_table[k])
+        assert np.array_equal(shot.potted, batch.potted[k]) and np.array_equal(
+            shot.on_table, batch.on_table[k]
+        )
         assert shot.events.tobytes() == batch.events[k].tobytes() and len(shot.events) == batch.event_count[k]
 
 
@@ -273,7 +328,9 @@ def test_a_pickled_shot_and_physics_stay_what_they_are():
     shot = sn.simulate([(0.0, 0.0), (0.3, 0.0)], [(1.0, 0.0), (0.0, 0.0)], np.zeros((2, 3)), physics="match")
     again = pickle.loads(pickle.dumps(shot))
     assert again.physics == shot.physics == sn.Physics.preset("match") != sn.Physics()
-    assert np.array_equal(again.positions, shot.positions) and all(map(np.array_equal, again.at(0.3), shot.at(0.3)))
+    assert np.array_equal(again.positions, shot.positions) and all(
+        map(np.array_equal, again.at(0.3), shot.at(0.3))
+    )
     assert pickle.loads(pickle.dumps(sn.Table.preset("tight"))) is sn.Table.preset("tight")
 
 
@@ -282,7 +339,9 @@ def test_kernels_outside_the_package_are_kept_by_the_hash_of_their_own_package(t
     code = "from agents.features.indirect_pots import _indirect as k\nfrom snooker_env import _jit\n"
     code += "print(_jit.CACHE_FOLDER, k._cache.cache_path)"
     copy_of_package(tmp_path)
-    shutil.copytree(ROOT / "agents", tmp_path / "agents", ignore=shutil.ignore_patterns("__pycache__", "*.zip"))
+    shutil.copytree(
+        ROOT / "agents", tmp_path / "agents", ignore=shutil.ignore_patterns("__pycache__", "*.zip")
+    )
     seen = []
     for change in ("", "\n# other columns"):
         with (tmp_path / "agents/features/indirect_pots.py").open("a") as file:

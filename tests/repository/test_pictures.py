@@ -1,4 +1,5 @@
-"""Can every chart of the repository be read at README width, and is the command of every picture written down?"""
+"""Can every chart of the repository be read at README width, and is the command of every picture written
+down?"""
 
 import importlib
 import importlib.util
@@ -39,7 +40,9 @@ def test_a_chart_drawn_from_kept_figures_can_be_read(name, tmp_path, monkeypatch
     with saved_figures() as figures:
         command.main()
     read(figures)
-    assert {file.name for file in tmp_path.glob("*.png")} <= {file.name for file in (ROOT / "benchmarks/pictures").iterdir()}
+    assert {file.name for file in tmp_path.glob("*.png")} <= {
+        file.name for file in (ROOT / "benchmarks/pictures").iterdir()
+    }
 
 
 def test_learning_curves_can_be_read(tmp_path):
@@ -50,7 +53,9 @@ def test_learning_curves_can_be_read(tmp_path):
 
 def test_destinations_can_be_read(tmp_path):
     with saved_figures() as figures:
-        destinations.draw_figures(json.loads((ROOT / "agents/pictures/destinations.json").read_text()), tmp_path / "d.png")
+        destinations.draw_figures(
+            json.loads((ROOT / "agents/pictures/destinations.json").read_text()), tmp_path / "d.png"
+        )
     read(figures)
 
 
@@ -74,10 +79,14 @@ def test_labels_beside_points_avoid_each_other(tmp_path):
 
 def test_every_picture_has_its_command_written():
     listed = (ROOT / "docs/pictures/README.md").read_text(encoding="utf-8")
-    found = [file for folder in FOLDERS for file in sorted((ROOT / folder).iterdir()) if file.suffix in PICTURES]
+    found = [
+        file for folder in FOLDERS for file in sorted((ROOT / folder).iterdir()) if file.suffix in PICTURES
+    ]
     assert len(found) > 15
     for file in found:
-        line = next((line for line in listed.splitlines() if f"`{file.relative_to(ROOT).as_posix()}`" in line), None)
+        line = next(
+            (line for line in listed.splitlines() if f"`{file.relative_to(ROOT).as_posix()}`" in line), None
+        )
         assert line is not None and "python " in line, file
 
 
@@ -90,4 +99,6 @@ def test_every_command_of_the_list_can_be_run():
         else:
             found = importlib.util.find_spec(name)
             assert found, name
-            assert found.submodule_search_locations is None or importlib.util.find_spec(f"{name}.__main__"), name
+            assert found.submodule_search_locations is None or importlib.util.find_spec(f"{name}.__main__"), (
+                name
+            )

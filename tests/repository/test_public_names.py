@@ -1,4 +1,5 @@
-"""Do agents, commands and examples get along with what the package promises? They import public names only, and each of those is there."""
+"""Do agents, commands and examples get along with what the package promises? They import public names only,
+and each of those is there."""
 
 import ast
 import doctest
@@ -25,7 +26,9 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 def promised(path):
     """The names in ``__all__`` of a file, or None if it has none."""
     for node in ast.parse(path.read_text(encoding="utf-8")).body:
-        if isinstance(node, ast.Assign) and [target.id for target in node.targets if isinstance(target, ast.Name)] == ["__all__"]:
+        if isinstance(node, ast.Assign) and [
+            target.id for target in node.targets if isinstance(target, ast.Name)
+        ] == ["__all__"]:
             return ast.literal_eval(node.value)
     return None
 
@@ -50,12 +53,24 @@ def private(source):
                     found.append(alias.name)
         elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "snooker_env":
             for name in [alias.name for alias in node.names]:
-                if name not in [*ALL.get(node.module, ()), "__version__"] and f"{node.module}.{name}" not in ALL:
+                if (
+                    name not in [*ALL.get(node.module, ()), "__version__"]
+                    and f"{node.module}.{name}" not in ALL
+                ):
                     found.append(f"{node.module}: {name}")
-    attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)]
+    attributes = [
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)
+    ]
     used = {node.attr for node in attributes if isinstance(node.value, ast.Name) and node.value.id in aliases}
-    found += [f"snooker_env.{name}" for name in used - {*ALL["snooker_env"], "__version__", "__file__"} if f"snooker_env.{name}" not in ALL]
-    return found + re.findall(r"\b(?:env|tables|venv)\.(?:frames|shooter|visits)\b", source)  # what environments are made of
+    found += [
+        f"snooker_env.{name}"
+        for name in used - {*ALL["snooker_env"], "__version__", "__file__"}
+        if f"snooker_env.{name}" not in ALL
+    ]
+    # what environments are made of
+    return found + re.findall(r"\b(?:env|tables|venv)\.(?:frames|shooter|visits)\b", source)
 
 
 TRAINED_FOR = (
@@ -68,21 +83,36 @@ TRAINED_FOR = (
 
 @pytest.mark.parametrize("path", USERS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_agents_commands_and_examples_use_public_names_only(path):
-    """But for what ``commands`` passes on, and for the rooms that ``agents`` trains for: the players, and what they learned."""
-    passed_on = {"files.py": "snooker_env._files", "tables.py": "snooker_env._tables"} if path.parent.name == "commands" else {}
+    """But for what ``commands`` passes on, and for the rooms that ``agents`` trains for: the players, and
+    what they learned."""
+    passed_on = (
+        {"files.py": "snooker_env._files", "tables.py": "snooker_env._tables"}
+        if path.parent.name == "commands"
+        else {}
+    )
     known = (*TRAINED_FOR, passed_on.get(path.name, "?"))
     assert [name for name in private(path.read_text(encoding="utf-8")) if not name.startswith(known)] == []
 
 
 def examples(page):
     """The Python of a page, that of its notebook cells included."""
-    return re.findall(r"```(?:python|\{code-cell\}[^\n]*)\n(?::\w.*?\n)*(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    return re.findall(
+        r"```(?:python|\{code-cell\}[^\n]*)\n(?::\w.*?\n)*(.*?)```",
+        page.read_text(encoding="utf-8"),
+        re.DOTALL,
+    )
 
 
 def test_the_readme_and_the_documentation_use_public_names_only():
     shown = {page.relative_to(ROOT).as_posix(): examples(page) for page in PAGES}
-    assert "snooker_env.physics.impact: inertia" in [name for block in shown.pop("docs/physics/derivation.md") for name in private(block)]
-    assert {page: found for page, blocks in shown.items() if (found := [name for block in blocks for name in private(block)])} == {}
+    assert "snooker_env.physics.impact: inertia" in [
+        name for block in shown.pop("docs/physics/derivation.md") for name in private(block)
+    ]
+    assert {
+        page: found
+        for page, blocks in shown.items()
+        if (found := [name for block in blocks for name in private(block)])
+    } == {}
     assert len(USERS) > 40 and len(shown["README.md"]) >= 3 and sum(map(len, shown.values())) > 40
 
 
@@ -109,12 +139,18 @@ def test_environments_and_planning_are_reached_from_the_package_and_loaded_when_
         "from snooker_env import *\n"
         "print(Position is sn.Position, SnookerEnv is sn.SnookerEnv)\n",
     )
-    assert out.splitlines() == ["[] True True", "True snooker_env.envs.snooker snooker_env.envs.vector", "True True"]
+    assert out.splitlines() == [
+        "[] True True",
+        "True snooker_env.envs.snooker snooker_env.envs.vector",
+        "True True",
+    ]
     with pytest.raises(AttributeError, match=r"module 'snooker_env' has no attribute 'Snooker'"):
         _ = sn.Snooker
 
 
-EXAMPLES = sorted(dotted(path) for path in PACKAGE.rglob("*.py") if ">>> " in path.read_text(encoding="utf-8"))
+EXAMPLES = sorted(
+    dotted(path) for path in PACKAGE.rglob("*.py") if ">>> " in path.read_text(encoding="utf-8")
+)
 
 
 @pytest.mark.parametrize("module", EXAMPLES)

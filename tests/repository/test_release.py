@@ -1,4 +1,5 @@
-"""May people use this, and how? Licence, authors, citation, change log, and the instructions to install it."""
+"""May people use this, and how? Licence, authors, citation, change log, and the instructions to install
+it."""
 
 import re
 import zipfile
@@ -12,7 +13,11 @@ import snooker_env as sn
 
 ROOT = Path(__file__).parents[2]
 SKIPPED = {".venv", "tests", ".git", "build", "runs"}
-TEXTS = [p for p in ROOT.rglob("*") if p.suffix in (".py", ".md", ".sh", ".toml") and not set(p.relative_to(ROOT).parts) & SKIPPED]
+TEXTS = [
+    p
+    for p in ROOT.rglob("*")
+    if p.suffix in (".py", ".md", ".sh", ".toml") and not set(p.relative_to(ROOT).parts) & SKIPPED
+]
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +35,10 @@ def built(tmp_path_factory):
 
 def test_the_wheel_says_who_may_use_it(built):
     found = built.metadata
-    assert found["License-Expression"] == "MIT" and found.get_all("License-File") == ["LICENSE", "snooker_env/render/fonts/OFL.txt"]
+    assert found["License-Expression"] == "MIT" and found.get_all("License-File") == [
+        "LICENSE",
+        "snooker_env/render/fonts/OFL.txt",
+    ]
     assert found["Author"] == "the snooker_env authors" and found["Version"] == sn.__version__
     text = built.read_text("licenses/LICENSE")
     assert text == (ROOT / "LICENSE").read_text()
@@ -63,8 +71,15 @@ def test_the_change_log_has_this_version_and_every_one_before():
 
 
 def test_no_text_says_to_install_from_an_index_that_does_not_have_it():
-    """The package is on no index: a bare ``pip install snooker-env`` would fail, or fetch whatever takes that name."""
-    said = [f"{p.relative_to(ROOT)}: {line}" for p in TEXTS for line in p.read_text(encoding="utf-8").splitlines() if "pip install" in line]
+    """The package is on no index: a bare ``pip install snooker-env`` would fail, or fetch whatever takes that
+    name."""
+    said = [
+        f"{p.relative_to(ROOT)}: {line}"
+        for p in TEXTS
+        for line in p.read_text(encoding="utf-8").splitlines()
+        if "pip install" in line
+    ]
     assert len(said) > 5
-    said = [line for line in said if not line.startswith("snooker_env/_install.py")]  # for who has it from a wheel: the extra's libraries
+    # for who has it from a wheel: the extra's libraries
+    said = [line for line in said if not line.startswith("snooker_env/_install.py")]
     assert not [line for line in said if re.search(r"pip install [\"'\w -]*snooker[-_]env", line)]

@@ -1,4 +1,5 @@
-"""Is each entry kernel compiled for one signature, whatever the numbers that users give are made of? A second one would take seconds."""
+"""Is each entry kernel compiled for one signature, whatever the numbers that users give are made of? A second
+one would take seconds."""
 
 import pytest
 
@@ -125,7 +126,9 @@ print(len([kernel for kernel in ENTRIES if kernel.signatures]))
 """
 
 
-@pytest.mark.parametrize(("what", "least"), [(SHOTS, 5), (ENVS, 12), (MATCH, 8)], ids=["shots", "environments", "match"])
+@pytest.mark.parametrize(
+    ("what", "least"), [(SHOTS, 5), (ENVS, 12), (MATCH, 8)], ids=["shots", "environments", "match"]
+)
 def test_no_kernel_is_compiled_twice_whatever_the_input_is_made_of(what, least):
     if what is MATCH:
         pytest.importorskip("pettingzoo")
@@ -137,4 +140,5 @@ def test_a_warm_up_leaves_nothing_to_compile():
     code = "import snooker_env as sn; from snooker_env._jit import ENTRIES; sn.warmup()\n"
     code += "print([k.__qualname__ for k in ENTRIES if not k.signatures], [k.__qualname__ for k in ENTRIES if len(k.signatures) > 1])"
     out, err = python(code)
-    assert out in ("[] []\n", "['clear_path'] []\n") and err == ""  # a part of another entry kernel, which may come from the cache
+    # a part of another entry kernel, which may come from the cache
+    assert out in ("[] []\n", "['clear_path'] []\n") and err == ""

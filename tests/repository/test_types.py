@@ -1,4 +1,5 @@
-"""Are the annotations true? Pyright on right and wrong calls, what it finds in the package, and hints that resolve."""
+"""Are the annotations true? Pyright on right and wrong calls, what it finds in the package, and hints that
+resolve."""
 
 import inspect
 import json
@@ -119,11 +120,15 @@ BAD = (
 
 
 def pyright(*arguments, cwd=ROOT):
-    """What pyright says, as JSON gives it. Skips where it is not installed or cannot be started (it may want to load Node.js)."""
-    program = shutil.which("pyright", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")]))
+    """What pyright says, as JSON gives it. Skips where it is not installed or cannot be started (it may want
+    to load Node.js)."""
+    program = shutil.which(
+        "pyright", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    )
     if program is None:
         pytest.skip("pyright is not installed")
-    # --verifytypes reads no --pythonpath: it takes the first Python of PATH, and without its libraries half the types are unknown
+    # --verifytypes reads no --pythonpath: it takes the first Python of PATH, and without its libraries half
+    # the types are unknown
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
     env = os.environ | {"PYTHONPATH": str(ROOT), "PATH": path}
     command = [program, "--outputjson", "--pythonpath", sys.executable, *arguments]
@@ -140,7 +145,12 @@ def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("typed")
     lines = [*HEAD.strip().splitlines(), *GOOD, *BAD]
     (folder / "calls.py").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    settings = {"typeCheckingMode": "basic", "pythonVersion": "3.10", "extraPaths": [str(ROOT)], "reportUnusedExpression": "none"}
+    settings = {
+        "typeCheckingMode": "basic",
+        "pythonVersion": "3.10",
+        "extraPaths": [str(ROOT)],
+        "reportUnusedExpression": "none",
+    }
     (folder / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
     errors: dict = {}
     for one in pyright("calls.py", cwd=folder)["generalDiagnostics"]:
@@ -165,7 +175,9 @@ def test_calls_of_each_documented_kind_run(tmp_path):
     pytest.importorskip("pettingzoo")
     command = [sys.executable, "-c", HEAD + "\n".join(GOOD[:-1])]
     env = os.environ | {"PYTHONPATH": str(ROOT), "SNOOKER_ENV_QUIET": "1"}
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=600, env=env, check=False)
+    done = subprocess.run(
+        command, capture_output=True, text=True, cwd=tmp_path, timeout=600, env=env, check=False
+    )
     assert done.returncode == 0, done.stderr
 
 
@@ -193,16 +205,26 @@ def members(thing):
     if not inspect.isclass(thing):
         return [thing]
     inside = [m for name, m in vars(thing).items() if not name.startswith("_")]
-    return [thing, *(inspect.unwrap(m.__func__) for m in inside if isinstance(m, classmethod | staticmethod))] + [
-        m.fget if isinstance(m, property) else m for m in inside if inspect.isfunction(m) or isinstance(m, property)
+    return [
+        thing,
+        *(inspect.unwrap(m.__func__) for m in inside if isinstance(m, classmethod | staticmethod)),
+    ] + [
+        m.fget if isinstance(m, property) else m
+        for m in inside
+        if inspect.isfunction(m) or isinstance(m, property)
     ]
 
 
 def annotated(thing):
-    """A function; or a class with the annotations of this one, and none of those it inherits from other libraries."""
+    """A function; or a class with the annotations of this one, and none of those it inherits from other
+    libraries."""
     if not inspect.isclass(thing):
         return thing
-    return type(thing.__name__, (), {"__module__": thing.__module__, "__annotations__": vars(thing).get("__annotations__", {})})
+    return type(
+        thing.__name__,
+        (),
+        {"__module__": thing.__module__, "__annotations__": vars(thing).get("__annotations__", {})},
+    )
 
 
 @pytest.mark.parametrize("name", [name for name, thing in PUBLIC.items() if callable(thing)])

@@ -1,4 +1,5 @@
-"""Do the workflow and CI run what exists? Paths and extras that are there, the Python versions and the commands that are promised."""
+"""Do the workflow and CI run what exists? Paths and extras that are there, the Python versions and the
+commands that are promised."""
 
 import re
 import shlex
@@ -24,7 +25,9 @@ JOBS = yaml.safe_load((ROOT / ".github/workflows/tests.yml").read_text(encoding=
 
 def test_the_ends_of_the_python_versions_are_tested():
     lowest, newest = JOBS["tests"]["strategy"]["matrix"]["python"]
-    classified = [name.rpartition(" ")[2] for name in PROJECT["project"]["classifiers"] if "Python :: 3." in name]
+    classified = [
+        name.rpartition(" ")[2] for name in PROJECT["project"]["classifiers"] if "Python :: 3." in name
+    ]
     assert (classified[0], classified[-1]) == (lowest, newest) and lowest == LOWEST
     assert classified == sorted(classified, key=Version)
     assert PROJECT["tool"]["ruff"]["target-version"] == "py" + LOWEST.replace(".", "")
@@ -52,7 +55,8 @@ def test_commands_name_paths_and_extras_that_exist(job):
 def test_the_readmes_two_commands_are_those_that_ci_runs():
     readme, ci = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", ".ci/run"))
     commands = [c.split(" && ") for c in re.findall(r"^python3 -m venv .*$", readme, re.M)]
-    assert [c[0] for c in commands] == ["python3 -m venv .venv"] * 2  # a system's Python may refuse to be installed into
+    # a system's Python may refuse to be installed into
+    assert [c[0] for c in commands] == ["python3 -m venv .venv"] * 2
     assert [c[1].partition(" -e ")[0] for c in commands] == [".venv/bin/pip install"] * 2
     assert [c[2] for c in commands] == [".venv/bin/python train.py", ".venv/bin/python -m pytest"]
     assert "command_of 'train\\.py'" in ci and "command_of '-m pytest'" in ci

@@ -1,4 +1,5 @@
-"""What does an action mean? Aim, speed, tip, elevation and placement, read from the ball as it leaves the tip."""
+"""What does an action mean? Aim, speed, tip, elevation and placement, read from the ball as it leaves the
+tip."""
 
 import math
 
@@ -33,13 +34,16 @@ def shot_of(env, *action_and_table):
 
 
 def test_squirt_is_what_is_compensated():
-    """With the same action, but no end mass to speak of in the formula, the cue's own direction is another one."""
+    """With the same action, but no end mass to speak of in the formula, the cue's own direction is another
+    one."""
     heavy, light = (SnookerEnv(physics={"end_mass_ratio": ratio}) for ratio in (5.0, 1e9))
     cues = []
     for env in (heavy, light):
         cues.append(shot_of(env, [0, 1, 0, 0.25], SPOTS, np.ones(N_BALLS, bool), 2)[3])
     assert cues[1] == pytest.approx(math.pi / 4, abs=1e-8)
-    assert cues[0] - cues[1] == pytest.approx(-math.atan(2.5 * 0.5 * math.sqrt(0.75) / (1 + 5 + 2.5 * 0.75)), abs=1e-8)
+    assert cues[0] - cues[1] == pytest.approx(
+        -math.atan(2.5 * 0.5 * math.sqrt(0.75) / (1 + 5 + 2.5 * 0.75)), abs=1e-8
+    )
 
 
 @pytest.mark.parametrize(("a", "speed"), [(-1.0, 0.2), (1.0, 7.0), (0.0, 3.6), (-0.5, 1.9)])
@@ -51,9 +55,16 @@ def test_speed_is_linear_between_its_ends(a, speed):
 
 @pytest.mark.parametrize(
     ("side", "top", "b", "t"),
-    [(1, 0, 0.5, 0), (0, 1, 0, 0.5), (0, -1, 0, -0.5), (1, 1, math.sqrt(0.125), math.sqrt(0.125)), (-0.6, 0.8, -0.3, 0.4),
-     (0.9, -1, 0.45 / math.sqrt(1.81), -0.5 / math.sqrt(1.81)), (0.5, 0.25, 0.25, 0.125)],
-)  # fmt: skip
+    [
+        (1, 0, 0.5, 0),
+        (0, 1, 0, 0.5),
+        (0, -1, 0, -0.5),
+        (1, 1, math.sqrt(0.125), math.sqrt(0.125)),
+        (-0.6, 0.8, -0.3, 0.4),
+        (0.9, -1, 0.45 / math.sqrt(1.81), -0.5 / math.sqrt(1.81)),
+        (0.5, 0.25, 0.25, 0.125),
+    ],
+)
 def test_the_tip_stays_on_the_disc_within_the_miscue_limit(side, top, b, t):
     """A pair outside is drawn back along its own direction, one inside is as it is."""
     env = SnookerEnv(render_mode="ansi")
@@ -61,7 +72,9 @@ def test_the_tip_stays_on_the_disc_within_the_miscue_limit(side, top, b, t):
     _, w = after_strike(env, [0.0, side, top, 0.0])
     scale = 2.5 * speed_of(0.0) / R
     cue = -shot_of(env, [0, side, top, 0], env.positions, env.on_table, 2)[3]
-    assert cue == pytest.approx(math.atan(2.5 * b * math.sqrt(1 - b * b) / (1 + 30 + 2.5 * (1 - b * b))), abs=1e-4)
+    assert cue == pytest.approx(
+        math.atan(2.5 * b * math.sqrt(1 - b * b) / (1 + 30 + 2.5 * (1 - b * b))), abs=1e-4
+    )
     assert w[2] / scale == pytest.approx(b, abs=1e-4)
     assert w[1] / scale == pytest.approx(t, abs=1e-4)  # rolling along +x is a positive turn about +y
     assert np.hypot(*w[1:]) / scale <= 0.5 * (1 + 1e-12)
@@ -77,7 +90,8 @@ def test_elevation_lengthens_the_action_and_takes_speed(a, degrees):
     assert math.radians(30) == MAX_ELEVATION
     assert np.hypot(*v) == pytest.approx(speed_of(0.0) * math.cos(angle), rel=1e-12)
     assert w[2] == pytest.approx(2.5 * speed_of(0.0) / R * 0.5 * math.cos(angle), rel=1e-12)
-    assert w[0] == pytest.approx(2.5 * speed_of(0.0) / R * 0.5 * math.sin(angle), rel=1e-3, abs=1e-9)  # the masse part
+    # the masse part
+    assert w[0] == pytest.approx(2.5 * speed_of(0.0) / R * 0.5 * math.sin(angle), rel=1e-3, abs=1e-9)
 
 
 def test_elevation_of_nothing_is_the_short_action():
@@ -117,7 +131,8 @@ def test_placement_is_for_a_ball_in_hand_only():
         ends.add(env.step([0, 0, 0, 0.2, *place])[0].tobytes())
         assert np.array_equal(env.last_shot.at(0.0)[0][CUE], here)
     assert len(ends) == 1
-    plain = SnookerEnv(layout="break_off", render_mode="ansi")  # without placement the ball lies where the layout put it
+    # without placement the ball lies where the layout put it
+    plain = SnookerEnv(layout="break_off", render_mode="ansi")
     plain.reset(seed=3)
     here = plain.positions[CUE].copy()
     plain.step([0, 0, 0, 0.5])
@@ -169,15 +184,25 @@ def test_target_aim_of_nothing_pots_a_straight_ball():
             env.set_state(before)
             tried, astray = tried + 1, astray + (env.step([-0.4, 0.0, -0.3, a])[4]["pots"] == 0)
             v = env.last_shot.at(0.0)[1][CUE]
-            assert math.remainder(math.atan2(v[1], v[0]) - direction - a * TARGET_SPAN, 2 * math.pi) == pytest.approx(0.0, abs=1e-6)
+            assert math.remainder(
+                math.atan2(v[1], v[0]) - direction - a * TARGET_SPAN, 2 * math.pi
+            ) == pytest.approx(0.0, abs=1e-6)
     assert tried > 50 and astray > 0.8 * tried
 
 
 def test_target_aim_without_a_pot_is_at_the_middle_of_what_is_seen():
     env = SnookerEnv(aim="target")
-    table_state(env, {CUE: (0.0, 1.0), 1: (0.0, 1.7), BLACK: (0.05, 1.3)}, BallOn.RED)  # the black hides half of the red: no pot there
+    # the black hides half of the red: no pot there
+    table_state(env, {CUE: (0.0, 1.0), 1: (0.0, 1.7), BLACK: (0.05, 1.3)}, BallOn.RED)
     assert len(pots(env.positions, env.on_table, env.on)) == 0
-    left, edge = math.pi / 2 + math.asin(2 * R / 0.7), math.atan2(0.3, 0.05) + math.asin(2 * R / math.hypot(0.05, 0.3))
+    left, edge = (
+        math.pi / 2 + math.asin(2 * R / 0.7),
+        math.atan2(0.3, 0.05) + math.asin(2 * R / math.hypot(0.05, 0.3)),
+    )
     middle = 0.5 * (left + edge)
-    assert shot_of(env, [0, 0, 0, 0.0], env.positions, env.on_table, env.on)[3] == pytest.approx(middle, abs=1e-12)
-    assert shot_of(env, [0, 0, 0, -0.5], env.positions, env.on_table, env.on)[3] == pytest.approx(middle - TARGET_SPAN / 2)
+    assert shot_of(env, [0, 0, 0, 0.0], env.positions, env.on_table, env.on)[3] == pytest.approx(
+        middle, abs=1e-12
+    )
+    assert shot_of(env, [0, 0, 0, -0.5], env.positions, env.on_table, env.on)[3] == pytest.approx(
+        middle - TARGET_SPAN / 2
+    )

@@ -16,17 +16,23 @@ R = 0.02625
 
 
 def native(n, **options):
-    return gymnasium.make_vec("Snooker-v0", n, vectorization_mode="vector_entry_point", action="discrete", **options)
+    return gymnasium.make_vec(
+        "Snooker-v0", n, vectorization_mode="vector_entry_point", action="discrete", **options
+    )
 
 
 def test_the_numbers_count_pots_speeds_sides_and_tops():
     assert len(SPEEDS) * len(SIDES) * len(TOPS) == STROKES and SIZE == POTS * STROKES
-    assert choice_of(0, 0, 0, 0) == 0 and choice_of(POTS - 1, len(SPEEDS) - 1, len(SIDES) - 1, len(TOPS) - 1) == SIZE - 1
+    assert (
+        choice_of(0, 0, 0, 0) == 0
+        and choice_of(POTS - 1, len(SPEEDS) - 1, len(SIDES) - 1, len(TOPS) - 1) == SIZE - 1
+    )
 
 
 @pytest.mark.parametrize("physics", ["paper", "match"])
 def test_the_object_ball_rolls_at_the_pocket(physics):
-    """Judged by the engine, which the solver does not use: two balls on unbounded cloth, the aim as the environment struck it."""
+    """Judged by the engine, which the solver does not use: two balls on unbounded cloth, the aim as the
+    environment struck it."""
     rng = np.random.default_rng(1)
     constants, worst, seen = sn.Physics.preset(physics), [], 0
     while seen < 60:
@@ -39,11 +45,17 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         speed, side, top = int(rng.integers(4, 9)), int(rng.integers(3)), int(rng.integers(5))
         env = SnookerEnv(action="discrete", layout="random:1", physics=physics)
         env.reset(seed=0)
-        env.tables.positions[0], env.tables.on_table[0], env.tables.game[0, :3] = positions, on_table, (1, 0, 0)
+        env.tables.positions[0], env.tables.on_table[0], env.tables.game[0, :3] = (
+            positions,
+            on_table,
+            (1, 0, 0),
+        )
         env.step(choice_of(0, speed, side, top))
         v, w = env._record.buffers.v[0, 0], env._record.buffers.w[0, 0]
         start = env._record.buffers.shots[0]
-        shot = sn.simulate([cue, ball], [start[:2], (0, 0)], [start[2:5], (0, 0, 0)], table=None, physics=constants)
+        shot = sn.simulate(
+            [cue, ball], [start[:2], (0, 0)], [start[2:5], (0, 0, 0)], table=None, physics=constants
+        )
         hit = shot.events[shot.events["kind"] == sn.EventKind.BALL_BALL]
         rolls = shot.events[(shot.events["kind"] == sn.EventKind.ROLL) & (shot.events["i"] == 1)]
         assert len(hit) and v.shape == (2,) and w.shape == (3,)
@@ -61,11 +73,21 @@ def test_solved_aims_pot_more_than_straight_lines():
     made = {}
     for action in ("discrete", "box"):
         env = gymnasium.make_vec(
-            "Snooker-v0", 400, vectorization_mode="vector_entry_point", action=action, aim="target", layout="pots:medium", physics="match"
+            "Snooker-v0",
+            400,
+            vectorization_mode="vector_entry_point",
+            action=action,
+            aim="target",
+            layout="pots:medium",
+            physics="match",
         )
         env.reset(seed=0)
         speed = 2 * (SPEEDS[4] - 0.2) / 6.8 - 1
-        strokes = np.full(400, choice_of(0, 4, 1, 2)) if action == "discrete" else np.tile((speed, 0.0, 0.0, 0.0), (400, 1))
+        strokes = (
+            np.full(400, choice_of(0, 4, 1, 2))
+            if action == "discrete"
+            else np.tile((speed, 0.0, 0.0, 0.0), (400, 1))
+        )
         made[action] = (env.step(strokes)[1] > 0).mean()
     assert made["discrete"] > 0.95 > made["box"] + 0.1
 
@@ -105,7 +127,10 @@ def test_masks_offer_the_pots_there_are():
 
 
 def test_it_passes_gymnasiums_checker():
-    check_env(gymnasium.make("Snooker-v0", action="discrete", noise="professional").unwrapped, skip_render_check=True)
+    check_env(
+        gymnasium.make("Snooker-v0", action="discrete", noise="professional").unwrapped,
+        skip_render_check=True,
+    )
 
 
 @pytest.mark.parametrize("wrong", [-1, SIZE, 0.5, None, "3", [1, 2]])

@@ -20,11 +20,14 @@ def clears_up(observation, rng):
 
 
 def test_the_break_at_the_end_of_a_frame_is_the_players_own():
-    """The opponent plays on after a miss by the agent and pots pink and black: his 13 are none of the agent's."""
+    """The opponent plays on after a miss by the agent and pots pink and black: his 13 are none of the
+    agent's."""
     places = {CUE: (0.3, 1.1), PINK: (0.6, 1.4), BLACK: (-0.5, -1.0)}
     env = frame_env(aim="target", opponent="ghost_ball")
     for seed in range(200):
-        state = frame_state(env, places, {"ball_on": BallOn.PINK, "striker": 0, "scores": (0, 30)}).get_state()
+        state = frame_state(
+            env, places, {"ball_on": BallOn.PINK, "striker": 0, "scores": (0, 30)}
+        ).get_state()
         env.reset(seed=seed, options={"state": state})
         _, _, terminated, _, info = env.step([-0.95, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
         if terminated and info["opponent_score"] > 35:
@@ -59,7 +62,10 @@ def test_of_two_players_the_one_who_waits_has_no_break_no_choice_and_no_free_bal
     match.reset(options={"state": env.get_state()})
     match.step([-0.95, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0])
     assert match.agent_selection == "player_1" and match.frame.free_ball
-    assert [(i["choice"], i["free_ball"]) for i in map(match.infos.get, match.possible_agents)] == [(False, False), (True, True)]
+    assert [(i["choice"], i["free_ball"]) for i in map(match.infos.get, match.possible_agents)] == [
+        (False, False),
+        (True, True),
+    ]
     match.reset(options={"position": sn.Position(cue=(0.3, 1.1), black=(0.6, 1.4), points=33)})
     assert [match.infos[name]["break"] for name in match.possible_agents] == [33.0, 0.0]
 
@@ -69,7 +75,9 @@ def test_a_free_ball_is_worth_the_ball_on(lead, needs):
     """Pink and black are left: 13 points, and 6 for the free ball."""
     env = frame_env(aim="absolute")
     places = {CUE: (0.0, 0.3), PINK: (0.0, 0.9), BLACK: SPOTS[BLACK]}
-    state = frame_state(env, places, {"ball_on": BallOn.PINK, "scores": (10, 10 + lead), "free_ball": True}).get_state()
+    state = frame_state(
+        env, places, {"ball_on": BallOn.PINK, "scores": (10, 10 + lead), "free_ball": True}
+    ).get_state()
     observation, info = env.reset(options={"state": state})
     assert info["needs_snookers"] is needs and info["free_ball"]
     assert observation[-len(FRAME_ENTRIES) + FRAME_ENTRIES.index("available")] == pytest.approx(19 / 155)

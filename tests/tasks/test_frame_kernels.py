@@ -45,14 +45,21 @@ class Specification:
         if self.frame.phase != "choice":
             return True
         last = self.frame.choices[-1]
-        what = "play_again" if action[-1] < -1 / 3 else last if action[-1] > 1 / 3 and last in ("replace", "anywhere") else "play"
+        what = (
+            "play_again"
+            if action[-1] < -1 / 3
+            else last
+            if action[-1] > 1 / 3 and last in ("replace", "anywhere")
+            else "play"
+        )
         saved, self.frame = self.frame.saved, self.frame.choose(what)
         if what == "replace":
             self.positions, self.on_table = (np.array(part) for part in saved.layout)
         return what in ("play", "anywhere")
 
     def attempt(self, start, on, strike):
-        """Whether the cue ball of this stroke came near a ball of the mask ``on``: sampled from the shot, simulated anew."""
+        """Whether the cue ball of this stroke came near a ball of the mask ``on``: sampled from the shot,
+        simulated anew."""
         v, w = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
         v[CUE], w[CUE] = strike[[VX, VY]], strike[[WX, WY, WZ]]
         shot = simulate(start, v, w, physics=self.physics, on_table=self.on_table)
@@ -81,11 +88,21 @@ class Specification:
         layout = layout_of(self.positions, self.on_table) if self.miss else None
         first, touching, moved, potted = (int(seen[c]) for c in (FIRST, TOUCHING, MOVED, DOWN))
         cushion, late = bool(np.isin(events, (1, 2)).any()), 0 < before.shot_clock < self.time_to_play
-        stroke = Stroke(first=first, touching=touching, moved=moved, potted=potted, no_cushion=not cushion, late=late)
+        stroke = Stroke(
+            first=first, touching=touching, moved=moved, potted=potted, no_cushion=not cushion, late=late
+        )
         assert not late or (duration == 0.0 and not len(events))
-        attempt = bool(before.miss != "attempt" or any(clear) or first & on) or self.attempt(start, on, strike)
-        verdict, self.positions, self.on_table = settle_table(rest, self.on_table, before.situation, stroke, jaws=self.jaws)
-        stroke = replace(stroke, snookered=verdict.free_ball, behind_free_ball=bool(verdict.fouls & verdict.fouls.BEHIND_FREE_BALL))
+        attempt = bool(before.miss != "attempt" or any(clear) or first & on) or self.attempt(
+            start, on, strike
+        )
+        verdict, self.positions, self.on_table = settle_table(
+            rest, self.on_table, before.situation, stroke, jaws=self.jaws
+        )
+        stroke = replace(
+            stroke,
+            snookered=verdict.free_ball,
+            behind_free_ball=bool(verdict.fouls & verdict.fouls.BEHIND_FREE_BALL),
+        )
         paths_and_times = {"clear_path": clear[0], "full_ball_path": clear[1], **self.times(duration)}
         self.frame, verdict = before.play(stroke, attempt=attempt, layout=layout, **paths_and_times)
         if self.frame.phase == "lot":
@@ -94,7 +111,9 @@ class Specification:
         if self.frame.in_hand and self.frame.phase != "over":
             self.on_table[CUE] = False
             place = rest[CUE] if self.frame.anywhere and not potted & 1 else SPOTS[CUE]
-            self.positions[CUE] = place_cue(self.positions, self.on_table, *place, anywhere=self.frame.anywhere)
+            self.positions[CUE] = place_cue(
+                self.positions, self.on_table, *place, anywhere=self.frame.anywhere
+            )
             self.on_table[CUE] = True
         return verdict
 
@@ -102,7 +121,9 @@ class Specification:
         """Are the kernels' frame and table these, in every bit?"""
         k = self.k
         assert tables.frame(k) == self.frame
-        assert np.array_equal(tables.positions[k], self.positions) and np.array_equal(tables.on_table[k], self.on_table)
+        assert np.array_equal(tables.positions[k], self.positions) and np.array_equal(
+            tables.on_table[k], self.on_table
+        )
 
 
 class Recording(Crew):
@@ -123,22 +144,41 @@ class Recording(Crew):
         }
 
 
-SNOOKER = [("snooker", miss, layout) for miss in ("off", "clear_path") for layout in ("break_off", "random:1", "snookered", "colours")]
+SNOOKER = [
+    ("snooker", miss, layout)
+    for miss in ("off", "clear_path")
+    for layout in ("break_off", "random:1", "snookered", "colours")
+]
 SNOOKER += [("snooker", "attempt", layout) for layout in ("random:1", "snookered")]
-SIX_RED = [("six_red", miss, layout) for miss, layout in [("off", "break_off"), ("clear_path", "break_off"), ("attempt", "random:3")]]
+SIX_RED = [
+    ("six_red", miss, layout)
+    for miss, layout in [("off", "break_off"), ("clear_path", "break_off"), ("attempt", "random:3")]
+]
 SHOOT_OUT = [("shoot_out", "off", layout) for layout in ("break_off", "colours")]
 
 
 @pytest.mark.parametrize(("game", "miss", "layout"), SNOOKER + SIX_RED + SHOOT_OUT)
 def test_every_stroke_is_judged_as_by_the_specification(game, miss, layout):
     clock = {"time_to_play": 12.0} if game == "shoot_out" else {}  # too long in the second half
-    aim = "absolute" if miss == "attempt" else "target"  # to every side, so that some escapes come near a ball on
-    options = Options(task="frame", layout=layout, miss=miss, aim=aim, decision=True, placement=True, max_strokes=None, game=game, **clock)
+    # to every side, so that some escapes come near a ball on
+    aim = "absolute" if miss == "attempt" else "target"
+    options = Options(
+        task="frame",
+        layout=layout,
+        miss=miss,
+        aim=aim,
+        decision=True,
+        placement=True,
+        max_strokes=None,
+        game=game,
+        **clock,
+    )
     tables, rng, met = Frames(options.rules, N), np.random.default_rng(2), Counter()
     for k in range(N):
         tables.seed(k, rng)
     tables.deal(np.arange(N), drawn=True)
-    tables.game[::3, SCORE_0] = rng.integers(0, 140, len(tables.game[::3]))  # some scores, so that misses and needs of snookers differ
+    # some scores, so that misses and needs of snookers differ
+    tables.game[::3, SCORE_0] = rng.integers(0, 140, len(tables.game[::3]))
     written = [Specification(tables, k) for k in range(N)]
     crew = Recording(ShotBuffers(N, 2048))
     for _ in range(60):
@@ -164,8 +204,14 @@ def test_every_stroke_is_judged_as_by_the_specification(game, miss, layout):
             assert spec.decide(actions[k]) == played[k]
             if played[k]:
                 rest, seen, events, duration, strike = crew.shots[k]
-                verdict = spec.judge(starts[k], rest, seen, int(tables.game[k, STRIKER]), events, duration, strike)
-                assert (out.reals[k, 0], out.counts[k, 0], out.counts[k, 2]) == (verdict.points, verdict.penalty, int(verdict.fouls))
+                verdict = spec.judge(
+                    starts[k], rest, seen, int(tables.game[k, STRIKER]), events, duration, strike
+                )
+                assert (out.reals[k, 0], out.counts[k, 0], out.counts[k, 2]) == (
+                    verdict.points,
+                    verdict.penalty,
+                    int(verdict.fouls),
+                )
                 met[verdict.visit_end.name] += 1
                 met["free ball"] += spec.frame.free_ball
                 met["miss"] += spec.frame.miss_called
@@ -185,6 +231,12 @@ def test_every_stroke_is_judged_as_by_the_specification(game, miss, layout):
     assert (met["miss"] > 5 and met["replaced"] > 2) == (miss != "off")
     poor = [bool(gap > ATTEMPT_GAP) for spec in written for gap in spec.gaps]
     assert (miss == "attempt") == (sum(poor) > 0)
-    assert sum(poor) < len(poor) or miss != "attempt" or layout.startswith("random")  # with few reds no attempt may have come near
-    assert met["over"] > 0 or miss == "attempt" or (layout in ("break_off", "snookered") and game == "snooker") or game == "six_red"
+    # with few reds no attempt may have come near
+    assert sum(poor) < len(poor) or miss != "attempt" or layout.startswith("random")
+    assert (
+        met["over"] > 0
+        or miss == "attempt"
+        or (layout in ("break_off", "snookered") and game == "snooker")
+        or game == "six_red"
+    )
     assert (met["over"] >= 0.9 * N) == (game == "shoot_out") or layout == "colours" or miss == "attempt"

@@ -1,4 +1,5 @@
-"""Do frames hold at their limits? Balls in the mouths of pockets, states before the first reset, a table of two players played alone."""
+"""Do frames hold at their limits? Balls in the mouths of pockets, states before the first reset, a table of
+two players played alone."""
 
 import json
 
@@ -17,7 +18,9 @@ SOFT = [-1.0, 0, 0, 0.5, 0, 0, 0]
 @pytest.mark.parametrize("observation", ["flat", "balls"])
 def test_the_layout_that_replace_restores_is_within_its_space(observation):
     """A ball may rest in the mouth of a middle pocket, farther out than the cushions' noses."""
-    env = frame_env(opponent=lambda seen, rng: np.array(SOFT), miss="clear_path", aim="absolute", observation=observation)
+    env = frame_env(
+        opponent=lambda seen, rng: np.array(SOFT), miss="clear_path", aim="absolute", observation=observation
+    )
     frame_state(env, {CUE: (0.0, 0.0), 1: (-0.3, -1.0), PINK: (0.3, 0.5), BLACK: (0.8993, -0.035)}, {})
     seen, _, _, _, _ = env.step(SOFT)
     assert env.frame.miss_called and env.positions[BLACK, 0] > 0.889
@@ -37,7 +40,9 @@ def test_the_state_before_the_first_reset_is_sound(game):
 @pytest.mark.parametrize("decision", [-1.0, 0.0, 1.0])
 def test_who_plays_alone_stays_at_the_table_after_a_decision(decision):
     """The state comes from a frame of two players: a foul of the other one."""
-    env = frame_state(frame_env(aim="absolute"), {CUE: (0.0, 0.0), 1: (-0.3, -1.0), PINK: (0.3, 0.5)}, {"phase": "choice"})
+    env = frame_state(
+        frame_env(aim="absolute"), {CUE: (0.0, 0.0), 1: (-0.3, -1.0), PINK: (0.3, 0.5)}, {"phase": "choice"}
+    )
     env.step([*SOFT[:6], decision])
     assert env.frame.striker == 0 and env.frame.phase == "stroke"
 

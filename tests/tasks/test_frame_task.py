@@ -1,4 +1,5 @@
-"""Does ``task="frame"`` keep Gymnasium's contract? The checker, spaces, seeds, infos, saved states, pictures."""
+"""Does ``task="frame"`` keep Gymnasium's contract? The checker, spaces, seeds, infos, saved states,
+pictures."""
 
 import inspect
 import json
@@ -19,9 +20,19 @@ from tests.tables import frame_env, viewed
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
 def test_gymnasium_checks_it(observation, opponent):
     decision = observation != "masked"  # which is of discrete actions
-    env = gymnasium.make("Snooker-v0", task="frame", opponent=opponent, **viewed(observation), layout="random:2", decision=decision)
+    env = gymnasium.make(
+        "Snooker-v0",
+        task="frame",
+        opponent=opponent,
+        **viewed(observation),
+        layout="random:2",
+        decision=decision,
+    )
     check_env(env.unwrapped, skip_render_check=True)
-    assert env.spec.to_json() and gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())).spec == env.spec
+    assert (
+        env.spec.to_json()
+        and gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())).spec == env.spec
+    )
 
 
 def test_the_spaces_grow_and_those_of_a_visit_do_not():
@@ -39,7 +50,10 @@ def test_the_spaces_grow_and_those_of_a_visit_do_not():
 
 
 def test_the_default_layout_is_that_of_the_task():
-    assert SnookerEnv().options.rules.plan.name == "opened" and frame_env().options.rules.plan.name == "break_off"
+    assert (
+        SnookerEnv().options.rules.plan.name == "opened"
+        and frame_env().options.rules.plan.name == "break_off"
+    )
     env = frame_env(layout="colours")
     env.reset(seed=0)
     assert env.ball_on == BallOn.YELLOW and not env.in_hand
@@ -97,7 +111,10 @@ def test_a_saved_state_plays_on_bit_for_bit(opponent):
     text = json.dumps(env.get_state())
     other = frame_env(**options)
     obs, _ = other.reset(options={"state": json.loads(text)})
-    assert data_equivalence(obs, env.tables.observe(np.zeros(1, np.int64), 0)[0], exact=True) and json.dumps(other.get_state()) == text
+    assert (
+        data_equivalence(obs, env.tables.observe(np.zeros(1, np.int64), 0)[0], exact=True)
+        and json.dumps(other.get_state()) == text
+    )
     for _ in range(30):
         if env.over:
             break
@@ -131,7 +148,8 @@ def test_pictures(mode):
     env, plain = frame_env(render_mode=mode, opponent="ghost_ball"), frame_env(opponent="ghost_ball")
     env.reset(seed=1), plain.reset(seed=1)
     first = env.render()
-    assert data_equivalence(env.step(np.zeros(7)), plain.step(np.zeros(7)), exact=True)  # looking changes nothing
+    # looking changes nothing
+    assert data_equivalence(env.step(np.zeros(7)), plain.step(np.zeros(7)), exact=True)
     assert not np.array_equal(first, env.render())
     assert mode != "ansi" or " - " in env.render()
 

@@ -1,4 +1,5 @@
-"""Whose stroke is it in ``task="frame"``, what may he decide, and what is it worth? Turns, decisions after a foul, rewards."""
+"""Whose stroke is it in ``task="frame"``, what may he decide, and what is it worth? Turns, decisions after a
+foul, rewards."""
 
 import json
 
@@ -45,7 +46,12 @@ def test_alone_a_miss_and_a_foul_give_the_table_back():
     env = frame_state(frame_env(aim="absolute"), places, {})
     before = env.positions[BLUE].copy()
     _, reward, terminated, _, info = env.step([-0.9, 0, 0, TO_BLUE, 0, 0, 0])
-    assert (reward, info["fouls"], info["opponent_score"], info["opponent_strokes"]) == (-5.0, Foul.WRONG_FIRST, 5.0, 0)
+    assert (reward, info["fouls"], info["opponent_score"], info["opponent_strokes"]) == (
+        -5.0,
+        Foul.WRONG_FIRST,
+        5.0,
+        0,
+    )
     assert not terminated and not env.frame.free_ball and env.frame.phase == "stroke"
     assert not np.array_equal(env.positions[BLUE], before)  # from where the balls lie
 
@@ -65,7 +71,9 @@ def test_a_cue_ball_in_hand_stands_in_the_d_and_is_played_from_where_it_is_place
 FOULED = {"phase": "choice", "striker": 0, "scores": (0, 4)}
 
 
-@pytest.mark.parametrize(("decision", "own"), [(0.0, True), (-0.33, True), (1.0, True), (-0.34, False), (-1.0, False)])
+@pytest.mark.parametrize(
+    ("decision", "own"), [(0.0, True), (-0.33, True), (1.0, True), (-0.34, False), (-1.0, False)]
+)
 def test_after_a_foul_the_action_decides(decision, own):
     """Without a miss called, "replace" is no option and means to play."""
     env = frame_state(frame_env(opponent="ghost_ball"), PLACES, FOULED)
@@ -86,7 +94,9 @@ def test_replacing_after_a_miss_brings_the_balls_back():
     offender = env.frame.striker
     env.step(np.array([-0.8, 0, 0, -0.5, 0.3, 0.2, 0]))  # at the bottom cushion, hitting nothing
     placed = 0.3 * D_RADIUS, -1.0475 - D_RADIUS * np.sqrt(1 - 0.3**2) * 0.6
-    assert env.frame.choices == ("play", "play_again", "replace") and not np.allclose(env.positions[CUE], placed)
+    assert env.frame.choices == ("play", "play_again", "replace") and not np.allclose(
+        env.positions[CUE], placed
+    )
     after = json.loads(json.dumps(env.get_state()))
     env.set_state(after)
     env.step(np.array([0, 0, 0, 0, 0, 0, 1.0]))
@@ -97,7 +107,11 @@ def test_replacing_after_a_miss_brings_the_balls_back():
 def test_a_free_ball_is_seen_and_scores():
     places = {CUE: (0.3, 1.1), BLUE: (0.6, 1.4), 1: (-0.5, -1.2), PINK: SPOTS[PINK], BLACK: (0.0, 0.0)}
     env = frame_state(frame_env(opponent="ghost_ball"), places, FOULED | {"free_ball": True})
-    assert env.on >> BLUE & 1 and env.on >> 1 & 1 and env.tables.observe(np.zeros(1, np.int64), 0)[0][FREE_BALL_SEEN] == 1.0
+    assert (
+        env.on >> BLUE & 1
+        and env.on >> 1 & 1
+        and env.tables.observe(np.zeros(1, np.int64), 0)[0][FREE_BALL_SEEN] == 1.0
+    )
     _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
     assert (reward, info["points"], env.ball_on) == (1.0, 1.0, BallOn.ANY_COLOUR)
     assert np.array_equal(env.positions[BLUE], SPOTS[BLACK])  # it came back; its own spot is taken
@@ -111,14 +125,18 @@ def test_a_free_ball_is_seen_and_scores():
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
 @pytest.mark.parametrize("layout", ["random:2", "pots:easy", "colours"])
 def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
-    """From the first stroke of the frame, which may be the opponent's, to the last one, which may be in his first visit."""
+    """From the first stroke of the frame, which may be the opponent's, to the last one, which may be in his
+    first visit."""
     broke, before = 0, 0
     for seed in range(15):
         totals = {}
         for reward in ("points", "win"):
             env = frame_env(opponent=opponent, reward=reward, layout=layout, noise="club")
             _, info = env.reset(seed=seed)
-            broke, before = broke + (info["opponent_score"] + info["score"] > 0), before + (info["winner"] >= 0)
+            broke, before = (
+                broke + (info["opponent_score"] + info["score"] > 0),
+                before + (info["winner"] >= 0),
+            )
             rng, total, over = np.random.default_rng(seed), 0.0, False
             while not over:
                 _, r, terminated, _, info = env.step(rng.uniform(-1, 1, 7))
@@ -127,11 +145,14 @@ def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
             totals[reward] = total
         assert totals["points"] == info["score"] - info["opponent_score"] and info["winner"] >= 0
         assert totals["win"] == (1.0 if info["winner"] == 0 else -1.0)
-    assert (broke > 0) == (opponent != "none") and (before > 0 or opponent != "ghost_ball" or layout != "pots:easy")
+    assert (broke > 0) == (opponent != "none") and (
+        before > 0 or opponent != "ghost_ball" or layout != "pots:easy"
+    )
 
 
 def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost():
-    """Nothing is dealt again: the reset shows that it is lost, the next step plays nothing and reports it; a state keeps that."""
+    """Nothing is dealt again: the reset shows that it is lost, the next step plays nothing and reports it; a
+    state keeps that."""
     env, won = frame_env(opponent="ghost_ball", layout="pots:easy", reward="win"), 0
     for seed in range(60):
         observation, info = env.reset(seed=seed)
@@ -145,8 +166,14 @@ def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost(
             if start:
                 env.reset(options={"state": start})
             same, reward, terminated, truncated, after = env.step(env.action_space.sample())
-            assert (reward, terminated, truncated) == (-1.0, True, False) and np.array_equal(same, observation)
-            assert (after["strokes"], after["opponent_strokes"], after["events"]) == (info["strokes"], 0, 0) and after["winner"] == 1
+            assert (reward, terminated, truncated) == (-1.0, True, False) and np.array_equal(
+                same, observation
+            )
+            assert (after["strokes"], after["opponent_strokes"], after["events"]) == (
+                info["strokes"],
+                0,
+                0,
+            ) and after["winner"] == 1
             assert np.array_equal(before, env.positions)
             with pytest.raises(gymnasium.error.ResetNeeded):
                 env.step(env.action_space.sample())
@@ -182,13 +209,21 @@ def test_snookers_are_needed_by_who_trails_by_more_than_is_left(lead, needs):
     observation, info = env.reset(options={"state": plain})
     assert info["needs_snookers"] is needs
     names = dict(zip(FRAME_ENTRIES, observation[-len(FRAME_ENTRIES) :].tolist(), strict=True))
-    assert names["available"] == pytest.approx(7 / 155) and names["lead"] == pytest.approx(-lead / (lead + 147))
+    assert names["available"] == pytest.approx(7 / 155) and names["lead"] == pytest.approx(
+        -lead / (lead + 147)
+    )
 
 
 def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():
-    for env in (frame_env(render_mode="ansi"), sn.match_env(render_mode="ansi"), sn.SnookerVectorEnv(2, task="frame", render_mode="ansi")):
+    for env in (
+        frame_env(render_mode="ansi"),
+        sn.match_env(render_mode="ansi"),
+        sn.SnookerVectorEnv(2, task="frame", render_mode="ansi"),
+    ):
         assert env.render() and env.get_state()
-        with pytest.raises(gymnasium.error.ResetNeeded, match=r"^call reset|^the frame has not begun: call reset"):
+        with pytest.raises(
+            gymnasium.error.ResetNeeded, match=r"^call reset|^the frame has not begun: call reset"
+        ):
             env.step(np.zeros((2, 4)) if isinstance(env, sn.SnookerVectorEnv) else np.zeros(7))
     assert frame_env().frame.phase == "stroke" and frame_env().over
 
@@ -197,7 +232,8 @@ def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():
 
 
 def test_a_colour_named_that_is_not_struck_first_costs_the_higher_of_the_two():
-    """Blue lies in the way: struck when nothing or blue was named it is fair, and when black was named it costs black's seven."""
+    """Blue lies in the way: struck when nothing or blue was named it is fair, and when black was named it
+    costs black's seven."""
     places = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
     for named, penalty in ((-1, 0), (BLUE, 0), (PINK, 6), (BLACK, 7)):
         env = frame_state(frame_env(aim="absolute"), places, {"ball_on": BallOn.ANY_COLOUR})

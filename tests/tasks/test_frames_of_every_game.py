@@ -1,4 +1,5 @@
-"""Can six-red snooker and the Shoot Out be played as a frame, with states that go on as the same, and are wrong options refused?"""
+"""Can six-red snooker and the Shoot Out be played as a frame, with states that go on as the same, and are
+wrong options refused?"""
 
 import json
 
@@ -11,9 +12,19 @@ from snooker_env.game.balls import CUE
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 
 
-@pytest.mark.parametrize(("game", "more"), [("six_red", {"miss": "clear_path"}), ("shoot_out", {"time_to_play": 12.0})])
+@pytest.mark.parametrize(
+    ("game", "more"), [("six_red", {"miss": "clear_path"}), ("shoot_out", {"time_to_play": 12.0})]
+)
 def test_a_frame_goes_on_from_its_state_as_the_same(game, more):
-    options = {"task": "frame", "game": game, "opponent": "random", "placement": True, "decision": True, "aim": "target", **more}
+    options = {
+        "task": "frame",
+        "game": game,
+        "opponent": "random",
+        "placement": True,
+        "decision": True,
+        "aim": "target",
+        **more,
+    }
     env, twin, rng = SnookerEnv(**options), SnookerEnv(**options), np.random.default_rng(1)
     env.reset(seed=3)
     twin.reset(seed=8)
@@ -23,7 +34,9 @@ def test_a_frame_goes_on_from_its_state_as_the_same(game, more):
         action = rng.uniform(-1, 1, env.action_space.shape).astype(np.float32)
         action[1:3] *= 0.4
         one, two = env.step(action), twin.step(action)
-        assert np.array_equal(one[0], two[0]) and one[1:4] == two[1:4] and env.observation_space.contains(one[0])
+        assert (
+            np.array_equal(one[0], two[0]) and one[1:4] == two[1:4] and env.observation_space.contains(one[0])
+        )
         assert env.get_state() == twin.get_state()
         anywhere += env.get_state()["frame"]["anywhere"]
         if one[2] or one[3]:

@@ -1,11 +1,22 @@
-"""Does the built-in opponent "ghost_ball" play sensibly where it has no pot? Its break-offs, soft strokes, escapes, and what it repeats."""
+"""Does the built-in opponent "ghost_ball" play sensibly where it has no pot? Its break-offs, soft strokes,
+escapes, and what it repeats."""
 
 import numpy as np
 import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, YELLOW
-from snooker_env.game.frame_columns import ANYWHERE, CHOICE, CLOCK, FAILURES, IN_HAND, MISS_CALLED, MISSES, PHASE, SAVED
+from snooker_env.game.frame_columns import (
+    ANYWHERE,
+    CHOICE,
+    CLOCK,
+    FAILURES,
+    IN_HAND,
+    MISS_CALLED,
+    MISSES,
+    PHASE,
+    SAVED,
+)
 from snooker_env.game.pots import pots
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y, HALF_WIDTH
@@ -56,7 +67,10 @@ def test_it_escapes_from_most_snookers(noise):
 def test_it_rarely_fouls_where_no_pot_is_on():
     tables, which, fouls, many = dealt(60, noise="professional"), np.arange(60), 0, 0
     while len(which):
-        without = [not (tables.game[k, IN_HAND] or len(pots(tables.positions[k], tables.on_table[k], tables.on(k)))) for k in which]
+        without = [
+            not (tables.game[k, IN_HAND] or len(pots(tables.positions[k], tables.on_table[k], tables.on(k))))
+            for k in which
+        ]
         found, _ = turn(tables, which)
         fouls, many = fouls + np.sum(found[without] != 0), many + sum(without)
         which = which[~tables.ended()[which]]
@@ -89,7 +103,11 @@ def test_the_rebound_is_that_of_the_simulator():
 def snookered_again(n, failures):
     """Tables with one and the same snooker, as after "replace"."""
     tables = dealt(n, layout="snookered", miss="clear_path")
-    tables.positions[:], tables.on_table[:], tables.game[:] = tables.positions[0], tables.on_table[0], tables.game[0]
+    tables.positions[:], tables.on_table[:], tables.game[:] = (
+        tables.positions[0],
+        tables.on_table[0],
+        tables.game[0],
+    )
     tables.game[:, SAVED], tables.game[:, FAILURES] = failures > 0, failures
     return tables
 
@@ -110,17 +128,29 @@ def test_a_ball_on_that_it_touches_is_played_away_from():
     positions[CUE], positions[1] = (0.3, 0.3), (0.3 + 2 * BALL_RADIUS, 0.3)
     tables.positions[0], tables.on_table[0], tables.game[0, IN_HAND] = positions, on_table, 0
     fouls, buffers = turn(tables)
-    assert fouls[0] == 0 and np.cos(buffers.shots[0, AIM]) < -0.8 and np.array_equal(tables.positions[0, 1], positions[1])
+    assert (
+        fouls[0] == 0
+        and np.cos(buffers.shots[0, AIM]) < -0.8
+        and np.array_equal(tables.positions[0, 1], positions[1])
+    )
 
 
 @pytest.mark.parametrize("decision", [1.0, -1.0])
 @pytest.mark.parametrize(("speed", "most"), [(-0.9, 5), (-0.7, 10), (-0.4, 45), (0.0, 35)])
 def test_a_constant_action_that_never_plays_after_a_foul_wins_few_frames(speed, most, decision):
-    """Softly along the target line, "replace" after every foul: it won 77 of 100 frames, while "ghost_ball" struck at random.
+    """Softly along the target line, "replace" after every foul: it won 77 of 100 frames, while "ghost_ball"
+    struck at random.
 
-    Harder strokes along that line pot balls, and rarely foul without a pot: they win 18 to 35 of 100, and 25 to 35 with "play".
+    Harder strokes along that line pot balls, and rarely foul without a pot: they win 18 to 35 of 100, and 25
+    to 35 with "play".
     """
-    options = {"task": "frame", "aim": "target", "decision": True, "miss": "clear_path", "opponent": "ghost_ball"}
+    options = {
+        "task": "frame",
+        "aim": "target",
+        "decision": True,
+        "miss": "clear_path",
+        "opponent": "ghost_ball",
+    }
     tables = sn.SnookerVectorEnv(100, threads=1, **options)
     tables.reset(seed=0)
     action, won, over = np.tile([speed, 0.0, 0.0, 0.0, decision], (100, 1)), 0, np.zeros(100, bool)
@@ -141,7 +171,11 @@ def test_other_games_are_played_to_the_end_with_few_fouls(options, most):
     for _ in range(150):
         anywhere = (tables.game[which, ANYWHERE] != 0) & (tables.game[which, IN_HAND] != 0)
         found, _ = turn(tables, which)
-        fouls, placed, bad = [*fouls, *found.tolist()], placed + anywhere.sum(), bad + np.sum(found[anywhere] != 0)
+        fouls, placed, bad = (
+            [*fouls, *found.tolist()],
+            placed + anywhere.sum(),
+            bad + np.sum(found[anywhere] != 0),
+        )
         which = which[~tables.ended()[which]]
         if not len(which):
             break
@@ -161,7 +195,9 @@ def test_anywhere_it_stands_behind_an_easy_pot():
     for layout in ("opened", "random:3", "random:15"):
         tables = in_hand_anywhere(100, layout, game="shoot_out", noise="professional")
         buffers, out = ShotBuffers(100), tables.output()
-        tables.complete(PLAYER.prepare(tables, np.arange(100), None, buffers), out, buffers, Crew(buffers), own=True)
+        tables.complete(
+            PLAYER.prepare(tables, np.arange(100), None, buffers), out, buffers, Crew(buffers), own=True
+        )
         assert (out.counts[:, I_FOULS] != 0).mean() < 0.06 and (out.reals[:, I_POINTS] > 0).mean() > 0.6
 
 
@@ -170,7 +206,11 @@ def test_after_the_last_miss_of_six_reds_it_places_the_cue_ball_anywhere():
     tables.game[0, [PHASE, MISS_CALLED, MISSES, SAVED]] = CHOICE, 1, 5, 1
     before = tables.positions[0, CUE].copy()
     fouls, _ = turn(tables)
-    assert not fouls[0] and tables.game[0, PHASE] != CHOICE and not np.array_equal(before, tables.positions[0, CUE])
+    assert (
+        not fouls[0]
+        and tables.game[0, PHASE] != CHOICE
+        and not np.array_equal(before, tables.positions[0, CUE])
+    )
 
 
 @pytest.mark.parametrize("opponent", ["ghost_ball", "random"])
@@ -181,7 +221,8 @@ def test_the_shot_clock_holds_for_every_opponent(opponent):
     env.tables.game[0, CLOCK] = 400_000  # the second half: 10 s a stroke
     before = env.positions.copy()
     env.step([-1.0, 0.0, 0.0, -0.5])
-    assert env.frame.scores != (0, 0) and np.array_equal(env.positions[1:], before[1:])  # nobody has struck anything
+    # nobody has struck anything
+    assert env.frame.scores != (0, 0) and np.array_equal(env.positions[1:], before[1:])
 
 
 def test_the_fouls_that_it_counts_are_fouls():

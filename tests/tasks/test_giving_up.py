@@ -57,7 +57,9 @@ def test_of_a_match_each_frame_given_up_is_paid_once(reward, expected):
     for ball, place in PLACES.items():
         positions[ball] = place
     frame = state["frame"] | {"on_table": 2 | 4 | 1 << PINK | 1 << BLACK, "in_hand": False}
-    env.reset(options={"state": state | {"positions": positions.tolist(), "on_table": on_table, "frame": frame}})
+    env.reset(
+        options={"state": state | {"positions": positions.tolist(), "on_table": on_table, "frame": frame}}
+    )
     total += env.step([0.0] * 4 + [-1.0])[1]
     assert total == {"frames": 2 * expected}.get(reward, expected)
 

@@ -1,4 +1,5 @@
-"""Where there is no direct pot: are the lines of ``action="discrete"`` and ``aim="target"`` real strokes, and the windows exact?"""
+"""Where there is no direct pot: are the lines of ``action="discrete"`` and ``aim="target"`` real strokes, and
+the windows exact?"""
 
 import numpy as np
 import pytest
@@ -40,7 +41,11 @@ def first_met(positions, on_table, angles):
     to = positions - positions[0]
     along = to[:, 0] * np.cos(angles)[:, None] + to[:, 1] * np.sin(angles)[:, None]
     across2 = (to**2).sum(1) - along**2
-    runs = np.where(on_table & (along > 0.0) & (across2 < 4 * R * R), along - np.sqrt(np.maximum(0.0, 4 * R * R - across2)), np.inf)
+    runs = np.where(
+        on_table & (along > 0.0) & (across2 < 4 * R * R),
+        along - np.sqrt(np.maximum(0.0, 4 * R * R - across2)),
+        np.inf,
+    )
     runs[:, 0] = np.inf
     return np.where(np.isfinite(runs.min(1)), runs.argmin(1), 0)
 
@@ -52,7 +57,9 @@ def test_windows_are_the_directions_in_which_a_ball_on_is_met_first(kind):
         positions, on_table = layout(kind, np.random.default_rng(seed))
         on = mask_of(range(1, 16)) if seed % 3 else mask_of([BLUE, BROWN, 3])
         found = windows_of(positions, on_table, on)
-        off = np.abs((angles[:, None] - found.mean(1) + np.pi) % (2 * np.pi) - np.pi) - 0.5 * (found[:, 1] - found[:, 0])
+        off = np.abs((angles[:, None] - found.mean(1) + np.pi) % (2 * np.pi) - np.pi) - 0.5 * (
+            found[:, 1] - found[:, 0]
+        )
         sure = np.abs(off).min(1) > 1e-9 if len(found) else np.ones(len(angles), bool)
         met = first_met(positions, on_table, angles)
         assert np.array_equal((off < 0.0).any(1)[sure], ((on >> met) & 1 == 1)[sure])
@@ -67,7 +74,9 @@ def test_what_is_seen_is_offered_from_thin_on_either_side_to_full():
     positions[2], on_table[2] = (-0.6, 0.3), True  # another red: the widest window first
     found, wide = lines_of(positions, on_table, mask_of([1, 2])), np.arctan2(0.3, -0.6)
     other = np.arcsin(2 * R / np.hypot(0.6, 0.3))
-    assert found[:, 0] == pytest.approx([wide, wide - lines.THIN * other, wide + lines.THIN * other, 0.0], abs=1e-12)
+    assert found[:, 0] == pytest.approx(
+        [wide, wide - lines.THIN * other, wide + lines.THIN * other, 0.0], abs=1e-12
+    )
 
 
 def test_reds_all_round_are_one_window():
@@ -95,13 +104,20 @@ def test_the_break_off_is_thin_at_the_end_reds_where_they_are_seen():
 
 @pytest.mark.parametrize(
     ("kind", "n", "least", "target"),
-    [("break_off", 40, 1.0, 1.0), ("break_off_six_red", 40, 1.0, 1.0), ("break_off_shoot_out", 40, 1.0, 1.0),
-     ("snookered", 60, 0.95, 0.95), ("snookered_match", 30, 0.95, 0.95), ("frames", 100, 0.99, 0.85)],
-)  # fmt: skip
+    [
+        ("break_off", 40, 1.0, 1.0),
+        ("break_off_six_red", 40, 1.0, 1.0),
+        ("break_off_shoot_out", 40, 1.0, 1.0),
+        ("snookered", 60, 0.95, 0.95),
+        ("snookered_match", 30, 0.95, 0.95),
+        ("frames", 100, 0.99, 0.85),
+    ],
+)
 def test_there_is_a_fair_choice_and_a_fair_target(kind, n, least, target):
     """Every choice aimed at the nearest ball on: none was fair at any break-off, and in 85 % of the snookers.
 
-    In frames the target line leads full at balls in the mouth of a pocket as well, and then the cue ball follows them.
+    In frames the target line leads full at balls in the mouth of a pocket as well, and then the cue ball
+    follows them.
     """
     found = fair.measured(kind, n, seed=0)
     assert found["tables"] > 0.7 * n and found["with_a_fair_choice"] >= least and found["target"] >= target
@@ -109,9 +125,14 @@ def test_there_is_a_fair_choice_and_a_fair_target(kind, n, least, target):
 
 
 def test_an_escape_is_solved_for_the_stroke_that_is_played():
-    """Speed, side and top turn the cue ball at a cushion; the choices of one line meet the red all the same."""
+    """Speed, side and top turn the cue ball at a cushion; the choices of one line meet the red all the
+    same."""
     env = sn.SnookerEnv(action="discrete", physics="match", render_mode="ansi")
-    table_state(env, {CUE: (0.0, -0.5), BLUE: (0.0, 0.0), 1: (0.0, 0.6), 16: (0.15, 0.0), 17: (-0.15, 0.0)}, BallOn.RED)
+    table_state(
+        env,
+        {CUE: (0.0, -0.5), BLUE: (0.0, 0.0), 1: (0.0, 0.6), 16: (0.15, 0.0), 17: (-0.15, 0.0)},
+        BallOn.RED,
+    )
     state, aims, met = env.get_state(), [], 0
     picks = [choice_of(0, speed, side, top) for speed in (3, 5, 7) for side in range(3) for top in range(5)]
     for pick in picks:
@@ -139,7 +160,8 @@ def test_choices_over_cushions_are_the_same_strokes_as_actions():
 
 
 def touching(ball, others):
-    """The fouls of all choices, a red being on, where the cue ball touches a ball on its right; the balls and the lines."""
+    """The fouls of all choices, a red being on, where the cue ball touches a ball on its right; the balls and
+    the lines."""
     tables = fair.dealt(CHOICES, 0, action="discrete")
     positions, on_table = SPOTS.copy(), np.isin(np.arange(N_BALLS), (CUE, BLACK, ball, *others))
     positions[CUE], positions[ball] = (0.3, 0.3), (0.3 + 2 * R + 1e-5, 0.3)

@@ -1,4 +1,5 @@
-"""From where is a miss judged when the cue ball is in hand? From every place where the striker could have put it."""
+"""From where is a miss judged when the cue ball is in hand? From every place where the striker could have put
+it."""
 
 import numpy as np
 import pytest
@@ -14,7 +15,13 @@ CUSHIONS = {"noses": TABLE.noses, "jaws": TABLE.jaws}
 RED = (0.0, 0.5)
 BEHIND_THE_BROWN = [-0.6, 0.0, 0.0, 0.5, 0.0, 1.0, 0.0]
 """A stroke straight up the table from the back of the D, into the brown."""
-WALL = {GREEN: (-0.105, 0.9), YELLOW: (-0.0525, 0.9), BLUE: (0.0, 0.9), PINK: (0.0525, 0.9), BLACK: (0.105, 0.9)}
+WALL = {
+    GREEN: (-0.105, 0.9),
+    YELLOW: (-0.0525, 0.9),
+    BLUE: (0.0, 0.9),
+    PINK: (0.0525, 0.9),
+    BLACK: (0.105, 0.9),
+}
 """Five colours side by side: a red right behind them is seen from nowhere in the D."""
 
 
@@ -31,7 +38,8 @@ def asks_again(observation, rng):
 
 
 def after_failures(miss, strokes):
-    """A red on, the cue ball in hand, so many failures behind the brown; the environment and the last step's result."""
+    """A red on, the cue ball in hand, so many failures behind the brown; the environment and the last step's
+    result."""
     env = frame_env(aim="absolute", miss=miss, opponent=asks_again)
     places = {1: RED, BROWN: SPOTS[BROWN], BLACK: SPOTS[BLACK], CUE: (0.18, BAULK_Y)}
     frame_state(env, places, {"in_hand": True})
@@ -72,7 +80,8 @@ def test_paths_in_hand_are_those_of_the_best_place():
 
 @pytest.mark.parametrize("seed", range(12))
 def test_no_place_of_the_d_sees_more(seed):
-    """Random tables: where some place of the D has a clear path, so has the cue ball in hand; a place that touches a ball is none."""
+    """Random tables: where some place of the D has a clear path, so has the cue ball in hand; a place that
+    touches a ball is none."""
     rng, met = np.random.default_rng(seed), set()
     for _ in range(12):
         at = rng.uniform((-0.5, 0.5), (0.5, 1.3))

@@ -20,7 +20,12 @@ _executed = from_python(executed)
 def drawn(noise, n, speed, side, top, aim, elevation):
     """So many shots as executed, from one stream: (n, 5)."""
     stream, packed = np.array([7, 0], np.uint64), noise.pack(R)
-    return np.array([_executed(float(speed), float(side), float(top), float(aim), float(elevation), packed, stream) for _ in range(n)])
+    return np.array(
+        [
+            _executed(float(speed), float(side), float(top), float(aim), float(elevation), packed, stream)
+            for _ in range(n)
+        ]
+    )
 
 
 def test_noise_has_the_deviations_that_it_says():
@@ -39,14 +44,30 @@ def test_noise_has_the_deviations_that_it_says():
 
 @pytest.mark.parametrize("name", LEVELS)
 def test_each_level_is_as_wide_as_written(name):
-    wide = {"none": 0, "professional": 0.025, "amateur": 0.034, "club": 0.08, "robot": 0.033, "olympiad": 0.125}[name]
+    wide = {
+        "none": 0,
+        "professional": 0.025,
+        "amateur": 0.034,
+        "club": 0.08,
+        "robot": 0.033,
+        "olympiad": 0.125,
+    }[name]
     draws = drawn(LEVELS[name], 4000, 3.0, 0, 0, 1.0, 0.2)
     assert np.degrees(draws[:, 3].std()) == pytest.approx(wide, rel=0.05, abs=1e-12)
-    fast = {"none": 0, "professional": 0.0525, "amateur": 0.075, "club": 0.12, "robot": 0.24, "olympiad": 0.075}[name]
+    fast = {
+        "none": 0,
+        "professional": 0.0525,
+        "amateur": 0.075,
+        "club": 0.12,
+        "robot": 0.24,
+        "olympiad": 0.075,
+    }[name]
     assert draws[:, 0].std() == pytest.approx(fast, rel=0.05)
 
 
-@pytest.mark.parametrize(("name", "physics"), [*((name, "paper") for name in LEVELS), ("club", {"end_mass_ratio": 15.0})])
+@pytest.mark.parametrize(
+    ("name", "physics"), [*((name, "paper") for name in LEVELS), ("club", {"end_mass_ratio": 15.0})]
+)
 def test_the_total_direction_error_is_that_of_the_balls_struck(name, physics):
     """Aim and squirt together, as the balls leave; 4000 of them give a standard deviation to 1.1 %."""
     constants = Physics.of(physics)
@@ -68,7 +89,10 @@ def test_the_total_direction_error_in_figures():
         300 * Noise(offset_mm=1.0).direction_deg()
     )  # off the ball: still a number
     assert LEVELS["olympiad"].direction_deg() == pytest.approx(0.149, abs=5e-4)
-    errors = [LEVELS[name].direction_deg() for name in ("none", "professional", "robot", "amateur", "club", "olympiad")]
+    errors = [
+        LEVELS[name].direction_deg()
+        for name in ("none", "professional", "robot", "amateur", "club", "olympiad")
+    ]
     assert errors == sorted(errors) and errors[1] < 0.05
 
 

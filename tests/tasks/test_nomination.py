@@ -1,4 +1,5 @@
-"""What is a colour that was nominated worth, and what may be nominated and declared when? Box, discrete actions, masks."""
+"""What is a colour that was nominated worth, and what may be nominated and declared when? Box, discrete
+actions, masks."""
 
 import numpy as np
 import pytest
@@ -10,7 +11,14 @@ from snooker_env.tasks import declarations, discrete_actions
 from tests.refusals import refused
 from tests.tables import frame_env, frame_state
 
-PLACES = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK], YELLOW: SPOTS[YELLOW]}
+PLACES = {
+    CUE: (0.0, -0.5),
+    1: (0.6, 1.4),
+    BLUE: (0.3, -0.5),
+    PINK: SPOTS[PINK],
+    BLACK: SPOTS[BLACK],
+    YELLOW: SPOTS[YELLOW],
+}
 TO_BLUE, TO_NOTHING = 0.0, -0.8
 ANY = {"ball_on": BallOn.ANY_COLOUR}
 
@@ -27,10 +35,15 @@ def test_the_number_of_strokes_is_the_same_in_both_files():
 @pytest.mark.parametrize(
     ("part", "aim", "penalty", "foul"),
     [
-        (0, TO_NOTHING, 4, Foul.NO_CONTACT), (3, TO_NOTHING, 5, Foul.NO_CONTACT), (5, TO_NOTHING, 7, Foul.NO_CONTACT),
-        (3, TO_BLUE, 0, Foul(0)), (0, TO_BLUE, 5, Foul.WRONG_FIRST), (4, TO_BLUE, 6, Foul.WRONG_FIRST), (5, TO_BLUE, 7, Foul.WRONG_FIRST),
+        (0, TO_NOTHING, 4, Foul.NO_CONTACT),
+        (3, TO_NOTHING, 5, Foul.NO_CONTACT),
+        (5, TO_NOTHING, 7, Foul.NO_CONTACT),
+        (3, TO_BLUE, 0, Foul(0)),
+        (0, TO_BLUE, 5, Foul.WRONG_FIRST),
+        (4, TO_BLUE, 6, Foul.WRONG_FIRST),
+        (5, TO_BLUE, 7, Foul.WRONG_FIRST),
     ],
-)  # fmt: skip
+)
 def test_after_a_red_the_colour_nominated_is_the_one_on(part, aim, penalty, foul):
     env = frame_state(frame_env(aim="absolute", nominate=True), PLACES, ANY)
     assert env.action_space.shape == (8,)
@@ -58,7 +71,8 @@ FREE = {"phase": "stroke", "free_ball": True, "scores": (0, 4)}
 
 @pytest.mark.parametrize(("part", "penalty"), [(0, 5), (4, 0), (1, 5), (6, 5)])
 def test_a_free_ball_is_nominated_or_declined(part, penalty):
-    """With reds on: the blue struck first is fair as the free ball, else it costs its five; a free ball itself has the value of a red."""
+    """With reds on: the blue struck first is fair as the free ball, else it costs its five; a free ball
+    itself has the value of a red."""
     env = frame_state(frame_env(aim="absolute", nominate=True), PLACES, FREE)
     assert env.step([-0.9, 0, 0, TO_BLUE, 0, 0, named(part, 7), 0])[4]["penalty"] == penalty
 
@@ -106,14 +120,20 @@ ONLY_BLACK = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}
 
 @pytest.mark.parametrize("only", ["concede", "claim", "lot"])
 def test_each_declaration_alone_lengthens_the_action_by_one(only):
-    assert frame_env(**{only: True}).action_space.shape == (8,) and frame_env(**SAID).action_space.shape == (8,)
+    assert frame_env(**{only: True}).action_space.shape == (8,) and frame_env(**SAID).action_space.shape == (
+        8,
+    )
     assert sn.SnookerEnv(task="frame", action="discrete", **{only: True}).action_space.n == 541
 
 
 def test_who_concedes_loses_without_a_stroke():
     for action, say in (("box", [0] * 7 + [-0.7]), ("discrete", 540)):
         given = {} if action == "box" else {"decision": False, "placement": False}
-        env = frame_state(frame_env(action=action, opponent="ghost_ball", reward="win", **SAID, **given), PLACES, {"scores": (50, 0)})
+        env = frame_state(
+            frame_env(action=action, opponent="ghost_ball", reward="win", **SAID, **given),
+            PLACES,
+            {"scores": (50, 0)},
+        )
         _, reward, terminated, _, info = env.step(say)
         assert (reward, terminated, info["winner"], info["events"]) == (-1.0, True, 1, 0)
     env = frame_state(frame_env(claim=True), PLACES, {})
@@ -124,7 +144,9 @@ def test_who_concedes_loses_without_a_stroke():
 def test_the_frame_is_claimed_with_the_black_left_and_more_than_seven_ahead(scores, won):
     for action in ("box", "discrete"):
         given = {} if action == "box" else {"decision": False, "placement": False}
-        env = frame_state(frame_env(action=action, **SAID, **given), ONLY_BLACK, {"ball_on": BallOn.BLACK, "scores": scores})
+        env = frame_state(
+            frame_env(action=action, **SAID, **given), ONLY_BLACK, {"ball_on": BallOn.BLACK, "scores": scores}
+        )
         if action == "discrete":
             assert env.action_masks()[540:].tolist() == [True, won, False]
         _, _, terminated, _, info = env.step([-1.0] + [0] * 6 + [0.7] if action == "box" else 541)
@@ -135,7 +157,14 @@ def test_the_frame_is_claimed_with_the_black_left_and_more_than_seven_ahead(scor
 def test_the_winner_of_the_lot_says_who_begins(action):
     pytest.importorskip("pettingzoo")
     given = {} if action == "box" else {"placement": False, "decision": False}
-    level = {"phase": "lot", "respotted_black": True, "ball_on": BallOn.BLACK, "scores": (20, 20), "in_hand": True, "striker": 1}
+    level = {
+        "phase": "lot",
+        "respotted_black": True,
+        "ball_on": BallOn.BLACK,
+        "scores": (20, 20),
+        "in_hand": True,
+        "striker": 1,
+    }
     places = {CUE: (0.0, -1.2), BLACK: SPOTS[BLACK]}
     for other in (False, True):
         env = sn.match_env(action=action, lot=True, **given)
@@ -160,8 +189,17 @@ def test_the_built_in_players_play_with_everything_said():
     """They nominate, begin at the lot, and do not concede."""
     for opponent in ("random", "ghost_ball"):
         for action in ("box", "discrete"):
-            options = {"task": "match", "frames": 3, "nominate": True, "layout": "pots:easy", "action": action, "aim": "target"} | SAID
-            tables = sn.SnookerVectorEnv(20, **options, opponent=opponent, autoreset_mode="SameStep", threads=1)
+            options = {
+                "task": "match",
+                "frames": 3,
+                "nominate": True,
+                "layout": "pots:easy",
+                "action": action,
+                "aim": "target",
+            } | SAID
+            tables = sn.SnookerVectorEnv(
+                20, **options, opponent=opponent, autoreset_mode="SameStep", threads=1
+            )
             tables.reset(seed=1)
             rng, ended = np.random.default_rng(0), 0
             for _ in range(40):

@@ -43,13 +43,21 @@ def describe(env):
         sequence = env.ball_on > 1 and ball == env.ball_on + 14
         may = {BallOn.RED: 1 <= ball < 16, BallOn.ANY_COLOUR: ball >= 16}.get(env.ball_on, sequence)
         rows.append([x / 0.889, y / 1.7845, env.on_table[ball], values[ball] / 7, may and env.on_table[ball]])
-    state = [env.on_table[1:16].sum() / 15, *(env.ball_on == k for k in range(8)), env.in_hand, env.points / 155]
+    state = [
+        env.on_table[1:16].sum() / 15,
+        *(env.ball_on == k for k in range(8)),
+        env.in_hand,
+        env.points / 155,
+    ]
     return np.array(rows, np.float32), np.array(state, np.float32)
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_observations_say_where_the_balls_lie_and_what_is_on(layout):
-    flat, rows = SnookerEnv(layout=layout, aim="target"), SnookerEnv(layout=layout, aim="target", observation="balls")
+    flat, rows = (
+        SnookerEnv(layout=layout, aim="target"),
+        SnookerEnv(layout=layout, aim="target", observation="balls"),
+    )
     assert set(rows.observation_space.spaces) == {"balls", "state"}
     for seed in range(6):
         a, b = flat.reset(seed=seed)[0], rows.reset(seed=seed)[0]
@@ -70,14 +78,18 @@ OF_FRAMES = {"task": "frame", "opponent": "random", "max_strokes": 40}
 @pytest.mark.parametrize(
     "options",
     [
-        {}, {"layout": "colours", "noise": "club"}, {"layout": "random:0"}, OF_FRAMES | {"layout": "random:1"},
+        {},
+        {"layout": "colours", "noise": "club"},
+        {"layout": "random:0"},
+        OF_FRAMES | {"layout": "random:1"},
         OF_FRAMES | {"nominate": True, "concede": True, "claim": True, "lot": True, "miss": "clear_path"},
         OF_FRAMES | {"task": "match", "frames": 3, "layout": "random:0"},
     ],
     ids=["opened", "colours", "black", "frame", "all that is said", "match"],
-)  # fmt: skip
+)
 def test_masked_observations_hold_the_flat_one_and_the_available_choices(options):
-    """Also at the end of an episode, where at least one choice stays available: no learner divides by nothing."""
+    """Also at the end of an episode, where at least one choice stays available: no learner divides by
+    nothing."""
     flat, masked = (SnookerEnv(action="discrete", observation=kind, **options) for kind in ("flat", "masked"))
     assert set(masked.observation_space.spaces) == {"observations", "action_mask"}
     assert masked.observation_space["observations"] == flat.observation_space
@@ -88,8 +100,12 @@ def test_masked_observations_hold_the_flat_one_and_the_available_choices(options
         done = False
         while True:
             assert np.array_equal(a, b["observations"]) and a.dtype == b["observations"].dtype
-            assert b["action_mask"].dtype == np.int8 and np.array_equal(b["action_mask"], masked.action_masks())
-            assert np.array_equal(flat.action_masks(), masked.action_masks()) and masked.observation_space.contains(b)
+            assert b["action_mask"].dtype == np.int8 and np.array_equal(
+                b["action_mask"], masked.action_masks()
+            )
+            assert np.array_equal(
+                flat.action_masks(), masked.action_masks()
+            ) and masked.observation_space.contains(b)
             assert b["action_mask"].any()
             kinds.add(b["action_mask"].tobytes())
             if done:
@@ -107,7 +123,12 @@ def test_masked_observations_need_discrete_actions():
     for make in (SnookerEnv, frame_env):
         says = 'must be "flat" or "balls" with action="box": a Box has no masks'
         refused(lambda make=make: make(observation="masked"), "observation", "'masked'", says)
-    refused(lambda: observations.shaped("masked", np.zeros((2, 121), np.float32)), "masks", "None", "must be the available choices")
+    refused(
+        lambda: observations.shaped("masked", np.zeros((2, 121), np.float32)),
+        "masks",
+        "None",
+        "must be the available choices",
+    )
 
 
 def test_infos_have_the_same_keys_and_types_at_all_times():
@@ -127,7 +148,11 @@ def test_infos_have_the_same_keys_and_types_at_all_times():
 
 
 @pytest.mark.parametrize(
-    ("place", "seen"), [((0.889 + 0.008, 0.033), (0.897 / 0.889, 0.033 / 1.7845)), ((-0.897, -0.033), (-0.897 / 0.889, -0.033 / 1.7845))]
+    ("place", "seen"),
+    [
+        ((0.889 + 0.008, 0.033), (0.897 / 0.889, 0.033 / 1.7845)),
+        ((-0.897, -0.033), (-0.897 / 0.889, -0.033 / 1.7845)),
+    ],
 )
 def test_a_ball_at_rest_in_the_mouth_of_a_pocket_is_seen_where_it_lies(place, seen):
     """Past the noses."""
@@ -147,4 +172,9 @@ def test_a_table_with_deeper_mouths_than_observations_reach_is_refused(monkeypat
         if fits:
             SnookerEnv(table="match")
         else:
-            refused(lambda: SnookerEnv(table="match"), "table", "match", "past the noses, where observations end (one can 0.0117 m")
+            refused(
+                lambda: SnookerEnv(table="match"),
+                "table",
+                "match",
+                "past the noses, where observations end (one can 0.0117 m",
+            )

@@ -31,7 +31,8 @@ def test_any_callable_may_play_and_sees_the_table_from_its_own_side():
     seen.clear()
     env.step([-0.9, 0, 0, 1.0, 0, 0, 0])
     assert seen and env.observation_space.contains(seen[0])
-    assert seen[0][121:124] == pytest.approx((62 / 209, 31 / 178, 31 / 178), abs=1e-6)  # the stroke before was fair and scored nothing
+    # the stroke before was fair and scored nothing
+    assert seen[0][121:124] == pytest.approx((62 / 209, 31 / 178, 31 / 178), abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -90,7 +91,9 @@ def test_the_ghost_ball_player_pots_what_is_there():
     for seed in range(60):
         env.reset(seed=seed)
         out = tables.output()
-        tables.turn(lambda which, buffers: player.prepare(tables, which, None, buffers), out, Crew(ShotBuffers(1)))
+        tables.turn(
+            lambda which, buffers: player.prepare(tables, which, None, buffers), out, Crew(ShotBuffers(1))
+        )
         potted += out.reals[0, I_POINTS]
     assert potted > 30
 
@@ -107,12 +110,14 @@ def test_the_ghost_ball_player_beats_the_random_one():
     assert wins >= 7
 
 
-# models from files -----------------------------------------------------------------------------------------------------------------
+# models from files
+# -----------------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
-    """Untrained models' files: of this environment's visit, of its discrete choices, with another view, of another environment."""
+    """Untrained models' files: of this environment's visit, of its discrete choices, with another view, of
+    another environment."""
     sb3, contrib = pytest.importorskip("stable_baselines3"), pytest.importorskip("sb3_contrib")
     folder = tmp_path_factory.mktemp("saved")
     sb3.PPO("MlpPolicy", SnookerEnv(), seed=1, device="cpu").save(folder / "visit.zip")
@@ -120,7 +125,9 @@ def saved(tmp_path_factory):
     sb3.PPO("MlpPolicy", SnookerEnv(elevation=True), device="cpu").save(folder / "elevation.zip")
     sb3.PPO("MlpPolicy", "Pendulum-v1", device="cpu").save(folder / "pendulum.zip")
     contrib.MaskablePPO("MlpPolicy", SnookerEnv(action="discrete"), device="cpu").save(folder / "choices.zip")
-    contrib.RecurrentPPO("MlpLstmPolicy", SnookerEnv(placement=True), device="cpu").save(folder / "recurrent.zip")
+    contrib.RecurrentPPO("MlpLstmPolicy", SnookerEnv(placement=True), device="cpu").save(
+        folder / "recurrent.zip"
+    )
     return folder
 
 
@@ -143,18 +150,26 @@ def test_a_saved_model_may_play(tmp_path, task, name):
     for decision in (False, True):
         env = SnookerEnv(task="frame", opponent=path, trust=True, decision=decision, **options)
         network = env.tables.seats[1].player.player.seen._network
-        assert all((a == b).all() for a, b in zip(network.parameters(), trained.policy.parameters(), strict=True))
+        assert all(
+            (a == b).all() for a, b in zip(network.parameters(), trained.policy.parameters(), strict=True)
+        )
         runs = []
         for one in (env, copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
             one.reset(seed=2)
             out = [one.step(np.zeros(one.action_space.shape)) for _ in range(3) if not one.over]
             runs.append(out)
-        assert data_equivalence(runs[0], runs[1], exact=True) and data_equivalence(runs[0], runs[2], exact=True)
+        assert data_equivalence(runs[0], runs[1], exact=True) and data_equivalence(
+            runs[0], runs[2], exact=True
+        )
 
 
-@pytest.mark.parametrize(("own", "nominate"), [({}, False), ({"task": "frame"}, False), ({"task": "frame", "nominate": True}, True)])
+@pytest.mark.parametrize(
+    ("own", "nominate"),
+    [({}, False), ({"task": "frame"}, False), ({"task": "frame", "nominate": True}, True)],
+)
 def test_a_saved_model_that_sees_masks_may_play(tmp_path, own, nominate):
-    """One of visits, with 540 choices, plays in a frame with more; its choices are those of the same model on what it sees."""
+    """One of visits, with 540 choices, plays in a frame with more; its choices are those of the same model on
+    what it sees."""
     contrib = pytest.importorskip("sb3_contrib")
     masked = {"action": "discrete", "observation": "masked"}
     made = contrib.MaskablePPO("MultiInputPolicy", SnookerEnv(**masked, **own), seed=1, device="cpu")
@@ -182,11 +197,21 @@ def test_callables_see_masks(tmp_path):
     class Many:
         def many(self, seen, generators, masks):
             assert np.array_equal(seen["action_mask"], masks)
-            return [one({name: part[k] for name, part in seen.items()}, rng) for k, rng in enumerate(generators)]
+            return [
+                one({name: part[k] for name, part in seen.items()}, rng) for k, rng in enumerate(generators)
+            ]
 
     runs = []
     for opponent in (one, Many()):
-        env = SnookerVectorEnv(6, threads=1, task="frame", action="discrete", observation="masked", layout="random:1", opponent=opponent)
+        env = SnookerVectorEnv(
+            6,
+            threads=1,
+            task="frame",
+            action="discrete",
+            observation="masked",
+            layout="random:1",
+            opponent=opponent,
+        )
         out = [env.reset(seed=1)[0]]
         for _ in range(5):
             out.append(env.step(env.action_masks().argmax(axis=1))[0])
@@ -208,7 +233,9 @@ CONSENT = "holds pickled Python code, which runs when it is loaded: must be a fi
     ],
 )
 @pytest.mark.parametrize("trust", [False, True])
-def test_a_model_that_does_not_fit_is_refused_when_made_and_none_of_it_runs(saved, tmp_path, name, says, trust):
+def test_a_model_that_does_not_fit_is_refused_when_made_and_none_of_it_runs(
+    saved, tmp_path, name, says, trust
+):
     file = bombed(saved / f"{name}.zip", tmp_path / "model.zip", tmp_path / "mark")
     with pytest.raises(ValueError) as info:
         SnookerEnv(task="frame", opponent=str(file), trust=trust, placement=True, decision=True)
@@ -229,25 +256,41 @@ def test_nothing_of_a_model_runs_without_consent(saved, tmp_path, weights):
     assert (tmp_path / "mark").exists()  # these bombs are sharp
 
 
-@pytest.mark.parametrize("change", [{"_shape": [121]}, {":type:": "<class 'gymnasium.spaces.box.Box'>", "_shape": [121]}])
+@pytest.mark.parametrize(
+    "change", [{"_shape": [121]}, {":type:": "<class 'gymnasium.spaces.box.Box'>", "_shape": [121]}]
+)
 def test_a_model_that_holds_other_than_it_says_is_refused_when_made(saved, tmp_path, change):
-    path = rezipped(saved / "pendulum.zip", tmp_path / "model.zip", data=edited(lambda found: found["observation_space"].update(change)))
-    path = rezipped(path, tmp_path / "lie.zip", data=edited(lambda found: found["action_space"].update({"_shape": [4]})))
-    with pytest.raises(ValueError, match=r"opponent = .*: must be a model whose spaces are those that its file describes"):
+    path = rezipped(
+        saved / "pendulum.zip",
+        tmp_path / "model.zip",
+        data=edited(lambda found: found["observation_space"].update(change)),
+    )
+    path = rezipped(
+        path, tmp_path / "lie.zip", data=edited(lambda found: found["action_space"].update({"_shape": [4]}))
+    )
+    with pytest.raises(
+        ValueError, match=r"opponent = .*: must be a model whose spaces are those that its file describes"
+    ):
         SnookerEnv(task="frame", opponent=path, trust=True)
 
 
 @pytest.mark.parametrize(
     "change",
     [
-        lambda found: found.clear(), lambda found: found.pop("action_space"), lambda found: found.update(observation_space=3),
-        lambda found: found.update(observation_space={}), lambda found: found["action_space"].update({":type:": 3}),
-        lambda found: found["action_space"].update(_shape=None), lambda found: found.update(action_space=None),
+        lambda found: found.clear(),
+        lambda found: found.pop("action_space"),
+        lambda found: found.update(observation_space=3),
+        lambda found: found.update(observation_space={}),
+        lambda found: found["action_space"].update({":type:": 3}),
+        lambda found: found["action_space"].update(_shape=None),
+        lambda found: found.update(action_space=None),
     ],
-)  # fmt: skip
+)
 def test_a_file_that_holds_nothing_sound_is_refused(saved, tmp_path, change):
     file = bombed(saved / "visit.zip", tmp_path / "model.zip", tmp_path / "mark", change=change)
-    with pytest.raises(ValueError, match=r"^opponent = '.*model.zip': must be a model saved by Stable-Baselines3 \("):
+    with pytest.raises(
+        ValueError, match=r"^opponent = '.*model.zip': must be a model saved by Stable-Baselines3 \("
+    ):
         SnookerEnv(task="frame", opponent=str(file), trust=True)
     assert not (tmp_path / "mark").exists()
 
@@ -267,7 +310,9 @@ def test_a_file_that_is_none_of_stable_baselines_is_refused(tmp_path, content):
     with zipfile.ZipFile(tmp_path / "large.zip", "w", zipfile.ZIP_DEFLATED) as made:
         made.writestr("data", bytes(2**28 + 1))
     for name in ("plain", "data", "large"):
-        with pytest.raises(ValueError, match=rf"^opponent = '.*{name}.zip': must be a model saved by Stable-Baselines3 \("):
+        with pytest.raises(
+            ValueError, match=rf"^opponent = '.*{name}.zip': must be a model saved by Stable-Baselines3 \("
+        ):
             SnookerEnv(task="frame", opponent=str(tmp_path / f"{name}.zip"), trust=True)
 
 

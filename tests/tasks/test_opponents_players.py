@@ -1,4 +1,5 @@
-"""May any player be the opponent, seen from its own side and asked once for all tables? Strokes, seeds, what is said, errors."""
+"""May any player be the opponent, seen from its own side and asked once for all tables? Strokes, seeds, what
+is said, errors."""
 
 import copy
 import json
@@ -11,7 +12,16 @@ from gymnasium.utils.env_checker import data_equivalence
 
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, CUE, GREEN, SPOTS, BallOn
-from snooker_env.game.frame_columns import BREAKER, COLUMNS, PLAY_AGAIN, REPLACE, SCORE_0, SCORE_1, STRIKER, WINNER
+from snooker_env.game.frame_columns import (
+    BREAKER,
+    COLUMNS,
+    PLAY_AGAIN,
+    REPLACE,
+    SCORE_0,
+    SCORE_1,
+    STRIKER,
+    WINNER,
+)
 from snooker_env.game.sides import swapped
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y
 from snooker_env.players import Strokes
@@ -36,7 +46,10 @@ class Soft:
     def play(self, positions, seeds):
         self.calls.append((positions, np.array(seeds)))
         n = len(positions)
-        return Strokes(np.tile([0.5, 0.0, 0.0, np.pi / 2, 0.0], (n, 1)), **{k: np.full((n, *np.shape(v)), v) for k, v in self.said.items()})
+        return Strokes(
+            np.tile([0.5, 0.0, 0.0, np.pi / 2, 0.0], (n, 1)),
+            **{k: np.full((n, *np.shape(v)), v) for k, v in self.said.items()},
+        )
 
 
 class Drawing(Soft):
@@ -57,11 +70,14 @@ class Sees:
 
     def act(self, observations, masks, seeds):
         self.seen.append(observations)
-        return np.argmax(masks, axis=1) if masks is not None else np.tile([-0.9, 0.0, 0.0, 1.0], (len(seeds), 1))
+        return (
+            np.argmax(masks, axis=1) if masks is not None else np.tile([-0.9, 0.0, 0.0, 1.0], (len(seeds), 1))
+        )
 
 
 def asked(env):
-    """The opponent's turn on the first table, up to the strike: the buffers of the shot, and the tables with a stroke."""
+    """The opponent's turn on the first table, up to the strike: the buffers of the shot, and the tables with
+    a stroke."""
     one, opponent, buffers = np.zeros(1, np.int64), env.tables.seats[1].player, ShotBuffers(1)
     which = opponent.prepare(env.tables, one, opponent.ask(env.tables, one, [None]), buffers)
     return buffers, which.tolist()
@@ -91,12 +107,16 @@ def test_to_change_sides_twice_changes_nothing():
     game[:, WINNER] = rng.integers(-1, 2, 50)
     other = swapped(game)
     assert np.array_equal(swapped(other), game) and np.array_equal(other[:, SCORE_0], game[:, SCORE_1])
-    assert (other[:, BREAKER] == 1 - game[:, BREAKER]).all() and ((other[:, WINNER] < 0) == (game[:, WINNER] < 0)).all()
+    assert (other[:, BREAKER] == 1 - game[:, BREAKER]).all() and (
+        (other[:, WINNER] < 0) == (game[:, WINNER] < 0)
+    ).all()
 
 
 def test_one_call_serves_all_tables_that_wait():
     player = Soft()
-    tables = sn.SnookerVectorEnv(16, threads=2, task="frame", opponent=player, layout="random:3", aim="target")
+    tables = sn.SnookerVectorEnv(
+        16, threads=2, task="frame", opponent=player, layout="random:3", aim="target"
+    )
     tables.reset(seed=0)
     player.calls.clear()
     _, _, _, _, info = tables.step(np.tile(MISS[:4], (16, 1)))
@@ -125,11 +145,23 @@ def test_it_decides_after_a_foul_and_may_concede():
     foul = [-0.9, 0, 0, -0.5, 0, 0, 0]  # away from all balls: snookered behind the green
     env = frame_state(frame_env(opponent=Soft(decision=PLAY_AGAIN), aim="absolute"), hidden, {})
     _, _, _, _, info = env.step(foul)
-    assert info["foul"] and env.frame.striker == 0 and env.frame.phase == "stroke" and info["opponent_strokes"] == 0
-    assert not env.frame.free_ball and env.ball_on == BallOn.RED  # a free ball is void for an offender who plays again
-    env = frame_state(frame_env(opponent=Soft(decision=REPLACE), aim="absolute", miss="clear_path"), PLACES, {})
+    assert (
+        info["foul"]
+        and env.frame.striker == 0
+        and env.frame.phase == "stroke"
+        and info["opponent_strokes"] == 0
+    )
+    # a free ball is void for an offender who plays again
+    assert not env.frame.free_ball and env.ball_on == BallOn.RED
+    env = frame_state(
+        frame_env(opponent=Soft(decision=REPLACE), aim="absolute", miss="clear_path"), PLACES, {}
+    )
     env.step(foul)
-    assert env.positions[CUE].tolist() == list(PLACES[CUE]) and env.frame.warned is False and env.frame.failures == 1
+    assert (
+        env.positions[CUE].tolist() == list(PLACES[CUE])
+        and env.frame.warned is False
+        and env.frame.failures == 1
+    )
     env = frame_state(frame_env(opponent=Soft(declare=CONCEDES), aim="absolute"), PLACES, {})
     _, _, terminated, _, info = env.step(foul)
     assert terminated and info["winner"] == 0 and info["opponent_strokes"] == 0
@@ -159,9 +191,19 @@ def test_with_a_free_ball_any_colour_is_on_for_a_player_of_visits():
     assert buffers.v[0, CUE, 1] > 0
 
 
-@pytest.mark.parametrize("name", ["best_pot", "search_30", "planner_30", "tests.tasks.test_opponents_players:Soft"])
+@pytest.mark.parametrize(
+    "name", ["best_pot", "search_30", "planner_30", "tests.tasks.test_opponents_players:Soft"]
+)
 def test_a_name_may_play(name):
-    env = gymnasium.make("Snooker-v0", task="frame", opponent=name, layout="pots:easy", noise="none", max_strokes=4, aim="target")
+    env = gymnasium.make(
+        "Snooker-v0",
+        task="frame",
+        opponent=name,
+        layout="pots:easy",
+        noise="none",
+        max_strokes=4,
+        aim="target",
+    )
     env = gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json()))
     for seed in range(3):
         env.reset(seed=seed)
@@ -193,7 +235,10 @@ def test_a_player_plays_alike_again_whatever_other_tables_do(n):
     ("answer", "says"),
     [
         (None, r"opponent Wrong: play\(...\) = a NoneType: must be 1 Strokes, one for each position"),
-        (Strokes(np.tile([1.0, 0, 0, 0, 0], (3, 1))), r"opponent Wrong: play\(...\) = 3 Strokes: must be 1 Strokes"),
+        (
+            Strokes(np.tile([1.0, 0, 0, 0, 0], (3, 1))),
+            r"opponent Wrong: play\(...\) = 3 Strokes: must be 1 Strokes",
+        ),
     ],
 )
 def test_what_a_player_answers_is_checked_and_it_is_named(answer, says):
@@ -218,7 +263,10 @@ def test_an_error_of_a_player_names_it(error, kind):
     env = frame_env(opponent=Failing())
     with pytest.raises(kind) as info:
         [env.reset(seed=seed) for seed in range(10)]
-    assert str(info.value) == f"opponent Failing raised {type(error).__name__}: {error}" and info.value.__cause__ is error
+    assert (
+        str(info.value) == f"opponent Failing raised {type(error).__name__}: {error}"
+        and info.value.__cause__ is error
+    )
 
 
 def test_the_end_of_a_program_is_no_error_of_a_player():
@@ -237,7 +285,14 @@ def test_any_opponent_plays_matches_and_stable_baselines_tables(name):
     from snooker_env.sb3 import SnookerVecEnv
 
     opponent = {"player": Soft(), "pool": OpponentPool(["ghost_ball", Soft(), "best_pot"])}.get(name, name)
-    options = {"task": "match", "frames": 3, "opponent": opponent, "layout": "pots:easy", "aim": "target", "max_strokes": 20}
+    options = {
+        "task": "match",
+        "frames": 3,
+        "opponent": opponent,
+        "layout": "pots:easy",
+        "aim": "target",
+        "max_strokes": 20,
+    }
     env = sn.SnookerEnv(**options)
     env.reset(seed=1)
     over = strokes = steps = 0
@@ -260,7 +315,10 @@ def test_a_name_that_nobody_has_is_refused_with_the_names():
     for name in ("tests.tasks.test_opponents_players:Nobody", ""):
         with pytest.raises(ValueError, match=r"^opponent = "):
             frame_env(opponent=name)
-    with pytest.raises(ValueError, match=r"^opponent = 'serch': must be one of 'none', 'random', 'ghost_ball', .*MODULE:CLASS"):
+    with pytest.raises(
+        ValueError,
+        match=r"^opponent = 'serch': must be one of 'none', 'random', 'ghost_ball', .*MODULE:CLASS",
+    ):
         frame_env(opponent="serch")
 
 
@@ -283,7 +341,10 @@ def test_options_hold_text_and_objects_come_beside_them():
     with pytest.raises(ValueError, match=r"^opponent = 'object': must come with the object"):
         sn.SnookerEnv(env.options)
     again = sn.SnookerVectorEnv(2, env.options, opponent=Soft())
-    assert again.options == env.options and sn.SnookerEnv(sn.Options(task="frame"), opponent=Soft()).options.opponent == "object"
+    assert (
+        again.options == env.options
+        and sn.SnookerEnv(sn.Options(task="frame"), opponent=Soft()).options.opponent == "object"
+    )
 
 
 def test_copies_of_an_environment_play_on_alike():
@@ -297,13 +358,23 @@ def test_copies_of_an_environment_play_on_alike():
 def test_says_and_the_flags_are_two_spellings():
     options = sn.Options(task="frame", decision=True, says=["lot"])
     assert options.says == ("decision", "lot") and options.decision and not options.nominate
-    assert options == sn.Options(task="frame", lot=True, says=("decision",)) and options.but(decision=False).says == ("lot",)
+    assert options == sn.Options(task="frame", lot=True, says=("decision",)) and options.but(
+        decision=False
+    ).says == ("lot",)
     assert options.but(says=("claim",)).says == ("claim",) and options.but(noise="club").says == options.says
-    assert sn.SnookerEnv(options).action_space == sn.SnookerEnv(task="frame", decision=True, lot=True).action_space
+    assert (
+        sn.SnookerEnv(options).action_space
+        == sn.SnookerEnv(task="frame", decision=True, lot=True).action_space
+    )
 
 
 def test_groups_hold_every_option_once():
     groups = [sn.Options.group(name) for name in ("task", "action", "view", "shot", "frame")]
     names = [name for group in groups for name in group]
-    assert len(names) == len(set(names)) == 21 and set(sn.Options.group("action", "visit")) == {"action", "aim", "elevation", "placement"}
+    assert len(names) == len(set(names)) == 21 and set(sn.Options.group("action", "visit")) == {
+        "action",
+        "aim",
+        "elevation",
+        "placement",
+    }
     assert all(getattr(sn.Options(), name) == default for group in groups for name, default in group.items())

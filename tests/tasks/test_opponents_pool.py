@@ -1,4 +1,5 @@
-"""Does a pool of opponents draw one for each table and frame, from the table's own stream, and keep it with the state?"""
+"""Does a pool of opponents draw one for each table and frame, from the table's own stream, and keep it with
+the state?"""
 
 import copy
 import json
@@ -104,12 +105,15 @@ def test_of_whom_nobody_could_be_drawn_is_refused_at_once():
     ):
         with pytest.raises(ValueError, match=f"^{says}"):
             wrong()
-    assert OpponentPool().members == () and OpponentPool(["random", "ghost_ball"], weights=[0, 1]).weights == (0.0, 1.0)
+    assert OpponentPool().members == () and OpponentPool(
+        ["random", "ghost_ball"], weights=[0, 1]
+    ).weights == (0.0, 1.0)
 
 
 def test_a_wrong_member_is_named():
     with pytest.raises(
-        ValueError, match=r"^members\[1\] of the OpponentPool: opponent = 'foo': must be one of 'none', 'random', 'ghost_ball', "
+        ValueError,
+        match=r"^members\[1\] of the OpponentPool: opponent = 'foo': must be one of 'none', 'random', 'ghost_ball', ",
     ):
         frames(OpponentPool(["random", "foo"]))
     tables = frames(pool := OpponentPool(["random"]), 2)
@@ -119,7 +123,10 @@ def test_a_wrong_member_is_named():
 
 
 def test_what_is_no_pool_is_refused():
-    for wrong in (lambda: OpponentPool(["random"], weights=[]), lambda: OpponentPool(["random"], weights=[-1.0])):
+    for wrong in (
+        lambda: OpponentPool(["random"], weights=[]),
+        lambda: OpponentPool(["random"], weights=[-1.0]),
+    ):
         with pytest.raises(ValueError, match="weight"):
             wrong()
     for member in (OpponentPool(), "none", None):

@@ -28,7 +28,8 @@ def frame_of(**options):
 
 
 def test_fouls_without_end_score_without_end():
-    """A rule has no ceiling: a hundred fouls on each side of what the first version could count to, and far beyond it."""
+    """A rule has no ceiling: a hundred fouls on each side of what the first version could count to, and far
+    beyond it."""
     for scores in ((9_980, 0), (0, 9_980), (9_800, 9_800), (2**53, 2**40)):
         frame = Frame(scores=scores, miss="clear_path")
         for _ in range(200):
@@ -88,7 +89,9 @@ def test_random_play_with_all_defaults_ends_at_the_limit_and_starts_anew():
 def test_ppo_trains_on_frames_that_are_stopped():
     stable_baselines3 = pytest.importorskip("stable_baselines3")
     env = gymnasium.make("Snooker-v0", task="frame", opponent="random", max_strokes=30, layout="random:3")
-    stable_baselines3.PPO("MlpPolicy", env, n_steps=64, batch_size=64, n_epochs=1, seed=0, device="cpu").learn(256)
+    stable_baselines3.PPO(
+        "MlpPolicy", env, n_steps=64, batch_size=64, n_epochs=1, seed=0, device="cpu"
+    ).learn(256)
 
 
 # The limit
@@ -139,14 +142,17 @@ def test_the_strokes_are_counted_on_from_a_state():
 
 
 def test_a_frame_that_is_stopped_in_the_opening_visit_is_reported_by_the_next_step():
-    """The referee stops it after the opponent's break-off: the agent plays nothing, and is paid what the opponent scored."""
+    """The referee stops it after the opponent's break-off: the agent plays nothing, and is paid what the
+    opponent scored."""
     env, opened = frame_of(opponent="random", max_strokes=1), 0
     for seed in range(10):
         _, info = env.reset(seed=seed)
         opened += info["strokes"]
         _, reward, terminated, truncated, after = env.step(FOUL)
         assert (terminated, truncated, after["strokes"]) == (False, True, 1) and after["winner"] == -1
-        assert reward == after["score"] - after["opponent_score"] and (info["strokes"] == 0 or after["events"] == 0)
+        assert reward == after["score"] - after["opponent_score"] and (
+            info["strokes"] == 0 or after["events"] == 0
+        )
     assert 0 < opened < 10
 
 
@@ -162,10 +168,20 @@ def test_it_is_sound_for_gymnasium_and_round_trips():
 
 def test_wrong_limits_are_refused_and_a_visit_has_none():
     for wrong in (0, -1, 1.5, "10", True, 10**9 + 1, float("nan")):
-        refused(lambda wrong=wrong: frame_of(max_strokes=wrong), "max_strokes", repr(wrong), "must be an integer in [1, 1000000000]")
+        refused(
+            lambda wrong=wrong: frame_of(max_strokes=wrong),
+            "max_strokes",
+            repr(wrong),
+            "must be an integer in [1, 1000000000]",
+        )
     for make in (SnookerEnv, SnookerVectorEnv):
         for wrong in (None, 50):
-            refused(lambda make=make, wrong=wrong: make(max_strokes=wrong), "max_strokes", repr(wrong), 'must be 1000 with task="visit"')
+            refused(
+                lambda make=make, wrong=wrong: make(max_strokes=wrong),
+                "max_strokes",
+                repr(wrong),
+                'must be 1000 with task="visit"',
+            )
 
 
 def test_the_default_is_the_same_everywhere():

@@ -1,4 +1,5 @@
-"""Is no ball ever dealt into a cushion, a jaw or a pocket? The layouts on the presets, on tables of one's own, and tables refused."""
+"""Is no ball ever dealt into a cushion, a jaw or a pocket? The layouts on the presets, on tables of one's
+own, and tables refused."""
 
 import copy
 import pickle
@@ -24,7 +25,10 @@ NONE = {"jaws": np.zeros((0, 6)), "falls": np.zeros((0, 3))}
 def changed(name="mine", noses=None, jaws=None, falls=None):
     """The match table with some of its parts changed, each by a function of it."""
     parts = {"noses": noses, "jaws": jaws, "falls": falls}
-    made = {part: getattr(MATCH, part) if change is None else change(np.array(getattr(MATCH, part))) for part, change in parts.items()}
+    made = {
+        part: getattr(MATCH, part) if change is None else change(np.array(getattr(MATCH, part)))
+        for part, change in parts.items()
+    }
     return Table(name, **made)
 
 
@@ -57,14 +61,19 @@ FIT = {
     "no jaws": changed(jaws=lambda rows: rows[:0]),
     "no pockets": Table("mine", walls(0.889, 1.7845), **NONE),
     "corner falls a little larger": changed(falls=scaled([2], 1.1)),
-    "sharp jaws": changed(jaws=lambda rows: np.column_stack([rows[:, :2], 0.02 + 0 * rows[:, 2:3], rows[:, 3:]])),
+    "sharp jaws": changed(
+        jaws=lambda rows: np.column_stack([rows[:, :2], 0.02 + 0 * rows[:, 2:3], rows[:, 3:]])
+    ),
     "jaws of tight": changed(jaws=lambda rows: Table.preset("tight").jaws),
 }
 
 
 def test_some_opened_tables_do_not_fit_other_pockets():
-    """... so that the tests below see what they are for: the bank was played on the match table, where balls came to rest in the mouths."""
-    assert 3 < len(fitted("opened", Table.preset("tight")).unfit) < 100 and fitted("opened", MATCH).unfit == ()
+    """... so that the tests below see what they are for: the bank was played on the match table, where balls
+    came to rest in the mouths."""
+    assert (
+        3 < len(fitted("opened", Table.preset("tight")).unfit) < 100 and fitted("opened", MATCH).unfit == ()
+    )
 
 
 @pytest.mark.parametrize("layout", EVERY)
@@ -115,22 +124,76 @@ def test_the_tables_that_did_not_fit_can_be_dealt_in_frames_and_matches_too():
 NOSES = "in Snooker-v0, whose layouts are made for that bed"
 ROOM = "must leave a ball's centre free in |x| <= 0.86275, |y| <= 1.75825 in Snooker-v0, whose layouts put balls there"
 REFUSED = [
-    ("narrower", Table("mine", walls(0.7, 1.7845), **NONE), "'mine'", f"must have its noses at x = -0.889 {NOSES} (found -0.7)"),
-    ("wider", Table("mine", walls(1.067, 1.7845), **NONE), "'mine'", f"must have its noses at x = -0.889 {NOSES} (found -1.067)"),
-    ("longer", Table("mine", walls(0.889, 2.0), **NONE), "'mine'", f"must have its noses at y = -1.7845 {NOSES} (found -2)"),
-    ("shorter", Table("match", walls(0.889, 1.7), **NONE), "'match'", f"must have its noses at y = -1.7845 {NOSES} (found -1.7)"),
-    ("one nose inside", changed(noses=put(3, 2, 0.8)), "'mine'", f"must have its noses at x = 0.889 {NOSES} (found 0.889, 0.8)"),
-    ("three sides", changed(noses=lambda rows: rows[:5]), "'mine'", f"must have its noses at y = 1.7845 {NOSES} (found none)"),
-    ("no noses", Table("unbounded", np.zeros((0, 5)), **NONE), "'unbounded'", f"must have its noses at x = -0.889 {NOSES} (found none)"),
-    ("a jaw on the bed", changed(jaws=put(5, 0, 0.8)), "'mine'", f"{ROOM}: jaws[5], its whole circle, reaches"),
-    ("a peg on the blue spot", changed(jaws=lambda rows: np.vstack([rows, (0, 0, 0.01, 1, 0, -1)])), "'mine'", ROOM),
-    ("a hole on the bed", changed(falls=lambda rows: np.vstack([rows, (0.3, 0.2, 0.05)])), "'mine'", f"{ROOM}: falls[6]"),
+    (
+        "narrower",
+        Table("mine", walls(0.7, 1.7845), **NONE),
+        "'mine'",
+        f"must have its noses at x = -0.889 {NOSES} (found -0.7)",
+    ),
+    (
+        "wider",
+        Table("mine", walls(1.067, 1.7845), **NONE),
+        "'mine'",
+        f"must have its noses at x = -0.889 {NOSES} (found -1.067)",
+    ),
+    (
+        "longer",
+        Table("mine", walls(0.889, 2.0), **NONE),
+        "'mine'",
+        f"must have its noses at y = -1.7845 {NOSES} (found -2)",
+    ),
+    (
+        "shorter",
+        Table("match", walls(0.889, 1.7), **NONE),
+        "'match'",
+        f"must have its noses at y = -1.7845 {NOSES} (found -1.7)",
+    ),
+    (
+        "one nose inside",
+        changed(noses=put(3, 2, 0.8)),
+        "'mine'",
+        f"must have its noses at x = 0.889 {NOSES} (found 0.889, 0.8)",
+    ),
+    (
+        "three sides",
+        changed(noses=lambda rows: rows[:5]),
+        "'mine'",
+        f"must have its noses at y = 1.7845 {NOSES} (found none)",
+    ),
+    (
+        "no noses",
+        Table("unbounded", np.zeros((0, 5)), **NONE),
+        "'unbounded'",
+        f"must have its noses at x = -0.889 {NOSES} (found none)",
+    ),
+    (
+        "a jaw on the bed",
+        changed(jaws=put(5, 0, 0.8)),
+        "'mine'",
+        f"{ROOM}: jaws[5], its whole circle, reaches",
+    ),
+    (
+        "a peg on the blue spot",
+        changed(jaws=lambda rows: np.vstack([rows, (0, 0, 0.01, 1, 0, -1)])),
+        "'mine'",
+        ROOM,
+    ),
+    (
+        "a hole on the bed",
+        changed(falls=lambda rows: np.vstack([rows, (0.3, 0.2, 0.05)])),
+        "'mine'",
+        f"{ROOM}: falls[6]",
+    ),
     ("a middle pocket too far in", changed(falls=put(2, 0, 0.9)), "'mine'", f"{ROOM}: falls[2]"),
-]  # fmt: skip
+]
 
 
-@pytest.mark.parametrize("make", [SnookerEnv, lambda **how: SnookerVectorEnv(2, **how), lambda **how: sn.match_env(**how)])
-@pytest.mark.parametrize(("call", "field", "value", "allowed"), [case(t, "table", v, a, name) for name, t, v, a in REFUSED])
+@pytest.mark.parametrize(
+    "make", [SnookerEnv, lambda **how: SnookerVectorEnv(2, **how), lambda **how: sn.match_env(**how)]
+)
+@pytest.mark.parametrize(
+    ("call", "field", "value", "allowed"), [case(t, "table", v, a, name) for name, t, v, a in REFUSED]
+)
 def test_a_table_that_the_layouts_do_not_fit_is_refused_by_name(make, call, field, value, allowed):
     refused(lambda: make(table=call), field, value, allowed)
 

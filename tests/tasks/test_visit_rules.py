@@ -1,4 +1,5 @@
-"""Is the game of a visit snooker? The highest break, fouls, the end, rewards, and a touching ball, each by shots really played."""
+"""Is the game of a visit snooker? The highest break, fouls, the end, rewards, and a touching ball, each by
+shots really played."""
 
 import math
 
@@ -38,7 +39,8 @@ def racked(**arguments):
 
 
 def test_the_highest_break():
-    """Fifteen reds, each with the black, then the colours: 147 points, a clearance, and every step of it as the rules say."""
+    """Fifteen reds, each with the black, then the colours: 147 points, a clearance, and every step of it as
+    the rules say."""
     env = racked()
     total = 0
     for red in range(1, 16):
@@ -46,14 +48,27 @@ def test_the_highest_break():
         _, reward, terminated, truncated, info = pot(env, red)
         total += 1
         assert (reward, terminated, truncated) == (1.0, False, False)
-        assert (info["points"], info["break"], info["foul"], info["pots"], info["first_ball"]) == (1.0, total, False, 1, red)
+        assert (info["points"], info["break"], info["foul"], info["pots"], info["first_ball"]) == (
+            1.0,
+            total,
+            False,
+            1,
+            red,
+        )
         assert info["ball_on"] == BallOn.RED and env.ball_on == BallOn.ANY_COLOUR
         assert not env.on_table[red] and env.on_table[16:].all() and env.on_table[1:16].sum() == 15 - red
         _, reward, terminated, truncated, info = pot(env, BLACK)
         total += 7
-        assert (reward, terminated, info["points"], info["break"], info["first_ball"]) == (7.0, False, 7.0, total, BLACK)
+        assert (reward, terminated, info["points"], info["break"], info["first_ball"]) == (
+            7.0,
+            False,
+            7.0,
+            total,
+            BLACK,
+        )
         assert info["ball_on"] == BallOn.ANY_COLOUR and info["pots"] == 1
-        assert env.on_table[16:].all() and np.array_equal(env.positions[BLACK], SPOTS[BLACK])  # back on its spot
+        # back on its spot
+        assert env.on_table[16:].all() and np.array_equal(env.positions[BLACK], SPOTS[BLACK])
     for colour in range(YELLOW, BLACK + 1):
         assert env.ball_on == colour - 14
         obs, reward, terminated, truncated, info = pot(env, colour)
@@ -91,7 +106,14 @@ def test_a_miss_ends_the_visit_without_a_foul():
     pot(env, 1)
     table_state(env, {CUE: (0.0, -0.5), 2: (0.0, 0.6), BLACK: (0.6, 1.0)}, BallOn.RED, points=8)
     _, reward, terminated, truncated, info = env.step([-0.8, 0.0, 0.0, 0.5])
-    assert (reward, terminated, truncated, info["foul"], info["penalty"], info["first_ball"]) == (0.0, True, False, False, 0, 2)
+    assert (reward, terminated, truncated, info["foul"], info["penalty"], info["first_ball"]) == (
+        0.0,
+        True,
+        False,
+        False,
+        0,
+        2,
+    )
     assert info["break"] == 8.0 == env.points and info["fouls"] == 0 and env.on_table[[CUE, 2, BLACK]].all()
 
 
@@ -100,7 +122,13 @@ def test_a_wrong_ball_first_is_a_foul_of_its_value(ball, penalty):
     env = SnookerEnv(reward="points_and_fouls")
     table_state(env, {CUE: (0.0, -0.5), 2: (0.6, 0.6), ball: (0.0, 0.3)}, BallOn.RED, points=5)
     _, reward, terminated, _, info = env.step([-0.6, 0.0, 0.0, 0.5])
-    assert (reward, terminated, info["foul"], info["penalty"], info["first_ball"]) == (-penalty, True, True, penalty, ball)
+    assert (reward, terminated, info["foul"], info["penalty"], info["first_ball"]) == (
+        -penalty,
+        True,
+        True,
+        penalty,
+        ball,
+    )
     assert info["fouls"] == Foul.WRONG_FIRST and info["points"] == 0.0 and info["break"] == 5.0
 
 
@@ -108,7 +136,13 @@ def test_no_contact_is_a_foul():
     env = SnookerEnv(reward="points_and_fouls")
     table_state(env, {CUE: (0.0, -0.5), PINK: (0.6, 0.6)}, BallOn.PINK)
     _, reward, terminated, _, info = env.step([-0.9, 0.0, 0.0, 1.0])
-    assert (reward, terminated, info["penalty"], info["first_ball"], info["fouls"]) == (-6.0, True, 6, -1, Foul.NO_CONTACT)
+    assert (reward, terminated, info["penalty"], info["first_ball"], info["fouls"]) == (
+        -6.0,
+        True,
+        6,
+        -1,
+        Foul.NO_CONTACT,
+    )
 
 
 def test_an_in_off_is_a_foul_though_a_red_went_too():
@@ -116,7 +150,14 @@ def test_an_in_off_is_a_foul_though_a_red_went_too():
     env = SnookerEnv(reward="points_and_fouls")
     table_state(env, {CUE: (0.5, 0.0), 1: (0.7, 0.0), 2: (-0.5, 0.5), BLACK: (0.0, 1.0)}, BallOn.RED)
     obs, reward, terminated, _, info = env.step([-0.2, 0.0, 1.0, 0.0])
-    assert (reward, terminated, info["foul"], info["penalty"], info["pots"], info["points"]) == (-4.0, True, True, 4, 1, 0.0)
+    assert (reward, terminated, info["foul"], info["penalty"], info["pots"], info["points"]) == (
+        -4.0,
+        True,
+        True,
+        4,
+        1,
+        0.0,
+    )
     assert info["fouls"] == Foul.CUE_POTTED and not env.on_table[CUE] and not env.on_table[1]
     assert obs[-2] == 1.0 and env.in_hand and np.all(obs[:3] == 0.0)
 
@@ -128,8 +169,17 @@ def test_two_balls_potted():
     env = SnookerEnv(reward="points_and_fouls")
     table_state(env, pair | rest, BallOn.RED)
     _, reward, terminated, _, info = env.step([0.3, 0.0, 0.0, 0.0])
-    assert (reward, terminated, info["points"], info["pots"]) == (2.0, False, 2.0, 2) and env.ball_on == BallOn.ANY_COLOUR
-    table_state(env, {PINK: pair[1], 2: pair[2], CUE: pair[CUE]} | {k: v for k, v in rest.items() if k != PINK}, BallOn.RED)
+    assert (reward, terminated, info["points"], info["pots"]) == (
+        2.0,
+        False,
+        2.0,
+        2,
+    ) and env.ball_on == BallOn.ANY_COLOUR
+    table_state(
+        env,
+        {PINK: pair[1], 2: pair[2], CUE: pair[CUE]} | {k: v for k, v in rest.items() if k != PINK},
+        BallOn.RED,
+    )
     _, reward, terminated, _, info = env.step([-0.4, 0.0, 0.0, 0.0])
     assert info["fouls"] & Foul.WRONG_POT and info["penalty"] == 6 and (reward, terminated) == (-6.0, True)
     assert env.on_table[PINK] and np.array_equal(env.positions[PINK], SPOTS[PINK])
@@ -153,7 +203,8 @@ def test_a_foul_on_the_last_black_ends_it_too():
 
 
 @pytest.mark.parametrize(
-    ("name", "rewards"), [("points", (7, 0, 0)), ("points_and_fouls", (7, 0, -7)), ("pots", (1, 0, 0)), ("legal", (1, 1, 0))]
+    ("name", "rewards"),
+    [("points", (7, 0, 0)), ("points_and_fouls", (7, 0, -7)), ("pots", (1, 0, 0)), ("legal", (1, 1, 0))],
 )
 def test_reward_kinds(name, rewards):
     assert set(REWARDS) == {"points", "points_and_fouls", "pots", "legal"}
@@ -203,7 +254,8 @@ def test_a_gap_that_can_be_seen_is_no_touch():
 @pytest.mark.parametrize("aim", [INTO, 0.2, -0.3, 0.48])
 @pytest.mark.parametrize("gap", [0.0, 1e-12, -5e-7, 5e-7, 1e-5, 4e-5, 49.9e-6])
 def test_playing_into_a_touching_ball_is_a_push(aim, gap, speed):
-    """However small the gap that the referee does not see, however thin the contact and however slow the stroke."""
+    """However small the gap that the referee does not see, however thin the contact and however slow the
+    stroke."""
     env = touching(gap)
     before = env.positions[1].copy()
     _, reward, terminated, _, info = env.step([speed, 0.0, 0.0, aim])
@@ -225,9 +277,14 @@ def test_a_touching_ball_that_is_not_on_does_not_count():
 
 
 def test_of_several_touching_balls_each_that_is_played_into_is_pushed():
-    """Between the red and the black, into both; their gaps differ, so that the cue ball meets one after the other."""
+    """Between the red and the black, into both; their gaps differ, so that the cue ball meets one after the
+    other."""
     for gap_red, gap_black in [(0.0, 0.0), (1e-6, 4e-5), (4e-5, 1e-6)]:
-        env = touching(gap_red, 1, {BLACK: (0.4 * (2 * R + gap_black), 0.3 + 0.84**0.5 * (2 * R + gap_black)), BLUE: (-0.4, 1.2)})
+        env = touching(
+            gap_red,
+            1,
+            {BLACK: (0.4 * (2 * R + gap_black), 0.3 + 0.84**0.5 * (2 * R + gap_black)), BLUE: (-0.4, 1.2)},
+        )
         info = env.step([-0.6, 0.0, 0.0, 0.18])[4]
         assert info["fouls"] & Foul.PUSH and info["penalty"] == 7
     env = touching(4e-5, 1, {BLACK: (-0.6 * (2 * R + 4e-5), 0.3 + 0.8 * (2 * R + 4e-5))})
@@ -239,7 +296,15 @@ def test_a_touching_ball_met_again_off_a_cushion_is_no_push():
     """Played away from the red straight onto the near cushion, from which the cue ball returns onto it."""
     for gap in (0.0, 4e-5):
         env = SnookerEnv(reward="points_and_fouls")
-        table_state(env, {CUE: (-HALF_WIDTH + R + 0.2, 0.3), 1: (-HALF_WIDTH + R + 0.2 + 2 * R + gap, 0.3), BLUE: (0.4, 1.2)}, BallOn.RED)
+        table_state(
+            env,
+            {
+                CUE: (-HALF_WIDTH + R + 0.2, 0.3),
+                1: (-HALF_WIDTH + R + 0.2 + 2 * R + gap, 0.3),
+                BLUE: (0.4, 1.2),
+            },
+            BallOn.RED,
+        )
         info = env.step([-0.5, 0.0, 0.0, AWAY])[4]
         assert info["fouls"] == 0 and info["first_ball"] == 1
 

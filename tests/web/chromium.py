@@ -1,4 +1,5 @@
-"""How do the tests get a browser? Debian's Chromium, headless, driven by playwright; without either, its tests are skipped and say so."""
+"""How do the tests get a browser? Debian's Chromium, headless, driven by playwright; without either, its
+tests are skipped and say so."""
 
 import shutil
 
@@ -7,9 +8,14 @@ import pytest
 from snooker_env.web import table_js
 
 FLAGS = [
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
     "--disable-sync",
-]  # fmt: skip
+]
 
 
 @pytest.fixture(scope="module")

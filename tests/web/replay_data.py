@@ -1,4 +1,5 @@
-"""Which shots and replays do the tests of the browser show? Struck here, and written down by ``snooker_env.replays``."""
+"""Which shots and replays do the tests of the browser show? Struck here, and written down by
+``snooker_env.replays``."""
 
 import base64
 
@@ -27,7 +28,8 @@ def break_off():
 
 
 def visit():
-    """The data of a replay of three strokes by two players; after the second the black is respotted and the cue ball placed."""
+    """The data of a replay of three strokes by two players; after the second the black is respotted and the
+    cue ball placed."""
     shots = [break_off()]
     for aim in (2.0, -1.0):
         shots.append(hit(shots[-1].positions, shots[-1].on_table, 3.0, aim, 0.2, -0.3, 0.1))
@@ -37,12 +39,26 @@ def visit():
     rows = [(0, 1, [2], "red", [1, 0], 1), (0, 7, [21], "black", [8, 0], 8), (1, 0, [], "red", [8, 0], 0)]
     for k, (player, points, pots, on_words, score, run) in enumerate(rows):
         data["strokes"][k] |= {
-            "player": player, "points": points, "pots": pots, "ball_on": on_words, "score": score, "break": run,
+            "player": player,
+            "points": points,
+            "pots": pots,
+            "ball_on": on_words,
+            "score": score,
+            "break": run,
             "words": f"The referee's words after stroke {k + 1}.",
-            "cue": {"speed": 8.0 if k == 0 else 3.0, "side": 0.2, "top": -0.3, "aim": (1.67, 2.0, -1.0)[k], "elevation": 0.2},
-        }  # fmt: skip
+            "cue": {
+                "speed": 8.0 if k == 0 else 3.0,
+                "side": 0.2,
+                "top": -0.3,
+                "aim": (1.67, 2.0, -1.0)[k],
+                "elevation": 0.2,
+            },
+        }
     data["strokes"][1]["after"] = {"places": packed(places, "f8"), "on_table": np.flatnonzero(on).tolist()}
-    data["players"] = ["Ada <b>Lovelace</b>", "Someone with a name that is much too long for its place in the bar"]
+    data["players"] = [
+        "Ada <b>Lovelace</b>",
+        "Someone with a name that is much too long for its place in the bar",
+    ]
     return data, shots, places
 
 

@@ -1,4 +1,5 @@
-"""Does a replay's page play? Opened from disk in a real headless Chromium: by its clock, its bar, its keys and buttons, at all sizes."""
+"""Does a replay's page play? Opened from disk in a real headless Chromium: by its clock, its bar, its keys
+and buttons, at all sizes."""
 
 import time
 
@@ -35,7 +36,9 @@ class Watched:
     """A page of a replay, and what went wrong in it."""
 
     def __init__(self, browser, file, **options):
-        self.page = browser.new_page(**{"viewport": {"width": 1280, "height": 720}, "reduced_motion": "reduce", **options})
+        self.page = browser.new_page(
+            **{"viewport": {"width": 1280, "height": 720}, "reduced_motion": "reduce", **options}
+        )
         self.errors, self.asked = [], []
         self.page.on("console", lambda message: self.errors.append(message.text))
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
@@ -102,7 +105,9 @@ def test_it_plays_by_itself_and_ends_where_the_simulation_ends(open_page, shown)
 def test_it_goes_on_from_stroke_to_stroke_by_the_placed_balls(open_page, shown):
     _, shots, places, _ = shown
     p = open_page()
-    p("(p.seen = [], p.options.onstroke = k => p.seen.push(k), p.options.ontime = (t, k) => { p.last = [t, k]; })")
+    p(
+        "(p.seen = [], p.options.onstroke = k => p.seen.push(k), p.options.ontime = (t, k) => { p.last = [t, k]; })"
+    )
     p("p.seek(1, Infinity)")
     assert p("p.time") > shots[1].duration  # the pause between strokes
     assert np.array_equal(p("p.positions()"), places) and p("p.shown.on[21]") == 1
@@ -215,7 +220,11 @@ def test_keys(open_page, shown):
 def test_buttons_and_the_table(open_page):
     p = open_page()
     p("p.seek(0, 0)")
-    for label, after in (("next event", "p.time > 0"), ("next stroke", "p.stroke === 1"), ("previous stroke", "p.stroke === 0")):
+    for label, after in (
+        ("next event", "p.time > 0"),
+        ("next stroke", "p.stroke === 1"),
+        ("previous stroke", "p.stroke === 0"),
+    ):
         p.page.get_by_label(label, exact=True).click()
         assert p(after), label
     p.page.get_by_label("faster").click()
@@ -246,21 +255,32 @@ def test_the_score_bar_says_what_the_referee_says(open_page, shown):
     p = open_page()
 
     def bar():
-        return [p.page.locator(".sn-who b").nth(k).inner_text() for k in (0, 1)], " ".join(p.page.locator(".sn-now").inner_text().split())
+        return [p.page.locator(".sn-who b").nth(k).inner_text() for k in (0, 1)], " ".join(
+            p.page.locator(".sn-now").inner_text().split()
+        )
 
     p("p.seek(0, 1)")
     scores, now = bar()
     assert scores == ["0", "0"] and "break 0" in now and "on red" in now
     p("p.seek(1, 0)")
     scores, now = bar()
-    assert scores == ["1", "0"] and "break 1" in now and p.page.locator(".sn-now span").first.locator("i").count() == 1
+    assert (
+        scores == ["1", "0"]
+        and "break 1" in now
+        and p.page.locator(".sn-now span").first.locator("i").count() == 1
+    )
     p("p.seek(1, p.strokes[1].duration)")
     scores, now = bar()
-    assert scores == ["8", "0"] and "break 8" in now and p.page.locator(".sn-now span").first.locator("i").count() == 2
+    assert (
+        scores == ["8", "0"]
+        and "break 8" in now
+        and p.page.locator(".sn-now span").first.locator("i").count() == 2
+    )
     assert p.page.locator(".sn-words").inner_text() == data["strokes"][1]["words"]
     p("p.seek(2, 0)")
     assert "break 0" in bar()[1] and "sn-turn" in p.page.locator(".sn-who").nth(1).get_attribute("class")
-    assert p.page.locator(".sn-who span").first.inner_text() == "Ada <b>Lovelace</b>"  # words are words, not HTML
+    # words are words, not HTML
+    assert p.page.locator(".sn-who span").first.inner_text() == "Ada <b>Lovelace</b>"
     assert "3.00 m/s" in p.page.locator(".sn-about").inner_text()
 
 
@@ -288,7 +308,8 @@ def test_nothing_is_on_once_a_visit_is_over(open_page):
     def on():
         return p.page.locator(".sn-now span").last.inner_text().strip()
 
-    for stroke, after in ((0, "on black"), (1, ""), (2, "")):  # the first goes on, the second's player does not, the third is the last
+    # the first goes on, the second's player does not, the third is the last
+    for stroke, after in ((0, "on black"), (1, ""), (2, "")):
         p("p.seek(argument, p.strokes[argument].duration - 0.1)", stroke)
         assert " ".join(on().split()) == ("on black" if stroke == 1 else "on red")
         p("p.seek(argument, p.strokes[argument].duration)", stroke)
@@ -302,7 +323,9 @@ def test_nothing_overlaps_or_overflows_at_any_size(open_page):
         p.until("p.canvas.width === argument", width)
         for moment in ("p.seek(1, 0.5)", "p.seek(1, p.strokes[1].duration)", "(p.seek(0, 0), p.step(1))"):
             p(moment)
-            assert p("document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight"), (
+            assert p(
+                "document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight"
+            ), (
                 width,
                 height,
             )

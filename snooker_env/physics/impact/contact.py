@@ -1,7 +1,8 @@
-"""How does one impact change the balls? Ball against ball and ball against cushion, in the table frame, at any fidelity.
+"""How does one impact change the balls? Ball against ball and ball against cushion, in the table frame, at
+any fidelity.
 
-Table frame: z up, metres, seconds; v = (vx, vy, vz) and w = (wx, wy, wz) are tuples. Bodies that do not approach each other are returned
-unchanged.
+Table frame: z up, metres, seconds; v = (vx, vy, vz) and w = (wx, wy, wz) are tuples. Bodies that do not
+approach each other are returned unchanged.
 """
 
 from math import hypot, sqrt
@@ -9,7 +10,18 @@ from math import hypot, sqrt
 from ..._check import refuse
 from ..._jit import inlined, kernel
 from ..._types import Fidelity, Solver
-from ..parameters import P_E_C, P_E_KNEE, P_E_POWER, P_MU_BB_EXTRA, P_MU_BB_FADE, P_MU_BB_LEAST, P_MU_C, P_MU_S, P_R, P_SIN
+from ..parameters import (
+    P_E_C,
+    P_E_KNEE,
+    P_E_POWER,
+    P_MU_BB_EXTRA,
+    P_MU_BB_FADE,
+    P_MU_BB_LEAST,
+    P_MU_C,
+    P_MU_S,
+    P_R,
+    P_SIN,
+)
 from . import euler, inertia
 from .coulomb import Friction, Problem, friction_coefficient
 from .impulse import OK, Accuracy, solve
@@ -20,17 +32,19 @@ _CODES = {"fast": FAST, "standard": STANDARD, "reference": REFERENCE}
 FIDELITIES = (*_CODES, "euler:N")
 MAX_EULER_STEPS = 10_000_000
 
-# Errors measured against the oracle of the tests, over the larger incoming speed: reference below 1e-9; standard below 1e-6 in 99 % of
-# impacts and below 1e-5 in all. At a cushion the errors differ less from impact to impact: with the constants of play a larger tolerance
-# keeps the same promise.
+# Errors measured against the oracle of the tests, over the larger incoming speed: reference below 1e-9;
+# standard below 1e-6 in 99 % of impacts and below 1e-5 in all. At a cushion the errors differ less from
+# impact to impact: with the constants of play a larger tolerance keeps the same promise.
 _REFERENCE = Accuracy(tol=1e-13, delta=1e-13, creep=1e-5, order=20)
 _STANDARD = Accuracy(tol=5e-8, delta=1e-7, creep=1e-3, order=12)
 _STANDARD_CUSHION = _STANDARD._replace(tol=1.5e-7)
-# Without the cloth's reaction the error at a cushion would be 7 % of the speed, so "fast" includes it, and solves to a few per mille.
+# Without the cloth's reaction the error at a cushion would be 7 % of the speed, so "fast" includes it, and
+# solves to a few per mille.
 _LOOSE = Accuracy(tol=1e-4, delta=1e-5, creep=1e-2, order=8)
 
 _NO_CLOSING = 1e-60
-"""A closing speed below this counts as zero [m/s], because the scaled slips would overflow. It has no physical effect."""
+"""A closing speed below this counts as zero [m/s], because the scaled slips would overflow. It has no
+physical effect."""
 
 
 def parse_fidelity(fidelity: Fidelity) -> Solver:
@@ -71,10 +85,12 @@ def parse_fidelity(fidelity: Fidelity) -> Solver:
 
 @kernel
 def cushion_restitution(speed, phys):
-    """Restitution at a cushion: e(v) = e_c up to the knee, e_c (v / knee)^(-power) above. v: horizontal speed into the cushion [m/s].
+    """Restitution at a cushion: e(v) = e_c up to the knee, e_c (v / knee)^(-power) above. v: horizontal speed
+    into the cushion [m/s].
 
-    With power < 1, v e(v) rises. Source of the form: an impact that loses energy by yielding has e ~ v^(-1/4) (Johnson, Contact Mechanics,
-    1985, 11.5); power and knee are fitted (``Physics.preset``). The law depends on the normal speed alone, not on the spin.
+    With power < 1, v e(v) rises. Source of the form: an impact that loses energy by yielding has e ~ v^(-1/4)
+    (Johnson, Contact Mechanics, 1985, 11.5); power and knee are fitted (``Physics.preset``). The law depends
+    on the normal speed alone, not on the spin.
     """
     if phys[P_E_POWER] > 0.0 and speed > phys[P_E_KNEE]:
         return phys[P_E_C] * (speed / phys[P_E_KNEE]) ** -phys[P_E_POWER]
@@ -83,7 +99,8 @@ def cushion_restitution(speed, phys):
 
 @kernel
 def _to_frame(a, nx, ny):
-    """A vector of the table frame in the frame of the contact, (tangent, normal, up): X = Y x Z = (ny, -nx)."""
+    """A vector of the table frame in the frame of the contact, (tangent, normal, up): X = Y x Z = (ny,
+    -nx)."""
     return a[0] * ny - a[1] * nx, a[0] * nx + a[1] * ny, a[2]
 
 
@@ -95,12 +112,14 @@ def _to_table(a, nx, ny):
 
 @kernel
 def _friction_impulse_free(xa, za, ya, friction, e):
-    """Impulses between two free spheres, per unit mass [m/s]: friction (opposite to the first slip, at most what ends it), and normal."""
+    """Impulses between two free spheres, per unit mass [m/s]: friction (opposite to the first slip, at most
+    what ends it), and normal."""
     pn = 0.5 * (1.0 + e) * ya
     s = hypot(xa, za)
     if s == 0.0:
         return 0.0, 0.0, pn
-    pt = min(friction_coefficient(s, friction) * pn, s / inertia.BALLS.k1)  # for free spheres the same in both tangential directions
+    # for free spheres the same in both tangential directions
+    pt = min(friction_coefficient(s, friction) * pn, s / inertia.BALLS.k1)
     return -pt * xa / s, -pt * za / s, pn
 
 
@@ -122,11 +141,13 @@ def _balls_in_frame(vc, wc, vo, wo, law, e, series):
         wc, wo = (wc[0] + q * f2, wc[1], wc[2] - q * f1), (wo[0] + q * f2, wo[1], wo[2] - q * f1)
         return vc, wc, vo, wo, True
     accuracy = _REFERENCE if fidelity == REFERENCE else _STANDARD
-    if hypot(xa, za) <= accuracy.delta * ya:  # no slip, and nothing between two balls starts one: there is only the normal impulse
+    # no slip, and nothing between two balls starts one: there is only the normal impulse
+    if hypot(xa, za) <= accuracy.delta * ya:
         p = 0.5 * (1.0 + e) * ya
         return (vc[0], vc[1] - p, vc[2]), wc, (vo[0], vo[1] + p, vo[2]), wo, True
-    # za < 0: friction presses O into the cloth. za > 0: it presses C. This is the same problem seen from the other side (half a turn about
-    # Z, names swapped): x and y of all vectors change sign and so does za, while xa stays.
+    # za < 0: friction presses O into the cloth. za > 0: it presses C. This is the same problem seen from the
+    # other side (half a turn about Z, names swapped): x and y of all vectors change sign and so does za,
+    # while xa stays.
     swapped = za > 0.0
     sign = -1.0 if swapped else 1.0
     vp, wp = (vc, wc) if swapped else (vo, wo)  # the pressed ball
@@ -135,9 +156,13 @@ def _balls_in_frame(vc, wc, vo, wo, law, e, series):
     scaled = Friction(friction.least, friction.extra, friction.fade * ya)
     x, status = solve(Problem(inertia.BALLS, start, scaled, phys[P_MU_S], e), accuracy, series)
     f1, f2, g1, g2, p = x.F1 * ya, x.F2 * ya, x.G1 * ya, x.G2 * ya, x.p * ya
-    # lifted ball: (f1, -p, f2) and spin q (f2, 0, -f1); pressed: (-f1 + g1, p + g2, 0) and spin q (f2 + g2, -g1, -f1)
+    # lifted ball: (f1, -p, f2) and spin q (f2, 0, -f1); pressed: (-f1 + g1, p + g2, 0) and spin q (f2 + g2,
+    # -g1, -f1)
     lift_v, lift_w = (sign * f1, -sign * p, f2), (sign * q * f2, 0.0, -q * f1)
-    press_v, press_w = (sign * (g1 - f1), sign * (p + g2), 0.0), (sign * q * (f2 + g2), -sign * q * g1, -q * f1)
+    press_v, press_w = (
+        (sign * (g1 - f1), sign * (p + g2), 0.0),
+        (sign * q * (f2 + g2), -sign * q * g1, -q * f1),
+    )
     if swapped:
         return _add(vc, press_v), _add(wc, press_w), _add(vo, lift_v), _add(wo, lift_w), status == OK
     return _add(vc, lift_v), _add(wc, lift_w), _add(vo, press_v), _add(wo, press_w), status == OK
@@ -152,24 +177,32 @@ def _add(a, b):
 def collide_balls(v1, w1, v2, w2, normal, law, e, series):
     """Impact of two equal balls -> v1, w1, v2, w2 [m/s, rad/s] and whether it was solved. [MJP14] 2.1 to 2.4.
 
-    normal: unit vector (nx, ny) from ball 1 to ball 2; ``law``: a ``Law``; ``e``: the restitution; ``series``: work space,
-    ``polynomial.WORK`` numbers. The vertical velocity of the lifted ball is part of the result.
+    normal: unit vector (nx, ny) from ball 1 to ball 2; ``law``: a ``Law``; ``e``: the restitution;
+    ``series``: work space, ``polynomial.WORK`` numbers. The vertical velocity of the lifted ball is part of
+    the result.
     """
     nx, ny = normal
     if not (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny > _NO_CLOSING:
         return v1, w1, v2, w2, True
     vc, wc, vo, wo, solved = _balls_in_frame(
-        _to_frame(v1, nx, ny), _to_frame(w1, nx, ny), _to_frame(v2, nx, ny), _to_frame(w2, nx, ny), law, e, series
+        _to_frame(v1, nx, ny),
+        _to_frame(w1, nx, ny),
+        _to_frame(v2, nx, ny),
+        _to_frame(w2, nx, ny),
+        law,
+        e,
+        series,
     )
     return _to_table(vc, nx, ny), _to_table(wc, nx, ny), _to_table(vo, nx, ny), _to_table(wo, nx, ny), solved
 
 
 @kernel(seconds=1, uses=(solve,))
 def collide_cushion(v, w, normal, law, e, series):
-    """Impact of a ball with a nose -> v [m/s], w [rad/s] and whether it was solved. [MJP10], with Coulomb's law at zero slip.
+    """Impact of a ball with a nose -> v [m/s], w [rad/s] and whether it was solved. [MJP10], with Coulomb's
+    law at zero slip.
 
-    normal: unit vector (nx, ny) INTO the cushion; the others as in ``collide_balls``. "fast" integrates with a loose tolerance: no closed
-    form includes the cloth's reaction, which matters here.
+    normal: unit vector (nx, ny) INTO the cushion; the others as in ``collide_balls``. "fast" integrates with
+    a loose tolerance: no closed form includes the cloth's reaction, which matters here.
     """
     (nx, ny), phys, fidelity = normal, law.phys, law.fidelity
     sin_t = phys[P_SIN]
@@ -184,12 +217,24 @@ def collide_cushion(v, w, normal, law, e, series):
         v, w, solved = euler.cushion((vx, vy, vz), (wx, wy, wz), phys, e, law.n_steps)
         return _to_table(v, nx, ny), _to_table(w, nx, ny), solved
     start = Slips(
-        (vx + R * (wy * sin_t - wz * cos_t)) / closing, (-vy * sin_t + vz * cos_t + R * wx) / closing,
-        (vx - R * wy) / closing, (vy + R * wx) / closing, 1.0,
-    )  # fmt: skip
+        (vx + R * (wy * sin_t - wz * cos_t)) / closing,
+        (-vy * sin_t + vz * cos_t + R * wx) / closing,
+        (vx - R * wy) / closing,
+        (vy + R * wx) / closing,
+        1.0,
+    )
     accuracy = _REFERENCE if fidelity == REFERENCE else _STANDARD_CUSHION if fidelity == STANDARD else _LOOSE
-    x, status = solve(Problem(inertia.cushion(sin_t, cos_t), start, Friction(mu_c, 0.0, 0.0), mu_s, e), accuracy, series)
-    f1, f2, g1, g2, p, lift = x.F1 * closing, x.F2 * closing, x.G1 * closing, x.G2 * closing, x.p * closing, x.Z * closing
+    x, status = solve(
+        Problem(inertia.cushion(sin_t, cos_t), start, Friction(mu_c, 0.0, 0.0), mu_s, e), accuracy, series
+    )
+    f1, f2, g1, g2, p, lift = (
+        x.F1 * closing,
+        x.F2 * closing,
+        x.G1 * closing,
+        x.G2 * closing,
+        x.p * closing,
+        x.Z * closing,
+    )
     q = 2.5 / R
     v = (vx + f1 + g1, vy - cos_t * p - sin_t * f2 + g2, vz + lift)
     w = (wx + q * (f2 + g2), wy + q * (sin_t * f1 - g1), wz - q * cos_t * f1)

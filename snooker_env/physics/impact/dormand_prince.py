@@ -1,7 +1,8 @@
-"""How is a step taken when the contacts do not both slip? By the explicit Runge-Kutta pair 5(4) of Dormand & Prince, on all seven impulses.
+"""How is a step taken when the contacts do not both slip? By the explicit Runge-Kutta pair 5(4) of Dormand &
+Prince, on all seven impulses.
 
-Coefficients: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.5 and II.6. The stages are in one loop, so that the
-function of the rates is compiled once.
+Coefficients: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.5 and II.6. The stages
+are in one loop, so that the function of the rates is compiled once.
 """
 
 import numpy as np
@@ -29,15 +30,21 @@ _A = np.array(
 _ERROR = np.array((71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40))
 _EXTENSION = np.array(
     (
-        -12715105075 / 11282082432, 0.0, 87487479700 / 32700410799, -10690763975 / 1880347072, 701980252875 / 199316789632,
-        -1453857185 / 822651844, 69997945 / 29380423,
+        -12715105075 / 11282082432,
+        0.0,
+        87487479700 / 32700410799,
+        -10690763975 / 1880347072,
+        701980252875 / 199316789632,
+        -1453857185 / 822651844,
+        69997945 / 29380423,
     )
-)  # fmt: skip
+)
 
 
 @kernel
 def step(series, x, h, per, mode, near, cloth, problem):
-    """One step of length h from x, where the rates are ``per`` -> the state after it, the rates there, and the step's error at equal p."""
+    """One step of length h from x, where the rates are ``per`` -> the state after it, the rates there, and
+    the step's error at equal p."""
     _store(series, 0, per)
     end, per_end = x, per
     for i in range(6):
@@ -51,7 +58,9 @@ def step(series, x, h, per, mode, near, cloth, problem):
         off = _add(off, h * _ERROR[j], _stage(series, j))
     # An error in p(t) alone has no effect; what counts is the error of each number as a function of p.
     off = _add(off, -off.p / per_end.p, per_end)
-    worst = max(max(max(abs(off.F1), abs(off.F2)), max(abs(off.G1), abs(off.G2))), max(abs(off.W), abs(off.Z)))
+    worst = max(
+        max(max(abs(off.F1), abs(off.F2)), max(abs(off.G1), abs(off.G2))), max(abs(off.W), abs(off.Z))
+    )
     return end, per_end, worst
 
 
@@ -64,19 +73,28 @@ def _store(series, i, per):
 @kernel
 def _stage(series, i):
     m = _STAGES + 7 * i
-    return Impulses(series[m], series[m + 1], series[m + 2], series[m + 3], series[m + 4], series[m + 5], series[m + 6])
+    return Impulses(
+        series[m], series[m + 1], series[m + 2], series[m + 3], series[m + 4], series[m + 5], series[m + 6]
+    )
 
 
 @kernel
 def _add(x, h, per):
     return Impulses(
-        x.F1 + h * per.F1, x.F2 + h * per.F2, x.G1 + h * per.G1, x.G2 + h * per.G2, x.p + h * per.p, x.W + h * per.W, x.Z + h * per.Z,
-    )  # fmt: skip
+        x.F1 + h * per.F1,
+        x.F2 + h * per.F2,
+        x.G1 + h * per.G1,
+        x.G2 + h * per.G2,
+        x.p + h * per.p,
+        x.W + h * per.W,
+        x.Z + h * per.Z,
+    )
 
 
 @kernel
 def leave_polynomial(series, x, end, h, contact):
-    """Write the continuous extension of the last step, of order 4, as a polynomial in the fraction of the step (ibid., II.6)."""
+    """Write the continuous extension of the last step, of order 4, as a polynomial in the fraction of the
+    step (ibid., II.6)."""
     for q in range(7):
         r1 = end[q] - x[q]
         r2 = h * series[_STAGES + q] - r1
@@ -86,7 +104,12 @@ def leave_polynomial(series, x, end, h, contact):
             r4 += h * _EXTENSION[j] * series[_STAGES + 7 * j + q]
         # x + t (r1 + (1 - t) (r2 + t (r3 + (1 - t) r4))), by powers of t
         series[q] = x[q]
-        series[ROW + q], series[2 * ROW + q], series[3 * ROW + q], series[4 * ROW + q] = r1 + r2, r3 + r4 - r2, -r3 - 2.0 * r4, r4
+        series[ROW + q], series[2 * ROW + q], series[3 * ROW + q], series[4 * ROW + q] = (
+            r1 + r2,
+            r3 + r4 - r2,
+            -r3 - 2.0 * r4,
+            r4,
+        )
     for k in range(DEGREE + 1):  # the closing speed follows linearly
         m = ROW * k
         closing = contact.d_n * series[m + P] - contact.d_a * series[m + F2] - contact.d_b * series[m + G2]

@@ -1,8 +1,10 @@
-"""How is an impact with friction solved? Coulomb's law at two coupled contacts, integrated over the normal impulse; changes are located.
+"""How is an impact with friction solved? Coulomb's law at two coupled contacts, integrated over the normal
+impulse; changes are located.
 
-Ball against ball [MJP14] and ball against cushion [MJP10] are the same problem with other constants. At A the bodies touch, with slip
-a = (a1, a2) and friction impulse F = (F1, F2). Under the ball that is pressed into the cloth the slip is b = (b1, b2) and the friction
-impulse G = (G1, G2). With p the normal impulse per unit mass, W its work and Z the vertical velocity of a ball that has left the cloth::
+Ball against ball [MJP14] and ball against cushion [MJP10] are the same problem with other constants. At A the
+bodies touch, with slip a = (a1, a2) and friction impulse F = (F1, F2). Under the ball that is pressed into
+the cloth the slip is b = (b1, b2) and the friction impulse G = (G1, G2). With p the normal impulse per unit
+mass, W its work and Z the vertical velocity of a ball that has left the cloth::
 
     a1      = a1_0              + k1 F1 + c1 G1                 All slips are linear in F, G, p and Z (``inertia.py``, where
     a2      = a2_0      + d_a p + k2 F2 + c2 G2 + l_a Z         the constants are derived), so F, G, p, W and Z are the
@@ -11,16 +13,17 @@ impulse G = (G1, G2). With p the normal impulse per unit mass, W its work and Z 
     closing = closing_0 + d_n p - d_a F2 - d_b G2 + l_n Z       W' = closing
     N'      = n_p + n_f F2'  while that is positive and the ball is down (Z = 0); else N' = 0 and Z' = -(n_p + n_f F2'): it lifts
 
-Coulomb: F' = -mu(|a|) a/|a| and G' = -mu_s N' b/|b|, where a prime is d/dp. Where a slip is zero, friction holds it at zero if it can; if
-not, the slip starts in the direction of the driving forces (``coulomb.py``). Compression ends at closing speed 0 with W = W_c, the
-impact at W = (1 - e^2) W_c (``ends.py``).
+Coulomb: F' = -mu(|a|) a/|a| and G' = -mu_s N' b/|b|, where a prime is d/dp. Where a slip is zero, friction
+holds it at zero if it can; if not, the slip starts in the direction of the driving forces (``coulomb.py``).
+Compression ends at closing speed 0 with W = W_c, the impact at W = (1 - e^2) W_c (``ends.py``).
 
-Method. While A slips, the variable is t with dp = |a| dt. Then F' = -mu a is regular, and the end of a slip, where its direction turns
-like a power of |a|, is approached exponentially and is no singularity. While both contacts slip, the solution is analytic in t, and a
-Taylor series covers most of an impact or all of it (``taylor.py``). The other cases are rare in play: a contact that sticks or creeps, a
-ball that lifts, a cloth that may hold the ball. They are integrated by Runge-Kutta steps (``dormand_prince.py``). Either method writes a
-polynomial of its step, in which the ends are located. ``transitions.py`` has the next states of the contacts. All speeds are divided by
-the closing speed before the impact, so tolerances are relative.
+Method. While A slips, the variable is t with dp = |a| dt. Then F' = -mu a is regular, and the end of a slip,
+where its direction turns like a power of |a|, is approached exponentially and is no singularity. While both
+contacts slip, the solution is analytic in t, and a Taylor series covers most of an impact or all of it
+(``taylor.py``). The other cases are rare in play: a contact that sticks or creeps, a ball that lifts, a cloth
+that may hold the ball. They are integrated by Runge-Kutta steps (``dormand_prince.py``). Either method writes
+a polynomial of its step, in which the ends are located. ``transitions.py`` has the next states of the
+contacts. All speeds are divided by the closing speed before the impact, so tolerances are relative.
 """
 
 from math import hypot, sqrt
@@ -28,7 +31,19 @@ from typing import NamedTuple
 
 from ..._jit import inlined, kernel
 from . import dormand_prince, taylor
-from .coulomb import CREEP, GRIPS, SLIDES, SLIP, STARTS, STICK, friction_coefficient, grip_holds, held, rates, wedged
+from .coulomb import (
+    CREEP,
+    GRIPS,
+    SLIDES,
+    SLIP,
+    STARTS,
+    STICK,
+    friction_coefficient,
+    grip_holds,
+    held,
+    rates,
+    wedged,
+)
 from .ends import Target, ends_inside, locate_end, turns_at
 from .inertia import K_CLOTH, Impulses, slips_after
 from .polynomial import state_at
@@ -36,60 +51,72 @@ from .transitions import STANDS, Moment, Step, Tolerances, cloth_after, mode_aft
 
 OK, TOO_MANY_STEPS = 0, 1
 
-# "Doubled" and "halved" below: the effect of doubling or halving this number alone on 6,000 impacts, two balls and cushion. Half of them
-# are impacts of play, half are harsh (friction, restitution and the nose's height anywhere in their ranges). Measured: the number of steps
-# (play: 2 to 11 an impact; harsh: 20 to 350), the largest deviation from ``reference``, and the impacts that fail. A few harsh ones at
-# ``reference`` are ill-conditioned: they change by up to 1e-5 whatever is changed. "No effect": less than 2 % of the steps and no error.
+# "Doubled" and "halved" below: the effect of doubling or halving this number alone on 6,000 impacts, two
+# balls and cushion. Half of them are impacts of play, half are harsh (friction, restitution and the nose's
+# height anywhere in their ranges). Measured: the number of steps (play: 2 to 11 an impact; harsh: 20 to 350),
+# the largest deviation from ``reference``, and the impacts that fail. A few harsh ones at ``reference`` are
+# ill-conditioned: they change by up to 1e-5 whatever is changed. "No effect": less than 2 % of the steps and
+# no error.
 
 _MAX_STEPS = 20_000
 """The most steps; then the impact is unsolved. No effect: none of them came near it."""
 _KNIFE_EDGE = 1_000
-"""After so many steps friction and driving force are taken to balance almost exactly: the slip stays small and stiff, and is integrated in
-its limiting direction. Doubled: 15 % more steps in harsh cushion impacts. Halved: one of them fails at ``reference``."""
+"""After so many steps friction and driving force are taken to balance almost exactly: the slip stays small
+and stiff, and is integrated in its limiting direction. Doubled: 15 % more steps in harsh cushion impacts.
+Halved: one of them fails at ``reference``."""
 _STIFF, _STIFF_CREEP = 1e-4, 10.0
-"""The cloth slip that then is zero, and the limit of creep over that. Doubled or halved: some harsh cushion impacts change by 4e-5."""
+"""The cloth slip that then is zero, and the limit of creep over that. Doubled or halved: some harsh cushion
+impacts change by 4e-5."""
 _JAMMED, _STOPPED = 5_000, 1e-2
-"""After so many steps an impact with a closing speed below this is at its end: friction balances the elastic force almost exactly, and the
-slow motion across the nose has no end. Half the steps: one harsh cushion impact ends 8e-3 off. Otherwise no effect."""
+"""After so many steps an impact with a closing speed below this is at its end: friction balances the elastic
+force almost exactly, and the slow motion across the nose has no end. Half the steps: one harsh cushion impact
+ends 8e-3 off. Otherwise no effect."""
 _NEAR = 10.0
-"""A cloth slip below this many delta is zero. This is more than the shortest step covers, so that a slip that friction stops is detected.
-Halved: 5 % more steps at ``fast`` in harsh cushion impacts. Doubled: no effect."""
+"""A cloth slip below this many delta is zero. This is more than the shortest step covers, so that a slip that
+friction stops is detected. Halved: 5 % more steps at ``fast`` in harsh cushion impacts. Doubled: no
+effect."""
 _SERIES = 40.0
-"""Limit of a series' last terms, over tol; their sum is far above the error of the step. Doubled: 3 % fewer steps, twice the error (8e-7
-for two balls at ``standard``). Halved: 3 % more steps, half the error."""
+"""Limit of a series' last terms, over tol; their sum is far above the error of the step. Doubled: 3 % fewer
+steps, twice the error (8e-7 for two balls at ``standard``). Halved: 3 % more steps, half the error."""
 _OVERSHOOT = 1.05
-"""The estimate of the impact's normal impulse, over that of an impact without friction. Halved: two to five times the steps, because the
-first step cannot reach the end. Doubled: no effect."""
+"""The estimate of the impact's normal impulse, over that of an impact without friction. Halved: two to five
+times the steps, because the first step cannot reach the end. Doubled: no effect."""
 _LEAST_LEFT = 0.1
 """The remaining impulse is taken to be at least this part of that estimate. No effect."""
 _FIRST = 0.4
-"""The first Runge-Kutta step of a slip over the longest stable one. No effect: the error control corrects it."""
+"""The first Runge-Kutta step of a slip over the longest stable one. No effect: the error control corrects
+it."""
 _NO_FRICTION = 1e-9
 """Keeps the longest step finite where there is no friction at A. No effect."""
 _SAFETY, _ERROR_POWER = 0.9, 0.2
-"""The next step over the step whose error would be exactly tol, and the power 1/5 of a method of order 5. Doubled: every step is rejected,
-and impacts fail. Halved: up to 1.9 times the steps."""
+"""The next step over the step whose error would be exactly tol, and the power 1/5 of a method of order 5.
+Doubled: every step is rejected, and impacts fail. Halved: up to 1.9 times the steps."""
 _LEAST_FACTOR, _MOST_FACTOR = 0.2, 3.0
-"""Limits on the change of a step's length. Most, doubled: the error of cushion impacts of play at ``standard`` is 5e-5 instead of 3e-7,
-because a step passes over a change of state; halved: up to 4 % more steps. Least: no effect."""
+"""Limits on the change of a step's length. Most, doubled: the error of cushion impacts of play at
+``standard`` is 5e-5 instead of 3e-7, because a step passes over a change of state; halved: up to 4 % more
+steps. Least: no effect."""
 _EXACT = 1e-3
 """With an error below this part of tol the step grows by the largest factor. No effect."""
 _SHORTEST = 1e-13
 """A step as short as this is not shortened further. No effect."""
 _LEAPT, _LEAPT_FACTOR = 2.0, 0.5
-"""The largest impulse of a step over the remaining one (a slip may grow fast), and the factor on a longer step. No effect."""
+"""The largest impulse of a step over the remaining one (a slip may grow fast), and the factor on a longer
+step. No effect."""
 _TURNED_FACTOR = 0.25
-"""Factor on a step in which the cloth slip reversed its direction. Doubled or halved: up to 3 % more steps in harsh cushion impacts."""
+"""Factor on a step in which the cloth slip reversed its direction. Doubled or halved: up to 3 % more steps in
+harsh cushion impacts."""
 _BELOW, _LANDED_FACTOR = 10.0, 0.5
-"""How far below the cloth a lifted ball may end a step, over tol, and the factor on the step if it is lower. ``_BELOW``: no effect. The
-factor doubled: the step is never shortened, and 6 % of harsh cushion impacts fail."""
+"""How far below the cloth a lifted ball may end a step, over tol, and the factor on the step if it is lower.
+``_BELOW``: no effect. The factor doubled: the step is never shortened, and 6 % of harsh cushion impacts
+fail."""
 _PAST_END = 1.01
-"""How far a step may go past the estimated end. Halved: it never gets there, and 8 % of harsh impacts of two balls fail. Doubled: no
-effect."""
+"""How far a step may go past the estimated end. Halved: it never gets there, and 8 % of harsh impacts of two
+balls fail. Doubled: no effect."""
 _SMALL, _REACH, _STABLE = 1000.0, 0.4, 0.2
-"""For a cloth slip that may end and then be held, and is below the first number (over the larger of tol and delta): the next step cuts it
-by at most the second number, and is within the stability limit of the method, the third number. ``_REACH`` doubled: 2.1 times the steps
-at ``fast`` in harsh cushion impacts; halved: 12 % more. ``_STABLE`` halved: 1.6 times; doubled: 3 % more. ``_SMALL``: no effect."""
+"""For a cloth slip that may end and then be held, and is below the first number (over the larger of tol and
+delta): the next step cuts it by at most the second number, and is within the stability limit of the method,
+the third number. ``_REACH`` doubled: 2.1 times the steps at ``fast`` in harsh cushion impacts; halved: 12 %
+more. ``_STABLE`` halved: 1.6 times; doubled: 3 % more. ``_SMALL``: no effect."""
 _TINY = 1e-300
 """Keeps a quotient of zeros finite."""
 _NONE = Impulses(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -114,14 +141,15 @@ class Outlook(NamedTuple):
     p_full: float
     """Estimate of its normal impulse, slightly too large."""
     h_slip: float
-    """The longest Runge-Kutta step while A slips. Beyond three times this the method is unstable on a' = -k1 mu a, and a slip that should
-    decay to zero would stay at the size of the tolerance."""
+    """The longest Runge-Kutta step while A slips. Beyond three times this the method is unstable on a' = -k1
+    mu a, and a slip that should decay to zero would stay at the size of the tolerance."""
     mu: float
     """The largest coefficient of friction at A."""
     may_grip: bool
     """Whether the cloth's friction can hold the ball in some state. If not, no cloth slip is ever held."""
     analytic: bool
-    """Whether the Taylor series is valid while A slips: the cloth never holds, and the load on it stays positive."""
+    """Whether the Taylor series is valid while A slips: the cloth never holds, and the load on it stays
+    positive."""
 
 
 @inlined
@@ -131,9 +159,15 @@ def _outlook(problem):
     mu = friction_coefficient(0.0, problem.friction)
     p_full = -_OVERSHOOT * (1.0 + problem.e) / contact.d_n
     h_slip = 1.0 / (contact.k1 * mu + _NO_FRICTION)
-    may_grip = K_CLOTH * problem.mu_s * (contact.n_p + abs(contact.n_f) * mu) >= abs(contact.d_b) - abs(contact.c2) * mu
-    # The load stays positive if the normal impulse exceeds the friction at A, or if only that friction presses and a2 keeps its sign.
-    pressed = contact.n_p >= abs(contact.n_f) * mu or (contact.n_p == 0.0 and contact.n_f * problem.start.a2 <= 0.0)
+    may_grip = (
+        K_CLOTH * problem.mu_s * (contact.n_p + abs(contact.n_f) * mu)
+        >= abs(contact.d_b) - abs(contact.c2) * mu
+    )
+    # The load stays positive if the normal impulse exceeds the friction at A, or if only that friction
+    # presses and a2 keeps its sign.
+    pressed = contact.n_p >= abs(contact.n_f) * mu or (
+        contact.n_p == 0.0 and contact.n_f * problem.start.a2 <= 0.0
+    )
     return Outlook(p_full, h_slip, mu, may_grip, pressed and not may_grip)
 
 
@@ -145,7 +179,8 @@ def _stick_or_creep(x, near, cloth, problem):
 
 @inlined
 def _first_state(s, outlook, limits, problem):
-    """At the beginning, with slip s at A: the states of A and of the cloth, the rates if they are needed, and the length of the step."""
+    """At the beginning, with slip s at A: the states of A and of the cloth, the rates if they are needed, and
+    the length of the step."""
     start, near = problem.start, limits.near
     calm = start.b1 * start.b1 + start.b2 * start.b2 <= near * near
     cloth = GRIPS if outlook.may_grip and calm else STARTS if calm else SLIDES
@@ -172,9 +207,11 @@ def _left(x, outlook):
 
 @inlined
 def _series_step(series, x, slip, starts, left, problem, tol, order):
-    """A step by the Taylor series, up to its range of accuracy or a reversal of the cloth's slip: its end, the slips, degree and length."""
+    """A step by the Taylor series, up to its range of accuracy or a reversal of the cloth's slip: its end,
+    the slips, degree and length."""
     degree, span = taylor.expand(series, x, slip, starts, left, problem, _SERIES * tol, order)
-    o1, o2 = (slip.b1, slip.b2) if starts else (0.0, 0.0)  # a slip that counts as zero has no definite direction
+    # a slip that counts as zero has no definite direction
+    o1, o2 = (slip.b1, slip.b2) if starts else (0.0, 0.0)
     end = state_at(series, degree, span)
     slip_end = slips_after(end, problem.start, problem.contact)
     if taylor.turned(series, slip_end.b1 - o1, slip_end.b2 - o2):
@@ -186,14 +223,16 @@ def _series_step(series, x, slip, starts, left, problem, tol, order):
 
 @inlined
 def _runge_kutta_step(series, start, h, mode, cloth, outlook, limits, problem):
-    """A Runge-Kutta step: the ``Moment`` at its end, its error, and the factor for a shorter step, or ``STANDS``."""
+    """A Runge-Kutta step: the ``Moment`` at its end, its error, and the factor for a shorter step, or
+    ``STANDS``."""
     x, slip, per = start
     contact, shrink, slip_end = problem.contact, STANDS, slip
     end, per_end, error = dormand_prince.step(series, x, h, per, mode, limits.near, cloth, problem)
     if error > limits.tol and h > _SHORTEST:
         shrink = max(_LEAST_FACTOR, _SAFETY * (limits.tol / error) ** _ERROR_POWER)
     elif mode == SLIP and end.p - x.p > _LEAPT * _left(x, outlook):
-        shrink = _LEAPT_FACTOR  # the slip grew; the step's polynomial is inaccurate over the impulse of several impacts
+        # the slip grew; the step's polynomial is inaccurate over the impulse of several impacts
+        shrink = _LEAPT_FACTOR
     else:
         slip_end = slips_after(end, problem.start, contact)
         push = problem.mu_s * (contact.n_p + abs(contact.n_f) * outlook.mu) * (end.p - x.p)
@@ -206,7 +245,8 @@ def _runge_kutta_step(series, start, h, mode, cloth, outlook, limits, problem):
 
 @inlined
 def _bounded(h, start, s, mode, cloth, outlook, limits, contact):
-    """The length of the next Runge-Kutta step, with slip s at A, limited by stability and by the rest of the impact."""
+    """The length of the next Runge-Kutta step, with slip s at A, limited by stability and by the rest of the
+    impact."""
     x, slip, per = start
     if mode == SLIP:
         h = min(h, outlook.h_slip, _left(x, outlook) / s)
@@ -214,19 +254,25 @@ def _bounded(h, start, s, mode, cloth, outlook, limits, contact):
         h = min(h, _PAST_END * (outlook.p_full - x.p))
     if outlook.may_grip and cloth == SLIDES:
         size = hypot(slip.b1, slip.b2)
-        db1, db2 = contact.c1 * per.F1 + K_CLOTH * per.G1, contact.d_b * per.p + contact.c2 * per.F2 + K_CLOTH * per.G2
+        db1, db2 = (
+            contact.c1 * per.F1 + K_CLOTH * per.G1,
+            contact.d_b * per.p + contact.c2 * per.F2 + K_CLOTH * per.G2,
+        )
         along = (slip.b1 * db1 + slip.b2 * db2) / (size + _TINY)
         if along < 0.0 and size < _SMALL * max(limits.tol, limits.delta):
-            # a longer step is unstable on a slip this small or passes over its end, and an error of its size is not noticed
+            # a longer step is unstable on a slip this small or passes over its end, and an error of its size
+            # is not noticed
             h = min(h, _REACH * size / max(_STABLE * K_CLOTH * hypot(per.G1, per.G2), -along))
     return h
 
 
 @kernel(seconds=8)
 def solve(problem, accuracy, series):
-    """Integrate one impact: the impulses at its end, in units of the closing speed before it, and OK or TOO_MANY_STEPS.
+    """Integrate one impact: the impulses at its end, in units of the closing speed before it, and OK or
+    TOO_MANY_STEPS.
 
-    The speeds in ``problem`` are in units of the closing speed, which is therefore 1. ``series``: work space, ``polynomial.WORK`` numbers.
+    The speeds in ``problem`` are in units of the closing speed, which is therefore 1. ``series``: work space,
+    ``polynomial.WORK`` numbers.
     """
     order = accuracy.order
     limits = Tolerances(accuracy.tol, accuracy.delta, _NEAR * accuracy.delta, accuracy.creep)
@@ -240,7 +286,9 @@ def solve(problem, accuracy, series):
         by_series = outlook.analytic and mode == SLIP
         if by_series:
             left, starts = _left(now.x, outlook), cloth == STARTS
-            x, slip, degree, span = _series_step(series, now.x, now.slip, starts, left, problem, limits.tol, order)
+            x, slip, degree, span = _series_step(
+                series, now.x, now.slip, starts, left, problem, limits.tol, order
+            )
             end, error = Moment(x, slip, now.per), limits.tol
         else:
             degree, span = dormand_prince.DEGREE, 1.0
@@ -261,11 +309,13 @@ def solve(problem, accuracy, series):
         if shrink != STANDS:
             h *= shrink
             continue
-        if n >= _KNIFE_EDGE:  # friction almost balances the driving force of a slip, which stays small and stiff: use its limit
+        # friction almost balances the driving force of a slip, which stays small and stiff: use its limit
+        if n >= _KNIFE_EDGE:
             near, creep = max(limits.near, _STIFF), max(limits.creep, _STIFF_CREEP * _STIFF)
             limits = Tolerances(limits.tol, limits.delta, near, creep)
         if n >= _JAMMED and abs(slip.closing) < _STOPPED:
-            return x, OK  # friction balances the elastic force almost exactly: the slow motion across the nose has no end
+            # friction balances the elastic force almost exactly: the slow motion across the nose has no end
+            return x, OK
 
         # Locate: does compression or the impact end inside this step?
         if ends_inside(x, slip.closing, target):
@@ -278,7 +328,11 @@ def solve(problem, accuracy, series):
         # Go on: the next states, rates and step.
         if not by_series:
             tol = limits.tol
-            h *= _MOST_FACTOR if error < _EXACT * tol else min(_MOST_FACTOR, _SAFETY * (tol / error) ** _ERROR_POWER)
+            h *= (
+                _MOST_FACTOR
+                if error < _EXACT * tol
+                else min(_MOST_FACTOR, _SAFETY * (tol / error) ** _ERROR_POWER)
+            )
         now, located = end, False
         if next_mode != mode or (next_cloth != cloth and (next_cloth == GRIPS or cloth == GRIPS)):
             mode, cloth = next_mode, next_cloth
@@ -288,7 +342,13 @@ def solve(problem, accuracy, series):
                 cloth = STARTS
                 mode = _stick_or_creep(x, limits.near, cloth, problem)
             now = Moment(x, slip, rates(x, mode, limits.near, cloth, problem))
-            h = outlook.p_full if mode == STICK else limits.creep if mode == CREEP else _FIRST * outlook.h_slip
+            h = (
+                outlook.p_full
+                if mode == STICK
+                else limits.creep
+                if mode == CREEP
+                else _FIRST * outlook.h_slip
+            )
         else:
             cloth = next_cloth
         h = _bounded(h, now, s, mode, cloth, outlook, limits, problem.contact)

@@ -1,20 +1,26 @@
-"""How do impulses change the slips of an impact? Linearly: eleven constants for two balls and eleven for a cushion, from the masses.
+"""How do impulses change the slips of an impact? Linearly: eleven constants for two balls and eleven for a
+cushion, from the masses.
 
-An impact has two frictional contacts: A, where the ball meets the other ball or the nose of a cushion, and the contact with the cloth under
-the ball that is pressed down. All impulses are per unit mass, so M and R cancel, and R times a spin is a speed.
+An impact has two frictional contacts: A, where the ball meets the other ball or the nose of a cushion, and
+the contact with the cloth under the ball that is pressed down. All impulses are per unit mass, so M and R
+cancel, and R times a spin is a speed.
 
-**One sphere.** Its moment of inertia is 2/5 M R^2. An impulse J on its surface, at R n from the centre (n: a unit vector), gives
+**One sphere.** Its moment of inertia is 2/5 M R^2. An impulse J on its surface, at R n from the centre (n: a
+unit vector), gives
 
     dv = J        R dw = 5/2 n x J                                                                                          (1)
 
-and the surface at R m moves by du = dv + R dw x m. In particular a tangential impulse moves its own point of a free sphere by 7/2 J.
+and the surface at R m moves by du = dv + R dw x m. In particular a tangential impulse moves its own point of
+a free sphere by 7/2 J.
 
-**Frame.** X is the tangent, Y points into the other body (from ball C to ball O; into the cushion), Z points up. The normal impulse p and
-the friction F = (F1, F2) act at A. The friction G = (G1, G2) along X and Y and the reaction N along Z, which gives no spin, act at the
-cloth. The slip at A is a = (a1, a2), the slip at the cloth b = (b1, b2) = (u_X, u_Y) at m = -Z.
+**Frame.** X is the tangent, Y points into the other body (from ball C to ball O; into the cushion), Z points
+up. The normal impulse p and the friction F = (F1, F2) act at A. The friction G = (G1, G2) along X and Y and
+the reaction N along Z, which gives no spin, act at the cloth. The slip at A is a = (a1, a2), the slip at the
+cloth b = (b1, b2) = (u_X, u_Y) at m = -Z.
 
-**Two balls**, O pressed (if C is pressed, the problem is the same from the other side). A lies at Y from C and at -Y from O. C receives
-(F1, -p, F2) and is free; O receives the opposite, and G and N. N keeps O's vertical velocity at zero: N = F2. With (1)
+**Two balls**, O pressed (if C is pressed, the problem is the same from the other side). A lies at Y from C
+and at -Y from O. C receives (F1, -p, F2) and is free; O receives the opposite, and G and N. N keeps O's
+vertical velocity at zero: N = F2. With (1)
 
     C:  dv = (F1, -p, F2)             R dw = 5/2 (F2, 0, -F1)
     O:  dv = (G1 - F1, p + G2, 0)     R dw = 5/2 (F2 + G2, -G1, -F1)
@@ -25,9 +31,10 @@ cloth. The slip at A is a = (a1, a2), the slip at the cloth b = (b1, b2) = (u_X,
     db2 = dv_Y(O) + R dw_X(O)                                           =      p + 5/2 F2 + 7/2 G2
     d(closing) = dv_Y(C) - dv_Y(O)                                      =   -2 p          - G2
 
-**A cushion**, its nose at R sin(t) above the centre. A lies at m = (0, cos t, sin t); the second tangent is (0, -sin t, cos t). The ball
-receives F1 X + F2 (0, -sin t, cos t) - p m, and G and N. Its vertical velocity Z stays zero while N = p sin t - F2 cos t is positive; a
-negative load lifts the ball: N = 0 and Z grows. With (1) and m x X = (0, sin t, -cos t), m x (0, -sin t, cos t) = X
+**A cushion**, its nose at R sin(t) above the centre. A lies at m = (0, cos t, sin t); the second tangent is
+(0, -sin t, cos t). The ball receives F1 X + F2 (0, -sin t, cos t) - p m, and G and N. Its vertical velocity Z
+stays zero while N = p sin t - F2 cos t is positive; a negative load lifts the ball: N = 0 and Z grows. With
+(1) and m x X = (0, sin t, -cos t), m x (0, -sin t, cos t) = X
 
     dv = (F1 + G1, -p cos t - F2 sin t + G2, Z)      R dw = 5/2 (F2 + G2, F1 sin t - G1, -F1 cos t)
 
@@ -37,8 +44,9 @@ negative load lifts the ball: N = 0 and Z grows. With (1) and m x X = (0, sin t,
     db2 = dv_Y + R dw_X                              =          -p cos t + (5/2 - sin t) F2 + 7/2 G2
     d(closing) = dv_Y cos t + dv_Z sin t             =        -p cos^2 t - F2 sin t cos t + G2 cos t + Z sin t
 
-Both have the form of ``Contact``. The effect of F2 and G2 on the closing speed is that of p on a2 and b2 with the opposite sign: this is
-the symmetry of the inverse inertia. ``tests/physics/test_inertia.py`` derives it again, symbolically, from the laws of Newton and Euler.
+Both have the form of ``Contact``. The effect of F2 and G2 on the closing speed is that of p on a2 and b2 with
+the opposite sign: this is the symmetry of the inverse inertia. ``tests/physics/test_inertia.py`` derives it
+again, symbolically, from the laws of Newton and Euler.
 """
 
 from typing import NamedTuple
@@ -46,11 +54,13 @@ from typing import NamedTuple
 from ..._jit import kernel
 
 K_CLOTH = 3.5
-"""Change of the slip at the pressed ball's lowest point per friction impulse on it, 1 + 5/2; the same in every impact."""
+"""Change of the slip at the pressed ball's lowest point per friction impulse on it, 1 + 5/2; the same in
+every impact."""
 
 
 class Impulses(NamedTuple):
-    """The impulses so far in an impact, per unit mass, or their rates. They are the whole state: everything else follows linearly."""
+    """The impulses so far in an impact, per unit mass, or their rates. They are the whole state: everything
+    else follows linearly."""
 
     F1: float
     """Friction at A."""
@@ -112,7 +122,9 @@ class Contact(NamedTuple):
     """Effect of the vertical velocity of a lifted ball on the closing speed."""
 
 
-BALLS = Contact(k1=7.0, k2=6.0, c1=-1.0, c2=2.5, d_a=0.0, d_b=1.0, d_n=-2.0, n_p=0.0, n_f=1.0, l_a=0.0, l_n=0.0)
+BALLS = Contact(
+    k1=7.0, k2=6.0, c1=-1.0, c2=2.5, d_a=0.0, d_b=1.0, d_n=-2.0, n_p=0.0, n_f=1.0, l_a=0.0, l_n=0.0
+)
 """Two balls. The pressed one is never lifted: the load is the friction that presses it."""
 
 
@@ -120,11 +132,18 @@ BALLS = Contact(k1=7.0, k2=6.0, c1=-1.0, c2=2.5, d_a=0.0, d_b=1.0, d_n=-2.0, n_p
 def cushion(sin_t, cos_t):
     """The constants of an impact with a nose at R sin(t) above the ball's centre."""
     return Contact(
-        3.5, 2.5 + sin_t * sin_t, 1.0 - 2.5 * sin_t, 2.5 - sin_t,  # k1, k2, c1, c2
-        sin_t * cos_t, -cos_t, -cos_t * cos_t,  # d_a, d_b, d_n
-        sin_t, -cos_t,  # n_p, n_f
-        cos_t, sin_t,  # l_a, l_n
-    )  # fmt: skip
+        3.5,
+        2.5 + sin_t * sin_t,
+        1.0 - 2.5 * sin_t,
+        2.5 - sin_t,  # k1, k2, c1, c2
+        sin_t * cos_t,
+        -cos_t,
+        -cos_t * cos_t,  # d_a, d_b, d_n
+        sin_t,
+        -cos_t,  # n_p, n_f
+        cos_t,
+        sin_t,  # l_a, l_n
+    )
 
 
 @kernel

@@ -1,7 +1,9 @@
-"""What happens inside a step of an impact? The step as a polynomial: its state at any time, and the time at which a quantity has a value.
+"""What happens inside a step of an impact? The step as a polynomial: its state at any time, and the time at
+which a quantity has a value.
 
-Both methods of integration write their step in this form into the array ``series``: the coefficient of order k of a quantity is
-``series[ROW * k + column]``. The first seven columns are the state, the eighth is the closing speed, the others are work space.
+Both methods of integration write their step in this form into the array ``series``: the coefficient of order
+k of a quantity is ``series[ROW * k + column]``. The first seven columns are the state, the eighth is the
+closing speed, the others are work space.
 """
 
 import numpy as np
@@ -16,7 +18,8 @@ F1, F2, G1, G2, P, WORK_DONE, LIFT, CLOSING = (np.int64(k) for k in range(8))  #
 """Columns: the fields of ``Impulses`` in their order, and the closing speed."""
 
 _MOST_TRIALS = 60
-"""The most iterations. Halley's method takes 2 or 3; bisection alone would end after so many. Doubled or halved: no change."""
+"""The most iterations. Halley's method takes 2 or 3; bisection alone would end after so many. Doubled or
+halved: no change."""
 
 
 @kernel
@@ -27,7 +30,12 @@ def state_at(series, degree, t):
     done, lift = series[m + WORK_DONE], series[m + LIFT]
     for _ in range(degree):
         m -= ROW
-        f1, f2, g1, g2 = series[m + F1] + t * f1, series[m + F2] + t * f2, series[m + G1] + t * g1, series[m + G2] + t * g2
+        f1, f2, g1, g2 = (
+            series[m + F1] + t * f1,
+            series[m + F2] + t * f2,
+            series[m + G1] + t * g1,
+            series[m + G2] + t * g2,
+        )
         p, done, lift = series[m + P] + t * p, series[m + WORK_DONE] + t * done, series[m + LIFT] + t * lift
     return Impulses(f1, f2, g1, g2, p, done, lift)
 
@@ -47,10 +55,12 @@ def value_at(series, degree, column, t):
 
 @kernel
 def time_of(series, degree, column, value, low, high, guess, near):
-    """The time at which a quantity falls to the value: between ``low``, where it is above, and ``high``, where it is not.
+    """The time at which a quantity falls to the value: between ``low``, where it is above, and ``high``,
+    where it is not.
 
-    Halley's method, kept between low and high. It ends after a correction so small that the next one would be below ``near``. The next one
-    is about the cube of this one over the square of the time since the first ``low``, where the derivative may be zero.
+    Halley's method, kept between low and high. It ends after a correction so small that the next one would be
+    below ``near``. The next one is about the cube of this one over the square of the time since the first
+    ``low``, where the derivative may be zero.
     """
     first, t = low, guess
     for _ in range(_MOST_TRIALS):

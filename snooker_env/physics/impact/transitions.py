@@ -1,6 +1,8 @@
-"""What do the contacts do after a step? The next state of each; or the step is rejected, because the change lies inside it.
+"""What do the contacts do after a step? The next state of each; or the step is rejected, because the change
+lies inside it.
 
-A rejected step is taken again, shortened by a factor. The functions below return that factor, or ``STANDS`` for a step that is accepted.
+A rejected step is taken again, shortened by a factor. The functions below return that factor, or ``STANDS``
+for a step that is accepted.
 """
 
 from typing import NamedTuple
@@ -14,11 +16,11 @@ from .inertia import Impulses, Slips
 STANDS = 0.0
 """The step is accepted."""
 _HALF = 0.5
-"""Factor on a step inside which a contact changed its state. Doubled: the step is never shortened, and 3 % of the cushion impacts of play
-fail (measured as in ``impulse.py``, here and below). Halved: no effect."""
+"""Factor on a step inside which a contact changed its state. Doubled: the step is never shortened, and 3 % of
+the cushion impacts of play fail (measured as in ``impulse.py``, here and below). Halved: no effect."""
 _INTO_CREEP, _OUT_OF_CREEP = 0.5, 2.0
-"""Over ``creep``: the slip below which A may begin to creep, and the largest slip at the end of a step that ends creeping. The second
-halved: 30 % more steps in cushion impacts of play. Otherwise no effect."""
+"""Over ``creep``: the slip below which A may begin to creep, and the largest slip at the end of a step that
+ends creeping. The second halved: 30 % more steps in cushion impacts of play. Otherwise no effect."""
 
 
 class Tolerances(NamedTuple):
@@ -62,14 +64,19 @@ def cloth_after(step, mode, cloth, may_grip, limits, problem):
             after = STARTS
             if end.p - step.start.x.p > limits.delta:  # it began to slip inside the step: find where
                 shrink = _HALF
-    elif may_grip and after == STARTS and grip_holds(rates(end, mode, limits.near, GRIPS, problem), end, problem):
+    elif (
+        may_grip
+        and after == STARTS
+        and grip_holds(rates(end, mode, limits.near, GRIPS, problem), end, problem)
+    ):
         after = GRIPS
     return after, shrink
 
 
 @inlined
 def mode_after(series, step, s, mode, cloth, located, limits, problem):
-    """The next state of contact A, where the slip is now s; the factor on the step; and whether the factor leads to where A begins to slip.
+    """The next state of contact A, where the slip is now s; the factor on the step; and whether the factor
+    leads to where A begins to slip.
 
     located: whether the last attempt at this step found that place.
     """
@@ -83,7 +90,8 @@ def mode_after(series, step, s, mode, cloth, located, limits, problem):
     elif mode == STICK:
         if not held(end, limits.near, cloth, problem):
             after = CREEP
-            if step.h > limits.delta and not located:  # it began to slip inside the step: take the step up to that place
+            # it began to slip inside the step: take the step up to that place
+            if step.h > limits.delta and not located:
                 dormand_prince.leave_polynomial(series, start.x, end, step.h, problem.contact)
                 shrink = breaks_loose_at(series, limits.near, cloth, problem)
                 located = True
@@ -91,7 +99,8 @@ def mode_after(series, step, s, mode, cloth, located, limits, problem):
         after = SLIP
         if s > _OUT_OF_CREEP * limits.creep and step.h > limits.delta:
             shrink = _HALF
-    elif per_end.F1 * slip.a1 + per_end.F2 * slip.a2 > 0.0 and s > limits.delta:  # friction does not oppose the slip
+    # friction does not oppose the slip
+    elif per_end.F1 * slip.a1 + per_end.F2 * slip.a2 > 0.0 and s > limits.delta:
         if step.h > limits.delta and start.per.F1 * start.slip.a1 + start.per.F2 * start.slip.a2 <= 0.0:
             shrink = _HALF  # it did before: the slip ended inside the step
         else:

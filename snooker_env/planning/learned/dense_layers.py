@@ -1,7 +1,9 @@
-"""How are the layers of a small network computed while it plays? By a kernel, on the thread that calls it, in a fixed order of sums.
+"""How are the layers of a small network computed while it plays? By a kernel, on the thread that calls it, in
+a fixed order of sums.
 
-The matrix products of NumPy and torch wake a thread for each core. For networks this small these wait for each other longer than they
-compute, and the last bits depend on the number of rows and of threads. Here a row's result depends on that row alone.
+The matrix products of NumPy and torch wake a thread for each core. For networks this small these wait for
+each other longer than they compute, and the last bits depend on the number of rows and of threads. Here a
+row's result depends on that row alone.
 """
 
 from collections.abc import Sequence
@@ -14,10 +16,11 @@ from ..._jit import entry
 
 @entry(what="the layers of networks", seconds=2)
 def linear(rows, weight, bias, out):
-    """out (n, b) = rows (n, a) @ weight (a, b) + bias (b,): bias + rows[0] weight[0] + rows[1] weight[1] + ..., rounded after each.
+    """out (n, b) = rows (n, a) @ weight (a, b) + bias (b,): bias + rows[0] weight[0] + rows[1] weight[1] +
+    ..., rounded after each.
 
-    All float32 and contiguous. Two rows and four terms at a time: so the sums stay in registers, and the compiler takes several columns
-    at once.
+    All float32 and contiguous. Two rows and four terms at a time: so the sums stay in registers, and the
+    compiler takes several columns at once.
     """
     n, a = rows.shape
     b = weight.shape[1]
@@ -59,10 +62,14 @@ ACTIVATIONS: dict[str, Any] = {"tanh": lambda x: np.tanh(x, out=x), "relu": relu
 
 
 class Layers:
-    """A multilayer perceptron of layers (out, in) and (out,), which are copied, with "tanh" or "relu" between two of them."""
+    """A multilayer perceptron of layers (out, in) and (out,), which are copied, with "tanh" or "relu" between
+    two of them."""
 
     def __init__(self, weights: Sequence[tuple[Any, Any]], activation: str):
-        self._layers = [(np.array(weight.T, np.float32, order="C"), np.array(bias, np.float32)) for weight, bias in weights]
+        self._layers = [
+            (np.array(weight.T, np.float32, order="C"), np.array(bias, np.float32))
+            for weight, bias in weights
+        ]
         self._between = ACTIVATIONS[activation]
 
     @property
@@ -75,6 +82,9 @@ class Layers:
         for k, (weight, bias) in enumerate(self._layers):
             if k:
                 self._between(rows)
-            before, rows = np.ascontiguousarray(rows, np.float32), np.empty((len(rows), len(bias)), np.float32)
+            before, rows = (
+                np.ascontiguousarray(rows, np.float32),
+                np.empty((len(rows), len(bias)), np.float32),
+            )
             linear(before, weight, bias, rows)
         return rows

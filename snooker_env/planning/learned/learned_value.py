@@ -1,7 +1,8 @@
-"""What is a position worth by a learned value? V = P x U: the chance that the next stroke scores, times what the visit then brings.
+"""What is a position worth by a learned value? V = P x U: the chance that the next stroke scores, times what
+the visit then brings.
 
-The mean of several small networks with two outputs. P starts from the likeliest pot's chance by its width; U is positive.
-``agents.learning.value_network`` trains them.
+The mean of several small networks with two outputs. P starts from the likeliest pot's chance by its width; U
+is positive. ``agents.learning.value_network`` trains them.
 """
 
 from collections.abc import Sequence
@@ -20,8 +21,9 @@ POINTS = 40.0
 class LearnedValue:
     """The value [points] of n ``Positions``: called with them, it returns float32 (n,).
 
-    ``members``: the layers of each network, (weight (out, in), bias (out,)). ``spread``: standard deviation of the cue ball's direction
-    [rad], of ``planning.spread_of``. ``threads``: at most; results do not depend on it.
+    ``members``: the layers of each network, (weight (out, in), bias (out,)). ``spread``: standard deviation
+    of the cue ball's direction [rad], of ``planning.spread_of``. ``threads``: at most; results do not depend
+    on it.
     """
 
     def __init__(self, members: Sequence[Sequence[tuple[NDArray, NDArray]]], spread: float, threads: int = 1):

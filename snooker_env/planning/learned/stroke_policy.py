@@ -1,7 +1,9 @@
-"""How does a learned policy score strokes while it plays? By kernels on NumPy arrays: a table's scores depend on that table alone.
+"""How does a learned policy score strokes while it plays? By kernels on NumPy arrays: a table's scores depend
+on that table alone.
 
-The network is that of ``agents.learning.networks.TableReader`` and ``StrokeHead``: a small network for each ball, one for each pot, sums
-over them, a context, and scores of each pot's strokes. tests/agents/learning/test_fused.py compares it with PyTorch's.
+The network is that of ``agents.learning.networks.TableReader`` and ``StrokeHead``: a small network for each
+ball, one for each pot, sums over them, a context, and scores of each pot's strokes.
+tests/agents/learning/test_fused.py compares it with PyTorch's.
 """
 
 from collections.abc import Mapping
@@ -27,7 +29,8 @@ SCORED = -(-STROKES // 16) * 16
 
 
 class StrokePolicy:
-    """A policy over the discrete choices, from its weights: ``weights[name]`` is (weight (out, in), bias (out,)) for each of ``LAYERS``."""
+    """A policy over the discrete choices, from its weights: ``weights[name]`` is (weight (out, in), bias
+    (out,)) for each of ``LAYERS``."""
 
     def __init__(self, weights: Mapping[str, tuple[NDArray[np.float32], NDArray[np.float32]]]):
         self._layers = {}
@@ -39,7 +42,8 @@ class StrokePolicy:
             self._layers[name] = turned, shift
 
     def scores(self, seen: NDArray[np.float32], masks: NDArray[np.bool_]) -> NDArray[np.float32]:
-        """Scores of all choices (n, CHOICES) on tables seen (n, SHOWN) by ``with_pots``; ``NEVER`` for those that masks do not allow."""
+        """Scores of all choices (n, CHOICES) on tables seen (n, SHOWN) by ``with_pots``; ``NEVER`` for those
+        that masks do not allow."""
         scores = np.empty((len(seen), CHOICES), np.float32)
         for start in range(0, len(seen), BLOCK):
             rows = np.arange(start, min(start + BLOCK, len(seen)))
@@ -50,7 +54,10 @@ class StrokePolicy:
         """The scores of one block of tables."""
         n, width = len(rows), len(self._layers["ball_2"][1])
         state_at = 3 * width + len(self._layers["pot_2"][1])
-        balls, pots = np.empty((n * (N_BALLS - 1), BALL_INPUTS), np.float32), np.empty((n * POTS, POT_ENTRIES), np.float32)
+        balls, pots = (
+            np.empty((n * (N_BALLS - 1), BALL_INPUTS), np.float32),
+            np.empty((n * POTS, POT_ENTRIES), np.float32),
+        )
         groups, first = np.empty(len(balls), np.int64), np.empty(n + 1, np.int64)
         context, sides = np.empty((n, state_at + STATE + 3), np.float32), np.empty(n, np.float32)
         m = table_kernels.read_tables(rows, seen, (balls, groups, first, pots, context, sides), state_at)

@@ -1,6 +1,7 @@
 """What does a policy of strokes compute between its layers? Reading tables, sums over balls and pots, masks.
 
-Each kernel goes over n rows once. The layouts are those of ``agents.learning.networks.TableReader``, with which a policy is trained.
+Each kernel goes over n rows once. The layouts are those of ``agents.learning.networks.TableReader``, with
+which a policy is trained.
 """
 
 import numpy as np
@@ -18,16 +19,19 @@ _TOPS, _TURN = len(TOPS), (len(SIDES) - 1) * len(TOPS)
 _X1, _X2, _X3 = POT_X
 NEVER = np.float32(-1e8)
 """The score of a choice that is not available, as in ``sb3_contrib``."""
-_ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)  # literals are float64, and half as many of them fit into a register
+# literals are float64, and half as many of them fit into a register
+_ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)
 
 
 @entry
 def read_tables(rows, seen, inputs, at):
-    """Write the inputs of the networks for the tables seen[rows]; returns the number of balls on these tables.
+    """Write the inputs of the networks for the tables seen[rows]; returns the number of balls on these
+    tables.
 
-    ``inputs``: (balls, group, first, pots, context, sides). balls (m, BALL_INPUTS), group (m,): the balls on the tables;
-    0 for a red that is not on, 1 for a red on, 2 and 3 likewise for colours. first (n + 1,): each table's first row of
-    them. pots (n * POTS, POT_ENTRIES). context[:, at:]: state, cue ball, side. sides (n,): -1 where mirrored, else 1.
+    ``inputs``: (balls, group, first, pots, context, sides). balls (m, BALL_INPUTS), group (m,): the balls on
+    the tables; 0 for a red that is not on, 1 for a red on, 2 and 3 likewise for colours. first (n + 1,): each
+    table's first row of them. pots (n * POTS, POT_ENTRIES). context[:, at:]: state, cue ball, side. sides
+    (n,): -1 where mirrored, else 1.
     """
     balls, group, first, pots, context, sides = inputs
     m = 0
@@ -43,8 +47,14 @@ def read_tables(rows, seen, inputs, at):
             ball = balls[m]
             x = row[b] * side
             ball[0], ball[1], ball[2], ball[3], ball[4], ball[5], ball[6] = (
-                x, row[b + 1], row[b + 2], row[b + 3], row[b + 4], x - cue_x, row[b + 1] - cue_y,
-            )  # fmt: skip
+                x,
+                row[b + 1],
+                row[b + 2],
+                row[b + 3],
+                row[b + 4],
+                x - cue_x,
+                row[b + 1] - cue_y,
+            )
             group[m] = (2 if i > N_REDS else 0) + (1 if row[b + 4] > 0.0 else 0)
             m += 1
         for p in range(POTS):
@@ -64,7 +74,8 @@ def read_tables(rows, seen, inputs, at):
 
 @entry
 def sum_balls(codes, group, first, context, width):
-    """ReLU of the balls' codes (m, width), in place; their sums / 5 into context[:, : 3 * width]: of balls on, of reds, of colours."""
+    """ReLU of the balls' codes (m, width), in place; their sums / 5 into context[:, : 3 * width]: of balls
+    on, of reds, of colours."""
     for j in range(first.shape[0] - 1):
         sums = context[j]
         for c in range(3 * width):
@@ -85,7 +96,8 @@ def sum_balls(codes, group, first, context, width):
 
 @entry
 def sum_pots(codes, pots, context, at):
-    """ReLU of the pots' codes (n * POTS, width), in place, 0 where there is no pot; their sums into context[:, at : at + width]."""
+    """ReLU of the pots' codes (n * POTS, width), in place, 0 where there is no pot; their sums into
+    context[:, at : at + width]."""
     width = codes.shape[1]
     for j in range(context.shape[0]):
         sums = context[j, at : at + width]
@@ -118,7 +130,8 @@ def mirrored(choice):
 
 @entry
 def mask_scores(rows, masks, sides, scores, out):
-    """The scores (n, choices) of the choices that masks[rows] allows, ``NEVER`` for others; a mirrored table's are those in the mirror.
+    """The scores (n, choices) of the choices that masks[rows] allows, ``NEVER`` for others; a mirrored
+    table's are those in the mirror.
 
     scores (n * POTS, STROKES or more): of each pot's strokes.
     """

@@ -1,4 +1,5 @@
-"""What does a learned value see of a position? The best pots, how open each ball is, where the balls lie, and the ball on.
+"""What does a learned value see of a position? The best pots, how open each ball is, where the balls lie, and
+the ball on.
 
 The table is nearly symmetric: it is read mirrored so that the cue ball is on the right.
 """
@@ -12,7 +13,17 @@ from ..._jit import entry, kernel
 from ...game.balls import N_BALLS, VALUES, bits
 from ...game.balls import balls_on_kernel as balls_on
 from ...game.pots import window
-from ...geometry import AIM_X, AIM_Y, AXIS_X, AXIS_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, IS_MIDDLE, POCKET_AIMS
+from ...geometry import (
+    AIM_X,
+    AIM_Y,
+    AXIS_X,
+    AXIS_Y,
+    BALL_RADIUS,
+    HALF_LENGTH,
+    HALF_WIDTH,
+    IS_MIDDLE,
+    POCKET_AIMS,
+)
 
 POTS_SEEN = 6
 POT_ENTRIES = 13
@@ -21,7 +32,8 @@ SHARED = 28
 """Entries of the whole position: see ``_fill``."""
 SIZE = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES + SHARED
 FAR = 0.01
-"""Decay of the chance of a pot per metre of both balls' paths [1/m]. The published values have learned with this one."""
+"""Decay of the chance of a pot per metre of both balls' paths [1/m]. The published values have learned with
+this one."""
 LOGIT = SIZE - 1
 """The entry that holds the logit of the likeliest pot, where the network's own estimate begins."""
 WORTH_A_THREAD = 128
@@ -43,7 +55,8 @@ def _logit(p):
 
 @kernel
 def _clear(balls, many, ax, ay, bx, by, ball, reach):
-    """Whether the first ``many`` balls of ``balls`` (id, x, y), except ``ball``, are ``reach`` or more away from a segment."""
+    """Whether the first ``many`` balls of ``balls`` (id, x, y), except ``ball``, are ``reach`` or more away
+    from a segment."""
     ux, uy = bx - ax, by - ay
     length = _length(ux, uy)
     if length > 0.0:
@@ -63,7 +76,8 @@ def _clear(balls, many, ax, ay, bx, by, ball, reach):
 
 @kernel
 def _open(balls, many, open_to):
-    """How open each ball is for each pocket (22, 6): its window as an angle [rad], 0 if the way is blocked, wherever the cue ball lies."""
+    """How open each ball is for each pocket (22, 6): its window as an angle [rad], 0 if the way is blocked,
+    wherever the cue ball lies."""
     d = 2.0 * BALL_RADIUS
     for i in range(many):
         b, x, y = int(balls[i, 0]), balls[i, 1], balls[i, 2]
@@ -78,7 +92,11 @@ def _open(balls, many, open_to):
             if cosine < (_MIDDLE_EDGE if POCKET_AIMS[k, IS_MIDDLE] > 0.0 else _CORNER_EDGE):
                 continue
             width = window(cosine, POCKET_AIMS[k, IS_MIDDLE] > 0.0)
-            if width <= 0.0 or abs(x - d * dx) > HALF_WIDTH - BALL_RADIUS + 1e-9 or abs(y - d * dy) > HALF_LENGTH - BALL_RADIUS + 1e-9:
+            if (
+                width <= 0.0
+                or abs(x - d * dx) > HALF_WIDTH - BALL_RADIUS + 1e-9
+                or abs(y - d * dy) > HALF_LENGTH - BALL_RADIUS + 1e-9
+            ):
                 continue
             if _clear(balls, many, x, y, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], b, d):
                 open_to[b, k] = width / (2.0 * run)
@@ -212,7 +230,12 @@ def in_parts(n, threads, fill):
 
 
 def value_features(at, spread, threads=1):
-    """Features of n ``Positions`` with the cue ball on the table: float32 (n, SIZE). ``spread``: of ``planning.spread_of``."""
+    """Features of n ``Positions`` with the cue ball on the table: float32 (n, SIZE). ``spread``: of
+    ``planning.spread_of``."""
     ball_on, out = at.ball_on.copy(), np.empty((len(at), SIZE), np.float32)
-    in_parts(len(at), threads, lambda rows: _features(at.positions[rows], at.on_table[rows], ball_on[rows], spread, out[rows]))
+    in_parts(
+        len(at),
+        threads,
+        lambda rows: _features(at.positions[rows], at.on_table[rows], ball_on[rows], spread, out[rows]),
+    )
     return out

@@ -1,4 +1,5 @@
-"""Does ``agents.evaluate`` play, report and keep what it is asked to, and refuse what it should, whatever stops it?"""
+"""Does ``agents.evaluate`` play, report and keep what it is asked to, and refuse what it should, whatever
+stops it?"""
 
 import json
 import os
@@ -37,12 +38,43 @@ def models(tmp_path_factory):
 
 
 def test_json_markdown_and_picture(models, tmp_path, capsys):
-    options = ["--visits", "12", "--layouts", "held_out=20", "colours", "--noise", "none", "club", "--physics", "paper,mu_bb=marlow"]
-    options += ["--resamples", "200", "--json", str(tmp_path / "a" / "r.json"), "--markdown", str(tmp_path / "r.md")]
+    options = [
+        "--visits",
+        "12",
+        "--layouts",
+        "held_out=20",
+        "colours",
+        "--noise",
+        "none",
+        "club",
+        "--physics",
+        "paper,mu_bb=marlow",
+    ]
+    options += [
+        "--resamples",
+        "200",
+        "--json",
+        str(tmp_path / "a" / "r.json"),
+        "--markdown",
+        str(tmp_path / "r.md"),
+    ]
     agents = ["--agent", f"model={models / 'm-*'}", "random", "--against", "ghost_ball", "random"]
     assert protocol.main([*agents, *options, "--picture", str(tmp_path / "p.png")]) == 0
-    found = json.loads((tmp_path / "a" / "r.json").read_text(), parse_constant=lambda text: pytest.fail(f"{text} is not JSON"))
-    assert set(found) == {"command", "version", "commit", "machine", "python", "numpy", "protocol", "agents", "results"}
+    found = json.loads(
+        (tmp_path / "a" / "r.json").read_text(),
+        parse_constant=lambda text: pytest.fail(f"{text} is not JSON"),
+    )
+    assert set(found) == {
+        "command",
+        "version",
+        "commit",
+        "machine",
+        "python",
+        "numpy",
+        "protocol",
+        "agents",
+        "results",
+    }
     assert found["protocol"]["layouts"] == {"held_out": 12, "colours": 12}
     assert [a["label"] for a in found["agents"]] == ["model", "random", "ghost_ball"]
     first, second = found["agents"][0]["runs"]
@@ -51,16 +83,30 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
     assert len(found["results"]) == 3 * 2 * 2
     for row in found["results"]:
         assert set(row) == {
-            "agent", "layout", "noise", "fidelity", "physics", "visits", "runs", "figures", "ratios", "counted", "longest_break", "by_run",
-            "strokes", "ms_a_decision",
-        }  # fmt: skip
+            "agent",
+            "layout",
+            "noise",
+            "fidelity",
+            "physics",
+            "visits",
+            "runs",
+            "figures",
+            "ratios",
+            "counted",
+            "longest_break",
+            "by_run",
+            "strokes",
+            "ms_a_decision",
+        }
         assert set(row["figures"]) == {*FIGURES, "points_a_visit_iqm", "pots_a_visit_iqm"}
         assert set(row["ratios"]) == {"ghost_ball", "random"} - {row["agent"]}
         assert len(row["by_run"]["points_a_visit"]) == row["runs"] == (2 if row["agent"] == "model" else 1)
         for f in [*row["figures"].values(), *(r for ratio in row["ratios"].values() for r in ratio.values())]:
             assert set(f) == {"value", "low", "high"}
             assert f["low"] is None or f["low"] <= f["high"]
-        assert np.mean(row["by_run"]["points_a_visit"]) == pytest.approx(row["figures"]["points_a_visit"]["value"])
+        assert np.mean(row["by_run"]["points_a_visit"]) == pytest.approx(
+            row["figures"]["points_a_visit"]["value"]
+        )
     text, printed = (tmp_path / "r.md").read_text(), capsys.readouterr().out
     assert (
         found["command"] in text
@@ -82,9 +128,17 @@ def test_figures_do_not_depend_on_the_company(models, tmp_path):
     rows = []
     for company in ([], ["random", f"other={models / 'm-0'}"]):
         file = tmp_path / f"{len(company)}.json"
-        protocol.main(["--agent", *company, f"m={models / 'm-0'},{models / 'm-1'}", *QUICK, "--json", str(file)])
+        protocol.main(
+            ["--agent", *company, f"m={models / 'm-0'},{models / 'm-1'}", *QUICK, "--json", str(file)]
+        )
         found = json.loads(file.read_text())["results"]
-        rows.append([{key: r[key] for key in r if key != "ms_a_decision"} for r in found if r["agent"] in ("m", "ghost_ball")])
+        rows.append(
+            [
+                {key: r[key] for key in r if key != "ms_a_decision"}
+                for r in found
+                if r["agent"] in ("m", "ghost_ball")
+            ]
+        )
     assert rows[0] == rows[1] and len(rows[0]) == 2
 
 
@@ -92,7 +146,10 @@ def test_figures_do_not_depend_on_the_company(models, tmp_path):
     ("options", "says"),
     [
         (["--agent", "nobody"], "agent = 'nobody': must be random, "),
-        (["--agent", str(Path(__file__))], "agent = .*test_evaluate.py': must be a model saved by Stable-Baselines3"),
+        (
+            ["--agent", str(Path(__file__))],
+            "agent = .*test_evaluate.py': must be a model saved by Stable-Baselines3",
+        ),
         (["--agent", "x=nowhere-*"], "agent = 'nowhere-\\*': must be"),
         (["--agent", "random", "random"], "agent = 'random': must be another"),
         (["--agent", "random", "--against", "me"], "against = 'me': must be one of random, ghost_ball"),
@@ -109,12 +166,21 @@ def test_figures_do_not_depend_on_the_company(models, tmp_path):
         (["--agent", "random", "--physics", "paper,mu_r=0"], "physics.mu_r = 0.0: must be > 0"),
         (["--agent", "search_1"], "budget = 1: must be an integer in \\[8"),
         (["--agent", "random", "--json", "tests"], "json = 'tests': must be a file"),
-        (["--agent", "random", "--json", "pyproject.toml/r.json"], "json = 'pyproject.toml/r.json': must be a file"),
-        (["--agent", "random", "--markdown", "/proc/none/r.md"], "markdown = '/proc/none/r.md': must be a file"),
+        (
+            ["--agent", "random", "--json", "pyproject.toml/r.json"],
+            "json = 'pyproject.toml/r.json': must be a file",
+        ),
+        (
+            ["--agent", "random", "--markdown", "/proc/none/r.md"],
+            "markdown = '/proc/none/r.md': must be a file",
+        ),
         (["--agent", "random", "--picture", "tests"], "picture = '': must be one of .*'.png'"),
         (["--agent", "random", "--picture", "p.md"], "picture = '.md': must be one of .*'.png'"),
         (["--agent", "random", "--resamples", "5"], "resamples = 5: must be an integer in"),
-        (["--agent", "random", "--layouts", "colours", "--picture", "p.png"], "layouts = 'colours': must hold held_out"),
+        (
+            ["--agent", "random", "--layouts", "colours", "--picture", "p.png"],
+            "layouts = 'colours': must hold held_out",
+        ),
     ],
 )
 def test_bad_input_ends_with_one_clear_line(options, says, capsys):
@@ -147,7 +213,10 @@ def test_a_player_of_ones_own_is_compared(tmp_path, monkeypatch):
     (tmp_path / "mine.py").write_text(OWN)
     monkeypatch.delitem(sys.modules, "mine", raising=False)  # another test's
     monkeypatch.syspath_prepend(tmp_path)
-    assert protocol.main(["--agent", "mine:Soft", "me=mine:Soft", *QUICK, "--json", str(tmp_path / "r.json")]) == 0
+    assert (
+        protocol.main(["--agent", "mine:Soft", "me=mine:Soft", *QUICK, "--json", str(tmp_path / "r.json")])
+        == 0
+    )
     found = json.loads((tmp_path / "r.json").read_text())
     rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in found["results"]}
     assert rows.keys() == {"Soft", "me", "ghost_ball"} and rows["Soft"] == rows["me"] != rows["ghost_ball"]
@@ -208,7 +277,14 @@ def test_a_picture_that_fails_loses_no_figures(tmp_path, monkeypatch):
         raise RuntimeError("no ink")
 
     monkeypatch.setattr("agents.evaluation.destinations.draw", draw)
-    outputs = ["--json", str(tmp_path / "r.json"), "--markdown", str(tmp_path / "r.md"), "--picture", str(tmp_path / "p.png")]
+    outputs = [
+        "--json",
+        str(tmp_path / "r.json"),
+        "--markdown",
+        str(tmp_path / "r.md"),
+        "--picture",
+        str(tmp_path / "p.png"),
+    ]
     with pytest.raises(RuntimeError, match="no ink"):
         protocol.main(["--agent", "random", *QUICK, *outputs])
     assert json.loads((tmp_path / "r.json").read_text())["results"] and (tmp_path / "r.md").read_text()
@@ -218,7 +294,14 @@ ALL = ("held_out", "colours")
 
 
 def outputs(folder):
-    return ["--json", str(folder / "r.json"), "--markdown", str(folder / "r.md"), "--picture", str(folder / "p.png")]
+    return [
+        "--json",
+        str(folder / "r.json"),
+        "--markdown",
+        str(folder / "r.md"),
+        "--picture",
+        str(folder / "p.png"),
+    ]
 
 
 def interrupted_at(monkeypatch, call):
@@ -241,13 +324,21 @@ def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
     assert protocol.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
     printed = capsys.readouterr()
     lost = "interrupted when 1 of 2 parts (layouts under one noise) were complete: the others are lost"
-    assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}" and f"INCOMPLETE: {lost}." in " ".join(printed.out.split())
+    assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}" and f"INCOMPLETE: {lost}." in " ".join(
+        printed.out.split()
+    )
     found = json.loads((tmp_path / "r.json").read_text())
     assert found["incomplete"] == lost and [(r["layout"], r["agent"]) for r in found["results"]] == [
-        ("held_out", "random"), ("held_out", "ghost_ball")
-    ]  # fmt: skip
-    assert (tmp_path / "r.md").read_text() == "whole" and f"INCOMPLETE: {lost}." in (tmp_path / "r.incomplete.md").read_text()
-    assert f"json: {tmp_path / 'r.json'}" in printed.out and f"markdown: {tmp_path / 'r.incomplete.md'}" in printed.out
+        ("held_out", "random"),
+        ("held_out", "ghost_ball"),
+    ]
+    assert (tmp_path / "r.md").read_text() == "whole" and f"INCOMPLETE: {lost}." in (
+        tmp_path / "r.incomplete.md"
+    ).read_text()
+    assert (
+        f"json: {tmp_path / 'r.json'}" in printed.out
+        and f"markdown: {tmp_path / 'r.incomplete.md'}" in printed.out
+    )
     assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "r.incomplete.md", "p.png"}
 
 
@@ -300,7 +391,9 @@ def test_a_terminal_that_is_gone_loses_no_file(tmp_path, monkeypatch):
 def test_a_physics_is_named_as_it_was_given():
     for text in ("paper", "match", "paper,mu_bb=marlow", "match,mu_bb=0.06"):
         assert physics_text(physics_option(text)) == text
-        assert Physics.of(physics_option(text)) == Physics.of(physics_option(physics_text(physics_option(text))))
+        assert Physics.of(physics_option(text)) == Physics.of(
+            physics_option(physics_text(physics_option(text)))
+        )
     assert physics_text("match") == "match" and Physics.of(physics_option("match,mu_bb=0.06")).mu_bb == 0.06
     for wrong in ("nothing", "paper,mu_bb", "paper,colour=1"):
         with pytest.raises(ValueError):

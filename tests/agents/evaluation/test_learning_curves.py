@@ -17,10 +17,12 @@ def keep(folder, **changes):
     """A run as train.py keeps it."""
     folder.mkdir()
     run = {
-        "steps": 1000, "seconds": 700.0, "imitation": [{"states": 50, "seconds": 100.0, "loss": 1.0}],
+        "steps": 1000,
+        "seconds": 700.0,
+        "imitation": [{"states": 50, "seconds": 100.0, "loss": 1.0}],
         "curve": [{"steps": 0, "points": 2.0}, {"steps": 100, "points": 0.0}, {"steps": 500, "points": 3.5}],
         "evaluation": {"trained": level(4.0), "ghost_ball": level(5.0)},
-    }  # fmt: skip
+    }
     (folder / "results.json").write_text(json.dumps(run | changes))
     return folder
 
@@ -29,13 +31,18 @@ def keep(folder, **changes):
 def drawn(monkeypatch):
     """The figures that are saved."""
     figures, save = [], Figure.savefig
-    monkeypatch.setattr(Figure, "savefig", lambda self, *args, **more: (figures.append(self), save(self, *args, **more))[1])
+    monkeypatch.setattr(
+        Figure, "savefig", lambda self, *args, **more: (figures.append(self), save(self, *args, **more))[1]
+    )
     return figures
 
 
 def test_time_begins_with_imitation(tmp_path):
     run = learning_curves.run_of(keep(tmp_path / "a"))
-    assert run["minutes"] * 60 == pytest.approx([100, 160, 400]) and run["end"] == (1000, pytest.approx(700 / 60))
+    assert run["minutes"] * 60 == pytest.approx([100, 160, 400]) and run["end"] == (
+        1000,
+        pytest.approx(700 / 60),
+    )
     alone = learning_curves.run_of(keep(tmp_path / "b", imitation=[]))
     assert alone["minutes"] * 60 == pytest.approx([0, 70, 350])
 
@@ -48,10 +55,16 @@ def test_every_run_is_drawn(tmp_path, drawn, capsys):
     assert str(file) in capsys.readouterr().out and file.stat().st_size > 10_000
     assert len(drawn) == 1
     time, shots = drawn[0].axes
-    lines = [line.get_xydata().tolist() for line in shots.get_lines() if len(line.get_xdata()) == 2 and line.get_linestyle() == "-"]
+    lines = [
+        line.get_xydata().tolist()
+        for line in shots.get_lines()
+        if len(line.get_xdata()) == 2 and line.get_linestyle() == "-"
+    ]
     assert lines == 3 * [[[0, 2.0], [500, 3.5]]]
     ends = [(bar[0].get_xdata()[0], bar[0].get_ydata()[0]) for bar in shots.containers]
-    assert ends == [(1000, 4.0), (1000, 4.0), (2000, 4.0)] and [bar[0].get_xdata()[0] for bar in time.containers] == 3 * [700 / 60]
+    assert ends == [(1000, 4.0), (1000, 4.0), (2000, 4.0)] and [
+        bar[0].get_xdata()[0] for bar in time.containers
+    ] == 3 * [700 / 60]
     low, high = shots.containers[0][2][0].get_segments()[0][:, 1]
     assert (low, high) == pytest.approx((3.0, 5.0))  # two standard errors
     assert [text.get_text() for text in shots.get_legend().get_texts()] == ["A", "b-0"]
@@ -72,8 +85,16 @@ def test_what_is_below_the_scale_lies_on_its_edge(tmp_path, drawn):
         (["a"], ["{}/a", "--out", "x.txt"], "out = '.txt': must be one of"),
         (["a"], ["x={}/a", "x={}/a"], "must have another label each"),
         (["a"], ["{}/a", "--out", "{}/a/results.json/c.png"], "out = .* must be a file that can be written"),
-        (["a", ("b", {"evaluation": {"trained": level(4.0), "ghost_ball": level(5.1)}})], ["{}/a", "{}/b"], "ghost_ball's score differs"),
-        ([("a", {"evaluation": {"trained": level(None), "ghost_ball": level(5.0)}})], ["{}/a"], "must be what today's train.py writes"),
+        (
+            ["a", ("b", {"evaluation": {"trained": level(4.0), "ghost_ball": level(5.1)}})],
+            ["{}/a", "{}/b"],
+            "ghost_ball's score differs",
+        ),
+        (
+            [("a", {"evaluation": {"trained": level(None), "ghost_ball": level(5.0)}})],
+            ["{}/a"],
+            "must be what today's train.py writes",
+        ),
         ([("a", {"curve": None})], ["{}/a"], "must be what today's train.py writes"),
         ([("a", {"evaluation": {}})], ["{}/a"], "must be what today's train.py writes"),
     ],

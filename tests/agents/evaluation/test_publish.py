@@ -106,7 +106,11 @@ def test_pretrained_models_hold_figures_and_weights_alone(name, monkeypatch):
         assert set(json.loads(file.read("model.json"))) == {*KEPT, "seen"}
         with zipfile.ZipFile(io.BytesIO(file.read("policy.pth"))) as inner:
             pickled = [inner.read(part) for part in inner.namelist() if part.endswith(".pkl")]
-    called = {argument for opcode, argument, _ in pickletools.genops(*pickled) if opcode.name in ("GLOBAL", "STACK_GLOBAL", "INST")}
+    called = {
+        argument
+        for opcode, argument, _ in pickletools.genops(*pickled)
+        if opcode.name in ("GLOBAL", "STACK_GLOBAL", "INST")
+    }
     assert called == {"torch._utils _rebuild_tensor_v2", "torch FloatStorage", "collections OrderedDict"}
     load = torch.load
 
@@ -117,7 +121,11 @@ def test_pretrained_models_hold_figures_and_weights_alone(name, monkeypatch):
         for function in ("load", "loads"):
             monkeypatch.setattr(library, function, forbidden)
     monkeypatch.setattr(
-        torch, "load", lambda *a, weights_only=False, **more: load(*a, weights_only=True, **more) if weights_only else forbidden()
+        torch,
+        "load",
+        lambda *a, weights_only=False, **more: (
+            load(*a, weights_only=True, **more) if weights_only else forbidden()
+        ),
     )
     weights = load_player(models.PRETRAINED / f"{name}.zip").model.policy.state_dict()
     digest = hashlib.sha256()
@@ -137,10 +145,15 @@ def test_pretrained_models_play_today(name):
 
 def test_a_run_is_published_with_its_card(run, capsys):
     publish.main([str(run), "--limits", "no safety"])
-    assert published(run) == ["ppo_mask.json", "ppo_mask.zip"] and "ppo_mask.zip and its card" in capsys.readouterr().out
+    assert (
+        published(run) == ["ppo_mask.json", "ppo_mask.zip"]
+        and "ppo_mask.zip and its card" in capsys.readouterr().out
+    )
     folder = run.parent / "pretrained"
     there, trained = load_player(folder / "ppo_mask.zip").model, load_player(run).model
-    assert all((a == b).all() for a, b in zip(there.policy.parameters(), trained.policy.parameters(), strict=True))
+    assert all(
+        (a == b).all() for a, b in zip(there.policy.parameters(), trained.policy.parameters(), strict=True)
+    )
     assert {key: getattr(there, key) for key in KEPT} == {key: getattr(trained, key) for key in KEPT}
     card = json.loads((folder / "ppo_mask.json").read_text())
     assert (card["limits"], card["hours"], card["imitated"], card["start"]) == ("no safety", 0.01, 0, None)
@@ -163,7 +176,14 @@ def test_a_published_model_is_replaced_only_when_asked(run, capsys):
 
 
 @pytest.mark.parametrize(
-    "settings", [{"set": ["gamma=0"]}, {"noise": "club"}, {"start": "runs/a"}, {"fidelity": "standard"}, {"fidelity": "fast"}]
+    "settings",
+    [
+        {"set": ["gamma=0"]},
+        {"noise": "club"},
+        {"start": "runs/a"},
+        {"fidelity": "standard"},
+        {"fidelity": "fast"},
+    ],
 )
 def test_another_way_to_train_needs_another_name(run, capsys, settings):
     write(run, settings)
@@ -183,10 +203,15 @@ def test_limits_must_say_something(run, capsys):
     assert "limits = ' ': must say" in refused(capsys, run, "--limits", " ")
 
 
-@pytest.mark.parametrize("content", ["", "{", "[]", "3", "{}", json.dumps({"settings": SETTINGS}), json.dumps({"settings": 3, **FIGURES})])
+@pytest.mark.parametrize(
+    "content",
+    ["", "{", "[]", "3", "{}", json.dumps({"settings": SETTINGS}), json.dumps({"settings": 3, **FIGURES})],
+)
 def test_broken_results_are_refused(run, capsys, content):
     (run / "results.json").write_text(content)
-    assert f"run = {str(run)!r}: must be the folder of a finished run" in refused(capsys, run, "--limits", "none")
+    assert f"run = {str(run)!r}: must be the folder of a finished run" in refused(
+        capsys, run, "--limits", "none"
+    )
     assert published(run) == []
 
 
@@ -194,11 +219,18 @@ def test_a_file_that_is_no_model_is_refused(run, capsys):
     whole = (run / "model.zip").read_bytes()
     for content in (b"junk", b"", whole[: len(whole) // 2]):
         (run / "model.zip").write_bytes(content)
-        assert f"run = {str(run / 'model.zip')!r}: must be a model that train.py saved" in refused(capsys, run, "--limits", "none")
+        assert f"run = {str(run / 'model.zip')!r}: must be a model that train.py saved" in refused(
+            capsys, run, "--limits", "none"
+        )
     (run / "model.zip").unlink()
-    assert "must be a model's .zip or a folder that holds model.zip" in refused(capsys, run, "--limits", "none")
+    assert "must be a model's .zip or a folder that holds model.zip" in refused(
+        capsys, run, "--limits", "none"
+    )
     (run / "checkpoint.pkl").write_bytes(b"")
-    with pytest.raises(ValueError, match=f"^agent = .*this run has not ended, continue it with: python train.py --resume --out {run}$"):
+    with pytest.raises(
+        ValueError,
+        match=f"^agent = .*this run has not ended, continue it with: python train.py --resume --out {run}$",
+    ):
         Entrant.of(str(run)).trained()
     assert published(run) == []
 

@@ -1,4 +1,5 @@
-"""Does ``agents.tournament`` play, keep and check what it is asked to, and refuse what it should, whatever stops it?"""
+"""Does ``agents.tournament`` play, keep and check what it is asked to, and refuse what it should, whatever
+stops it?"""
 
 import copy
 import json
@@ -70,12 +71,19 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
     assert faults(found) == [] and found["incomplete"] is None
     assert [p["label"] for p in found["players"]] == ["ghost_ball", "random", "Softly"]
     assert found["protocol"]["anchor"] == "ghost_ball" and found["game"]["noise"] == "professional"
-    assert len(found["rows"]) == 2 + 6 + 2 and {(row[2], row[3]) for row in found["rows"]} == {(s, o) for s in range(3) for o in (0, 1)}
+    assert len(found["rows"]) == 2 + 6 + 2 and {(row[2], row[3]) for row in found["rows"]} == {
+        (s, o) for s in range(3) for o in (0, 1)
+    }
     for player in found["players"]:
         label, decisions = player["label"], player["decisions"]
         k = [p["label"] for p in found["players"]].index(label)
-        own = sum(row[COLUMNS.index("strokes_first" if row[0] == k else "strokes_second")] for row in found["rows"] if k in row[:2])
-        assert 1.5 * own > decisions >= own > 0 and player["seconds"] > 0  # an opponent also decides where nothing is counted any more
+        own = sum(
+            row[COLUMNS.index("strokes_first" if row[0] == k else "strokes_second")]
+            for row in found["rows"]
+            if k in row[:2]
+        )
+        # an opponent also decides where nothing is counted any more
+        assert 1.5 * own > decisions >= own > 0 and player["seconds"] > 0
     text, printed = (tmp_path / "t.md").read_text(), capsys.readouterr()
     assert printed.err == "" and "Who wins" in printed.out and found["command"] in text
     for label in ("ghost_ball", "random", "Softly"):
@@ -88,7 +96,9 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
             assert line.count("|") == under.count("|")
     assert tournament.main(["--check", str(tmp_path / "t.json")]) == 0
     assert capsys.readouterr().out == f"{tmp_path / 't.json'}: complete, 3 players, 10 frames\n"
-    assert tournament.main(["--show", str(tmp_path / "t.json"), "--markdown", str(tmp_path / "again.md")]) == 0
+    assert (
+        tournament.main(["--show", str(tmp_path / "t.json"), "--markdown", str(tmp_path / "again.md")]) == 0
+    )
     assert (tmp_path / "again.md").read_text() == text
 
 
@@ -128,7 +138,11 @@ def test_resumed_is_as_if_it_had_never_stopped(tmp_path, monkeypatch, capsys, pa
     calls = interrupted_at(monkeypatch, 99)
     again = played(tmp_path, "--resume")
     assert len(calls) == 3  # of 6 parts
-    assert again["rows"] == whole["rows"] and again["figures"] == whole["figures"] and again["incomplete"] is None
+    assert (
+        again["rows"] == whole["rows"]
+        and again["figures"] == whole["figures"]
+        and again["incomplete"] is None
+    )
     assert [p["decisions"] for p in again["players"]] == [p["decisions"] for p in whole["players"]]
     before = (tmp_path / "t.json").read_bytes()
     played(tmp_path, "--resume")  # a complete one is left as it is
@@ -151,9 +165,16 @@ def test_ctrl_c_at_once_keeps_nothing(tmp_path, monkeypatch, capsys):
 
 def test_frames_do_not_depend_on_the_company(tmp_path):
     rows = [
-        [row[2:] for row in found["rows"] if {found["players"][k]["label"] for k in row[:2]} == {"ghost_ball", "random"}]
-        for found in (played(tmp_path, name="a.json"), played(tmp_path, name="b.json", players=("ghost_ball", "random")))
-    ]  # fmt: skip
+        [
+            row[2:]
+            for row in found["rows"]
+            if {found["players"][k]["label"] for k in row[:2]} == {"ghost_ball", "random"}
+        ]
+        for found in (
+            played(tmp_path, name="a.json"),
+            played(tmp_path, name="b.json", players=("ghost_ball", "random")),
+        )
+    ]
     assert rows[0] == rows[1] and len(rows[0]) == 6
 
 
@@ -170,7 +191,10 @@ def test_frames_do_not_depend_on_the_company(tmp_path):
         (["ghost_ball", "random", "--frames", "0"], "frames = 0: must be an integer in \\[2"),
         (["ghost_ball", "random", "--match", "4"], "match = 4: must be odd"),
         (["ghost_ball", "random", "--fewer", "me=2"], "fewer = 'me=2': must be LABEL=N"),
-        (["ghost_ball", "random", "--fewer", "random=200"], "fewer = 200: must be an integer in \\[2, 100\\]"),
+        (
+            ["ghost_ball", "random", "--fewer", "random=200"],
+            "fewer = 200: must be an integer in \\[2, 100\\]",
+        ),
         (["ghost_ball", "random", "--anchor", "me"], "anchor = 'me': must be one of"),
         (["ghost_ball", "random", "--noise", "loud"], "noise = 'loud': must be one of"),
         (["ghost_ball", "random", "--physics", "mars"], "physics = 'mars': must be one of"),
@@ -183,8 +207,14 @@ def test_frames_do_not_depend_on_the_company(tmp_path):
         (["ghost_ball", "random", "--out", "pyproject.toml"], "out = 'pyproject.toml': must be a new file"),
         (["ghost_ball", "random", "--out", "pyproject.toml", "--resume"], "pyproject.toml: must be JSON"),
         (["ghost_ball", "random", "--out", "tests", "--force"], "out = 'tests': must be a file"),
-        (["--show", "nothing.json"], "show = 'nothing.json': must be the file of a tournament .cannot be read"),
-        (["--show", "agents/results/main.json"], "show = 'agents/results/main.json': must be the file of a tournament"),
+        (
+            ["--show", "nothing.json"],
+            "show = 'nothing.json': must be the file of a tournament .cannot be read",
+        ),
+        (
+            ["--show", "agents/results/main.json"],
+            "show = 'agents/results/main.json': must be the file of a tournament",
+        ),
     ],
 )
 def test_bad_input_ends_with_one_clear_line(options, says, capsys, monkeypatch):
@@ -199,7 +229,11 @@ def test_another_tournament_is_not_gone_on_with(tmp_path, capsys, parts, monkeyp
     with monkeypatch.context() as patch:
         interrupted_at(patch, 2)
         played(tmp_path, code=130)
-    for change, what in ((["--noise", "club"], "game"), (["--seed", "5"], "protocol"), (["--max-strokes", "9"], "game")):
+    for change, what in (
+        (["--noise", "club"], "game"),
+        (["--seed", "5"], "protocol"),
+        (["--max-strokes", "9"], "game"),
+    ):
         with pytest.raises(SystemExit):
             played(tmp_path, "--resume", *change)
         assert f"must be a file with the same {what} to go on with" in capsys.readouterr().err
@@ -210,11 +244,20 @@ def test_another_tournament_is_not_gone_on_with(tmp_path, capsys, parts, monkeyp
 
 def sound():
     """The content of a file of two players, without playing."""
-    rows = [[0, 1, s, o, 0, (s + o) % 2, 60, 30, 50, 30, 10, 10, 30, 20, 0, 2, 20, 12] for s in range(3) for o in (0, 1)]
+    rows = [
+        [0, 1, s, o, 0, (s + o) % 2, 60, 30, 50, 30, 10, 10, 30, 20, 0, 2, 20, 12]
+        for s in range(3)
+        for o in (0, 1)
+    ]
     found = json.loads((ROOT / "agents" / "results" / "ladder.json").read_text())
     players = [found["players"][k] | {"label": label} for k, label in enumerate("ab")]
     protocol = found["protocol"] | {"matches": 6, "fewer": {}, "anchor": "a", "resamples": 100}
-    return found | {"players": players, "protocol": protocol, "rows": rows, "figures": figures_of(["a", "b"], rows, "a", 100)}
+    return found | {
+        "players": players,
+        "protocol": protocol,
+        "rows": rows,
+        "figures": figures_of(["a", "b"], rows, "a", 100),
+    }
 
 
 def changed(path, value):
@@ -275,7 +318,15 @@ def test_the_ladder_of_the_repository_is_sound(capsys):
 
     assert (folder / "ladder.md").read_text() == markdown(found)
     labels = {p["label"] for p in found["players"]}
-    assert labels >= {"random", "ghost_ball", "geometric", "ppo_target", "ppo_mask", "ppo_foresight", "search_200"}
+    assert labels >= {
+        "random",
+        "ghost_ball",
+        "geometric",
+        "ppo_target",
+        "ppo_mask",
+        "ppo_foresight",
+        "search_200",
+    }
 
 
 def test_the_page_explains_every_field():

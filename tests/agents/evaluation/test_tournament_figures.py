@@ -1,13 +1,29 @@
-"""Do the figures of a tournament follow from its frames as they say? Invented frames, and a plain bootstrap beside."""
+"""Do the figures of a tournament follow from its frames as they say? Invented frames, and a plain bootstrap
+beside."""
 
 import numpy as np
 import pytest
 
-from agents.evaluation.tournament_figures import ANCHOR_ELO, COLUMNS, COUNTED, KEYS, figures_of, pairs_of, schedule
+from agents.evaluation.tournament_figures import (
+    ANCHOR_ELO,
+    COLUMNS,
+    COUNTED,
+    KEYS,
+    figures_of,
+    pairs_of,
+    schedule,
+)
 from agents.evaluation.tournament_strengths import ELO, chance, strengths
 from snooker_env.benchmark import unseen
 
-SOUND = {"points": (60, 30), "scored": (50, 30), "visits": (10, 10), "strokes": (30, 20), "fouls": (0, 2), "best": (20, 12)}
+SOUND = {
+    "points": (60, 30),
+    "scored": (50, 30),
+    "visits": (10, 10),
+    "strokes": (30, 20),
+    "fouls": (0, 2),
+    "best": (20, 12),
+}
 
 
 def row(first, second, seed, opener, winner, frame=0, **changes):
@@ -28,7 +44,10 @@ def invented(t, seeds, rng, best_of=1):
 
 
 def test_the_columns_are_those_of_both_players():
-    assert len(COLUMNS) == len(KEYS) + 2 * len(COUNTED) == len(row(0, 1, 0, 0, 0)) and COLUMNS[6:8] == ("points_first", "points_second")
+    assert len(COLUMNS) == len(KEYS) + 2 * len(COUNTED) == len(row(0, 1, 0, 0, 0)) and COLUMNS[6:8] == (
+        "points_first",
+        "points_second",
+    )
 
 
 def test_shares_and_draws():
@@ -44,7 +63,10 @@ def test_shares_and_draws():
 
 
 def test_points_breaks_fouls_and_strokes_are_each_players_own():
-    rows = [row(0, 1, 0, 0, 0), row(0, 1, 0, 1, 0, scored=(10, 5), visits=(30, 10), best=(9, 40), fouls=(1, 0), points=(10, 25))]
+    rows = [
+        row(0, 1, 0, 0, 0),
+        row(0, 1, 0, 1, 0, scored=(10, 5), visits=(30, 10), best=(9, 40), fouls=(1, 0), points=(10, 25)),
+    ]
     a, b = (figures_of(["a", "b"], rows, "a")["players"][label] for label in "ab")
     assert a["points_a_frame"]["value"] == 35.0 and b["points_a_frame"]["value"] == 27.5
     assert a["average_break"]["value"] == 60 / 40 and b["average_break"]["value"] == 35 / 20
@@ -55,7 +77,13 @@ def test_points_breaks_fouls_and_strokes_are_each_players_own():
 
 def test_a_match_is_one_unit():
     """The best of three: 2-0, and 1-1 with a frame that was stopped, which is a draw."""
-    rows = [row(0, 1, 0, 0, 0), row(0, 1, 0, 0, 0, 1), row(0, 1, 0, 1, 0), row(0, 1, 0, 1, -1, 1), row(0, 1, 0, 1, 1, 2)]
+    rows = [
+        row(0, 1, 0, 0, 0),
+        row(0, 1, 0, 0, 0, 1),
+        row(0, 1, 0, 1, 0),
+        row(0, 1, 0, 1, -1, 1),
+        row(0, 1, 0, 1, 1, 2),
+    ]
     a = figures_of(["a", "b"], rows, "a")["players"]["a"]
     assert (a["matches"], a["frames"], a["won"], a["drawn"]) == (2, 5, 1.5, 1)
     assert a["win_rate"]["value"] == 0.75 and a["frame_rate"]["value"] == pytest.approx(3.5 / 5)
@@ -77,15 +105,21 @@ def test_intervals_are_those_of_seeds_drawn_together():
         drawn.append([wins[0].sum() / (4 * n), ANCHOR_ELO + ELO * (s[0] - s[1])])
     low, high = np.quantile(drawn, [0.025, 0.975], axis=0)
     a = found["players"]["a"]
-    assert a["win_rate"]["low"] == pytest.approx(low[0], abs=0.01) and a["win_rate"]["high"] == pytest.approx(high[0], abs=0.01)
-    assert a["elo"]["low"] == pytest.approx(low[1], abs=8) and a["elo"]["high"] == pytest.approx(high[1], abs=8)
+    assert a["win_rate"]["low"] == pytest.approx(low[0], abs=0.01) and a["win_rate"]["high"] == pytest.approx(
+        high[0], abs=0.01
+    )
+    assert a["elo"]["low"] == pytest.approx(low[1], abs=8) and a["elo"]["high"] == pytest.approx(
+        high[1], abs=8
+    )
 
 
 def test_intervals_of_elo_cover_the_truth():
     """Of 200 tournaments 95 % of the intervals hold the true difference, within what 200 can tell."""
     t, held = [0.6, 0.0, -0.4], 0
     for k in range(200):
-        elo = figures_of(["a", "b", "c"], invented(t, 60, np.random.default_rng(k)), "b", resamples=200)["players"]["a"]["elo"]
+        elo = figures_of(["a", "b", "c"], invented(t, 60, np.random.default_rng(k)), "b", resamples=200)[
+            "players"
+        ]["a"]["elo"]
         held += elo["low"] <= ANCHOR_ELO + ELO * 0.6 <= elo["high"]
     assert 178 <= held <= 199
 
@@ -97,7 +131,10 @@ def test_who_never_wins_has_bounds_and_no_interval():
             one[5] = 1  # a and b beat each other, c never wins
     found = figures_of(["a", "b", "c"], rows, "a")["players"]
     assert found["c"]["elo_by_prior"] and not found["b"]["elo_by_prior"]
-    assert found["c"]["elo"]["low"] is None and found["c"]["elo"]["value"] < found["c"]["elo"]["high"] < found["b"]["elo"]["value"]
+    assert (
+        found["c"]["elo"]["low"] is None
+        and found["c"]["elo"]["value"] < found["c"]["elo"]["high"] < found["b"]["elo"]["value"]
+    )
     assert found["c"]["win_rate"] == {"value": 0.0, "low": 0.0, "high": unseen(60)}
     assert found["a"]["elo"]["value"] == ANCHOR_ELO
     turned = [[*one[:5], 1 - one[5], *one[6:]] for one in rows]
@@ -120,4 +157,6 @@ def test_part_of_a_tournament_has_figures_too():
     found = figures_of(["a", "b", "c", "d"], rows, "a")
     assert found["players"]["c"] is None and len(found["pairs"]) == 1 == len(pairs_of(rows))
     found = figures_of(["a", "b", "c", "d"], rows + [[2, 3, *r[2:]] for r in rows], "a")
-    assert found["players"]["c"]["elo"]["value"] is None and found["players"]["b"]["elo"]["value"] == pytest.approx(ANCHOR_ELO)
+    assert found["players"]["c"]["elo"]["value"] is None and found["players"]["b"]["elo"][
+        "value"
+    ] == pytest.approx(ANCHOR_ELO)

@@ -1,4 +1,5 @@
-"""Is each frame of a tournament played and counted as it should be? Stroke by stroke beside it, and from both sides of the table."""
+"""Is each frame of a tournament played and counted as it should be? Stroke by stroke beside it, and from both
+sides of the table."""
 
 from typing import ClassVar
 
@@ -67,7 +68,9 @@ def play(first, second, seeds, *, tables=128, monkeypatch=None, **more):
     if monkeypatch is not None:
         monkeypatch.setattr(tournament_play, "TABLES", tables)
     best_of, threads = more.pop("best_of", 1), more.pop("threads", 1)
-    return play_pair((0, 1), (TimedPlayer(first), TimedPlayer(second)), GAME | more, list(seeds), best_of, threads)
+    return play_pair(
+        (0, 1), (TimedPlayer(first), TimedPlayer(second)), GAME | more, list(seeds), best_of, threads
+    )
 
 
 @pytest.fixture
@@ -90,7 +93,10 @@ def test_what_is_counted_is_what_the_referee_saw(strokes, miss):
     rows = frames(play(ghost_ball(), softly(), [3, 4, 5], miss=miss))
     assert len(rows) == 6 and [r["opener"] for r in rows] == [0, 1] * 3
     for r in in_order(rows):
-        mine, strokes[:] = strokes[: r["strokes_first"] + r["strokes_second"]], strokes[r["strokes_first"] + r["strokes_second"] :]
+        mine, strokes[:] = (
+            strokes[: r["strokes_first"] + r["strokes_second"]],
+            strokes[r["strokes_first"] + r["strokes_second"] :],
+        )
         names = ("second", "first") if exchanged(r) else ("first", "second")
         assert names[mine[0][0]] == ("first", "second")[r["opener"]]  # who breaks
         for side, name in enumerate(names):
@@ -101,7 +107,11 @@ def test_what_is_counted_is_what_the_referee_saw(strokes, miss):
                 if player == side:
                     visits[-1] += points
                 before = player, points
-            assert r[f"scored_{name}"] == sum(visits) and r[f"visits_{name}"] == len(visits) and r[f"best_{name}"] == max(visits)
+            assert (
+                r[f"scored_{name}"] == sum(visits)
+                and r[f"visits_{name}"] == len(visits)
+                and r[f"best_{name}"] == max(visits)
+            )
             assert r[f"strokes_{name}"] == sum(player == side for player, _, _ in mine)
             assert r[f"fouls_{name}"] == sum(player == side and fouls != 0 for player, _, fouls in mine)
         if miss == "off":
@@ -120,7 +130,10 @@ def test_rows_depend_neither_on_threads_nor_on_how_many_tables_there_are(monkeyp
 @pytest.mark.parametrize("second", [ghost_ball, softly, Geometric])
 def test_the_order_of_the_players_does_not_matter(second):
     """Both are the agent in one frame on each seed."""
-    one, other = frames(play(ghost_ball(), second(), range(4))), frames(play(second(), ghost_ball(), range(4)))
+    one, other = (
+        frames(play(ghost_ball(), second(), range(4))),
+        frames(play(second(), ghost_ball(), range(4))),
+    )
     turned = sorted(other, key=lambda r: (r["seed"], 1 - r["opener"]))
     for a, b in zip(one, turned, strict=True):
         assert (a["seed"], a["opener"], a["winner"]) == (b["seed"], 1 - b["opener"], 1 - b["winner"])
@@ -132,7 +145,9 @@ def test_the_order_of_the_players_does_not_matter(second):
 
 def test_a_frame_that_is_stopped_has_no_winner():
     rows = frames(play(ghost_ball(), softly(), [0, 1], max_strokes=7))
-    assert [r["winner"] for r in rows] == [-1] * 4 and {r["strokes_first"] + r["strokes_second"] for r in rows} == {7}
+    assert [r["winner"] for r in rows] == [-1] * 4 and {
+        r["strokes_first"] + r["strokes_second"] for r in rows
+    } == {7}
     assert {r["frame"] for r in rows} == {0}
 
 
@@ -140,7 +155,8 @@ def test_a_frame_that_the_opponent_wins_in_his_first_visit_counts():
     rows = frames(play(Careful(), ghost_ball(), range(40), layout="pots:easy"))
     at_once = [r for r in rows if r["strokes_first"] == 0]
     assert at_once and all(r["winner"] == 1 and r["opener"] == 1 and r["visits_second"] == 1 for r in at_once)
-    assert {exchanged(r) for r in at_once} == {False, True}  # the opponent won in his first visit, and the agent in its
+    # the opponent won in his first visit, and the agent in its
+    assert {exchanged(r) for r in at_once} == {False, True}
     assert len(rows) == 80
 
 

@@ -1,4 +1,5 @@
-"""Does the model of Bradley and Terry recover known strengths, and does it stay finite where wins alone do not decide?"""
+"""Does the model of Bradley and Terry recover known strengths, and does it stay finite where wins alone do
+not decide?"""
 
 import numpy as np
 import pytest

@@ -11,7 +11,8 @@ from snooker_env.benchmark import play_visits, tables_of
 
 
 def test_every_position_is_compared_with_what_followed(monkeypatch):
-    """A value that knows the points of the visit so far: their sum with what followed is the visit's, whichever stroke it is."""
+    """A value that knows the points of the visit so far: their sum with what followed is the visit's,
+    whichever stroke it is."""
     player = sn.player("search_30")
     seen = []
     original = value_quality.play_visits
@@ -47,7 +48,17 @@ def test_the_planner_plays_as_without_being_watched():
 
 def test_the_command_writes_its_figures(tmp_path, capsys):
     files = [tmp_path / "q.json", tmp_path / "q.md"]
-    options = ["--agent", "planner_30", "--visits", "3", "--layouts", "colours", "--noise", "club", "professional"]
+    options = [
+        "--agent",
+        "planner_30",
+        "--visits",
+        "3",
+        "--layouts",
+        "colours",
+        "--noise",
+        "club",
+        "professional",
+    ]
     assert value_quality.main([*options, "--json", str(files[0]), "--markdown", str(files[1])]) == 0
     report = json.loads(files[0].read_text())
     assert [one["noise"] for one in report["results"]] == ["club", "professional"]

@@ -1,4 +1,5 @@
-"""Does ``python -m agents.watch`` show what an agent plays? The same visit as the protocol plays, as a page, as data and as films."""
+"""Does ``python -m agents.watch`` show what an agent plays? The same visit as the protocol plays, as a page,
+as data and as films."""
 
 import json
 
@@ -63,12 +64,17 @@ def test_the_first_visit_that_is_long_enough_is_taken(capsys):
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        (["--agent", "nobody"], "agent"), (["--out", "a.exe"], "must be one of '.html'"), (["--out", "a.html", "--speed", "2"], "a film"),
-        (["--out", "a.mp4", "--size", "big"], "WIDTHxHEIGHT"), (["--out", "a.mp4", "--size", "321x180"], "even"),
+        (["--agent", "nobody"], "agent"),
+        (["--out", "a.exe"], "must be one of '.html'"),
+        (["--out", "a.html", "--speed", "2"], "a film"),
+        (["--out", "a.mp4", "--size", "big"], "WIDTHxHEIGHT"),
+        (["--out", "a.mp4", "--size", "321x180"], "even"),
         (["--tries", "0"], "tries"),
-        (["--out", "a.gif", "--fps", "0"], "fps"), (["--layout", "nowhere"], "layout"), (["--noise", "loud"], "noise"),
+        (["--out", "a.gif", "--fps", "0"], "fps"),
+        (["--layout", "nowhere"], "layout"),
+        (["--noise", "loud"], "noise"),
     ],
-)  # fmt: skip
+)
 def test_wrong_arguments_are_named(wrong, words, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(SystemExit) as stop:

@@ -1,4 +1,5 @@
-"""Does ``agents.features.indirect_pots`` find the banks, plants and cannons there are, and no others, and do the aims it solves pot?"""
+"""Does ``agents.features.indirect_pots`` find the banks, plants and cannons there are, and no others, and do
+the aims it solves pot?"""
 
 from math import atan2, cos, hypot, pi, sin
 
@@ -7,7 +8,20 @@ import pytest
 
 import snooker_env as sn
 from agents.features import indirect_pots as ind
-from agents.features.indirect_pots import AIM_X, AIM_Y, BALL, BANK, CANNON, GHOST_X, GHOST_Y, KIND, OTHER, PLANT, POCKET, TOLERANCE
+from agents.features.indirect_pots import (
+    AIM_X,
+    AIM_Y,
+    BALL,
+    BANK,
+    CANNON,
+    GHOST_X,
+    GHOST_Y,
+    KIND,
+    OTHER,
+    PLANT,
+    POCKET,
+    TOLERANCE,
+)
 from agents.players.aim_search import Aimer, widest_run
 from snooker_env.benchmark import play_visits
 from snooker_env.envs.vector import SnookerVectorEnv
@@ -56,7 +70,9 @@ def aimer():
 def batch(*several, ball_on=BallOn.RED):
     """Positions that are being played, of balls {id: (x, y)} each."""
     positions, on_table = zip(*map(table, several), strict=True)
-    return Positions(np.stack(positions), np.stack(on_table), np.array([[int(ball_on), 0, 0, 0, 0]] * len(several)))
+    return Positions(
+        np.stack(positions), np.stack(on_table), np.array([[int(ball_on), 0, 0, 0, 0]] * len(several))
+    )
 
 
 def tried(aimer, places, shot, ball_on=BallOn.RED):
@@ -77,7 +93,11 @@ def simulated(places, stroke, turn=0.0):
 def met(shot, kind, *balls):
     """How many events of a kind these balls have."""
     events = shot.events[shot.events["kind"] == kind]
-    return int((events["i"] == balls[0]).sum() if len(balls) == 1 else ((events["i"] == balls[0]) & (events["j"] == balls[1])).sum())
+    return int(
+        (events["i"] == balls[0]).sum()
+        if len(balls) == 1
+        else ((events["i"] == balls[0]) & (events["j"] == balls[1])).sum()
+    )
 
 
 BANKED = {CUE: (0.2, -0.9), 1: (-0.2, -0.2)}
@@ -88,7 +108,8 @@ OFF = {CUE: (-0.04, -1.24), 1: (0.08, -0.56), BLUE: (0.48, -0.09)}
 def test_a_bank_is_the_mirror_image_and_goes_in(aimer):
     shot = one(found(BANKED), KIND=BANK, POCKET=TOP_RIGHT, BALL=1)
     red, at, pocket = np.array(BANKED[1]), shot[[AIM_X, AIM_Y]], POCKET_AIMS[TOP_RIGHT, :2]
-    assert at[0] == pytest.approx(-(HALF_WIDTH - R), abs=1e-12)  # as near as a ball's centre comes to the cushion
+    # as near as a ball's centre comes to the cushion
+    assert at[0] == pytest.approx(-(HALF_WIDTH - R), abs=1e-12)
     before, after = at - red, pocket - at
     assert before[1] / before[0] == pytest.approx(-after[1] / after[0], rel=1e-12)
     ghost = shot[[GHOST_X, GHOST_Y]]
@@ -109,7 +130,8 @@ def contact(start, angle, ball):
 
 
 def half_window_over_slope(passes, pocket):
-    """The tolerance of straight lines: ``passes(turn)`` is the last leg for a turn of the cue ball's, its start and its direction."""
+    """The tolerance of straight lines: ``passes(turn)`` is the last leg for a turn of the cue ball's, its
+    start and its direction."""
 
     def aside(turn):
         start, d = passes(turn)
@@ -118,7 +140,8 @@ def half_window_over_slope(passes, pocket):
 
     assert pocket not in (2, 5)
     angle = np.degrees(np.arccos(passes(0.0)[1] @ POCKET_AIMS[pocket, 2:4]))
-    window = np.interp(angle, (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0))  # game.pots, of a corner
+    # game.pots, of a corner
+    window = np.interp(angle, (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0))
     assert aside(0.0) == pytest.approx(0.0, abs=1e-9)
     return 0.5 * window / abs((aside(1e-6) - aside(-1e-6)) / 2e-6)
 
@@ -167,7 +190,8 @@ def test_the_tolerance_of_a_cannon_is_what_the_straight_lines_allow():
             d = (first - contact(cue, angle + turn, first)) / (2 * R)
             at = contact(first, atan2(*d[::-1]), blue)
             centres = (blue - at) / (2 * R)
-            after = d - 5 / 7 * 0.5 * (1 + PAPER.e_b) * (d @ centres) * centres  # rolling: 5/7 after and 2/7 before
+            # rolling: 5/7 after and 2/7 before
+            after = d - 5 / 7 * 0.5 * (1 + PAPER.e_b) * (d @ centres) * centres
             return at, after / np.hypot(*after)
 
         assert shot[TOLERANCE] == pytest.approx(half_window_over_slope(last_leg, int(shot[POCKET])), rel=0.25)
@@ -179,7 +203,9 @@ def test_a_plant_drives_the_second_red_in(aimer):
     d = (pocket - second) / np.hypot(*(pocket - second))
     meets = second - 2 * R * d
     assert shot[[AIM_X, AIM_Y]] == pytest.approx(meets, abs=1e-12)
-    assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(first - 2 * R * (meets - first) / np.hypot(*(meets - first)), abs=1e-12)
+    assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(
+        first - 2 * R * (meets - first) / np.hypot(*(meets - first)), abs=1e-12
+    )
     stroke, half, _, _ = tried(aimer, PLANTED, shot)
     played = simulated(PLANTED, stroke)
     assert played.potted[2] == TOP_RIGHT and played.potted[CUE] < 0
@@ -195,7 +221,9 @@ def test_a_set_plant_is_aimed_along_the_line_of_the_two_reds(aimer):
     first = second - 2 * R * np.array((cos(angle), sin(angle)))
     places = {CUE: (0.3, 0.3), 1: tuple(first), 2: tuple(second)}
     shot = one(found(places), KIND=PLANT, BALL=1, OTHER=2, POCKET=TOP_RIGHT)
-    assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(first - 2 * R * np.array((cos(angle), sin(angle))), abs=1e-9)
+    assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(
+        first - 2 * R * np.array((cos(angle), sin(angle))), abs=1e-9
+    )
     stroke, half, _, _ = tried(aimer, places, shot)
     assert simulated(places, stroke).potted[2] == TOP_RIGHT and half > 5e-3
     first = second - 2 * R * np.array((cos(angle + 0.2), sin(angle + 0.2)))
@@ -207,10 +235,15 @@ def test_a_cannon_goes_off_the_other_ball(aimer):
     shots = found(OFF)
     for shot in shots[(shots[:, KIND] == CANNON)]:
         at = shot[[AIM_X, AIM_Y]]
-        assert shot[BALL] == 1 and shot[OTHER] == BLUE and hypot(*(at - OFF[BLUE])) == pytest.approx(2 * R, abs=1e-9)
+        assert (
+            shot[BALL] == 1
+            and shot[OTHER] == BLUE
+            and hypot(*(at - OFF[BLUE])) == pytest.approx(2 * R, abs=1e-9)
+        )
         before, centres = (at - OFF[1]) / np.hypot(*(at - OFF[1])), (OFF[BLUE] - at) / (2 * R)
         sliding = before - 0.5 * (1 + PAPER.e_b) * (before @ centres) * centres
-        rolling = 5 / 7 * sliding + 2 / 7 * before  # what is left when the cloth has made both spins the ball's own
+        # what is left when the cloth has made both spins the ball's own
+        rolling = 5 / 7 * sliding + 2 / 7 * before
         pocket = POCKET_AIMS[int(shot[POCKET]), :2] - at
         assert rolling @ pocket / np.hypot(*rolling) == pytest.approx(np.hypot(*pocket), rel=1e-9)
     hits = [(shot, tried(aimer, OFF, shot)) for shot in shots if shot[KIND] == CANNON]
@@ -218,7 +251,11 @@ def test_a_cannon_goes_off_the_other_ball(aimer):
     assert hits
     for shot, stroke in hits:
         played = simulated(OFF, stroke)
-        assert played.potted[1] == shot[POCKET] and met(played, EventKind.BALL_BALL, 1, BLUE) >= 1 and played.potted[BLUE] < 0
+        assert (
+            played.potted[1] == shot[POCKET]
+            and met(played, EventKind.BALL_BALL, 1, BLUE) >= 1
+            and played.potted[BLUE] < 0
+        )
 
 
 def between(a, b, share, aside=0.0):
@@ -230,11 +267,14 @@ def between(a, b, share, aside=0.0):
 
 @pytest.mark.parametrize("leg", range(3))
 @pytest.mark.parametrize("side", [-1.0, 1.0])
-@pytest.mark.parametrize(("places", "wanted"), [
-    (BANKED, {"KIND": BANK, "BALL": 1, "POCKET": TOP_RIGHT}),
-    (PLANTED, {"KIND": PLANT, "BALL": 1, "OTHER": 2, "POCKET": TOP_RIGHT}),
-    (OFF, {"KIND": CANNON, "BALL": 1, "OTHER": BLUE}),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("places", "wanted"),
+    [
+        (BANKED, {"KIND": BANK, "BALL": 1, "POCKET": TOP_RIGHT}),
+        (PLANTED, {"KIND": PLANT, "BALL": 1, "OTHER": 2, "POCKET": TOP_RIGHT}),
+        (OFF, {"KIND": CANNON, "BALL": 1, "OTHER": BLUE}),
+    ],
+)
 def test_a_ball_on_any_leg_blocks_it(places, wanted, leg, side):
     def offered(more):
         shots = found({**places, **more})
@@ -307,11 +347,14 @@ def test_mirrored_tables_are_played_with_mirrored_aims(aimer):
 
 
 def test_where_the_plain_line_pots_it_is_played():
-    """Where the widest pot goes in along its solved line, that stroke is the one; elsewhere others are found."""
+    """Where the widest pot goes in along its solved line, that stroke is the one; elsewhere others are
+    found."""
     env = SnookerVectorEnv(60, layout="held_out")
     env.reset(seed=3)
     at, planner = Positions.of(env), Planner({"action": "discrete"})
-    plain = planner.strokes_of(at, np.arange(60), np.full(60, choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))))[0]
+    plain = planner.strokes_of(
+        at, np.arange(60), np.full(60, choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0)))
+    )[0]
     searched = sn.player("geometric").at(env).play(at, np.zeros(60, int)).values
     made = planner.play(at, np.arange(60), strokes=plain).points > 0
     assert 30 < made.sum() < 60 and np.allclose(searched[made], plain[made], atol=1e-6)
@@ -351,5 +394,8 @@ def test_the_widest_of_several_is_taken(aimer):
 
 
 def test_a_visit_is_longer_than_the_plain_players():
-    plain, own = (play_visits(sn.player(name), 30, noise="none", threads=1).made.sum() for name in ("ghost_ball", "geometric"))
+    plain, own = (
+        play_visits(sn.player(name), 30, noise="none", threads=1).made.sum()
+        for name in ("ghost_ball", "geometric")
+    )
     assert own > 1.5 * plain

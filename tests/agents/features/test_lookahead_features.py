@@ -19,7 +19,9 @@ DISCRETE = {"action": "discrete"}
 
 
 def rows_of(seen):
-    return seen[:, pot_view.SHOWN :].reshape(len(seen), lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)
+    return seen[:, pot_view.SHOWN :].reshape(
+        len(seen), lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES
+    )
 
 
 def test_foresight_shows_what_happens_without_errors():
@@ -31,7 +33,9 @@ def test_foresight_shows_what_happens_without_errors():
     assert seen.shape == (5, *lookahead_features.SPACE.shape) and lookahead_features.SPACE.contains(seen[0])
     assert np.array_equal(seen[:, : pot_view.SHOWN], pot_view.with_pots(observations))
     rows, exact = rows_of(seen), tables(5, noise="none", **DISCRETE)
-    assert np.array_equal(rows[:, :, lookahead_features.THERE] > 0, env.action_masks()[:, lookahead_features.PICKS])
+    assert np.array_equal(
+        rows[:, :, lookahead_features.THERE] > 0, env.action_masks()[:, lookahead_features.PICKS]
+    )
     for stroke in (0, 8, 14):
         exact.reset(options={"states": env.get_state()})
         _, rewards, ended, _, _ = exact.step(lookahead_features.PICKS[np.full(5, stroke)])
@@ -39,9 +43,13 @@ def test_foresight_shows_what_happens_without_errors():
         assert np.allclose(row[:, lookahead_features.POINTS], rewards / 7.0) and np.array_equal(
             row[:, lookahead_features.GOES_ON] > 0, ~ended
         )
-        assert not row[:, lookahead_features.SPREAD].any() and np.array_equal(row[:, lookahead_features.SCORED] > 0, rewards > 0)
+        assert not row[:, lookahead_features.SPREAD].any() and np.array_equal(
+            row[:, lookahead_features.SCORED] > 0, rewards > 0
+        )
         cue = exact.tables.positions[:, 0] / (pot_view.HALF_WIDTH, pot_view.HALF_LENGTH)
-        assert np.allclose(row[~ended, lookahead_features.CUE_X : lookahead_features.CUE_Y + 1], cue[~ended], atol=1e-6)
+        assert np.allclose(
+            row[~ended, lookahead_features.CUE_X : lookahead_features.CUE_Y + 1], cue[~ended], atol=1e-6
+        )
         assert np.allclose(lookahead_features.worth_by_rule(rows)[ended, stroke], rewards[ended], atol=1e-5)
     part = view(at[[1, 3]], observations[[1, 3]])
     assert np.array_equal(part, seen[[1, 3]])
@@ -63,7 +71,11 @@ def test_foresight_is_the_mean_over_noise_samples_with_the_errors_of_the_tables(
             other.tables.streams[:] = (key, 0)
             _, points[i], ended, _, _ = other.step(lookahead_features.PICKS[np.full(4, stroke)])
             values, chances = prospects.prospects_of(Positions.of(other), spread, most=8)
-            on[i], worth[i], next_best[i] = ~ended, ~ended * values, ~ended[:, None] * -np.sort(-chances)[:, :3]
+            on[i], worth[i], next_best[i] = (
+                ~ended,
+                ~ended * values,
+                ~ended[:, None] * -np.sort(-chances)[:, :3],
+            )
             cue[i] = ~ended * other.tables.positions[:, 0, 1]
         row, goes_on = seen[:, stroke], np.maximum(1, on.sum(0))
         assert np.allclose(row[:, lookahead_features.POINTS], points.mean(0) / 7.0) and np.allclose(
@@ -73,9 +85,14 @@ def test_foresight_is_the_mean_over_noise_samples_with_the_errors_of_the_tables(
         assert np.allclose(row[:, lookahead_features.VALUE], worth.mean(0) / 25.0) and np.allclose(
             row[:, lookahead_features.SPREAD], worth.std(0) / 25.0
         )
-        assert np.allclose(row[:, lookahead_features.FIRST : lookahead_features.THIRD + 1], next_best.sum(0) / goes_on[:, None])
+        assert np.allclose(
+            row[:, lookahead_features.FIRST : lookahead_features.THIRD + 1],
+            next_best.sum(0) / goes_on[:, None],
+        )
         assert (next_best[..., 2] > 0).any()
-        assert np.allclose(row[:, lookahead_features.CUE_Y], cue.sum(0) / goes_on / pot_view.HALF_LENGTH, atol=1e-6)
+        assert np.allclose(
+            row[:, lookahead_features.CUE_Y], cue.sum(0) / goes_on / pot_view.HALF_LENGTH, atol=1e-6
+        )
 
 
 def test_foresight_says_which_stroke_it_is():
@@ -85,9 +102,13 @@ def test_foresight_says_which_stroke_it_is():
     planner, at, masks = Planner(env), Positions.of(env), env.action_masks()[:, lookahead_features.PICKS]
     rows = lookahead_features.ForesightView(1).at(env.options).ahead(at, masks)
     chances = prospects.prospects_of(at, prospects.spread_of(planner.noise, planner.physics))[1]
-    strokes = [(pot, speed, top) for pot in (0, 1) for speed in (1.3, 2.3, 3.6, 5.3) for top in (-0.4, 0.0, 0.4)]
+    strokes = [
+        (pot, speed, top) for pot in (0, 1) for speed in (1.3, 2.3, 3.6, 5.3) for top in (-0.4, 0.0, 0.4)
+    ]
     there = np.array([[chances[k, pot] > 0 for pot, _, _ in strokes] for k in range(6)])
-    assert len(strokes) == lookahead_features.STROKES_SEEN and np.array_equal(rows[..., lookahead_features.THERE] > 0, there)
+    assert len(strokes) == lookahead_features.STROKES_SEEN and np.array_equal(
+        rows[..., lookahead_features.THERE] > 0, there
+    )
     assert there[:3, -1].any() and there[3:, -1].any() and np.ptp(chances[:, :2], axis=1).max() > 0.1
     for entry, expected in (
         (lookahead_features.CHANCE, [[chances[k, pot] for pot, _, _ in strokes] for k in range(6)]),
@@ -101,7 +122,11 @@ def test_foresight_says_which_stroke_it_is():
 def test_worth_by_hand():
     """Points, and 25 for a value of 1."""
     rows = np.zeros((1, 3, lookahead_features.ENTRIES))
-    rows[0, :2, lookahead_features.THERE], rows[0, :, lookahead_features.POINTS], rows[0, :, lookahead_features.VALUE] = (
+    (
+        rows[0, :2, lookahead_features.THERE],
+        rows[0, :, lookahead_features.POINTS],
+        rows[0, :, lookahead_features.VALUE],
+    ) = (
         1.0,
         (1.0, 1 / 7, 1.0),
         (0.0, 0.5, 1.0),
@@ -112,7 +137,10 @@ def test_worth_by_hand():
 def test_noise_samples_are_even():
     errors = errors_of(first_of(EVEN_SAMPLES))
     likely = [-1.2816, -0.5244, 0.0, 0.5244, 1.2816]
-    assert np.abs(np.sort(errors[:, [0, 3]], axis=0).T - likely).max() < 0.25 and np.abs(errors.mean(0)).max() < 0.15
+    assert (
+        np.abs(np.sort(errors[:, [0, 3]], axis=0).T - likely).max() < 0.25
+        and np.abs(errors.mean(0)).max() < 0.15
+    )
     assert np.abs(np.corrcoef(errors[:, :4].T) - np.eye(4)).max() < 0.55
     _, least, median = find(len(EVEN_SAMPLES), keys=200, starts=1)
     assert unevenness(errors) < least < median / 2

@@ -1,4 +1,5 @@
-"""Do value, policy and planner learn from each other as the file says, and does a stopped run end where an uninterrupted one does?"""
+"""Do value, policy and planner learn from each other as the file says, and does a stopped run end where an
+uninterrupted one does?"""
 
 import pickle
 
@@ -70,7 +71,8 @@ def a_run(seed=5, threads=1):
 
 
 def test_a_stopped_run_ends_where_an_uninterrupted_one_does():
-    """Bit for bit, stopped in each phase: before anything has learned, after the value's first steps, amid the rest."""
+    """Bit for bit, stopped in each phase: before anything has learned, after the value's first steps, amid
+    the rest."""
     model, whole = a_run()
     expected, ended = timeless(whole.get_state()), weights(model)
     assert whole.done == STATES and whole.curve[-1]["states"] == STATES
@@ -83,7 +85,8 @@ def test_a_stopped_run_ends_where_an_uninterrupted_one_does():
         again, venv = model_and_tables(seed=6)
         again.policy.load_state_dict(kept)
         torch.set_rng_state(generator)
-        second = run_to(ExpertIteration(again, venv, STATES, 5, 2, state), STATES)  # also on another number of threads
+        # also on another number of threads
+        second = run_to(ExpertIteration(again, venv, STATES, 5, 2, state), STATES)
         assert timeless(second.get_state()) == expected, k
         assert all(torch.equal(tensor, ended[name]) for name, tensor in weights(again).items()), k
 
@@ -94,33 +97,52 @@ def test_both_networks_learn_and_the_seed_matters():
     run = run_to(ExpertIteration(model, venv, STATES, 5, 1), STATES)
     after = weights(model)
     moved = {name for name in after if not torch.equal(before[name], after[name])}
-    assert any(name.startswith("position_value.") for name in moved) and any(name.startswith("features_extractor.") for name in moved)
-    assert any(name.startswith("action_net.") for name in moved) and all(torch.isfinite(tensor).all() for tensor in after.values())
+    assert any(name.startswith("position_value.") for name in moved) and any(
+        name.startswith("features_extractor.") for name in moved
+    )
+    assert any(name.startswith("action_net.") for name in moved) and all(
+        torch.isfinite(tensor).all() for tensor in after.values()
+    )
     last = run.curve[-1]
-    assert set(last) == {"states", "seconds", "loss", "value_loss", "value"} and last["value"] > 0.0 and last["seconds"] >= 0.0
+    assert (
+        set(last) == {"states", "seconds", "loss", "value_loss", "value"}
+        and last["value"] > 0.0
+        and last["seconds"] >= 0.0
+    )
     assert timeless(a_run(seed=7)[1].get_state()) != timeless(run.get_state())
 
 
 def test_the_rule_and_even_proposals_come_first():
-    """To the round: an eighth of all positions by the rule of thumb, before the value is fitted, and a fifth with even proposals."""
+    """To the round: an eighth of all positions by the rule of thumb, before the value is fitted, and a fifth
+    with even proposals."""
     model, venv = model_and_tables()
     run = ExpertIteration(model, venv, 320, 5, 1)
     seen = []
     while run.done < 80:
         before = run.done
         run.round()
-        seen.append((before, isinstance(run._sent["value"], LearnedValue), run._sent["policy"] is not None, bool(run._value.losses)))
+        seen.append(
+            (
+                before,
+                isinstance(run._sent["value"], LearnedValue),
+                run._sent["policy"] is not None,
+                bool(run._value.losses),
+            )
+        )
     assert seen == [(done, done > 40, done >= 64, done >= 40) for done in range(0, 80, N)]
 
 
 def test_a_round_keeps_what_its_samples_led_to(monkeypatch):
-    """Features of the position and of what each sample left, points, ends; the next position is what the played stroke left."""
+    """Features of the position and of what each sample left, points, ends; the next position is what the
+    played stroke left."""
     model, venv = model_and_tables()
     run, added, played = ExpertIteration(model, venv, STATES, 5, 1), [], []
     search = search_of(run._sent, 1)
     spread, outcomes = search.spread, search.outcomes
     monkeypatch.setattr(run._value, "add", lambda *one: added.append(one))
-    monkeypatch.setattr(search, "outcomes", lambda *given: played.append((given, outcomes(*given))) or played[-1][1])
+    monkeypatch.setattr(
+        search, "outcomes", lambda *given: played.append((given, outcomes(*given))) or played[-1][1]
+    )
     monkeypatch.setattr(run._value, "fit", lambda remaining: None)
     followed = 0
     for _ in range(6):
@@ -128,14 +150,20 @@ def test_a_round_keeps_what_its_samples_led_to(monkeypatch):
         run._play()
         (given, rows, strokes, _), out = played[-1]
         seen, after, points, goes_on, follows = added[-1]
-        assert np.array_equal(seen, value_features(at, spread).astype(np.float16)) and np.array_equal(given.positions, at.positions)
+        assert np.array_equal(seen, value_features(at, spread).astype(np.float16)) and np.array_equal(
+            given.positions, at.positions
+        )
         assert rows.tolist() == [*np.repeat(np.arange(N), FRESH), *range(N)]
         for i in range(N):
             assert (strokes[FRESH * i : FRESH * (i + 1)] == strokes[FRESH * i]).all()
             for j in range(FRESH):
                 k = FRESH * i + j
                 assert points[i, j] == out.points[k] and goes_on[i, j] == out.goes_on[k]
-                left = value_features(out.afterstates[[k]], spread)[0].astype(np.float16) if out.goes_on[k] else np.zeros(seen.shape[1])
+                left = (
+                    value_features(out.afterstates[[k]], spread)[0].astype(np.float16)
+                    if out.goes_on[k]
+                    else np.zeros(seen.shape[1])
+                )
                 assert np.array_equal(after[i, j], left)
             now = run._at.positions[i]
             if follows[i]:
@@ -164,26 +192,32 @@ def test_visits_begin_in_all_layouts_by_their_shares(monkeypatch):
     assert all(np.array_equal(one.positions, before) for one, before in zip(starts._pools, kept, strict=True))
     again, other = Starts(3, "opened", SHOT), Starts(4, "opened", SHOT)
     assert all(np.array_equal(one.positions, before) for one, before in zip(again._pools, kept, strict=True))
-    assert not any(np.array_equal(one.positions, before) for one, before in zip(other._pools, kept, strict=True))
+    assert not any(
+        np.array_equal(one.positions, before) for one, before in zip(other._pools, kept, strict=True)
+    )
 
 
 @pytest.mark.parametrize(
     ("changes", "complaint"),
     [
-        ({"layout": "held_out"}, "layout = 'held_out': must be another for training"), ({"layout": "nowhere"}, "layout = 'nowhere'"),
-        ({"action": "box"}, "action = 'box': must be 'discrete'"), ({"noise": "loud"}, "noise = 'loud'"),
+        ({"layout": "held_out"}, "layout = 'held_out': must be another for training"),
+        ({"layout": "nowhere"}, "layout = 'nowhere'"),
+        ({"action": "box"}, "action = 'box': must be 'discrete'"),
+        ({"noise": "loud"}, "noise = 'loud'"),
     ],
-)  # fmt: skip
+)
 def test_wrong_options_are_refused_before_anything_is_played(changes, complaint):
     with pytest.raises(ValueError, match=f"^{complaint}"):
         training_tables(2, threads=1, **Recipe.of("ppo_value", env_kwargs=changes).env_kwargs)
 
 
-# the judge of PPO ------------------------------------------------------------------------------------------------------------------
+# the judge of PPO
+# ------------------------------------------------------------------------------------------------------------------
 
 
 def test_a_judge_adds_its_value_only_where_the_visit_goes_on():
-    """Against the same tables without a judge: rewards and the judge's word on what the stroke left, nothing after the end."""
+    """Against the same tables without a judge: rewards and the judge's word on what the stroke left, nothing
+    after the end."""
     judged, usual = (training_tables(24, threads=1, **{**OPTIONS, "layout": "random:6"}) for _ in range(2))
     asked, on = [], 0
 
@@ -205,7 +239,9 @@ def test_a_judge_adds_its_value_only_where_the_visit_goes_on():
         assert np.array_equal(rewards[done], points[done]) and np.array_equal(asked[-1], left)
         assert rewards[~done] == pytest.approx(points[~done] + 50.0 + 10.0 * left[:, 0, 1], rel=1e-6)
         # an episode's return is that of the points alone
-        assert [info.get("episode", {}).get("r") for info in infos] == [info.get("episode", {}).get("r") for info in plain_infos]
+        assert [info.get("episode", {}).get("r") for info in infos] == [
+            info.get("episode", {}).get("r") for info in plain_infos
+        ]
         on += (~done).sum()
     assert on > 20 and len(asked) == 6
 
@@ -219,7 +255,8 @@ def test_ppo_is_judged_by_the_models_own_value():
     assert np.array_equal(venv.judge(at), expected) and venv.judge.threads == 2
 
 
-# the file of a model ---------------------------------------------------------------------------------------------------------------
+# the file of a model
+# ---------------------------------------------------------------------------------------------------------------
 
 
 def test_ppo_leaves_the_value_of_positions_alone():
@@ -250,5 +287,11 @@ def test_policy_and_value_are_saved_and_read_together(tmp_path):
     assert packed(again) == packed(trained)
     env = tables(3, noise="professional", aim="absolute")
     files = [tmp_path / name for name in ("model.zip", "plain.zip", "")]  # the last one: the folder
-    played = [player(f"planner_30@{file}").at(env).play(Positions.of(env), np.arange(3)).values for file in files]
-    assert np.array_equal(played[0], played[1]) and np.array_equal(played[0], played[2]) and played[0].any(axis=1).all()
+    played = [
+        player(f"planner_30@{file}").at(env).play(Positions.of(env), np.arange(3)).values for file in files
+    ]
+    assert (
+        np.array_equal(played[0], played[1])
+        and np.array_equal(played[0], played[2])
+        and played[0].any(axis=1).all()
+    )

@@ -39,9 +39,15 @@ def test_masks_are_those_of_the_view():
     tables.seed(3)
     seen = tables.reset()
     masks, all_masks = np.array(tables.env_method("action_masks")), tables.unwrapped.tables.action_masks()
-    assert (masks.sum(1) > 0).any() and (masks.sum(1) < all_masks.sum(1)).any() and not (masks & ~all_masks).any()
+    assert (
+        (masks.sum(1) > 0).any()
+        and (masks.sum(1) < all_masks.sum(1)).any()
+        and not (masks & ~all_masks).any()
+    )
     there = (
-        seen[:, pot_view.SHOWN :].reshape(4, lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)[:, :, lookahead_features.THERE]
+        seen[:, pot_view.SHOWN :].reshape(4, lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)[
+            :, :, lookahead_features.THERE
+        ]
         > 0
     )
     for row, looked_at in zip(masks, there, strict=True):
@@ -66,11 +72,17 @@ def test_the_end_of_a_visit_is_shown_with_its_pots(shown):
             return out
 
         tables.venv.step_wait = watched
-        _, _, done, infos = tables.step(np.array([np.flatnonzero(mask)[0] for mask in tables.env_method("action_masks")]))
+        _, _, done, infos = tables.step(
+            np.array([np.flatnonzero(mask)[0] for mask in tables.env_method("action_masks")])
+        )
         tables.venv.step_wait = inner
         for k in np.flatnonzero(done):
             last, ended = infos[k]["terminal_observation"], ended + 1
             assert np.array_equal(last[: pot_view.SHOWN], pot_view.with_pots(kept[k][None])[0])
-            assert last[: pot_view.SHOWN].any() and not last[pot_view.SHOWN :].any() and last.shape == tables.observation_space.shape
+            assert (
+                last[: pot_view.SHOWN].any()
+                and not last[pot_view.SHOWN :].any()
+                and last.shape == tables.observation_space.shape
+            )
     assert ended > 0
     tables.close()

@@ -37,13 +37,16 @@ def played(own, at):
     """What the policy's best choices lead to, without errors."""
     masks = action_masks(at)
     with torch.no_grad():
-        scores = own.get_distribution(torch.as_tensor(with_pots(at.observations())), masks).distribution.logits.numpy()
+        scores = own.get_distribution(
+            torch.as_tensor(with_pots(at.observations())), masks
+        ).distribution.logits.numpy()
     picks = np.where(masks, scores, -np.inf).argmax(axis=1)
     return Planner({"action": "discrete", "fidelity": "fast"}, threads=1).play(at, np.arange(len(at)), picks)
 
 
 def test_the_policy_prefers_what_the_judge_likes():
-    """Two judges, one for each end of the table: both policies leave the cue ball where it pays, and still pot."""
+    """Two judges, one for each end of the table: both policies leave the cue ball where it pays, and still
+    pot."""
     ends, made, fresh = [], [], some(200, seed=99)
     for sign in (-1.0, 1.0):
         own = policy()
@@ -90,14 +93,22 @@ def test_a_choice_is_worth_its_points_and_what_the_judge_says_of_what_it_leaves(
     assert worths[row, column] == pytest.approx(expected, rel=1e-6) and not worths[~there].any()
     assert asked == [out.goes_on.sum()] and 0 < asked[0] < len(row)
     assert np.array_equal(np.unpackbits(masks, axis=1, count=540).astype(bool), action_masks(at))
-    assert np.array_equal(at.positions, before.positions) and np.array_equal(seen, with_pots(at.observations()))
+    assert np.array_equal(at.positions, before.positions) and np.array_equal(
+        seen, with_pots(at.observations())
+    )
     _, _, *batch = kept[0]  # of the policy and its optimizer, then rows of what is kept
     shown, offered, chosen, tried, gains = batch
-    assert shown.shape == (4 * 12, seen.shape[1]) and offered.dtype == tried.dtype == bool and chosen.dtype == np.int64
+    assert (
+        shown.shape == (4 * 12, seen.shape[1])
+        and offered.dtype == tried.dtype == bool
+        and chosen.dtype == np.int64
+    )
     for k in range(48):
         own_row = np.flatnonzero((seen == shown[k]).all(axis=1))[0]
         assert np.array_equal(chosen[k], picks[own_row]) and np.array_equal(gains[k], worths[own_row])
-        assert np.array_equal(offered[k], action_masks(at)[own_row]) and np.array_equal(tried[k], there[own_row])
+        assert np.array_equal(offered[k], action_masks(at)[own_row]) and np.array_equal(
+            tried[k], there[own_row]
+        )
 
 
 def test_the_value_of_positions_is_not_touched():
@@ -109,7 +120,9 @@ def test_the_value_of_positions_is_not_touched():
     for k in range(2):
         learning.round(some(16, seed=k), lambda left: np.zeros(len(left)), 1.0)
     assert all(torch.equal(a, b) for a, b in zip(before, own.position_value.parameters(), strict=True))
-    assert not torch.equal(reader, torch.cat([p.detach().flatten() for p in own.features_extractor.parameters()]))
+    assert not torch.equal(
+        reader, torch.cat([p.detach().flatten() for p in own.features_extractor.parameters()])
+    )
     learning.round(some(16), lambda left: np.zeros(len(left)), 0.5)
     assert [group["lr"] for group in learning._optimizer.param_groups] == [pytest.approx(0.5 * RATE)]
 
@@ -119,7 +132,9 @@ def test_the_oldest_rounds_are_forgotten(monkeypatch):
     learning = learner(policy(), 8)
     for k in range(5):
         learning.round(some(8, seed=k), lambda left: np.zeros(len(left)), 1.0)
-    assert len(learning._rounds) == 3 and np.array_equal(learning._rounds[-1][0], with_pots(some(8, seed=4).observations()))
+    assert len(learning._rounds) == 3 and np.array_equal(
+        learning._rounds[-1][0], with_pots(some(8, seed=4).observations())
+    )
 
 
 @pytest.mark.parametrize("stop", [1, 3])
@@ -143,5 +158,7 @@ def test_it_goes_on_from_a_saved_state_bit_for_bit_on_any_number_of_threads(stop
     second._rng.bit_generator.state = generator
     second.set_state(state)
     go_on(second, range(stop, 4))
-    assert all(torch.equal(a, b) for a, b in zip(first_policy.parameters(), second_policy.parameters(), strict=True))
+    assert all(
+        torch.equal(a, b) for a, b in zip(first_policy.parameters(), second_policy.parameters(), strict=True)
+    )
     assert list(first.losses) == list(second.losses)

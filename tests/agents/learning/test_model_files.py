@@ -1,4 +1,5 @@
-"""Is a model's file read without running anything of it, and is whatever is wrong in it refused with one clear sentence?"""
+"""Is a model's file read without running anything of it, and is whatever is wrong in it refused with one
+clear sentence?"""
 
 import importlib
 import io
@@ -56,7 +57,8 @@ def plain(mask, tmp_path):
 
 @pytest.mark.parametrize("name", names())
 def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_path):
-    """The network that comes out is that which went in, and so is that of the published file; the caller's random numbers stay."""
+    """The network that comes out is that which went in, and so is that of the published file; the caller's
+    random numbers stay."""
     model = made(name, tmp_path / "model.zip")
     file = bombed(tmp_path / "model.zip", tmp_path / "bomb.zip", tmp_path / "mark")
     before = torch.get_rng_state()
@@ -65,13 +67,25 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
     (tmp_path / "plain.zip").write_bytes(packed(trained))
     seen = np.random.default_rng(0).uniform(-1, 1, (16, *model.observation_space.shape)).astype(np.float32)
     for one in (trained, read(tmp_path / "plain.zip", "agent")):
-        assert {key: getattr(one, key) for key in ("recipe", "view", "num_timesteps", "gamma", "seed", "imitated", "start")} == {
-            "recipe": name, "view": Recipe.of(name).view, "num_timesteps": 77, "gamma": model.gamma, "seed": 3, "imitated": 300,
+        assert {
+            key: getattr(one, key)
+            for key in ("recipe", "view", "num_timesteps", "gamma", "seed", "imitated", "start")
+        } == {
+            "recipe": name,
+            "view": Recipe.of(name).view,
+            "num_timesteps": 77,
+            "gamma": model.gamma,
+            "seed": 3,
+            "imitated": 300,
             "start": None,
-        }  # fmt: skip
+        }
         assert one.env_options == model.env_options and one.action_space == model.action_space
-        assert type(one.policy) is type(model.policy) and one.policy.observation_space == model.observation_space
-        assert np.array_equal(one.policy.predict(seen, deterministic=True)[0], model.predict(seen, deterministic=True)[0])
+        assert (
+            type(one.policy) is type(model.policy) and one.policy.observation_space == model.observation_space
+        )
+        assert np.array_equal(
+            one.policy.predict(seen, deterministic=True)[0], model.predict(seen, deterministic=True)[0]
+        )
     with pytest.raises(Exception):  # noqa: B017 - whatever its pickles do
         type(model).load(file, device="cpu")
     assert (tmp_path / "mark").exists()  # these bombs are sharp
@@ -79,10 +93,13 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
 
 @pytest.mark.parametrize("weights", [False, True])
 def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, capsys):
-    """Evaluation, --start and publication, of a model of ours and of another, with and without a sound policy.pth."""
+    """Evaluation, --start and publication, of a model of ours and of another, with and without a sound
+    policy.pth."""
     (tmp_path / "run").mkdir()
     ours = bombed(mask, tmp_path / "run" / "model.zip", tmp_path / "mark", weights)
-    foreign = bombed(mask, tmp_path / "foreign.zip", tmp_path / "mark", weights, change=lambda found: found.pop("recipe"))
+    foreign = bombed(
+        mask, tmp_path / "foreign.zip", tmp_path / "mark", weights, change=lambda found: found.pop("recipe")
+    )
     for file in (ours, foreign, ours.parent):
         for call in (lambda file=file: Entrant.of(str(file)).trained(), lambda file=file: load_player(file)):
             if weights or file == foreign:
@@ -100,19 +117,39 @@ def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, capsys):
 
 
 HOSTILE = [
-    *[(key, value) for key in KEPT for value in ([1], "x" * 9, {"a": 1}, -1, True, float("nan")) if (key, value) != ("start", {"a": 1})],
+    *[
+        (key, value)
+        for key in KEPT
+        for value in ([1], "x" * 9, {"a": 1}, -1, True, float("nan"))
+        if (key, value) != ("start", {"a": 1})
+    ],
     *[(key, None) for key in ("view", "env_options", "num_timesteps", "gamma")],
-    ("recipe", "../../etc/passwd"), ("recipe", "x" * 10**6), ("recipe", None), ("view", "os.system"), ("gamma", 2),
-    ("num_timesteps", 1.5), ("seen", 7),
-    ("seen", "x"),    ("env_options", {"opponent": "x.zip"}), ("env_options", {"aim": ["target"]}), ("env_options", {"action": "box"}),
-    ("env_options", {"physics": {"R": 1}}), ("env_options", {"noise": {"aim": 1}}), ("env_options", {"layout": 3}),
-]  # fmt: skip
+    ("recipe", "../../etc/passwd"),
+    ("recipe", "x" * 10**6),
+    ("recipe", None),
+    ("view", "os.system"),
+    ("gamma", 2),
+    ("num_timesteps", 1.5),
+    ("seen", 7),
+    ("seen", "x"),
+    ("env_options", {"opponent": "x.zip"}),
+    ("env_options", {"aim": ["target"]}),
+    ("env_options", {"action": "box"}),
+    ("env_options", {"physics": {"R": 1}}),
+    ("env_options", {"noise": {"aim": 1}}),
+    ("env_options", {"layout": 3}),
+]
 
 
 @pytest.mark.parametrize(("key", "value"), HOSTILE)
 def test_wrong_figures_are_refused(plain, tmp_path, key, value):
-    file = rezipped(plain, tmp_path / "wrong.zip", model_json=edited(lambda found: found.update({key: value})))
-    with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: must be a model (that train.py saved|of the current ppo_mask)") as info:
+    file = rezipped(
+        plain, tmp_path / "wrong.zip", model_json=edited(lambda found: found.update({key: value}))
+    )
+    with pytest.raises(
+        ValueError,
+        match=rf"^agent = {str(file)!r}: must be a model (that train.py saved|of the current ppo_mask)",
+    ) as info:
         load_player(file)
     assert type(info.value) is ValueError and len(str(info.value)) < 600
     assert key in str(info.value) or "older" in str(info.value)
@@ -161,7 +198,11 @@ OTHER = r"must be a model that train.py saved \(its policy.pth must hold weights
     ],
 )
 def test_wrong_weights_are_refused(plain, tmp_path, change, says):
-    file = rezipped(plain, tmp_path / "wrong.zip", policy_pth=lambda data: saved(change(torch.load(io.BytesIO(data), weights_only=True))))
+    file = rezipped(
+        plain,
+        tmp_path / "wrong.zip",
+        policy_pth=lambda data: saved(change(torch.load(io.BytesIO(data), weights_only=True))),
+    )
     with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}"):
         load_player(file)
 
@@ -169,10 +210,14 @@ def test_wrong_weights_are_refused(plain, tmp_path, change, says):
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (None, OTHER), (lambda data: b"", OTHER), (lambda data: b"junk", OTHER), (lambda data: data[: len(data) // 2], OTHER),
-        (lambda data: bytes(2**24), OLDER), (swollen, OLDER),
+        (None, OTHER),
+        (lambda data: b"", OTHER),
+        (lambda data: b"junk", OTHER),
+        (lambda data: data[: len(data) // 2], OTHER),
+        (lambda data: bytes(2**24), OLDER),
+        (swollen, OLDER),
     ],
-)  # fmt: skip
+)
 def test_weights_that_are_none_are_refused(plain, tmp_path, change, says):
     file = rezipped(plain, tmp_path / "wrong.zip", policy_pth=change)
     with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}"):
@@ -198,11 +243,14 @@ def test_weights_are_handed_on(mask, plain):
         tables.close()
         assert model.start == {"model": str(file), "shots": 77, "imitated": 300, "start": None}
         its = MaskablePPO.load(mask, device="cpu").policy
-        assert all(torch.equal(a, b) for a, b in zip(model.policy.parameters(), its.parameters(), strict=True))
+        assert all(
+            torch.equal(a, b) for a, b in zip(model.policy.parameters(), its.parameters(), strict=True)
+        )
 
 
 def test_the_policy_of_a_judged_model_is_handed_on():
-    """``ppo_value`` holds the network of ``ppo_mask``, which goes on from it; the other way the value would be missing."""
+    """``ppo_value`` holds the network of ``ppo_mask``, which goes on from it; the other way the value would
+    be missing."""
     judged, models = PRETRAINED / "ppo_value.zip", []
     for name in ("ppo_mask", "ppo_value"):
         recipe = Recipe.of(name)
@@ -213,7 +261,9 @@ def test_the_policy_of_a_judged_model_is_handed_on():
     its = read(judged, "start").policy.state_dict()
     assert all(torch.equal(its[name], weights) for name, weights in models[0].policy.state_dict().items())
     assert models[0].start["model"] == str(judged) and models[0].recipe == "ppo_mask"
-    with pytest.raises(ValueError, match=r"start = '.*ppo_mask.zip': must be a model of ppo_value, or .* not of ppo_mask"):
+    with pytest.raises(
+        ValueError, match=r"start = '.*ppo_mask.zip': must be a model of ppo_value, or .* not of ppo_mask"
+    ):
         load_weights(models[1], PRETRAINED / "ppo_mask.zip")
 
 
@@ -229,7 +279,9 @@ def test_a_missing_library_is_not_called_an_old_model(mask, monkeypatch):
         patch.setitem(sys.modules, "torch", None)
         with pytest.raises(ImportError, match="torch"):
             load_player(mask)
-    monkeypatch.setattr("agents.learning.hyperparameters.policy", lambda name: importlib.import_module("no_such_library"))
+    monkeypatch.setattr(
+        "agents.learning.hyperparameters.policy", lambda name: importlib.import_module("no_such_library")
+    )
     with pytest.raises(ImportError, match="no_such_library"):
         load_player(mask)
 

@@ -5,9 +5,26 @@ import pytest
 import torch
 
 from agents.features.lookahead_features import CUE_X, ENTRIES, PICKS, SPACE, STROKES_SEEN
-from agents.learning.networks import BALL, CONTEXT, POT, ForesightReader, OutcomeHead, StrokeHead, TableReader, ValueHead
+from agents.learning.networks import (
+    BALL,
+    CONTEXT,
+    POT,
+    ForesightReader,
+    OutcomeHead,
+    StrokeHead,
+    TableReader,
+    ValueHead,
+)
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN, VIEW_SPACE, with_pots
+from snooker_env.planning.learned.pot_view import (
+    BALL_X,
+    CUT,
+    POT_ENTRIES,
+    POT_X,
+    SHOWN,
+    VIEW_SPACE,
+    with_pots,
+)
 from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
 from snooker_env.tasks.observations import SIZE as SEEN
 
@@ -21,7 +38,9 @@ def seen():
     observations, _ = tables.reset(seed=1)
     rng = np.random.default_rng(0)
     for _ in range(3):
-        observations, *_ = tables.step(np.array([rng.choice(np.flatnonzero(m)) for m in tables.action_masks()]))
+        observations, *_ = tables.step(
+            np.array([rng.choice(np.flatnonzero(m)) for m in tables.action_masks()])
+        )
     return torch.as_tensor(with_pots(observations))
 
 
@@ -48,7 +67,8 @@ def test_reds_have_no_order(net, seen):
     scores, values, _ = net(seen)
     changed, changed_values, _ = net(other)
     assert torch.allclose(scores, changed, atol=1e-5) and torch.allclose(values, changed_values, atol=1e-5)
-    other[:, :110] = seen[:, :110].reshape(N, 22, 5)[:, np.r_[0:15, 21, 16:21, 15]].reshape(N, 110)  # a red and the black exchanged
+    # a red and the black exchanged
+    other[:, :110] = seen[:, :110].reshape(N, 22, 5)[:, np.r_[0:15, 21, 16:21, 15]].reshape(N, 110)
     assert not torch.allclose(values, net(other)[1], atol=1e-3)
 
 
@@ -105,7 +125,10 @@ def test_foresight_scores_each_stroke_by_its_own_outcome(seen):
         return head(reader(torch.cat([seen, rows.flatten(1)], 1))).detach()
 
     before = scores(rows)
-    assert before.shape == (N, SIZE) and reader(torch.cat([seen, rows.flatten(1)], 1)).shape[1] == CONTEXT + STROKES_SEEN * 32
+    assert (
+        before.shape == (N, SIZE)
+        and reader(torch.cat([seen, rows.flatten(1)], 1)).shape[1] == CONTEXT + STROKES_SEEN * 32
+    )
     other = rows.clone()
     other[:, 7, 2] = 0.5
     moved = (scores(other) - before).abs()

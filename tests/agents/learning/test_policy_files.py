@@ -1,4 +1,5 @@
-"""Is the policy of another trainer kept as plain weights, played as it scores, and refused if it is anything else?"""
+"""Is the policy of another trainer kept as plain weights, played as it scores, and refused if it is anything
+else?"""
 
 import io
 import json
@@ -19,14 +20,28 @@ from snooker_env import SnookerVectorEnv
 from snooker_env.planning import Planner, Positions
 from snooker_env.planning.learned.dense_layers import Layers
 
-ABOUT = {"trainer": "mine", "activation": "tanh", "shots": 12, "seed": 3, "gamma": 0.9, "env_options": {"noise": "club"}}
+ABOUT = {
+    "trainer": "mine",
+    "activation": "tanh",
+    "shots": 12,
+    "seed": 3,
+    "gamma": 0.9,
+    "env_options": {"noise": "club"},
+}
 RNG = np.random.default_rng(0)
-WEIGHTS = [(RNG.normal(size=(b, a)).astype(np.float32), RNG.normal(size=b).astype(np.float32)) for a, b in ((121, 32), (32, 540))]
+WEIGHTS = [
+    (RNG.normal(size=(b, a)).astype(np.float32), RNG.normal(size=b).astype(np.float32))
+    for a, b in ((121, 32), (32, 540))
+]
 
 
 def arrays(**changes):
     """The arrays of a sound file with some changed; None leaves one out."""
-    found = {f"{kind}_{k}": part for k, layer in enumerate(WEIGHTS) for kind, part in zip(("weight", "bias"), layer, strict=True)}
+    found = {
+        f"{kind}_{k}": part
+        for k, layer in enumerate(WEIGHTS)
+        for kind, part in zip(("weight", "bias"), layer, strict=True)
+    }
     found = found | {"about": np.array(json.dumps(ABOUT))} | changes
     return {name: part for name, part in found.items() if part is not None}
 
@@ -42,9 +57,17 @@ def test_a_policy_plays_the_available_choice_that_scores_highest(tmp_path):
     masks, at = tables.action_masks(), Positions.of(tables)
     want = np.where(masks, scores, -np.inf).argmax(axis=1)
     expected, bound = Planner(tables).strokes_of(at, np.arange(9), want)[0], player.at(tables)
-    assert np.array_equal(bound.play(at, np.arange(9)).values, expected) and not masks.all() and len(set(want)) > 2
+    assert (
+        np.array_equal(bound.play(at, np.arange(9)).values, expected)
+        and not masks.all()
+        and len(set(want)) > 2
+    )
     for one, mask in zip(bound.rank(at, np.arange(9)), masks, strict=True):
-        assert len(one.scores) == min(100, mask.sum()) and (np.diff(one.scores) <= 0).all() and one.scores.sum() <= 1.0 + 1e-9
+        assert (
+            len(one.scores) == min(100, mask.sum())
+            and (np.diff(one.scores) <= 0).all()
+            and one.scores.sum() <= 1.0 + 1e-9
+        )
     other = Layers(WEIGHTS, "relu")(rows)
     expected = np.maximum(rows @ first.T + shift, 0) @ last.T + end
     assert np.allclose(other, expected, atol=1e-4) and not np.allclose(
@@ -55,9 +78,13 @@ def test_a_policy_plays_the_available_choice_that_scores_highest(tmp_path):
 def test_it_plays_frames_as_an_opponent(tmp_path):
     """By what a frame's observation has in common with a visit's."""
     write_policy(tmp_path / "p.npz", WEIGHTS, **ABOUT)
-    tables = SnookerVectorEnv(3, threads=1, task="frame", layout="random:1", action="discrete", opponent=str(tmp_path / "p.npz"))
+    tables = SnookerVectorEnv(
+        3, threads=1, task="frame", layout="random:1", action="discrete", opponent=str(tmp_path / "p.npz")
+    )
     tables.reset(seed=1)
-    played = sum(tables.step(tables.action_masks().argmax(axis=1))[-1]["opponent_strokes"].sum() for _ in range(5))
+    played = sum(
+        tables.step(tables.action_masks().argmax(axis=1))[-1]["opponent_strokes"].sum() for _ in range(5)
+    )
     assert played > 3
 
 
@@ -65,13 +92,23 @@ def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, capsys)
     """A planner wants a value, a training the whole network: by the file and by its folder."""
     file = tmp_path / POLICY
     write_policy(file, WEIGHTS, **ABOUT)
-    whole = "must be a model that train.py saved, its .zip or a run's folder: an .npz holds plain weights alone"
+    whole = (
+        "must be a model that train.py saved, its .zip or a run's folder: an .npz holds plain weights alone"
+    )
     both = "must name a model with policy and value: none, professional, amateur, club or its file"
     quick = ["--visits", "2", "--layouts", "held_out", "--noise", "none"]
     for path in (file, tmp_path):
         for says, main, command in (
-            (f"player = {f'planner@{path}'!r}: {both}", protocol.main, [*quick, "--agent", f"planner@{path}"]),
-            (f"start = {str(file)!r}: {whole}", train.main, ["--start", str(path), "--out", str(tmp_path / "run")]),
+            (
+                f"player = {f'planner@{path}'!r}: {both}",
+                protocol.main,
+                [*quick, "--agent", f"planner@{path}"],
+            ),
+            (
+                f"start = {str(file)!r}: {whole}",
+                train.main,
+                ["--start", str(path), "--out", str(tmp_path / "run")],
+            ),
         ):
             with pytest.raises(SystemExit) as stop:
                 main(command)
@@ -82,7 +119,9 @@ def test_what_needs_more_than_plain_weights_refuses_it_by_name(tmp_path, capsys)
 def test_the_help_of_evaluations_names_it(capsys):
     with pytest.raises(SystemExit):
         protocol.main(["--help"])
-    assert "MODEL (a .zip, an .npz of plain weights, or a run's folder)" in " ".join(capsys.readouterr().out.split())
+    assert "MODEL (a .zip, an .npz of plain weights, or a run's folder)" in " ".join(
+        capsys.readouterr().out.split()
+    )
 
 
 def test_it_is_evaluated_like_any_other_agent(tmp_path, capsys):
@@ -91,11 +130,30 @@ def test_it_is_evaluated_like_any_other_agent(tmp_path, capsys):
     folder.mkdir()
     write_policy(folder / POLICY, WEIGHTS, **ABOUT)
     assert load_player(folder).model.num_timesteps == 12
-    ends = ["--visits", "4", "--layouts", "held_out", "--noise", "club", "--resamples", "100", "--json", str(tmp_path / "r.json")]
+    ends = [
+        "--visits",
+        "4",
+        "--layouts",
+        "held_out",
+        "--noise",
+        "club",
+        "--resamples",
+        "100",
+        "--json",
+        str(tmp_path / "r.json"),
+    ]
     assert protocol.main(["--agent", str(folder), f"same={folder / POLICY}", *ends]) == 0
     report = json.loads((tmp_path / "r.json").read_text())
     (run,) = report["agents"][0]["runs"]
-    wanted = {"recipe": "mine", "shots": 12, "seed": 3, "gamma": 0.9, "noise": "club", "imitated": None, "physics": "paper"}
+    wanted = {
+        "recipe": "mine",
+        "shots": 12,
+        "seed": 3,
+        "gamma": 0.9,
+        "noise": "club",
+        "imitated": None,
+        "physics": "paper",
+    }
     assert report["agents"][0]["label"] == "mine-0" and {key: run[key] for key in wanted} == wanted
     first, second = report["results"][:2]
     assert (
@@ -110,26 +168,44 @@ def test_it_is_evaluated_like_any_other_agent(tmp_path, capsys):
     ("changes", "says"),
     [
         ({"about": None}, "about"),
-        ({"about": np.array("[]")}, "about has not the keys"), ({"about": np.array("?")}, "Expecting value"),
+        ({"about": np.array("[]")}, "about has not the keys"),
+        ({"about": np.array("?")}, "Expecting value"),
         ({"about": np.array(json.dumps(ABOUT | {"more": 1}))}, "about has not the keys"),
         ({"about": np.array(json.dumps(ABOUT | {"shots": -1}))}, "about.shots = -1"),
-        ({"about": np.array(json.dumps(ABOUT | {"activation": "sin"}))}, "about.activation = 'sin': must be one of 'tanh', 'relu'"),
-        ({"about": np.array(json.dumps(ABOUT | {"env_options": {"aim": "target"}}))}, "key of about.env_options = 'aim'"),
+        (
+            {"about": np.array(json.dumps(ABOUT | {"activation": "sin"}))},
+            "about.activation = 'sin': must be one of 'tanh', 'relu'",
+        ),
+        (
+            {"about": np.array(json.dumps(ABOUT | {"env_options": {"aim": "target"}}))},
+            "key of about.env_options = 'aim'",
+        ),
         ({"about": np.array(json.dumps(ABOUT | {"trainer": 3}))}, "about.trainer is no text"),
-        ({"weight_0": None}, "the last layer gives 121 numbers and not 540"), ({"weight_1": None}, "the last layer gives 32 numbers"),
-        ({"bias_1": None}, "bias_1"), ({"bias_0": np.zeros(7, np.float32)}, "weight_0 float32 (32, 121), bias_0 float32 (7,)"),
-        ({"weight_0": np.zeros((32, 120), np.float32)}, "after 121 numbers"), ({"weight_0": np.zeros((32, 121))}, "weight_0 float64"),
+        ({"weight_0": None}, "the last layer gives 121 numbers and not 540"),
+        ({"weight_1": None}, "the last layer gives 32 numbers"),
+        ({"bias_1": None}, "bias_1"),
+        ({"bias_0": np.zeros(7, np.float32)}, "weight_0 float32 (32, 121), bias_0 float32 (7,)"),
+        ({"weight_0": np.zeros((32, 120), np.float32)}, "after 121 numbers"),
+        ({"weight_0": np.zeros((32, 121))}, "weight_0 float64"),
         ({"bias_1": np.full(540, np.nan, np.float32)}, "layer 1 is not finite"),
     ],
-)  # fmt: skip
+)
 def test_what_is_no_policy_is_refused_in_one_line(tmp_path, changes, says):
     file = tmp_path / "p.npz"
     np.savez(file, **arrays(**changes))
-    for call in (lambda: read_policy(file, "agent"), lambda: Entrant.of(str(file)).trained(), lambda: load_player(file)):
+    for call in (
+        lambda: read_policy(file, "agent"),
+        lambda: Entrant.of(str(file)).trained(),
+        lambda: load_player(file),
+    ):
         with pytest.raises(ValueError) as info:
             call()
         text = str(info.value)
-        assert text.startswith(f"agent = {str(file)!r}: must be a policy's .npz: ") and says in text and "\n" not in text
+        assert (
+            text.startswith(f"agent = {str(file)!r}: must be a policy's .npz: ")
+            and says in text
+            and "\n" not in text
+        )
 
 
 def test_nothing_in_a_file_is_unpickled(tmp_path):

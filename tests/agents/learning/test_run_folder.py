@@ -1,4 +1,5 @@
-"""Does a run's folder belong to one run at a time, whatever ends it, and does a run that stopped while it imitated go on exactly?"""
+"""Does a run's folder belong to one run at a time, whatever ends it, and does a run that stopped while it
+imitated go on exactly?"""
 
 import json
 import os
@@ -21,8 +22,20 @@ from snooker_env.progress import Progress
 
 ROOT = Path(__file__).resolve().parents[3]
 TINY = [
-    "--agent", "ppo_mask", "--envs", "2", "--eval-visits", "4", "--no-progress", "--parallel", "one", "--steps", "256", "--imitate", "64",
-]  # fmt: skip
+    "--agent",
+    "ppo_mask",
+    "--envs",
+    "2",
+    "--eval-visits",
+    "4",
+    "--no-progress",
+    "--parallel",
+    "one",
+    "--steps",
+    "256",
+    "--imitate",
+    "64",
+]
 
 
 def refused(capsys, *arguments):
@@ -33,7 +46,8 @@ def refused(capsys, *arguments):
     return capsys.readouterr().err.strip().splitlines()[-1]
 
 
-# one run a folder ----------------------------------------------------------------------------------------------------------------
+# one run a folder
+# ----------------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture
@@ -56,12 +70,17 @@ time.sleep(600)
 
 @pytest.mark.parametrize("more", [[], ["--resume"]])
 @pytest.mark.parametrize("holds", [[], ["checkpoint.pkl"]], ids=["imitating", "saved"])
-def test_a_folder_in_use_is_refused_by_the_name_of_the_process(other, tmp_path, capsys, monkeypatch, more, holds):
+def test_a_folder_in_use_is_refused_by_the_name_of_the_process(
+    other, tmp_path, capsys, monkeypatch, more, holds
+):
     monkeypatch.setattr(train.snooker_env, "warmup", None)  # nothing is compiled before
     for name in holds:
         (tmp_path / name).write_bytes(b"of the other")
     error = refused(capsys, *TINY, "--out", str(tmp_path), *more)
-    assert f"out = {str(tmp_path)!r}: must be a folder that no other process uses: process {other.pid} on " in error
+    assert (
+        f"out = {str(tmp_path)!r}: must be a folder that no other process uses: process {other.pid} on "
+        in error
+    )
     assert " since 20" in error and f"(kill -INT {other.pid})" in error and "another --out" in error
     assert sorted(p.name for p in tmp_path.iterdir()) == [*holds, "train.lock"]
     assert all((tmp_path / name).read_bytes() == b"of the other" for name in holds)
@@ -93,7 +112,8 @@ def test_what_a_killed_run_left_is_no_other_run(tmp_path, capsys):
     assert (tmp_path / "checkpoint.tmp.pkl").exists() and not (tmp_path / "train.lock").exists()
 
 
-# stopped while it imitates ------------------------------------------------------------------------------------------------------
+# stopped while it imitates
+# ------------------------------------------------------------------------------------------------------
 
 
 def after(rounds, monkeypatch, act):
@@ -134,7 +154,9 @@ def untimed(out):
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_saves_what_was_imitated_and_resume_goes_on_exactly(whole, tmp_path, capsys, monkeypatch, number):
+def test_a_signal_saves_what_was_imitated_and_resume_goes_on_exactly(
+    whole, tmp_path, capsys, monkeypatch, number
+):
     out = tmp_path / "run"
     with monkeypatch.context() as patch:
         after(20, patch, lambda: signal.raise_signal(number))
@@ -157,7 +179,10 @@ def test_imitation_is_saved_at_intervals(whole, tmp_path, capsys, monkeypatch):
         patch.setattr(callback, "SHARE", np.inf)
         after(13, patch, interrupt)
         assert train.main([*TINY, "--out", str(out)]) == 130
-    assert f"Interrupted. The last checkpoint is complete. Continue with:  python train.py --resume --out {out}" in capsys.readouterr().err
+    assert (
+        f"Interrupted. The last checkpoint is complete. Continue with:  python train.py --resume --out {out}"
+        in capsys.readouterr().err
+    )
     assert pickle.loads((out / "checkpoint.pkl").read_bytes())["imitating"]["done"] == 24
     assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
     assert np.array_equal(weights(out), weights(whole)) and untimed(out) == untimed(whole)
@@ -170,7 +195,9 @@ def test_a_second_signal_acts_at_once_whichever_it_is(first, second):
     with callback.Stop() as stop:
         signal.raise_signal(first)
         assert stop.signal == first
-        assert signal.getsignal(second) == (signal.default_int_handler if second == signal.SIGINT else signal.SIG_DFL)
+        assert signal.getsignal(second) == (
+            signal.default_int_handler if second == signal.SIGINT else signal.SIG_DFL
+        )
     assert before == [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
 
 
@@ -194,7 +221,9 @@ def test_saves_are_rare(tmp_path, monkeypatch):
             return None
 
     monkeypatch.setattr(callback, "save_checkpoint", save)
-    assert callback.imitate(Lessons(), tmp_path, train.Settings(), Lessons(), callback.Stop(), Progress("", 2000, "", quiet=True))
+    assert callback.imitate(
+        Lessons(), tmp_path, train.Settings(), Lessons(), callback.Stop(), Progress("", 2000, "", quiet=True)
+    )
     assert saves[0] == 31.0 and np.array_equal(np.diff(saves), [506.0] * 3)
 
 
@@ -205,7 +234,8 @@ def test_an_interruption_before_the_first_save_is_reported(tmp_path, capsys, mon
     assert not list((tmp_path / "run").iterdir())
 
 
-# a full disk ---------------------------------------------------------------------------------------------------------------------
+# a full disk
+# ---------------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("broken", ["fsync", "replace"])
@@ -250,7 +280,10 @@ def test_a_full_disk_ends_it_in_one_line(tmp_path, monkeypatch, full):
         with pytest.raises(SystemExit) as stop:
             train.main([*TINY, "--imitate", "0", "--checkpoint-every", "1", "--out", str(out)])
     why = f"train.py: {out / full} cannot be written: No space left on device. "
-    assert stop.value.code == f"{why}The last checkpoint is complete. Continue with:  python train.py --resume --out {out}"
+    assert (
+        stop.value.code
+        == f"{why}The last checkpoint is complete. Continue with:  python train.py --resume --out {out}"
+    )
     assert not [p.name for p in out.iterdir() if ".tmp" in p.name or p.suffix == ".lock"]
     assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
 
@@ -266,7 +299,10 @@ sys.exit(train.main({[*TINY, "--imitate", "0", "--out", str(tmp_path / "run")]!r
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, timeout=300)
     file = tmp_path / "run" / "checkpoint.pkl"
     assert done.returncode == 1
-    assert done.stderr == f"train.py: {file} cannot be written: File too large. Nothing was saved yet: start the run again.\n"
+    assert (
+        done.stderr
+        == f"train.py: {file} cannot be written: File too large. Nothing was saved yet: start the run again.\n"
+    )
     assert {p.name for p in file.parent.iterdir()} <= {"tb"}
 
 

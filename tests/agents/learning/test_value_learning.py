@@ -20,7 +20,8 @@ def learner(n, seed=0):
 
 
 def a_round(n, rng, scale=1.0):
-    """Features, features of what is left, points, whether the visit went on, whether its first sample was followed."""
+    """Features, features of what is left, points, whether the visit went on, whether its first sample was
+    followed."""
     goes_on = rng.random((n, SAMPLES)) < 0.6
     after = (rng.normal(0, scale, (n, SAMPLES, SIZE)) * goes_on[..., None]).astype(np.float16)
     points = np.where(goes_on, rng.integers(1, 8, (n, SAMPLES)), 0).astype(np.float64)
@@ -31,7 +32,10 @@ def a_round(n, rng, scale=1.0):
 def layers(learning):
     """Weights and biases of each layer: of all members."""
     network = learning._network
-    return [(w.detach().double().numpy(), b.detach().double().numpy()) for w, b in zip(network.weights, network.biases, strict=True)]
+    return [
+        (w.detach().double().numpy(), b.detach().double().numpy())
+        for w, b in zip(network.weights, network.biases, strict=True)
+    ]
 
 
 def worth(network, row):
@@ -47,21 +51,27 @@ def worth(network, row):
 
 
 def by_hand(network, rounds):
-    """Targets (rounds, n): backup of each round, and 0.7 of how far the next round's target was from its value, if it followed."""
+    """Targets (rounds, n): backup of each round, and 0.7 of how far the next round's target was from its
+    value, if it followed."""
     n = len(rounds[0][0])
     targets = np.zeros((len(rounds), n))
     for i in range(n):
         for t in reversed(range(len(rounds))):
             _, after, points, goes_on, follows = rounds[t]
-            gains = [points[i, j] + (worth(network, after[i, j]) if goes_on[i, j] else 0.0) for j in range(SAMPLES)]
+            gains = [
+                points[i, j] + (worth(network, after[i, j]) if goes_on[i, j] else 0.0) for j in range(SAMPLES)
+            ]
             targets[t, i] = sum(gains) / SAMPLES
             if follows[i] and t + 1 < len(rounds):
-                targets[t, i] += 0.7 * (targets[t + 1, i] - worth(network, rounds[t + 1][0][i].astype(np.float16)))
+                targets[t, i] += 0.7 * (
+                    targets[t + 1, i] - worth(network, rounds[t + 1][0][i].astype(np.float16))
+                )
     return targets
 
 
 def test_the_targets_recomputed():
-    """Four rounds of nine tables: some visits go on through all of them, some end, some are cut by an exploratory stroke."""
+    """Four rounds of nine tables: some visits go on through all of them, some end, some are cut by an
+    exploratory stroke."""
     rng, learning = np.random.default_rng(3), learner(9)
     rounds = [a_round(9, rng) for _ in range(4)]
     for one in rounds:
@@ -71,7 +81,8 @@ def test_the_targets_recomputed():
     follows = np.array([one[4] for one in rounds[:-1]])
     without = by_hand(layers(learning), [(*one[:4], np.zeros(9, bool)) for one in rounds])
     moved = np.abs(expected - without)[:-1] > 1e-3
-    assert np.array_equal(moved, follows) and 5 < follows.sum() < 22  # corrected where it was followed, and only there
+    # corrected where it was followed, and only there
+    assert np.array_equal(moved, follows) and 5 < follows.sum() < 22
     later = [*rounds[:-1], (rounds[-1][0], rounds[-1][1], rounds[-1][2] + 30.0, *rounds[-1][3:])]
     reached = np.abs(by_hand(layers(learning), later) - expected) > 1.0
     assert np.array_equal(reached[2], follows[2]) and np.array_equal(reached[1], follows[2] & follows[1])
@@ -79,7 +90,8 @@ def test_the_targets_recomputed():
 
 
 def test_the_first_targets_are_returns():
-    """Points, and what followed as far as it is known; beyond it, and beyond an exploratory stroke, a guess."""
+    """Points, and what followed as far as it is known; beyond it, and beyond an exploratory stroke, a
+    guess."""
     rng, learning = np.random.default_rng(2), learner(6)
     rounds = [a_round(6, rng) for _ in range(3)]
     for one in rounds:
@@ -100,7 +112,9 @@ def test_the_oldest_rounds_are_forgotten(monkeypatch):
     for one in rounds:
         learning.add(*one)
     assert len(learning._rounds) == 4
-    assert learning._targets().reshape(4, 5) == pytest.approx(by_hand(layers(learning), rounds[3:]), rel=1e-3, abs=2e-3)
+    assert learning._targets().reshape(4, 5) == pytest.approx(
+        by_hand(layers(learning), rounds[3:]), rel=1e-3, abs=2e-3
+    )
 
 
 def test_nothing_given_is_changed():
@@ -113,7 +127,8 @@ def test_nothing_given_is_changed():
 
 
 def test_the_network_learns_a_known_value():
-    """Strokes that end the visit: with one feature the mean is 7 points, without it 1, and a second says how many samples score.
+    """Strokes that end the visit: with one feature the mean is 7 points, without it 1, and a second says how
+    many samples score.
 
     Then the loss falls, V comes to the mean, and P to the share of samples that score.
     """
@@ -125,7 +140,13 @@ def test_the_network_learns_a_known_value():
         seen[:, :3] = rng.integers(0, 2, (n, 3))
         made = rng.random((n, 8)) < np.where(seen[:, 1] > 0, 0.9, 0.3)[:, None]
         seen[:, LOGIT] = 0.5
-        return seen, nothing, made * np.where(seen[:, 0] > 0, 7.0, 1.0)[:, None], np.zeros((n, 8), bool), np.zeros(n, bool)
+        return (
+            seen,
+            nothing,
+            made * np.where(seen[:, 0] > 0, 7.0, 1.0)[:, None],
+            np.zeros((n, 8), bool),
+            np.zeros(n, bool),
+        )
 
     for _ in range(30):
         learning.add(*play())
@@ -140,11 +161,15 @@ def test_the_network_learns_a_known_value():
     with torch.no_grad():
         p = torch.sigmoid(learning._network(torch.from_numpy(seen))[0]).numpy()
     assert np.abs(p - np.where(seen[:, 1] > 0, 0.9, 0.3)).mean() < 0.08
-    assert learning.mean_target == pytest.approx(learning._fitted[1][-n:].mean()) and 1.0 < learning.mean_target < 4.0
+    assert (
+        learning.mean_target == pytest.approx(learning._fitted[1][-n:].mean())
+        and 1.0 < learning.mean_target < 4.0
+    )
 
 
 def test_each_member_learns_from_batches_of_its_own():
-    """Members that start alike are apart after a fit, and each moves as fast as a network that learns alone."""
+    """Members that start alike are apart after a fit, and each moves as fast as a network that learns
+    alone."""
     rng, learning = np.random.default_rng(4), learner(16)
     alone = ValueLearning(ValueNetwork(members=1), SPREAD, 16, np.random.default_rng(0))
     with torch.no_grad():
@@ -157,15 +182,23 @@ def test_each_member_learns_from_batches_of_its_own():
         for given in rounds:
             one.add(*given)
         one.fit(1.0)
-    moved = [(p - start).flatten(1).norm(dim=1) for p, start in zip(learning._network.parameters(), before, strict=True)]
+    moved = [
+        (p - start).flatten(1).norm(dim=1)
+        for p, start in zip(learning._network.parameters(), before, strict=True)
+    ]
     whole = torch.stack(moved).norm(dim=0)
-    own = torch.stack([(p - start).norm() for p, start in zip(alone._network.parameters(), before, strict=True)]).norm()
-    assert all(not torch.equal(p[a], p[b]) for p in learning._network.weights for a in range(4) for b in range(a))
+    own = torch.stack(
+        [(p - start).norm() for p, start in zip(alone._network.parameters(), before, strict=True)]
+    ).norm()
+    assert all(
+        not torch.equal(p[a], p[b]) for p in learning._network.weights for a in range(4) for b in range(a)
+    )
     assert whole.tolist() == pytest.approx([own.item()] * 4, rel=0.15)
 
 
 def test_values_spread_backwards_along_a_visit():
-    """State A leads to B without points, B to 10 points and the end: by backups alone A comes to the value of B. No visit was played on."""
+    """State A leads to B without points, B to 10 points and the end: by backups alone A comes to the value of
+    B. No visit was played on."""
     n, learning = 32, learner(32)
     a, b = np.zeros((n, SIZE), np.float32), np.zeros((n, SIZE), np.float32)
     a[:, 0], b[:, 1] = 1.0, 1.0
@@ -181,7 +214,8 @@ def test_values_spread_backwards_along_a_visit():
 
 
 def test_no_gradient_is_left_behind():
-    """Whoever learns next, PPO or the policy's own steps, clips the gradients of the whole policy: these must not count there."""
+    """Whoever learns next, PPO or the policy's own steps, clips the gradients of the whole policy: these must
+    not count there."""
     learning = learner(5)
     learning.add(*a_round(5, np.random.default_rng(0)))
     learning.fit(1.0)
@@ -221,5 +255,8 @@ def test_learning_goes_on_from_a_saved_state_bit_for_bit():
         second.set_state(state)
         go_on(second, rounds[stop:])
         for one in (first, second):
-            assert all(torch.equal(a, b) for a, b in zip(whole._network.parameters(), one._network.parameters(), strict=True))
+            assert all(
+                torch.equal(a, b)
+                for a, b in zip(whole._network.parameters(), one._network.parameters(), strict=True)
+            )
             assert list(one.losses) == list(whole.losses) and one.mean_target == whole.mean_target

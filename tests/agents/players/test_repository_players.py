@@ -1,4 +1,5 @@
-"""Do the repository's players play as players, and are all of them, and its pre-trained models, found by name?"""
+"""Do the repository's players play as players, and are all of them, and its pre-trained models, found by
+name?"""
 
 import numpy as np
 import pytest
@@ -33,7 +34,9 @@ def test_a_player_is_a_function_of_a_position_and_a_seed(name):
         assert np.array_equal(player.play(at[k : k + 1], seeds[k : k + 1]).values[0], together.values[k])
     if hasattr(player, "rank"):
         for k, one in enumerate(player.rank(at, seeds)):
-            assert np.array_equal(one.strokes.values[0], together.values[k]) and (np.diff(one.scores) <= 0).all()
+            assert (
+                np.array_equal(one.strokes.values[0], together.values[k]) and (np.diff(one.scores) <= 0).all()
+            )
 
 
 def test_a_policy_ranks_its_choices_by_probability():
@@ -59,7 +62,10 @@ def test_the_package_holds_the_weights_of_the_pretrained_models(level):
 
 def test_a_planner_takes_the_value_of_a_model_of_your_own():
     at, seeds = at_tables(), np.arange(6)
-    by_level, by_file = (sn.player(f"planner_30@{model}").at({"noise": "none"}) for model in ("club", PRETRAINED / "ppo_value_club.zip"))
+    by_level, by_file = (
+        sn.player(f"planner_30@{model}").at({"noise": "none"})
+        for model in ("club", PRETRAINED / "ppo_value_club.zip")
+    )
     assert np.array_equal(by_level.play(at, seeds).values, by_file.play(at, seeds).values)
     with pytest.raises(ValueError, match="must name a model with policy and value"):
         sn.player(f"planner@{PRETRAINED / 'ppo_mask.zip'}")

@@ -1,4 +1,5 @@
-"""Is what RLlib's runners collect what the tables play, and are the weights that are kept those of its module?"""
+"""Is what RLlib's runners collect what the tables play, and are the weights that are kept those of its
+module?"""
 
 from pathlib import Path
 
@@ -26,11 +27,15 @@ def algorithm():
 
 
 def test_what_runners_collect_is_what_single_tables_play(algorithm):
-    """Each table of each runner has a seed of its own; the steps that only reset a table are left out; every choice was available."""
-    samples = algorithm.env_runner_group.foreach_env_runner(lambda runner: runner.sample(num_timesteps=160), local_env_runner=False)
+    """Each table of each runner has a seed of its own; the steps that only reset a table are left out; every
+    choice was available."""
+    samples = algorithm.env_runner_group.foreach_env_runner(
+        lambda runner: runner.sample(num_timesteps=160), local_env_runner=False
+    )
     first, ends, matched = {}, 0, set()
     own = [seed for runner in (1, 2) for seed in config.seeds_of_runner(4, runner, SETTINGS.envs)]
-    for seed in [*own, *config.seeds_of_runner(4, 0, SETTINGS.envs)]:  # of both runners, and of worker 0, who has no part in it
+    # of both runners, and of worker 0, who has no part in it
+    for seed in [*own, *config.seeds_of_runner(4, 0, SETTINGS.envs)]:
         env = SnookerEnv(action="discrete", observation="masked", **SETTINGS.env_options)
         first[env.reset(seed=seed)[0]["observations"].tobytes()] = seed
     for episodes in samples:
@@ -52,7 +57,9 @@ def test_what_runners_collect_is_what_single_tables_play(algorithm):
                 assert np.array_equal(row["observations"], seen["observations"][t])
                 assert np.array_equal(row["action_mask"], seen["action_mask"][t])
                 row, reward, terminated, _, _ = env.step(int(action))
-                assert reward == episode.get_rewards()[t] and terminated == (episode.is_terminated and t == len(actions) - 1)
+                assert reward == episode.get_rewards()[t] and terminated == (
+                    episode.is_terminated and t == len(actions) - 1
+                )
             assert np.array_equal(row["observations"], seen["observations"][-1])
             assert np.array_equal(row["action_mask"], seen["action_mask"][-1])
     assert ends > 60 and matched == set(own)
@@ -68,11 +75,20 @@ def test_the_weights_that_are_kept_are_those_of_the_module(algorithm):
     with torch.no_grad():
         found = module.forward_inference({"obs": dict(batch)})["action_dist_inputs"].numpy()
     scores = Layers(config.layers_of(algorithm), config.ACTIVATION)(flat)
-    assert np.allclose(found[masks], scores[masks], atol=1e-5) and (found[~masks] < -1e37).all() and not masks.all()
+    assert (
+        np.allclose(found[masks], scores[masks], atol=1e-5)
+        and (found[~masks] < -1e37).all()
+        and not masks.all()
+    )
 
 
 def test_no_two_tables_of_a_run_or_of_neighbouring_runs_have_one_seed():
     """Whatever the number of runners and tables, also after a resume, whose part has a seed of its own."""
     parts = [0, 1, 8, 8192, run.SEEDS, run.SEEDS + 1]
-    seeds = [one for seed in parts for runner in range(1, 9) for one in config.seeds_of_runner(seed, runner, 8192)]
-    assert len(set(seeds)) == len(seeds) and config.seeds_of_runner(3, 2, 5) == config.seeds_of_runner(3, 2, 8)[:5]
+    seeds = [
+        one for seed in parts for runner in range(1, 9) for one in config.seeds_of_runner(seed, runner, 8192)
+    ]
+    assert (
+        len(set(seeds)) == len(seeds)
+        and config.seeds_of_runner(3, 2, 5) == config.seeds_of_runner(3, 2, 8)[:5]
+    )

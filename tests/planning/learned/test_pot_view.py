@@ -1,4 +1,5 @@
-"""Does an agent see each pot as the docstring of ``with_pots`` says? Recomputed in plain Python from ``game.pots``."""
+"""Does an agent see each pot as the docstring of ``with_pots`` says? Recomputed in plain Python from
+``game.pots``."""
 
 from math import hypot, log10
 
@@ -31,7 +32,21 @@ def pot_entries(positions, pot):
     sine, cosine = way[0] * run[1] - way[1] * run[0], way @ run
     size = np.array((HALF_WIDTH, HALF_LENGTH))
     distances = path / HALF_LENGTH - 1, hypot(*(into - at)) / HALF_LENGTH - 1
-    return np.clip([1, *way, sine, cosine, *distances, 1 + log10(tolerance) / 2, VALUES[int(ball)] / 7, *at / size, *into / size], -1, 1)
+    return np.clip(
+        [
+            1,
+            *way,
+            sine,
+            cosine,
+            *distances,
+            1 + log10(tolerance) / 2,
+            VALUES[int(ball)] / 7,
+            *at / size,
+            *into / size,
+        ],
+        -1,
+        1,
+    )
 
 
 @pytest.mark.parametrize("ball_on", [BallOn.RED, BallOn.ANY_COLOUR])
@@ -41,10 +56,15 @@ def test_every_pot_is_shown_entry_by_entry(ball_on):
     observations, _ = env.reset(options={"states": states})
     at, pockets = Positions.of(env), set()
     assert (at.game[:, BALL_ON] == int(ball_on)).all()
-    shown, balls = pot_view.with_pots(observations), range(1, 16) if ball_on == BallOn.RED else range(16, BLACK + 1)
+    shown, balls = (
+        pot_view.with_pots(observations),
+        range(1, 16) if ball_on == BallOn.RED else range(16, BLACK + 1),
+    )
     assert np.array_equal(shown[:, :SIZE], observations) and shown.shape == (30, pot_view.SHOWN)
     for k in range(30):
-        found = pots(at.positions[k], at.on_table[k], mask_of(i for i in balls if at.on_table[k, i]), most=POTS)
+        found = pots(
+            at.positions[k], at.on_table[k], mask_of(i for i in balls if at.on_table[k, i]), most=POTS
+        )
         wanted = np.zeros((POTS, pot_view.POT_ENTRIES))
         for j, pot in enumerate(found):
             wanted[j] = pot_entries(at.positions[k], pot)
@@ -66,5 +86,7 @@ def test_pot_view_shows_the_line_that_the_aim_is_read_against():
         direction = line(table.positions, table.on_table, table.on)
         assert rows[0] == pytest.approx([1, np.cos(direction), np.sin(direction), *rows[0, 3:]], abs=5e-6)
         shown = rows[rows[:, 0] == 1]
-        assert np.hypot(shown[:, 3], shown[:, 4]) == pytest.approx(1.0, abs=1e-6)  # sine and cosine of one angle
-        assert np.all(np.diff(shown[:, 7]) <= 0) and not rows[len(shown) :].any()  # widest first, then nothing
+        # sine and cosine of one angle
+        assert np.hypot(shown[:, 3], shown[:, 4]) == pytest.approx(1.0, abs=1e-6)
+        # widest first, then nothing
+        assert np.all(np.diff(shown[:, 7]) <= 0) and not rows[len(shown) :].any()
