@@ -28,6 +28,7 @@ from ..tasks.frame import Frames
 from ..tasks.noise import LEVELS
 from ..tasks.options import Options
 from ..tasks.played import Played
+from ..tasks.seats import Seat
 from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew
@@ -184,14 +185,13 @@ class Session:
         self.check_stroke(nominated)
         before, tables = self.state, self.tables
         striker = self.frame.striker
-        tables.rules = self.options_with(self.noise[striker]).rules
-        tables.packed = tables.rules.packed()
+        tables.sit([Seat.of(self.options_with(noise).rules) for noise in self.noise])
         actions = Strokes(stroke.numbers()[None]).actions(self._options, self.position)
         tables.nominated[0] = nominated
         self._played = None
         try:
             crew = Crew(self._buffers, (), self._watch)
-            tables.turn(lambda which, b: tables.prepare(which, actions, b), tables.output(), crew)
+            tables.turn(lambda which, b: tables.prepare(which, actions, b, striker), tables.output(), crew)
         except SimulationError:
             self._set(before)
             raise

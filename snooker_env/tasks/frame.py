@@ -88,12 +88,7 @@ class Frames(Tables):
     ):
         rules = rules.rules if isinstance(rules, Options) else rules
         super().__init__(rules, n, limit=limit)
-        self.seats = (Seat.of(rules),) if seats is None else tuple(seats)
-        self.packs = tuple(seat.packed(rules) for seat in self.seats)
-        self.packed: tuple[Floats, Floats, Floats] = self.packs[AGENT]
-        # the winner of the lot is asked if either player can say who begins
-        self._lot = self.packed[0].copy()
-        self._lot[A_LOT] = any(pack[0][A_LOT] for pack in self.packs)
+        self.sit([Seat.of(rules)] if seats is None else seats)
         self._saved_positions, self._saved_on_table = (
             np.zeros((n, N_BALLS, 2)),
             np.zeros((n, N_BALLS), np.bool_),
@@ -111,6 +106,15 @@ class Frames(Tables):
             self.game[:] = self.game[0]
             self.on_table[:, 1:] = [rules.rule_set.on_table >> i & 1 for i in range(1, N_BALLS)]
         self._jaws = np.ascontiguousarray(rules.table.jaws[:, :3])
+
+    def sit(self, seats: Sequence[Seat]) -> None:
+        """Assign the seats: one, or two."""
+        self.seats = tuple(seats)
+        self.packs = tuple(seat.packed(self.rules) for seat in self.seats)
+        self.packed: tuple[Floats, Floats, Floats] = self.packs[AGENT]
+        # the winner of the lot is asked if either player can say who begins
+        self._lot = self.packed[0].copy()
+        self._lot[A_LOT] = any(pack[0][A_LOT] for pack in self.packs)
 
     @property
     def saved(self) -> Layouts:
