@@ -8,16 +8,14 @@ import json
 import os
 import signal
 import sys
-import traceback
 from pathlib import Path
 
 from commands import files
-from commands.lifecycle import any_terminal, what_is_missing
+from commands.lifecycle import any_terminal
 
-STOPPED = 130
-"""Exit code after Ctrl-C, as shells have it."""
+from .stops import WRITTEN, explained
+
 PICTURES, FIGURES = (Path(__file__).parents[1] / name for name in ("pictures", "figures"))
-_written = []
 _transcripts = []
 """The file for what is printed, once a command has been given ``--out``."""
 
@@ -143,7 +141,7 @@ def run(main):
             save_text(file, printed.getvalue())
     except (KeyboardInterrupt, ImportError) as error:
         _alarm(0.0)
-        code = _explained(error)
+        code = explained(error)
     except BrokenPipeError:  # the reader has left: python -m benchmarks.paper | head
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 1
@@ -167,31 +165,6 @@ def _alarm(seconds):
         signal.setitimer(signal.ITIMER_REAL, seconds)
 
 
-def in_one_line(kind, error, trace):
-    """``sys.excepthook`` while a command is loaded."""
-    if isinstance(error, KeyboardInterrupt | ImportError):
-        code = _explained(error)
-        sys.stderr.flush()
-        os._exit(code)  # Python itself would end an interrupted process by a signal
-    traceback.print_exception(kind, error, trace)
-
-
-def _explained(error):
-    """Say in one line what stopped the command; its exit code."""
-    if isinstance(error, KeyboardInterrupt):
-        so_far = f"written: {', '.join(map(str, _written))}" if _written else "no file was written"
-        print(
-            f"\nstopped by Ctrl-C: what is printed so far stands, the rest was not measured; {so_far}",
-            file=sys.stderr,
-        )
-        return STOPPED
-    try:
-        print(what_is_missing(error), file=sys.stderr)
-    except ImportError:  # a mistake in a module of this repository
-        traceback.print_exception(error)
-    return 1
-
-
 @contextlib.contextmanager
 def _writing(file):
     """Around the writing of a file: SystemExit in one line where it fails."""
@@ -200,7 +173,7 @@ def _writing(file):
         yield
     except OSError as error:
         raise SystemExit(f"{file} could not be written: {error.strerror or error}") from None
-    _written.append(file)
+    WRITTEN.append(file)
 
 
 def save_bytes(file, data):

@@ -51,10 +51,10 @@ class Thinking(SearchPlayer):
         super().__init__("search", 30)
         self._decisions = 0
 
-    def play(self, positions, seeds):
+    def rank(self, positions, seeds):
         note(self._decisions, len(seeds))
         self._decisions += 1
-        return super().play(positions, seeds)
+        return super().rank(positions, seeds)
 
 
 class Failing(Noted):
