@@ -108,8 +108,7 @@ def collide_balls(
 def collide_cushion(
     v: Vector, w: Vector, normal: Vector, physics: PhysicsLike = None, fidelity: Fidelity = "standard"
 ) -> tuple[Floats, Floats]:
-    """The impact of a ball with the nose of a cushion (Mathavan, Jackson & Parkin 2010, with Coulomb's law at
-    zero slip).
+    """The impact of a ball with the nose of a cushion (Mathavan, Jackson & Parkin 2010).
 
     Parameters
     ----------

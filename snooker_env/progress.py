@@ -22,8 +22,7 @@ RECENT = 5.0
 
 
 class Progress:
-    """What a part of a long command does, how far it is, how fast, and how long it still takes. A context: it
-    speaks inside it.
+    """What a part of a long command does, how far it is, how fast, and how long it still takes.
 
     A thread speaks at the start, every ten seconds (on a terminal twice a second) and at the end, also while
     one step of the work takes long. The time left follows from the rate in the later half of the time so far.
@@ -101,17 +100,8 @@ class Progress:
     def at(self, done: int, figures: str = "") -> None:
         """Note how much is done.
 
-        Parameters
-        ----------
-        done : int
-            How much, of ``total``.
-        figures : str
-            What else is to be said: round, loss, points.
-
-        Raises
-        ------
-        OSError
-            If the output was closed or its disk is full.
+        ``done``: how much, of ``total``. ``figures``: what else is to be said: round, loss, points. OSError
+        if the output was closed or its disk is full.
         """
         if self._error is not None:
             raise self._error

@@ -102,15 +102,8 @@ class SnookerVecEnv(VecEnv):
         from positions, one for each table; ``set_options([{"breaker": 0}, ...])`` says who breaks. States
         hold their random streams; after a call of ``seed`` too, those of the seeds replace them.
 
-        Returns
-        -------
-        numpy.ndarray or dict
-            float32 (num_envs, k), or a dict of such arrays.
-
-        Raises
-        ------
-        ValueError
-            If the options differ between tables in kind, or a state or position is invalid.
+        Returns float32 (num_envs, k), or a dict of such arrays. ValueError if the options differ between
+        tables in kind, or a state or position is invalid.
         """
         options = None
         if any(self._options):
@@ -132,26 +125,15 @@ class SnookerVecEnv(VecEnv):
     def step_async(self, actions: Any) -> None:
         """Store the actions that ``step_wait`` plays.
 
-        Parameters
-        ----------
-        actions : array_like
-            float (num_envs, k) within [-1, 1], or int (num_envs,): choices.
+        ``actions``: float (num_envs, k) within [-1, 1], or int (num_envs,): choices.
         """
         self._actions = actions
 
     def step_wait(self) -> tuple[Observation, Singles, Bools, list[dict[str, Any]]]:
         """Play the stored actions.
 
-        Returns
-        -------
-        observations : numpy.ndarray or dict
-            float32 (num_envs, k), or a dict of such arrays.
-        rewards : numpy.ndarray
-            float32 (num_envs,).
-        dones : numpy.ndarray
-            bool (num_envs,).
-        infos : list of dict
-            One dict for each table.
+        Returns ``observations``, float32 (num_envs, k), or a dict of such arrays and ``rewards``, float32
+        (num_envs,) and ``dones``, bool (num_envs,) and ``infos``, one dict for each table.
         """
         observation, rewards, terminated, truncated, info = self.tables.step(self._actions)
         done = terminated | truncated
@@ -181,32 +163,15 @@ class SnookerVecEnv(VecEnv):
     def get_images(self) -> Sequence[Any]:
         """Return a picture of each table.
 
-        Returns
-        -------
-        sequence of numpy.ndarray
-            uint8 (H, W, 3), with ``render_mode="rgb_array"``.
+        Returns uint8 (H, W, 3), with ``render_mode="rgb_array"``.
         """
         return self.tables.render()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         """Read an attribute for some tables: one that all share, or one of each table, as ``points``.
 
-        Parameters
-        ----------
-        attr_name : str
-            Name of the attribute.
-        indices : int or sequence of int, optional
-            Which tables; default None: all.
-
-        Returns
-        -------
-        list
-            One value for each table.
-
-        Raises
-        ------
-        AttributeError
-            If no table has the attribute.
+        ``attr_name``: name of the attribute. ``indices``: which tables; default None: all. Returns one value
+        for each table. AttributeError if no table has the attribute.
         """
         if attr_name in ("observation_space", "action_space"):  # of one table
             return [getattr(self.tables, f"single_{attr_name}") for _ in self._get_indices(indices)]
@@ -221,19 +186,8 @@ class SnookerVecEnv(VecEnv):
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         """Refuse to set an attribute: the tables share everything. Make another ``SnookerVecEnv`` instead.
 
-        Parameters
-        ----------
-        attr_name : str
-            Name of the attribute.
-        value : object
-            Its value.
-        indices : int or sequence of int, optional
-            Which tables.
-
-        Raises
-        ------
-        AttributeError
-            Always.
+        ``attr_name``: name of the attribute. ``value``: its value. ``indices``: which tables. AttributeError
+        always.
         """
         raise AttributeError(
             f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv"
@@ -244,26 +198,9 @@ class SnookerVecEnv(VecEnv):
     ) -> list[Any]:
         """Call ``get_state`` or ``action_masks`` for some tables. No other method belongs to one table.
 
-        Parameters
-        ----------
-        method_name : {"get_state", "action_masks"}
-            Name of the method.
-        *method_args
-            Ignored: the methods take no arguments.
-        indices : int or sequence of int, optional
-            Which tables; default None: all.
-        **method_kwargs
-            Ignored.
-
-        Returns
-        -------
-        list
-            One result for each table.
-
-        Raises
-        ------
-        ValueError
-            For another method.
+        ``method_name``: name of the method. ``*method_args``: ignored: the methods take no arguments.
+        ``indices``: which tables; default None: all. ``**method_kwargs``: ignored. Returns one result for
+        each table. ValueError for another method.
         """
         choice("method_name", method_name, ("get_state", "action_masks"))
         states = getattr(self.tables, method_name)()
@@ -272,16 +209,7 @@ class SnookerVecEnv(VecEnv):
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
         """Return whether tables are wrapped. None is, but each reports its episodes as a ``Monitor`` does.
 
-        Parameters
-        ----------
-        wrapper_class : type
-            The class of the wrapper.
-        indices : int or sequence of int, optional
-            Which tables; default None: all.
-
-        Returns
-        -------
-        list of bool
-            True for ``Monitor``, one for each table.
+        ``wrapper_class``: the class of the wrapper. ``indices``: which tables; default None: all. Returns
+        True for ``Monitor``, one for each table.
         """
         return [issubclass(wrapper_class, Monitor) for _ in self._get_indices(indices)]

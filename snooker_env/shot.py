@@ -124,32 +124,10 @@ class Shot:
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draw the shot with matplotlib.
 
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Axes to draw on; None makes a new figure.
-        **options
-            Options of ``snooker_env.render.diagrams.plot``, where the diagram is explained.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes with the diagram.
-
-        Raises
-        ------
-        ValueError
-            If the shot has no path, or an option is wrong.
-        ImportError
-            If matplotlib is not installed.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)])
-        >>> ax = shot.plot(title="One ball")
-        >>> ax.texts[0].get_text()
-        'One ball'
+        ``ax``: axes to draw on; None makes a new figure. ``**options``: options of
+        ``snooker_env.render.diagrams.plot``, where the diagram is explained. Returns the axes with the
+        diagram. ValueError if the shot has no path, or an option is wrong. ImportError if matplotlib is not
+        installed.
         """
         from .render.diagrams import plot
 
@@ -168,8 +146,7 @@ def check_path(shot: Shot) -> None:
 
 @dataclass(frozen=True, eq=False)
 class ShotBatch:
-    """Many simulated shots, as ``simulate_batch`` returns them: the attributes of ``Shot`` with a leading
-    axis b.
+    """Many simulated shots: the attributes of ``Shot`` with a leading axis b.
 
     Attributes
     ----------

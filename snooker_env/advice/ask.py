@@ -37,8 +37,7 @@ def advise(
     distinct: bool = True,
     trust: bool = False,
 ) -> Advice:
-    """Return the strokes that a player would play in a position, best first, and their outcomes under
-    execution errors.
+    """Return the strokes that a player would play in a position, best first, and their outcomes.
 
     The outcomes are found in the same way for every player, so that strokes of different agents can be
     compared:

@@ -64,33 +64,10 @@ class Destinations:
     def density(self, cell: float = 0.05, ball: str = "cue") -> dict[str, Any]:
         """Return a density map of where a ball stops, as shares of all samples in square cells.
 
-        Parameters
-        ----------
-        cell : float, optional
-            Side of a cell [m], in [0.005, 1]; default 0.05.
-        ball : {"cue", "ball"}, optional
-            The cue ball (default) or the object ball.
-
-        Returns
-        -------
-        dict
-            "x0", "y0": the corner of the first cell [m]; "cell" [m]; "nx", "ny": numbers of cells; "values":
-            a list of ny rows of nx numbers. The values add up to the share of the samples in which the ball
-            stayed on the table.
-
-        Raises
-        ------
-        ValueError
-            If an argument is out of range.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> from snooker_env.advice import destinations
-        >>> stops = destinations(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), {"speed": 1.8, "aim": 0.8}, noise="none")
-        >>> density = stops.density(0.1)
-        >>> density["nx"], density["ny"], sum(density["values"])
-        (18, 36, 1.0)
+        ``cell``: side of a cell [m], in [0.005, 1]; default 0.05. ``ball``: the cue ball (default) or the
+        object ball. Returns "x0", "y0": the corner of the first cell [m]; "cell" [m]; "nx", "ny": numbers of
+        cells; "values": a list of ny rows of nx numbers. The values add up to the share of the samples in
+        which the ball stayed on the table. ValueError if an argument is out of range.
         """
         number("cell", cell, 0.005, 1.0)
         places = getattr(self, choice("ball", ball, ("cue", "ball")))
@@ -104,18 +81,7 @@ class Destinations:
     def to_dict(self) -> dict[str, Any]:
         """Return the result as JSON types.
 
-        Returns
-        -------
-        dict
-            All attributes by name; points as lists, rounded to a tenth of a millimetre.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> from snooker_env.advice import destinations
-        >>> stops = destinations(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), {"speed": 1.8, "aim": 0.8}, noise="none")
-        >>> list(stops.to_dict())
-        ['samples', 'object_ball', 'potted', 'in_off', 'foul', 'scored', 'points', 'cue', 'ball']
+        Returns all attributes by name; points as lists, rounded to a tenth of a millimetre.
         """
         clouds = {name: getattr(self, name).round(4).tolist() for name in ("cue", "ball")}
         names = ("samples", "object_ball", "potted", "in_off", "foul", "scored", "points")
@@ -131,8 +97,7 @@ def destinations(
     seed: int = 0,
     options: Any = None,
 ) -> Destinations:
-    """Find where the cue ball and the object ball of a stroke stop under execution errors, and how often it
-    pots and fouls.
+    """Find where the balls of a stroke stop under execution errors, and how often it pots and fouls.
 
     Parameters
     ----------

@@ -86,26 +86,8 @@ class CueStroke:
     def of(cls, stroke: "StrokeLike") -> "CueStroke":
         """Convert an argument to a ``CueStroke``.
 
-        Parameters
-        ----------
-        stroke : CueStroke, dict or object
-            A dict with fields of ``CueStroke``, or an object with such attributes.
-
-        Returns
-        -------
-        CueStroke
-            The argument itself if it is one already.
-
-        Raises
-        ------
-        ValueError
-            If a field is unknown, missing or out of range.
-
-        Examples
-        --------
-        >>> from snooker_env.advice import CueStroke
-        >>> CueStroke.of({"speed": 1.8, "aim": 0.5}).side
-        0.0
+        ``stroke``: a dict with fields of ``CueStroke``, or an object with such attributes. Returns the
+        argument itself if it is one already. ValueError if a field is unknown, missing or out of range.
         """
         if isinstance(stroke, cls):
             return stroke
@@ -128,32 +110,14 @@ class CueStroke:
     def to_dict(self) -> dict[str, Any]:
         """Return the stroke as JSON types.
 
-        Returns
-        -------
-        dict
-            Fields and their values; ``CueStroke(**fields)`` makes the stroke again.
-
-        Examples
-        --------
-        >>> from snooker_env.advice import CueStroke
-        >>> CueStroke(speed=1.8, aim=0.5).to_dict()
-        {'speed': 1.8, 'aim': 0.5, 'side': 0.0, 'top': 0.0, 'elevation': 0.0, 'place': None}
+        Returns fields and their values; ``CueStroke(**fields)`` makes the stroke again.
         """
         return asdict(self) | {"place": self.place and list(self.place)}
 
     def numbers(self) -> NDArray[np.float64]:
         """Return the stroke as a row of numbers, without its place.
 
-        Returns
-        -------
-        numpy.ndarray
-            float64 (5,). Speed [m/s], side, top, aim [rad], elevation [rad].
-
-        Examples
-        --------
-        >>> from snooker_env.advice import CueStroke
-        >>> CueStroke(speed=1.8, aim=0.5, top=-0.2).numbers().tolist()
-        [1.8, 0.0, -0.2, 0.5, 0.0]
+        Returns float64 (5,). Speed [m/s], side, top, aim [rad], elevation [rad].
         """
         return np.array([self.speed, self.side, self.top, self.aim, self.elevation])
 
@@ -162,31 +126,11 @@ class CueStroke:
     ) -> NDArray[np.float32]:
         """Return the stroke as an action of an environment with ``aim="absolute"`` and the given options.
 
-        Parameters
-        ----------
-        elevation : bool, optional
-            Whether the action holds the elevation; default False.
-        placement : bool, optional
-            Whether the action holds the place in the D; default False. A stroke without a place puts the cue
-            ball in the middle of the baulk line.
-        decision : bool, optional
-            Whether the action holds the decision after a foul; default False. The decision is to play.
-
-        Returns
-        -------
-        numpy.ndarray
-            float32 (k,), with k from 4 to 8. The action, in [-1, 1].
-
-        Raises
-        ------
-        ValueError
-            If the cue is raised and the action does not hold the elevation.
-
-        Examples
-        --------
-        >>> from snooker_env.advice import CueStroke
-        >>> CueStroke(speed=3.6, aim=0.0, top=0.25).action(placement=True).tolist()
-        [0.0, 0.0, 0.5, 0.0, 0.0, -1.0]
+        ``elevation``: whether the action holds the elevation; default False. ``placement``: whether the
+        action holds the place in the D; default False. A stroke without a place puts the cue ball in the
+        middle of the baulk line. ``decision``: whether the action holds the decision after a foul; default
+        False. The decision is to play. Returns float32 (k,), with k from 4 to 8. The action, in [-1, 1].
+        ValueError if the cue is raised and the action does not hold the elevation.
         """
         form = Actions("absolute", elevation, placement, Physics(), ("decision",) if decision else ())
         places = None if self.place is None else [self.place]

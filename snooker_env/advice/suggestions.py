@@ -104,17 +104,7 @@ class Suggestion(CueStroke):
     def to_dict(self) -> dict[str, Any]:
         """Return the suggestion as JSON types.
 
-        Returns
-        -------
-        dict
-            All attributes by name; pairs as lists.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
-        >>> sn.advise(position, agent="search", noise="none", n=1)[0].to_dict()["chance_interval"]
-        [1.0, 1.0]
+        Returns all attributes by name; pairs as lists.
         """
         return {
             name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()
@@ -126,8 +116,7 @@ class Suggestion(CueStroke):
 
 @dataclass(frozen=True, kw_only=True)
 class Advice(Sequence[Suggestion]):
-    """The strokes that an agent would play in a position, ordered by the figure in their words: a sequence of
-    ``Suggestion``.
+    """The strokes that an agent would play in a position, best first: a sequence of ``Suggestion``.
 
     Attributes
     ----------
@@ -195,17 +184,7 @@ class Advice(Sequence[Suggestion]):
     def to_dict(self) -> dict[str, Any]:
         """Return the advice as JSON types.
 
-        Returns
-        -------
-        dict
-            All attributes by name; the position and the suggestions as dicts.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> advice = sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="search", noise="none", n=1)
-        >>> list(advice.to_dict())
-        ['position', 'agent', 'own', 'order', 'noise', 'samples', 'visits', 'seed', 'suggestions']
+        Returns all attributes by name; the position and the suggestions as dicts.
         """
         kept = {
             name: getattr(self, name)

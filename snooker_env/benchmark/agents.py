@@ -62,27 +62,11 @@ class Agent:
     ) -> "Agent":
         """The agent that a text names, or that a player is.
 
-        Parameters
-        ----------
-        agent : str or player
-            A text that ``sn.player`` accepts, LABEL=SOURCE,SOURCE,... with one source for each training seed,
-            or a player.
-        label : str, optional
-            As in ``Agent``; None: made from the text or the class.
-        training_shots : int, optional
-            As in ``Agent``; None: what a player says that is known by name.
-        **more
-            Other attributes.
-
-        Returns
-        -------
-        Agent
-            The agent. No code of a class or a file has run.
-
-        Raises
-        ------
-        ValueError
-            If nothing has that name, or an argument is wrong.
+        ``agent``: a text that ``sn.player`` accepts, LABEL=SOURCE,SOURCE,... with one source for each
+        training seed, or a player. ``label``: as in ``Agent``; None: made from the text or the class.
+        ``training_shots``: as in ``Agent``; None: what a player says that is known by name. ``**more``: other
+        attributes. Returns the agent. No code of a class or a file has run. ValueError if nothing has that
+        name, or an argument is wrong.
         """
         agent = str(agent) if isinstance(agent, Path) else agent
         sources: list[Any] = [agent]
@@ -132,22 +116,8 @@ class Agent:
     def player(self, task: Task, run: int = 0) -> Player:
         """The player of one training seed, not yet bound. Code of the agent runs.
 
-        Parameters
-        ----------
-        task : Task
-            The task.
-        run : int
-            Index of the training seed in ``sources``.
-
-        Returns
-        -------
-        Player
-            The player.
-
-        Raises
-        ------
-        ValueError
-            If it is no player, or cannot play the task.
+        ``task``: the task. ``run``: index of the training seed in ``sources``. Returns the player. ValueError
+        if it is no player, or cannot play the task.
         """
         source = self.sources[run]
         if self.program and isinstance(source, str):

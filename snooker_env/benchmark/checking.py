@@ -37,8 +37,7 @@ STROKES = COLUMNS.index("strokes")
 
 
 def faults(found: Any, threads: int | None = None) -> list[str]:
-    """Check a result: its fields, that they fit each other, and all rows and figures by a replay of its
-    strokes.
+    """Check a result: its fields, and all rows and figures by a replay of its strokes.
 
     Players that are known by name, of the package or of one that is installed, are asked again for the first
     stroke of the first tables of every training seed: they must be those of the file, and whoever simulates
@@ -257,8 +256,7 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
 
 
 def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None) -> list[str]:
-    """Have the agent play the first episodes of a result again, of every training seed, and compare strokes
-    and rows.
+    """Have the agent play the first episodes of a result again, and compare strokes and rows.
 
     Parameters
     ----------
@@ -314,8 +312,7 @@ def afresh(
     seed: int,
     threads: int | None = None,
 ) -> tuple[float, float, list[str]]:
-    """Have the agent play a task on seeds that it cannot know, and compare its mean score and its class with
-    those of the result.
+    """Have the agent play a task on seeds that it cannot know, and compare the mean score.
 
     Parameters
     ----------

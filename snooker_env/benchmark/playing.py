@@ -74,13 +74,7 @@ class PlayedEpisodes:
     simulated: int = 0
 
     def add(self, more: "PlayedEpisodes") -> None:
-        """Add episodes that were played after these.
-
-        Parameters
-        ----------
-        more : PlayedEpisodes
-            The next episodes.
-        """
+        """Add episodes that were played after these."""
         self.rows += more.rows
         self.strokes += more.strokes
         self.decisions += more.decisions

@@ -64,8 +64,7 @@ def processor() -> str:
 
 
 def software() -> dict[str, str | None]:
-    """Versions of this package, of Python and of the libraries that decide results; None for one that is not
-    installed.
+    """Versions of this package, of Python and of the libraries that decide results; None: not installed.
 
     Returns
     -------

@@ -122,15 +122,7 @@ class Strokes:
     def a_visit(self, values: Any) -> Floats:
         """Sum values over each visit.
 
-        Parameters
-        ----------
-        values : array_like, float (n,)
-            One value for each stroke.
-
-        Returns
-        -------
-        float64 (visits,)
-            The sums.
+        ``values``: float (n,), one value for each stroke. Returns float64 (visits,): the sums.
         """
         return np.asarray(np.bincount(self.visit, values, self.visits), np.float64)
 

@@ -25,8 +25,7 @@ RESAMPLES = 2000
 
 
 def iqm(values: Any) -> float:
-    """The inter-quartile mean: the mean of the middle half. A value at its edge counts with the part that is
-    inside.
+    """The inter-quartile mean: the mean of the middle half.
 
     Parameters
     ----------
@@ -97,30 +96,15 @@ class Resamples:
     def sums(self, scores: Any) -> Floats:
         """The sum of a matrix in each sample.
 
-        Parameters
-        ----------
-        scores : float (runs, visits)
-            The matrix.
-
-        Returns
-        -------
-        float64 (n,)
-            The sums.
+        ``scores``: float (runs, visits), the matrix. Returns float64 (n,): the sums.
         """
         return ((self._visits @ scores.T) * self._runs).sum(axis=1)
 
     def ratios(self, above: Any, below: Any) -> Floats:
         """The ratio of two sums in each sample.
 
-        Parameters
-        ----------
-        above, below : float (runs, visits)
-            The matrices of the numerator and of the denominator.
-
-        Returns
-        -------
-        float64 (n,)
-            The ratios; NaN where the denominator is 0.
+        ``above``, ``below``: float (runs, visits), the matrices of the numerator and of the denominator.
+        Returns float64 (n,): the ratios; NaN where the denominator is 0.
         """
         over = self.sums(below)
         return np.divide(self.sums(above), over, out=np.full(len(over), np.nan), where=over != 0)
@@ -128,15 +112,7 @@ class Resamples:
     def iqms(self, scores: Any) -> Floats:
         """The inter-quartile mean over all runs and visits in each sample.
 
-        Parameters
-        ----------
-        scores : float (runs, visits)
-            The matrix.
-
-        Returns
-        -------
-        float64 (n,)
-            The inter-quartile means.
+        ``scores``: float (runs, visits), the matrix. Returns float64 (n,): the inter-quartile means.
         """
         values, which = np.unique(scores, return_inverse=True)
         which = which.reshape(scores.shape)

@@ -72,29 +72,9 @@ class Task:
     def options(self, **free: Any) -> Options:
         """The options of the task as it is trained.
 
-        Parameters
-        ----------
-        **free
-            Options of ``FREE``.
-
-        Returns
-        -------
-        Options
-            The frozen options and these.
-
-        Raises
-        ------
-        ValueError
-            For an option that the task freezes, and for values that ``Options`` does not accept.
-        TypeError
-            For a keyword that is no option.
-
-        Examples
-        --------
-        >>> from snooker_env.benchmark import TASKS
-        >>> options = TASKS["SnookerBreak-v0"].options(aim="target")
-        >>> options.layout, options.noise, options.aim
-        ('opened', 'professional', 'target')
+        ``**free``: options of ``FREE``. Returns the frozen options and these. ValueError for an option that
+        the task freezes, and for values that ``Options`` does not accept. TypeError for a keyword that is no
+        option.
         """
         frees = ", ".join(FREE)
         for name in (name for name in free if name not in FREE):
@@ -114,15 +94,7 @@ class Task:
     def judged(self, **free: Any) -> Options:
         """The options that the task is judged with: those of training, on the judged layout.
 
-        Parameters
-        ----------
-        **free
-            As in ``options``.
-
-        Returns
-        -------
-        Options
-            The options of training with ``judged_layout``.
+        ``**free``: as in ``options``. Returns the options of training with ``judged_layout``.
         """
         return self.options(**free).but(layout=self.judged_layout)
 
@@ -143,23 +115,10 @@ class Task:
         return self.changes.get("task") == "frame"
 
     def seeds(self, n: int) -> list[int]:
-        """The seeds of the first judged tables, by ``tables_of``; of frames, which all begin with the same
-        rack, those of the errors.
+        """The seeds of the first judged tables; of frames, which share their rack, those of the errors.
 
-        Parameters
-        ----------
-        n : int
-            Number of tables, in [1, 2**20].
-
-        Returns
-        -------
-        list of int
-            The seeds.
-
-        Raises
-        ------
-        ValueError
-            If ``n`` is out of range, or the layout has fewer tables.
+        ``n``: number of tables, in [1, 2**20]. Returns the seeds. ValueError if ``n`` is out of range, or the
+        layout has fewer tables.
         """
         integer("episodes", n, 1, 2**20)
         return (
@@ -264,8 +223,7 @@ def _tables_of(layout: str, n: int) -> tuple[int, ...]:
 
 
 def tables_of(layout: str, visits: int) -> list[int]:
-    """Seeds of different tables for judging: the first from ``HELD_OUT_SEED`` whose tables differ from all
-    before and their mirror images.
+    """Seeds of tables for judging, from ``HELD_OUT_SEED``: no two are alike, mirrored or not.
 
     Parameters
     ----------

@@ -33,8 +33,7 @@ PLAYERS = ("player_0", "player_1")
 
 
 class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
-    """A frame of snooker between two players, one stroke a step; with ``task="match"`` the best of ``frames``
-    frames.
+    """A frame of snooker between two players, one stroke a step; with ``task="match"`` a match.
 
     ## Turns ``agent_selection`` is the player whose turn it is: the same player as long as he scores, the
     other one after a miss or a foul. After a foul the player who comes to the table is selected, and the last
@@ -121,7 +120,7 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
     3
     """
 
-    metadata: dict[str, Any] = {
+    metadata: dict[str, Any] = {  # noqa: RUF012
         "name": "snooker_match_v0",
         "render_modes": list(MODES),
         "is_parallelizable": False,
@@ -190,45 +189,21 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
     def observation_space(self, agent: str) -> gymnasium.Space[Any]:
         """Return the observation space of a player; the same object each time.
 
-        Parameters
-        ----------
-        agent : str
-            "player_0" or "player_1".
-
-        Returns
-        -------
-        gymnasium.Space
-            The space.
+        ``agent``: "player_0" or "player_1". Returns the space.
         """
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> gymnasium.Space[Any]:
         """Return the action space of a player; the same object each time.
 
-        Parameters
-        ----------
-        agent : str
-            "player_0" or "player_1".
-
-        Returns
-        -------
-        gymnasium.Space
-            The space.
+        ``agent``: "player_0" or "player_1". Returns the space.
         """
         return self.action_spaces[agent]
 
     def observe(self, agent: str) -> Observation:
         """Return the current observation of a player.
 
-        Parameters
-        ----------
-        agent : str
-            "player_0" or "player_1".
-
-        Returns
-        -------
-        numpy.ndarray or dict
-            As in the observation space; new arrays.
+        ``agent``: "player_0" or "player_1". Returns as in the observation space; new arrays.
         """
         turn = agent == self.agent_selection  # an error before reset()
         side = PLAYERS.index(agent)
@@ -239,21 +214,8 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
     def action_mask(self, agent: str) -> NDArray[np.int8]:
         """Return the available choices of a player, with ``action="discrete"``.
 
-        Parameters
-        ----------
-        agent : str
-            "player_0" or "player_1".
-
-        Returns
-        -------
-        numpy.ndarray
-            int8 (n,), n the number of choices. 1 for each available choice; all 0 unless it is the player's
-            turn.
-
-        Raises
-        ------
-        ValueError
-            With ``action="box"``.
+        ``agent``: "player_0" or "player_1". Returns int8 (n,), n the number of choices. 1 for each available
+        choice; all 0 unless it is the player's turn. ValueError with ``action="box"``.
         """
         side = PLAYERS.index(agent)
         if not isinstance(self.tables.seats[side].actions, Choices):
@@ -268,23 +230,10 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Begin a new frame.
 
-        Parameters
-        ----------
-        seed : int, optional
-            Seed of all random numbers from now on; default None: the stream goes on.
-        options : dict, optional
-            {"state": a state from ``get_state``} or {"position": a ``snooker_env.Position`` or its
-            ``to_dict()``} starts from there. {"breaker": 0 or 1} says who breaks. Other keys are ignored,
-            because PettingZoo's own tests pass some.
-
-        Returns
-        -------
-        None
-
-        Raises
-        ------
-        ValueError
-            If the options, the state or the position are invalid.
+        ``seed``: seed of all random numbers from now on; default None: the stream goes on. ``options``:
+        {"state": a state from ``get_state``} or {"position": a ``snooker_env.Position`` or its ``to_dict()``}
+        starts from there. {"breaker": 0 or 1} says who breaks. Other keys are ignored, because PettingZoo's
+        own tests pass some. ValueError if the options, the state or the position are invalid.
         """
         if options is not None and not isinstance(options, dict):
             raise refuse(
@@ -329,23 +278,9 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
     def step(self, action: Action) -> None:
         """Play the action of the selected player.
 
-        Parameters
-        ----------
-        action : array_like, int or None
-            float (k,) within [-1, 1], or a choice; None once the player has terminated or is truncated.
-
-        Returns
-        -------
-        None
-
-        Raises
-        ------
-        ValueError
-            If the action is not in the action space; then nothing is played.
-        gymnasium.error.ResetNeeded
-            If no player is left.
-        SimulationError
-            If the shot cannot be computed.
+        ``action``: float (k,) within [-1, 1], or a choice; None once the player has terminated or is
+        truncated. ValueError if the action is not in the action space; then nothing is played.
+        gymnasium.error.ResetNeeded if no player is left. SimulationError if the shot cannot be computed.
         """
         if not self.agents:
             raise gymnasium.error.ResetNeeded(
@@ -388,29 +323,14 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
     def get_state(self) -> dict[str, Any]:
         """Return the whole state: table, frame, number of strokes and random stream.
 
-        Returns
-        -------
-        dict
-            JSON types.
+        Returns JSON types.
         """
         return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
 
     def set_state(self, state: dict[str, Any]) -> None:
         """Restore a state; the next stroke continues identically. Rewards not yet collected become zero.
 
-        Parameters
-        ----------
-        state : dict
-            A result of ``get_state``.
-
-        Returns
-        -------
-        None
-
-        Raises
-        ------
-        ValueError
-            If the state is invalid; then nothing has changed.
+        ``state``: a result of ``get_state``. ValueError if the state is invalid; then nothing has changed.
         """
         self._take(Start(state=self.tables.checked(state, self.np_random, either=True)), seeded=False)
         self._begin()
@@ -424,10 +344,7 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
     def render(self) -> Picture:
         """Return the table with the paths of the last shot.
 
-        Returns
-        -------
-        numpy.ndarray, str or None
-            uint8 (H, W, 3) with "rgb_array", str with "ansi", None otherwise.
+        Returns uint8 (H, W, 3) with "rgb_array", str with "ansi", None otherwise.
         """
         return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent())
 

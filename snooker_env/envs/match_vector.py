@@ -23,8 +23,7 @@ from .vector import SnookerVectorEnv
 
 
 class MatchVectorEnv(SnookerVectorEnv):
-    """Many frames or matches between player 0 and player 1: ``match_env``, bit for bit, on n tables, for
-    leagues and self-play.
+    """Many frames or matches of two players, both stepped by the caller: ``match_env``, bit for bit.
 
     A step is one turn on each table, of the player whose turn it is there: ``strikers``. Observations are
     those of the strikers, from their own side; infos have the keys of ``SnookerEnv`` as player 0 sees them,
@@ -110,28 +109,11 @@ class MatchVectorEnv(SnookerVectorEnv):
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin new frames or matches on all tables, or on some.
 
-        Parameters
-        ----------
-        seed : int, list or None, optional
-            As in ``SnookerVectorEnv.reset``.
-        options : dict, optional
-            As in ``SnookerVectorEnv.reset``. "breaker": 0 or 1, or one for each table.
-        out : None
-            Not available.
-
-        Returns
-        -------
-        observations : numpy.ndarray or dict
-            float32 (num_envs, k), or a dict of such arrays: of the strikers.
-        infos : dict
-            An array for each key.
-
-        Raises
-        ------
-        ValueError
-            If the options are invalid, or a state or position is.
-        gymnasium.error.ResetNeeded
-            If a table outside the mask has never been reset.
+        ``seed``: as in ``SnookerVectorEnv.reset``. ``options``: as in ``SnookerVectorEnv.reset``. "breaker":
+        0 or 1, or one for each table. ``out``: not available. Returns ``observations``, float32 (num_envs,
+        k), or a dict of such arrays: of the strikers and ``infos``, an array for each key. ValueError if the
+        options are invalid, or a state or position is. gymnasium.error.ResetNeeded if a table outside the
+        mask has never been reset.
         """
         if out is not None:
             raise refuse("out", type(out).__name__, "must be None: observations are of either player")
@@ -202,20 +184,8 @@ class MatchVectorEnv(SnookerVectorEnv):
     def observe(self, player: int) -> Observation:
         """Return the observations of one player on all tables.
 
-        Parameters
-        ----------
-        player : int
-            0 or 1.
-
-        Returns
-        -------
-        numpy.ndarray or dict
-            float32 (num_envs, k), or a dict of such arrays.
-
-        Raises
-        ------
-        ValueError
-            For another number.
+        ``player``: 0 or 1. Returns float32 (num_envs, k), or a dict of such arrays. ValueError for another
+        number.
         """
         if player not in (0, 1):
             raise refuse("player", player, "must be 0 or 1")
@@ -228,15 +198,7 @@ class MatchVectorEnv(SnookerVectorEnv):
     def action_masks(self) -> Bools:
         """Return the available choices of the strikers, where both players have the same discrete actions.
 
-        Returns
-        -------
-        numpy.ndarray
-            bool (num_envs, choices).
-
-        Raises
-        ------
-        ValueError
-            With other actions.
+        Returns bool (num_envs, choices). ValueError with other actions.
         """
         if not self._alike or not isinstance(self.tables.seats[0].actions, Choices):
             raise refuse(

@@ -112,49 +112,21 @@ class OneTable(ShowsBalls):
         return self.options.rules.noise
 
     # states
-    # ----------------------------------------------------------------------------------------------------------------
+    # --------------------------------------------------------------------------------------------------------
 
     def get_state(self) -> dict[str, Any]:
-        """Return the whole state between two shots: table, game and random stream. ``set_state`` restores it
-        exactly.
+        """Return the whole state between two shots; ``set_state`` restores it exactly.
 
-        Returns
-        -------
-        dict
-            JSON types. In a visit: "positions" (22, 2) [m], "on_table" (22,), "ball_on", "in_hand", "points",
-            "over", "stream", "rng". In a frame: "positions", "on_table", "frame" (``Frame.to_dict``),
-            "strokes", "unpaid", "due", "stream", "rng"; in a match also "frames", "first_break" and
-            "best_of".
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> env = sn.SnookerEnv()
-        >>> _ = env.reset(seed=1)
-        >>> state = env.get_state()
-        >>> first = env.step([0.0, 0.0, 0.0, 0.5])[0]
-        >>> env.set_state(state)
-        >>> bool((env.step([0.0, 0.0, 0.0, 0.5])[0] == first).all())
-        True
+        Returns JSON types. In a visit: "positions" (22, 2) [m], "on_table" (22,), "ball_on", "in_hand",
+        "points", "over", "stream", "rng". In a frame: "positions", "on_table", "frame" (``Frame.to_dict``),
+        "strokes", "unpaid", "due", "stream", "rng"; in a match also "frames", "first_break" and "best_of".
         """
         return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
 
     def set_state(self, state: dict[str, Any]) -> None:
         """Restore a state; the next shot continues identically.
 
-        Parameters
-        ----------
-        state : dict
-            A result of ``get_state``.
-
-        Returns
-        -------
-        None
-
-        Raises
-        ------
-        ValueError
-            If the state is invalid; then nothing has changed.
+        ``state``: a result of ``get_state``. ValueError if the state is invalid; then nothing has changed.
         """
         self._take(Start(state=self.tables.checked(state, self.np_random)), seed=None)
         self._record.begin_episode()

@@ -264,39 +264,18 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         return one
 
     # Gymnasium's interface
-    # -------------------------------------------------------------------------------------------------
+    # --------------------------------------------------------------------------------------------------------
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin a new visit or frame.
 
-        Parameters
-        ----------
-        seed : int, optional
-            Seed of all random numbers from now on; default None: the stream goes on.
-        options : dict, optional
-            "state" or "position": starts from there, see States. "breaker": 0 or 1, the agent or the opponent
-            breaks.
-
-        Returns
-        -------
-        observation : numpy.ndarray or dict
-            float32 (k,), or a dict of such arrays, see Observation space.
-        info : dict
-            See Info.
-
-        Raises
-        ------
-        ValueError
-            If an option is unknown, or a state or position is invalid or has no shot left.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> observation, info = sn.SnookerEnv().reset(seed=1)
-        >>> observation.shape, info["points"]
-        ((121,), 0.0)
+        ``seed``: seed of all random numbers from now on; default None: the stream goes on. ``options``:
+        "state" or "position": starts from there, see States. "breaker": 0 or 1, the agent or the opponent
+        breaks. Returns ``observation``, float32 (k,), or a dict of such arrays, see Observation space and
+        ``info``, see Info. ValueError if an option is unknown, or a state or position is invalid or has no
+        shot left.
         """
         check = lambda state: self.tables.checked(state, self.np_random, to_play=True)  # noqa: E731
         options = given_of(options, ONE)
@@ -316,40 +295,12 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Play one shot; in a frame, also all strokes of the opponent after it.
 
-        Parameters
-        ----------
-        action : array_like or int
-            float (k,) within [-1, 1]; with ``action="discrete"`` a choice.
-
-        Returns
-        -------
-        observation : numpy.ndarray or dict
-            float32 (k,), or a dict of such arrays, see Observation space.
-        reward : float
-            See Rewards.
-        terminated, truncated : bool
-            See Episode end.
-        info : dict
-            See Info.
-
-        Raises
-        ------
-        ValueError
-            If the action is not in the action space; then nothing is played.
-        gymnasium.error.ResetNeeded
-            If the episode is over or has not begun.
-        SimulationError
-            If a shot cannot be computed. The balls are then left as they lay, except for a cue ball that was
-            placed.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> env = sn.SnookerEnv(aim="target")
-        >>> _ = env.reset(seed=1)
-        >>> observation, reward, terminated, truncated, info = env.step([0.2, 0.0, 0.0, 0.0])
-        >>> observation.shape, truncated
-        ((121,), False)
+        ``action``: float (k,) within [-1, 1]; with ``action="discrete"`` a choice. Returns ``observation``,
+        float32 (k,), or a dict of such arrays, see Observation space and ``reward``, see Rewards and
+        ``terminated, truncated``, see Episode end and ``info``, see Info. ValueError if the action is not in
+        the action space; then nothing is played. gymnasium.error.ResetNeeded if the episode is over or has
+        not begun. SimulationError if a shot cannot be computed. The balls are then left as they lay, except
+        for a cue ball that was placed.
         """
         a = self.options.rules.actions.check(action)
         tables = self.tables
@@ -374,26 +325,9 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         )
 
     def action_masks(self) -> Bools:
-        """Return the available choices, with ``action="discrete"``; sb3-contrib's maskable algorithms call
-        this method.
+        """Return the available choices of ``action="discrete"``; sb3-contrib calls this method.
 
-        Returns
-        -------
-        numpy.ndarray
-            bool (540,).
-
-        Raises
-        ------
-        ValueError
-            With ``action="box"``.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> env = sn.SnookerEnv(action="discrete")
-        >>> _ = env.reset(seed=1)
-        >>> env.action_masks().shape
-        (540,)
+        Returns bool (540,). ValueError with ``action="box"``.
         """
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
@@ -413,13 +347,9 @@ class SnookerEnv(OneTable, HasHistory, gymnasium.Env[Any, Any]):
         self._show(played=True)
 
     def render(self) -> Picture:
-        """Return the table with the paths of the last shot. A recorder gets the motion of the strokes, see
-        Pictures and films.
+        """Return the table with the paths of the last shot; a recorder gets the motion.
 
-        Returns
-        -------
-        numpy.ndarray, str or None
-            uint8 (H, W, 3) with "rgb_array", str with "ansi", None otherwise.
+        Returns uint8 (H, W, 3) with "rgb_array", str with "ansi", None otherwise.
         """
         return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent())
 

@@ -48,37 +48,11 @@ class TableCalls:
     np_random: Any
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """Read an attribute or call a method of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call``
-        does.
+        """Read an attribute or call a method of each table, as ``SyncVectorEnv.call`` does.
 
-        Parameters
-        ----------
-        name : str
-            Name of the attribute or method.
-        *args
-            Positional arguments of the method.
-        **kwargs
-            Keyword arguments of the method.
-
-        Returns
-        -------
-        tuple
-            One value for each table.
-
-        Raises
-        ------
-        ValueError
-            If the name does not belong to one table.
-        AttributeError
-            If ``SnookerEnv`` has no such name.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> envs = sn.SnookerVectorEnv(2, threads=1)
-        >>> _ = envs.reset(seed=1)
-        >>> envs.call("in_hand")
-        (False, False)
+        ``name``: name of the attribute or method. ``*args``: positional arguments of the method.
+        ``**kwargs``: keyword arguments of the method. Returns one value for each table. ValueError if the
+        name does not belong to one table. AttributeError if ``SnookerEnv`` has no such name.
         """
         check_name(name)
         found = [getattr(self._table(k, generator), name) for k, generator in enumerate(self.np_random)]
@@ -87,39 +61,15 @@ class TableCalls:
     def get_attr(self, name: str) -> tuple[Any, ...]:
         """Read an attribute of ``SnookerEnv`` for each table.
 
-        Parameters
-        ----------
-        name : str
-            Name of the attribute.
-
-        Returns
-        -------
-        tuple
-            One value for each table.
-
-        Raises
-        ------
-        ValueError
-            If the name does not belong to one table.
-        AttributeError
-            If ``SnookerEnv`` has no such name.
+        ``name``: name of the attribute. Returns one value for each table. ValueError if the name does not
+        belong to one table. AttributeError if ``SnookerEnv`` has no such name.
         """
         return self.call(name)
 
     def set_attr(self, name: str, values: Any) -> None:
         """Refuse to set an attribute: the tables share everything. Make another environment instead.
 
-        Parameters
-        ----------
-        name : str
-            Name of the attribute.
-        values : object
-            Its values.
-
-        Raises
-        ------
-        AttributeError
-            Always.
+        ``name``: name of the attribute. ``values``: its values. AttributeError always.
         """
         raise AttributeError(f"{name} cannot be set: the tables share everything; make another environment")
 

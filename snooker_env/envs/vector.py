@@ -32,8 +32,7 @@ PICTURES = ("rgb_array", "ansi")
 
 
 class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
-    """Many tables side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of
-    ``SnookerEnv`` with the same seeds.
+    """Many tables side by side: bit for bit those of ``SyncVectorEnv`` with the same seeds.
 
     The steps run as compiled kernels on several threads. ``SnookerEnv`` specifies actions, observations,
     rewards and infos.
@@ -159,7 +158,7 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         return tables_of(self.options, opponent, self.num_envs, limit)
 
     # Gymnasium's interface
-    # -------------------------------------------------------------------------------------------------
+    # --------------------------------------------------------------------------------------------------------
 
     def reset(
         self,
@@ -298,36 +297,16 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     def action_masks(self) -> Bools:
         """Return the available choices on each table, with ``action="discrete"``.
 
-        Returns
-        -------
-        numpy.ndarray
-            bool (num_envs, 540).
-
-        Raises
-        ------
-        ValueError
-            With ``action="box"``.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> envs = sn.SnookerVectorEnv(2, action="discrete", threads=1)
-        >>> _ = envs.reset(seed=1)
-        >>> envs.action_masks().shape
-        (2, 540)
+        Returns bool (num_envs, 540). ValueError with ``action="box"``.
         """
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         return self.tables.action_masks()
 
     def render(self) -> tuple[Picture, ...]:
-        """Return a picture of each table. A recorder gets the motion of all of them at once, see
-        ``SnookerEnv``.
+        """Return a picture of each table; a recorder gets the motion of all of them at once.
 
-        Returns
-        -------
-        tuple
-            uint8 (H, W, 3) arrays with "rgb_array", str with "ansi".
+        Returns uint8 (H, W, 3) arrays with "rgb_array", str with "ansi".
         """
         return self._pictures.render_all(self.tables, self._recent.strokes)
 
@@ -337,13 +316,7 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
             self._recent.begin()
 
     def close_extras(self, **kwargs: Any) -> None:
-        """End the threads; called by ``close``.
-
-        Parameters
-        ----------
-        **kwargs
-            Ignored.
-        """
+        """End the threads; called by ``close``."""
         self._crew.shutdown()
 
     @property
@@ -369,28 +342,12 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         self._generators[k], self._generator_seeds[k] = seeding.np_random(seed)
 
     # states
-    # ----------------------------------------------------------------------------------------------------------------
+    # --------------------------------------------------------------------------------------------------------
 
     def get_state(self) -> list[dict[str, Any]]:
-        """Return the state of each table, as ``SnookerEnv.get_state`` does. Steps towards
-        ``max_episode_steps`` are not part of it.
+        """Return the state of each table, as ``SnookerEnv.get_state`` does.
 
-        Returns
-        -------
-        list of dict
-            One dict of JSON types for each table; ``reset(options={"states": states})`` restores them.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import snooker_env as sn
-        >>> envs = sn.SnookerVectorEnv(2, noise="club", threads=1)
-        >>> _ = envs.reset(seed=1)
-        >>> states = envs.get_state()
-        >>> first = envs.step(np.zeros((2, 4)))[0]
-        >>> _ = envs.reset(options={"states": states})
-        >>> bool((envs.step(np.zeros((2, 4)))[0] == first).all())
-        True
+        Returns one dict of JSON types for each table; ``reset(options={"states": states})`` restores them.
         """
         return [
             self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)
@@ -404,7 +361,7 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
                 self._generators[k].bit_generator.state, self._generator_seeds[k] = rng, -1
 
     # parts of reset and step
-    # -----------------------------------------------------------------------------------------------
+    # --------------------------------------------------------------------------------------------------------
 
     def _given(self, out: Any, names: Collection[str]) -> dict[str, Any]:
         """The validated arrays to write into."""

@@ -202,8 +202,7 @@ def balls_on(ball_on: int, on_table: int) -> int:
 
 
 def points_available(on_table: int, ball_on: int, free_ball: bool = False) -> int:
-    """The most points that the striker can still score with the balls of the mask ``on_table``, without any
-    from fouls.
+    """The most points that the striker can still score with these balls, without any from fouls.
 
     8 for each red, the value of each colour, and 7 if any colour is on, after a red. A free ball adds 8 to
     them with a red on: it is one more red. With a colour on it adds that colour's value: it scores as much

@@ -235,27 +235,9 @@ class Physics:
     def of(cls, physics: "PhysicsLike" = None) -> "Physics":
         """The constants that an argument ``physics`` stands for.
 
-        Parameters
-        ----------
-        physics : None, str, dict or Physics
-            None is "paper"; a str is the name of a preset; a dict replaces fields of the preset that its key
-            "preset" names, or of "paper".
-
-        Returns
-        -------
-        Physics
-            The constants; a ``Physics`` is returned as it is.
-
-        Raises
-        ------
-        ValueError
-            For anything else.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> sn.Physics.of({"preset": "match", "mu_s": 0.2}).mu_s
-        0.2
+        ``physics``: None is "paper"; a str is the name of a preset; a dict replaces fields of the preset that
+        its key "preset" names, or of "paper". Returns the constants; a ``Physics`` is returned as it is.
+        ValueError for anything else.
         """
         if isinstance(physics, cls):
             return physics
@@ -276,19 +258,7 @@ class Physics:
     def check_stopping(self) -> None:
         """Check that balls with these constants come to rest after a finite time that is not zero.
 
-        Returns
-        -------
-        None
-
-        Raises
-        ------
-        ValueError
-            If friction is too small or too large; the message names the constant.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> sn.Physics().check_stopping()
+        ValueError if friction is too small or too large; the message names the constant.
         """
         for name in ("mu_s", "mu_r"):
             if not _LEAST_DECELERATION <= getattr(self, name) * self.g <= _MOST_DECELERATION:
@@ -312,16 +282,7 @@ class Physics:
     def pack(self) -> Floats:
         """The constants as the kernels read them.
 
-        Returns
-        -------
-        float64 (17,)
-            The constants at the places ``P_*`` of this module, in SI units.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> sn.Physics().pack().shape
-        (17,)
+        Returns float64 (17,): the constants at the places ``P_*`` of this module, in SI units.
         """
         return self._packed.copy()
 

@@ -112,32 +112,7 @@ class Table:
 
     @classmethod
     def preset(cls, name: TableName = "match") -> "Table":
-        """A table by its name. Each is made for the balls of its game, see ``ball``.
-
-        Parameters
-        ----------
-        name : {"match", "tight", "uk8", "pool9", "carom"}
-            Snooker: "match" (throat of the corners 86.0 mm) and "tight" (80.14 mm), 3.569 x 1.778 m, balls of
-            52.5 mm. "uk8": UK 8-ball pool, 7 ft x 3 ft 6 in, balls of 2 in; its pockets are an estimate.
-            "pool9": pool, 100 x 50 in, balls of 2 1/4 in. "carom": 2.84 x 1.42 m, no pockets, balls of 61.5
-            mm. Sources: ``snooker_env.geometry``.
-
-        Returns
-        -------
-        Table
-            The same object at every call.
-
-        Raises
-        ------
-        ValueError
-            For an unknown name.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> sn.Table.preset("pool9").pockets[0]
-        'bottom left'
-        """
+        """A table by its name. Each is made for the balls of its game, see ``ball``."""
         return _PRESETS[choice("table", name, PRESETS)]
 
     @classmethod
@@ -215,26 +190,8 @@ class Table:
     def of(cls, table: "TableLike") -> "Table":
         """The table that an argument ``table`` stands for.
 
-        Parameters
-        ----------
-        table : str, Table or None
-            Name of a preset, a table, or None for unbounded cloth.
-
-        Returns
-        -------
-        Table
-            The table; a ``Table`` is returned as it is.
-
-        Raises
-        ------
-        ValueError
-            For anything else.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> sn.Table.of(None).name
-        'unbounded'
+        ``table``: name of a preset, a table, or None for unbounded cloth. Returns the table; a ``Table`` is
+        returned as it is. ValueError for anything else.
         """
         if table is None:
             return UNBOUNDED
@@ -283,25 +240,9 @@ class Table:
     def unfit(self, positions: Floats, R: float) -> list[int]:
         """The layouts that are not sound on this table.
 
-        Parameters
-        ----------
-        positions : float64 (b, n, 2)
-            Centres of the balls [m]; all balls are on the table.
-        R : float
-            Radius of the balls [m].
-
-        Returns
-        -------
-        list of int
-            Indices of the layouts in which a ball is off the table, in a cushion, jaw or other ball, or over
-            a pocket; in order.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import snooker_env as sn
-        >>> sn.Table.preset("match").unfit(np.array([[(0.0, 0.0)], [(2.0, 0.0)]]), 0.02625)
-        [1]
+        ``positions``: float64 (b, n, 2), centres of the balls [m]; all balls are on the table. ``R``: radius
+        of the balls [m]. Returns indices of the layouts in which a ball is off the table, in a cushion, jaw
+        or other ball, or over a pocket; in order.
         """
         here, unfit, first = np.ones(positions.shape[:2], bool), [], 0
         while True:
@@ -323,34 +264,11 @@ class Table:
         """Check that layouts are sound: no ball off the table, in a cushion, jaw or other ball, or over a
         pocket.
 
-        Parameters
-        ----------
-        positions : array_like, float (n, 2) or (b, n, 2)
-            Centres of the balls of one layout, or of b layouts [m].
-        R : float
-            Radius of the balls [m].
-        field : str
-            Name of the positions in messages.
-        on_table : array_like, bool (n,) or (b, n), optional
-            False for the balls to leave out, one for each place; None: all are on the table.
-
-        Returns
-        -------
-        None
-
-        Raises
-        ------
-        ValueError
-            If a layout is not sound, or the table is made for other balls; the message names the layout, the
-            ball and the reason. Also if an array has another shape.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> sn.Table.preset("match").check([(2.0, 0.0)], 0.02625)
-        Traceback (most recent call last):
-        ...
-        ValueError: positions[0] = (2.0, 0.0): must be on the table, |x| <= 0.86275, |y| <= 1.75825 away from pockets
+        ``positions``: float (n, 2), centres of the balls of one layout, or of b layouts [m]. ``R``: radius of
+        the balls [m]. ``field``: name of the positions in messages. ``on_table``: bool (n,), False for the
+        balls to leave out, one for each place; None: all are on the table. ValueError if a layout is not
+        sound, or the table is made for other balls; the message names the layout, the ball and the reason.
+        Also if an array has another shape.
         """
         radius = self.ball_radius
         if radius is not None and abs(R - radius) > SAME_BALL:

@@ -151,8 +151,7 @@ def _obstructions(positions, on_table, rows, starts, ends, reach, out):
 def obstructions(
     positions: PositionsLike, rows: Integers, starts: Vectors, ends: Vectors, *, ignore: Sequence[int] = ()
 ) -> NDArray[np.bool_]:
-    """Find the balls in the way of a ball that runs straight: those whose centres are nearer than 2 R to its
-    path.
+    """Find the balls in the way of a ball that runs straight: nearer than 2 R to its path.
 
     Parameters
     ----------
@@ -209,8 +208,7 @@ def _clear_paths(positions, on_table, game, noses, jaws, any_part, full_ball):
 
 
 def clear_paths(positions: PositionsLike) -> Paths:
-    """Determine whether the cue ball can roll straight from where it lies to a ball on without touching
-    another ball or a cushion first.
+    """Determine whether the cue ball can roll straight to a ball on and touch nothing before.
 
     The cushions are those of the match table.
 

@@ -58,8 +58,7 @@ class Outcomes(NamedTuple):
 
 
 class Planner:
-    """Plays strokes on copies of positions exactly as the environment would: same physics, same rules, same
-    errors for the same keys.
+    """Plays strokes on copies of positions exactly as the environment would.
 
     Each stroke is judged as a stroke of a *visit* (``task="visit"``): the visit ends with the first miss,
     foul or clearance. With an environment that plays whole frames, a planner therefore covers what the player
@@ -237,34 +236,10 @@ class Planner:
     ) -> Stops:
         """Play n strokes as ``play`` does, and return where each ball stopped.
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The m positions, see ``play``.
-        rows : array_like
-            int (n,). Row of ``positions`` for each stroke.
-        actions, keys, strokes, errors
-            What is played and under which errors, see ``play``.
-
-        Returns
-        -------
-        Stops
-            Arrays with n rows each.
-
-        Raises
-        ------
-        ValueError
-            For the same reasons as ``play``.
-        SimulationError
-            If a shot cannot be computed.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner, Position
-        >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-        >>> stops = Planner({"action": "discrete"}).stops(position, [0], [67])
-        >>> int(stops.first[0]), int(stops.potted[0, 21])
-        (21, 3)
+        ``positions``: the m positions, see ``play``. ``rows``: int (n,), row of ``positions`` for each
+        stroke. ``actions``, ``keys``, ``strokes``, ``errors``: what is played and under which errors, see
+        ``play``. ValueError for the same reasons as ``play``.
+        SimulationError if a shot cannot be computed.
         """
         visits = copy.copy(self._watched)
         after, out = self._played(
@@ -317,33 +292,11 @@ class Planner:
     ) -> tuple[NDArray[np.float64], Positions]:
         """Decode actions or choices of this planner's action space: which strokes do they mean?
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The m positions: anything that ``Positions.of`` accepts.
-        rows : array_like
-            int (n,). Row of ``positions`` for each action, in [0, m).
-        actions : array_like
-            float (n, k) or int (n,), see ``play``.
-
-        Returns
-        -------
-        strokes : numpy.ndarray
-            float64 (n, 5). Strokes in SI, without errors.
-        at : Positions
-            n rows: where they are played from, with a cue ball in hand on the place that the action names.
-
-        Raises
-        ------
-        ValueError
-            If a row is out of range or an action is not in the action space.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner, Position
-        >>> strokes, at = Planner({}).strokes_of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0], [[0.0, 0.0, 0.5, 0.25]])
-        >>> strokes[0].round(3).tolist(), len(at)
-        ([3.6, 0.0, 0.25, 0.785, 0.0], 1)
+        ``positions``: the m positions: anything that ``Positions.of`` accepts. ``rows``: int (n,), row of
+        ``positions`` for each action, in [0, m). ``actions``: float (n, k) or int (n,), see ``play``. Returns
+        ``strokes``, float64 (n, 5), strokes in SI, without errors and ``at``, n rows: where they are played
+        from, with a cue ball in hand on the place that the action names. ValueError if a row is out of range
+        or an action is not in the action space.
         """
         at = Positions.of(positions)
         which = rows_of(at, rows)
@@ -359,32 +312,11 @@ class Planner:
     ) -> NDArray[np.float64]:
         """Encode strokes as actions of this planner's action space.
 
-        Parameters
-        ----------
-        strokes : array_like
-            float (n, 5). Strokes in SI.
-        positions, rows : PositionsLike, array_like, optional
-            Where each stroke is played, see ``strokes_of``. Required with ``aim="target"``, which is measured
-            from a line there.
-        places : array_like, optional
-            float (n, 2). With ``placement=True``: where in the D a cue ball in hand is placed [m]. Default:
-            the middle of the baulk line.
-
-        Returns
-        -------
-        numpy.ndarray
-            float64 (n, k). Actions in [-1, 1]. What they say beside the stroke is 0: to play.
-
-        Raises
-        ------
-        ValueError
-            If a stroke is out of range or cannot be such an action.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner
-        >>> Planner({"elevation": True}).actions_of([[3.6, 0.0, 0.25, 0.0, 0.0]]).tolist()
-        [[0.0, 0.0, 0.5, 0.0, -1.0]]
+        ``strokes``: float (n, 5), strokes in SI. ``positions``, ``rows``: where each stroke is played, see
+        ``strokes_of``. Required with ``aim="target"``, which is measured from a line there. ``places``: float
+        (n, 2), with ``placement=True``: where in the D a cue ball in hand is placed [m]. Default: the middle
+        of the baulk line. Returns float64 (n, k). Actions in [-1, 1]. What they say beside the stroke is 0:
+        to play. ValueError if a stroke is out of range or cannot be such an action.
         """
         told, form = check_strokes(strokes), self._rules.actions
         if not isinstance(form, Actions):
@@ -404,32 +336,10 @@ class Planner:
     def as_actions(self, positions: PositionsLike, rows: Integers, choices: Integers) -> NDArray[np.float32]:
         """Convert choices of ``action="discrete"`` to box actions, with this planner's physics and fidelity.
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The m positions: anything that ``Positions.of`` accepts.
-        rows : array_like
-            int (n,). Row of ``positions`` for each choice, in [0, m).
-        choices : array_like
-            int (n,). Choices, in [0, 540).
-
-        Returns
-        -------
-        numpy.ndarray
-            float32 (n, 4). Actions of ``aim="absolute"``.
-
-        Raises
-        ------
-        ValueError
-            If a row or a choice is out of range, or if the planner itself reads actions with another ``aim``.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner, Position
-        >>> planner = Planner({"noise": "none"})
-        >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-        >>> planner.play(position, [0], planner.as_actions(position, [0], [67])).points.tolist()
-        [7.0]
+        ``positions``: the m positions: anything that ``Positions.of`` accepts. ``rows``: int (n,), row of
+        ``positions`` for each choice, in [0, m). ``choices``: int (n,), choices, in [0, 540). Returns float32
+        (n, 4). Actions of ``aim="absolute"``. ValueError if a row or a choice is out of range, or if the
+        planner itself reads actions with another ``aim``.
         """
         if isinstance(self._rules.actions, Actions) and self._rules.actions.aim != "absolute":
             raise refuse(
@@ -452,8 +362,7 @@ class Planner:
         elevation: Scalars = 0.0,
         ghosts: Vectors | None = None,
     ) -> NDArray[np.float64]:
-        """Solve the direction in which the cue ball must leave to pot a ball, with this planner's physics and
-        fidelity.
+        """Solve the direction in which the cue ball must leave to pot a ball, with this planner's physics.
 
         Parameters
         ----------

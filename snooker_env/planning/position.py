@@ -37,8 +37,7 @@ ON = tuple(ball.name.lower() for ball in BallOn)
 
 @dataclass(frozen=True, kw_only=True)
 class Position:
-    """The balls on a table in the middle of a visit, by name. A ``Position`` is validated when it is made,
-    and it is immutable.
+    """The balls on a table in the middle of a visit, by name: validated and immutable.
 
     Parameters
     ----------
@@ -143,22 +142,9 @@ class Position:
     def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
         """Return the position as the arrays that ``Positions`` holds.
 
-        Returns
-        -------
-        positions : numpy.ndarray
-            float64 (22, 2). Centres [m]; 0 for a ball off the table.
-        on_table : numpy.ndarray
-            bool (22,). Which balls are on the table.
-        game : numpy.ndarray
-            int64 (5,). The ball on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit
-            is over, strokes (0).
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Position
-        >>> positions, on_table, game = Position(cue=(0.0, 0.2), black=(0.0, 1.4605)).arrays()
-        >>> positions[0].tolist(), on_table.nonzero()[0].tolist(), game.tolist()
-        ([0.0, 0.2], [0, 21], [7, 0, 0, 0, 0])
+        Returns ``positions``, float64 (22, 2), centres [m]; 0 for a ball off the table and ``on_table``, bool
+        (22,), which balls are on the table and ``game``, int64 (5,), the ball on (a ``BallOn``), whether the
+        cue ball is in hand, points, whether the visit is over, strokes (0).
         """
         game = np.array([BallOn[str(self.on).upper()], self.in_hand, self.points, self.over, 0], np.int64)
         return *self._layout(), game
@@ -167,31 +153,9 @@ class Position:
     def of_arrays(cls, positions: Vectors, on_table: Flags, game: Integers) -> "Position":
         """Make a ``Position`` from the arrays of one table. Reds are numbered anew.
 
-        Parameters
-        ----------
-        positions : array_like
-            float (22, 2). Centres [m].
-        on_table : array_like
-            bool (22,). Which balls are on the table.
-        game : array_like
-            int (5,). As returned by ``arrays``.
-
-        Returns
-        -------
-        Position
-            The same position by names.
-
-        Raises
-        ------
-        ValueError
-            If the balls overlap or the ball on contradicts them.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Position
-        >>> position = Position(cue=(0.0, 0.2), black=(0.0, 1.4605))
-        >>> Position.of_arrays(*position.arrays()) == position
-        True
+        ``positions``: float (22, 2), centres [m]. ``on_table``: bool (22,), which balls are on the table.
+        ``game``: int (5,), as returned by ``arrays``. Returns the same position by names. ValueError if the
+        balls overlap or the ball on contradicts them.
         """
         places, there = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
         ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]
@@ -209,16 +173,7 @@ class Position:
     def to_dict(self) -> dict[str, Any]:
         """Return the position as JSON types, without the balls off the table.
 
-        Returns
-        -------
-        dict
-            Fields and their values; ``Position(**fields)`` makes the position again.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Position
-        >>> Position(cue=(0.0, 0.2), black=(0.0, 1.4605)).to_dict()
-        {'cue': [0.0, 0.2], 'reds': [], 'black': [0.0, 1.4605], 'on': 'black', 'in_hand': False, 'points': 0, 'over': False}
+        Returns fields and their values; ``Position(**fields)`` makes the position again.
         """
         kept = asdict(self) | {"reds": [list(place) for place in self.reds]}
         for name in ("cue", *COLOUR_NAMES):
@@ -229,93 +184,23 @@ class Position:
     def from_dict(cls, given: Mapping[str, Any], *, table: TableLike = "match") -> "Position":
         """Make the position that a dict of ``to_dict`` describes.
 
-        Parameters
-        ----------
-        given : dict
-            Fields of ``Position`` as JSON types. A ball that is left out or None is off the table.
-        table : str, Table or None, optional
-            The table that the balls must fit on, see ``Position``; default "match".
-
-        Returns
-        -------
-        Position
-            The validated position.
-
-        Raises
-        ------
-        ValueError
-            For an unknown key, and for the same reasons as ``Position``.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Position
-        >>> Position.from_dict({"cue": [0.0, 0.0], "black": [0.0, 1.4605]}).on
-        'black'
+        ``given``: fields of ``Position`` as JSON types. A ball that is left out or None is off the table.
+        ``table``: the table that the balls must fit on, see ``Position``; default "match". Returns the
+        validated position. ValueError for an unknown key, and for the same reasons as ``Position``.
         """
         return cls(**position_file.checked(given, _NAMES), table=table)
 
     def save(self, path: str | Path) -> None:
-        """Write the position to a file as JSON, see ``to_dict``.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file. An existing file is replaced in one step, so that it is never half written.
-
-        Returns
-        -------
-        None
-
-        Raises
-        ------
-        OSError
-            If the file cannot be written.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from pathlib import Path
-        >>> from snooker_env.planning import Position
-        >>> file = Path(tempfile.mkdtemp()) / "position.json"
-        >>> Position(cue=(0.0, 0.2), black=(0.0, 1.4605)).save(file)
-        >>> Position.load(file).cue
-        (0.0, 0.2)
-        """
+        """Write the position to a file as JSON, see ``to_dict``."""
         position_file.write(self.to_dict(), path)
 
     @classmethod
     def load(cls, path: str | Path, *, table: TableLike = "match") -> "Position":
         """Read a position from a file that ``save`` wrote, or that was written manually.
 
-        Parameters
-        ----------
-        path : str or Path
-            The file of JSON.
-        table : str, Table or None, optional
-            The table that the balls must fit on, see ``Position``; default "match".
-
-        Returns
-        -------
-        Position
-            The validated position.
-
-        Raises
-        ------
-        ValueError
-            If the file does not hold the JSON of a position. The message names the unknown key or the ball
-            that is wrong.
-        OSError
-            If the file cannot be read.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from pathlib import Path
-        >>> from snooker_env.planning import Position
-        >>> file = Path(tempfile.mkdtemp()) / "position.json"
-        >>> _ = file.write_text('{"cue": [0.0, 0.2], "black": [0.0, 1.4605]}')
-        >>> Position.load(file).on
-        'black'
+        ``path``: the file of JSON. ``table``: the table that the balls must fit on, see ``Position``; default
+        "match". Returns the validated position. ValueError if the file does not hold the JSON of a position.
+        The message names the unknown key or the ball that is wrong. OSError if the file cannot be read.
         """
         return cls(**position_file.read(path, _NAMES), table=table)
 

@@ -62,8 +62,7 @@ WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)
 
 
 class Ranked(NamedTuple):
-    """The strokes tried in each of n positions, as returned by ``StrokeSearch.rank``: first those that met
-    most samples, best first.
+    """The strokes tried in each of n positions, best first: what ``StrokeSearch.rank`` returns.
 
     A stroke that was left behind in an earlier round may keep a higher score: fewer samples flatter it.
 
@@ -91,18 +90,7 @@ class Ranked(NamedTuple):
     def actions(self) -> NDArray[np.float32]:
         """Convert the strokes to actions of ``aim="absolute"``.
 
-        Returns
-        -------
-        numpy.ndarray
-            float32 (n, m, 4). Actions in [-1, 1].
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> from snooker_env.planning import Ranked
-        >>> strokes = np.array([[[3.6, 0.0, 0.25, 0.0, 0.0]]])
-        >>> Ranked(strokes, np.zeros((1, 1)), np.zeros((1, 1), int)).actions().tolist()
-        [[[0.0, 0.0, 0.5, 0.0]]]
+        Returns float32 (n, m, 4). Actions in [-1, 1].
         """
         flat = self.strokes.reshape(-1, COLUMNS)
         return actions_of(flat[:, SPEED], flat[:, AIM], flat[:, SIDE], flat[:, TOP]).reshape(
@@ -211,31 +199,11 @@ class StrokeSearch:
     def rank(self, positions: PositionsLike, seeds: Integers) -> Ranked:
         """Try strokes in n positions and rank them.
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The n positions: anything that ``Positions.of`` accepts. A cue ball in hand is played from where
-            it lies.
-        seeds : array_like
-            int (n,), of the proposals and noise samples of each position. Equal seeds give equal decisions.
-
-        Returns
-        -------
-        Ranked
-            ``strokes``, ``scores`` and ``samples`` with n rows each; the first stroke of a row is the one to
-            play.
-
-        Raises
-        ------
-        ValueError
-            If a position is invalid or has no stroke left to play, or ``seeds`` has the wrong shape.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Position, StrokeSearch
-        >>> ranked = StrokeSearch({"noise": "none"}, budget=20).rank(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), seeds=[7])
-        >>> float(ranked.scores[0, 0])
-        7.0
+        ``positions``: the n positions: anything that ``Positions.of`` accepts. A cue ball in hand is played
+        from where it lies. ``seeds``: int (n,), of the proposals and noise samples of each position. Equal
+        seeds give equal decisions. Returns ``strokes``, ``scores`` and ``samples`` with n rows each; the
+        first stroke of a row is the one to play. ValueError if a position is invalid or has no stroke left to
+        play, or ``seeds`` has the wrong shape.
         """
         at = Positions.of(positions).as_visits()
         n, own = len(at), np.asarray(seeds)
@@ -279,36 +247,10 @@ class StrokeSearch:
     def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Outcomes:
         """Play strokes under given execution errors.
 
-        Parameters
-        ----------
-        at : Positions
-            The n positions.
-        rows : numpy.ndarray
-            int64 (m,). Row of ``at`` for each stroke.
-        strokes : numpy.ndarray
-            float64 (m, 5). As in ``Ranked``.
-        errors : numpy.ndarray
-            float64 (m, 5). Errors of speed, side, top, aim and elevation, in standard deviations of the
-            search's noise.
-
-        Returns
-        -------
-        Outcomes
-            As of ``Planner.play``.
-
-        Raises
-        ------
-        ValueError
-            If a position is invalid or has no stroke left to play.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> from snooker_env.planning import Position, Positions, StrokeSearch
-        >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
-        >>> stroke = search.rank(at, seeds=[7]).strokes[0, :1]
-        >>> search.outcomes(at, np.zeros(2, int), np.repeat(stroke, 2, 0), np.array([[0.0] * 5, [0, 0, 0, 9.0, 0]])).points.tolist()
-        [7.0, 0.0]
+        ``at``: the n positions. ``rows``: int64 (m,), row of ``at`` for each stroke. ``strokes``: float64 (m,
+        5), as in ``Ranked``. ``errors``: float64 (m, 5), errors of speed, side, top, aim and elevation, in
+        standard deviations of the search's noise. Returns what ``Planner.play`` does. ValueError if a
+        position is invalid or has no stroke left to play.
         """
         return self.planner.play(at, rows, strokes=strokes, errors=errors)
 

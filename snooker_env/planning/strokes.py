@@ -198,8 +198,7 @@ def as_actions(
     physics: PhysicsLike = None,
     fidelity: Fidelity = "standard",
 ) -> NDArray[np.float32]:
-    """Convert choices of ``action="discrete"`` to actions of ``aim="absolute"``: the same strokes, up to the
-    rounding of float32.
+    """Convert choices of ``action="discrete"`` to actions of ``aim="absolute"``.
 
     Parameters
     ----------
@@ -266,8 +265,7 @@ def pot_aim(
     physics: PhysicsLike = None,
     fidelity: Fidelity = "standard",
 ) -> NDArray[np.float64]:
-    """Solve the direction in which the cue ball must leave to send a ball to a point, with throw, swerve and
-    the ball's own curve.
+    """Solve the direction in which the cue ball must leave to send a ball to a point.
 
     Only the cue ball and that ball are simulated, on unbounded cloth, until the ball rolls. Secant steps
     correct the direction until the ball passes the point by less than 1e-6 rad

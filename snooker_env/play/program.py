@@ -44,8 +44,7 @@ DECISIONS = {"play": PLAY, "play_again": PLAY_AGAIN, "replace": REPLACE}
 
 
 class AgentError(RuntimeError):
-    """An agent that stopped playing: a program that died, was too slow, or answered something that is no
-    stroke."""
+    """An agent that stopped playing: it died, was too slow, or answered something that is no stroke."""
 
 
 class ProgramPlayer(BoundPlayer):
@@ -90,22 +89,8 @@ class ProgramPlayer(BoundPlayer):
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """Return what the program answers in each of n positions.
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The n positions.
-        seeds : array_like
-            int (n,). The program is told them.
-
-        Returns
-        -------
-        Strokes
-            n strokes and what is said with them.
-
-        Raises
-        ------
-        AgentError
-            If the program ends, is too slow, or its answer is no stroke.
+        ``positions``: the n positions. ``seeds``: int (n,), the program is told them. Returns n strokes and
+        what is said with them. AgentError if the program ends, is too slow, or its answer is no stroke.
         """
         _ = self.options  # it must be bound
         at = Positions.of(positions)

@@ -41,50 +41,20 @@ class ChoicePlayer(BoundPlayer):
     def scores(self, at: Positions, seeds: Ints) -> Floats:
         """Score all choices in n positions.
 
-        Parameters
-        ----------
-        at : Positions
-            The n positions, of visits.
-        seeds : numpy.ndarray
-            int64 (n,).
-
-        Returns
-        -------
-        numpy.ndarray
-            float (n, 540); -inf for choices that are not available.
+        ``at``: the n positions, of visits. ``seeds``: int64 (n,). Returns float (n, 540); -inf for choices
+        that are not available.
         """
         raise NotImplementedError
 
     def figures(self, scores: Floats) -> Floats | None:
         """Return what a ranking shows of the scores of one position.
 
-        Parameters
-        ----------
-        scores : numpy.ndarray
-            float (m,), highest first.
-
-        Returns
-        -------
-        numpy.ndarray or None
-            float64 (m,); None for nothing.
+        ``scores``: float (m,), highest first. Returns float64 (m,); None for nothing.
         """
         return scores.astype(np.float64)
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """Return what the player does, see ``Player.play``.
-
-        Parameters
-        ----------
-        positions : PositionsLike
-            The n positions.
-        seeds : array_like
-            int (n,).
-
-        Returns
-        -------
-        Strokes
-            n strokes.
-        """
+        """Return what the player does, see ``Player.play``."""
         visits, places, scores = self._scored(positions, seeds)
         return Strokes(
             self._planner.strokes_of(visits, np.arange(len(visits)), scores.argmax(axis=1))[0], places
@@ -93,17 +63,8 @@ class ChoicePlayer(BoundPlayer):
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """Rank the choices of each position.
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The n positions.
-        seeds : array_like
-            int (n,).
-
-        Returns
-        -------
-        list of Ranked
-            One for each position: at most 100 strokes, highest score first.
+        ``positions``: the n positions. ``seeds``: int (n,). Returns one for each position: at most 100
+        strokes, highest score first.
         """
         visits, places, scores = self._scored(positions, seeds)
         ranked = []
@@ -150,8 +111,7 @@ class Random(ChoicePlayer):
 
 
 class GhostBall(ChoicePlayer):
-    """``ghost_ball``: the widest direct pot, aim solved, in the middle at 2.3 m/s; without one, the geometric
-    player's stroke.
+    """``ghost_ball``: the widest direct pot, aim solved, at 2.3 m/s; without one the geometric player's.
 
     It places the cue ball, breaks off, nominates and decides after a foul as the kernels of
     ``tasks.ghost_ball`` do. The opponent of that name plays these kernels alone, at the straight line of the

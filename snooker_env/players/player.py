@@ -117,15 +117,7 @@ class Strokes:
     def join(cls, parts: "Sequence[Strokes]") -> "Strokes":
         """Join several ``Strokes``.
 
-        Parameters
-        ----------
-        parts : sequence of Strokes
-            The parts.
-
-        Returns
-        -------
-        Strokes
-            All strokes, in their order.
+        ``parts``: the parts. Returns all strokes, in their order.
         """
         names = ("values", "place", "nominate", "decision", "declare")
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
@@ -158,25 +150,12 @@ class Strokes:
     def actions(self, options: Options, at: Positions) -> Floats:
         """Convert to actions of an environment: the one encoder.
 
-        Parameters
-        ----------
-        options : Options
-            Of the environment, with ``action="box"`` and ``aim="absolute"``. What the action holds
-            (elevation, placement, nomination, decision, declaration) is written; what it does not hold must
-            not be needed.
-        at : Positions
-            The n positions: a place means another action where the cue ball may stand anywhere, and a
-            nomination another one with a free ball.
-
-        Returns
-        -------
-        numpy.ndarray
-            float64 (n, k), in [-1, 1].
-
-        Raises
-        ------
-        ValueError
-            If the environment reads other actions, or a stroke has a part that its actions do not hold.
+        ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. What the action holds
+        (elevation, placement, nomination, decision, declaration) is written; what it does not hold must not
+        be needed. ``at``: the n positions: a place means another action where the cue ball may stand
+        anywhere, and a nomination another one with a free ball. Returns float64 (n, k), in [-1, 1].
+        ValueError if the environment reads other actions, or a stroke has a part that its actions do not
+        hold.
         """
         box = options.rules.actions
         if not isinstance(box, Actions) or box.aim != "absolute":
@@ -285,43 +264,18 @@ class Player(Protocol):
     def at(self, rules: RulesLike) -> "Player":
         """Return the player bound to where it plays.
 
-        Parameters
-        ----------
-        rules : Env, VectorEnv, AECEnv, Options or dict
-            Physics, table, fidelity, execution noise and, for frames, the game. How the actions of an
-            environment are read does not matter: strokes are the same everywhere.
-
-        Returns
-        -------
-        Player
-            A new player, which may be asked.
-
-        Raises
-        ------
-        ValueError
-            If the options are invalid, or the player cannot play under them.
+        ``rules``: physics, table, fidelity, execution noise and, for frames, the game. How the actions of an
+        environment are read does not matter: strokes are the same everywhere. Returns a new player, which may
+        be asked. ValueError if the options are invalid, or the player cannot play under them.
         """
         ...
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
         """Return what the player does in each of n positions.
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The n positions, of visits or of frames as the striker sees them.
-        seeds : array_like
-            int (n,). Equal positions and seeds give equal strokes, however many are asked for at once.
-
-        Returns
-        -------
-        Strokes
-            n strokes and what is said with them.
-
-        Raises
-        ------
-        ValueError
-            If a position is invalid or ``seeds`` has the wrong shape.
+        ``positions``: the n positions, of visits or of frames as the striker sees them. ``seeds``: int (n,),
+        equal positions and seeds give equal strokes, however many are asked for at once. Returns n strokes
+        and what is said with them. ValueError if a position is invalid or ``seeds`` has the wrong shape.
         """
         ...
 

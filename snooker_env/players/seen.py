@@ -59,20 +59,10 @@ class Seen(Protocol):
     def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
         """Return n actions.
 
-        Parameters
-        ----------
-        observations : numpy.ndarray or dict
-            The n observations, of the kind that ``options`` says.
-        masks : numpy.ndarray or None
-            bool (n, choices): the available choices of ``action="discrete"``; None for box actions.
-        seeds : numpy.ndarray
-            int64 (n,): of what it draws. Equal rows and seeds must give equal actions, however many are asked
-            for.
-
-        Returns
-        -------
-        array_like
-            n actions of the action space that ``options`` says.
+        ``observations``: the n observations, of the kind that ``options`` says. ``masks``: bool (n, choices):
+        the available choices of ``action="discrete"``; None for box actions. ``seeds``: int64 (n,): of what
+        it draws. Equal rows and seeds must give equal actions, however many are asked for. Returns n actions
+        of the action space that ``options`` says.
         """
         ...
 
@@ -131,20 +121,7 @@ class SeenPlayer(BoundPlayer):
         self._rules = Options(**same | self.sees).rules
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """Return what the player does, see ``Player.play``.
-
-        Parameters
-        ----------
-        positions : PositionsLike
-            The n positions.
-        seeds : array_like
-            int (n,).
-
-        Returns
-        -------
-        Strokes
-            n strokes.
-        """
+        """Return what the player does, see ``Player.play``."""
         _ = self.options  # it must be bound
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at))

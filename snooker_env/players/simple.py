@@ -14,8 +14,7 @@ from .player import RulesLike
 
 
 class BoundPlayer:
-    """Base class of players: ``at`` returns a copy bound to options; subclasses make what they need in
-    ``_bind(options)``.
+    """Base class of players: ``at`` returns a copy bound to options; subclasses implement ``_bind``.
 
     Examples
     --------
@@ -30,18 +29,7 @@ class BoundPlayer:
     _options: Options | None = None
 
     def at(self, rules: RulesLike) -> Any:
-        """Return a copy bound to where it plays, see ``Player.at``.
-
-        Parameters
-        ----------
-        rules : Env, VectorEnv, AECEnv, Options or dict
-            Where it plays.
-
-        Returns
-        -------
-        player
-            A copy of this player, which may be asked.
-        """
+        """Return a copy bound to where it plays, see ``Player.at``."""
         bound = copy.copy(self)
         bound._options = options_in(rules)
         bound._bind(bound._options)

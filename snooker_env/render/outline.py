@@ -174,8 +174,7 @@ def _throat(fall, noses, mouths):
 
 
 def scene_data(table: TableLike) -> dict[str, Any]:
-    """A table, its lines, the balls and all colours as JSON types: the description that pygame, matplotlib
-    and the browser share.
+    """A table, its lines, the balls and all colours as JSON types: what every picture is drawn from.
 
     Parameters
     ----------

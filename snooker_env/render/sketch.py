@@ -163,7 +163,7 @@ class Sketch:
             spine.set_visible(False)
 
     # the table
-    # ---------------------------------------------------------------------------------------------------------------
+    # --------------------------------------------------------------------------------------------------------
 
     def _draw_table(self):
         from matplotlib.patches import Circle, FancyBboxPatch, Polygon, Rectangle
@@ -253,7 +253,7 @@ class Sketch:
             ax.plot([w.low_y, w.high_y], [w.high_x] * 2, color=rgb("bar_edge"), lw=1.0, zorder=9.1, gid=TABLE)
 
     # things on the table
-    # -----------------------------------------------------------------------------------------------------
+    # --------------------------------------------------------------------------------------------------------
 
     def ball(self, ball: int, place: Vector, *, label: bool = False) -> None:
         """A ball at rest, with a highlight; ``label``: with its letter."""
@@ -356,7 +356,7 @@ class Sketch:
         self.ax.plot(y, x, marker=marker, ms=size, **style)
 
     # words
-    # -------------------------------------------------------------------------------------------------------------------
+    # --------------------------------------------------------------------------------------------------------
 
     def keep_clear(self, points: Floats, size: float) -> None:
         """Keep labels away from these points (m, 2), each ``size`` wide [m], and for a line from the points

@@ -25,8 +25,7 @@ SUFFIXES = (".html", ".json", ".mp4", ".gif")
 
 
 class Replay:
-    """A sequence of strokes that can be shown: as a page (``html``, ``save``), in a notebook (as the value of
-    a cell), or as a film.
+    """A sequence of strokes that can be shown: as a page, in a notebook, or as a film.
 
     ``snooker_env.replay`` makes replays from shots, histories, positions and environments.
 
@@ -141,23 +140,8 @@ class Replay:
     def to_dict(self) -> dict[str, Any]:
         """Return the replay as JSON types, in the format that docs/play/replay.md describes.
 
-        Returns
-        -------
-        dict
-            The top level is new at each call; treat everything inside as read-only.
-
-        Raises
-        ------
-        ValueError
-            If a shot has no path, or more than 22 balls.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.5)], [(0.0, 0.0, 0.0)])
-        >>> data = sn.replay(shot).to_dict()
-        >>> data["format"], data["version"], len(data["strokes"])
-        ('snooker-replay', 1, 1)
+        The top level is new at each call; treat everything inside as read-only. ValueError if a shot
+        has no path, or more than 22 balls.
         """
         if self._data is None:
             strokes = [encoded_stroke(stroke, self.players) for stroke in self.strokes]
@@ -177,22 +161,7 @@ class Replay:
     def html(self) -> str:
         """Return the replay as one HTML page that needs no other file and no network.
 
-        Returns
-        -------
-        str
-            The page.
-
-        Raises
-        ------
-        ValueError
-            If a shot has no path, or more than 22 balls.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.5)], [(0.0, 0.0, 0.0)])
-        >>> sn.replay(shot).html().splitlines()[0]
-        '<!DOCTYPE html>'
+        ValueError if a shot has no path, or more than 22 balls.
         """
         data = json.dumps(self.to_dict(), separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
         parts = {"title": html.escape(self.title or "Snooker replay"), "module": table_js(), "data": data}
@@ -211,27 +180,10 @@ class Replay:
     ) -> Iterator[NDArray[np.uint8]]:
         """Iterate over the pictures of the film.
 
-        Parameters
-        ----------
-        fps : float, optional
-            Pictures per second of the film, in (0, 1000]; default 30.
-        speed : float, optional
-            Speed of the film over that of the strokes, in (0, 1000]; default 1.
-        size : (int, int), optional
-            Width and height [pixels]; default (1920, 1080).
-
-        Returns
-        -------
-        iterator of numpy.ndarray
-            uint8 (height, width, 3). Treat them as read-only: while nothing moves, the same array comes
-            again.
-
-        Raises
-        ------
-        ValueError
-            If ``fps`` or ``speed`` is out of range.
-        ImportError
-            Without pygame.
+        ``fps``: pictures per second of the film, in (0, 1000]; default 30. ``speed``: speed of the film over
+        that of the strokes, in (0, 1000]; default 1. ``size``: (int, int), width and height [pixels]; default
+        (1920, 1080). Returns uint8 (height, width, 3). Treat them as read-only: while nothing moves, the same
+        array comes again. ValueError if ``fps`` or ``speed`` is out of range. ImportError without pygame.
         """
         from .film import frames, shown
 
@@ -240,37 +192,11 @@ class Replay:
     def save(self, path: str | Path, **film: Any) -> Path:
         """Write the replay to a file in the format of its suffix.
 
-        Parameters
-        ----------
-        path : str or Path
-            ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra
-            ``render``. The file is written whole or not at all.
-        **film
-            ``fps``, ``speed`` and ``size`` of a film, as in ``frames``. Default for ``.gif``: 640 x 360 at 15
-            pictures per second.
-
-        Returns
-        -------
-        Path
-            The file.
-
-        Raises
-        ------
-        ValueError
-            For another suffix, or if an argument is invalid.
-        OSError
-            If the file cannot be written.
-        ImportError
-            If the extra ``render`` is missing for a film.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from pathlib import Path
-        >>> import snooker_env as sn
-        >>> shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.5)], [(0.0, 0.0, 0.0)])
-        >>> sn.replay(shot).save(Path(tempfile.mkdtemp()) / "shot.html").name
-        'shot.html'
+        ``path``: ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the
+        extra ``render``. The file is written whole or not at all. ``**film``: ``fps``, ``speed`` and ``size``
+        of a film, as in ``frames``. Default for ``.gif``: 640 x 360 at 15 pictures per second. Returns the
+        file. ValueError for another suffix, or if an argument is invalid. OSError if the file cannot be
+        written. ImportError if the extra ``render`` is missing for a film.
         """
         target = Path(path)
         suffix = choice("suffix", target.suffix.lower(), SUFFIXES)

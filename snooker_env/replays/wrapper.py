@@ -12,11 +12,11 @@ from .document import SUFFIXES, Replay, checked_players
 
 
 class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):
-    """Records the strokes of ``Snooker-v0`` and writes each wanted episode as a replay:
-    ``FOLDER/PREFIX-episode-0.html``, and so on.
+    """Records the strokes of ``Snooker-v0`` and writes each wanted episode as a replay.
 
-    An episode is written when it ends, or when the next one or ``close()`` cuts it short. An episode without
-    a stroke gives no file. No render mode is needed. An existing file of that name is overwritten.
+    Files are called ``FOLDER/PREFIX-episode-0.html``, and so on. An episode is written when it ends, or when
+    the next one or ``close()`` cuts it short. An episode without a stroke gives no file. No render mode is
+    needed. An existing file of that name is overwritten.
 
     Parameters
     ----------
@@ -102,24 +102,9 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     ) -> tuple[Any, dict[str, Any]]:
         """Begin a new episode, after writing what there is of the last one.
 
-        Parameters
-        ----------
-        seed : int, optional
-            As in ``SnookerEnv.reset``.
-        options : dict, optional
-            As in ``SnookerEnv.reset``.
-
-        Returns
-        -------
-        observation : numpy.ndarray or dict
-            The wrapped environment's.
-        info : dict
-            The wrapped environment's.
-
-        Raises
-        ------
-        OSError
-            If a replay cannot be written.
+        ``seed``: as in ``SnookerEnv.reset``. ``options``: as in ``SnookerEnv.reset``. Returns
+        ``observation``, the wrapped environment's and ``info``, the wrapped environment's. OSError if a
+        replay cannot be written.
         """
         self._write()
         result = super().reset(seed=seed, options=options)
@@ -129,26 +114,9 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
         """Play one step; write the replay of an episode that ends with it.
 
-        Parameters
-        ----------
-        action : array_like or int
-            As in ``SnookerEnv.step``.
-
-        Returns
-        -------
-        observation : numpy.ndarray or dict
-            The wrapped environment's.
-        reward : float
-            The wrapped environment's.
-        terminated, truncated : bool
-            The wrapped environment's.
-        info : dict
-            The wrapped environment's.
-
-        Raises
-        ------
-        OSError
-            If a replay cannot be written.
+        ``action``: as in ``SnookerEnv.step``. Returns ``observation``, the wrapped environment's and
+        ``reward``, the wrapped environment's and ``terminated, truncated``, the wrapped environment's and
+        ``info``, the wrapped environment's. OSError if a replay cannot be written.
         """
         result = super().step(action)
         if self._written:  # an inner wrapper has begun another episode

@@ -178,7 +178,7 @@ class Frames(Tables):
         self.begun[self.game[:, STRIKER] != AGENT] = False
 
     # a turn
-    # ----------------------------------------------------------------------------------------------------------------
+    # --------------------------------------------------------------------------------------------------------
 
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = AGENT) -> Ints:
         """Take the decisions on the tables ``which`` and carry the strokes out up to the strike; returns the
@@ -284,7 +284,7 @@ class Frames(Tables):
         return
 
     # steps and resets of the frame task
-    # --------------------------------------------------------------------------------------
+    # --------------------------------------------------------------------------------------------------------
 
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
@@ -408,7 +408,7 @@ class Frames(Tables):
         return rows
 
     # states
-    # ----------------------------------------------------------------------------------------------------------------
+    # --------------------------------------------------------------------------------------------------------
 
     def get_state(self, k: int) -> dict[str, Any]:
         """Table k as JSON types: the fields of a ``states.FrameState`` except "rng"."""

@@ -175,27 +175,8 @@ class Noise:
     def of(cls, noise: "NoiseLike") -> "Noise":
         """Convert an argument to a ``Noise``.
 
-        Parameters
-        ----------
-        noise : str, dict or Noise
-            The name of a level (a key of ``LEVELS``), or a dict of fields of ``Noise``; fields left out are
-            0.
-
-        Returns
-        -------
-        Noise
-            The argument itself if it is one already.
-
-        Raises
-        ------
-        ValueError
-            For anything else.
-
-        Examples
-        --------
-        >>> from snooker_env.tasks import Noise
-        >>> Noise.of({"aim_deg": 0.1}).speed_rel
-        0.0
+        ``noise``: the name of a level (a key of ``LEVELS``), or a dict of fields of ``Noise``; fields left
+        out are 0. Returns the argument itself if it is one already. ValueError for anything else.
         """
         if isinstance(noise, cls):
             return noise
@@ -220,8 +201,7 @@ class Noise:
         return not (self.aim_deg or self.speed_rel or self.speed_abs or self.offset_mm or self.elevation_deg)
 
     def direction_deg(self, physics: PhysicsLike = None) -> float:
-        """Return the total error of the cue ball's direction: aim and squirt, as the root of the sum of
-        squares.
+        """Return the total error of the cue ball's direction: aim and squirt together.
 
         A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a
         small offset [TP A.31]. With the usual ratio of 30 that is 0.163 deg for each millimetre. The result
@@ -250,21 +230,7 @@ class Noise:
     def pack(self, R: float) -> Floats:
         """Return the deviations as an array for the kernels.
 
-        Parameters
-        ----------
-        R : float
-            Radius of the ball [m].
-
-        Returns
-        -------
-        numpy.ndarray
-            float64 (6,), in the columns ``N_*`` of this module.
-
-        Examples
-        --------
-        >>> from snooker_env.tasks import Noise
-        >>> Noise(speed_rel=0.02).pack(R=0.02625).tolist()
-        [0.0, 0.0, 0.02, 0.0, 0.0, 0.0]
+        ``R``: radius of the ball [m]. Returns float64 (6,), in the columns ``N_*`` of this module.
         """
         tip = self.offset_mm * 1e-3 / R
         return np.array(

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 
 
 class OpponentPool:
-    """Several opponents, one of whom is drawn for each table and frame, with chances in proportion to their
-    weights.
+    """Several opponents, one of whom is drawn for each table and frame, by their weights.
 
     The draw comes from the table's own stream of random numbers and is part of its state: the same seed meets
     the same opponents, whatever happens on other tables, and a saved state plays on exactly. Members may be
@@ -83,25 +82,8 @@ class OpponentPool:
     def add(self, member: Any, weight: float = 1.0) -> None:
         """Add a member, which later frames may draw.
 
-        Parameters
-        ----------
-        member : str, Path, callable or player
-            As in ``members``. It is checked when an environment uses it first.
-        weight : float, optional
-            Its weight, at least 0; default 1.
-
-        Raises
-        ------
-        ValueError
-            If the weight is wrong, or the member is a pool.
-
-        Examples
-        --------
-        >>> from snooker_env.tasks import OpponentPool
-        >>> pool = OpponentPool()
-        >>> pool.add("ghost_ball", 0.5)
-        >>> pool.members
-        ('ghost_ball',)
+        ``member``: as in ``members``. It is checked when an environment uses it first. ``weight``: its
+        weight, at least 0; default 1. ValueError if the weight is wrong, or the member is a pool.
         """
         if (
             isinstance(member, OpponentPool)
@@ -118,25 +100,8 @@ class OpponentPool:
     def set_weight(self, index: int, weight: float) -> None:
         """Change the weight of a member. With 0 it is drawn no more; frames in which it plays go on.
 
-        Parameters
-        ----------
-        index : int
-            Its index in ``members``.
-        weight : float
-            The weight, at least 0.
-
-        Raises
-        ------
-        ValueError
-            If there is no such member, or the weight is wrong.
-
-        Examples
-        --------
-        >>> from snooker_env.tasks import OpponentPool
-        >>> pool = OpponentPool(["random", "ghost_ball"])
-        >>> pool.set_weight(0, 0.0)
-        >>> pool.weights
-        (0.0, 1.0)
+        ``index``: its index in ``members``. ``weight``: the weight, at least 0. ValueError if there is no
+        such member, or the weight is wrong.
         """
         self._weights[integer("index", index, 0, len(self._members) - 1)] = number("weight", weight, 0.0)
 

@@ -123,8 +123,7 @@ def _said(says: Any, flags: Mapping[str, Any]) -> tuple[str, ...]:
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together. An
-    ``Options`` is immutable.
+    """All options of a game: the keywords of ``gymnasium.make("Snooker-v0", ...)``, validated together.
 
     Parameters
     ----------
@@ -418,29 +417,10 @@ class Options:
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
         """Return the options of a group, with their defaults.
 
-        Parameters
-        ----------
-        name : {"task", "action", "view", "shot", "frame"}
-            "task": what is played, how it begins and what it pays. "action", "view": how the agent acts and
-            sees. "shot": what decides the outcome of a shot. "frame": the rules of frames.
-        task : {"visit", "frame", "match"}, optional
-            Leaves out the options that this task does not have; default None: none of them.
-
-        Returns
-        -------
-        dict
-            Name and default of each.
-
-        Raises
-        ------
-        ValueError
-            If there is no such group or task.
-
-        Examples
-        --------
-        >>> from snooker_env import Options
-        >>> list(Options.group("shot"))
-        ['noise', 'physics', 'table', 'fidelity']
+        ``name``: "task": what is played, how it begins and what it pays. "action", "view": how the agent acts
+        and sees. "shot": what decides the outcome of a shot. "frame": the rules of frames. ``task``: leaves
+        out the options that this task does not have; default None: none of them. Returns name and default of
+        each. ValueError if there is no such group or task.
         """
         choice("name", name, GROUPS)
         own = (
@@ -455,26 +435,8 @@ class Options:
     def but(self, **changes: Any) -> "Options":
         """Return a copy with some options changed.
 
-        Parameters
-        ----------
-        **changes
-            Fields and their new values.
-
-        Returns
-        -------
-        Options
-            The new options, validated.
-
-        Raises
-        ------
-        ValueError
-            For the same reasons as ``Options``.
-
-        Examples
-        --------
-        >>> from snooker_env import Options
-        >>> Options().but(layout="line_up").layout
-        'line_up'
+        ``**changes``: fields and their new values. Returns the new options, validated. ValueError for the
+        same reasons as ``Options``.
         """
         # else they are those of this one
         flags = {} if "says" not in changes else dict.fromkeys(SAYS, _UNSAID)

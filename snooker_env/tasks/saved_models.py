@@ -165,8 +165,7 @@ def entries(path: str | Path) -> dict[str, Any]:
 
 
 def by_train(found: dict[str, Any]) -> bool:
-    """Return whether a model was written by the repository's ``train.py``, which stores what it needs as
-    plain data.
+    """Return whether a model was written by the repository's ``train.py``.
 
     Parameters
     ----------
@@ -226,8 +225,7 @@ def _described_outline(described):
 
 @dataclass(frozen=True)
 class SavedModel:
-    """A model's file of Stable-Baselines3 or sb3-contrib, read without unpickling anything. Made by
-    ``SavedModel.of``.
+    """A model's file of Stable-Baselines3 or sb3-contrib, read without unpickling anything.
 
     Attributes
     ----------
@@ -263,23 +261,9 @@ class SavedModel:
     def of(cls, path: str | Path, field: str) -> "SavedModel":
         """Read a model's file.
 
-        Parameters
-        ----------
-        path : str or Path
-            The model's ``.zip``.
-        field : str
-            Name of the argument that error messages refer to.
-
-        Returns
-        -------
-        SavedModel
-            The plain data in the file.
-
-        Raises
-        ------
-        ValueError
-            If the file is no model of Stable-Baselines3, or one of ``train.py``, whose agents observe more
-            than the environment shows.
+        ``path``: the model's ``.zip``. ``field``: name of the argument that error messages refer to. Returns
+        the plain data in the file. ValueError if the file is no model of Stable-Baselines3, or one of
+        ``train.py``, whose agents observe more than the environment shows.
         """
         try:
             data = entries(path)
@@ -299,15 +283,7 @@ class SavedModel:
     def refused(self, allowed: str) -> ValueError:
         """Make the error that refuses this file.
 
-        Parameters
-        ----------
-        allowed : str
-            What the file must be.
-
-        Returns
-        -------
-        ValueError
-            The error, not raised.
+        ``allowed``: what the file must be. Returns the error, not raised.
         """
         return refuse(self.field, str(self.path), allowed)
 
@@ -326,24 +302,9 @@ class SavedModel:
     def network(self, trust: bool, consent: str) -> Any:
         """Load the model's policy network. This runs the code in its pickles.
 
-        Parameters
-        ----------
-        trust : bool
-            Whether that code may run.
-        consent : str
-            How a user gives this consent, for the error message, as "trust=True".
-
-        Returns
-        -------
-        stable_baselines3.common.policies.BasePolicy
-            The policy, on the CPU.
-
-        Raises
-        ------
-        ValueError
-            Without ``trust``, before anything runs; or if the model cannot be loaded.
-        ImportError
-            Without Stable-Baselines3 or sb3-contrib.
+        ``trust``: whether that code may run. ``consent``: how a user gives this consent, for the error
+        message, as "trust=True". Returns the policy, on the CPU. ValueError without ``trust``, before
+        anything runs; or if the model cannot be loaded. ImportError without Stable-Baselines3 or sb3-contrib.
         """
         library, name = self.algorithm
         if not trust:

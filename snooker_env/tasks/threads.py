@@ -18,8 +18,7 @@ LEAST = 8
 
 
 def processors() -> int:
-    """Return how many processors this process may use: fewer than the machine has if a scheduler or container
-    limits it.
+    """Return how many processors this process may use, by scheduler and container.
 
     Returns
     -------

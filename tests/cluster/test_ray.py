@@ -117,8 +117,7 @@ def test_two_nodes_play_what_one_machine_plays(cluster, monkeypatch):
     far, near = results_of(agents, seeds, cluster), results_of(agents, seeds, Here())
     for agent in agents:
         one, other = (
-            protocol.play_agent(agent, AT, seeds, 100, False, results).strokes[0]
-            for results in (far, near)
+            protocol.play_agent(agent, AT, seeds, 100, False, results).strokes[0] for results in (far, near)
         )
         assert same(one, other), agent.label
     assert len({process for process, *_ in noted(Path(os.environ["NOTED"]).parent)} - {os.getpid()}) == 2
@@ -130,9 +129,7 @@ def test_a_node_killed_amid_an_evaluation_is_survived_and_nothing_counts_twice(
     monkeypatch.setattr(visits, "SIZE", 5)
     agent, seeds, done = Entrant.of("tests.cluster.players:Noted"), tables_of("held_out", 60), []
     with killed(nodes, tmp_path, lambda: len(done) >= 3):
-        metrics = protocol.play_agent(
-            agent, AT, seeds, 100, False, results_of([agent], seeds, cluster, done)
-        )
+        metrics = protocol.play_agent(agent, AT, seeds, 100, False, results_of([agent], seeds, cluster, done))
     assert sorted(done) == list(range(12))  # that at which the node hung was begun twice
     monkeypatch.delenv("NOTED")
     assert same(metrics.strokes[0], protocol.play_agent(agent, AT, seeds, 100).strokes[0])

@@ -44,7 +44,7 @@ def energy(v, w):
 
 
 # the paper
-# ---------------------------------------------------------------------------------------------------------------------
+# ------------------------------------------------------------------------------------------------------------
 
 
 def predicted(row, fidelity):
@@ -83,7 +83,7 @@ def test_euler_converges_to_reference_at_first_order():
 
 
 # the oracle
-# --------------------------------------------------------------------------------------------------------------------
+# ------------------------------------------------------------------------------------------------------------
 
 
 def truth_of(case, mu_bb):
@@ -170,7 +170,7 @@ def test_cushion_agrees_with_the_oracle():
 
 
 # published numbers
-# -------------------------------------------------------------------------------------------------------------
+# ------------------------------------------------------------------------------------------------------------
 
 CUTS = (5, 10, 15, 20, 25, 30, 35, 40, 50, 60, 70, 80)
 THROW = {
@@ -230,7 +230,7 @@ def test_match_cushion_follows_the_measured_rebounds():
 
 
 # closed forms
-# ------------------------------------------------------------------------------------------------------------------
+# ------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("fidelity", ["fast", "standard", "reference"])
@@ -285,7 +285,7 @@ def test_draw_follow_and_side_throw_the_right_way(side):
 
 
 # invariants
-# --------------------------------------------------------------------------------------------------------------------
+# ------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
@@ -309,9 +309,9 @@ def test_invariants(fidelity):
 
 @pytest.mark.parametrize("fidelity", FIDELITIES)
 def test_everything_may_be_turned_mirrored_or_renamed(fidelity):
-    turn = lambda a, x: np.array(
-        [np.cos(a) * x[0] - np.sin(a) * x[1], np.sin(a) * x[0] + np.cos(a) * x[1], x[2]]
-    )
+    def turn(a, x):
+        return np.array([np.cos(a) * x[0] - np.sin(a) * x[1], np.sin(a) * x[0] + np.cos(a) * x[1], x[2]])
+
     tol = 0.02 if fidelity.startswith("euler") else 1e-6  # rounding may move its last step
     for c in impacts(30, seed=29):
         got, speed = play(c, fidelity), speed_of(c)

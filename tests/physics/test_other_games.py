@@ -237,7 +237,8 @@ OTHER = [
 @pytest.mark.parametrize("table", OTHER)
 def test_snooker_is_not_played_on_other_games_tables(make, table):
     other = Table.of(table)
-    says = f'must be "match", "tight" or a Table of snooker\'s bed in Snooker-v0: this one is made for balls of radius {other.ball_radius:g} m'
+    allowed = 'must be "match", "tight" or a Table of snooker\'s bed in Snooker-v0'
+    says = f"{allowed}: this one is made for balls of radius {other.ball_radius:g} m"
     refused(lambda: make(table=table), "table", repr(other.name), says)
 
 

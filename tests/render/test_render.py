@@ -254,9 +254,10 @@ def test_a_picture_shows_the_table_and_the_balls_of_another_game(name):
     # rails and margin
     assert empty.shape[1] == pytest.approx((last - first)[0] + 2 * scale * (0.155 + 0.012), abs=2)
     assert empty.shape[0] * 14 / 15 == pytest.approx((last - first)[1] + 2 * scale * (0.155 + 0.012), abs=2)
-    pixel = lambda point: empty[tuple(np.floor(to_pixels(point, height, table)).astype(int)[::-1])].astype(
-        int
-    )
+
+    def pixel(point):
+        return empty[tuple(np.floor(to_pixels(point, height, table)).astype(int)[::-1])].astype(int)
+
     for x, y, radius in table.falls:
         inner = np.array([x, y]) - 0.8 * radius * np.array([np.sign(x), np.sign(y)]) / np.hypot(
             np.sign(x), np.sign(y)
