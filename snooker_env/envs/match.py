@@ -286,7 +286,7 @@ class MatchEnv(ShowsBalls, TakesTurns, HasHistory, AECEnv[str, Any, Any]):
             raise gymnasium.error.ResetNeeded(
                 f"the frame {self.tables.unplayable}: call reset() before step()"
             )
-        name = self.agent_selection
+        name: Any = self.agent_selection  # of PettingZoo's own type
         if self.terminations[name] or self.truncations[name]:
             self._was_dead_step(action)
             return

@@ -371,8 +371,8 @@ def ruling(before, facts, flags):
     free_next = 1 if playing and fouls and flags & FLAG.SNOOKERED and not flags & FLAG.SHOOT_OUT else 0
     return Ruling(
         fouls,
-        penalty,
-        points,
+        penalty,  # type: ignore[arg-type]
+        points,  # type: ignore[arg-type]
         respotted,
         remaining,
         next_on,

@@ -87,9 +87,9 @@ def compare(
         high = wide * (region.height / region.width + CAPTIONS.get(caption, 0.0))
         figure = pyplot().figure(figsize=(WIDTH, WIDTH * high), facecolor=rgb("floor"))
         axes = [figure.add_axes((k * (wide + _GAP), 0.0, wide, 1.0)) for k in range(n)]
-    seen = np.array(region).reshape(2, 2)
+    seen: Any = np.array(region).reshape(2, 2)
     each = zip(shots, axes, labels or [""] * len(shots), cues or [None] * len(shots), strict=True)
     return tuple(
         plot(shot, ax, cue=cue, view=seen, title=label, caption=caption, **options)
         for shot, ax, label, cue in each
-    )  # pyright: ignore[reportArgumentType]
+    )
