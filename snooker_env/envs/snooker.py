@@ -13,6 +13,7 @@ from .._types import Action, Bools, Observation, RenderMode
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.options import Options, observation_space_of, options_table
+from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew, StepOutput, Tables
 from .arguments import ONE, breakers_of, known_options, starts_of
 from .one_table import OneTable, Record
@@ -170,6 +171,10 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     def _shaped(self, out: StepOutput) -> Observation:
         masks = out.masks[0] if len(out.masks) else None
         return observations.shaped(self.options.observation, out.observations[0], masks)
+
+    def _watch(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
+        super()._watch(k, buffers, j, mine)
+        self._show(played=True)
 
     def _crew(self) -> Crew:
         return Crew(self._record.buffers, (self.np_random,), self._watch)

@@ -348,10 +348,10 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def _final(self, out, done):
         """The entries that SAME_STEP adds: how the episodes ended that ended in this step."""
-        rows = observations.shaped(self.options.observation, out.last_observations, out.last_masks)
-        if self.options.observation != "flat":
-            rows = ({name: rows[name][k] for name in rows} for k in range(self.num_envs))
-        final = np.fromiter(rows, object, self.num_envs)
+        each = observations.shaped(self.options.observation, out.last_observations, out.last_masks)
+        if isinstance(each, dict):
+            each = [dict(zip(each, parts, strict=True)) for parts in zip(*each.values(), strict=True)]
+        final = np.fromiter(each, object, self.num_envs)
         final[~done] = None
         info = self.tables.infos(out.last_reals, out.last_counts, done)
         return {"final_obs": final, "_final_obs": done.copy(), "final_info": info, "_final_info": done.copy()}
