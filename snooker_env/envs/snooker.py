@@ -14,7 +14,7 @@ from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.options import Options, observation_space_of, options_table
 from ..tasks.stroke import ShotBuffers
-from ..tasks.tables import Crew, StepOutput, Tables
+from ..tasks.tables import Crew, StepOutput
 from .arguments import ONE, breakers_of, known_options, starts_of
 from .one_table import OneTable, Record
 from .opponents import game_of, tables_of
@@ -103,11 +103,10 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         *,
         render_mode: RenderMode | None = None,
         render_size: Sequence[int] = SIZE,
-        _tables: Tables | None = None,  # of a vector environment, which has made them
         **keywords: Any,
     ):
         self.options, opponent = game_of(options, keywords)
-        self.tables = tables_of(self.options, opponent, 1) if _tables is None else _tables
+        self.tables = tables_of(self.options, opponent, 1)
         self.action_space: Any = self.options.rules.actions.space
         self.observation_space: Any = observation_space_of(self.options)
         if render_mode is not None:

@@ -135,9 +135,10 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         steps = max_episode_steps
         limit = NEVER if steps is None else integer("max_episode_steps", steps, 1, NEVER)
         self.tables = self._tables_of(opponent, limit)
-        self._one = SnookerEnv(
-            self.options, render_mode=render_mode, render_size=render_size, _tables=self.tables.view(0)
-        )
+        # what ``call`` shows of a table; its own table, without an opponent, is never played on
+        alone = self.options.but(opponent="none")
+        self._one = SnookerEnv(alone, render_mode=render_mode, render_size=render_size)
+        self._one.options = self.options
         self.single_action_space: Any = self._one.action_space
         self.single_observation_space: Any = self._one.observation_space
         self.action_space: Any = batch_space(self.single_action_space, n)

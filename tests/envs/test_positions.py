@@ -29,8 +29,8 @@ def start(position, **more):
 
 def is_there(env, position):
     """Whether the environment stands at the position: balls, what is on, in hand, points."""
-    p, there, game = position.arrays()
-    same = np.array_equal(env.positions, p) and np.array_equal(env.on_table, there)
+    p, on_table, game = position.arrays()
+    same = np.array_equal(env.positions, p) and np.array_equal(env.on_table, on_table)
     return same and [env.ball_on, env.in_hand, env.points, env.over] == game[:4].tolist()
 
 
@@ -53,7 +53,7 @@ def test_points_of_the_break_go_on():
     """A stroke that Planner plays from the position leaves the environment where the planner says."""
     env = sn.SnookerEnv(action="discrete")
     env.reset(seed=1, **start(MID_BREAK))
-    found = 0
+    scored = 0
     for choice in np.flatnonzero(env.action_masks())[::7].tolist():
         env.reset(**start(MID_BREAK))
         out = Planner(env.options).play(MID_BREAK, rows=[0], actions=[choice])
@@ -61,8 +61,8 @@ def test_points_of_the_break_go_on():
         assert reward == out.points[0] and ended != out.goes_on[0]
         assert info["break"] == 33 + reward
         assert np.array_equal(env.positions, out.afterstates.positions[0])
-        found += reward > 0
-    assert found  # and one of them scored
+        scored += reward > 0
+    assert scored  # and one of them scored
 
 
 def ends(env, seeds, position=MID_BREAK):
@@ -274,7 +274,7 @@ def test_who_breaks_is_said_only_where_balls_are_dealt():
     single, match = sn.SnookerEnv(task="frame", opponent="random"), sn.match_env()
     many = sn.SnookerVectorEnv(2, threads=1, task="frame", opponent="random")
     single.reset(seed=1)
-    for env, key, given in (
+    for env, key, value in (
         (single, "position", position),
         (match, "position", position),
         (many, "positions", [position] * 2),
@@ -285,7 +285,7 @@ def test_who_breaks_is_said_only_where_balls_are_dealt():
             f'must be left out with "{key}": it says who breaks where balls are dealt',
         )
         refused(
-            lambda env=env, key=key, given=given: env.reset(options={key: given, "breaker": 1}),
+            lambda env=env, key=key, value=value: env.reset(options={key: value, "breaker": 1}),
             field,
             "1",
             allowed,
