@@ -21,8 +21,7 @@ from .vector import SnookerVectorEnv
 
 
 class MatchVectorEnv(SnookerVectorEnv):
-    """Many frames or matches between player 0 and player 1: ``match_env``, bit for bit, on n tables, for
-    leagues and self-play.
+    """Many frames or matches of two players: ``match_env``, bit for bit, on n tables; for self-play.
 
     A step is one turn on each table, of the player whose turn it is there: ``strikers``. Observations are
     those of the strikers, from their own side; infos have the keys of ``SnookerEnv`` as player 0 sees them,

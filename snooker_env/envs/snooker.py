@@ -32,7 +32,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     stroke and all of the opponent's after it. "match": the best of ``frames`` frames, in which they break in
     turn.
 
-    ## Action
+    ## Action space
     ``action="box"`` (default): ``Box(-1, 1, (4,), float32)`` or longer, in this order, each component linear.
 
     | component | -1 | +1 | present with |
@@ -52,14 +52,14 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     ``nominate`` makes them 7 x 540; ``concede``, ``claim`` and ``lot`` each add one. ``action_masks()`` are
     the available ones.
 
-    ## Observation
+    ## Observation space
     ``observation="flat"`` (default): ``Box(-1.1, 1.1, (121,), float32)``: for the cue ball, 15 reds and
     yellow to black x / 0.889 m, y / 1.7845 m, on the table, value / 7, ball on; then reds / 15, the ball on
     (8, one-hot), in hand, break / 155. Origin: the table's centre; +x: the yellow side, +y: the black end. A
     frame appends 19 numbers (scores, whose turn, free ball, ...), a miss rule 66 more. "balls": the same as
     ``Dict(balls=(22, 5), state=(11,))``. "masked", of discrete actions: ``Dict(observations, action_mask)``.
 
-    ## Reward
+    ## Rewards
     In a visit "points" (default): of the stroke, in [0, 15]; "points_and_fouls": less penalties; "pots",
     "legal": 1 for a stroke that scores, or is no foul. In a frame "points": growth of the lead since the last
     reward; "win": +1 or -1 at the end; in a match "frames": growth of the lead in frames.
@@ -71,7 +71,8 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     ``get_state``), "position" (a ``snooker_env.Position``) or "breaker" (0 the agent, 1 the opponent). The
     info has the same keys each time.
 
-    ## Options
+    ## Arguments
+    All but an opponent that is an object are JSON types, so that ``EnvSpec.to_json`` round-trips.
 
     {options}
 

@@ -49,8 +49,7 @@ NOT_OF_A_TABLE = {
 
 
 class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
-    """Many tables side by side: the same shots, rewards and infos, bit for bit, as ``SyncVectorEnv`` of
-    ``SnookerEnv`` with the same seeds.
+    """Many tables side by side, bit for bit as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
 
     ``SnookerEnv`` specifies actions, observations, rewards and infos.
 
