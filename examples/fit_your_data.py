@@ -48,7 +48,7 @@ class Constant(NamedTuple):
 class Kind(NamedTuple):
     """One kind of measurement: what a file holds, what can be fitted, and what the model predicts."""
 
-    given: dict[str, Column]
+    inputs: dict[str, Column]
     """Set by the person who measures; the first is needed, of the others what is left out has a default."""
     measured: dict[str, Column]
     """At least one of them is needed."""
@@ -161,7 +161,7 @@ KINDS = {
 def read(file, kind, filled=None):
     """The columns of a CSV file as arrays. ``filled``: columns that have one value in every row. ValueError
     for a bad file."""
-    known = {**KINDS[kind].given, **KINDS[kind].measured}
+    known = {**KINDS[kind].inputs, **KINDS[kind].measured}
     try:
         text = Path(file).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
@@ -216,14 +216,17 @@ def read(file, kind, filled=None):
         and len(lines) > 1
         and np.median(arrays["throw_deg"]) < 0
     ):
-        allowed = "must be positive for most rows without side: it counts towards the direction in which the cue ball moved"
+        allowed = (
+            "must be positive for most rows without side: it counts towards the direction in which the cue "
+            "ball moved"
+        )
         raise refuse(f"{file}, median of throw_deg", float(np.median(arrays["throw_deg"])), allowed)
     return arrays
 
 
 def needed(kind):
     """The columns without which nothing can be predicted."""
-    return ("cut_deg", "speed_m_s") if kind == "throw" else tuple(KINDS[kind].given)[:1]
+    return ("cut_deg", "speed_m_s") if kind == "throw" else tuple(KINDS[kind].inputs)[:1]
 
 
 def to_fit(kind, columns, fixed, law="constant"):
@@ -272,51 +275,52 @@ def fit(kind, columns, preset="match", fixed=None, law="constant", bootstrap=0, 
         fits = [
             least_squares(residuals, start, bounds=(low, high), diff_step=1e-4, args=args) for start in starts
         ]
-        return min(fits, key=lambda found: found.cost)
+        return min(fits, key=lambda fitted: fitted.cost)
 
     grid = np.array(np.meshgrid(*(what.constants[name].starts for name in names))).reshape(len(names), -1).T
-    found = best(grid)
-    x = found.x
+    fitted = best(grid)
+    x = fitted.x
     if bootstrap:
         rng = np.random.default_rng(seed)
         draws = np.array([best([x], rng.integers(rows, size=rows)).x for _ in range(bootstrap)])
         ends = [tuple(q) for q in np.quantile(draws, (0.025, 0.975), axis=0).T.tolist()]
     else:
-        ends = _by_covariance(found, low, high)
-    apart = np.split(found.fun, len(measured))
+        ends = _by_covariance(fitted, low, high)
+    apart = np.split(fitted.fun, len(measured))
     off = {name: part * what.measured[name].error for name, part in zip(measured, apart, strict=True)}
     return Fit(
         dict(zip(names, x.tolist(), strict=True)), dict(zip(names, ends, strict=True)), off, physics(x)
     )
 
 
-def _by_covariance(found, low, high):
+def _by_covariance(fitted, low, high):
     """95 % intervals from the Jacobian, cut at the bounds; None for a constant at a bound or that the data do
     not determine."""
-    inside = ~(np.isclose(found.x, low, atol=1e-4) | np.isclose(found.x, high, atol=1e-4))
-    jacobian, freedom = found.jac[:, inside], len(found.fun) - int(inside.sum())
+    inside = ~(np.isclose(fitted.x, low, atol=1e-4) | np.isclose(fitted.x, high, atol=1e-4))
+    jacobian, freedom = fitted.jac[:, inside], len(fitted.fun) - int(inside.sum())
     lengths = np.linalg.norm(jacobian, axis=0)
     if not inside.any() or not lengths.all() or np.linalg.cond(jacobian / lengths) > 1e4:
         return [None] * len(inside)
-    covariance = np.linalg.inv(jacobian.T @ jacobian) * 2.0 * found.cost / freedom
+    covariance = np.linalg.inv(jacobian.T @ jacobian) * 2.0 * fitted.cost / freedom
     half = np.full(len(inside), np.nan)
     half[inside] = student.ppf(0.975, freedom) * np.sqrt(np.diag(covariance))
-    below, above = np.maximum(low, found.x - half).tolist(), np.minimum(high, found.x + half).tolist()
+    below, above = np.maximum(low, fitted.x - half).tolist(), np.minimum(high, fitted.x + half).tolist()
     return [(a, b) if known else None for a, b, known in zip(below, above, inside, strict=True)]
 
 
-def preset_line(found, preset, fixed):
+def preset_line(fitted, preset, fixed):
     """The line of Python that uses the constants."""
-    values = {name: float(f"{value:.4g}") for name, value in (fixed | found.values).items()}
+    values = {name: float(f"{value:.4g}") for name, value in (fixed | fitted.values).items()}
     if "a" in values:
         values["mu_bb"] = tuple(values.pop(name) for name in "abc")
-    return f'physics = sn.Physics.preset("{preset}", {", ".join(f"{name}={value}" for name, value in values.items())})'
+    fields = ", ".join(f"{name}={value}" for name, value in values.items())
+    return f'physics = sn.Physics.preset("{preset}", {fields})'
 
 
-def report(found, preset, fixed):
+def report(fitted, preset, fixed):
     """What is printed."""
-    for name, value in found.values.items():
-        ends = found.intervals[name]
+    for name, value in fitted.values.items():
+        ends = fitted.intervals[name]
         says = (
             f"95 %: {ends[0]:.4g} to {ends[1]:.4g}"
             if ends
@@ -324,18 +328,19 @@ def report(found, preset, fixed):
         )
         print(f"{name:10s} {value:9.4g}   {says}")
     print(f"\n{'model less measurement':24s}{'mean':>10s}{'rms':>10s}{'largest':>10s}  in row")
-    for name, off in found.residuals.items():
+    for name, off in fitted.residuals.items():
         worst = int(np.abs(off).argmax())
         print(
-            f"{name:24s}{off.mean():10.3g}{np.sqrt(np.mean(off**2)):10.3g}{abs(off[worst]):10.3g}  {worst + 1}"
+            f"{name:24s}{off.mean():10.3g}{np.sqrt(np.mean(off**2)):10.3g}"
+            f"{abs(off[worst]):10.3g}  {worst + 1}"
         )
-    print(f"\n{preset_line(found, preset, fixed)}")
+    print(f"\n{preset_line(fitted, preset, fixed)}")
 
 
-def _pairs(option, given):
+def _pairs(option, words):
     """NAME=VALUE ... as a dict of numbers."""
     out = {}
-    for pair in given:
+    for pair in words:
         name, _, value = pair.partition("=")
         try:
             out[name] = float(value)
@@ -380,26 +385,26 @@ def main(arguments=None):
         help="intervals by N draws of the rows [0: by the covariance]",
     )
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the draws [0]")
-    given = parser.parse_args(arguments)
+    args = parser.parse_args(arguments)
     try:
-        fixed, filled = _pairs("--fix", given.fix), _pairs("--column", given.column)
+        fixed, filled = _pairs("--fix", args.fix), _pairs("--column", args.column)
         for name in filled:
-            choice("--column", name, KINDS[given.kind].given)
+            choice("--column", name, KINDS[args.kind].inputs)
         for name in fixed:
             choice(
                 "--fix",
                 name,
-                [f.name for f in dataclasses.fields(sn.Physics)] + list("abc") * (given.law == "marlow"),
+                [f.name for f in dataclasses.fields(sn.Physics)] + list("abc") * (args.law == "marlow"),
             )
         draws, seed = (
-            integer(f"--{name}", getattr(given, name), 0, 100_000) for name in ("bootstrap", "seed")
+            integer(f"--{name}", getattr(args, name), 0, 100_000) for name in ("bootstrap", "seed")
         )
-        columns = read(given.file, given.kind, filled)
-        found = fit(given.kind, columns, given.preset, fixed, given.law, draws, seed)
+        columns = read(args.file, args.kind, filled)
+        fitted = fit(args.kind, columns, args.preset, fixed, args.law, draws, seed)
     except ValueError as error:
         raise SystemExit(str(error)) from None
-    print(f"{given.file}: {len(next(iter(columns.values())))} rows, {given.kind}\n")
-    report(found, given.preset, fixed)
+    print(f"{args.file}: {len(next(iter(columns.values())))} rows, {args.kind}\n")
+    report(fitted, args.preset, fixed)
 
 
 if __name__ == "__main__":

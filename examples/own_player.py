@@ -27,10 +27,10 @@ class Softly:
         """A stroke for each position."""
         at = Positions.of(positions)
         lines, balls = pots(at, most=1), at.balls_on.argmax(axis=1)
-        there = np.flatnonzero(lines.ball[:, 0] >= 0)
-        balls[there] = lines.ball[there, 0]
+        rows = np.flatnonzero(lines.ball[:, 0] >= 0)
+        balls[rows] = lines.ball[rows, 0]
         x, y = (at.positions[np.arange(len(at)), balls] - at.positions[:, 0]).T
         speeds, aims, still = np.clip(1.5 + np.hypot(x, y), 0.5, 6.0), np.arctan2(y, x), np.zeros(len(at))
-        targets = POCKET_AIMS[lines.pocket[there, 0], :2]
-        aims[there] = pot_aim(at, there, balls[there], targets, speeds[there])  # with throw and swerve
+        targets = POCKET_AIMS[lines.pocket[rows, 0], :2]
+        aims[rows] = pot_aim(at, rows, balls[rows], targets, speeds[rows])  # with throw and swerve
         return Strokes(np.column_stack([speeds, still, still, aims, still]))

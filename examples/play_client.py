@@ -38,7 +38,8 @@ def ask(address, name, fields=None):
         raise SystemExit(f"{name}: {message}") from None
     except (urllib.error.URLError, http.client.HTTPException, OSError) as error:
         raise SystemExit(
-            f"{address}: no answer ({getattr(error, 'reason', error)}); is python -m snooker_env.play running there?"
+            f"{address}: no answer ({getattr(error, 'reason', error)}); "
+            "is python -m snooker_env.play running there?"
         ) from None
     except ValueError:
         raise SystemExit(
@@ -69,15 +70,15 @@ def main(argv=None):
     )
     parser.add_argument("address", help="the address that the server printed")
     parser.add_argument("--text", action="store_true", help="print the table in words before each stroke")
-    given = parser.parse_args(argv)
-    state = ask(given.address, "state")
+    args = parser.parse_args(argv)
+    state = ask(args.address, "state")
     if state["phase"] == "choice":
-        state = ask(given.address, "stroke", {"choice": "play"})["state"]
+        state = ask(args.address, "stroke", {"choice": "play"})["state"]
     player = state["striker"]
     while state["phase"] == "stroke" and state["striker"] == player and not state["thinking"]:
-        if given.text:
+        if args.text:
             print(state["text"], end="\n\n")
-        answer = ask(given.address, "stroke", chosen(state))
+        answer = ask(args.address, "stroke", chosen(state))
         state = answer["state"]
         print(state["last"])
         if not answer["stroke"]["points"]:

@@ -62,13 +62,13 @@ def mlp(*sizes):
 def advantages_of(rewards, values, ends, last):
     """Generalised advantages: (steps, tables) each; ``ends``: the visit ended in this step; ``last``: the
     values after the last step."""
-    found, running = torch.zeros_like(rewards), torch.zeros_like(last)
+    advantages, running = torch.zeros_like(rewards), torch.zeros_like(last)
     for t in reversed(range(len(rewards))):
         goes_on = 1.0 - ends[t]
         after = values[t + 1] if t + 1 < len(rewards) else last
         running = rewards[t] + GAMMA * goes_on * after - values[t] + GAMMA * LAMBDA * goes_on * running
-        found[t] = running
-    return found
+        advantages[t] = running
+    return advantages
 
 
 def save(path, actor, about):
@@ -90,11 +90,11 @@ def main(argv=None):
         "--noise", default="professional", choices=tuple(LEVELS), help="execution noise [professional]"
     )
     parser.add_argument("--out", default="policy.npz", help="where the policy is written [policy.npz]")
-    given = parser.parse_args(argv)
-    if given.steps < 1:
-        parser.error(f"--steps is {given.steps}, must be at least 1")
-    Path(given.out).parent.mkdir(parents=True, exist_ok=True)  # before the training
-    torch.manual_seed(given.seed)
+    args = parser.parse_args(argv)
+    if args.steps < 1:
+        parser.error(f"--steps is {args.steps}, must be at least 1")
+    Path(args.out).parent.mkdir(parents=True, exist_ok=True)  # before the training
+    torch.manual_seed(args.seed)
     torch.set_num_threads(1)
 
     envs = gymnasium.make_vec(
@@ -103,7 +103,7 @@ def main(argv=None):
         vectorization_mode="vector_entry_point",
         autoreset_mode="SameStep",
         action="discrete",
-        noise=given.noise,
+        noise=args.noise,
     )
     envs = RecordEpisodeStatistics(envs, buffer_length=1000)
     numbers, choices = envs.single_observation_space.shape[0], int(envs.single_action_space.n)
@@ -114,8 +114,8 @@ def main(argv=None):
     actions, logs = torch.zeros(STEPS, TABLES, dtype=torch.long), torch.zeros(STEPS, TABLES)
     rewards, ends, values = (torch.zeros(STEPS, TABLES) for _ in range(3))
 
-    observation, _ = envs.reset(seed=given.seed)
-    updates, played, began = -(-given.steps // (STEPS * TABLES)), 0, time.perf_counter()
+    observation, _ = envs.reset(seed=args.seed)
+    updates, played, began = -(-args.steps // (STEPS * TABLES)), 0, time.perf_counter()
     for update in range(updates):
         for group in optimiser.param_groups:  # falls to nearly 0
             group["lr"] = LEARNING_RATE * (1.0 - update / updates)
@@ -154,21 +154,22 @@ def main(argv=None):
 
         points = float(np.mean(envs.return_queue))
         print(
-            f"{played:,} shots, {points:.2f} points a visit, {played / (time.perf_counter() - began):.0f} shots/s",
+            f"{played:,} shots, {points:.2f} points a visit, "
+            f"{played / (time.perf_counter() - began):.0f} shots/s",
             flush=True,
         )
 
     envs.close()
-    options = {"noise": given.noise, "layout": "opened"}
+    options = {"noise": args.noise, "layout": "opened"}
     about = {
         "trainer": "single file",
         "activation": "tanh",
         "shots": played,
-        "seed": given.seed,
+        "seed": args.seed,
         "gamma": GAMMA,
         "env_options": options,
     }
-    save(given.out, agent.actor, about)
+    save(args.out, agent.actor, about)
     return points
 
 

@@ -81,14 +81,14 @@ def main(argv=None):
         "--noise", default="professional", choices=tuple(LEVELS), help="execution noise [professional]"
     )
     parser.add_argument("--out", default="policy.npz", help="where the policy is written [policy.npz]")
-    given = parser.parse_args(argv)
-    if given.steps < 1:
-        parser.error(f"--steps is {given.steps}, must be at least 1")
-    Path(given.out).parent.mkdir(parents=True, exist_ok=True)  # before the training
-    torch.manual_seed(given.seed)
+    args = parser.parse_args(argv)
+    if args.steps < 1:
+        parser.error(f"--steps is {args.steps}, must be at least 1")
+    Path(args.out).parent.mkdir(parents=True, exist_ok=True)  # before the training
+    torch.manual_seed(args.seed)
     torch.set_num_threads(1)
 
-    envs = tables(given.noise, given.seed)
+    envs = tables(args.noise, args.seed)
     numbers, choices = (
         envs.observation_spec["observations"].shape[-1],
         envs.observation_spec["action_mask"].shape[-1],
@@ -116,7 +116,7 @@ def main(argv=None):
     )
     optimiser = torch.optim.Adam(loss.parameters(), lr=LEARNING_RATE)
 
-    updates, played, points, began = -(-given.steps // (STEPS * TABLES)), 0, 0.0, time.perf_counter()
+    updates, played, points, began = -(-args.steps // (STEPS * TABLES)), 0, 0.0, time.perf_counter()
     collector = Collector(
         envs,
         actor,
@@ -142,21 +142,22 @@ def main(argv=None):
         ended = rows["next", "done"].squeeze(-1)
         points = rows["next", "episode_reward"][ended].mean().item()
         print(
-            f"{played:,} shots, {points:.2f} points a visit, {played / (time.perf_counter() - began):.0f} shots/s",
+            f"{played:,} shots, {points:.2f} points a visit, "
+            f"{played / (time.perf_counter() - began):.0f} shots/s",
             flush=True,
         )
 
     collector.shutdown()
-    options = {"noise": given.noise, "layout": "opened"}
+    options = {"noise": args.noise, "layout": "opened"}
     about = {
         "trainer": "TorchRL",
         "activation": "tanh",
         "shots": played,
-        "seed": given.seed,
+        "seed": args.seed,
         "gamma": GAMMA,
         "env_options": options,
     }
-    save(given.out, network, about)
+    save(args.out, network, about)
     return points
 
 

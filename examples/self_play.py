@@ -2,8 +2,8 @@
 its past selves.
 
     pip install -e ".[train]"
-    python -m examples.self_play --out runs/self_play        # trains, then judges 1,000 frames against each built-in opponent
-    python -m examples.self_play --out runs/self_play        # the same command continues an interrupted run, bit for bit
+    python -m examples.self_play --out runs/self_play   # trains, then judges 1,000 frames an opponent
+    python -m examples.self_play --out runs/self_play   # the same again goes on where it was stopped
 
 A choice is one of 540: a pot, a speed, a side and a top; without a direct pot another line of the cue ball
 stands for it. The networks are those of ``train.py`` (``agents.learning.networks``). The reward is the growth
@@ -93,7 +93,7 @@ class FramePolicy(TablePolicy):
 class SelfPlayed:
     """The trained agent as a player of frames, for example with ``--agent examples.self_play:SelfPlayed``."""
 
-    options = {"task": "frame", "action": "discrete"}  # noqa: RUF012 - how it sees and acts: read, never changed
+    options = {"task": "frame", "action": "discrete"}  # noqa: RUF012
 
     def __init__(self, weights=MODEL):
         self.policy = policy_of(torch.load(weights, weights_only=True))
@@ -115,36 +115,36 @@ def weights(policy):
     }
 
 
-def load(policy, given):
+def load(policy, weights):
     """Give a policy these weights."""
-    policy.load_state_dict(given, strict=False)
+    policy.load_state_dict(weights, strict=False)
 
 
-def policy_of(given):
+def policy_of(weights):
     """A policy with these weights, for the entries of the observation that frames share with visits: the
     network reads no others."""
     policy = FramePolicy(observation_space("flat"), Discrete(CHOICES), lambda _: 0.0)
-    load(policy, given)
+    load(policy, weights)
     return policy
 
 
 class PastSelf:
     """A past self as an opponent: it draws its choices from its own policy."""
 
-    def __init__(self, given):
-        self.weights, self.policy = given, policy_of(given)
+    def __init__(self, weights):
+        self.weights, self.policy = weights, policy_of(weights)
 
     def many(self, observations, generators, masks):
         """Its choices on all tables that wait for it."""
         return self.policy.predict(observations[:, :OBSERVATION_SIZE], action_masks=masks)[0]
 
 
-def add(pool, given):
+def add(pool, weights):
     """Add the self with these weights to the pool. The newest plays half of the frames that begin now; the
     others share the rest."""
     for k in range(len(pool.members)):
         pool.set_weight(k, 1.0)
-    pool.add(PastSelf(given), max(1, len(pool.members)))
+    pool.add(PastSelf(weights), max(1, len(pool.members)))
 
 
 def judge(policy, opponent, frames, threads):
@@ -251,7 +251,8 @@ def train(args):
     state = pickle.loads(file.read_bytes()) if file.is_file() else None
     if state and state["asked"] != (args.shots, args.tables, args.seed):
         raise SystemExit(
-            f"{file} was made with --shots, --tables and --seed {state['asked']}: give these, or another --out"
+            f"{file} was made with --shots, --tables and --seed {state['asked']}: "
+            "give these, or another --out"
         )
     pool = OpponentPool()
     tables = SnookerVecEnv(args.tables, opponent=pool, threads=args.threads, **GAME)
@@ -323,10 +324,11 @@ def main(argv=None):
         for name, policy in (("agent", model.policy), ("constant choice", Softly()))
     }
     for name, against in judged.items():
-        for other, found in against.items():
-            share, (low, high) = found["won"], found["interval"]
+        for other, result in against.items():
+            share, (low, high) = result["won"], result["interval"]
             print(
-                f"{name}: won {share:.1%} [{low:.1%}, {high:.1%}] of {args.frames} frames against {other}, mean lead {found['lead']:.1f}"
+                f"{name}: won {share:.1%} [{low:.1%}, {high:.1%}] of {args.frames} frames "
+                f"against {other}, mean lead {result['lead']:.1f}"
             )
     command = ["python", "-m", "examples.self_play", *(sys.argv[1:] if argv is None else argv)]
     results = {

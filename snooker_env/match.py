@@ -1,5 +1,4 @@
-"""How is a match of two players made? ``match_env`` returns the PettingZoo environment, and loads PettingZoo
-only when it is called."""
+"""How is a match of two players made? ``match_env`` loads PettingZoo only when it is called."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +13,7 @@ else:  # PettingZoo and the environments are loaded at their first use
 
 
 def match_env(
-    options: Options | None = None, *, render_mode: RenderMode | None = None, **given: Any
+    options: Options | None = None, *, render_mode: RenderMode | None = None, **keywords: Any
 ) -> "_MatchEnv":
     """Make a frame or match of snooker between "player_0" and "player_1", as a PettingZoo AEC environment.
 
@@ -25,26 +24,15 @@ def match_env(
         keywords, with the task "match" if ``frames`` is among them, else "frame".
     render_mode : {"human", "rgb_array", "ansi"}, optional
         How ``render`` shows the table; default None: not at all.
-    **given
+    **keywords
         ``seats`` (two dicts: what differs in the actions and the noise of each player), ``render_size``, and
         the keywords of ``Options`` in place of ``options``. Box actions hold the place in the D and the
-        decision after a foul, unless ``placement=False`` or ``decision=False``. After ``max_strokes`` strokes
-        of both players together (default 1000, None for never) the referee stops the frame, and both players
-        are truncated.
+        decision after a foul, unless ``placement=False`` or ``decision=False``.
 
     Returns
     -------
     snooker_env.envs.match.MatchEnv
-        The environment; its docstring is the specification.
-
-    Raises
-    ------
-    ImportError
-        Without PettingZoo.
-    ValueError
-        If an argument is invalid.
-    TypeError
-        For an unknown keyword.
+        The environment; its docstring is the specification. ImportError without PettingZoo.
 
     Examples
     --------
@@ -61,4 +49,4 @@ def match_env(
         if (error.name or "").split(".")[0] != "pettingzoo":
             raise
         raise missing("match_env needs PettingZoo", "multi") from error
-    return MatchEnv(options, render_mode=render_mode, **given)
+    return MatchEnv(options, render_mode=render_mode, **keywords)

@@ -49,13 +49,6 @@ class SnookerVecEnv(VecEnv):
     **kwargs
         All other arguments of ``SnookerVectorEnv`` except ``autoreset_mode``.
 
-    Raises
-    ------
-    ValueError
-        If an argument is invalid.
-    ImportError
-        Without Stable-Baselines3, when this module is imported.
-
     Examples
     --------
     >>> import numpy as np
@@ -77,11 +70,8 @@ class SnookerVecEnv(VecEnv):
         if seed is not None:
             seed = integer("seed", seed, 0, 2**63 - 1)
         if "autoreset_mode" in kwargs:
-            raise refuse(
-                "autoreset_mode",
-                kwargs["autoreset_mode"],
-                "must be left out: Stable-Baselines3 needs SAME_STEP",
-            )
+            words = "must be left out: Stable-Baselines3 needs SAME_STEP"
+            raise refuse("autoreset_mode", kwargs["autoreset_mode"], words)
         self.tables = SnookerVectorEnv(num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **kwargs)
         known = (*self.tables.tables.REALS, *self.tables.tables.COUNTS, "foul")
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
@@ -96,25 +86,23 @@ class SnookerVecEnv(VecEnv):
             self.seed(seed)
 
     def reset(self) -> Observation:
-        """Begin new episodes on all tables, with the seeds and options set before.
+        """Begin new episodes on all tables, with the seeds and options set before; returns the observations.
 
         ``set_options([{"state": ...}, ...])`` starts from states, ``set_options([{"position": ...}, ...])``
         from positions, one for each table; ``set_options([{"breaker": 0}, ...])`` says who breaks. States
-        hold their random streams; after a call of ``seed`` too, those of the seeds replace them.
-
-        Returns float32 (num_envs, k), or a dict of such arrays. ValueError if the options differ between
-        tables in kind, or a state or position is invalid.
+        hold their random streams; after a call of ``seed`` too, those of the seeds replace them. ValueError
+        if the options differ between tables in kind, or are invalid.
         """
         options = None
         if any(self._options):
             key = next((key for key in ("position", "breaker") if key in self._options[0]), "state")
-            for k, own in enumerate(self._options):
-                if set(own) != {key}:
-                    wanted = (
+            for k, each in enumerate(self._options):
+                if set(each) != {key}:
+                    words = (
                         '"state", "position" or "breaker" alone, the same for each table, or nothing for all'
                     )
-                    raise refuse(f"keys of options[{k}]", list(own), f"must be {wanted}")
-            options = {key if key == "breaker" else f"{key}s": [own[key] for own in self._options]}
+                    raise refuse(f"keys of options[{k}]", list(each), f"must be {words}")
+            options = {key if key == "breaker" else f"{key}s": [each[key] for each in self._options]}
         observation, info = self.tables.reset(seed=self._seeds, options=options)
         self.reset_infos = [{key: info[key][k] for key in self.info_keys} for k in range(self.num_envs)]
         self._reset_seeds()
@@ -123,18 +111,12 @@ class SnookerVecEnv(VecEnv):
         return observation
 
     def step_async(self, actions: Any) -> None:
-        """Store the actions that ``step_wait`` plays.
-
-        ``actions``: float (num_envs, k) within [-1, 1], or int (num_envs,): choices.
-        """
+        """Store the actions that ``step_wait`` plays: float (num_envs, k), or choices, int (num_envs,)."""
         self._actions = actions
 
     def step_wait(self) -> tuple[Observation, Singles, Bools, list[dict[str, Any]]]:
-        """Play the stored actions.
-
-        Returns ``observations``, float32 (num_envs, k), or a dict of such arrays and ``rewards``, float32
-        (num_envs,) and ``dones``, bool (num_envs,) and ``infos``, one dict for each table.
-        """
+        """Play the stored actions. Returns observations, rewards float32 (num_envs,), dones bool (num_envs,)
+        and one info for each table."""
         observation, rewards, terminated, truncated, info = self.tables.step(self._actions)
         done = terminated | truncated
         self.episode_returns += rewards
@@ -142,16 +124,13 @@ class SnookerVecEnv(VecEnv):
         infos = [{} for _ in range(self.num_envs)]
         for key in self.info_keys:
             values = np.where(done, info["final_info"][key], info[key]) if "final_info" in info else info[key]
-            for own, value in zip(infos, values.tolist(), strict=True):
-                own[key] = value
+            for each, value in zip(infos, values.tolist(), strict=True):
+                each[key] = value
         now = round(time.time() - self._start, 6)
         for k in np.flatnonzero(done).tolist():
-            episode = {
-                "r": round(float(self.episode_returns[k]), 6),
-                "l": int(self.episode_lengths[k]),
-                "t": now,
-            }
-            infos[k]["episode"], infos[k]["terminal_observation"] = episode, info["final_obs"][k]
+            total, length = round(float(self.episode_returns[k]), 6), int(self.episode_lengths[k])
+            infos[k]["episode"] = {"r": total, "l": length, "t": now}
+            infos[k]["terminal_observation"] = info["final_obs"][k]
             infos[k]["TimeLimit.truncated"] = bool(truncated[k] and not terminated[k])
         self.episode_returns[done], self.episode_lengths[done] = 0.0, 0
         return observation, rewards.astype(np.float32), done, infos
@@ -161,18 +140,12 @@ class SnookerVecEnv(VecEnv):
         self.tables.close()
 
     def get_images(self) -> Sequence[Any]:
-        """Return a picture of each table.
-
-        Returns uint8 (H, W, 3), with ``render_mode="rgb_array"``.
-        """
+        """Return a picture of each table, uint8 (H, W, 3), with ``render_mode="rgb_array"``."""
         return self.tables.render()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         """Read an attribute for some tables: one that all share, or one of each table, as ``points``.
-
-        ``attr_name``: name of the attribute. ``indices``: which tables; default None: all. Returns one value
-        for each table. AttributeError if no table has the attribute.
-        """
+        AttributeError if there is none."""
         if attr_name in ("observation_space", "action_space"):  # of one table
             return [getattr(self.tables, f"single_{attr_name}") for _ in self._get_indices(indices)]
         if hasattr(self.tables, attr_name) and attr_name not in ("np_random", "np_random_seed"):
@@ -184,11 +157,7 @@ class SnookerVecEnv(VecEnv):
         return [each[k] for k in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """Refuse to set an attribute: the tables share everything. Make another ``SnookerVecEnv`` instead.
-
-        ``attr_name``: name of the attribute. ``value``: its value. ``indices``: which tables. AttributeError
-        always.
-        """
+        """Refuse with AttributeError: the tables share everything. Make another ``SnookerVecEnv`` instead."""
         raise AttributeError(
             f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv"
         )
@@ -196,20 +165,12 @@ class SnookerVecEnv(VecEnv):
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
     ) -> list[Any]:
-        """Call ``get_state`` or ``action_masks`` for some tables. No other method belongs to one table.
-
-        ``method_name``: name of the method. ``*method_args``: ignored: the methods take no arguments.
-        ``indices``: which tables; default None: all. ``**method_kwargs``: ignored. Returns one result for
-        each table. ValueError for another method.
-        """
+        """Call ``get_state`` or ``action_masks`` for some tables, without arguments; ValueError for another
+        method: none belongs to one table."""
         choice("method_name", method_name, ("get_state", "action_masks"))
-        states = getattr(self.tables, method_name)()
-        return [states[k] for k in self._get_indices(indices)]
+        each = getattr(self.tables, method_name)()
+        return [each[k] for k in self._get_indices(indices)]
 
     def env_is_wrapped(self, wrapper_class: type[Any], indices: Any = None) -> list[bool]:
-        """Return whether tables are wrapped. None is, but each reports its episodes as a ``Monitor`` does.
-
-        ``wrapper_class``: the class of the wrapper. ``indices``: which tables; default None: all. Returns
-        True for ``Monitor``, one for each table.
-        """
+        """Return whether tables are wrapped: only as in a ``Monitor``, for each reports its episodes."""
         return [issubclass(wrapper_class, Monitor) for _ in self._get_indices(indices)]

@@ -1,9 +1,6 @@
-"""How does a replay play in a notebook? As a widget of anywidget: the module of the page, with its time
-synchronised to Python and back.
+"""How does a replay play in a notebook, its time synchronised to Python and back? As a widget of anywidget.
 
-It runs in JupyterLab, notebooks of VS Code, Colab and marimo. A result of ``sn.replay`` shows itself without
-this module, but in a frame that Python cannot control.
-"""
+A result of ``sn.replay`` shows itself without this module, but in a frame that Python cannot control."""
 
 from functools import cache
 from typing import Any, Literal
@@ -29,11 +26,11 @@ def replay_widget(
     labels: bool = False,
     spin: Literal["off", "cue", "all"] = "cue",
 ) -> Any:
-    """Make a widget that plays a replay in a notebook.
+    """Make a widget that plays a replay in a notebook: JupyterLab, VS Code, Colab or marimo.
 
     Its traits are synchronised in both directions: ``stroke`` (from 0), ``time`` within it [s] (below 0
-    before the strike), and ``playing``. While it plays, ``time`` is not updated; it is when the replay stops,
-    or when the viewer moves it. Setting ``stroke`` alone goes to its beginning.
+    before the strike; not updated while it plays), and ``playing``. Setting ``stroke`` alone goes to its
+    beginning.
 
     Parameters
     ----------
@@ -52,14 +49,7 @@ def replay_widget(
     Returns
     -------
     anywidget.AnyWidget
-        The widget, with the traits ``stroke``, ``time``, ``playing``, and the replay as ``data``.
-
-    Raises
-    ------
-    ValueError
-        If there is nothing to show, or an argument is invalid.
-    ImportError
-        Without anywidget.
+        The widget, with these traits and the replay as ``data``. ImportError without anywidget.
 
     Examples
     --------
@@ -108,6 +98,5 @@ def _widget_class():
 
 
 def module() -> str:
-    """The JavaScript of the widget: the module that draws and plays, and the function that a notebook's host
-    calls."""
+    """The JavaScript of the widget: what draws and plays, and the function that a notebook's host calls."""
     return table_js() + (WEB / "widget.js").read_text("utf-8")

@@ -4,7 +4,6 @@ as kernels."""
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import gymnasium
 import numpy as np
 from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
@@ -15,15 +14,14 @@ from .._types import Bools, Floats, Ints, Observation
 from ..game.frame_columns import STRIKER
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
-from ..tasks.kinds import TABLES
 from ..tasks.options import Options
 from ..tasks.tables import Tables
-from .opponents import match_options, two_seats
+from .opponents import match_options, match_tables
 from .vector import SnookerVectorEnv
 
 
 class MatchVectorEnv(SnookerVectorEnv):
-    """Many frames or matches of two players, both stepped by the caller: ``match_env``, bit for bit.
+    """Many frames or matches of two players: ``match_env``, bit for bit, on n tables; for self-play.
 
     A step is one turn on each table, of the player whose turn it is there: ``strikers``. Observations are
     those of the strikers, from their own side; infos have the keys of ``SnookerEnv`` as player 0 sees them,
@@ -43,17 +41,10 @@ class MatchVectorEnv(SnookerVectorEnv):
     seats : (dict, dict), optional
         What differs for each player: options of its actions, and "noise", its execution errors. Default None:
         nothing.
-    **given
+    **keywords
         ``threads``, ``render_mode`` and ``render_size`` of ``SnookerVectorEnv``, and the keywords of
         ``Options`` in place of ``options``. As in ``match_env`` box actions hold placement and decision by
         default, and with ``frames`` the task is "match".
-
-    Raises
-    ------
-    ValueError
-        If an argument is invalid.
-    TypeError
-        For an unknown keyword.
 
     Examples
     --------
@@ -67,7 +58,6 @@ class MatchVectorEnv(SnookerVectorEnv):
     """
 
     tables: Frames
-    _both: dict[str, Any] = {"either": True}  # noqa: RUF012
 
     def __init__(
         self,
@@ -75,28 +65,24 @@ class MatchVectorEnv(SnookerVectorEnv):
         options: Options | None = None,
         *,
         seats: Sequence[Mapping[str, Any]] | None = None,
-        **given: Any,
+        **keywords: Any,
     ):
         for name in ("autoreset_mode", "max_episode_steps"):
-            if name in given:
-                raise refuse(
-                    name,
-                    given[name],
-                    "must be left out: tables whose match has ended stand still until they are reset",
-                )
-        self._asked = seats
-        super().__init__(num_envs, options, autoreset_mode=AutoresetMode.DISABLED, **given)
+            if name in keywords:
+                words = "must be left out: tables whose match has ended stand still until they are reset"
+                raise refuse(name, keywords[name], words)
+        self._differences = seats
+        super().__init__(num_envs, options, autoreset_mode=AutoresetMode.DISABLED, **keywords)
         one, other = (seat.actions.space for seat in self.tables.seats)
         self._alike = one == other
         self.single_action_space = one if self._alike else spaces.Tuple((one, other))
         self.action_space = batch_space(self.single_action_space, self.num_envs)
 
-    def _game_of(self, options: Options | None, given: dict[str, Any]) -> tuple[Options, Any]:
-        return match_options(options, given), None
+    def _game_of(self, options: Options | None, keywords: dict[str, Any]) -> tuple[Options, Any]:
+        return match_options(options, keywords), None
 
     def _tables_of(self, opponent: Any, limit: int) -> Tables:
-        made: Any = TABLES[self.options.task]
-        return made(self.options, self.num_envs, limit=limit, seats=two_seats(self.options, self._asked))
+        return match_tables(self.options, self._differences, self.num_envs)
 
     @property
     def strikers(self) -> Ints:
@@ -107,86 +93,39 @@ class MatchVectorEnv(SnookerVectorEnv):
     def reset(
         self, *, seed: Any = None, options: Any = None, out: Any = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin new frames or matches on all tables, or on some.
-
-        ``seed``: as in ``SnookerVectorEnv.reset``. ``options``: as in ``SnookerVectorEnv.reset``. "breaker":
-        0 or 1, or one for each table. ``out``: not available. Returns ``observations``, float32 (num_envs,
-        k), or a dict of such arrays: of the strikers and ``infos``, an array for each key. ValueError if the
-        options are invalid, or a state or position is. gymnasium.error.ResetNeeded if a table outside the
-        mask has never been reset.
-        """
-        if out is not None:
-            raise refuse("out", type(out).__name__, "must be None: observations are of either player")
+        """Begin new frames or matches, see ``SnookerVectorEnv.reset``; without ``out``."""
+        _refuse_out(out)
         observations, infos = super().reset(seed=seed, options=options)
         return observations, infos | {"striker": self.strikers}
 
     def step(
         self, actions: Any, *, out: Any = None
     ) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
-        """Play one turn on each table.
+        """Play one turn on each table, see ``SnookerVectorEnv.step``; without ``out``.
 
-        Parameters
-        ----------
-        actions : array_like or (array_like, array_like)
-            float (num_envs, k) within [-1, 1], or int (num_envs,): of the strikers. With seats whose actions
-            differ, two such arrays, one for each player, of which the striker's rows are read.
-        out : None
-            Not available.
-
-        Returns
-        -------
-        observations : numpy.ndarray or dict
-            float32 (num_envs, k), or a dict of such arrays: of the players whose turn it is now.
-        rewards : numpy.ndarray
-            float64 (num_envs, 2), of each player.
-        terminations, truncations : numpy.ndarray
-            bool (num_envs,).
-        infos : dict
-            An array for each key.
-
-        Raises
-        ------
-        ValueError
-            If an action is not in the action space; then nothing is played.
-        gymnasium.error.ResetNeeded
-            Before the first reset.
-        SimulationError
-            If a shot cannot be computed; all tables then need a reset.
+        ``actions`` are the strikers'. With seats whose actions differ, two such arrays, one for each player,
+        of which the striker's rows are read. Observations are of the players whose turn it is now; rewards
+        float64 (num_envs, 2).
         """
-        if out is not None:
-            raise refuse("out", type(out).__name__, "must be None: observations are of either player")
+        _refuse_out(out)
         tables = self.tables
         if not self._alike and not (isinstance(actions, tuple | list) and len(actions) == 2):
-            raise refuse_what(
-                "actions",
-                f"a {type(actions).__name__}",
-                "must be two arrays, one for each player: their seats differ",
-            )
+            words = "must be two arrays, one for each player: their seats differ"
+            raise refuse_what("actions", f"a {type(actions).__name__}", words)
         each = [actions, actions] if self._alike else actions
         checked = [
             seat.actions.check_many(a, self.num_envs) for seat, a in zip(tables.seats, each, strict=True)
         ]
-        if not self._begun.all():
-            raise gymnasium.error.ResetNeeded("call reset() before step()")
+        self._require_begun()
         written = tables.output()
-        self._prepare_crew()
-        try:
+        with self._playing():
             tables.turns(checked, written, self._crew)
-        except BaseException:
-            self._begun[:] = False  # only some tables have played
-            raise
-        infos = tables.infos(written.reals, written.counts, np.ones(self.num_envs, np.bool_)) | {
-            "striker": self.strikers
-        }
+        infos = self._infos(written) | {"striker": self.strikers}
         rewards = np.stack([written.rewards, -written.rewards], axis=1) + 0.0  # no negative zero
         return self._shaped(written, None), rewards, written.terminated, written.truncated, infos
 
     def observe(self, player: int) -> Observation:
-        """Return the observations of one player on all tables.
-
-        ``player``: 0 or 1. Returns float32 (num_envs, k), or a dict of such arrays. ValueError for another
-        number.
-        """
+        """Return the observations of player 0 or 1: float32 (num_envs, k), or a dict of such arrays."""
         if player not in (0, 1):
             raise refuse("player", player, "must be 0 or 1")
         written = self.tables.output()
@@ -196,14 +135,11 @@ class MatchVectorEnv(SnookerVectorEnv):
         return super()._shaped(written, None)
 
     def action_masks(self) -> Bools:
-        """Return the available choices of the strikers, where both players have the same discrete actions.
-
-        Returns bool (num_envs, choices). ValueError with other actions.
-        """
+        """Return the available choices of the strikers, bool (num_envs, choices); ValueError unless both
+        players have the same discrete actions."""
         if not self._alike or not isinstance(self.tables.seats[0].actions, Choices):
-            raise refuse(
-                "action", self.options.action, 'must be "discrete" for both players: a Box has no masks'
-            )
+            words = 'must be "discrete" for both players: a Box has no masks'
+            raise refuse("action", self.options.action, words)
         return self.tables.action_masks()
 
     def _shaped(self, written: Any, out: Any) -> Any:
@@ -211,3 +147,8 @@ class MatchVectorEnv(SnookerVectorEnv):
         theirs = np.flatnonzero(self.tables.game[:, STRIKER])
         written.observations[theirs] = self.tables.observe(theirs, 1)
         return super()._shaped(written, out)
+
+
+def _refuse_out(out: Any) -> None:
+    if out is not None:
+        raise refuse("out", type(out).__name__, "must be None: observations are of either player")

@@ -1,33 +1,83 @@
-"""What does an environment of one table show of it, and how is it saved? Balls, ball on, visit or frame,
-options, and states."""
+"""What does an environment of one table show, keep and save? Balls, strokes, pictures and states."""
 
 from typing import Any
 
 import numpy as np
 
+from .._check import truth
 from .._types import Bools, Floats
 from ..game.balls import BallOn
 from ..game.frame import Frame
 from ..game.frame_columns import BALL_ON, IN_HAND, POINTS
 from ..physics.parameters import Physics
 from ..physics.table import Table
+from ..shot import Shot
 from ..tasks.frame import Frames
 from ..tasks.noise import Noise
 from ..tasks.options import Options
+from ..tasks.played import Played
+from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Tables
-from .record import Record
-from .reset_options import Start
+from .arguments import Start
+from .pictures import Picture, Pictures
 
 
-class ShowsBalls:
-    """The balls of an environment with one table."""
+class Record:
+    """The strokes of one table since the reset. ``full``: all, with their paths; else only the agent's last
+    ``Shot``."""
 
+    def __init__(self, *, full: bool, last_shot: Shot | None = None):
+        self.full = full
+        self.buffers = ShotBuffers(1, path=full)
+        """Work space in which the strokes are played."""
+        self.strokes: list[Played] = []
+        """Of both players; empty unless ``full``."""
+        self.last_shot: Shot | None = last_shot
+        """The agent's; with ``full``, that of either player."""
+        self._before, self._rendered = 0, False
+        self._ended: tuple[list[Played], int] = [], 0
+
+    def begin_episode(self) -> None:
+        """Forget the last episode but for strokes not rendered yet: some vector environments reset within a
+        step."""
+        self._ended = ([], 0) if self._rendered else (self.strokes, len(self.strokes) - self._before)
+        self.strokes, self.last_shot, self._before, self._rendered = [], None, 0, False
+
+    def begin_step(self) -> None:
+        """The strokes to come are the recent ones."""
+        self._before, self._ended, self._rendered = len(self.strokes), ([], 0), False
+
+    def recent(self) -> list[tuple[list[Played], int]]:
+        """For ``render``: episodes, and how many of their last strokes belong to the last step or reset."""
+        self._rendered = True
+        return [self._ended, (self.strokes, len(self.strokes) - self._before)]
+
+    def saw(self, tables: Tables, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
+        """Record shot j of the buffers, just played on table k; ``mine``: by the agent."""
+        if self.full:
+            played = tables.played(k, buffers, j)
+            self.strokes.append(played)
+            self.last_shot = played.shot
+        elif mine:
+            self.last_shot = buffers.shot(j, tables.rules)
+
+
+class OneTable:
+    """An environment with one table: ``SnookerEnv``, and ``MatchEnv`` with two players."""
+
+    options: Options
     tables: Tables
+    """The one table: ``tasks.tables.Tables``."""
+    np_random: np.random.Generator
+    render_mode: str | None
+    _np_random_seed: int | None
+    _pictures: Pictures
+    _record: Record
+    _keyed: bool  # has the table's stream a key?
 
     @property
     def positions(self) -> Floats:
-        """Centres of the balls [m], float64 (22, 2); a copy. Row 0 is the cue ball, 1 to 15 the reds, 16 to
-        21 yellow to black."""
+        """Centres of the balls [m], float64 (22, 2), a copy: the cue ball, 15 reds, yellow to black."""
         return self.tables.positions[0].copy()
 
     @property
@@ -35,40 +85,15 @@ class ShowsBalls:
         """Which balls are on the table, bool (22,); a copy."""
         return self.tables.on_table[0].copy()
 
-
-class TakesTurns:
-    """Whose turn it is in an environment of several agents."""
-
-    _selected: str | None = None
-
-    @property
-    def agent_selection(self) -> str:
-        """The agent whose turn it is. Before ``reset`` there is none: then AttributeError, as PettingZoo's
-        own environments have it."""
-        if self._selected is None:
-            raise AttributeError(
-                "agent_selection cannot be read before reset(): call reset(), then observe(), last() or action_mask()"
-            )
-        return self._selected
-
-    @agent_selection.setter
-    def agent_selection(self, agent: str) -> None:
-        self._selected = agent
-
-
-class OneTable(ShowsBalls):
-    """Properties and states of an environment with one table."""
-
-    options: Options
-    np_random: np.random.Generator
-    _np_random_seed: int | None
-    _record: Record
-    _seeded: bool
-
     @property
     def ball_on(self) -> BallOn:
         """What must be struck first, a ``BallOn``."""
         return BallOn(self.tables.game[0, BALL_ON])
+
+    @property
+    def on(self) -> int:
+        """The balls that may be struck first, as an int with bit i set for ball i."""
+        return self.tables.on(0)
 
     @property
     def in_hand(self) -> bool:
@@ -82,14 +107,9 @@ class OneTable(ShowsBalls):
 
     @property
     def over(self) -> bool:
-        """Whether there is no stroke to play, a bool: the visit or frame has ended, was stopped by the
-        referee, or has not begun."""
+        """Whether there is no stroke to play, a bool: the episode has ended, was stopped, or has not
+        begun."""
         return bool(self.tables.ended()[0])
-
-    @property
-    def on(self) -> int:
-        """The balls that may be struck first, as an int with bit i set for ball i."""
-        return self.tables.on(0)
 
     @property
     def frame(self) -> Frame | None:
@@ -111,30 +131,77 @@ class OneTable(ShowsBalls):
         """The execution noise, a ``Noise``."""
         return self.options.rules.noise
 
+    # strokes
+    # ------------------------------------------------------------------------------------------------
+
+    @property
+    def last_shot(self) -> Shot | None:
+        """The agent's last ``Shot``, None before the first; with a history that of either player, with its
+        path."""
+        return self._record.last_shot
+
+    @property
+    def history(self) -> list[Played]:
+        """The ``Played`` strokes of both players since the last reset, a list; empty unless
+        ``keep_history``."""
+        return list(self._record.strokes)
+
+    @property
+    def keep_history(self) -> bool:
+        """Whether ``history`` is kept, with the path of every stroke, a bool: from when it is set to True,
+        and always with a render mode. Setting it to False forgets the strokes so far."""
+        return self._record.full
+
+    @keep_history.setter
+    def keep_history(self, value: bool) -> None:
+        full = truth("keep_history", value) or self.render_mode is not None
+        if full != self._record.full:
+            self._record = Record(full=full, last_shot=self._record.last_shot)
+
+    def _watch(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
+        """Called after each stroke of either player."""
+        self._record.saw(self.tables, k, buffers, j, mine)
+
+    def render(self) -> Picture:
+        """Return the table with the paths of the last shot: uint8 (H, W, 3) with "rgb_array", str with
+        "ansi", else None. Recorders get the motion of the strokes."""
+        return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent())
+
+    def _show(self, *, played: bool = False) -> None:
+        self._pictures.show(self.tables, self._record.strokes, played=played)
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        self._pictures.close()
+
     # states
-    # --------------------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------------
 
     def get_state(self) -> dict[str, Any]:
-        """Return the whole state between two shots; ``set_state`` restores it exactly.
+        """Return everything between two shots, a dict of JSON types: table, game and random stream.
 
-        Returns JSON types. In a visit: "positions" (22, 2) [m], "on_table" (22,), "ball_on", "in_hand",
-        "points", "over", "stream", "rng". In a frame: "positions", "on_table", "frame" (``Frame.to_dict``),
-        "strokes", "unpaid", "due", "stream", "rng"; in a match also "frames", "first_break" and "best_of".
+        Its keys: docs/environment/specification.md. ``set_state`` and ``reset`` restore it exactly.
         """
         return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
 
     def set_state(self, state: dict[str, Any]) -> None:
-        """Restore a state; the next shot continues identically.
+        """Restore a result of ``get_state``; the next shot continues identically.
 
-        ``state``: a result of ``get_state``. ValueError if the state is invalid; then nothing has changed.
+        ValueError if it is invalid; then nothing has changed.
         """
-        self._take(Start(state=self.tables.checked(state, self.np_random)), seed=None)
+        self._begin_at(Start.of(state, self.tables, self.np_random), seeded=False)
+        self._begin()
+
+    def _begin(self) -> None:
+        """A new episode begins on the table."""
         self._record.begin_episode()
 
-    def _take(self, start: Start, *, seed: int | None) -> None:
-        """Begin from there; the random stream of a state is taken over unless there is a seed."""
-        rng = start.take(self.tables, 0)
-        if rng is not None and seed is None:
+    def _begin_at(self, start: Start | None, *, seeded: bool) -> None:
+        """Take up the start; the random stream is that of its state, unless there is a seed."""
+        rng = None if start is None else start.take(self.tables, 0)
+        if rng is not None and not seeded:
             # Gymnasium's number for "not from a seed"
             self.np_random.bit_generator.state, self._np_random_seed = rng, -1
-            self._seeded = True
+        elif seeded or not self._keyed:
+            self.tables.seed(0, self.np_random)
+        self._keyed = True

@@ -8,6 +8,7 @@ from typing import Any, cast
 
 from .._check import choice, refuse
 from ..tasks.declarations import SAYS
+from ..tasks.frame import Frames
 from ..tasks.ghost_ball import GhostBallOpponent
 from ..tasks.kinds import TABLES
 from ..tasks.opponent_pool import OpponentPool, PoolOpponent
@@ -61,12 +62,8 @@ def match_options(options: Options | None, keywords: Mapping[str, Any]) -> Optio
     ``frames`` it is a match."""
     if options is None:
         box = keywords.get("action", "box") == "box"
-        keywords = {
-            "task": "match" if "frames" in keywords else "frame",
-            "placement": box,
-            "decision": box,
-            **keywords,
-        }
+        task = "match" if "frames" in keywords else "frame"
+        keywords = {"task": task, "placement": box, "decision": box, **keywords}
     options = options_of(options, keywords)
     if options.task == "visit" or options.opponent != "none" or options.trust:
         what = f"task={options.task!r}, opponent={options.opponent!r}, trust={options.trust!r}"
@@ -75,27 +72,22 @@ def match_options(options: Options | None, keywords: Mapping[str, Any]) -> Optio
     return options
 
 
-def two_seats(options: Options, seats: Any) -> list[Seat]:
-    """The seats of two players; ``seats``: None, or what differs from ``options`` for each, two dicts."""
-    if seats is None:
-        return [Seat.of(options.rules)] * 2
-    if (
-        not isinstance(seats, list | tuple)
-        or len(seats) != 2
-        or not all(isinstance(one, Mapping) for one in seats)
-    ):
-        raise refuse("seats", seats, "must be None, or two dicts of options, one for each player")
-    allowed, out = (*Options.group("action"), *SAYS, "noise"), []
-    for k, changes in enumerate(seats):
+def match_tables(options: Options, differences: Any, n: int) -> Frames:
+    """n tables of two players; ``differences``: None, or what differs for each, two dicts."""
+    seats, made = [Seat.of(options.rules)] * 2, cast(type[Frames], TABLES[options.task])
+    if differences is None:
+        return made(options, n, seats=seats)
+    pair = isinstance(differences, list | tuple) and len(differences) == 2
+    if not pair or not all(isinstance(one, Mapping) for one in differences):
+        raise refuse("seats", differences, "must be None, or two dicts of options, one for each player")
+    allowed = (*Options.group("action"), *SAYS, "noise")
+    for k, changes in enumerate(differences):
         for name in changes:
             choice(f"key of seats[{k}]", name, allowed)
-        plain = (
-            {"elevation": False, "placement": False, "decision": False}
-            if changes.get("action") == "discrete"
-            else {}
-        )
-        out.append(Seat.of(options.but(**plain | dict(changes)).rules))
-    return out
+        discrete = changes.get("action") == "discrete"
+        box_only = dict.fromkeys(("elevation", "placement", "decision"), False) if discrete else {}
+        seats[k] = Seat.of(options.but(**box_only | dict(changes)).rules)
+    return made(options, n, seats=seats)
 
 
 def tables_of(options: Options, opponent: Any, n: int, limit: int = NEVER) -> Tables:
@@ -104,12 +96,10 @@ def tables_of(options: Options, opponent: Any, n: int, limit: int = NEVER) -> Ta
     if options.task == "visit":
         return kind(options.rules, n, limit=limit)
     if options.opponent == OBJECT and opponent is None:
-        raise refuse(
-            "opponent", OBJECT, "must come with the object: pass it as opponent=... beside the options"
-        )
+        words = "must come with the object: pass it as opponent=... beside the options"
+        raise refuse("opponent", OBJECT, words)
     seats = [Seat.of(options.rules)]
     if options.opponent != "none":
-        seats.append(
-            Seat.of(options.rules, opponent_of(options.opponent if opponent is None else opponent, options))
-        )
+        player = opponent_of(options.opponent if opponent is None else opponent, options)
+        seats.append(Seat.of(options.rules, player))
     return kind(options.rules, n, limit=limit, seats=seats)

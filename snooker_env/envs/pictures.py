@@ -1,7 +1,8 @@
 """How does an environment show itself? A picture for "rgb_array", text for "ansi", a window with the moving
 shot for "human"."""
 
-from collections.abc import Iterator, Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, zip_longest
 from typing import Any, TypeAlias
 
@@ -13,7 +14,6 @@ from .._check import integer, refuse
 from ..physics.table import Table
 from ..tasks.played import Played
 from ..tasks.tables import Tables
-from .films import PictureSource
 
 MODES = ("human", "rgb_array", "ansi")
 FPS = 30
@@ -27,15 +27,49 @@ Picture: TypeAlias = NDArray[np.uint8] | str | None
 """uint8 (H, W, 3) with "rgb_array", str with "ansi", else None."""
 
 
+def recorder_asking() -> Any:
+    """The recorder that is requesting a picture; None without, or if it is receiving a film already."""
+    recorders, frame = [], sys._getframe(1)
+    while frame is not None:
+        caller = frame.f_locals.get("self") if frame.f_code.co_name == "_capture_frame" else None
+        if hasattr(caller, "recorded_frames"):
+            recorders.append(caller)
+        frame = frame.f_back
+    return recorders[0] if len(recorders) == 1 else None
+
+
+class PictureSource:
+    """The pictures of one environment: the current one or, for a recorder, first those of the motion.
+
+    ``RecordVideo`` of Gymnasium and ``VecVideoRecorder`` of Stable-Baselines3 call ``render()`` once after
+    each step, in a method named ``_capture_frame``, and append the result to their film. A step here is a
+    whole shot, so a visit would become a film of a fifth of a second, and no recorder accepts a list of
+    pictures. So ``render()``, called by such a method, calls it back once for each picture of the motion; the
+    recorder's own call then returns the last one.
+    """
+
+    def __init__(self) -> None:
+        self._current: Any = None
+
+    def picture(self, motion: Callable[[], Iterator[Any]], still: Callable[[], Any]) -> Any:
+        """The result of ``render()``: ``still()``; a recorder is first sent the pictures of ``motion()``."""
+        if self._current is not None:
+            return self._current
+        recorder = recorder_asking()
+        if recorder is not None:
+            try:
+                for self._current in motion():
+                    recorder._capture_frame()
+            finally:
+                self._current = None
+        return still()
+
+
 class Pictures:
-    """The pictures of one environment on a ``Table``. A window belongs to one process; a copy of the
-    environment has none.
+    """The pictures of one environment. A window belongs to one process; a copy of the environment has none.
 
     ``size``: width and height [pixels]; ``players``: their names on the score bar.
     """
-
-    table: Table
-    mode: str | None
 
     def __init__(
         self, table: Table, mode: str | None, size: Sequence[int] = SIZE, players: tuple[str, ...] = ()
@@ -51,15 +85,14 @@ class Pictures:
     def render(
         self, tables: Tables, k: int, history: list[Played], recent: list[tuple[list[Played], int]]
     ) -> Picture:
-        """Table k with the paths of the last stroke of its ``history``: uint8 (H, W, 3) for "rgb_array", str
-        for "ansi", None otherwise.
+        """Table k with the paths of the last stroke of its ``history``.
 
-        A recorder first gets the motion of the ``recent`` strokes, see ``films``: for each episode, its last
-        strokes and their number.
+        A recorder first gets the motion of the ``recent`` strokes: for each episode, its strokes, how many.
         """
         if self.mode is None:
+            modes = '"rgb_array", "ansi" or "human"'
             gymnasium.logger.warn(
-                'render() without render_mode; make the environment with render_mode="rgb_array", "ansi" or "human"'
+                f"render() without render_mode; make the environment with render_mode={modes}"
             )
         if self.mode == "rgb_array":
             motion = lambda: chain.from_iterable(self._motion(*some) for some in recent)  # noqa: E731
@@ -88,19 +121,15 @@ class Pictures:
         return self._source.picture(motion, still)
 
     def require_display(self) -> None:
-        """Raise RuntimeError if a stroke is to be shown in a window and there is no display.
-
-        A reset does without: Gymnasium's ``check_env`` makes and resets an environment of each mode, on
-        servers too.
-        """
+        """RuntimeError if a stroke is to be shown in a window and there is no display. A reset does without:
+        Gymnasium's ``check_env`` resets an environment of each mode, on servers too."""
         if self.mode == "human":
             from ..render.window import require_display
 
             require_display()
 
     def show(self, tables: Tables, history: list[Played], *, played: bool = False) -> None:
-        """In a window show the table; with ``played``, first show the last stroke in motion. What a reset
-        shows needs no display."""
+        """In a window show the table; with ``played``, first the last stroke in motion."""
         if self.mode != "human":
             return
         from ..render.window import Window, display_missing
@@ -154,7 +183,8 @@ class Pictures:
         # otherwise it did not lead to this table
         if history and np.array_equal(history[-1].positions, tables.positions[k]):
             shot = history[-1].shot
-            paths, ghosts = ball_paths(shot, trail_of(shot)), {0: contacts(shot)}
+            trails = (0, *(np.flatnonzero(shot.potted[1:] >= 0) + 1).tolist())  # cue ball and potted balls
+            paths, ghosts = ball_paths(shot, trails), {0: contacts(shot)}
             last = bars(history, self.players)[-1][1]
             # as the film of the stroke left it
             if shot.on_table[0] and np.array_equal(shot.positions[0], tables.positions[k][0]):
@@ -170,11 +200,6 @@ class Pictures:
             text=tables.text(k),
             bar=bar,
         )
-
-
-def trail_of(shot: Any) -> tuple[int, ...]:
-    """The balls whose paths are drawn: the cue ball and potted balls."""
-    return (0, *(np.flatnonzero(shot.potted[1:] >= 0) + 1).tolist())
 
 
 def checked_size(size: Any) -> tuple[int, int]:

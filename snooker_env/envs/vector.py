@@ -4,7 +4,9 @@ kernels, on several threads.
 gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")
 """
 
-from collections.abc import Collection, Sequence
+import copy
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, Literal
 
 import gymnasium
@@ -18,28 +20,42 @@ from .._types import Bools, Floats, Observation
 from ..tasks import observations
 from ..tasks.discrete_actions import Choices
 from ..tasks.options import NEVER, Options
+from ..tasks.played import Played
+from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Tables
 from ..tasks.threads import Threads, processors
-from .given_arrays import OUTPUTS, arrays_given
+from .arguments import MANY, OUTPUTS, arrays_of, breakers_of, known_options, mask_of, seeds_of, starts_of
 from .opponents import game_of, tables_of
 from .pictures import SIZE, Picture, Pictures
-from .record import Recent
-from .reset_options import MANY, Start, breakers_of, given_of, mask_of, seeds_of, starts_of
 from .snooker import SnookerEnv
-from .table_calls import TableCalls
 
 PICTURES = ("rgb_array", "ansi")
+_ONE_TABLE = "simulate_batch, or SnookerEnv for one table"
+NOT_OF_A_TABLE = {
+    "reset": 'reset(options={"reset_mask": ...})',
+    "step": "step",
+    "set_state": 'reset(options={"states": ...})',
+    "render": "render",
+    "close": "close",
+    "last_shot": _ONE_TABLE,
+    "history": _ONE_TABLE,
+    "keep_history": _ONE_TABLE,
+    "spec": "the attribute spec",
+    "unwrapped": "this environment",
+    "get_wrapper_attr": "call",
+    "set_wrapper_attr": "another environment",
+}
+"""Names that ``call`` refuses, and their replacements: the tables play, end and begin together."""
 
 
-class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
-    """Many tables side by side: bit for bit those of ``SyncVectorEnv`` with the same seeds.
+class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
+    """Many tables side by side, bit for bit as ``SyncVectorEnv`` of ``SnookerEnv`` with the same seeds.
 
-    The steps run as compiled kernels on several threads. ``SnookerEnv`` specifies actions, observations,
-    rewards and infos.
+    ``SnookerEnv`` specifies actions, observations, rewards and infos.
 
-    **Opponents.** In a frame, the opponents "random" and "ghost_ball" run as kernels. Any other player is
-    asked once for all tables that wait for it. A callable is called table by table or, if it has a method
-    ``many(observations, generators, masks) -> actions``, that once.
+    **Opponents.** "random" and "ghost_ball" run as kernels. Any other player is asked once for all tables
+    that wait for it. A callable is called table by table or, if it has a method ``many(observations,
+    generators, masks) -> actions``, that once.
 
     **Reset.** ``reset(seed=...)`` takes an int, a list or None, as ``SyncVectorEnv`` does.
     ``reset(options=...)`` takes these keys:
@@ -47,21 +63,16 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     | key | value |
     |---|---|
     | "reset_mask" | bool array (num_envs,): the tables to reset; without it, all |
-    | "state" | a state of ``SnookerEnv.get_state`` for all of them |
-    | "states" | a list with one state for each, as ``get_state`` returns it |
-    | "position" | a ``snooker_env.Position`` for all of them |
-    | "positions" | a list with one position for each |
-    | "breaker" | in a frame or match: who breaks instead of the draw, 0 the agent or 1 the opponent; an int, or one for each |
+    | "state", "states" | a state of ``SnookerEnv.get_state`` for all of them, or a list with one for each |
+    | "position", "positions" | a ``snooker_env.Position`` for all of them, or a list with one for each |
+    | "breaker" | who breaks a frame: 0 the agent or 1 the opponent; an int, or one for each |
 
-    A state holds its random stream, so all tables that start from one state meet the same execution errors.
-    With a seed as well, table k draws from seed + k. Positions hold no random stream: each table draws its
-    own errors.
+    Tables that start from one state meet the same execution errors. With a seed as well, table k draws from
+    seed + k. Positions hold no random stream: each table draws its own errors.
 
-    **Results in given arrays.** ``reset`` and ``step`` can write into arrays of the caller, for instance in
+    **Results in your arrays.** ``reset`` and ``step`` can write into arrays of the caller, for instance in
     shared memory: ``out={"observations": ..., "rewards": ..., "terminations": ..., "truncations": ...}``. Any
-    of them may be given, C-contiguous and with the right shape and dtype; the same arrays are then returned.
-
-    **Pictures** show the paths of the last shots. A window ("human") is available for ``SnookerEnv`` only.
+    of them may be passed, C-contiguous and with the right shape and dtype; the same arrays are then returned.
 
     Parameters
     ----------
@@ -76,19 +87,11 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     autoreset_mode : gymnasium.vector.AutoresetMode or str, optional
         NEXT_STEP (default), SAME_STEP or DISABLED, or its value.
     threads : int, optional
-        Number of threads, in [1, 1024]; default one for each available processor. Results do not depend on
-        it.
+        In [1, 1024]; default one for each available processor. Results do not depend on it.
     render_size : (int, int), optional
         Width and height of a table's picture [pixels], each in [100, 8192]; default (1920, 1080).
-    **given
+    **keywords
         The keywords of ``Options``, in place of ``options``.
-
-    Raises
-    ------
-    ValueError
-        If an argument is invalid.
-    TypeError
-        For an unknown keyword.
 
     Examples
     --------
@@ -118,47 +121,46 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         threads: int | None = None,
         render_size: Sequence[int] = SIZE,
-        **given: Any,
+        **keywords: Any,
     ):
-        self.num_envs = integer("num_envs", num_envs, 1, 2**24)
+        n = self.num_envs = integer("num_envs", num_envs, 1, 2**24)
         threads = min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
-        self.autoreset_mode = (
-            autoreset_mode if isinstance(autoreset_mode, AutoresetMode) else AutoresetMode(autoreset_mode)
-        )
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = dict(self.metadata, autoreset_mode=self.autoreset_mode)
         if render_mode is not None:
             choice("render_mode", render_mode, PICTURES)
-        self.options, opponent = self._game_of(options, given)
-        limit = (
-            NEVER if max_episode_steps is None else integer("max_episode_steps", max_episode_steps, 1, NEVER)
-        )
         self.render_mode = render_mode
+        self.options, opponent = self._game_of(options, keywords)
+        steps = max_episode_steps
+        limit = NEVER if steps is None else integer("max_episode_steps", steps, 1, NEVER)
         self.tables = self._tables_of(opponent, limit)
-        self._one = SnookerEnv._of(self.options, self.tables.view(0), render_mode, render_size)
+        # what ``call`` shows of a table; its own table, without an opponent, is never played on
+        alone = self.options.but(opponent="none")
+        self._one = SnookerEnv(alone, render_mode=render_mode, render_size=render_size)
+        self._one.options = self.options
         self.single_action_space: Any = self._one.action_space
         self.single_observation_space: Any = self._one.observation_space
-        self.action_space: Any = batch_space(self.single_action_space, self.num_envs)
-        self.observation_space: Any = batch_space(self.single_observation_space, self.num_envs)
+        self.action_space: Any = batch_space(self.single_action_space, n)
+        self.observation_space: Any = batch_space(self.single_observation_space, n)
         self._pictures = Pictures(self.options.rules.table, render_mode, render_size)
-        self._generators: list[Any] = [None] * self.num_envs
-        self._generator_seeds = [-1] * self.num_envs
-        self._keyed = np.zeros(self.num_envs, np.bool_)  # has the table's stream a key?
-        self._begun = np.zeros(self.num_envs, np.bool_)
-        self._done = np.zeros(self.num_envs, np.bool_)
-        self._recent = Recent(self.tables)
-        self._crew = Threads(threads, watch=None if render_mode is None else self._recent.saw)
+        self._generators: list[Any] = [None] * n
+        self._generator_seeds = [-1] * n
+        self._keyed = np.zeros(n, np.bool_)  # has the table's stream a key?
+        self._begun = np.zeros(n, np.bool_)
+        self._done = np.zeros(n, np.bool_)
+        self._recent: list[list[Played]] = [[] for _ in range(n)]
+        """The strokes of each table in the last step or reset, if they are shown."""
+        self._crew = Threads(threads, watch=None if render_mode is None else self._saw)
 
-    _both: dict[str, Any] = {}  # noqa: RUF012 - {"either": True} where both sides are played by the caller
-
-    def _game_of(self, options: Options | None, given: dict[str, Any]) -> tuple[Options, Any]:
+    def _game_of(self, options: Options | None, keywords: dict[str, Any]) -> tuple[Options, Any]:
         """The options, and who sits opposite the agent."""
-        return game_of(options, given)
+        return game_of(options, keywords)
 
     def _tables_of(self, opponent: Any, limit: int) -> Tables:
         return tables_of(self.options, opponent, self.num_envs, limit)
 
     # Gymnasium's interface
-    # --------------------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------------
 
     def reset(
         self,
@@ -167,125 +169,67 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         options: dict[str, Any] | None = None,
         out: dict[str, Any] | None = None,
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin new visits or frames on all tables, or on some.
+        """Begin new episodes on all tables, or on some; ``options`` and ``out``: see the class.
 
-        Parameters
-        ----------
-        seed : int, list or None, optional
-            Seeds of the random numbers from now on: table k draws from seed + k, or from element k of the
-            list. Default None: the streams go on.
-        options : dict, optional
-            Keys "reset_mask", "state", "states", "position", "positions", "breaker", see the class.
-        out : dict, optional
-            {"observations": arrays to write them into}, see the class.
-
-        Returns
-        -------
-        observations : numpy.ndarray or dict
-            float32 (num_envs, k), or a dict of such arrays.
-        infos : dict
-            An array for each key of ``SnookerEnv``'s info; the array under "_key" marks the tables that it
-            holds for.
-
-        Raises
-        ------
-        ValueError
-            If the options are invalid, or a state or position is.
-        gymnasium.error.ResetNeeded
-            If a table outside the mask has never been reset.
+        Table k draws from seed + k, or from element k of a list; without a seed the streams go on. Returns
+        observations float32 (num_envs, k), or a dict of such arrays, and infos: an array for each key, and
+        under "_key" which tables it holds for. ValueError for invalid options, ResetNeeded if a table outside
+        the mask has never been reset.
         """
-        options = given_of(options, MANY)
+        options, tables = known_options(options, MANY), self.tables
         seeds, wanted = seeds_of(seed, self.num_envs), mask_of(options, self.num_envs)
-        check = lambda state: self.tables.checked(state, self.np_random[0], to_play=True, **self._both)  # noqa: E731
-        starts = starts_of(options, self.num_envs, self.tables, check)
-        breakers = breakers_of(options, self.num_envs, self.options, two_players=bool(self._both))
+        starts, breakers = starts_of(options, tables, self._one.np_random), breakers_of(options, tables)
         if not (wanted | self._begun).all():
-            raise gymnasium.error.ResetNeeded(
-                f"table {int(np.argmin(wanted | self._begun))} has no visit yet: reset all tables first"
-            )
-        given = self._given(out, ("observations",))
-        tables = np.flatnonzero(wanted).tolist()
-        made = {
-            k: seeding.np_random(seeds[k])
-            for k in tables
-            if seeds[k] is not None or self._generators[k] is None
-        }
-        for k, own in made.items():
-            self._generators[k], self._generator_seeds[k] = own
-        for k in tables:
-            if starts is not None:
-                self._take(k, starts[k], seeded=seeds[k] is not None)
-            if seeds[k] is not None or not self._keyed[k]:
-                self.tables.seed(k, self._generators[k])
-                self._keyed[k] = True
-        fresh = wanted if starts is None else np.zeros(self.num_envs, np.bool_)
-        written = self.tables.output(given=given)
-        self._prepare_crew()
-        try:
-            self.tables.reset(fresh, written, self._crew, **breakers)
-        except BaseException:
-            self._begun[:] = False  # the opponent may have broken off on some tables only
-            raise
+            k = int(np.argmin(wanted | self._begun))
+            raise gymnasium.error.ResetNeeded(f"table {k} has no visit yet: reset all tables first")
+        arrays = self._arrays_of(out, ("observations",))
+        rows = np.flatnonzero(wanted).tolist()
+        # all seeds are checked before anything changes
+        new = [k for k in rows if seeds[k] is not None or self._generators[k] is None]
+        for k, made in zip(new, [seeding.np_random(seeds[k]) for k in new], strict=True):
+            self._generators[k], self._generator_seeds[k] = made
+        for k in rows:
+            rng = None if starts is None else starts[k].take(tables, k)
+            if rng is not None and seeds[k] is None:
+                self._generators[k].bit_generator.state, self._generator_seeds[k] = rng, -1
+            elif seeds[k] is not None or not self._keyed[k]:
+                tables.seed(k, self._generators[k])
+            self._keyed[k] = True
+        dealt = wanted if starts is None else np.zeros(self.num_envs, np.bool_)
+        written = tables.output(given=arrays)
+        with self._playing():
+            tables.reset(dealt, written, self._crew, **breakers)
         self._begun |= wanted
         self._done[wanted] = False
-        return self._shaped(written, out), self.tables.infos(written.reals, written.counts, wanted)
+        return self._shaped(written, out), tables.infos(written.reals, written.counts, wanted)
 
     def step(
         self, actions: Any, *, out: dict[str, Any] | None = None
     ) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
-        """Play one step on each table.
+        """Play one step on each table; ``out``: arrays to write into, see the class.
 
-        Parameters
-        ----------
-        actions : array_like
-            float (num_envs, k) within [-1, 1], or int (num_envs,): choices.
-        out : dict, optional
-            Arrays to write the results into, see the class.
-
-        Returns
-        -------
-        observations : numpy.ndarray or dict
-            float32 (num_envs, k), or a dict of such arrays.
-        rewards : numpy.ndarray
-            float64 (num_envs,).
-        terminations, truncations : numpy.ndarray
-            bool (num_envs,).
-        infos : dict
-            An array for each key of ``SnookerEnv``'s info; the array under "_key" marks the tables that it
-            holds for. With SAME_STEP also "final_obs" and "final_info".
-
-        Raises
-        ------
-        ValueError
-            If an action is not in the action space, or an array of ``out`` does not fit; then nothing is
-            played.
-        gymnasium.error.ResetNeeded
-            Before the first reset, and with DISABLED if an episode is over.
-        SimulationError
-            If a shot cannot be computed; all tables then need a reset.
+        ``actions``: float (num_envs, k) within [-1, 1], or choices, int (num_envs,). Returns observations and
+        infos as ``reset`` (with SAME_STEP also "final_obs" and "final_info"), rewards float64 (num_envs,),
+        terminations and truncations bool (num_envs,). ValueError for an action outside the space, ResetNeeded
+        before the first reset, and with DISABLED if an episode is over: then nothing is played. After a
+        SimulationError all tables need a reset.
         """
         a = self.options.rules.actions.check_many(actions, self.num_envs)
-        given = self._given(out, OUTPUTS)
-        if not self._begun.all():
-            raise gymnasium.error.ResetNeeded("call reset() before step()")
+        arrays = self._arrays_of(out, OUTPUTS)
+        self._require_begun()
         mode = self.autoreset_mode
         if mode == AutoresetMode.DISABLED and self._done.any():
-            k = int(np.argmax(self._done))
-            what = self.options.task
+            what, k = self.options.task, int(np.argmax(self._done))
             raise gymnasium.error.ResetNeeded(
                 f'the {what} on table {k} is over: reset(options={{"reset_mask": ...}}) before step()'
             )
         same_step = mode == AutoresetMode.SAME_STEP
         waiting = self._done if mode == AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, np.bool_)
-        written = self.tables.output(last=same_step, given=given)
-        self._prepare_crew()
-        try:
+        written = self.tables.output(last=same_step, given=arrays)
+        with self._playing():
             self.tables.step(a, waiting, written, self._crew, same_step=same_step)
-        except BaseException:
-            self._begun[:] = False  # only some tables have played
-            raise
         done = written.terminated | written.truncated
-        infos = self.tables.infos(written.reals, written.counts, np.ones(self.num_envs, np.bool_))
+        infos = self._infos(written)
         if same_step:
             self._done = np.zeros(self.num_envs, np.bool_)
             if done.any():
@@ -295,25 +239,15 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         return self._shaped(written, out), written.rewards, written.terminated, written.truncated, infos
 
     def action_masks(self) -> Bools:
-        """Return the available choices on each table, with ``action="discrete"``.
-
-        Returns bool (num_envs, 540). ValueError with ``action="box"``.
-        """
+        """Return the available choices, bool (num_envs, 540) or wider. ValueError with ``action="box"``."""
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         return self.tables.action_masks()
 
     def render(self) -> tuple[Picture, ...]:
-        """Return a picture of each table; a recorder gets the motion of all of them at once.
-
-        Returns uint8 (H, W, 3) arrays with "rgb_array", str with "ansi".
-        """
-        return self._pictures.render_all(self.tables, self._recent.strokes)
-
-    def _prepare_crew(self) -> None:
-        self._crew.generators = self._generators
-        if self.render_mode is not None:
-            self._recent.begin()
+        """Return a picture of each table, as ``SnookerEnv.render``. A recorder gets the motion of all of them
+        at once."""
+        return self._pictures.render_all(self.tables, self._recent)
 
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads; called by ``close``."""
@@ -328,9 +262,9 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
         """The NumPy generator of each table, a tuple. Each is used once, for the key of its table's random
         stream."""
-        for k in range(self.num_envs):
-            if self._generators[k] is None:
-                self._seed_generator(k, None)
+        for k, generator in enumerate(self._generators):
+            if generator is None:
+                self._generators[k], self._generator_seeds[k] = seeding.np_random(None)
         return tuple(self._generators)
 
     @property
@@ -338,38 +272,73 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
         """The seed of each table's generator, a tuple of int; -1 if it came with a state."""
         return tuple(self._generator_seeds) if self.np_random else ()
 
-    def _seed_generator(self, k: int, seed: int | None) -> None:
-        self._generators[k], self._generator_seeds[k] = seeding.np_random(seed)
-
-    # states
-    # --------------------------------------------------------------------------------------------------------
+    # single tables
+    # ------------------------------------------------------------------------------------------------
 
     def get_state(self) -> list[dict[str, Any]]:
-        """Return the state of each table, as ``SnookerEnv.get_state`` does.
+        """Return the state of each table, a list of dicts, as ``SnookerEnv.get_state``.
 
-        Returns one dict of JSON types for each table; ``reset(options={"states": states})`` restores them.
+        ``reset(options={"states": states})`` restores them. They do not hold steps towards
+        ``max_episode_steps``.
         """
         return [
             self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)
         ]
 
-    def _take(self, k: int, start: Start, *, seeded: bool) -> None:
-        rng = start.take(self.tables, k)
-        if rng is not None:
-            self._keyed[k] = True
-            if not seeded:
-                self._generators[k].bit_generator.state, self._generator_seeds[k] = rng, -1
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """Read an attribute or call a method of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call``
+        does. ValueError if the name does not belong to one table, AttributeError if there is none."""
+        if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
+            instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
+            words = "must be something public that a table has for itself"
+            raise refuse("name", name, words + (f"; use {instead}" if instead else ""))
+        each = []
+        for k, generator in enumerate(self.np_random):
+            one = copy.copy(self._one)
+            one.tables, one._np_random = self.tables.view(k), generator
+            one._np_random_seed = self._generator_seeds[k]
+            each.append(getattr(one, name))
+        return tuple(one(*args, **kwargs) if callable(one) else one for one in each)
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """Read an attribute of ``SnookerEnv`` for each table, see ``call``."""
+        return self.call(name)
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """Refuse with AttributeError: the tables share everything. Make another environment instead."""
+        raise AttributeError(f"{name} cannot be set: the tables share everything; make another environment")
 
     # parts of reset and step
-    # --------------------------------------------------------------------------------------------------------
+    # ------------------------------------------------------------------------------------------------
 
-    def _given(self, out: Any, names: Collection[str]) -> dict[str, Any]:
-        """The validated arrays to write into."""
+    def _require_begun(self) -> None:
+        if not self._begun.all():
+            raise gymnasium.error.ResetNeeded("call reset() before step()")
+
+    @contextmanager
+    def _playing(self) -> Iterator[None]:
+        """Strokes are played inside: after an error only some tables have played, so all need a reset."""
+        self._crew.generators = self._generators
+        if self.render_mode is not None:
+            self._recent = [[] for _ in range(self.num_envs)]
+        try:
+            yield
+        except BaseException:
+            self._begun[:] = False
+            raise
+
+    def _saw(self, k: int, buffers: ShotBuffers, j: int, mine: bool) -> None:
+        self._recent[k].append(self.tables.played(k, buffers, j))
+
+    def _arrays_of(self, out: Any, names: Collection[str]) -> dict[str, Any]:
         boxes = None if self.options.observation == "flat" else self.observation_space.spaces
-        return arrays_given(out, names, self.num_envs, self.tables.SIZE, boxes)
+        return arrays_of(out, names, self.num_envs, self.tables.SIZE, boxes)
+
+    def _infos(self, written):
+        return self.tables.infos(written.reals, written.counts, np.ones(self.num_envs, np.bool_))
 
     def _shaped(self, written, out):
-        """The observations in the environment's kind, in the arrays of ``out`` if these are given."""
+        """The observations in the environment's kind, in the arrays of ``out`` if it has them."""
         made = observations.shaped(self.options.observation, written.observations, written.masks)
         if out is not None and "observations" in out and self.options.observation != "flat":
             for name, array in out["observations"].items():
@@ -379,12 +348,9 @@ class SnookerVectorEnv(TableCalls, VectorEnv[Any, Any, Any]):
 
     def _final(self, out, done):
         """The entries that SAME_STEP adds: how the episodes ended that ended in this step."""
-        rows = observations.shaped(self.options.observation, out.last_observations, out.last_masks)
-        each = (
-            rows
-            if self.options.observation == "flat"
-            else ({name: rows[name][k] for name in rows} for k in range(self.num_envs))
-        )
+        each = observations.shaped(self.options.observation, out.last_observations, out.last_masks)
+        if isinstance(each, dict):
+            each = [dict(zip(each, parts, strict=True)) for parts in zip(*each.values(), strict=True)]
         final = np.fromiter(each, object, self.num_envs)
         final[~done] = None
         info = self.tables.infos(out.last_reals, out.last_counts, done)

@@ -28,7 +28,7 @@ KINDS = {
 
 class Played:
     """One random frame or match of two players: the actions of each, and what player 0 was shown whenever it
-    was his turn."""
+    was its turn."""
 
     def __init__(self, options, seed):
         env = sn.match_env(**options)
@@ -98,7 +98,7 @@ def check_alike(options, seeds):
         env = sn.SnookerEnv(**options, opponent=Other([one]))
         shown, _ = env.reset(seed=seed)
         seen, total = [shown.tobytes()], 0.0
-        # if the opponent has ended it in his first visit, any action
+        # if the opponent has ended it in its first visit, any action
         for action in one.actions[0] or [0 * one.actions[1][0]]:
             shown, reward, terminated, truncated, info = env.step(action)
             seen.append(shown.tobytes())

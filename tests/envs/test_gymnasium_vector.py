@@ -51,29 +51,3 @@ def test_vector_environments_play_as_single_ones(kind):
         assert infos["seconds"].dtype == infos["break"].dtype == np.float64 and infos["foul"].dtype == bool
     finally:
         vector.close()
-
-
-def test_the_observation_at_the_end_is_given_with_the_reset():
-    """SAME_STEP: the returned observation is the new table's, ``final_obs`` the old one's."""
-    mode = gymnasium.vector.AutoresetMode.SAME_STEP
-    vector = gymnasium.vector.SyncVectorEnv([make_noisy] * 2, autoreset_mode=mode)
-    singles = [make_noisy() for _ in range(2)]
-    vector.reset(seed=20)
-    for k, env in enumerate(singles):
-        env.reset(seed=20 + k)
-    ended = 0
-    for _ in range(10):
-        got, _, terminated, _, infos = vector.step(np.zeros((2, 4), np.float32))
-        for k, env in enumerate(singles):
-            obs, _, over, _, info = env.step(np.zeros(4, np.float32))
-            if over:
-                ended += 1
-                assert (
-                    np.array_equal(infos["final_obs"][k], obs)
-                    and infos["final_info"]["seconds"][k] == info["seconds"]
-                )
-                obs, _ = env.reset()
-                assert not np.array_equal(infos["final_obs"][k], obs)
-            assert np.array_equal(got[k], obs) and terminated[k] == over
-    assert ended > 1
-    vector.close()

@@ -29,8 +29,8 @@ def start(position, **more):
 
 def is_there(env, position):
     """Whether the environment stands at the position: balls, what is on, in hand, points."""
-    p, there, game = position.arrays()
-    same = np.array_equal(env.positions, p) and np.array_equal(env.on_table, there)
+    p, on_table, game = position.arrays()
+    same = np.array_equal(env.positions, p) and np.array_equal(env.on_table, on_table)
     return same and [env.ball_on, env.in_hand, env.points, env.over] == game[:4].tolist()
 
 
@@ -53,7 +53,7 @@ def test_points_of_the_break_go_on():
     """A stroke that Planner plays from the position leaves the environment where the planner says."""
     env = sn.SnookerEnv(action="discrete")
     env.reset(seed=1, **start(MID_BREAK))
-    found = 0
+    scored = 0
     for choice in np.flatnonzero(env.action_masks())[::7].tolist():
         env.reset(**start(MID_BREAK))
         out = Planner(env.options).play(MID_BREAK, rows=[0], actions=[choice])
@@ -61,8 +61,8 @@ def test_points_of_the_break_go_on():
         assert reward == out.points[0] and ended != out.goes_on[0]
         assert info["break"] == 33 + reward
         assert np.array_equal(env.positions, out.afterstates.positions[0])
-        found += reward > 0
-    assert found  # and one of them scored
+        scored += reward > 0
+    assert scored  # and one of them scored
 
 
 def ends(env, seeds, position=MID_BREAK):
@@ -96,18 +96,13 @@ def test_in_a_frame_the_agent_plays_the_position(opponent, position):
     env.step(np.zeros(4))  # the frame before leaves nothing behind
     _, info = env.reset(seed=1, **start(position))
     assert is_there(env, position)
-    assert (info["score"], info["opponent_score"], info["break"], info["winner"]) == (
+    assert [info[key] for key in ("score", "opponent_score", "break", "winner")] == [
         0,
         0,
         position.points,
         -1,
-    )
-    assert (info["strokes"], info["opponent_strokes"], info["choice"], info["free_ball"]) == (
-        0,
-        0,
-        False,
-        False,
-    )
+    ]
+    assert not any(info[key] for key in ("strokes", "opponent_strokes", "choice", "free_ball"))
     frame = env.frame
     assert (
         frame.striker == frame.breaker == 0
@@ -243,30 +238,20 @@ def test_a_wrong_position_is_refused_by_its_field_and_changes_nothing(position, 
 
 def test_other_mistakes_are_named():
     env, many = sn.SnookerEnv(), sn.SnookerVectorEnv(2, threads=1)
-    refused(
-        lambda: env.reset(options={"position": changed(grey=[0, 0])}),
-        'keys of options["position"]',
-        "'grey'",
-        "must be one of 'cue'",
-    )
-    refused(
-        lambda: many.reset(options={"positions": MID_BREAK}),
-        'options["positions"]',
-        "Position",
-        "must be a list of 2 positions",
-    )
-    refused(
-        lambda: many.reset(options={"positions": [MID_BREAK]}),
-        'options["positions"]',
-        "list of 1",
-        "must be a list of 2 positions",
-    )
-    refused(
-        lambda: env.reset(options={"positions": [MID_BREAK]}),
-        "options",
-        "'positions'",
-        "must be one of 'state', 'position'",
-    )
+    two = "must be a list of 2 positions"
+    for one, options, field, value, allowed in (
+        (
+            env,
+            {"position": changed(grey=[0, 0])},
+            'keys of options["position"]',
+            "'grey'",
+            "must be one of 'cue'",
+        ),
+        (many, {"positions": MID_BREAK}, 'options["positions"]', "Position", two),
+        (many, {"positions": [MID_BREAK]}, 'options["positions"]', "list of 1", two),
+        (env, {"positions": [MID_BREAK]}, "options", "'positions'", "must be one of 'state', 'position'"),
+    ):
+        refused(lambda one=one, options=options: one.reset(options=options), field, value, allowed)
 
 
 def test_who_breaks_is_said_only_where_balls_are_dealt():
@@ -274,32 +259,21 @@ def test_who_breaks_is_said_only_where_balls_are_dealt():
     single, match = sn.SnookerEnv(task="frame", opponent="random"), sn.match_env()
     many = sn.SnookerVectorEnv(2, threads=1, task="frame", opponent="random")
     single.reset(seed=1)
-    for env, key, given in (
+    for env, key, value in (
         (single, "position", position),
         (match, "position", position),
         (many, "positions", [position] * 2),
         (single, "state", single.get_state()),
     ):
-        field, allowed = (
-            'options["breaker"]',
-            f'must be left out with "{key}": it says who breaks where balls are dealt',
-        )
-        refused(
-            lambda env=env, key=key, given=given: env.reset(options={key: given, "breaker": 1}),
-            field,
-            "1",
-            allowed,
-        )
+        allowed = f'must be left out with "{key}": it says who breaks where balls are dealt'
+        start_there = {key: value, "breaker": 1}
+        refused(lambda env=env, o=start_there: env.reset(options=o), 'options["breaker"]', "1", allowed)
 
 
 def test_the_position_is_checked_on_the_table_that_is_played_on():
     """A red in the jaws of a corner pocket, where "match" has room for it and "tight" has not."""
     position = sn.Position(cue=(0.0, 0.0), reds=[(0.8183, 1.7610)])
     sn.SnookerEnv().reset(**start(position))
-    field = 'options["position"].reds[0]'
-    refused(
-        lambda: sn.SnookerEnv(table="tight").reset(**start(position)),
-        field,
-        "(0.8183, 1.761)",
-        "overlaps jaw",
-    )
+    tight = sn.SnookerEnv(table="tight")
+    field, value = 'options["position"].reds[0]', "(0.8183, 1.761)"
+    refused(lambda: tight.reset(**start(position)), field, value, "overlaps jaw")

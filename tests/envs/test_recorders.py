@@ -10,7 +10,7 @@ from gymnasium.wrappers import RecordVideo
 from gymnasium.wrappers.vector import RecordVideo as VectorRecordVideo
 
 import snooker_env as sn
-from snooker_env.envs.films import PictureSource, recorder_asking
+from snooker_env.envs.pictures import PictureSource, recorder_asking
 
 pytest.importorskip("pygame")
 pytest.importorskip("moviepy")
@@ -174,8 +174,7 @@ def test_shots_with_long_logs_are_kept_each_on_its_own_table(monkeypatch):
             envs.reset(seed=1)
             envs.step(np.full(4, 67))
             return [
-                [(p.shot.positions, len(p.shot.events), p.points) for p in table]
-                for table in envs._recent.strokes
+                [(p.shot.positions, len(p.shot.events), p.points) for p in table] for table in envs._recent
             ]
 
     long, short = strokes(512), strokes(8)

@@ -154,8 +154,12 @@ def test_a_seed_draws_new_errors_from_a_state():
 
 
 def test_without_stable_baselines_one_line_says_how_to_get_it():
-    code = "import sys\nsys.modules['stable_baselines3'] = None\ntry: import snooker_env.sb3\nexcept ImportError as error: print(error)\n"
-    wanted = f'snooker_env.sb3 needs Stable-Baselines3; install it, in the clone {ROOT}, with: pip install -e ".[train]"'
+    code = (
+        "import sys\nsys.modules['stable_baselines3'] = None\n"
+        "try: import snooker_env.sb3\nexcept ImportError as error: print(error)\n"
+    )
+    needs = "snooker_env.sb3 needs Stable-Baselines3; install it, in the clone"
+    wanted = f'{needs} {ROOT}, with: pip install -e ".[train]"'
     assert python(code)[0].strip() == wanted
 
 

@@ -39,20 +39,20 @@ def plain(state):
 @pytest.fixture(scope="module")
 def frame_states():
     """A state of every kind that is ``WANTED``, found in random play, and one of a re-spotted black."""
-    env, found, rng = frame_env(**FRAME | {"layout": "break_off"}), {}, np.random.default_rng(0)
+    env, states, rng = frame_env(**FRAME | {"layout": "break_off"}), {}, np.random.default_rng(0)
     for seed in range(60):
         env.reset(seed=seed)
         for _ in range(60):
-            if env.over or len(found) == len(WANTED):
+            if env.over or len(states) == len(WANTED):
                 break
             for name, wanted in WANTED.items():
-                if name not in found and wanted(env.frame):
-                    found[name] = plain(env.get_state())
+                if name not in states and wanted(env.frame):
+                    states[name] = plain(env.get_state())
             env.step(rng.uniform(-1, 1, 7))
-    assert len(found) == len(WANTED), set(WANTED) - set(found)
+    assert len(states) == len(WANTED), set(WANTED) - set(states)
     places = {CUE: (0.1, -1.2), BLACK: SPOTS[BLACK]}
     frame = {"ball_on": BallOn.BLACK, "in_hand": True, "respotted_black": True, "scores": (64, 64)}
-    return found | {"a re-spotted black": plain(frame_state(env, places, frame).get_state())}
+    return states | {"a re-spotted black": plain(frame_state(env, places, frame).get_state())}
 
 
 def must_be_refused(path, value, old, root):

@@ -10,8 +10,7 @@ from gymnasium.vector import AutoresetMode
 
 import snooker_env  # noqa: F401 - registers the id
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.envs.table_calls import NOT_OF_A_TABLE
-from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env.envs.vector import NOT_OF_A_TABLE, SnookerVectorEnv
 from tests.envs.test_vector import same
 from tests.refusals import refused
 

@@ -11,7 +11,7 @@ from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.tasks import threads as crew
 from snooker_env.tasks.discrete_actions import SIZE
 from snooker_env.tasks.options import Options
-from tests.envs.test_vector import MODES, native, same, sync
+from tests.envs.test_vector import MODES, actions_of, check_equal, native, same
 from tests.refusals import refused
 
 
@@ -85,45 +85,11 @@ OPTIONS = {
 }
 
 
-def actions_of(env, rng):
-    """Random ones, mostly near a pot where that helps."""
-    if env.options.action == "discrete":
-        return np.array([rng.choice(np.flatnonzero(mask)) for mask in env.action_masks()])
-    a = rng.uniform(-1.0, 1.0, env.action_space.shape).astype(np.float32)
-    a[:, 1:4] *= 0.3
-    return a
-
-
-def check_equal(n, mode, steps, options, threads=None):
-    ours, theirs = (
-        native(n, task="frame", autoreset_mode=mode, threads=threads, **options),
-        sync(n, mode, task="frame", **options),
-    )
-    assert ours.observation_space == theirs.observation_space and ours.action_space == theirs.action_space
-    assert same(ours.reset(seed=3), theirs.reset(seed=3))
-    rng, done, ends, strokes = np.random.default_rng(1), np.zeros(n, bool), 0, 0
-    for step in range(steps):
-        if mode == AutoresetMode.DISABLED and done.any():
-            got = ours.reset(options={"reset_mask": done.copy()})
-            assert same(got, theirs.reset(options={"reset_mask": done.copy()})), step
-        if options.get("action") == "discrete":
-            assert np.array_equal(ours.action_masks(), np.array(theirs.call("action_masks")))
-        a = actions_of(ours, rng)
-        got, want = ours.step(a), theirs.step(a)
-        for x, y, name in zip(
-            got, want, ("observations", "rewards", "terminated", "truncated", "infos"), strict=True
-        ):
-            assert same(x, y), (step, name, x, y)
-        done = got[2] | got[3]
-        ends, strokes = ends + int(done.sum()), strokes + int(got[4]["opponent_strokes"].sum())
-    ours.close(), theirs.close()
-    return ends, strokes
-
-
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
 def test_they_equal_sync_vector_env(mode, options):
-    ends, strokes = check_equal(9, mode, 45, options)
+    ends, *_, infos = check_equal(9, mode, 45, task="frame", **options)
+    strokes = sum(info["opponent_strokes"].sum() for info in infos)
     assert ends > 0 or options["layout"] == "opened"
     assert (strokes > 100) == ("opponent" in options)
 
@@ -132,13 +98,8 @@ def test_they_equal_sync_vector_env(mode, options):
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball", policy])
 def test_any_number_of_threads_and_any_chunks_give_the_same(threads, opponent, monkeypatch):
     monkeypatch.setattr(crew, "CHUNK", 16)
-    check_equal(
-        50,
-        AutoresetMode.SAME_STEP,
-        8,
-        FULL | {"opponent": opponent, "layout": "random:3", "max_strokes": 9},
-        threads,
-    )
+    options = FULL | {"opponent": opponent, "layout": "random:3", "max_strokes": 9}
+    check_equal(50, AutoresetMode.SAME_STEP, 8, threads=threads, task="frame", **options)
 
 
 def test_a_player_of_many_tables_is_called_once_for_all_that_wait():
@@ -174,27 +135,34 @@ def test_an_error_of_an_opponent_asks_for_a_reset():
         env.step(np.zeros((4, 4)))
 
 
-def test_states_go_from_one_table_to_many_and_back():
-    options = {
-        "task": "frame",
-        "opponent": "random",
-        "miss": "clear_path",
-        "layout": "random:3",
-        "decision": True,
-        "placement": True,
-    }
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"noise": "club", "aim": "target", "layout": "random:6"},
+        FULL | {"task": "frame", "opponent": "random", "miss": "clear_path", "layout": "random:3"},
+    ],
+    ids=["visit", "frame"],
+)
+def test_states_go_from_one_table_to_many_and_back(options):
     one, many = SnookerEnv(**options), SnookerVectorEnv(3, **options)
     one.reset(seed=4)
-    rng = np.random.default_rng(0)
-    for _ in range(6):
-        one.step(rng.uniform(-1, 1, 7))
+    rng, size = np.random.default_rng(0), one.action_space.shape
+    if "task" in options:
+        for _ in range(6):
+            one.step(rng.uniform(-1, 1, size))
     state = one.get_state()
     many.reset(options={"states": [state] * 3})
     assert many.get_state() == [state] * 3
-    a = rng.uniform(-1, 1, 7)
+    a = rng.uniform(-1, 1, size)
     want, got = one.step(a), many.step(np.tile(a, (3, 1)))
     assert all(np.array_equal(row, want[0]) for row in got[0]) and got[1].tolist() == [want[1]] * 3
     assert many.get_state()[2] == one.get_state() and many.call("frame")[1] == one.frame
+    many.reset(seed=1, options={"state": state})
+    one.set_state(many.get_state()[1])
+    assert one.get_state() == many.get_state()[1]
+    for wrong in ({"states": [state]}, {"layout": 3}):
+        with pytest.raises(ValueError, match="options"):
+            many.reset(options=wrong)
 
 
 # One place for all options
@@ -213,11 +181,11 @@ def test_options_are_checked_once_and_taken_by_every_environment():
         and Options(task="frame").but(task="visit").rules.plan.name == "opened"
     )
     level = {"aim_deg": 0.1}
-    own = Options(noise=level)
+    frozen = Options(noise=level)
     level["aim_deg"] = 5.0  # what is given may change: what is played does not
-    assert own.rules.noise.aim_deg == own.but(aim="target").rules.noise.aim_deg == 0.1 and hash(own) == hash(
-        Options(noise={"aim_deg": 0.1})
-    )
+    assert frozen.rules.noise.aim_deg == frozen.but(aim="target").rules.noise.aim_deg == 0.1 and hash(
+        frozen
+    ) == hash(Options(noise={"aim_deg": 0.1}))
     changed = options.but(noise="none")
     assert changed.noise == "none" and options.noise == "club" and changed.rules.noise.silent
     with pytest.raises(AttributeError):
@@ -256,29 +224,6 @@ def test_discrete_actions_and_their_masks_in_a_frame():
     assert env.frame.scores != (0, 0)
 
 
-def test_discrete_actions_and_their_masks_in_a_match():
-    pytest.importorskip("pettingzoo")
-    from pettingzoo.test import api_test
-
-    api_test(sn.match_env(action="discrete", layout="random:2"), num_cycles=40)
-    env = sn.match_env(action="discrete", layout="random:4")
-    env.reset(seed=5)
-    turns = set()
-    for _ in range(40):
-        player = env.agent_selection
-        other = next(name for name in env.possible_agents if name != player)
-        mask = env.infos[player]["action_mask"]
-        assert mask.dtype == np.int8 and mask.sum() >= 135 and not env.infos[other]["action_mask"].any()
-        assert np.array_equal(mask, env.action_mask(player))
-        env.step(int(np.flatnonzero(mask)[-1]))
-        turns.add(player)
-        if any(env.terminations.values()):
-            break
-    assert len(turns) == 2
-    with pytest.raises(ValueError, match="a Box has no masks"):
-        sn.match_env().action_mask("player_0")
-
-
 # Arrays that are given
 
 
@@ -288,19 +233,19 @@ def test_discrete_actions_and_their_masks_in_a_match():
 )
 def test_results_are_written_into_the_arrays_given(mode, options):
     n = 6
-    plain, given = native(n, autoreset_mode=mode, **options), native(n, autoreset_mode=mode, **options)
+    plain, written = native(n, autoreset_mode=mode, **options), native(n, autoreset_mode=mode, **options)
     out = {
         "observations": np.full(plain.observation_space.shape, 9.0, np.float32),
         "rewards": np.full(n, 9.0),
         "terminations": np.ones(n, bool),
         "truncations": np.ones(n, bool),
     }
-    first = given.reset(seed=1, out={"observations": out["observations"]})
+    first = written.reset(seed=1, out={"observations": out["observations"]})
     assert first[0] is out["observations"] and same(plain.reset(seed=1), first)
     rng = np.random.default_rng(0)
     for _ in range(12):
         a = actions_of(plain, rng)
-        want, got = plain.step(a), given.step(a, out=out)
+        want, got = plain.step(a), written.step(a, out=out)
         assert (
             got[0] is out["observations"]
             and got[1] is out["rewards"]
@@ -313,7 +258,7 @@ def test_results_are_written_into_the_arrays_given(mode, options):
             mask = {"reset_mask": done.copy()}
             assert same(
                 plain.reset(options=mask),
-                given.reset(options=mask, out={"observations": out["observations"]}),
+                written.reset(options=mask, out={"observations": out["observations"]}),
             )
 
 
@@ -324,38 +269,29 @@ def test_arrays_that_share_memory_are_refused():
         env.step(np.zeros((4, 4)), out={"terminations": both, "truncations": both})
 
 
-def test_masked_observations_are_written_too():
-    env, plain = (
-        native(3, action="discrete", observation="masked", autoreset_mode=AutoresetMode.SAME_STEP)
-        for _ in range(2)
-    )
-    out = {
-        "observations": {
-            "observations": np.zeros((3, 121), np.float32),
-            "action_mask": np.zeros((3, 540), np.int8),
-        }
-    }
+@pytest.mark.parametrize(
+    ("options", "parts"),
+    [
+        ({"action": "discrete", "observation": "masked"}, {"observations": (121,), "action_mask": (540,)}),
+        ({"observation": "balls"}, {"balls": (22, 5), "state": (11,)}),
+    ],
+    ids=["masked", "balls"],
+)
+def test_observations_of_several_parts_are_written_too(options, parts):
+    env, plain = (native(3, autoreset_mode=AutoresetMode.SAME_STEP, **options) for _ in range(2))
+    kinds = {name: np.int8 if name == "action_mask" else np.float32 for name in parts}
+    out = {"observations": {name: np.zeros((3, *shape), kinds[name]) for name, shape in parts.items()}}
     got, _ = env.reset(seed=1, out=out)
     assert got is out["observations"] and same(got, plain.reset(seed=1)[0])
-    for choice in (0, 67, 400):
-        given, want = env.step(np.full(3, choice), out=out), plain.step(np.full(3, choice))
-        assert given[0] is out["observations"] and all(same(x, y) for x, y in zip(given, want, strict=True))
-    out["observations"]["action_mask"] = np.zeros((3, 540), bool)
-    refused(
-        lambda: env.reset(out=out),
-        'out["observations.action_mask"]',
-        "array of bool and shape (3, 540)",
-        "must be a C-contiguous",
-    )
-
-
-def test_observations_of_balls_are_written_too():
-    env, plain = native(3, observation="balls"), native(3, observation="balls")
-    out = {
-        "observations": {"balls": np.zeros((3, 22, 5), np.float32), "state": np.zeros((3, 11), np.float32)}
-    }
-    got, _ = env.reset(seed=1, out=out)
-    assert got is out["observations"] and same(got, plain.reset(seed=1)[0])
+    rng = np.random.default_rng(0)
+    for _ in range(3):
+        a = actions_of(plain, rng)
+        written, want = env.step(a, out=out), plain.step(a)
+        assert written[0] is out["observations"] and all(map(same, written, want))
+    name, shape = list(parts.items())[1]
+    out["observations"][name] = np.zeros((3, *shape), bool)
+    what = f"array of bool and shape {(3, *shape)}"
+    refused(lambda: env.reset(out=out), f'out["observations.{name}"]', what, "must be a C-contiguous")
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ DOMENECH = {"R": 0.0305, "e_b": 0.968}
 ROWS = 60
 
 
-def given(kind):
+def inputs(kind):
     """What is set in made-up measurements."""
     rng = np.random.default_rng(5)
     speed = rng.uniform(0.4, 3.5, ROWS)
@@ -46,7 +46,7 @@ TRUE = {
 
 def measured(kind, constants, noise=0.5, seed=1):
     """What would be measured of such shots, with half of the errors that the fit supposes."""
-    columns, what = given(kind), fitting.KINDS[kind]
+    columns, what = inputs(kind), fitting.KINDS[kind]
     model = what.predict(columns, sn.Physics.preset("match", **constants))
     rng = np.random.default_rng(seed)
     return columns | {
@@ -57,11 +57,11 @@ def measured(kind, constants, noise=0.5, seed=1):
 
 @pytest.mark.parametrize("kind", TRUE)
 def test_made_up_data_come_back(kind):
-    found = fitting.fit(kind, measured(kind, TRUE[kind]))
-    assert list(found.values) == list(TRUE[kind])
+    fitted = fitting.fit(kind, measured(kind, TRUE[kind]))
+    assert list(fitted.values) == list(TRUE[kind])
     for name, true in TRUE[kind].items():
-        low, high = found.intervals[name]
-        assert low < true < high and high - low < 0.5 * true, (name, found.values[name], low, high)
+        low, high = fitted.intervals[name]
+        assert low < true < high and high - low < 0.5 * true, (name, fitted.values[name], low, high)
     exact = fitting.fit(kind, measured(kind, TRUE[kind], noise=0.0))
     assert exact.values == pytest.approx(TRUE[kind], rel=1e-3)
     assert [getattr(exact.physics, name) for name in TRUE[kind]] == pytest.approx(
@@ -84,20 +84,20 @@ def test_a_model_of_the_wrong_sign_finds_nothing(kind, monkeypatch):
 
     data = measured(kind, TRUE[kind])
     monkeypatch.setitem(fitting.KINDS, kind, what._replace(predict=turned))
-    found = fitting.fit(kind, data)
-    ends = [(name, found.intervals[name]) for name in TRUE[kind]]
+    fitted = fitting.fit(kind, data)
+    ends = [(name, fitted.intervals[name]) for name in TRUE[kind]]
     assert any(
         interval is None or not interval[0] < TRUE[kind][name] < interval[1] for name, interval in ends
     )
-    assert np.sqrt(np.mean(found.residuals[name] ** 2)) > 4 * what.measured[name].error
+    assert np.sqrt(np.mean(fitted.residuals[name] ** 2)) > 4 * what.measured[name].error
 
 
 def test_marlow_s_law_comes_back():
     true = {"a": 0.02, "b": 0.1, "c": 1.2}
     data = measured("throw", {"mu_bb": tuple(true.values()), "e_b": 0.93}, noise=0.02)
-    found = fitting.fit("throw", data, fixed={"e_b": 0.93}, law="marlow")
-    assert found.values == pytest.approx(true, rel=0.1) and found.physics.mu_bb == pytest.approx(
-        tuple(found.values.values())
+    fitted = fitting.fit("throw", data, fixed={"e_b": 0.93}, law="marlow")
+    assert fitted.values == pytest.approx(true, rel=0.1) and fitted.physics.mu_bb == pytest.approx(
+        tuple(fitted.values.values())
     )
 
 
@@ -113,22 +113,26 @@ def test_domenech_s_throw_gives_a_tenth():
     """The known fit of ``benchmarks.paper``: a constant friction of 0.10 agrees with these 52 shots, 0.05
     does not."""
     columns = fitting.read(DATA / "throw_domenech2023.csv", "throw", {"speed_m_s": 0.8})
-    found = fitting.fit("throw", columns, fixed=DOMENECH)
-    low, high = found.intervals["mu_bb"]
+    fitted = fitting.fit("throw", columns, fixed=DOMENECH)
+    low, high = fitted.intervals["mu_bb"]
     assert low < 0.10 < high and low > 0.09 and high < 0.11
-    assert np.sqrt(np.mean(found.residuals["throw_deg"] ** 2)) < 0.75
+    assert np.sqrt(np.mean(fitted.residuals["throw_deg"] ** 2)) < 0.75
 
 
 def test_the_cushion_of_match_is_what_the_rebounds_give():
-    found = fitting.fit("cushion", fitting.read(DATA / "cushion_rebound.csv", "cushion"), fixed={"e_c": 0.98})
+    fitted = fitting.fit(
+        "cushion", fitting.read(DATA / "cushion_rebound.csv", "cushion"), fixed={"e_c": 0.98}
+    )
     match = sn.Physics.preset("match")
-    assert found.values == pytest.approx({"e_c_knee": match.e_c_knee, "e_c_power": match.e_c_power}, abs=0.01)
+    assert fitted.values == pytest.approx(
+        {"e_c_knee": match.e_c_knee, "e_c_power": match.e_c_power}, abs=0.01
+    )
 
 
 def test_a_constant_at_the_end_of_its_range_has_no_interval():
-    found = fitting.fit("cushion", fitting.read(DATA / "cushion_rebound.csv", "cushion"))
-    assert found.values["e_c"] == pytest.approx(1.0, abs=1e-4) and found.intervals["e_c"] is None
-    assert found.intervals["e_c_power"] is not None
+    fitted = fitting.fit("cushion", fitting.read(DATA / "cushion_rebound.csv", "cushion"))
+    assert fitted.values["e_c"] == pytest.approx(1.0, abs=1e-4) and fitted.intervals["e_c"] is None
+    assert fitted.intervals["e_c_power"] is not None
 
 
 def test_the_command_prints_a_line_that_runs(capsys):

@@ -16,7 +16,7 @@ def test_advantages_are_those_of_the_definition():
     rewards, values, last = torch.rand(7, 3), torch.rand(7, 3), torch.rand(3)
     ends = torch.zeros(7, 3)
     ends[2, 0] = ends[6, 1] = ends[0, 2] = ends[1, 2] = 1.0
-    found = example.advantages_of(rewards, values, ends, last)
+    advantages = example.advantages_of(rewards, values, ends, last)
     after = torch.cat([values[1:], last[None]])
     for k in range(3):
         for t in range(7):
@@ -27,7 +27,7 @@ def test_advantages_are_those_of_the_definition():
                 weight *= example.GAMMA * example.LAMBDA
                 if not going:
                     break
-            assert found[t, k].item() == pytest.approx(want, abs=1e-5)
+            assert advantages[t, k].item() == pytest.approx(want, abs=1e-5)
 
 
 def test_masked_choices_are_never_drawn_and_cost_nothing():
@@ -72,8 +72,8 @@ def test_it_learns_and_its_file_is_played_by_our_protocol(tmp_path, capsys):
     agent = example.mlp(121, 256, 256, 540)
     weights = iter(part for layer in player.model.policy.weights for part in layer)
     with torch.no_grad():
-        for own in agent.parameters():
-            own.copy_(torch.from_numpy(next(weights)))
+        for part in agent.parameters():
+            part.copy_(torch.from_numpy(next(weights)))
         scores = agent(torch.from_numpy(rows)).numpy()
     assert np.allclose(player.model.policy(rows), scores, atol=1e-5)
 

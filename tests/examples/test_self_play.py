@@ -24,10 +24,10 @@ def whole(tmp_path_factory):
 
 
 def test_a_short_run_writes_what_it_found(whole):
-    found = json.loads((whole / "results.json").read_text())
-    assert found["shots"] == 768 and "--shots 640" in found["command"]
-    assert [point["shots"] for point in found["curve"]] == [0, 256, 512]
-    for against in found["judged"].values():
+    results = json.loads((whole / "results.json").read_text())
+    assert results["shots"] == 768 and "--shots 640" in results["command"]
+    assert [point["shots"] for point in results["curve"]] == [0, 256, 512]
+    for against in results["judged"].values():
         for judged in against.values():
             low, high = judged["interval"]
             assert judged["frames"] == 6 and 0.0 <= low <= judged["won"] <= high <= 1.0

@@ -157,4 +157,9 @@ def test_pictures(mode):
 def test_every_argument_is_documented():
     for name in (*NAMES, "render_mode", "render_size"):
         assert f"{name}" in SnookerEnv.__doc__
-    assert set(inspect.signature(SnookerEnv).parameters) == {"options", "render_mode", "render_size", "given"}
+    assert set(inspect.signature(SnookerEnv).parameters) == {
+        "options",
+        "render_mode",
+        "render_size",
+        "keywords",
+    }

@@ -1,0 +1,209 @@
+"""Which tables does a reset begin anew, from where, with which seeds, and which arrays are results written
+into? Checks the arguments of ``reset`` and ``step`` beside actions."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._check import choice, integer, refuse, refuse_what
+from .._types import Bools, Floats, Ints
+from ..game.balls import mask_of_present, points_available
+from ..game.frame import MOST_BREAK
+from ..game.frame_columns import BALL_ON, POINTS
+from ..tasks.frame import Frames
+from ..tasks.tables import Tables
+
+STARTS = ("state", "states", "position", "positions")
+"""Keys of the reset options that say where an episode starts that is not dealt."""
+ONE = ("state", "position", "breaker")
+MANY = ("reset_mask", *STARTS, "breaker")
+"""Keys of the reset options of one table and of many."""
+OUTPUTS: dict[str, tuple[str, type[np.generic]]] = {
+    "observations": ("observations", np.float32),
+    "rewards": ("rewards", np.float64),
+    "terminations": ("terminated", np.bool_),
+    "truncations": ("truncated", np.bool_),
+}
+"""Results that a step can write into the caller's arrays: their names in ``StepOutput``, and dtypes."""
+
+
+def seeds_of(seed: Any, n: int) -> list[int | None]:
+    """A seed or None for each of n tables, from the argument ``seed`` as in ``SyncVectorEnv.reset``."""
+    if seed is None:
+        return [None] * n
+    if isinstance(seed, (int, np.integer)):
+        return [int(seed) + k for k in range(n)]
+    if len(seed) != n:
+        raise refuse_what("seed", f"{len(seed)} seeds", f"must be an int, None, or {n} of them")
+    return list(seed)
+
+
+def mask_of(options: dict[str, Any], n: int) -> Bools:
+    """The tables to reset: (n,) bool, all without "reset_mask"."""
+    if "reset_mask" not in options:
+        return np.ones(n, np.bool_)
+    mask = options["reset_mask"]
+    if not isinstance(mask, np.ndarray) or mask.shape != (n,) or mask.dtype != np.bool_ or not mask.any():
+        raise refuse('options["reset_mask"]', mask, f"must be a bool array of shape ({n},), not all False")
+    return mask.copy()
+
+
+def known_options(options: Any, known: tuple[str, ...]) -> dict[str, Any]:
+    """The options of a reset as a dict; ValueError unless each is ``known``."""
+    if options is None:
+        return {}
+    if not isinstance(options, dict):
+        raise refuse("options", options, "must be None or a dict with " + " or ".join(map(repr, known)))
+    for key in options:
+        choice("options", key, known)
+    return options
+
+
+def both_play(tables: Tables) -> bool:
+    """Whether the caller plays both sides of the tables."""
+    return isinstance(tables, Frames) and len(tables.seats) == 2 and tables.seats[1].player is None
+
+
+def breakers_of(options: dict[str, Any], tables: Tables) -> dict[str, Ints]:
+    """Who breaks on each table instead of the draw, as the keyword ``breakers`` of ``Frames.reset``; empty
+    without "breaker"."""
+    if "breaker" not in options:
+        return {}
+    breaker, field, n = options["breaker"], 'options["breaker"]', tables.n
+    for start in (key for key in STARTS if key in options):
+        raise refuse(
+            field, breaker, f'must be left out with "{start}": it says who breaks where balls are dealt'
+        )
+    if not isinstance(tables, Frames) or len(tables.seats) == 1:
+        raise refuse(field, breaker, "must be left out: there is no opponent, and nothing is drawn")
+    if isinstance(breaker, list | tuple | np.ndarray) and np.ndim(breaker) > 0:
+        if len(breaker) != n:
+            raise refuse_what(field, f"{len(breaker)} numbers", f"must be 0, 1, or {n} of them")
+        each = [integer(f"{field}[{k}]", one, 0, 1) for k, one in enumerate(breaker)]
+        return {"breakers": np.array(each, np.int64)}
+    return {"breakers": np.full(n, integer(field, breaker, 0, 1), np.int64)}
+
+
+@dataclass(frozen=True)
+class Start:
+    """The start of an episode that is not dealt: a valid state of a table, or the arrays of a valid
+    position."""
+
+    state: Any = None
+    """``states.State`` or ``states.FrameState``."""
+    arrays: tuple[Floats, Bools, Ints] | None = None
+    """``planning.Position.arrays``."""
+
+    @classmethod
+    def of(
+        cls, state: Any, tables: Tables, generator: np.random.Generator, *, to_play: bool = False
+    ) -> "Start":
+        """From a dict; ValueError if it is no valid state of these tables, or with ``to_play`` has no stroke
+        left."""
+        either = {"either": True} if both_play(tables) else {}
+        return cls(state=tables.checked(state, generator, to_play=to_play, **either))
+
+    def take(self, tables: Tables, k: int) -> dict[str, Any] | None:
+        """Put it on table k; returns the state of its NumPy generator, which every state has and no
+        position."""
+        if self.arrays is not None:
+            tables.set_position(k, *self.arrays)
+            return None
+        tables.set_state(k, self.state)
+        return self.state.rng
+
+
+def starts_of(
+    options: dict[str, Any], tables: Tables, generator: np.random.Generator, *, to_play: bool = True
+) -> list[Start] | None:
+    """The validated start of each table; None to deal them."""
+    keys = [key for key in STARTS if key in options]
+    if not keys:
+        return None
+    if len(keys) > 1:
+        raise refuse("keys of options", keys, "must be only one of them: each says where to start")
+    (key,), n = keys, tables.n
+    value, field = options[key], f'options["{key}"]'
+    if key == "state":
+        return [Start.of(value, tables, generator, to_play=to_play)] * n
+    if key == "position":
+        return [Start(arrays=_position(field, value, tables))] * n
+    if not isinstance(value, list | tuple) or len(value) != n:
+        length = f" of {len(value)}" if isinstance(value, list | tuple) else ""
+        raise refuse_what(field, f"{type(value).__name__}{length}", f"must be a list of {n} {key}")
+    if key == "states":
+        return [Start.of(state, tables, generator, to_play=to_play) for state in value]
+    return [Start(arrays=_position(f"{field}[{k}]", one, tables)) for k, one in enumerate(value)]
+
+
+def _position(field, position, tables):
+    """The arrays of a ``Position`` or its ``to_dict()``, validated on these tables; ``field``: its name in
+    errors."""
+    from ..planning import Position
+
+    if isinstance(position, Position):
+        position = position.to_dict()
+    if not isinstance(position, Mapping):
+        raise refuse(field, position, "must be a snooker_env.Position, or a dict as its to_dict() gives")
+    names = list(Position.__dataclass_fields__)
+    names.remove("table")
+    for name in position:
+        choice(f"keys of {field}", name, names)
+    if position.get("over", False) is True:
+        raise refuse(f"{field}.over", True, "must be False: the visit has ended, there is no stroke to play")
+    try:
+        arrays = Position.from_dict(position, table=tables.rules.table).arrays()
+    except ValueError as error:
+        raise ValueError(f"{field}.{error}") from None
+    _, on_table, game = arrays
+    most = MOST_BREAK - points_available(mask_of_present(on_table), int(game[BALL_ON]))
+    if game[POINTS] > most:
+        words = f"must be at most {most}: the balls on the table offer {MOST_BREAK - most} more"
+        raise refuse(f"{field}.points", int(game[POINTS]), words)
+    return arrays
+
+
+def arrays_of(
+    out: Any, names: Collection[str], n: int, size: int, boxes: Mapping[str, Any] | None
+) -> dict[str, NDArray[Any]]:
+    """The caller's arrays for results of n tables, by their names in ``StepOutput``; ``size``: of a flat
+    observation.
+
+    ``boxes``: spaces of the parts of dict observations, whose arrays are checked and left out; None for flat
+    ones.
+    """
+    if out is None:
+        return {}
+    if not isinstance(out, dict):
+        raise refuse("out", type(out).__name__, f"must be None or a dict of {', '.join(names)}")
+    for name in out:
+        choice("out", name, names)
+    arrays: dict[str, NDArray[Any]] = {}
+    for name, a in out.items():
+        if name == "observations" and boxes is not None:
+            if not isinstance(a, dict) or set(a) != set(boxes):
+                parts = " and ".join(f'"{part}"' for part in boxes)
+                raise refuse('out["observations"]', type(a).__name__, f"must be a dict of {parts}")
+            for part, box in boxes.items():
+                _check_array(f"observations.{part}", a[part], box.shape, box.dtype.type)
+            continue
+        if any(np.may_share_memory(a, other) for other in arrays.values()):
+            raise refuse_what(
+                f'out["{name}"]', "an array", "must not share memory with another one that is given"
+            )
+        output, dtype = OUTPUTS[name]
+        _check_array(name, a, (n, size) if name == "observations" else (n,), dtype)
+        arrays[output] = a
+    return arrays
+
+
+def _check_array(name: str, a: Any, shape: tuple[int, ...], dtype: type[np.generic]) -> None:
+    """ValueError unless results can be written directly into ``out[name]``."""
+    fits = isinstance(a, np.ndarray) and a.shape == shape and a.dtype == dtype
+    if not fits or not (a.flags.c_contiguous and a.flags.writeable and a.flags.aligned):
+        what = f"array of {a.dtype} and shape {a.shape}" if isinstance(a, np.ndarray) else type(a).__name__
+        allowed = f"must be a C-contiguous, writeable array of {np.dtype(dtype)} and shape {shape}"
+        raise refuse_what(f'out["{name}"]', what, allowed)
