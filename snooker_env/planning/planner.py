@@ -58,13 +58,10 @@ class Outcomes(NamedTuple):
 
 
 class Planner:
-    """Plays strokes on copies of positions exactly as the environment would: same physics, same rules, same
-    errors for the same keys.
+    """Plays strokes on copies of positions exactly as the environment would: same physics, rules and errors.
 
-    Each stroke is judged as a stroke of a *visit* (``task="visit"``): the visit ends with the first miss,
-    foul or clearance. With an environment that plays whole frames, a planner therefore covers what the player
-    scores and leaves within the current visit. It does not cover penalties, free balls, the foul-and-miss
-    rule or the opponent.
+    Each stroke is judged as one of a *visit*, which ends with the first miss, foul or clearance; penalties, free
+    balls, the foul-and-miss rule and the opponent of a frame are not covered.
 
     A *stroke* is a row of five numbers in SI: cue speed [m/s], side and top (tip offset over R, to the right
     and up), the direction in which the cue ball leaves [rad], elevation of the cue [rad]. The cue itself
@@ -73,33 +70,20 @@ class Planner:
     Parameters
     ----------
     env_or_options : Env, VectorEnv, AECEnv, Options or dict
-        An environment of this package (one table or many, wrapped or not, or a match), an ``Options``, or the
-        keyword arguments of ``gymnasium.make("Snooker-v0", ...)`` as a dict. They define the action format,
-        the noise, the physics, the table and the fidelity.
+        An environment of this package, wrapped or not, an ``Options``, or a dict of its fields: the action
+        format, the noise, the physics, the table and the fidelity.
     noise : str, dict or Noise, optional
-        Execution noise for planning in place of the environment's own. "none" plays all strokes as intended.
-        Default: the noise of ``env_or_options``.
+        Execution noise in place of the environment's; "none" plays all strokes as intended.
     threads : int, optional
-        Number of threads, in [1, 1024]; default one for each available processor. Results do not depend on
-        it.
-
-    Raises
-    ------
-    ValueError
-        If an argument has the wrong type or is out of range.
+        Number of threads, in [1, 1024]; default one for each processor. Results do not depend on it.
 
     Examples
     --------
     >>> import numpy as np
-    >>> import snooker_env as sn
-    >>> env = sn.SnookerEnv(noise="club", action="discrete")
-    >>> _ = env.reset(seed=0)
-    >>> planner = sn.planning.Planner(env)
-    >>> choices = np.flatnonzero(env.action_masks())[:3]
-    >>> keys = np.arange(20, dtype=np.uint64)  # each choice is played with the same 20 noise samples
-    >>> outcomes = planner.play(env, np.zeros(60, int), np.repeat(choices, 20), np.tile(keys, 3))
-    >>> outcomes.points.reshape(3, 20).mean(axis=1).shape, planner.shots
-    ((3,), 60)
+    >>> from snooker_env.planning import Planner, Position
+    >>> planner, position = Planner({"action": "discrete", "noise": "club"}), Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> planner.play(position, np.zeros(20, int), np.full(20, 67), keys=np.arange(20)).points.shape, planner.shots
+    ((20,), 20)
     """
 
     def __init__(
@@ -171,56 +155,17 @@ class Planner:
         strokes: Vectors | None = None,
         errors: Vectors | None = None,
     ) -> Outcomes:
-        """Play n strokes, each on a copy of its position.
+        """Play n strokes, each on a copy of its position, and return ``Outcomes``.
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The m positions: anything that ``Positions.of`` accepts. They are not changed.
-        rows : array_like
-            int (n,). Row of ``positions`` for each stroke, in [0, m).
-        actions : array_like, optional
-            float (n, k): actions of the box action space; or int (n,): choices, with ``action="discrete"``.
-        keys : array_like, optional
-            int (n,) or (n, 2), in [0, 2**64). The noise sample of each stroke: the key of its random stream,
-            or key and counter as a saved state holds them under "stream". Equal keys give equal execution
-            errors for every stroke (common random numbers). Keys or ``errors`` are required unless the
-            planner has no noise.
-        strokes : array_like, optional
-            float (n, 5), in place of ``actions``: strokes in SI, see above. A cue ball in hand is played from
-            where it lies.
-        errors : array_like, optional
-            float (n, 5), in place of ``keys``: the errors of speed, side, top, aim and elevation, in standard
-            deviations of the noise.
+        ``rows`` int (n,): row of the m ``positions`` (see ``Positions.of``) for each stroke. What is played is
+        either ``actions``, float (n, k), or int (n,) with ``action="discrete"``; or ``strokes``, float (n, 5) in SI,
+        with a cue ball in hand played from where it lies. The errors are drawn by ``keys``, int (n,) in [0, 2**64),
+        or (n, 2) with a counter as a saved state has them: equal keys give equal errors for every stroke (common
+        random numbers). Or they are ``errors``, float (n, 5) in standard deviations, of speed, side, top, aim and
+        elevation. Without noise neither is needed.
 
-        Returns
-        -------
-        Outcomes
-            ``points``, ``goes_on``, ``afterstates`` and ``observations``, with n rows each.
-
-        Raises
-        ------
-        ValueError
-            If a row is out of range, an action is not in the action space, a stroke is out of range, an array
-            has the wrong shape, or a position is invalid or has no stroke left to play.
-        SimulationError
-            If a shot cannot be computed.
-
-        Notes
-        -----
-        Several threads may call this method at once. A stroke costs about 20 us; in calls with fewer than a
-        few dozen strokes the input checks are a noticeable part of the cost.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner, Position
-        >>> planner = Planner({"action": "discrete", "noise": "club"})
-        >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-        >>> planner.play(position, [0, 0, 0], [67, 67, 67], keys=[1, 2, 3]).points.shape
-        (3,)
-        >>> stroke = [2.0, 0.0, 0.0, 0.785, 0.0]  # 2 m/s, in the middle of the ball
-        >>> planner.play(position, [0, 0], strokes=[stroke] * 2, errors=[[0, 0, 0, 0, 0], [0, 0, 0, 9.0, 0]]).points.tolist()
-        [7.0, 0.0]
+        ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
+        SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes about 20 us.
         """
         after, out = self._played(positions, rows, actions, keys, strokes=strokes, errors=errors)
         return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
@@ -235,37 +180,7 @@ class Planner:
         strokes: Vectors | None = None,
         errors: Vectors | None = None,
     ) -> Stops:
-        """Play n strokes as ``play`` does, and return where each ball stopped.
-
-        Parameters
-        ----------
-        positions : PositionsLike
-            The m positions, see ``play``.
-        rows : array_like
-            int (n,). Row of ``positions`` for each stroke.
-        actions, keys, strokes, errors
-            What is played and under which errors, see ``play``.
-
-        Returns
-        -------
-        Stops
-            Arrays with n rows each.
-
-        Raises
-        ------
-        ValueError
-            For the same reasons as ``play``.
-        SimulationError
-            If a shot cannot be computed.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner, Position
-        >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-        >>> stops = Planner({"action": "discrete"}).stops(position, [0], [67])
-        >>> int(stops.first[0]), int(stops.potted[0, 21])
-        (21, 3)
-        """
+        """Play n strokes as ``play`` does, and return where each ball stopped: ``Stops`` with n rows."""
         visits = copy.copy(self._watched)
         after, out = self._played(
             positions, rows, actions, keys, strokes=strokes, errors=errors, visits=visits
@@ -284,8 +199,7 @@ class Planner:
         errors: Any = None,
         visits: TrialVisits | None = None,
     ) -> tuple[Positions, StepOutput]:
-        """Check the arguments and play the strokes on ``visits`` to be filled. Returns the afterstates and
-        the output of the step."""
+        """Play the checked strokes on ``visits`` to be filled: the afterstates, and the step's output."""
         at = Positions.of(positions).as_visits()
         which = rows_of(at, rows)
         n = len(which)
@@ -315,36 +229,10 @@ class Planner:
     def strokes_of(
         self, positions: PositionsLike, rows: Integers, actions: Vectors | Integers
     ) -> tuple[NDArray[np.float64], Positions]:
-        """Decode actions or choices of this planner's action space: which strokes do they mean?
+        """Decode actions or choices (n, k) or (n,), see ``play``: which strokes do they mean?
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The m positions: anything that ``Positions.of`` accepts.
-        rows : array_like
-            int (n,). Row of ``positions`` for each action, in [0, m).
-        actions : array_like
-            float (n, k) or int (n,), see ``play``.
-
-        Returns
-        -------
-        strokes : numpy.ndarray
-            float64 (n, 5). Strokes in SI, without errors.
-        at : Positions
-            n rows: where they are played from, with a cue ball in hand on the place that the action names.
-
-        Raises
-        ------
-        ValueError
-            If a row is out of range or an action is not in the action space.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner, Position
-        >>> strokes, at = Planner({}).strokes_of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0], [[0.0, 0.0, 0.5, 0.25]])
-        >>> strokes[0].round(3).tolist(), len(at)
-        ([3.6, 0.0, 0.25, 0.785, 0.0], 1)
-        """
+        Returns float64 (n, 5), strokes in SI without errors, and n ``Positions`` that they are played from, with a
+        cue ball in hand on the place that the action names."""
         at = Positions.of(positions)
         which = rows_of(at, rows)
         return decoded(self._rules, at, which, self._rules.actions.check_many(actions, len(which)))
@@ -357,35 +245,12 @@ class Planner:
         rows: Integers | None = None,
         places: Vectors | None = None,
     ) -> NDArray[np.float64]:
-        """Encode strokes as actions of this planner's action space.
+        """Encode strokes (n, 5) as actions of this planner's action space: float64 (n, k) in [-1, 1].
 
-        Parameters
-        ----------
-        strokes : array_like
-            float (n, 5). Strokes in SI.
-        positions, rows : PositionsLike, array_like, optional
-            Where each stroke is played, see ``strokes_of``. Required with ``aim="target"``, which is measured
-            from a line there.
-        places : array_like, optional
-            float (n, 2). With ``placement=True``: where in the D a cue ball in hand is placed [m]. Default:
-            the middle of the baulk line.
-
-        Returns
-        -------
-        numpy.ndarray
-            float64 (n, k). Actions in [-1, 1]. What they say beside the stroke is 0: to play.
-
-        Raises
-        ------
-        ValueError
-            If a stroke is out of range or cannot be such an action.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner
-        >>> Planner({"elevation": True}).actions_of([[3.6, 0.0, 0.25, 0.0, 0.0]]).tolist()
-        [[0.0, 0.0, 0.5, 0.0, -1.0]]
-        """
+        ``positions`` and ``rows``: where each is played, required with ``aim="target"``, which is measured from a
+        line there. ``places`` (n, 2) [m]: with ``placement=True``, where in the D a cue ball in hand is placed, by
+        default the middle of the baulk line. What actions say beside the stroke is 0: to play. ValueError if a
+        stroke is out of range or cannot be such an action."""
         told, form = check_strokes(strokes), self._rules.actions
         if not isinstance(form, Actions):
             raise refuse("action", "discrete", 'must be "box": choices hold a few strokes only')
@@ -402,35 +267,9 @@ class Planner:
         return encoded(form, told, where, lines[:, AIM])
 
     def as_actions(self, positions: PositionsLike, rows: Integers, choices: Integers) -> NDArray[np.float32]:
-        """Convert choices of ``action="discrete"`` to box actions, with this planner's physics and fidelity.
+        """Convert choices of ``action="discrete"``, int (n,), to actions of ``aim="absolute"``: float32 (n, 4).
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The m positions: anything that ``Positions.of`` accepts.
-        rows : array_like
-            int (n,). Row of ``positions`` for each choice, in [0, m).
-        choices : array_like
-            int (n,). Choices, in [0, 540).
-
-        Returns
-        -------
-        numpy.ndarray
-            float32 (n, 4). Actions of ``aim="absolute"``.
-
-        Raises
-        ------
-        ValueError
-            If a row or a choice is out of range, or if the planner itself reads actions with another ``aim``.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner, Position
-        >>> planner = Planner({"noise": "none"})
-        >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-        >>> planner.play(position, [0], planner.as_actions(position, [0], [67])).points.tolist()
-        [7.0]
-        """
+        With this planner's physics and fidelity; ValueError if it reads actions with another ``aim``."""
         if isinstance(self._rules.actions, Actions) and self._rules.actions.aim != "absolute":
             raise refuse(
                 "aim",
@@ -452,45 +291,9 @@ class Planner:
         elevation: Scalars = 0.0,
         ghosts: Vectors | None = None,
     ) -> NDArray[np.float64]:
-        """Solve the direction in which the cue ball must leave to pot a ball, with this planner's physics and
-        fidelity.
+        """Solve the cue ball's directions with this planner's physics and fidelity: float64 (n,).
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The m positions: anything that ``Positions.of`` accepts.
-        rows : array_like
-            int (n,). Row of ``positions`` for each ball, in [0, m).
-        balls : array_like
-            int (n,). Id of the object ball, in [1, 21].
-        targets : array_like
-            float (n, 2). Point to which the ball is to be sent [m].
-        speeds : array_like or float
-            float, scalar or (n,). Cue speeds [m/s], above 0.
-        side, top : array_like or float, optional
-            float, scalar or (n,). Tip offsets over R, to the right and up; default 0.
-        elevation : array_like or float, optional
-            float, scalar or (n,). Elevation of the cue [rad]; default 0.
-        ghosts : array_like, optional
-            float (n, 2). Ghost-ball centres of the straight line [m], see ``snooker_env.planning.pot_aim``.
-
-        Returns
-        -------
-        numpy.ndarray
-            float64 (n,). Directions of the cue ball [rad], anticlockwise from +x.
-
-        Raises
-        ------
-        ValueError
-            If a number is out of range, a ball is off the table, or an array has the wrong shape.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner, Position
-        >>> position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)])
-        >>> float(Planner({}).pot_aim(position, [0], [1], [(0.8, 0.8)], 2.3)[0].round(3))
-        0.785
-        """
+        See ``snooker_env.planning.pot_aim``."""
         dynamics = (self.physics, self._rules.fidelity)
         return solved_aims(
             Positions.of(positions), rows, balls, targets, speeds, side, top, elevation, ghosts, dynamics
@@ -504,8 +307,7 @@ class Planner:
 
 
 def options_in(source: Any) -> Options:
-    """The ``Options`` of an environment, or those given as such or as a dict; ValueError for anything
-    else."""
+    """The ``Options`` of an environment, of a dict, or as they are; ValueError for anything else."""
     if isinstance(source, Mapping):
         source = options_of(None, source)
     options = source if isinstance(source, Options) else getattr(bare(source), "options", None)

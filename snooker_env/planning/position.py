@@ -37,17 +37,15 @@ ON = tuple(ball.name.lower() for ball in BallOn)
 
 @dataclass(frozen=True, kw_only=True)
 class Position:
-    """The balls on a table in the middle of a visit, by name. A ``Position`` is validated when it is made,
-    and it is immutable.
+    """The balls on a table in the middle of a visit, by name: validated when it is made, and immutable.
 
     Parameters
     ----------
     cue : (float, float), optional
-        Centre of the cue ball [m]. The origin is the table's centre, +x points to the yellow side and +y to
-        the black end. It may be left out with ``in_hand=True``: then the cue ball lies at the free place of
-        the D nearest to its usual one, (0.18, -1.0475).
+        Centre of the cue ball [m] from the table's centre, +x to the yellow side, +y to the black end. Left out
+        with ``in_hand=True``, it lies at the free place of the D nearest to (0.18, -1.0475).
     reds : sequence of (float, float), optional
-        Up to 15 centres [m]. The reds get the ids 1, 2, ... in this order. Default: none.
+        Up to 15 centres [m], which get the ids 1, 2, ... in this order. Default: none.
     yellow, green, brown, blue, pink, black : (float, float), optional
         Centres [m]. A ball that is left out is off the table.
     on : str, optional
@@ -58,29 +56,20 @@ class Position:
     points : int, optional
         Points of the visit so far, in [0, 155]; default 0.
     over : bool, optional
-        Whether the visit has ended; default False. After its end anything may be on, and the cue ball may be
-        missing.
+        Whether the visit has ended; default False. Then anything may be on, and the cue ball may be missing.
     table : str, Table or None, optional
-        The table that the balls must fit on; it is not stored. None stands for unbounded cloth. Default:
-        "match".
+        The table that the balls must fit on, not stored; None: unbounded cloth. Default: "match".
 
     Raises
     ------
     ValueError
-        If a ball is off the table, in a cushion or over a pocket, if two balls overlap, or if the ball on
-        contradicts the balls.
-    TypeError
-        For an unknown field.
+        If a ball is off the table, in a cushion or over a pocket, balls overlap, or the ball on contradicts them.
 
     Examples
     --------
     >>> from snooker_env.planning import Position
     >>> Position(cue=(0.0, -0.6), reds=[(0.3, 0.5)], black=(0.0, 1.4605)).on
     'red'
-    >>> Position(cue=(0.0, -0.6), black=(0.0, -0.62))
-    Traceback (most recent call last):
-    ...
-    ValueError: black = (0.0, -0.62): overlaps cue at (0.0, -0.6) by 0.0325 m, at most 1e-06 is allowed
     """
 
     cue: Place | None = None
@@ -141,58 +130,16 @@ class Position:
         return positions, on_table
 
     def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
-        """Return the position as the arrays that ``Positions`` holds.
+        """Return the arrays that ``Positions`` holds: centres [m] float64 (22, 2), on_table bool (22,), game int64 (5,).
 
-        Returns
-        -------
-        positions : numpy.ndarray
-            float64 (22, 2). Centres [m]; 0 for a ball off the table.
-        on_table : numpy.ndarray
-            bool (22,). Which balls are on the table.
-        game : numpy.ndarray
-            int64 (5,). The ball on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit
-            is over, strokes (0).
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Position
-        >>> positions, on_table, game = Position(cue=(0.0, 0.2), black=(0.0, 1.4605)).arrays()
-        >>> positions[0].tolist(), on_table.nonzero()[0].tolist(), game.tolist()
-        ([0.0, 0.2], [0, 21], [7, 0, 0, 0, 0])
-        """
+        The game: the ball on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit is over,
+        strokes (0)."""
         game = np.array([BallOn[str(self.on).upper()], self.in_hand, self.points, self.over, 0], np.int64)
         return *self._layout(), game
 
     @classmethod
     def of_arrays(cls, positions: Vectors, on_table: Flags, game: Integers) -> "Position":
-        """Make a ``Position`` from the arrays of one table. Reds are numbered anew.
-
-        Parameters
-        ----------
-        positions : array_like
-            float (22, 2). Centres [m].
-        on_table : array_like
-            bool (22,). Which balls are on the table.
-        game : array_like
-            int (5,). As returned by ``arrays``.
-
-        Returns
-        -------
-        Position
-            The same position by names.
-
-        Raises
-        ------
-        ValueError
-            If the balls overlap or the ball on contradicts them.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Position
-        >>> position = Position(cue=(0.0, 0.2), black=(0.0, 1.4605))
-        >>> Position.of_arrays(*position.arrays()) == position
-        True
-        """
+        """Make the ``Position`` of one table's arrays, see ``arrays``; reds are numbered anew."""
         places, there = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
         ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]
         named = {
@@ -207,19 +154,7 @@ class Position:
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the position as JSON types, without the balls off the table.
-
-        Returns
-        -------
-        dict
-            Fields and their values; ``Position(**fields)`` makes the position again.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Position
-        >>> Position(cue=(0.0, 0.2), black=(0.0, 1.4605)).to_dict()
-        {'cue': [0.0, 0.2], 'reds': [], 'black': [0.0, 1.4605], 'on': 'black', 'in_hand': False, 'points': 0, 'over': False}
-        """
+        """Return the fields as JSON types, without balls off the table; ``from_dict`` reads them."""
         kept = asdict(self) | {"reds": [list(place) for place in self.reds]}
         for name in ("cue", *COLOUR_NAMES):
             kept[name] = kept[name] and list(kept[name])
@@ -227,96 +162,16 @@ class Position:
 
     @classmethod
     def from_dict(cls, given: Mapping[str, Any], *, table: TableLike = "match") -> "Position":
-        """Make the position that a dict of ``to_dict`` describes.
-
-        Parameters
-        ----------
-        given : dict
-            Fields of ``Position`` as JSON types. A ball that is left out or None is off the table.
-        table : str, Table or None, optional
-            The table that the balls must fit on, see ``Position``; default "match".
-
-        Returns
-        -------
-        Position
-            The validated position.
-
-        Raises
-        ------
-        ValueError
-            For an unknown key, and for the same reasons as ``Position``.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Position
-        >>> Position.from_dict({"cue": [0.0, 0.0], "black": [0.0, 1.4605]}).on
-        'black'
-        """
+        """Make the position that a dict of ``to_dict`` describes; ValueError for an unknown key."""
         return cls(**position_file.checked(given, _NAMES), table=table)
 
     def save(self, path: str | Path) -> None:
-        """Write the position to a file as JSON, see ``to_dict``.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file. An existing file is replaced in one step, so that it is never half written.
-
-        Returns
-        -------
-        None
-
-        Raises
-        ------
-        OSError
-            If the file cannot be written.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from pathlib import Path
-        >>> from snooker_env.planning import Position
-        >>> file = Path(tempfile.mkdtemp()) / "position.json"
-        >>> Position(cue=(0.0, 0.2), black=(0.0, 1.4605)).save(file)
-        >>> Position.load(file).cue
-        (0.0, 0.2)
-        """
+        """Write the position as JSON. An existing file is replaced in one step: it is never half written."""
         position_file.write(self.to_dict(), path)
 
     @classmethod
     def load(cls, path: str | Path, *, table: TableLike = "match") -> "Position":
-        """Read a position from a file that ``save`` wrote, or that was written manually.
-
-        Parameters
-        ----------
-        path : str or Path
-            The file of JSON.
-        table : str, Table or None, optional
-            The table that the balls must fit on, see ``Position``; default "match".
-
-        Returns
-        -------
-        Position
-            The validated position.
-
-        Raises
-        ------
-        ValueError
-            If the file does not hold the JSON of a position. The message names the unknown key or the ball
-            that is wrong.
-        OSError
-            If the file cannot be read.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from pathlib import Path
-        >>> from snooker_env.planning import Position
-        >>> file = Path(tempfile.mkdtemp()) / "position.json"
-        >>> _ = file.write_text('{"cue": [0.0, 0.2], "black": [0.0, 1.4605]}')
-        >>> Position.load(file).on
-        'black'
-        """
+        """Read a file that ``save`` wrote, or that was written by hand; ValueError names what is wrong in it."""
         return cls(**position_file.read(path, _NAMES), table=table)
 
 
@@ -325,8 +180,7 @@ _NAMES = tuple(f.name for f in fields(Position))
 
 
 def _known(init: Any) -> Any:
-    """``Position.__init__`` with a word on a field that it does not have: which there are, and that the reds
-    are one list."""
+    """``Position.__init__`` whose TypeError says which fields there are, and that the reds are one list."""
     names = (*_NAMES, "table")
 
     @wraps(init)
@@ -386,11 +240,8 @@ def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], t
 
 
 def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue: str, balls: str) -> None:
-    """Raise ValueError unless there is a stroke to play. ``on``, ``cue``, ``balls``: names of the fields for
-    the message.
-
-    The rules are those of a saved state (``tasks.states.checked``).
-    """
+    """Raise ValueError, with these names of fields, unless there is a stroke to play (as
+    ``tasks.states.checked``)."""
     there = mask_of_present(on_table)
     if not there & 1:
         raise refuse(cue, None, "must be on the table while the visit goes on")

@@ -116,31 +116,8 @@ class Positions:
     def of(cls, source: "PositionsLike") -> "Positions":
         """Collect the positions that an object holds, as a copy; a ``Positions`` is returned as it is.
 
-        Parameters
-        ----------
-        source : Env, VectorEnv, AECEnv, Positions, Position, dict, or sequence of Position and dict
-            An environment, of one table or many, wrapped or not, gives its current tables, also those whose
-            visit has ended; those of frames and matches as their strikers see them. A dict is a state of a
-            visit from ``get_state()``, or the result of ``Position.to_dict()``.
-
-        Returns
-        -------
-        Positions
-            One row for each table, position or state.
-
-        Raises
-        ------
-        ValueError
-            If the object holds no positions.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> env = sn.SnookerEnv()
-        >>> _ = env.reset(seed=1)
-        >>> at = sn.Positions.of(env)
-        >>> len(at), bool((at.positions[0] == env.positions).all())
-        (1, True)
+        An environment, of one table or many, wrapped or not, gives all current tables, those of frames as their
+        strikers see them. Or a ``Position``, a state of a visit, a dict of ``Position.to_dict()``, or a list of these.
         """
         if isinstance(source, Positions):
             return source
@@ -192,44 +169,15 @@ class Positions:
         return f"Positions({len(self)} rows)"
 
     def copy(self) -> "Positions":
-        """Return a copy with arrays of its own.
-
-        Returns
-        -------
-        Positions
-            The copy.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Position, Positions
-        >>> at = Positions.of(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)))
-        >>> at.copy().positions is at.positions
-        False
-        """
+        """Return a copy with arrays of its own."""
         saved = None if self.saved is None else Layouts(*(each.copy() for each in self.saved))
         return Positions(self.positions.copy(), self.on_table.copy(), self.game.copy(), saved)
 
     def as_visits(self) -> "Positions":
-        """Return the positions as those of visits, with ``game`` (m, 5); positions of visits are returned as
-        they are.
+        """Return positions of visits, with ``game`` (m, 5), that share the balls' places; visits are returned as they are.
 
-        A stroke is then judged as one of a visit. With a free ball any colour is on, which is right in all
-        but what it scores. A cue ball that may stand anywhere is played from where it lies: visits have no
-        ball in hand outside the D.
-
-        Returns
-        -------
-        Positions
-            They share the places of the balls with these.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> env = sn.SnookerVectorEnv(2, task="frame")
-        >>> _ = env.reset(seed=1)
-        >>> sn.Positions.of(env).game.shape, sn.Positions.of(env).as_visits().game.shape
-        ((2, 33), (2, 5))
-        """
+        With a free ball any colour is on, which is right in all but what it scores. A cue ball that may stand
+        anywhere is played from where it lies: visits have no ball in hand outside the D."""
         if not self.of_frames:
             return self
         game = as_visits(self.game)[:, :VISIT_COLUMNS]
@@ -287,8 +235,7 @@ class Positions:
 
     @property
     def ball_on(self) -> NDArray[np.int64]:
-        """What must be struck first, int64 (m,): a ``BallOn`` for each row, without regard to a free ball; a
-        view."""
+        """What must be struck first, a ``BallOn``, without regard to a free ball: int64 (m,), a view."""
         return self.game[:, BALL_ON]
 
     @property
@@ -314,21 +261,7 @@ class Positions:
         return out
 
     def observations(self) -> NDArray[np.float32]:
-        """Return the flat observation of each position, as ``Snooker-v0`` returns it with ``task="visit"``.
-
-        Returns
-        -------
-        numpy.ndarray
-            float32 (m, 121).
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> env = sn.SnookerEnv()
-        >>> observation, _ = env.reset(seed=1)
-        >>> bool((sn.Positions.of(env).observations()[0] == observation).all())
-        True
-        """
+        """The flat observation of each position, as ``task="visit"`` returns it: float32 (m, 121)."""
         out, game = np.empty((len(self), SIZE), np.float32), self.as_visits().game
         observe(np.arange(len(self)), self.positions, self.on_table, game, out)
         return out
@@ -390,7 +323,7 @@ PositionsLike: TypeAlias = (
 
 
 def rows_of(at: Positions, rows: Integers, n: int | None = None) -> NDArray[np.int64]:
-    """``rows`` as an int64 array (n,). ValueError unless each is a row of the positions."""
+    """``rows`` as an int64 array (n,); ValueError unless each is a row of the positions."""
     a = np.asarray(rows)
     if a.size == 0:
         a = a.astype(np.int64)
@@ -405,8 +338,7 @@ def rows_of(at: Positions, rows: Integers, n: int | None = None) -> NDArray[np.i
 
 
 def check_played(at: Positions, rows: NDArray[np.int64], table: Table, radius: float) -> None:
-    """Raise ValueError unless every position named in ``rows`` (n,) is valid on the table and has a stroke to
-    play."""
+    """Raise ValueError unless each position in ``rows`` (n,) is valid on the table and has a stroke to play."""
     used = np.unique(rows)
     some = at if len(used) == len(at) else at[used]
     on, there = some.ball_on, some.on_table

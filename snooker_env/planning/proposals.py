@@ -73,8 +73,7 @@ class Proposals(NamedTuple):
     strokes : numpy.ndarray
         float64 (n, m, 5). Strokes in SI, see ``Planner``.
     chances : numpy.ndarray
-        float64 (n, m). Chance of each stroke's pot by its width; 1 for a stroke without a pot. 0 in a
-        position that the generator has no stroke for.
+        float64 (n, m). Chance of each stroke's pot by its width; 1 for a stroke without a pot; 0 for none.
 
     Examples
     --------
@@ -90,8 +89,8 @@ class Proposals(NamedTuple):
 
 @kernel
 def pot_chance(positions, found, spread, far):
-    """Chance of a pot by its width: the aim's error stays within the tolerance. ``far`` [1/m]: loss per metre
-    of both balls' paths."""
+    """Chance of a pot by its width: the aim's error stays within the tolerance; less exp(-``far`` [1/m] x
+    paths)."""
     ball, pocket = int(found[POT_BALL]), int(found[POT_POCKET])
     path = hypot(found[GHOST_X] - positions[0, 0], found[GHOST_Y] - positions[0, 1])
     run = hypot(
@@ -131,11 +130,8 @@ def _aim(stroke, positions, pot, law, work):
 def _propose(
     positions, on_table, game, seeds, which, spread, phys, end_mass_ratio, fidelity, n_steps, strokes, chances
 ):
-    """Fill strokes (n, m, 5) and chances (n, m) of n positions.
-
-    ``which`` (n, m): at which pot each stroke is, widest first, its speed and tip being given; without rows,
-    all are spread.
-    """
+    """Fill strokes (n, m, 5) and chances (n, m). ``which`` (n, m): the pot of each stroke, widest first, whose
+    speed and tip stand in it; without rows, all are spread."""
     found, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
     law, work = CueLaw(phys, end_mass_ratio, fidelity, n_steps), new_work()
     m = strokes.shape[1]
@@ -248,7 +244,7 @@ def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: 
     seeds : numpy.ndarray
         int64 (n,), in [0, 2**32): of the Sobol scrambles.
     spread : float
-        Standard deviation of the cue ball's direction [rad], as returned by ``spread_of``.
+        Standard deviation of the cue ball's direction [rad], see ``spread_of``.
     dynamics : tuple
         Physics and fidelity with which the aims are solved: ``StrokeSearch.dynamics``.
 
@@ -259,10 +255,9 @@ def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: 
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.planning import Position, Positions, StrokeSearch, spread_strokes
     >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
-    >>> spread_strokes(at, 5, np.array([7]), search.spread, search.dynamics).strokes.shape
+    >>> spread_strokes(at, 5, [7], search.spread, search.dynamics).strokes.shape
     (1, 5, 5)
     """
     return _proposed(at, np.zeros((len(at), m, COLUMNS)), seeds, _NOT_GIVEN, spread, dynamics)
@@ -271,19 +266,17 @@ def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: 
 def strokes_at(
     at: Positions, which: Ints, speeds_and_tips: Floats, seeds: Ints, spread: float, dynamics: Dynamics
 ) -> Proposals:
-    """Propose strokes at given pots with given speeds and tips; their aims are solved.
+    """Propose strokes at chosen pots with chosen speeds and tips; their aims are solved.
 
     Parameters
     ----------
     at : Positions
         The n positions.
     which : numpy.ndarray
-        int64 (n, m). Index of each stroke's pot, widest first as of ``pots``; beyond the last pot, the last
-        one.
+        int64 (n, m). Index of each stroke's pot, widest first as of ``pots``, at most the last one's.
     speeds_and_tips : numpy.ndarray
-        float64 (n, m, 3). Cue speed [m/s], side and top (tip offset over R). A tip outside the disc of radius
-        0.49 is drawn in to it.
-    seeds, spread, dynamics
+        float64 (n, m, 3). Cue speed [m/s], side and top; a tip outside the disc of radius 0.49 is drawn in to it.
+    spread, dynamics
         As for ``spread_strokes``.
 
     Returns
@@ -296,9 +289,8 @@ def strokes_at(
     >>> import numpy as np
     >>> from snooker_env.planning import Position, Positions, StrokeSearch, strokes_at
     >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
-    >>> given = np.array([[[2.0, 0.0, 0.2], [2.0, 0.0, -0.9]]])
-    >>> strokes_at(at, np.zeros((1, 2), int), given, np.array([7]), search.spread, search.dynamics).strokes[0, :, :3].tolist()
-    [[2.0, 0.0, 0.2], [2.0, 0.0, -0.49]]
+    >>> strokes_at(at, np.array([[0]]), [[[2.0, 0.0, -0.9]]], search.spread, search.dynamics).strokes[0, 0, :3].tolist()
+    [2.0, 0.0, -0.49]
     """
     n, m = which.shape
     strokes = np.zeros((n, m, COLUMNS))
@@ -348,10 +340,8 @@ def at_pots(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.planning import Position, Positions, StrokeSearch, at_pots
-    >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
-    >>> at_pots(search, at, 5, np.array([7])).strokes.shape
+    >>> at_pots(StrokeSearch({}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3))), 5, [7]).strokes.shape
     (1, 5, 5)
     """
     return spread_strokes(at, m, seeds, search.spread, search.dynamics)
@@ -372,10 +362,9 @@ def at_balls(search: Search, at: Positions, m: int, seeds: Integers) -> Proposal
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.planning import Position, Positions, StrokeSearch, at_balls
     >>> at = Positions.of(Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0)))
-    >>> at_balls(StrokeSearch({}), at, 4, np.array([7])).chances.tolist()
+    >>> at_balls(StrokeSearch({}), at, 4, [7]).chances.tolist()
     [[1.0, 1.0, 1.0, 1.0]]
     """
     at, made = at.as_visits(), _nothing(at, m)
@@ -398,10 +387,9 @@ def over_cushions(search: Search, at: Positions, m: int, seeds: Integers) -> Pro
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.planning import Position, Positions, StrokeSearch, over_cushions
     >>> hidden = Positions.of(Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], blue=(0.2, 0.0), on="red"))
-    >>> over_cushions(StrokeSearch({}), hidden, 4, np.array([7])).chances.tolist()
+    >>> over_cushions(StrokeSearch({}), hidden, 4, [7]).chances.tolist()
     [[1.0, 1.0, 1.0, 1.0]]
     """
     at, made, physics = at.as_visits(), _nothing(at, m), search.dynamics[0]

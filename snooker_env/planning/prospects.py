@@ -38,10 +38,7 @@ SURE = (1e4, 1e-3, 0.0, 0.0)
 
 @entry(what="the value of positions", seconds=1)
 def _prospects(positions, on_table, ball_on, spread, constants, values, chances):
-    """Kernel of ``prospects_of``: fills ``values`` (n,) and ``chances`` (n, most).
-
-    ``spread`` [rad] is the result of ``spread_of``; ``constants`` as ``RULE_OF_THUMB``.
-    """
+    """Fill ``values`` (n,) and ``chances`` (n, most) of ``prospects_of``."""
     found = np.empty((16, POT_COLUMNS))
     follows, second, third, far = constants
     for k in range(len(values)):
@@ -89,18 +86,12 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
     noise : Noise
         The execution noise.
     physics : str, dict, Physics or None, optional
-        Physical constants, as ``Physics.of`` takes them; they determine the squirt of a tip error. Default
-        None: the preset "paper".
+        Physical constants, for the squirt of a tip error. Default None: the preset "paper".
 
     Returns
     -------
     float
         Standard deviation [rad].
-
-    Raises
-    ------
-    ValueError
-        If ``physics`` is invalid.
 
     Examples
     --------
@@ -121,18 +112,18 @@ def prospects_of(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Estimate the value of positions and the chances of their pots by a rule of thumb.
 
-    The chance of a pot is the probability that a normal error of the aim stays within the pot's tolerance,
-    reduced for long paths. The value of a pot is its chance times its points plus what may follow. The value
-    of a position is that of its best pot, plus a small share of the second and the third.
+    The chance of a pot is that of a normal error of the aim within its tolerance, less for long paths. Its value
+    is its chance times its points plus what may follow. A position is worth its best pot, plus a small share of
+    the second and the third.
 
     Parameters
     ----------
     at : Positions
         The n positions.
     spread : float
-        Standard deviation of the cue ball's direction [rad], as returned by ``spread_of``.
+        Standard deviation of the cue ball's direction [rad], see ``spread_of``.
     constants : tuple of float, optional
-        Four constants: ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
+        ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
     most : int, optional
         Number of chances for each position; default 4.
     threads : int, optional

@@ -21,20 +21,17 @@ class Stops(NamedTuple):
     Attributes
     ----------
     places : numpy.ndarray
-        float64 (n, 22, 2). Centres at rest [m], before colours are respotted; for a potted ball the point
-        where it fell.
+        float64 (n, 22, 2). Centres at rest [m] before colours are respotted; of a potted ball where it fell.
     potted : numpy.ndarray
-        int64 (n, 22). Pocket of each ball, an index into ``snooker_env.POCKETS``; -1 if this stroke did not
-        pot it.
+        int64 (n, 22). Pocket of each ball, an index into ``snooker_env.POCKETS``; -1 if not potted.
     first : numpy.ndarray
-        int64 (n,). Id of the ball struck first (the lowest id if several were struck at once); -1 if none
-        was.
+        int64 (n,). Id of the ball struck first (the lowest of several at once); -1 if none was.
     points : numpy.ndarray
         float64 (n,). Points scored; 0 for a miss or a foul.
     penalty : numpy.ndarray
         int64 (n,). Penalty points of a foul; 0 for a fair stroke.
     goes_on : numpy.ndarray
-        bool (n,). True if the visit continues after the stroke.
+        bool (n,). Whether the visit continues after the stroke.
     afterstates : Positions
         n rows: colours respotted, and the ball on for the next stroke.
 
@@ -42,8 +39,8 @@ class Stops(NamedTuple):
     --------
     >>> from snooker_env.planning import Planner, Position
     >>> stops = Planner({"action": "discrete"}).stops(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0], [67])
-    >>> stops.places.shape, stops.points.tolist(), stops.penalty.tolist()
-    ((1, 22, 2), [7.0], [0])
+    >>> int(stops.first[0]), int(stops.potted[0, 21]), stops.points.tolist()
+    (21, 3, [7.0])
     """
 
     places: NDArray[np.float64]
@@ -56,8 +53,7 @@ class Stops(NamedTuple):
 
 
 class WatchedVisits(TrialVisits):
-    """Trial visits that record where the balls of each table's last stroke stopped: ``places`` (n, 22, 2) and
-    ``potted`` (n, 22)."""
+    """Trial visits that record where each table's last stroke left the balls."""
 
     places: Floats
     potted: Ints

@@ -38,7 +38,7 @@ Dynamics = tuple[Physics, tuple[int, int]]
 
 
 def dynamics_of(physics: PhysicsLike, fidelity: Fidelity) -> Dynamics:
-    """The physics and fidelity that a caller gave, checked."""
+    """The physics and fidelity that a caller passed, checked."""
     return Physics.of(physics), parse_fidelity(fidelity)
 
 
@@ -53,13 +53,7 @@ def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
     Returns
     -------
     numpy.ndarray
-        bool (m, 540). True for each available choice. In a position without a direct pot other lines of the
-        cue ball stand for the pots: parts of balls on that it sees, or escapes over cushions.
-
-    Raises
-    ------
-    ValueError
-        If ``positions`` holds no positions.
+        bool (m, 540). Without a direct pot other lines stand for the pots: parts of balls on, or escapes.
 
     Examples
     --------
@@ -90,11 +84,6 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
     numpy.ndarray
         float32 (n, 4). Actions in [-1, 1].
 
-    Raises
-    ------
-    ValueError
-        If a number is not finite or out of range.
-
     Examples
     --------
     >>> from snooker_env.planning import actions_of
@@ -114,8 +103,7 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
 
 
 def check_strokes(strokes: Any, n: int | None = None) -> Floats:
-    """Strokes (n, 5) as float64; ValueError names the first one with a number that is not finite or out of
-    range."""
+    """Strokes (n, 5) as float64; ValueError names the first one that is not finite or out of range."""
     a = np.asarray(strokes)
     if a.dtype.kind not in "iuf" or a.ndim != 2 or a.shape[1] != COLUMNS or (n is not None and len(a) != n):
         raise refuse_what(
@@ -146,12 +134,10 @@ def check_strokes(strokes: Any, n: int | None = None) -> Floats:
 def encoded(
     actions: Actions, strokes: Floats, places: Vectors | None = None, lines: Vector | None = None
 ) -> Floats:
-    """Checked strokes (n, 5) as actions (n, k) of a box action space, in double precision.
+    """Checked strokes (n, 5) as actions (n, k) of a box action space; what they say beside the stroke is 0: play.
 
     ``places`` (n, 2) [m]: of a cue ball in hand in the D, by default the middle of the baulk line. ``lines``
-    (n,) [rad]: with ``aim="target"``, the direction that each aim is measured from. What else an action says
-    is left at 0: play.
-    """
+    (n,) [rad]: with ``aim="target"``, the direction that each aim is measured from."""
     line = np.zeros(len(strokes)) if lines is None else np.asarray(lines, np.float64)
     out, turned = np.zeros((len(strokes), actions.size)), strokes[:, AIM] - line
     turned = turned - 2.0 * pi * np.round(turned / (2.0 * pi))
@@ -198,8 +184,7 @@ def as_actions(
     physics: PhysicsLike = None,
     fidelity: Fidelity = "standard",
 ) -> NDArray[np.float32]:
-    """Convert choices of ``action="discrete"`` to actions of ``aim="absolute"``: the same strokes, up to the
-    rounding of float32.
+    """Convert choices of ``action="discrete"`` to actions of ``aim="absolute"``, up to the rounding of float32.
 
     Parameters
     ----------
@@ -218,11 +203,6 @@ def as_actions(
     -------
     numpy.ndarray
         float32 (n, 4). Actions in [-1, 1].
-
-    Raises
-    ------
-    ValueError
-        If a row or a choice is out of range, or if ``physics`` or ``fidelity`` is invalid.
 
     Examples
     --------
@@ -266,13 +246,11 @@ def pot_aim(
     physics: PhysicsLike = None,
     fidelity: Fidelity = "standard",
 ) -> NDArray[np.float64]:
-    """Solve the direction in which the cue ball must leave to send a ball to a point, with throw, swerve and
-    the ball's own curve.
+    """Solve the direction in which the cue ball must leave to send a ball to a point, with throw, swerve and curve.
 
-    Only the cue ball and that ball are simulated, on unbounded cloth, until the ball rolls. Secant steps
-    correct the direction until the ball passes the point by less than 1e-6 rad
-    (``snooker_env.tasks.pot_aim``). If no direction succeeds (the stroke is too soft to arrive or the cut too
-    thin), the best direction tried is returned.
+    Only these two balls are simulated, on unbounded cloth; secant steps correct the direction until the ball
+    passes the point by less than 1e-6 rad (``snooker_env.tasks.pot_aim``). If none succeeds (a soft stroke or a
+    thin cut), the best direction tried is returned.
 
     Parameters
     ----------
@@ -283,18 +261,15 @@ def pot_aim(
     balls : array_like
         int (n,). Id of the ball to send, in [1, 21].
     targets : array_like
-        float (n, 2). Where to send it [m]; the aim points of the pockets are
-        ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
+        float (n, 2). Where to send it [m], for a pocket its ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
     speeds : array_like or float
         float, scalar or (n,). Cue speeds [m/s], at least 0.
     side, top : array_like or float, optional
-        float, scalar or (n,). Tip offsets over R, to the right and up, within the miscue limit of the
-        physics; default 0.
+        float, scalar or (n,). Tip offsets over R, to the right and up, within the miscue limit; default 0.
     elevation : array_like or float, optional
         float, scalar or (n,). Elevation of the cue [rad], at least 0; default 0.
     ghosts : array_like, optional
-        float (n, 2). Ghost-ball centres of the straight line [m]; default: 2 R behind the ball as seen from
-        the target.
+        float (n, 2). Ghost-ball centres [m]; default: 2 R behind the ball as seen from the target.
     physics : str, dict, Physics or None, optional
         Physical constants; default None: the preset "paper".
     fidelity : str, optional
@@ -304,11 +279,6 @@ def pot_aim(
     -------
     numpy.ndarray
         float64 (n,). Directions [rad], anticlockwise from +x, as ``actions_of`` takes them.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range, a ball is off the table, or an array has the wrong shape.
 
     Examples
     --------

@@ -30,8 +30,7 @@ NO_NOISE = Noise()
 
 @entry(what="strokes under given errors", seconds=2)
 def _strike(which, strokes, errors, tables, shots, options, noise, silent):
-    """Carry the strokes (n, 5) of the tables ``which`` out up to the strike, under their standard normal
-    errors (n, 5)."""
+    """Carry strokes (n, 5) of the tables ``which`` out up to the strike, under standard normal errors (n, 5)."""
     tables, shots = TableArrays(*tables), StruckArrays(*shots)
     for j in range(which.shape[0]):
         k = which[j]
@@ -46,8 +45,8 @@ def _strike(which, strokes, errors, tables, shots, options, noise, silent):
 
 
 class TrialVisits(Visits):
-    """Visits of one stroke each, to be filled by ``lay``: with ``errors`` (n, 5), what they play are strokes
-    (n, 5), else actions."""
+    """Visits of one stroke each, filled by ``lay``: of strokes (n, 5) with ``errors`` (n, 5), else of
+    actions."""
 
     errors: Floats | None = None
 
@@ -68,11 +67,9 @@ class TrialVisits(Visits):
 def decoded(
     rules: Rules, at: Positions, which: Ints, actions: Floats, nominated: Ints | None = None
 ) -> tuple[Floats, Positions]:
-    """Strokes (n, 5) that checked actions mean on ``at[which]``, and where they are played: the cue ball
-    placed where they say.
+    """Strokes (n, 5) that checked actions mean on ``at[which]``, and the positions with the cue ball placed as they say.
 
-    ``nominated`` (n,): of frames, what is nominated with each stroke; a choice is a pot of that ball.
-    """
+    ``nominated`` (n,): of frames, what is nominated with each stroke; a choice is a pot of that ball."""
     visits, after, n = TrialVisits(replace(rules, noise=NO_NOISE), 0), at[which], len(which)
     visits.lay(after, np.zeros((n, 2), np.uint64))
     if nominated is not None:

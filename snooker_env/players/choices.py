@@ -39,72 +39,23 @@ class ChoicePlayer(BoundPlayer):
         self._planner = Planner(Options(action="discrete", **same), threads=1)
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
-        """Score all choices in n positions.
-
-        Parameters
-        ----------
-        at : Positions
-            The n positions, of visits.
-        seeds : numpy.ndarray
-            int64 (n,).
-
-        Returns
-        -------
-        numpy.ndarray
-            float (n, 540); -inf for choices that are not available.
-        """
+        """Score all choices in n positions of visits, with seeds (n,): float (n, 540), -inf for unavailable
+        ones."""
         raise NotImplementedError
 
     def figures(self, scores: Floats) -> Floats | None:
-        """Return what a ranking shows of the scores of one position.
-
-        Parameters
-        ----------
-        scores : numpy.ndarray
-            float (m,), highest first.
-
-        Returns
-        -------
-        numpy.ndarray or None
-            float64 (m,); None for nothing.
-        """
+        """What a ranking shows of one position's scores (m,), highest first: float64 (m,), or None."""
         return scores.astype(np.float64)
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """Return what the player does, see ``Player.play``.
-
-        Parameters
-        ----------
-        positions : PositionsLike
-            The n positions.
-        seeds : array_like
-            int (n,).
-
-        Returns
-        -------
-        Strokes
-            n strokes.
-        """
+        """See ``Player.play``."""
         visits, places, scores = self._scored(positions, seeds)
         return Strokes(
             self._planner.strokes_of(visits, np.arange(len(visits)), scores.argmax(axis=1))[0], places
         )
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """Rank the choices of each position.
-
-        Parameters
-        ----------
-        positions : PositionsLike
-            The n positions.
-        seeds : array_like
-            int (n,).
-
-        Returns
-        -------
-        list of Ranked
-            One for each position: at most 100 strokes, highest score first.
-        """
+        """Rank the choices of each position: at most 100 strokes, highest score first."""
         visits, places, scores = self._scored(positions, seeds)
         ranked = []
         for k, row in enumerate(scores):
@@ -150,19 +101,15 @@ class Random(ChoicePlayer):
 
 
 class GhostBall(ChoicePlayer):
-    """``ghost_ball``: the widest direct pot, aim solved, in the middle at 2.3 m/s; without one, the geometric
-    player's stroke.
+    """``ghost_ball``: the widest direct pot, aim solved, in the middle at 2.3 m/s; else the geometric player's stroke.
 
-    It places the cue ball, breaks off, nominates and decides after a foul as the kernels of
-    ``tasks.ghost_ball`` do. The opponent of that name plays these kernels alone, at the straight line of the
-    pot, for speed.
-    """
+    It places, breaks off, nominates and decides as the kernels of ``tasks.ghost_ball`` do. The opponent of that
+    name plays these kernels alone, at the straight line of the pot, for speed."""
 
     name, training_shots = "ghost_ball", 0
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """The stroke that it plays, then the same at the other direct pots, with the tolerance of each pot
-        [mrad]."""
+        """Its stroke, then the same at the other direct pots, with the tolerance of each pot [mrad]."""
         at = Positions.of(positions)
         strokes, start = self._played(at, seeds)
         found = pots(start)

@@ -27,8 +27,7 @@ _KINDS = (ValueError, TypeError, ImportError)
 
 
 class PlayerOpponent(Opponent):
-    """A bound player as the opponent: asked once for all tables that wait, with a seed from each table's own
-    stream."""
+    """A bound player as opponent: asked once for all that wait, with a seed of each table's own stream."""
 
     def __init__(self, player: Player, name: str):
         self.player, self.name = player, name
@@ -94,8 +93,7 @@ def _of_train(name: str) -> bool:
 
 
 def _model(path: str, options: Options) -> Player:
-    """A model of Stable-Baselines3: its actions are read as the environment's own, with or without what is
-    said beside the stroke."""
+    """A model of Stable-Baselines3, whose actions are the environment's, with or without what is said."""
     own = {name: getattr(options, name) for name in Options.group("action", "visit")}
     said = own | dict.fromkeys(options.says, True)
     try:

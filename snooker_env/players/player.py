@@ -43,22 +43,15 @@ class Strokes:
         float64 (n, 5). Cue speed [m/s], side and top (tip offsets over R), direction in which the cue ball
         leaves [rad, anticlockwise from +x; squirt is compensated], elevation of the cue [rad].
     place : numpy.ndarray, optional
-        float64 (n, 2). Where a cue ball in hand is placed [m]; NaN where it is played from where it lies.
-        Default: NaN.
+        float64 (n, 2). Where a cue ball in hand is placed [m]; NaN (default): it is played from where it lies.
     nominate : numpy.ndarray, optional
-        int64 (n,). Id of the colour that is nominated after a red or as a free ball; 0: the free ball is
-        declined; -1: the colour first struck. Default: -1.
+        int64 (n,). Id of the colour nominated after a red or as a free ball; 0: the free ball is declined; -1
+        (default): the colour first struck.
     decision : numpy.ndarray, optional
-        int64 (n,). After a foul of the opponent, of ``game.frame_columns``: PLAY, PLAY_AGAIN, REPLACE or
-        PLACE_ANYWHERE. Default: PLAY.
+        int64 (n,). After a foul of the opponent: PLAY (default), PLAY_AGAIN, REPLACE or PLACE_ANYWHERE of
+        ``game.frame_columns``.
     declare : numpy.ndarray, optional
-        int64 (n,). Of ``tasks.declarations``: SAYS_NOTHING, CONCEDES, CLAIMS or OTHER_BEGINS. Default:
-        SAYS_NOTHING.
-
-    Raises
-    ------
-    ValueError
-        If an array has another shape, or a stroke is not finite or out of range.
+        int64 (n,). SAYS_NOTHING (default), CONCEDES, CLAIMS or OTHER_BEGINS of ``tasks.declarations``.
 
     Examples
     --------
@@ -115,18 +108,7 @@ class Strokes:
 
     @classmethod
     def join(cls, parts: "Sequence[Strokes]") -> "Strokes":
-        """Join several ``Strokes``.
-
-        Parameters
-        ----------
-        parts : sequence of Strokes
-            The parts.
-
-        Returns
-        -------
-        Strokes
-            All strokes, in their order.
-        """
+        """Join several ``Strokes`` in their order."""
         names = ("values", "place", "nominate", "decision", "declare")
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
@@ -156,28 +138,11 @@ class Strokes:
         return self.values[:, ELEVATION]
 
     def actions(self, options: Options, at: Positions) -> Floats:
-        """Convert to actions of an environment: the one encoder.
+        """Convert to actions of an environment, the one encoder: float64 (n, k) in [-1, 1].
 
-        Parameters
-        ----------
-        options : Options
-            Of the environment, with ``action="box"`` and ``aim="absolute"``. What the action holds
-            (elevation, placement, nomination, decision, declaration) is written; what it does not hold must
-            not be needed.
-        at : Positions
-            The n positions: a place means another action where the cue ball may stand anywhere, and a
-            nomination another one with a free ball.
-
-        Returns
-        -------
-        numpy.ndarray
-            float64 (n, k), in [-1, 1].
-
-        Raises
-        ------
-        ValueError
-            If the environment reads other actions, or a stroke has a part that its actions do not hold.
-        """
+        ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. ``at``: the n positions, on
+        which the meaning of a place and a nomination depends. ValueError if the environment reads other actions, or
+        a stroke has a part that its actions do not hold."""
         box = options.rules.actions
         if not isinstance(box, Actions) or box.aim != "absolute":
             raise refuse_what(
@@ -238,8 +203,7 @@ class Strokes:
         ]
 
     def _nominated(self, at: Positions) -> Floats:
-        """The component of the nomination: one of six parts of the range after a red, of seven with a free
-        ball."""
+        """The component of the nomination: a sixth of the range each after a red, a seventh with a free ball."""
         n = np.maximum(self.nominate - YELLOW + 1, 0)  # 0 none, 1 to 6 yellow to black
         after_red = at.game[:, BALL_ON] == 0
         return np.where(after_red, (np.maximum(n, 1) - 0.5) / COLOURS, (n + 0.5) / (1 + COLOURS)) * 2.0 - 1.0
@@ -283,45 +247,16 @@ class Player(Protocol):
     """
 
     def at(self, rules: RulesLike) -> "Player":
-        """Return the player bound to where it plays.
+        """Return a new player bound to where it plays: physics, table, fidelity, noise and, for frames, the game.
 
-        Parameters
-        ----------
-        rules : Env, VectorEnv, AECEnv, Options or dict
-            Physics, table, fidelity, execution noise and, for frames, the game. How the actions of an
-            environment are read does not matter: strokes are the same everywhere.
-
-        Returns
-        -------
-        Player
-            A new player, which may be asked.
-
-        Raises
-        ------
-        ValueError
-            If the options are invalid, or the player cannot play under them.
-        """
+        How an environment's actions are read does not matter: strokes are the same everywhere. ValueError if the
+        options are invalid, or the player cannot play under them."""
         ...
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """Return what the player does in each of n positions.
+        """Return what the player does in each of n positions, of visits or of frames as the striker sees them.
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The n positions, of visits or of frames as the striker sees them.
-        seeds : array_like
-            int (n,). Equal positions and seeds give equal strokes, however many are asked for at once.
-
-        Returns
-        -------
-        Strokes
-            n strokes and what is said with them.
-
-        Raises
-        ------
-        ValueError
-            If a position is invalid or ``seeds`` has the wrong shape.
+        ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once.
         """
         ...
 

@@ -39,8 +39,7 @@ def players() -> list[str]:
     Returns
     -------
     list of str
-        Names that ``player`` accepts. ``best_pot``, ``search`` and ``planner`` also take a number of
-        simulated shots: "search_2000".
+        Names that ``player`` accepts; those that search also take a number of simulated shots: "search_2000".
 
     Examples
     --------
@@ -65,8 +64,7 @@ def player(name: Any, *, trust: bool = False) -> Player:
         * a model's ``.zip`` of Stable-Baselines3 or sb3-contrib, or a training run's folder or files of
           ``train.py``;
         * "program:COMMAND", an external program (docs/play/protocol.md);
-        * a player, which is returned as it is; or an object with ``options`` and
-          ``act(observations, masks, seeds)``.
+        * a player, or an object with ``options`` and ``act(observations, masks, seeds)``.
     trust : bool, optional
         Whether code in a model's ``.zip`` may run; default False.
 
@@ -83,8 +81,7 @@ def player(name: Any, *, trust: bool = False) -> Player:
     Examples
     --------
     >>> import snooker_env as sn
-    >>> strokes = sn.player("ghost_ball").at({}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [7])
-    >>> strokes.values.shape
+    >>> sn.player("ghost_ball").at({}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [7]).values.shape
     (1, 5)
     """
     truth("trust", trust)
@@ -148,8 +145,7 @@ def _installed() -> dict[str, EntryPoint]:
 
 
 def _importable(module: str) -> bool:
-    """Whether there is a module: this repository's own ``agents`` are named by a wheel that does not hold
-    them."""
+    """Whether there is a module: a wheel names this repository's ``agents`` but does not hold them."""
     try:
         return importlib.util.find_spec(module) is not None
     except ModuleNotFoundError:

@@ -20,11 +20,9 @@ _VIEW = "must be a model trained on the observation of a visit or a frame, flat,
 
 @dataclass(frozen=True)
 class FittingModel:
-    """A model's file whose spaces, as the file describes them, are those of an environment with these
-    options.
+    """A model's file whose spaces are those of an environment with these options.
 
-    ``saved``: the file, of which nothing was unpickled. ``options``: how it sees and acts, see ``Seen``.
-    """
+    ``saved``: the file, of which nothing was unpickled. ``options``: how it sees and acts, see ``Seen``."""
 
     saved: SavedModel
     options: dict[str, Any]
@@ -74,8 +72,7 @@ class FittingModel:
 
 
 class SavedNetwork:
-    """The policy of a saved model as a ``Seen``; its actions are deterministic. It is loaded again in another
-    process."""
+    """The policy of a saved model, deterministic, as a ``Seen``; loaded again in another process."""
 
     def __init__(self, model: FittingModel, trust: bool):
         self.options, self.model, self._trust = model.options, model, trust
@@ -86,8 +83,7 @@ class SavedNetwork:
         return self.__dict__ | {"_network": None}
 
     def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
-        """The greedy actions, one row at a time: the products of a batch round otherwise than those of one
-        row."""
+        """The greedy actions, row by row: the products of a batch round otherwise than those of one row."""
         if self._network is None:
             self._network = self.model.network(self._trust)
         actions = []
@@ -106,8 +102,7 @@ class SavedNetwork:
 
 
 def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = "player") -> SeenPlayer:
-    """The player of a model's ``.zip``; ValueError if it is none, or for the files of ``train.py`` without
-    their reader."""
+    """The player of a model's ``.zip``; ValueError for other files and for those of ``train.py``."""
     try:
         ours = path.is_dir() or by_train(entries(path))
     except Exception as error:

@@ -32,17 +32,8 @@ MOST = 40
 
 
 class SearchPlayer(BoundPlayer):
-    """A player that plays the best stroke of a ``StrokeSearch``.
-
-    Parameters
-    ----------
-    kind : str
-        One of ``KINDS``.
-    budget : int, optional
-        Simulated shots a decision, at least 8; default 120.
-    learned : Learned, optional
-        Policy and value of a planner. Default: the package's, by the execution noise.
-    """
+    """The best stroke of a ``StrokeSearch``; a planner's ``learned`` policy and value are by default the
+    package's."""
 
     def __init__(self, kind: str, budget: int = BUDGET, learned: Learned | None = None):
         self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"
@@ -67,8 +58,7 @@ class SearchPlayer(BoundPlayer):
         return Strokes(ranked.strokes[:, 0], places)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """The strokes that met noise samples, those that met most first, best first, with their scores
-        [points]."""
+        """The strokes that met noise samples, most first, best first, with their scores [points]."""
         at = Positions.of(positions)
         ranked, places = self._ranked(at, seeds)
         met = (ranked.samples > 0).sum(axis=1)

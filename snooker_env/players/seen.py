@@ -42,9 +42,8 @@ restores."""
 class Seen(Protocol):
     """What acts on observations: a network, or any model of another library.
 
-    It may have ``options``, a dict: how its observations look and its actions are read ("action", "aim",
-    "observation", "elevation", "placement", "decision", ... of ``Options``), and "task", "visit" (default) or
-    "frame".
+    It may have ``options``, a dict of how its observations look and its actions are read ("action", "aim",
+    "observation", "placement", ... of ``Options``), with "task": "visit" (default) or "frame".
 
     Examples
     --------
@@ -57,32 +56,18 @@ class Seen(Protocol):
     """
 
     def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
-        """Return n actions.
+        """Return n actions of the action space that ``options`` says, for n observations of the kind that they say.
 
-        Parameters
-        ----------
-        observations : numpy.ndarray or dict
-            The n observations, of the kind that ``options`` says.
-        masks : numpy.ndarray or None
-            bool (n, choices): the available choices of ``action="discrete"``; None for box actions.
-        seeds : numpy.ndarray
-            int64 (n,): of what it draws. Equal rows and seeds must give equal actions, however many are asked
-            for.
-
-        Returns
-        -------
-        array_like
-            n actions of the action space that ``options`` says.
-        """
+        ``masks``: bool (n, choices) with ``action="discrete"``, else None. ``seeds``, int64 (n,): equal rows and
+        seeds must give equal actions, however many are asked for."""
         ...
 
 
 class SeenPlayer(BoundPlayer):
     """A player that shows positions to a ``Seen`` as observations and reads its actions as strokes.
 
-    One that sees visits plays frames too: it sees the stroke to come as one of a visit, with a free ball as
-    any colour; a cue ball in hand that it does not place stands where ``ghost_ball`` puts it; after a foul it
-    plays.
+    One that sees visits plays frames too: with a free ball any colour is on; a cue ball in hand that it does not
+    place stands where ``ghost_ball`` puts it; after a foul it plays.
 
     Parameters
     ----------
@@ -98,10 +83,10 @@ class SeenPlayer(BoundPlayer):
     >>> import snooker_env as sn
     >>> from snooker_env.players import SeenPlayer
     >>> class First:
-    ...     options = {"action": "discrete"}
     ...     def act(self, observations, masks, seeds):
     ...         return masks.argmax(axis=1)
-    >>> SeenPlayer(First()).at({}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0]).speed.tolist()
+    >>> player = SeenPlayer(First(), {"action": "discrete"}).at({})
+    >>> player.play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0]).speed.tolist()
     [0.9]
     """
 
@@ -120,8 +105,7 @@ class SeenPlayer(BoundPlayer):
         self._bind(Options())
 
     def _bind(self, options: Options) -> None:
-        """Read its options with the physics of ``options``; ValueError if they are not those of an
-        environment."""
+        """Read its options with the physics of ``options``; ValueError if they are no environment's."""
         same: dict[str, Any] = {name: getattr(options, name) for name in Options.group("shot")}
         if self.frames:
             match = (
@@ -131,20 +115,7 @@ class SeenPlayer(BoundPlayer):
         self._rules = Options(**same | self.sees).rules
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """Return what the player does, see ``Player.play``.
-
-        Parameters
-        ----------
-        positions : PositionsLike
-            The n positions.
-        seeds : array_like
-            int (n,).
-
-        Returns
-        -------
-        Strokes
-            n strokes.
-        """
+        """See ``Player.play``."""
         _ = self.options  # it must be bound
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at))
@@ -167,8 +138,7 @@ class SeenPlayer(BoundPlayer):
         return (at.in_hand & bool(self._rules.actions.placement))[:, None]
 
     def _shown(self, at: Positions, keys: Ints) -> tuple[Positions, NDArray[np.float64]]:
-        """The positions as it sees them, and where cue balls in hand have been placed for it (n, 2), else
-        NaN."""
+        """The positions as it sees them, and where cue balls in hand were placed for it (n, 2), else NaN."""
         none = np.full((len(at), 2), np.nan)
         if self.frames:
             return (at if at.of_frames else _begun(at)), none

@@ -30,18 +30,7 @@ class BoundPlayer:
     _options: Options | None = None
 
     def at(self, rules: RulesLike) -> Any:
-        """Return a copy bound to where it plays, see ``Player.at``.
-
-        Parameters
-        ----------
-        rules : Env, VectorEnv, AECEnv, Options or dict
-            Where it plays.
-
-        Returns
-        -------
-        player
-            A copy of this player, which may be asked.
-        """
+        """Return a copy of this player bound to where it plays, see ``Player.at``."""
         bound = copy.copy(self)
         bound._options = options_in(rules)
         bound._bind(bound._options)
@@ -66,8 +55,7 @@ def streams_of(seeds: Any) -> np.ndarray:
 
 
 def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
-    """Visits with each cue ball in hand placed where ``ghost_ball`` puts it, and these places (n, 2); NaN for
-    others."""
+    """Visits with cue balls in hand where ``ghost_ball`` puts them, and these places (n, 2); NaN for others."""
     places = np.full((len(at), 2), np.nan)
     if not at.in_hand.any():
         return at.as_visits(), places

@@ -21,9 +21,7 @@ POINTS = 40.0
 class LearnedValue:
     """The value [points] of n ``Positions``: called with them, it returns float32 (n,).
 
-    ``members``: the layers of each network, (weight (out, in), bias (out,)). ``spread``: standard deviation
-    of the cue ball's direction [rad], of ``planning.spread_of``. ``threads``: at most; results do not depend
-    on it.
+    ``members``: the layers of each network, (weight (out, in), bias (out,)). ``spread`` [rad]: see ``spread_of``.
     """
 
     def __init__(self, members: Sequence[Sequence[tuple[NDArray, NDArray]]], spread: float, threads: int = 1):

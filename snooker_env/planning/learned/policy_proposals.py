@@ -25,13 +25,7 @@ _SIDE_STEP, _TOP_STEP = _SIDES[1] - _SIDES[0], _TOPS[1] - _TOPS[0]
 
 
 class PolicyProposals:
-    """The proposals of a ``StrokeSearch`` by a masked policy over the discrete choices.
-
-    Parameters
-    ----------
-    policy : StrokePolicy
-        Scores the choices on tables as ``with_pots`` shows them.
-    """
+    """The proposals of a ``StrokeSearch`` by a ``StrokePolicy`` on tables as ``with_pots`` shows them."""
 
     def __init__(self, policy):
         self.policy = policy

@@ -32,8 +32,7 @@ def tolerance_of(shown):
 
 @entry(what="the view of the pots", seconds=1)
 def _add_pots(observations, shown):
-    """Copy the observations (n, OBSERVATION_SIZE) into ``shown`` and write the pots behind them, read from
-    the observations alone."""
+    """Copy observations (n, OBSERVATION_SIZE) to ``shown``, and the pots read from them behind."""
     found = np.empty((POTS, POT_COLUMNS))
     positions, on_table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_)
     for k in range(len(observations)):
@@ -76,13 +75,10 @@ def _add_pots(observations, shown):
 
 
 def with_pots(observations):
-    """Flat observations (n, OBSERVATION_SIZE) with the four widest direct pots appended, ``POT_ENTRIES``
-    numbers each, 0 where none is.
+    """Flat observations (n, OBSERVATION_SIZE) and behind them the four widest pots, ``POT_ENTRIES`` each, 0 for none.
 
-    1, direction cue ball -> ghost ball (x, y), sine and cosine of the cut, both distances, tolerance, the
-    ball's value and place (x, y), the pocket's place. A small network does not find these lines by itself in
-    a few minutes: without them the same run makes a third of the pots.
-    """
+    1, direction cue ball -> ghost ball (x, y), sine and cosine of the cut, both distances, tolerance, the ball's
+    value and place, the pocket's place: without them a small network makes a third of the pots."""
     shown = np.empty((len(observations), SHOWN), np.float32)
     _add_pots(np.ascontiguousarray(observations), shown)
     return shown

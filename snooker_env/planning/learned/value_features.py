@@ -55,8 +55,7 @@ def _logit(p):
 
 @kernel
 def _clear(balls, many, ax, ay, bx, by, ball, reach):
-    """Whether the first ``many`` balls of ``balls`` (id, x, y), except ``ball``, are ``reach`` or more away
-    from a segment."""
+    """Whether ``many`` of ``balls`` (id, x, y), except ``ball``, are ``reach`` or more away from a segment."""
     ux, uy = bx - ax, by - ay
     length = _length(ux, uy)
     if length > 0.0:
@@ -76,8 +75,7 @@ def _clear(balls, many, ax, ay, bx, by, ball, reach):
 
 @kernel
 def _open(balls, many, open_to):
-    """How open each ball is for each pocket (22, 6): its window as an angle [rad], 0 if the way is blocked,
-    wherever the cue ball lies."""
+    """Each ball's window for each pocket as an angle (22, 6) [rad], wherever the cue ball lies; 0 if blocked."""
     d = 2.0 * BALL_RADIUS
     for i in range(many):
         b, x, y = int(balls[i, 0]), balls[i, 1], balls[i, 2]
@@ -230,8 +228,7 @@ def in_parts(n, threads, fill):
 
 
 def value_features(at, spread, threads=1):
-    """Features of n ``Positions`` with the cue ball on the table: float32 (n, SIZE). ``spread``: of
-    ``planning.spread_of``."""
+    """Features of n ``Positions`` with the cue ball on the table: float32 (n, SIZE)."""
     ball_on, out = at.ball_on.copy(), np.empty((len(at), SIZE), np.float32)
     in_parts(
         len(at),
