@@ -4,8 +4,8 @@ simulator."""
 import numpy as np
 
 from snooker_env.planning import Positions
+from snooker_env.planning.positions import seeds_of
 from snooker_env.players import BoundPlayer, Strokes
-from snooker_env.players.player import seeds_of
 from snooker_env.players.simple import placed
 
 from .aim_search import Aimer

@@ -81,13 +81,13 @@ class Paths(NamedTuple):
 
 @entry(what="the pots of positions", seconds=1)
 def _pots(positions, on_table, game, ball, pocket, ghost, cut, tolerance):
-    found = np.empty((ball.shape[1], POT_COLUMNS))
+    lines = np.empty((ball.shape[1], POT_COLUMNS))
     for k in range(len(ball)):
         on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
-        for j in range(find_pots(positions[k], on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0):
-            ball[k, j], pocket[k, j] = int(found[j, POT_BALL]), int(found[j, POT_POCKET])
-            ghost[k, j, 0], ghost[k, j, 1] = found[j, GHOST_X], found[j, GHOST_Y]
-            cut[k, j], tolerance[k, j] = np.arccos(min(1.0, found[j, COS_CUT])), found[j, TOLERANCE]
+        for j in range(find_pots(positions[k], on_table[k], on, BALL_RADIUS, lines) if on_table[k, 0] else 0):
+            ball[k, j], pocket[k, j] = int(lines[j, POT_BALL]), int(lines[j, POT_POCKET])
+            ghost[k, j, 0], ghost[k, j, 1] = lines[j, GHOST_X], lines[j, GHOST_Y]
+            cut[k, j], tolerance[k, j] = np.arccos(min(1.0, lines[j, COS_CUT])), lines[j, TOLERANCE]
 
 
 def pots(positions: PositionsLike, most: int = POTS) -> Pots:
@@ -204,7 +204,8 @@ def clear_paths(positions: PositionsLike) -> Paths:
     Returns
     -------
     Paths
-        Two bool arrays (m,), of the foul-and-miss rule (``snooker_env.game.paths``); False without a cue ball.
+        Two bool arrays (m,), of the foul-and-miss rule (``snooker_env.game.paths``); False without a cue
+        ball.
 
     Examples
     --------

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import array, integer, refuse, refuse_what
-from .._types import Environment, Floats, Integers, Scalars, Vectors
+from .._types import Environment, Integers, Scalars, Vectors
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..tasks.box_actions import Actions
@@ -22,9 +22,8 @@ from ..tasks.rewards import REWARDS
 from ..tasks.tables import I_FIRST, I_PENALTY, StepOutput
 from ..tasks.threads import Threads, processors
 from .positions import Positions, PositionsLike, bare, check_played, rows_of
-from .stops import Stops, WatchedVisits
 from .strokes import check_strokes, encoded, solved_aims, solved_choices
-from .trials import AIM, TrialVisits, decoded
+from .trials import AIM, Stops, TrialVisits, WatchedVisits, decoded
 from .trials import COLUMNS as STROKE
 
 
@@ -60,8 +59,8 @@ class Outcomes(NamedTuple):
 class Planner:
     """Plays strokes on copies of positions exactly as the environment would: same physics, rules and errors.
 
-    Each stroke is judged as one of a *visit*, which ends with the first miss, foul or clearance; penalties, free
-    balls, the foul-and-miss rule and the opponent of a frame are not covered.
+    Each stroke is judged as one of a *visit*, which ends with the first miss, foul or clearance; penalties,
+    free balls, the foul-and-miss rule and the opponent of a frame are not covered.
 
     A *stroke* is a row of five numbers in SI: cue speed [m/s], side and top (tip offset over R, to the right
     and up), the direction in which the cue ball leaves [rad], elevation of the cue [rad]. The cue itself
@@ -81,9 +80,10 @@ class Planner:
     --------
     >>> import numpy as np
     >>> from snooker_env.planning import Planner, Position
-    >>> planner, position = Planner({"action": "discrete", "noise": "club"}), Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-    >>> planner.play(position, np.zeros(20, int), np.full(20, 67), keys=np.arange(20)).points.shape, planner.shots
-    ((20,), 20)
+    >>> planner = Planner({"action": "discrete", "noise": "club"})
+    >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> planner.play(position, np.zeros(20, int), np.full(20, 67), keys=np.arange(20)).points.shape
+    (20,)
     """
 
     def __init__(
@@ -157,15 +157,16 @@ class Planner:
     ) -> Outcomes:
         """Play n strokes, each on a copy of its position, and return ``Outcomes``.
 
-        ``rows`` int (n,): row of the m ``positions`` (see ``Positions.of``) for each stroke. What is played is
-        either ``actions``, float (n, k), or int (n,) with ``action="discrete"``; or ``strokes``, float (n, 5) in SI,
-        with a cue ball in hand played from where it lies. The errors are drawn by ``keys``, int (n,) in [0, 2**64),
-        or (n, 2) with a counter as a saved state has them: equal keys give equal errors for every stroke (common
-        random numbers). Or they are ``errors``, float (n, 5) in standard deviations, of speed, side, top, aim and
-        elevation. Without noise neither is needed.
+        ``rows`` int (n,): row of the m ``positions`` (see ``Positions.of``) for each stroke. What is played
+        is either ``actions``, float (n, k), or int (n,) with ``action="discrete"``; or ``strokes``, float (n,
+        5) in SI, with a cue ball in hand played from where it lies. The errors are drawn by ``keys``, int
+        (n,) in [0, 2**64), or (n, 2) with a counter as a saved state has them: equal keys give equal errors
+        for every stroke (common random numbers). Or they are ``errors``, float (n, 5) in standard deviations,
+        of speed, side, top, aim and elevation. Without noise neither is needed.
 
         ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
-        SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes about 20 us.
+        SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes about 20
+        us.
         """
         after, out = self._played(positions, rows, actions, keys, strokes=strokes, errors=errors)
         return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
@@ -211,7 +212,9 @@ class Planner:
             )
         played = self._rules.actions.check_many(actions, n) if strokes is None else check_strokes(strokes, n)
         streams = _streams(keys, n, self.noise.silent or errors is not None)
-        wrong = None if errors is None else _errors(errors, keys, n)
+        if errors is not None and keys is not None:
+            raise refuse_what("keys, errors", "both", "must be one of them: the errors are drawn or passed")
+        wrong = None if errors is None else array("errors", errors, (n, STROKE))
         check_played(at, which, self.table, self.physics.R)
         after = at[which]  # a visit is played in place: each row becomes its afterstate
         if strokes is not None and wrong is None:
@@ -231,8 +234,8 @@ class Planner:
     ) -> tuple[NDArray[np.float64], Positions]:
         """Decode actions or choices (n, k) or (n,), see ``play``: which strokes do they mean?
 
-        Returns float64 (n, 5), strokes in SI without errors, and n ``Positions`` that they are played from, with a
-        cue ball in hand on the place that the action names."""
+        Returns float64 (n, 5), strokes in SI without errors, and n ``Positions`` that they are played from,
+        with a cue ball in hand on the place that the action names."""
         at = Positions.of(positions)
         which = rows_of(at, rows)
         return decoded(self._rules, at, which, self._rules.actions.check_many(actions, len(which)))
@@ -247,10 +250,10 @@ class Planner:
     ) -> NDArray[np.float64]:
         """Encode strokes (n, 5) as actions of this planner's action space: float64 (n, k) in [-1, 1].
 
-        ``positions`` and ``rows``: where each is played, required with ``aim="target"``, which is measured from a
-        line there. ``places`` (n, 2) [m]: with ``placement=True``, where in the D a cue ball in hand is placed, by
-        default the middle of the baulk line. What actions say beside the stroke is 0: to play. ValueError if a
-        stroke is out of range or cannot be such an action."""
+        ``positions`` and ``rows``: where each is played, required with ``aim="target"``, which is measured
+        from a line there. ``places`` (n, 2) [m]: with ``placement=True``, where in the D a cue ball in hand
+        is placed, by default the middle of the baulk line. What actions say beside the stroke is 0: to play.
+        ValueError if a stroke is out of range or cannot be such an action."""
         told, form = check_strokes(strokes), self._rules.actions
         if not isinstance(form, Actions):
             raise refuse("action", "discrete", 'must be "box": choices hold a few strokes only')
@@ -267,7 +270,7 @@ class Planner:
         return encoded(form, told, where, lines[:, AIM])
 
     def as_actions(self, positions: PositionsLike, rows: Integers, choices: Integers) -> NDArray[np.float32]:
-        """Convert choices of ``action="discrete"``, int (n,), to actions of ``aim="absolute"``: float32 (n, 4).
+        """Convert choices of ``action="discrete"``, int (n,), to absolute ones: float32 (n, 4).
 
         With this planner's physics and fidelity; ValueError if it reads actions with another ``aim``."""
         if isinstance(self._rules.actions, Actions) and self._rules.actions.aim != "absolute":
@@ -284,20 +287,15 @@ class Planner:
         rows: Integers,
         balls: Integers,
         targets: Vectors,
-        speeds: Scalars,
+        strokes: Scalars | Vectors,
         *,
-        side: Scalars = 0.0,
-        top: Scalars = 0.0,
-        elevation: Scalars = 0.0,
         ghosts: Vectors | None = None,
     ) -> NDArray[np.float64]:
         """Solve the cue ball's directions with this planner's physics and fidelity: float64 (n,).
 
         See ``snooker_env.planning.pot_aim``."""
-        dynamics = (self.physics, self._rules.fidelity)
-        return solved_aims(
-            Positions.of(positions), rows, balls, targets, speeds, side, top, elevation, ghosts, dynamics
-        )
+        dynamics = self.physics, self._rules.fidelity
+        return solved_aims(Positions.of(positions), rows, balls, targets, strokes, ghosts, dynamics)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_lock"}
@@ -317,34 +315,25 @@ def options_in(source: Any) -> Options:
     return options
 
 
-def _errors(errors: Vectors, keys: Any, n: int) -> Floats:
-    """Standard normal errors (n, 5), checked."""
-    if keys is not None:
-        raise refuse_what("keys, errors", "both", "must be one of them: the errors are drawn or given")
-    return array("errors", errors, (n, STROKE))
-
-
 def _streams(keys: Integers | Sequence[Integers] | None, n: int, silent: bool) -> NDArray[np.uint64]:
     """The random stream of each stroke, key and counter: uint64 (n, 2)."""
     streams = np.zeros((n, 2), np.uint64)
+    if keys is None and silent:
+        return streams
+    allowed = f"{n} integers in [0, 2**64), a noise sample for each stroke"
     if keys is None:
-        if silent:
-            return streams
-        raise refuse(
-            "keys",
-            None,
-            f"must be given with execution noise: {n} integers in [0, 2**64), a noise sample for each stroke",
-        )
-    allowed = f"must be {n} integers in [0, 2**64), a noise sample for each stroke"
+        raise refuse("keys", None, f"must be given with execution noise: {allowed}")
     # NumPy converts a list of large and small integers to floats
-    given = keys if isinstance(keys, np.ndarray) else np.array(keys, object)
-    if given.dtype == object and all(isinstance(k, int | np.integer) and 0 <= k < 2**64 for k in given.flat):
-        given = given.astype(np.uint64)
-    if given.shape not in ((n,), (n, 2)):
-        raise refuse_what("keys", f"array of shape {given.shape}", allowed)
-    if given.dtype.kind not in "iu" or (given.dtype.kind == "i" and (given < 0).any()):
-        raise refuse_what(
-            "keys", "negative numbers" if given.dtype.kind == "i" else f"array of {given.dtype}", allowed
-        )
-    streams[:, : given.ndim] = given.reshape(n, -1)
+    numbers = keys if isinstance(keys, np.ndarray) else np.array(keys, object)
+    if numbers.dtype == object and all(
+        isinstance(k, int | np.integer) and 0 <= k < 2**64 for k in numbers.flat
+    ):
+        numbers = numbers.astype(np.uint64)
+    if numbers.shape not in ((n,), (n, 2)):
+        raise refuse_what("keys", f"array of shape {numbers.shape}", f"must be {allowed}")
+    negative = numbers.dtype.kind == "i" and bool((numbers < 0).any())
+    if negative or numbers.dtype.kind not in "iu":
+        what = "negative numbers" if negative else f"array of {numbers.dtype}"
+        raise refuse_what("keys", what, f"must be {allowed}")
+    streams[:, : numbers.ndim] = numbers.reshape(n, -1)
     return streams

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import integer, number, refuse_what
+from .._check import integer, number
 from .._types import Bools, Environment, Floats, Integers, Ints
 from ..game.balls import CUE, SPOTS, BallOn
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS
@@ -26,7 +26,7 @@ from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options
 from ..tasks.tables import I_PENALTY, I_POINTS
 from .planner import Outcomes, Planner, options_in
-from .positions import Positions, PositionsLike, check_played
+from .positions import Positions, PositionsLike, check_played, seeds_of
 from .proposals import Proposals, at_balls, at_pots, over_cushions
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import DIMENSIONS, normal_points
@@ -62,7 +62,7 @@ WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)
 
 
 class Ranked(NamedTuple):
-    """The strokes tried in each of n positions, as returned by ``StrokeSearch.rank``: most samples first, best first.
+    """The strokes that ``StrokeSearch.rank`` tried in n positions: most samples first, then best first.
 
     A stroke that was left behind in an earlier round may keep a higher score: fewer samples flatter it.
 
@@ -177,19 +177,13 @@ class StrokeSearch:
         )[0]
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> Ranked:
-        """Try strokes in n positions and return them ``Ranked``; the first stroke of a row is the one to play.
+        """Try strokes in n positions and return them ``Ranked``: each row's first one is to be played.
 
-        ``seeds``, int (n,): of the proposals and noise samples; equal seeds give equal decisions. A cue ball in hand
-        is played from where it lies. ValueError if a position is invalid or has no stroke left to play."""
+        ``seeds``, int (n,): of the proposals and noise samples; equal seeds give equal decisions. A cue ball
+        in hand is played from where it lies. ValueError if a position is invalid or has no stroke left to
+        play."""
         at = Positions.of(positions).as_visits()
-        n, own = len(at), np.asarray(seeds)
-        if own.shape != (n,) or own.dtype.kind not in "iu":
-            raise refuse_what(
-                "seeds",
-                f"{own.dtype} array of shape {own.shape}",
-                f"must be {n} integers, one for each position",
-            )
-        keys = (own.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
+        n, keys = len(at), seeds_of(seeds, len(at))
         check_played(at, np.arange(n), self.planner.table, self.planner.physics.R)
         looks, rounds = self.strokes_tried, () if self.noise.silent else schedule(self.budget)[1]
         if not n:

@@ -7,10 +7,11 @@ import numpy as np
 
 from .._types import Floats, Ints
 from ..planning import Planner, Positions, action_masks, pots
+from ..planning.positions import seeds_of
 from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS, choice_of
 from ..tasks.ghost_ball import geometric_strokes
 from ..tasks.options import Options
-from .player import Ranked, Strokes, seeds_of
+from .player import Ranked, Strokes
 from .simple import BoundPlayer, placed, streams_of
 
 MOST = 100
@@ -101,10 +102,10 @@ class Random(ChoicePlayer):
 
 
 class GhostBall(ChoicePlayer):
-    """``ghost_ball``: the widest direct pot, aim solved, in the middle at 2.3 m/s; else the geometric player's stroke.
+    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; else the geometric player's.
 
-    It places, breaks off, nominates and decides as the kernels of ``tasks.ghost_ball`` do. The opponent of that
-    name plays these kernels alone, at the straight line of the pot, for speed."""
+    It places, breaks off, nominates and decides as the kernels of ``tasks.ghost_ball`` do. The opponent of
+    that name plays these kernels alone, at the straight line of the pot, for speed."""
 
     name, training_shots = "ghost_ball", 0
 
@@ -112,16 +113,16 @@ class GhostBall(ChoicePlayer):
         """Its stroke, then the same at the other direct pots, with the tolerance of each pot [mrad]."""
         at = Positions.of(positions)
         strokes, start = self._played(at, seeds)
-        found = pots(start)
+        direct = pots(start)
         ranked = []
-        for k, many in enumerate((found.ball >= 0).sum(axis=1).tolist()):
+        for k, many in enumerate((direct.ball >= 0).sum(axis=1).tolist()):
             if many < 2:
                 ranked.append(Ranked(strokes[k : k + 1], None))
                 continue
             values = self._planner.strokes_of(start, np.full(many, k), STROKES * np.arange(many) + _PLAIN)[0]
             others = Strokes(values, np.repeat(strokes.place[k : k + 1], many, 0))
             ranked.append(
-                Ranked(Strokes.join([strokes[k : k + 1], others[1:]]), 1e3 * found.tolerance[k, :many])
+                Ranked(Strokes.join([strokes[k : k + 1], others[1:]]), 1e3 * direct.tolerance[k, :many])
             )
         return ranked
 

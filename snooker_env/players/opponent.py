@@ -56,7 +56,7 @@ class PlayerOpponent(Opponent):
                 f"must be {len(which)} Strokes, one for each position",
             )
         out = []
-        for part in (strokes.values, strokes.place, strokes.nominate, strokes.decision, strokes.declare):
+        for part in strokes.parts:
             out.append(np.zeros((frames.n, *part.shape[1:]), part.dtype))
             out[-1][which] = part
         return tuple(out)
@@ -94,12 +94,12 @@ def _of_train(name: str) -> bool:
 
 def _model(path: str, options: Options) -> Player:
     """A model of Stable-Baselines3, whose actions are the environment's, with or without what is said."""
-    own = {name: getattr(options, name) for name in Options.group("action", "visit")}
-    said = own | dict.fromkeys(options.says, True)
+    plain = {name: getattr(options, name) for name in Options.group("action", "visit")}
+    full = plain | dict.fromkeys(options.says, True)
     try:
-        model = FittingModel.of(path, said, "opponent")
+        model = FittingModel.of(path, full, "opponent")
     except ValueError:
-        if said == own or "nominate" in options.says:  # a nomination cannot be left out
+        if full == plain or "nominate" in options.says:  # a nomination cannot be left out
             raise
-        model = FittingModel.of(path, own, "opponent")
+        model = FittingModel.of(path, plain, "opponent")
     return SeenPlayer(SavedNetwork(model, options.trust), name=path)

@@ -18,19 +18,15 @@ from ..game.balls import YELLOW
 from ..game.frame_columns import BALL_ON, PLAY, PLAY_AGAIN
 from ..game.ruling import AUTO
 from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
-from ..planning import Position, Positions
+from ..planning.positions import Positions, PositionsLike
+from ..planning.strokes import NAMES
+from ..planning.trials import AIM, ELEVATION, SIDE, SPEED, TOP
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.declarations import CLAIMS, COLOURS, SAYS_NOTHING
 from ..tasks.options import Options
 
 RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]
 """What ``Player.at`` takes: an environment, an ``Options``, or a dict of its fields."""
-PositionsLike: TypeAlias = (
-    Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
-)
-"""What ``Player.play`` takes: anything that ``Positions.of`` accepts."""
-(SPEED, SIDE, TOP, AIM, ELEVATION) = range(5)
-"""Columns of a stroke."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +39,8 @@ class Strokes:
         float64 (n, 5). Cue speed [m/s], side and top (tip offsets over R), direction in which the cue ball
         leaves [rad, anticlockwise from +x; squirt is compensated], elevation of the cue [rad].
     place : numpy.ndarray, optional
-        float64 (n, 2). Where a cue ball in hand is placed [m]; NaN (default): it is played from where it lies.
+        float64 (n, 2). Where a cue ball in hand is placed [m]; NaN (default): it is played from where it
+        lies.
     nominate : numpy.ndarray, optional
         int64 (n,). Id of the colour nominated after a red or as a free ball; 0: the free ball is declined; -1
         (default): the colour first struck.
@@ -80,9 +77,10 @@ class Strokes:
         fine = np.isfinite(values) & (values >= least) & (values <= most)
         if not fine.all():
             k, c = np.argwhere(~fine)[0].tolist()
-            name = ("speed", "side", "top", "aim", "elevation")[c]
             raise refuse(
-                f"{name}[{k}]", float(values[k, c]), f"must be finite and in [{least[c]:.3g}, {most[c]:.3g}]"
+                f"{NAMES[c]}[{k}]",
+                float(values[k, c]),
+                f"must be finite and in [{least[c]:.3g}, {most[c]:.3g}]",
             )
         usual: dict[str, Any] = {
             "place": np.full((n, 2), np.nan),
@@ -102,15 +100,17 @@ class Strokes:
 
     def __getitem__(self, rows: Any) -> "Strokes":
         """Some of the strokes: ``rows`` is a slice, a mask or an array of rows."""
-        return Strokes(
-            *(getattr(self, name)[rows] for name in ("values", "place", "nominate", "decision", "declare"))
-        )
+        return Strokes(*(part[rows] for part in self.parts))
 
     @classmethod
     def join(cls, parts: "Sequence[Strokes]") -> "Strokes":
         """Join several ``Strokes`` in their order."""
-        names = ("values", "place", "nominate", "decision", "declare")
-        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+        return cls(*map(np.concatenate, zip(*(one.parts for one in parts), strict=True)))
+
+    @property
+    def parts(self) -> tuple[NDArray[Any], ...]:
+        """The arrays, in the order of the fields."""
+        return self.values, self.place, self.nominate, self.decision, self.declare
 
     @property
     def speed(self) -> Floats:
@@ -140,9 +140,9 @@ class Strokes:
     def actions(self, options: Options, at: Positions) -> Floats:
         """Convert to actions of an environment, the one encoder: float64 (n, k) in [-1, 1].
 
-        ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. ``at``: the n positions, on
-        which the meaning of a place and a nomination depends. ValueError if the environment reads other actions, or
-        a stroke has a part that its actions do not hold."""
+        ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. ``at``: the n
+        positions, on which the meaning of a place and a nomination depends. ValueError if the environment
+        reads other actions, or a stroke has a part that its actions do not hold."""
         box = options.rules.actions
         if not isinstance(box, Actions) or box.aim != "absolute":
             raise refuse_what(
@@ -203,7 +203,7 @@ class Strokes:
         ]
 
     def _nominated(self, at: Positions) -> Floats:
-        """The component of the nomination: a sixth of the range each after a red, a seventh with a free ball."""
+        """The component of the nomination: sixths of the range after a red, sevenths with a free ball."""
         n = np.maximum(self.nominate - YELLOW + 1, 0)  # 0 none, 1 to 6 yellow to black
         after_red = at.game[:, BALL_ON] == 0
         return np.where(after_red, (np.maximum(n, 1) - 0.5) / COLOURS, (n + 0.5) / (1 + COLOURS)) * 2.0 - 1.0
@@ -247,25 +247,15 @@ class Player(Protocol):
     """
 
     def at(self, rules: RulesLike) -> "Player":
-        """Return a new player bound to where it plays: physics, table, fidelity, noise and, for frames, the game.
+        """Return a new player bound to physics, table, fidelity, noise and, for frames, the game.
 
-        How an environment's actions are read does not matter: strokes are the same everywhere. ValueError if the
-        options are invalid, or the player cannot play under them."""
+        How an environment's actions are read does not matter: strokes are the same everywhere. ValueError if
+        the options are invalid, or the player cannot play under them."""
         ...
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """Return what the player does in each of n positions, of visits or of frames as the striker sees them.
+        """Return what it does in each of n positions, of visits or of frames as the striker sees them.
 
         ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once.
         """
         ...
-
-
-def seeds_of(seeds: Integers, n: int) -> Ints:
-    """``seeds`` as int64 (n,) in [0, 2**32); ValueError unless they are n integers."""
-    a = np.asarray(seeds)
-    if a.shape != (n,) or (a.dtype.kind not in "iu" and n):
-        raise refuse_what(
-            "seeds", f"{a.dtype} array of shape {a.shape}", f"must be {n} integers, one for each position"
-        )
-    return (a.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)

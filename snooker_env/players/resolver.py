@@ -27,7 +27,8 @@ RENAMED = {"lookahead": "search"}
 """Names of players of version 0.3 that are still understood."""
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")
 """MODULE:CLASS."""
-PROGRAM = "program:"
+PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"
+"""How names of programs begin, and their player, which is loaded as an entry point is."""
 _SEARCHING = re.compile(
     r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d{1,7}))?(?:@(.+))?"
 )
@@ -91,9 +92,7 @@ def player(name: Any, *, trust: bool = False) -> Player:
     if (built_in := _built_in(text)) is not None:
         return built_in
     if text.startswith(PROGRAM):
-        from ..play.program import ProgramPlayer
-
-        return ProgramPlayer(text.removeprefix(PROGRAM))
+        return EntryPoint(text, PROGRAM_PLAYER, GROUP).load()(text.removeprefix(PROGRAM))
     if (entry := _installed().get(text)) is not None:
         return _of_object(_made(text, entry.load))
     if text and Path(text).exists():
@@ -170,7 +169,7 @@ def _of_object(thing: Any) -> Player:
         from .seen import SeenPlayer
 
         return SeenPlayer(thing, dict(getattr(thing, "options", {})), type(thing).__name__)
-    allowed = "must be a player: at(rules) and play(positions, seeds), or options and act(observations, masks, seeds)"
+    allowed = "must be a player: at(rules) and play(positions, seeds), or act(observations, masks, seeds)"
     raise refuse_what("player", f"a {type(thing).__name__}", allowed)
 
 

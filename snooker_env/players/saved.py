@@ -15,7 +15,7 @@ from ..tasks.options import Options
 from ..tasks.saved_models import SavedModel, by_train, entries, one_thread, outline
 from .seen import SeenPlayer
 
-_VIEW = "must be a model trained on the observation of a visit or a frame, flat, balls or masked, and nothing else"
+_VIEW = "must be a model trained on the observation of a visit or a frame, and nothing else"
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,8 @@ class FittingModel:
     @property
     def other_actions(self) -> ValueError:
         """The error for a model with another action space; not raised."""
-        return self.saved.refused(
-            f"must be a model whose actions are {self.actions}: give the options of its training, for example placement=True"
-        )
+        told = "give the options of its training, for example placement=True"
+        return self.saved.refused(f"must be a model whose actions are {self.actions}: {told}")
 
     def network(self, trust: bool) -> Any:
         """Load its policy: the code in its pickles runs. ValueError without ``trust``."""

@@ -17,8 +17,9 @@ from .._check import integer
 from ..planning import Positions, StrokeSearch
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.policy_proposals import PolicyProposals
+from ..planning.positions import seeds_of
 from ..tasks.options import Options
-from .player import Ranked, Strokes, seeds_of
+from .player import Ranked, Strokes
 from .simple import BoundPlayer, placed
 from .weights import Learned, learned_at, level_for
 

@@ -22,6 +22,7 @@ from ..game.frame_columns import (
     WINNER,
 )
 from ..planning import Positions
+from ..planning.positions import seeds_of
 from ..planning.trials import decoded
 from ..tasks.declarations import SAYS
 from ..tasks.discrete_actions import Choices
@@ -30,7 +31,7 @@ from ..tasks.observations import shaped
 from ..tasks.options import Options
 from ..tasks.saying import said
 from ..tasks.visit import Visits
-from .player import Strokes, seeds_of
+from .player import Strokes
 from .simple import BoundPlayer, placed
 
 OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")
@@ -56,18 +57,18 @@ class Seen(Protocol):
     """
 
     def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
-        """Return n actions of the action space that ``options`` says, for n observations of the kind that they say.
+        """Return n actions, for n observations, of the kinds that ``options`` say.
 
-        ``masks``: bool (n, choices) with ``action="discrete"``, else None. ``seeds``, int64 (n,): equal rows and
-        seeds must give equal actions, however many are asked for."""
+        ``masks``: bool (n, choices) with ``action="discrete"``, else None. ``seeds``, int64 (n,): equal rows
+        and seeds must give equal actions, however many are asked for."""
         ...
 
 
 class SeenPlayer(BoundPlayer):
     """A player that shows positions to a ``Seen`` as observations and reads its actions as strokes.
 
-    One that sees visits plays frames too: with a free ball any colour is on; a cue ball in hand that it does not
-    place stands where ``ghost_ball`` puts it; after a foul it plays.
+    One that sees visits plays frames too: with a free ball any colour is on; a cue ball in hand that it does
+    not place stands where ``ghost_ball`` puts it; after a foul it plays.
 
     Parameters
     ----------
@@ -91,16 +92,16 @@ class SeenPlayer(BoundPlayer):
     """
 
     def __init__(self, seen: Any, options: Mapping[str, Any] | None = None, name: str | None = None):
-        given = dict(getattr(seen, "options", {}) if options is None else options)
+        sees = dict(getattr(seen, "options", {}) if options is None else options)
         self.seen, self.name = seen, name or type(seen).__name__
         self.frames = (
-            choice(f"task of player {self.name}", given.pop("task", "visit"), ("visit", "frame")) == "frame"
+            choice(f"task of player {self.name}", sees.pop("task", "visit"), ("visit", "frame")) == "frame"
         )
-        for key in given:
+        for key in sees:
             choice(f"key of the options of player {self.name}", key, OPTIONS)
         if not self.frames:
-            given.pop("decision", None)  # there is none in a visit
-        self.sees = given
+            sees.pop("decision", None)  # there is none in a visit
+        self.sees = sees
         self._rules: Any = None
         self._bind(Options())
 

@@ -55,7 +55,7 @@ def streams_of(seeds: Any) -> np.ndarray:
 
 
 def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
-    """Visits with cue balls in hand where ``ghost_ball`` puts them, and these places (n, 2); NaN for others."""
+    """Visits with cue balls in hand put where ``ghost_ball`` does, and these places (n, 2), else NaN."""
     places = np.full((len(at), 2), np.nan)
     if not at.in_hand.any():
         return at.as_visits(), places

@@ -60,16 +60,7 @@ def solved(at, row, strokes, ball, pocket, ghost):
     """The aims of ``Planner.pot_aim`` for strokes (m, 5) at one pot."""
     m = len(strokes)
     target, ghosts = np.tile(POCKET_AIMS[pocket, :2], (m, 1)), np.tile(ghost, (m, 1))
-    return PLANNER.pot_aim(
-        at,
-        np.full(m, row),
-        np.full(m, ball),
-        target,
-        strokes[:, SPEED],
-        side=strokes[:, SIDE],
-        top=strokes[:, TOP],
-        ghosts=ghosts,
-    )
+    return PLANNER.pot_aim(at, np.full(m, row), np.full(m, ball), target, strokes, ghosts=ghosts)
 
 
 def test_strokes_stay_within_their_limits_and_fill_them():
@@ -244,7 +235,7 @@ def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
         axis=2,
     )
     kept = which.copy(), given.copy()
-    strokes, of = strokes_at(at, which, given, seeds(6), SPREAD, DYNAMICS)
+    strokes, of = strokes_at(at, which, given, SPREAD, DYNAMICS)
     assert (
         np.array_equal(strokes[..., :AIM], given)
         and np.array_equal(which, kept[0])

@@ -60,4 +60,4 @@ class PolicyProposals:
         plain = (side == SIDES.index(0.0)) & (points[..., 3] < 0.5)
         tips[..., 1] = np.where(plain, 0.0, _SIDES[side] + _SIDE_STEP * (points[..., 1] - 0.5))
         tips[..., 2] = _TOPS[top] + _TOP_STEP * (points[..., 2] - 0.5)
-        return strokes_at(at, picks // STROKES, tips, seeds, search.spread, search.dynamics)
+        return strokes_at(at, picks // STROKES, tips, search.spread, search.dynamics)

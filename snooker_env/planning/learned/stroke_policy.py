@@ -29,7 +29,7 @@ SCORED = -(-STROKES // 16) * 16
 
 
 class StrokePolicy:
-    """A policy over the discrete choices: ``weights[name]`` is (weight (out, in), bias (out,)) of ``LAYERS``."""
+    """Scores discrete choices; ``weights``: name in ``LAYERS`` -> (weight (out, in), bias (out,))."""
 
     def __init__(self, weights: Mapping[str, tuple[NDArray[np.float32], NDArray[np.float32]]]):
         self._layers = {}

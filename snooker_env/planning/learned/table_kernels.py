@@ -46,15 +46,9 @@ def read_tables(rows, seen, inputs, at):
                 continue
             ball = balls[m]
             x = row[b] * side
-            ball[0], ball[1], ball[2], ball[3], ball[4], ball[5], ball[6] = (
-                x,
-                row[b + 1],
-                row[b + 2],
-                row[b + 3],
-                row[b + 4],
-                x - cue_x,
-                row[b + 1] - cue_y,
-            )
+            ball[0], ball[5], ball[6] = x, x - cue_x, row[b + 1] - cue_y
+            for c in range(1, 5):
+                ball[c] = row[b + c]
             group[m] = (2 if i > N_REDS else 0) + (1 if row[b + 4] > 0.0 else 0)
             m += 1
         for p in range(POTS):
