@@ -22,7 +22,7 @@ from ..tasks.rewards import REWARDS
 from ..tasks.tables import I_FIRST, I_PENALTY, StepOutput
 from ..tasks.threads import Threads, processors
 from .positions import Positions, PositionsLike, bare, check_played, rows_of
-from .strokes import check_strokes, encoded, solved_aims, solved_choices
+from .strokes import check_strokes, encoded, solved_aims
 from .trials import AIM, Stops, TrialVisits, WatchedVisits, decoded
 from .trials import COLUMNS as STROKE
 
@@ -135,16 +135,6 @@ class Planner:
         """The table, a ``Table``."""
         return self._rules.table
 
-    @property
-    def action_space(self) -> Any:
-        """The ``gymnasium.Space`` of one action."""
-        return self._rules.actions.space
-
-    @property
-    def discrete(self) -> bool:
-        """Whether actions are integers (``action="discrete"``), a bool."""
-        return self._rules.actions.size == 1
-
     def play(
         self,
         positions: PositionsLike,
@@ -205,11 +195,8 @@ class Planner:
         which = rows_of(at, rows)
         n = len(which)
         if (actions is None) == (strokes is None):
-            raise refuse_what(
-                "actions, strokes",
-                "none" if actions is None else "both",
-                "must be one of them: what is played",
-            )
+            what = "none" if actions is None else "both"
+            raise refuse_what("actions, strokes", what, "must be one of them: what is played")
         played = self._rules.actions.check_many(actions, n) if strokes is None else check_strokes(strokes, n)
         streams = _streams(keys, n, self.noise.silent or errors is not None)
         if errors is not None and keys is not None:
@@ -261,25 +248,10 @@ class Planner:
         if form.aim == "absolute":
             return encoded(form, told, where)
         if positions is None or rows is None:
-            raise refuse(
-                "positions, rows",
-                None,
-                'must be given with aim="target", which is measured from a line in each position',
-            )
+            allowed = 'must be given with aim="target", which is measured from a line in each position'
+            raise refuse("positions, rows", None, allowed)
         lines, _ = self.strokes_of(positions, rows, encoded(form, told, where, told[:, AIM]))
         return encoded(form, told, where, lines[:, AIM])
-
-    def as_actions(self, positions: PositionsLike, rows: Integers, choices: Integers) -> NDArray[np.float32]:
-        """Convert choices of ``action="discrete"``, int (n,), to absolute ones: float32 (n, 4).
-
-        With this planner's physics and fidelity; ValueError if it reads actions with another ``aim``."""
-        if isinstance(self._rules.actions, Actions) and self._rules.actions.aim != "absolute":
-            raise refuse(
-                "aim",
-                self._rules.actions.aim,
-                'must be "absolute": this planner would read the result differently',
-            )
-        return solved_choices(self._rules, Positions.of(positions), rows, choices)
 
     def pot_aim(
         self,

@@ -250,11 +250,8 @@ def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue
         )
     lowest = next_on(present)
     if ball_on not in (BallOn.ANY_COLOUR, lowest):
-        raise refuse(
-            on,
-            ball_on.name.lower(),
-            f"must be 'any_colour' or {BallOn(lowest).name.lower()!r}, the lowest on the table ({balls})",
-        )
+        what = f"'any_colour' or {BallOn(lowest).name.lower()!r}, the lowest on the table"
+        raise refuse(on, ball_on.name.lower(), f"must be {what} ({balls})")
 
 
 def _checked(raw: Any, field: str = "position") -> Mapping[str, Any]:

@@ -310,12 +310,8 @@ def _of_tables(tables: Tables) -> Positions:
     if saved is None:
         game[:, STEPS] = 0
         return Positions(tables.positions.copy(), tables.on_table.copy(), game)
-    return Positions(
-        tables.positions.copy(),
-        tables.on_table.copy(),
-        strikers_own(game),
-        Layouts(*(each.copy() for each in saved)),
-    )
+    layouts = Layouts(*(each.copy() for each in saved))
+    return Positions(tables.positions.copy(), tables.on_table.copy(), strikers_own(game), layouts)
 
 
 PositionsLike: TypeAlias = (
@@ -343,9 +339,8 @@ def seeds_of(seeds: Integers, n: int) -> Ints:
     """``seeds`` as int64 (n,) in [0, 2**32); ValueError unless they are n integers."""
     a = np.asarray(seeds)
     if a.shape != (n,) or (a.dtype.kind not in "iu" and n):
-        raise refuse_what(
-            "seeds", f"{a.dtype} array of shape {a.shape}", f"must be {n} integers, one for each position"
-        )
+        allowed = f"must be {n} integers, one for each position"
+        raise refuse_what("seeds", f"{a.dtype} array of shape {a.shape}", allowed)
     return (a.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
 
 

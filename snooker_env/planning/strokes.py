@@ -6,7 +6,6 @@ offset over R), the direction in which the cue ball leaves [rad] (the cue itself
 the side), elevation of the cue [rad].
 """
 
-from dataclasses import replace
 from math import pi
 from typing import Any
 
@@ -23,9 +22,9 @@ from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
 from ..tasks.arrays import CueLaw
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, TARGET_SPAN, Actions
-from ..tasks.discrete_actions import SIZE, Choices, masks
+from ..tasks.discrete_actions import SIZE, masks
 from ..tasks.lines import new_work
-from ..tasks.options import Options, Rules
+from ..tasks.options import Options
 from ..tasks.pot_aim import solved_aim
 from ..tasks.tables import STROKES_ONLY
 from .positions import Positions, PositionsLike, rows_of
@@ -98,10 +97,9 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
         number("speeds", float(fast.min() if fast.min() < MIN_SPEED else fast.max()), MIN_SPEED, MAX_SPEED)
     strokes = np.zeros((len(turns), COLUMNS))
     strokes[:, SPEED], strokes[:, SIDE], strokes[:, TOP], strokes[:, AIM] = fast, side, top, turns
-    if not (np.abs(strokes[:, [SIDE, TOP]]) <= FARTHEST).all():
-        raise refuse(
-            "side, top", float(np.abs(strokes[:, [SIDE, TOP]]).max()), "must be finite and within 0.5"
-        )
+    far = np.abs(strokes[:, [SIDE, TOP]])
+    if not (far <= FARTHEST).all():
+        raise refuse("side, top", float(far.max()), "must be finite and within 0.5")
     return encoded(_ABSOLUTE, strokes).astype(np.float32)
 
 
@@ -109,11 +107,8 @@ def check_strokes(strokes: Any, n: int | None = None) -> Floats:
     """Strokes (n, 5) as float64; ValueError names the first one that is not finite or out of range."""
     a = np.asarray(strokes)
     if a.dtype.kind not in "iuf" or a.ndim != 2 or a.shape[1] != COLUMNS or (n is not None and len(a) != n):
-        raise refuse_what(
-            "strokes",
-            f"{a.dtype} array of shape {a.shape}",
-            f"must be real numbers of shape ({'n' if n is None else n}, 5)",
-        )
+        allowed = f"must be real numbers of shape ({'n' if n is None else n}, 5)"
+        raise refuse_what("strokes", f"{a.dtype} array of shape {a.shape}", allowed)
     a = np.ascontiguousarray(a, np.float64)
     most = (MAX_SPEED, FARTHEST, FARTHEST, np.inf, MAX_ELEVATION)
     _check_columns(a, (MIN_SPEED, -FARTHEST, -FARTHEST, -np.inf, 0.0), most)
@@ -142,25 +137,16 @@ def encoded(
     out[:, 3] = turned / (pi if lines is None else TARGET_SPAN)
     if (np.abs(out[:, 3]) > 1.0 + 1e-9).any():
         k = int(np.argmax(np.abs(out[:, 3])))
-        raise refuse(
-            f"strokes[{k}], aim",
-            float(strokes[k, AIM]),
-            f"must be within 3 degrees of the target line, {line[k]:.6g} rad",
-        )
+        allowed = f"must be within 3 degrees of the target line, {line[k]:.6g} rad"
+        raise refuse(f"strokes[{k}], aim", float(strokes[k, AIM]), allowed)
     if actions.elevation:
         out[:, 4] = 2.0 * strokes[:, ELEVATION] / MAX_ELEVATION - 1.0
     elif strokes[:, ELEVATION].any():
-        raise refuse(
-            "elevation",
-            float(strokes[:, ELEVATION].max()),
-            "must be 0: actions without elevation=True have a level cue",
-        )
+        allowed = "must be 0: actions without elevation=True have a level cue"
+        raise refuse("elevation", float(strokes[:, ELEVATION].max()), allowed)
     if actions.placement:
-        x, y = (
-            (np.zeros(len(strokes)), np.full(len(strokes), BAULK_Y))
-            if places is None
-            else np.asarray(places, np.float64).T
-        )
+        lie: Any = (0.0, BAULK_Y) if places is None else places
+        x, y = np.broadcast_to(lie, (len(strokes), 2)).T
         across = np.clip(x / D_RADIUS, -1.0, 1.0)
         depth = D_RADIUS * np.sqrt(1.0 - across * across)
         back = np.where(depth > 1e-9, np.clip((BAULK_Y - y) / np.maximum(depth, 1e-9), 0.0, 1.0), 0.0)
@@ -206,16 +192,11 @@ def as_actions(
     >>> as_actions(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), [0], [67]).shape
     (1, 4)
     """
-    options: Any = {"physics": Physics.of(physics), "fidelity": fidelity}
-    return solved_choices(Options(**options).rules, Positions.of(positions), rows, choices)
-
-
-def solved_choices(rules: Rules, at: Positions, rows: Integers, choices: Integers) -> NDArray[np.float32]:
-    """``as_actions`` with the physics and the fidelity of ``rules``."""
-    at, which = at.as_visits(), rows_of(at, rows)
+    options: Any = {"physics": Physics.of(physics), "fidelity": fidelity, "action": "discrete"}
+    at = Positions.of(positions).as_visits()
+    which = rows_of(at, rows)
     picks = _integers("choices", choices, len(which), 0, SIZE - 1)
-    discrete = replace(rules, actions=Choices(rules.physics))
-    strokes, _ = decoded(discrete, at, which, picks[:, None].astype(np.float64))
+    strokes, _ = decoded(Options(**options).rules, at, which, picks[:, None].astype(np.float64))
     return encoded(_ABSOLUTE, strokes).astype(np.float32)
 
 
@@ -286,7 +267,7 @@ def solved_aims(
     rows: Integers,
     balls: Integers,
     targets: Vectors,
-    strokes: Scalars | Vectors,
+    strokes: Any,
     ghosts: Vectors | None,
     dynamics: Dynamics,
 ) -> NDArray[np.float64]:

@@ -51,9 +51,8 @@ class ChoicePlayer(BoundPlayer):
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
         visits, places, scores = self._scored(positions, seeds)
-        return Strokes(
-            self._planner.strokes_of(visits, np.arange(len(visits)), scores.argmax(axis=1))[0], places
-        )
+        choices = scores.argmax(axis=1)
+        return Strokes(self._planner.strokes_of(visits, np.arange(len(visits)), choices)[0], places)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
         """Rank the choices of each position: at most 100 strokes, highest score first."""
@@ -62,11 +61,8 @@ class ChoicePlayer(BoundPlayer):
         for k, row in enumerate(scores):
             choices = np.argsort(-row, kind="stable")[: max(1, min(MOST, int(np.isfinite(row).sum())))]
             values = self._planner.strokes_of(visits, np.full(len(choices), k), choices)[0]
-            ranked.append(
-                Ranked(
-                    Strokes(values, np.repeat(places[k : k + 1], len(choices), 0)), self.figures(row[choices])
-                )
-            )
+            strokes = Strokes(values, np.repeat(places[k : k + 1], len(choices), 0))
+            ranked.append(Ranked(strokes, self.figures(row[choices])))
         return ranked
 
     def _scored(self, positions: Any, seeds: Any) -> tuple[Positions, Floats, Floats]:
@@ -121,9 +117,8 @@ class GhostBall(ChoicePlayer):
                 continue
             values = self._planner.strokes_of(start, np.full(many, k), STROKES * np.arange(many) + _PLAIN)[0]
             others = Strokes(values, np.repeat(strokes.place[k : k + 1], many, 0))
-            ranked.append(
-                Ranked(Strokes.join([strokes[k : k + 1], others[1:]]), 1e3 * direct.tolerance[k, :many])
-            )
+            joined = Strokes.join([strokes[k : k + 1], others[1:]])
+            ranked.append(Ranked(joined, 1e3 * direct.tolerance[k, :many]))
         return ranked
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
@@ -136,9 +131,8 @@ class GhostBall(ChoicePlayer):
         values, (nominate, decision) = np.empty((n, 5)), np.empty((2, n), np.int64)
         racks = at.in_hand & (at.on_table[:, 1:16].sum(axis=1) == 15)
         streams = streams_of(seeds_of(seeds, n))
-        geometric_strokes(
-            moved.positions, moved.on_table, moved.game, code, streams, values, nominate, decision
-        )
+        balls = moved.positions, moved.on_table, moved.game
+        geometric_strokes(*balls, code, streams, values, nominate, decision)
         start = moved.as_visits()
         again = at.of_frames and at.miss_called
         rows = np.flatnonzero((pots(start, most=1).ball[:, 0] >= 0) & ~racks & ~np.broadcast_to(again, n))

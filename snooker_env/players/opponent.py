@@ -47,14 +47,9 @@ class PlayerOpponent(Opponent):
             kind = next((kind for kind in _KINDS if isinstance(error, kind)), RuntimeError)
             raise kind(f"opponent {self.name} raised {type(error).__name__}: {error}") from error
         if not isinstance(strokes, Strokes) or len(strokes) != len(which):
-            what = (
-                f"{len(strokes)} Strokes" if isinstance(strokes, Strokes) else f"a {type(strokes).__name__}"
-            )
-            raise refuse_what(
-                f"opponent {self.name}: play(...)",
-                what,
-                f"must be {len(which)} Strokes, one for each position",
-            )
+            many = len(strokes) if isinstance(strokes, Strokes) else "a"
+            allowed = f"must be {len(which)} Strokes, one for each position"
+            raise refuse_what(f"opponent {self.name}: play(...)", f"{many} {type(strokes).__name__}", allowed)
         out = []
         for part in strokes.parts:
             out.append(np.zeros((frames.n, *part.shape[1:]), part.dtype))

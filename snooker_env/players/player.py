@@ -68,20 +68,16 @@ class Strokes:
     def __post_init__(self) -> None:
         values = np.asarray(self.values, np.float64)
         if values.ndim != 2 or values.shape[1] != 5:
-            raise refuse_what(
-                "values", f"array of shape {values.shape}", "must be (n, 5): speed, side, top, aim, elevation"
-            )
+            allowed = "must be (n, 5): speed, side, top, aim, elevation"
+            raise refuse_what("values", f"array of shape {values.shape}", allowed)
         n = len(values)
         most = np.array([MAX_SPEED, 0.5, 0.5, np.inf, MAX_ELEVATION]) + 1e-9
         least = np.array([MIN_SPEED, -0.5, -0.5, -np.inf, 0.0]) - 1e-9
         fine = np.isfinite(values) & (values >= least) & (values <= most)
         if not fine.all():
             k, c = np.argwhere(~fine)[0].tolist()
-            raise refuse(
-                f"{NAMES[c]}[{k}]",
-                float(values[k, c]),
-                f"must be finite and in [{least[c]:.3g}, {most[c]:.3g}]",
-            )
+            allowed = f"must be finite and in [{least[c]:.3g}, {most[c]:.3g}]"
+            raise refuse(f"{NAMES[c]}[{k}]", float(values[k, c]), allowed)
         usual: dict[str, Any] = {
             "place": np.full((n, 2), np.nan),
             "nominate": np.full(n, AUTO, np.int64),
@@ -145,11 +141,8 @@ class Strokes:
         reads other actions, or a stroke has a part that its actions do not hold."""
         box = options.rules.actions
         if not isinstance(box, Actions) or box.aim != "absolute":
-            raise refuse_what(
-                "options",
-                f"action={options.action!r}, aim={options.aim!r}",
-                'must be "box" and "absolute": strokes are continuous',
-            )
+            what = f"action={options.action!r}, aim={options.aim!r}"
+            raise refuse_what("options", what, 'must be "box" and "absolute": strokes are continuous')
         turns = self.aim / np.pi
         parts = [
             2.0 * (self.speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0,
@@ -157,38 +150,25 @@ class Strokes:
             2.0 * self.top,
             turns - 2.0 * np.round(0.5 * turns),
         ]
+        for name, holds, least in (
+            ("elevation", box.elevation, 0.0),
+            ("decision", box.decision, PLAY),
+            ("declare", box.declares, SAYS_NOTHING),
+        ):
+            if not holds and ((part := getattr(self, name)) > least).any():
+                raise refuse(name, part.max().item(), "must be left out: the actions do not hold it")
         if box.elevation:
             parts.append(2.0 * self.elevation / MAX_ELEVATION - 1.0)
-        elif (self.elevation > 0.0).any():
-            raise refuse(
-                "elevation",
-                float(self.elevation.max()),
-                "must be 0: the environment's actions hold no elevation",
-            )
         if box.placement:
             parts += self._placed(at)
         if box.nominate:
             parts.append(self._nominated(at))
         if box.decision:
-            parts.append(
-                np.where(self.decision == PLAY, 0.0, np.where(self.decision == PLAY_AGAIN, -1.0, 1.0))
-            )
-        elif (self.decision != PLAY).any():
-            raise refuse(
-                "decision",
-                int(self.decision.max()),
-                "must be PLAY: the environment's actions hold no decision",
-            )
+            again = np.where(self.decision == PLAY_AGAIN, -1.0, 1.0)
+            parts.append(np.where(self.decision == PLAY, 0.0, again))
         if box.declares:
-            parts.append(
-                np.where(self.declare == SAYS_NOTHING, 0.0, np.where(self.declare == CLAIMS, 1.0, -1.0))
-            )
-        elif (self.declare != SAYS_NOTHING).any():
-            raise refuse(
-                "declare",
-                int(self.declare.max()),
-                "must be SAYS_NOTHING: the environment's actions hold no declaration",
-            )
+            says = np.where(self.declare == CLAIMS, 1.0, -1.0)
+            parts.append(np.where(self.declare == SAYS_NOTHING, 0.0, says))
         return np.clip(np.stack(parts, axis=1), -1.0, 1.0)  # removes rounding errors
 
     def _placed(self, at: Positions) -> list[Floats]:

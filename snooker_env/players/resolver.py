@@ -103,11 +103,8 @@ def player(name: Any, *, trust: bool = False) -> Player:
     if Path(text).suffix in (".zip", ".npz") or "/" in text or "\\" in text:
         raise refuse("player", text, "must be a file or folder that is there: it is missing")
     known = ", ".join(map(repr, players()))
-    raise refuse(
-        "player",
-        text,
-        f"must be one of {known}, MODULE:CLASS, a model's file, a run's folder or program:COMMAND",
-    )
+    others = "MODULE:CLASS, a model's file, a run's folder or program:COMMAND"
+    raise refuse("player", text, f"must be one of {known}, {others}")
 
 
 def is_name(text: str) -> bool:
@@ -119,19 +116,15 @@ def is_name(text: str) -> bool:
 
 def _built_in(name: str) -> Player | None:
     """The player of the package with that name."""
-    if name == "random":
-        return Random()
-    if name == "ghost_ball":
-        return GhostBall()
+    if name in (Random.name, GhostBall.name):
+        return Random() if name == Random.name else GhostBall()
     form = _SEARCHING.fullmatch(name)
     if form is None:
         return None
     kind, budget, model = form.groups()
     if kind in RENAMED:
-        warnings.warn(
-            f"the player {kind!r} is called {RENAMED[kind]!r} now", DeprecationWarning, stacklevel=3
-        )
-        kind = RENAMED[kind]
+        kind, old = RENAMED[kind], kind
+        warnings.warn(f"the player {old!r} is called {kind!r} now", DeprecationWarning, stacklevel=3)
     if model is not None and not kind.startswith("planner"):
         raise refuse("player", name, f"must not name a model: {kind} has learned nothing")
     learned = None if model is None else _learned(model)
@@ -156,9 +149,8 @@ def _made(name: str, maker: Callable[[], Any]) -> Any:
     try:
         return maker()()
     except Exception as error:
-        raise refuse(
-            "player", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})"
-        ) from error
+        allowed = f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})"
+        raise refuse("player", name, allowed) from error
 
 
 def _of_object(thing: Any) -> Player:
@@ -200,9 +192,6 @@ def _learned(model: str) -> Any:
     made = _read(Path(model)) if Path(model).exists() else None
     learned = getattr(made, "learned", None)
     if learned is None:
-        raise refuse(
-            "player",
-            f"planner@{model}",
-            f"must name a model with policy and value: {', '.join(levels())} or its file",
-        )
+        allowed = f"must name a model with policy and value: {', '.join(levels())} or its file"
+        raise refuse("player", f"planner@{model}", allowed)
     return learned

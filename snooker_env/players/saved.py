@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse
-from .._types import Bools, Ints, Observation, ObservationKind
+from .._types import Bools, Ints, Observation
 from ..tasks.declarations import SAYS
 from ..tasks.observations import OBSERVATIONS, space
 from ..tasks.options import Options
@@ -26,7 +26,6 @@ class FittingModel:
 
     saved: SavedModel
     options: dict[str, Any]
-    observation: ObservationKind
 
     @classmethod
     def of(cls, path: str | Path, options: dict[str, Any], field: str = "player") -> "FittingModel":
@@ -36,10 +35,8 @@ class FittingModel:
         for frame, replaced in ((False, False), (True, False), (True, True)):
             for kind in OBSERVATIONS:
                 task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
-                told = (
-                    options if frame else {name: value for name, value in options.items() if name not in SAYS}
-                )
-                model = cls(saved, told | task | {"observation": kind}, kind)
+                told = {name: options[name] for name in options if frame or name not in SAYS}
+                model = cls(saved, told | task | {"observation": kind})
                 choices = getattr(model.actions, "n", 0)
                 if outline(space(kind, frame=frame, replaced=replaced, choices=choices)) == saved.observation:
                     if outline(model.actions) != saved.action:
@@ -62,10 +59,8 @@ class FittingModel:
     def network(self, trust: bool) -> Any:
         """Load its policy: the code in its pickles runs. ValueError without ``trust``."""
         network = self.saved.network(trust, "trust=True")
-        if (
-            outline(network.observation_space) != self.saved.observation
-            or network.action_space != self.actions
-        ):
+        same_view = outline(network.observation_space) == self.saved.observation
+        if not same_view or network.action_space != self.actions:
             raise self.saved.refused("must be a model whose spaces are those that its file describes")
         return network
 

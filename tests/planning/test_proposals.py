@@ -253,31 +253,20 @@ def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
             )
 
 
-def test_a_position_is_proposed_for_by_itself():
-    """Its strokes depend on its own seed and layout alone, and nothing that is given is changed."""
-    at = some(8)
-    kept = at.copy()
-    strokes, chances = spread_strokes(at, 40, seeds(8), SPREAD, DYNAMICS)
-    order = np.array([5, 2, 7])
-    again = spread_strokes(at[order], 40, seeds(8)[order], SPREAD, DYNAMICS)
-    assert np.array_equal(again.strokes, strokes[order]) and np.array_equal(again.chances, chances[order])
-    other = spread_strokes(at, 40, seeds(8, first=500), SPREAD, DYNAMICS).strokes
-    assert all(not np.array_equal(other[k], strokes[k]) for k in range(8))
-    assert all(
-        np.array_equal(getattr(at, name), getattr(kept, name)) for name in ("positions", "on_table", "game")
-    )
-
-
-@pytest.mark.parametrize("generate", [at_balls, over_cushions])
-def test_other_strokes_are_generated_for_a_position_by_itself(generate):
-    at = Positions.of(tables(30, layout="snookered", seed=6))
-    made = generate(SEARCH, at, 40, seeds(30))
+@pytest.mark.parametrize("generate", [at_pots, at_balls, over_cushions])
+def test_a_position_is_proposed_for_by_itself(generate):
+    """Its strokes depend on its own seed and layout alone, and nothing that is passed is changed."""
+    at = Positions.of(tables(30, layout="random:6" if generate is at_pots else "snookered", seed=6))
+    kept, made = at.copy(), generate(SEARCH, at, 40, seeds(30))
     some = np.flatnonzero(made.chances.any(axis=1))
     assert len(some) > 1
     again = generate(SEARCH, at[some[::-1]], 40, seeds(30)[some[::-1]])
     assert all(np.array_equal(one, whole[some[::-1]]) for one, whole in zip(again, made, strict=True))
     other = generate(SEARCH, at, 40, seeds(30, first=500)).strokes
     assert all(not np.array_equal(other[k], made.strokes[k]) for k in some)
+    assert all(
+        np.array_equal(getattr(at, name), getattr(kept, name)) for name in ("positions", "on_table", "game")
+    )
 
 
 def test_a_wider_hand_spares_the_doubtful_pots():

@@ -392,14 +392,6 @@ def test_equal_seeds_give_equal_decisions_on_any_number_of_threads():
     )
 
 
-def test_a_decision_does_not_depend_on_the_other_positions():
-    at, order = some(9), np.array([7, 0, 4])
-    whole, part = search(60).rank(at, np.arange(9)), search(60).rank(at[order], order)
-    assert all(np.array_equal(a[order], b) for a, b in zip(whole, part, strict=True))
-    alone = search(60).rank(at[4], [4])
-    assert all(np.array_equal(a[4:5], b) for a, b in zip(whole, alone, strict=True))
-
-
 def test_nothing_given_is_changed_and_nothing_returned_is_shared():
     at, seeds = some(5), np.arange(5)
     kept, proposed = at.copy(), []

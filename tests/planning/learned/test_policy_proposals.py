@@ -112,14 +112,6 @@ def test_without_a_pot_the_policy_proposes_nothing(learned):
     assert not learned(SEARCH, at, 30, np.array([5])).chances.any()
 
 
-def test_the_proposals_in_a_position_do_not_depend_on_the_positions_beside_it(learned):
-    at, seeds = Positions.of(tables(40, layout="random:9", seed=3)), np.arange(40)
-    strokes, chances = learned(SEARCH, at, 30, seeds)
-    for k in range(0, 40, 7):
-        alone = learned(SEARCH, at[k : k + 1], 30, seeds[k : k + 1])
-        assert np.array_equal(alone.strokes[0], strokes[k]) and np.array_equal(alone.chances[0], chances[k])
-
-
 @pytest.mark.parametrize("layout", ["opened", "break_off", "colours", "random:1"])
 def test_a_trained_policys_strokes_can_be_played(learned, layout):
     at = Positions.of(tables(5, layout=layout, seed=1))
@@ -135,13 +127,8 @@ def test_a_trained_policys_strokes_can_be_played(learned, layout):
 
 
 def test_each_position_is_proposed_for_by_itself(learned):
-    """To the rounding of a network's pass over many rows, which may move a stroke at the border of two
-    choices."""
-    at, seeds = some(8), np.arange(8)
-    whole = learned(SEARCH, at, 50, seeds)
-    assert np.array_equal(whole.strokes, learned(SEARCH, at, 50, seeds).strokes)
-    order = np.array([6, 1, 3])
-    part = learned(SEARCH, at[order], 50, seeds[order])
-    assert (np.abs(part.strokes - whole.strokes[order]).max(axis=2) < 1e-9).mean() > 0.95
+    at, seeds, order = some(8), np.arange(8), np.array([6, 1, 3])
+    whole, part = learned(SEARCH, at, 50, seeds), learned(SEARCH, at[order], 50, seeds[order])
+    assert all(np.array_equal(one, every[order]) for one, every in zip(part, whole, strict=True))
     other = learned(SEARCH, at, 50, seeds + 90)
     assert all(not np.array_equal(other.strokes[k], whole.strokes[k]) for k in range(8))
