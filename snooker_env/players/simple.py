@@ -14,8 +14,7 @@ from .player import RulesLike
 
 
 class BoundPlayer:
-    """Base class of players: ``at`` returns a copy bound to options; subclasses make what they need in
-    ``_bind(options)``.
+    """Base class of players: ``at`` binds a copy to options, for which subclasses have ``_bind``.
 
     Examples
     --------

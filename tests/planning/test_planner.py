@@ -166,7 +166,7 @@ SOFT = [2.0, 0.0, 0.0, 0.3, 0.0]
 
 
 @pytest.mark.parametrize(
-    ("given", "complaint"),
+    ("passed", "complaint"),
     [
         ({}, "actions, strokes = none: must be one of them"),
         ({"actions": [[0, 0, 0, 0]], "strokes": [SOFT]}, "actions, strokes = both"),
@@ -188,10 +188,10 @@ SOFT = [2.0, 0.0, 0.0, 0.3, 0.0]
         ({"strokes": [[2.0, 0.0, 0.0, 0.0, -0.1]], "keys": [1]}, r"strokes\[0\], elevation = -0.1"),
     ],
 )
-def test_strokes_and_errors_that_make_no_sense_are_refused(given, complaint):
+def test_strokes_and_errors_that_make_no_sense_are_refused(passed, complaint):
     planner = Planner({"noise": "club"}, threads=1)
     with pytest.raises(ValueError, match=f"^{complaint}"):
-        planner.play(Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)]), [0], **given)
+        planner.play(Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)]), [0], **passed)
     assert planner.shots == 0
 
 

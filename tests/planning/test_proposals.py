@@ -91,17 +91,17 @@ def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
     """Shares in plain Python from the chances of ``prospects_of``; aims by ``Planner.pot_aim``. Of two reds
     the likelier gets more."""
     at, m, several = some(), 150, 0
-    found, likely, chances = (
+    direct, likely, chances = (
         pots(at, most=MOST_POTS),
         prospects_of(at, SPREAD, most=MOST_POTS)[1],
         chances_by_width(at, SPREAD),
     )
     proposed = spread_strokes(at, m, seeds(20), SPREAD, DYNAMICS)
     for k in range(20):
-        many = int((found.ball[k] >= 0).sum())
+        many = int((direct.ball[k] >= 0).sum())
         if many == 0:
             continue
-        values = [1 if ball <= 15 else int(ball) - 14 for ball in found.ball[k, :many]]
+        values = [1 if ball <= 15 else int(ball) - 14 for ball in direct.ball[k, :many]]
         weights = [likely[k, j] ** 4 * (values[j] + 25.0) + 1e-12 for j in range(many)]
         ends, first, counts = np.cumsum(weights) / sum(weights), 0, []
         for j in range(many):
@@ -111,7 +111,7 @@ def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
                 np.full(last - first, chances[k, j]), rel=1e-9
             )
             if last > first:
-                expected = solved(at, k, strokes, found.ball[k, j], found.pocket[k, j], found.ghost[k, j])
+                expected = solved(at, k, strokes, direct.ball[k, j], direct.pocket[k, j], direct.ghost[k, j])
                 assert np.array_equal(strokes[:, AIM], expected)
             counts.append(last - first)
             first = last
@@ -226,20 +226,20 @@ def test_from_the_break_off_2000_contacts_nearly_always_pot_something():
 
 def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
     at, rng = some(6), np.random.default_rng(1)
-    found, chances = pots(at, most=MOST_POTS), chances_by_width(at, SPREAD)
-    many = (found.ball >= 0).sum(axis=1)
+    direct, chances = pots(at, most=MOST_POTS), chances_by_width(at, SPREAD)
+    many = (direct.ball >= 0).sum(axis=1)
     assert (many > 0).all()
     which = rng.integers(0, 4, (6, 30))
-    given = np.stack(
+    passed = np.stack(
         [rng.uniform(1.0, 5.0, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30))],
         axis=2,
     )
-    kept = which.copy(), given.copy()
-    strokes, of = strokes_at(at, which, given, SPREAD, DYNAMICS)
+    kept = which.copy(), passed.copy()
+    strokes, of = strokes_at(at, which, passed, SPREAD, DYNAMICS)
     assert (
-        np.array_equal(strokes[..., :AIM], given)
+        np.array_equal(strokes[..., :AIM], passed)
         and np.array_equal(which, kept[0])
-        and np.array_equal(given, kept[1])
+        and np.array_equal(passed, kept[1])
     )
     for k in range(6):
         for i in range(30):
@@ -248,7 +248,7 @@ def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
             assert (
                 strokes[k, i, AIM]
                 == solved(
-                    at, k, strokes[k, i : i + 1], found.ball[k, j], found.pocket[k, j], found.ghost[k, j]
+                    at, k, strokes[k, i : i + 1], direct.ball[k, j], direct.pocket[k, j], direct.ghost[k, j]
                 )[0]
             )
 

@@ -361,9 +361,9 @@ def test_without_a_pot_fouls_and_what_is_left_count():
 def test_generators_that_have_strokes_share_the_looks():
     at, calls = some(3), []
 
-    def soft(tool, here, m, own):
+    def soft(tool, here, m, scrambles):
         calls.append(len(here))
-        made = at_pots(tool, here, m, own)
+        made = at_pots(tool, here, m, scrambles)
         made.strokes[..., 0] = 1.0
         made.chances[1] = 0.0
         return made
@@ -396,8 +396,8 @@ def test_nothing_given_is_changed_and_nothing_returned_is_shared():
     at, seeds = some(5), np.arange(5)
     kept, proposed = at.copy(), []
 
-    def propose(tool, here, m, own):
-        made = spread_strokes(here, m, own, tool.spread, tool.dynamics)
+    def propose(tool, here, m, scrambles):
+        made = spread_strokes(here, m, scrambles, tool.spread, tool.dynamics)
         proposed.append((made, made.strokes.copy(), made.chances.copy()))
         return made
 

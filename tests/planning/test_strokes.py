@@ -78,12 +78,12 @@ def test_a_solved_aim_pots_where_the_straight_line_misses():
     """Cuts with side, at which the ball is thrown: the aim solved for the pocket's aim point pots every
     time."""
     env = tables(60, layout="pots:hard", aim="absolute")
-    at, found, n = Positions.of(env), pots(env, most=1), np.arange(60)
-    targets = POCKET_AIMS[found.pocket[:, 0], :2]
-    planner, straight = Planner(env), np.arctan2(*(found.ghost[:, 0] - at.positions[:, 0])[:, ::-1].T)
+    at, direct, n = Positions.of(env), pots(env, most=1), np.arange(60)
+    targets = POCKET_AIMS[direct.pocket[:, 0], :2]
+    planner, straight = Planner(env), np.arctan2(*(direct.ghost[:, 0] - at.positions[:, 0])[:, ::-1].T)
     spun = np.tile([2.9, 0.3, 0.0, 0.0, 0.0], (60, 1))
-    solved = planner.pot_aim(at, n, found.ball[:, 0], targets, spun)
-    assert np.array_equal(solved, pot_aim(at, n, found.ball[:, 0], targets, spun, ghosts=found.ghost[:, 0]))
+    solved = planner.pot_aim(at, n, direct.ball[:, 0], targets, spun)
+    assert np.array_equal(solved, pot_aim(at, n, direct.ball[:, 0], targets, spun, ghosts=direct.ghost[:, 0]))
     made = [
         (planner.play(at, n, actions_of(np.full(60, 2.9), aims, 0.3)).points > 0).mean()
         for aims in (solved, straight)

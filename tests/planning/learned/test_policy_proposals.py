@@ -99,8 +99,8 @@ def test_only_available_choices_are_proposed():
     many = int((pots(at, most=MOST_POTS).ball[0] >= 0).sum())
     assert 1 <= many < POTS
     policy = PolicyProposals(Preferring(scores))
-    found, masks = policy.scores(at)
-    assert found.shape == masks.shape == (1, CHOICES) and masks.sum() == many * STROKES
+    direct, masks = policy.scores(at)
+    assert direct.shape == masks.shape == (1, CHOICES) and masks.sum() == many * STROKES
     chances = chances_by_width(at, SEARCH.spread)[0, :many]
     proposed = policy(SEARCH, at, 50, np.array([3])).chances[0]
     assert all(np.isclose(chances, one, rtol=1e-9).any() for one in proposed)
@@ -116,11 +116,11 @@ def test_without_a_pot_the_policy_proposes_nothing(learned):
 def test_a_trained_policys_strokes_can_be_played(learned, layout):
     at = Positions.of(tables(5, layout=layout, seed=1))
     strokes, chances = learned(SEARCH, at, 40, np.arange(5))
-    there = pots(at).ball[:, 0] >= 0
-    assert np.isfinite(strokes).all() and (strokes[there][..., SPEED] >= 0.75).all()
+    present = pots(at).ball[:, 0] >= 0
+    assert np.isfinite(strokes).all() and (strokes[present][..., SPEED] >= 0.75).all()
     assert (strokes[..., SPEED] <= 6.88).all()  # half a cell beyond the grid
-    assert (np.hypot(strokes[there][..., SIDE], strokes[there][..., TOP]) <= RIM + 1e-12).all()
-    assert ((chances > 0) == there[:, None]).all() and (chances <= 1).all()
+    assert (np.hypot(strokes[present][..., SIDE], strokes[present][..., TOP]) <= RIM + 1e-12).all()
+    assert ((chances > 0) == present[:, None]).all() and (chances <= 1).all()
     search = StrokeSearch({"noise": "professional", "fidelity": "fast"}, 30, threads=1, propose=learned)
     ranked = search.rank(at, np.arange(5))
     assert ranked.strokes.shape == (5, 16, 5) and search.shots <= 5 * 30
