@@ -17,7 +17,6 @@ from .._check import integer
 from ..planning import Positions, StrokeSearch
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.policy_proposals import PolicyProposals
-from ..planning.positions import seeds_of
 from ..tasks.options import Options
 from .player import Ranked, Strokes
 from .simple import BoundPlayer, placed
@@ -72,6 +71,5 @@ class SearchPlayer(BoundPlayer):
     def _ranked(self, at: Positions, seeds: Any) -> tuple[Any, np.ndarray]:
         """The ranking of the search, and the places of cue balls in hand; NaN elsewhere."""
         _ = self.options  # it must be bound
-        keys = seeds_of(seeds, len(at))
-        visits, places = placed(at, keys)
-        return self.search.rank(visits, keys), places
+        visits, places = placed(at, seeds)
+        return self.search.rank(visits, seeds), places

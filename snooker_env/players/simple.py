@@ -8,6 +8,7 @@ import numpy as np
 from .._check import refuse
 from ..planning import Positions
 from ..planning.planner import options_in
+from ..planning.positions import seeds_of
 from ..tasks.ghost_ball import put_in_hand
 from ..tasks.options import Options
 from .player import RulesLike
@@ -55,11 +56,11 @@ def streams_of(seeds: Any) -> np.ndarray:
 
 def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
     """Visits with cue balls in hand put where ``ghost_ball`` does, and these places (n, 2), else NaN."""
-    places = np.full((len(at), 2), np.nan)
+    places, keys = np.full((len(at), 2), np.nan), seeds_of(seeds, len(at))
     if not at.in_hand.any():
         return at.as_visits(), places
     moved = at.copy()
-    put_in_hand(moved.positions, moved.on_table, moved.game, streams_of(seeds))
+    put_in_hand(moved.positions, moved.on_table, moved.game, streams_of(keys))
     hand = at.in_hand
     places[hand] = moved.positions[hand, 0]
     return moved.as_visits(), places
