@@ -123,7 +123,6 @@ def warmup() -> None:
         env.reset(seed=0)
         at, planner = Positions.of(env), Planner({"action": "discrete"})
         planner.play(at, [0], [0])
-        planner.as_actions(at, [0], [0])
         planner.pot_aim(at, [0], [1], [(0.0, 0.0)], 1.0)
         obstructions(at, [0], [(0.0, 0.0)], [(1.0, 0.0)])
         prospects_of(at, 1e-3)

@@ -5,7 +5,6 @@ import numpy as np
 
 from snooker_env.planning import Positions
 from snooker_env.players import BoundPlayer, Strokes
-from snooker_env.players.player import seeds_of
 from snooker_env.players.simple import placed
 
 from .aim_search import Aimer
@@ -32,6 +31,6 @@ class Geometric(BoundPlayer):
         """See ``Player.play``."""
         _ = self.options  # it must be bound
         at = Positions.of(positions)
-        visits, places = placed(at, seeds_of(seeds, len(at)))
+        visits, places = placed(at, seeds)
         parts = [self._aimer.strokes(visits[k : k + 1]) for k in range(len(at))]
         return Strokes(np.concatenate([np.empty((0, 5)), *parts]), places)

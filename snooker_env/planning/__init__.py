@@ -17,8 +17,8 @@ The caller assigns a value to each afterstate. ``prospects_of`` is a rule of thu
 >>> int(pots(position).ball[0, 0])
 1
 >>> planner = Planner({"action": "discrete", "noise": "club"})
->>> points, goes_on, afterstates, observations = planner.play(position, rows=[0, 0], actions=[67, 67], keys=[1, 2])
->>> len(afterstates), observations.shape
+>>> outcomes = planner.play(position, rows=[0, 0], actions=[67, 67], keys=[1, 2])
+>>> len(outcomes.afterstates), outcomes.observations.shape
 (2, (2, 121))
 """
 
@@ -30,9 +30,9 @@ from .positions import Positions
 from .proposals import Proposals, at_balls, at_pots, over_cushions, spread_strokes, strokes_at
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import sobol_points
-from .stops import Stops
 from .stroke_search import Ranked, StrokeSearch
 from .strokes import action_masks, actions_of, as_actions, pot_aim
+from .trials import Stops
 
 __all__ = [
     "RULE_OF_THUMB",

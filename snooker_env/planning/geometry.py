@@ -28,29 +28,26 @@ from .positions import Positions, PositionsLike, rows_of
 class Pots(NamedTuple):
     """The direct pots of m positions, widest tolerance first, as returned by ``pots``.
 
-    Each position has ``most`` columns. Where a position has fewer pots, the remaining columns hold -1 in
-    ``ball`` and ``pocket`` and 0 in the other arrays.
+    Beyond a position's last pot ``ball`` and ``pocket`` hold -1, the other arrays 0.
 
     Attributes
     ----------
     ball : numpy.ndarray
-        int64 (m, most). Id of the ball to pot; -1 for no pot.
+        int64 (m, most). Id of the ball to pot.
     pocket : numpy.ndarray
-        int64 (m, most). Index into ``snooker_env.POCKETS``; -1 for no pot.
+        int64 (m, most). Index into ``snooker_env.POCKETS``.
     ghost : numpy.ndarray
-        float64 (m, most, 2). Centre of the cue ball [m] at the moment in which it touches the object ball
-        (the ghost ball).
+        float64 (m, most, 2). Centre of the cue ball [m] when it touches the object ball.
     cut : numpy.ndarray
-        float64 (m, most). Cut angle [rad]: the angle between the paths of the cue ball and of the object
-        ball, 0 for a straight pot.
+        float64 (m, most). Angle between the paths of both balls [rad], 0 for a straight pot.
     tolerance : numpy.ndarray
         float64 (m, most). Approximate largest error of the aim [rad] with which the ball is still potted.
 
     Examples
     --------
     >>> from snooker_env.planning import Position, pots
-    >>> found = pots(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), most=1)
-    >>> found.ghost[0, 0].round(4).tolist(), found.cut[0, 0].round(3).item()
+    >>> direct = pots(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), most=1)
+    >>> direct.ghost[0, 0].round(4).tolist(), direct.cut[0, 0].round(3).item()
     ([-0.0495, 1.443], 1.265)
     """
 
@@ -67,16 +64,15 @@ class Paths(NamedTuple):
     Attributes
     ----------
     any_part : numpy.ndarray
-        bool (m,). True if a straight path leads to some part of a ball on.
+        bool (m,). Whether a straight path leads to some part of a ball on.
     full_ball : numpy.ndarray
-        bool (m,). True if a straight path leads to the full face of a ball on.
+        bool (m,). Whether one leads to the full face of a ball on.
 
     Examples
     --------
     >>> from snooker_env.planning import Position, clear_paths
-    >>> paths = clear_paths(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)))
-    >>> paths.any_part.tolist(), paths.full_ball.tolist()
-    ([True], [True])
+    >>> clear_paths(Position(cue=(0.0, 0.0), black=(0.0, 1.4605))).full_ball.tolist()
+    [True]
     """
 
     any_part: NDArray[np.bool_]
@@ -85,13 +81,13 @@ class Paths(NamedTuple):
 
 @entry(what="the pots of positions", seconds=1)
 def _pots(positions, on_table, game, ball, pocket, ghost, cut, tolerance):
-    found = np.empty((ball.shape[1], POT_COLUMNS))
+    lines = np.empty((ball.shape[1], POT_COLUMNS))
     for k in range(len(ball)):
         on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
-        for j in range(find_pots(positions[k], on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0):
-            ball[k, j], pocket[k, j] = int(found[j, POT_BALL]), int(found[j, POT_POCKET])
-            ghost[k, j, 0], ghost[k, j, 1] = found[j, GHOST_X], found[j, GHOST_Y]
-            cut[k, j], tolerance[k, j] = np.arccos(min(1.0, found[j, COS_CUT])), found[j, TOLERANCE]
+        for j in range(find_pots(positions[k], on_table[k], on, BALL_RADIUS, lines) if on_table[k, 0] else 0):
+            ball[k, j], pocket[k, j] = int(lines[j, POT_BALL]), int(lines[j, POT_POCKET])
+            ghost[k, j, 0], ghost[k, j, 1] = lines[j, GHOST_X], lines[j, GHOST_Y]
+            cut[k, j], tolerance[k, j] = np.arccos(min(1.0, lines[j, COS_CUT])), lines[j, TOLERANCE]
 
 
 def pots(positions: PositionsLike, most: int = POTS) -> Pots:
@@ -102,24 +98,18 @@ def pots(positions: PositionsLike, most: int = POTS) -> Pots:
     positions : PositionsLike
         The m positions: anything that ``Positions.of`` accepts.
     most : int, optional
-        Largest number of pots for each position, in [1, 126]; default 4, the number that
-        ``action="discrete"`` chooses from.
+        Largest number of pots for each position, in [1, 126]; default 4, as ``action="discrete"`` has.
 
     Returns
     -------
     Pots
         Arrays with shape (m, most), widest tolerance first.
 
-    Raises
-    ------
-    ValueError
-        If ``positions`` holds no positions or ``most`` is out of range.
-
     Examples
     --------
     >>> from snooker_env.planning import Position, pots
-    >>> found = pots(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)))
-    >>> found.ball[0].tolist(), found.pocket[0].tolist(), found.tolerance[0, 0].round(5).item()
+    >>> direct = pots(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)))
+    >>> direct.ball[0].tolist(), direct.pocket[0].tolist(), direct.tolerance[0, 0].round(5).item()
     ([21, 21, -1, -1], [3, 4, -1, -1], 0.00023)
     """
     at, most = Positions.of(positions).as_visits(), integer("most", most, 1, 6 * (N_BALLS - 1))
@@ -151,7 +141,7 @@ def _obstructions(positions, on_table, rows, starts, ends, reach, out):
 def obstructions(
     positions: PositionsLike, rows: Integers, starts: Vectors, ends: Vectors, *, ignore: Sequence[int] = ()
 ) -> NDArray[np.bool_]:
-    """Find the balls in the way of a ball that runs straight: nearer than 2 R to its path.
+    """Find the balls in the way of a ball that runs straight: those with centres nearer than 2 R to its path.
 
     Parameters
     ----------
@@ -160,20 +150,14 @@ def obstructions(
     rows : array_like
         int (n,). Row of ``positions`` for each path, in [0, m).
     starts, ends : array_like
-        float (n, 2). First and last point of the path of the running ball's centre [m].
+        float (n, 2). First and last point of the running ball's centre [m].
     ignore : array_like, optional
-        int (j,) or (n, j). Ids of balls that do not count, usually the running ball and its target; default
-        none.
+        int (j,) or (n, j). Ids of balls that do not count, usually the running ball and its target.
 
     Returns
     -------
     numpy.ndarray
-        bool (n, 22). True for each ball in the way; a row without True is a clear path.
-
-    Raises
-    ------
-    ValueError
-        If a row or an id is out of range, or if an array has the wrong shape.
+        bool (n, 22). Whether each ball is in the way.
 
     Examples
     --------
@@ -208,7 +192,7 @@ def _clear_paths(positions, on_table, game, noses, jaws, any_part, full_ball):
 
 
 def clear_paths(positions: PositionsLike) -> Paths:
-    """Determine whether the cue ball can roll straight to a ball on and touch nothing before.
+    """Determine whether the cue ball can roll straight to a ball on, touching no other ball or cushion first.
 
     The cushions are those of the match table.
 
@@ -220,13 +204,8 @@ def clear_paths(positions: PositionsLike) -> Paths:
     Returns
     -------
     Paths
-        Two bool arrays (m,), for the two tests of the foul-and-miss rule (``snooker_env.game.paths``). False
-        where the cue ball is off the table.
-
-    Raises
-    ------
-    ValueError
-        If ``positions`` holds no positions.
+        Two bool arrays (m,), of the foul-and-miss rule (``snooker_env.game.paths``); False without a cue
+        ball.
 
     Examples
     --------

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import array, integer, refuse, refuse_what
-from .._types import Environment, Floats, Integers, Scalars, Vectors
+from .._types import Environment, Integers, Scalars, Vectors
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..tasks.box_actions import Actions
@@ -22,9 +22,8 @@ from ..tasks.rewards import REWARDS
 from ..tasks.tables import I_FIRST, I_PENALTY, StepOutput
 from ..tasks.threads import Threads, processors
 from .positions import Positions, PositionsLike, bare, check_played, rows_of
-from .stops import Stops, WatchedVisits
-from .strokes import check_strokes, encoded, solved_aims, solved_choices
-from .trials import AIM, TrialVisits, decoded
+from .strokes import check_strokes, encoded, solved_aims
+from .trials import AIM, Stops, TrialVisits, WatchedVisits, decoded
 from .trials import COLUMNS as STROKE
 
 
@@ -58,12 +57,10 @@ class Outcomes(NamedTuple):
 
 
 class Planner:
-    """Plays strokes on copies of positions exactly as the environment would.
+    """Plays strokes on copies of positions exactly as the environment would: same physics, rules and errors.
 
-    Each stroke is judged as a stroke of a *visit* (``task="visit"``): the visit ends with the first miss,
-    foul or clearance. With an environment that plays whole frames, a planner therefore covers what the player
-    scores and leaves within the current visit. It does not cover penalties, free balls, the foul-and-miss
-    rule or the opponent.
+    Each stroke is judged as one of a *visit*, which ends with the first miss, foul or clearance; penalties,
+    free balls, the foul-and-miss rule and the opponent of a frame are not covered.
 
     A *stroke* is a row of five numbers in SI: cue speed [m/s], side and top (tip offset over R, to the right
     and up), the direction in which the cue ball leaves [rad], elevation of the cue [rad]. The cue itself
@@ -72,33 +69,21 @@ class Planner:
     Parameters
     ----------
     env_or_options : Env, VectorEnv, AECEnv, Options or dict
-        An environment of this package (one table or many, wrapped or not, or a match), an ``Options``, or the
-        keyword arguments of ``gymnasium.make("Snooker-v0", ...)`` as a dict. They define the action format,
-        the noise, the physics, the table and the fidelity.
+        An environment of this package, wrapped or not, an ``Options``, or a dict of its fields: the action
+        format, the noise, the physics, the table and the fidelity.
     noise : str, dict or Noise, optional
-        Execution noise for planning in place of the environment's own. "none" plays all strokes as intended.
-        Default: the noise of ``env_or_options``.
+        Execution noise in place of the environment's; "none" plays all strokes as intended.
     threads : int, optional
-        Number of threads, in [1, 1024]; default one for each available processor. Results do not depend on
-        it.
-
-    Raises
-    ------
-    ValueError
-        If an argument has the wrong type or is out of range.
+        Number of threads, in [1, 1024]; default one for each processor. Results do not depend on it.
 
     Examples
     --------
     >>> import numpy as np
-    >>> import snooker_env as sn
-    >>> env = sn.SnookerEnv(noise="club", action="discrete")
-    >>> _ = env.reset(seed=0)
-    >>> planner = sn.planning.Planner(env)
-    >>> choices = np.flatnonzero(env.action_masks())[:3]
-    >>> keys = np.arange(20, dtype=np.uint64)  # each choice is played with the same 20 noise samples
-    >>> outcomes = planner.play(env, np.zeros(60, int), np.repeat(choices, 20), np.tile(keys, 3))
-    >>> outcomes.points.reshape(3, 20).mean(axis=1).shape, planner.shots
-    ((3,), 60)
+    >>> from snooker_env.planning import Planner, Position
+    >>> planner = Planner({"action": "discrete", "noise": "club"})
+    >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> planner.play(position, np.zeros(20, int), np.full(20, 67), keys=np.arange(20)).points.shape
+    (20,)
     """
 
     def __init__(
@@ -150,16 +135,6 @@ class Planner:
         """The table, a ``Table``."""
         return self._rules.table
 
-    @property
-    def action_space(self) -> Any:
-        """The ``gymnasium.Space`` of one action."""
-        return self._rules.actions.space
-
-    @property
-    def discrete(self) -> bool:
-        """Whether actions are integers (``action="discrete"``), a bool."""
-        return self._rules.actions.size == 1
-
     def play(
         self,
         positions: PositionsLike,
@@ -170,56 +145,18 @@ class Planner:
         strokes: Vectors | None = None,
         errors: Vectors | None = None,
     ) -> Outcomes:
-        """Play n strokes, each on a copy of its position.
+        """Play n strokes, each on a copy of its position, and return ``Outcomes``.
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The m positions: anything that ``Positions.of`` accepts. They are not changed.
-        rows : array_like
-            int (n,). Row of ``positions`` for each stroke, in [0, m).
-        actions : array_like, optional
-            float (n, k): actions of the box action space; or int (n,): choices, with ``action="discrete"``.
-        keys : array_like, optional
-            int (n,) or (n, 2), in [0, 2**64). The noise sample of each stroke: the key of its random stream,
-            or key and counter as a saved state holds them under "stream". Equal keys give equal execution
-            errors for every stroke (common random numbers). Keys or ``errors`` are required unless the
-            planner has no noise.
-        strokes : array_like, optional
-            float (n, 5), in place of ``actions``: strokes in SI, see above. A cue ball in hand is played from
-            where it lies.
-        errors : array_like, optional
-            float (n, 5), in place of ``keys``: the errors of speed, side, top, aim and elevation, in standard
-            deviations of the noise.
+        ``rows`` int (n,): row of the m ``positions`` (see ``Positions.of``) for each stroke. What is played
+        is either ``actions``, float (n, k), or int (n,) with ``action="discrete"``; or ``strokes``, float (n,
+        5) in SI, with a cue ball in hand played from where it lies. The errors are drawn by ``keys``, int
+        (n,) in [0, 2**64), or (n, 2) with a counter as a saved state has them: equal keys give equal errors
+        for every stroke (common random numbers). Or they are ``errors``, float (n, 5) in standard deviations,
+        of speed, side, top, aim and elevation. Without noise neither is needed.
 
-        Returns
-        -------
-        Outcomes
-            ``points``, ``goes_on``, ``afterstates`` and ``observations``, with n rows each.
-
-        Raises
-        ------
-        ValueError
-            If a row is out of range, an action is not in the action space, a stroke is out of range, an array
-            has the wrong shape, or a position is invalid or has no stroke left to play.
-        SimulationError
-            If a shot cannot be computed.
-
-        Notes
-        -----
-        Several threads may call this method at once. A stroke costs about 20 us; in calls with fewer than a
-        few dozen strokes the input checks are a noticeable part of the cost.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner, Position
-        >>> planner = Planner({"action": "discrete", "noise": "club"})
-        >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
-        >>> planner.play(position, [0, 0, 0], [67, 67, 67], keys=[1, 2, 3]).points.shape
-        (3,)
-        >>> stroke = [2.0, 0.0, 0.0, 0.785, 0.0]  # 2 m/s, in the middle of the ball
-        >>> planner.play(position, [0, 0], strokes=[stroke] * 2, errors=[[0, 0, 0, 0, 0], [0, 0, 0, 9.0, 0]]).points.tolist()
-        [7.0, 0.0]
+        ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
+        SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes about 20
+        us.
         """
         after, out = self._played(positions, rows, actions, keys, strokes=strokes, errors=errors)
         return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
@@ -234,13 +171,7 @@ class Planner:
         strokes: Vectors | None = None,
         errors: Vectors | None = None,
     ) -> Stops:
-        """Play n strokes as ``play`` does, and return where each ball stopped.
-
-        ``positions``: the m positions, see ``play``. ``rows``: int (n,), row of ``positions`` for each
-        stroke. ``actions``, ``keys``, ``strokes``, ``errors``: what is played and under which errors, see
-        ``play``. ValueError for the same reasons as ``play``.
-        SimulationError if a shot cannot be computed.
-        """
+        """Play n strokes as ``play`` does, and return where each ball stopped: ``Stops`` with n rows."""
         visits = copy.copy(self._watched)
         after, out = self._played(
             positions, rows, actions, keys, strokes=strokes, errors=errors, visits=visits
@@ -259,20 +190,18 @@ class Planner:
         errors: Any = None,
         visits: TrialVisits | None = None,
     ) -> tuple[Positions, StepOutput]:
-        """Check the arguments and play the strokes on ``visits`` to be filled. Returns the afterstates and
-        the output of the step."""
+        """Play the checked strokes on ``visits`` to be filled: the afterstates, and the step's output."""
         at = Positions.of(positions).as_visits()
         which = rows_of(at, rows)
         n = len(which)
         if (actions is None) == (strokes is None):
-            raise refuse_what(
-                "actions, strokes",
-                "none" if actions is None else "both",
-                "must be one of them: what is played",
-            )
+            what = "none" if actions is None else "both"
+            raise refuse_what("actions, strokes", what, "must be one of them: what is played")
         played = self._rules.actions.check_many(actions, n) if strokes is None else check_strokes(strokes, n)
         streams = _streams(keys, n, self.noise.silent or errors is not None)
-        wrong = None if errors is None else _errors(errors, keys, n)
+        if errors is not None and keys is not None:
+            raise refuse_what("keys, errors", "both", "must be one of them: the errors are drawn or passed")
+        wrong = None if errors is None else array("errors", errors, (n, STROKE))
         check_played(at, which, self.table, self.physics.R)
         after = at[which]  # a visit is played in place: each row becomes its afterstate
         if strokes is not None and wrong is None:
@@ -290,14 +219,10 @@ class Planner:
     def strokes_of(
         self, positions: PositionsLike, rows: Integers, actions: Vectors | Integers
     ) -> tuple[NDArray[np.float64], Positions]:
-        """Decode actions or choices of this planner's action space: which strokes do they mean?
+        """Decode actions or choices (n, k) or (n,), see ``play``: which strokes do they mean?
 
-        ``positions``: the m positions: anything that ``Positions.of`` accepts. ``rows``: int (n,), row of
-        ``positions`` for each action, in [0, m). ``actions``: float (n, k) or int (n,), see ``play``. Returns
-        ``strokes``, float64 (n, 5), strokes in SI, without errors and ``at``, n rows: where they are played
-        from, with a cue ball in hand on the place that the action names. ValueError if a row is out of range
-        or an action is not in the action space.
-        """
+        Returns float64 (n, 5), strokes in SI without errors, and n ``Positions`` that they are played from,
+        with a cue ball in hand on the place that the action names."""
         at = Positions.of(positions)
         which = rows_of(at, rows)
         return decoded(self._rules, at, which, self._rules.actions.check_many(actions, len(which)))
@@ -310,14 +235,12 @@ class Planner:
         rows: Integers | None = None,
         places: Vectors | None = None,
     ) -> NDArray[np.float64]:
-        """Encode strokes as actions of this planner's action space.
+        """Encode strokes (n, 5) as actions of this planner's action space: float64 (n, k) in [-1, 1].
 
-        ``strokes``: float (n, 5), strokes in SI. ``positions``, ``rows``: where each stroke is played, see
-        ``strokes_of``. Required with ``aim="target"``, which is measured from a line there. ``places``: float
-        (n, 2), with ``placement=True``: where in the D a cue ball in hand is placed [m]. Default: the middle
-        of the baulk line. Returns float64 (n, k). Actions in [-1, 1]. What they say beside the stroke is 0:
-        to play. ValueError if a stroke is out of range or cannot be such an action.
-        """
+        ``positions`` and ``rows``: where each is played, required with ``aim="target"``, which is measured
+        from a line there. ``places`` (n, 2) [m]: with ``placement=True``, where in the D a cue ball in hand
+        is placed, by default the middle of the baulk line. What actions say beside the stroke is 0: to play.
+        ValueError if a stroke is out of range or cannot be such an action."""
         told, form = check_strokes(strokes), self._rules.actions
         if not isinstance(form, Actions):
             raise refuse("action", "discrete", 'must be "box": choices hold a few strokes only')
@@ -325,29 +248,10 @@ class Planner:
         if form.aim == "absolute":
             return encoded(form, told, where)
         if positions is None or rows is None:
-            raise refuse(
-                "positions, rows",
-                None,
-                'must be given with aim="target", which is measured from a line in each position',
-            )
+            allowed = 'must be given with aim="target", which is measured from a line in each position'
+            raise refuse("positions, rows", None, allowed)
         lines, _ = self.strokes_of(positions, rows, encoded(form, told, where, told[:, AIM]))
         return encoded(form, told, where, lines[:, AIM])
-
-    def as_actions(self, positions: PositionsLike, rows: Integers, choices: Integers) -> NDArray[np.float32]:
-        """Convert choices of ``action="discrete"`` to box actions, with this planner's physics and fidelity.
-
-        ``positions``: the m positions: anything that ``Positions.of`` accepts. ``rows``: int (n,), row of
-        ``positions`` for each choice, in [0, m). ``choices``: int (n,), choices, in [0, 540). Returns float32
-        (n, 4). Actions of ``aim="absolute"``. ValueError if a row or a choice is out of range, or if the
-        planner itself reads actions with another ``aim``.
-        """
-        if isinstance(self._rules.actions, Actions) and self._rules.actions.aim != "absolute":
-            raise refuse(
-                "aim",
-                self._rules.actions.aim,
-                'must be "absolute": this planner would read the result differently',
-            )
-        return solved_choices(self._rules, Positions.of(positions), rows, choices)
 
     def pot_aim(
         self,
@@ -355,55 +259,15 @@ class Planner:
         rows: Integers,
         balls: Integers,
         targets: Vectors,
-        speeds: Scalars,
+        strokes: Scalars | Vectors,
         *,
-        side: Scalars = 0.0,
-        top: Scalars = 0.0,
-        elevation: Scalars = 0.0,
         ghosts: Vectors | None = None,
     ) -> NDArray[np.float64]:
-        """Solve the direction in which the cue ball must leave to pot a ball, with this planner's physics.
+        """Solve the cue ball's directions with this planner's physics and fidelity: float64 (n,).
 
-        Parameters
-        ----------
-        positions : PositionsLike
-            The m positions: anything that ``Positions.of`` accepts.
-        rows : array_like
-            int (n,). Row of ``positions`` for each ball, in [0, m).
-        balls : array_like
-            int (n,). Id of the object ball, in [1, 21].
-        targets : array_like
-            float (n, 2). Point to which the ball is to be sent [m].
-        speeds : array_like or float
-            float, scalar or (n,). Cue speeds [m/s], above 0.
-        side, top : array_like or float, optional
-            float, scalar or (n,). Tip offsets over R, to the right and up; default 0.
-        elevation : array_like or float, optional
-            float, scalar or (n,). Elevation of the cue [rad]; default 0.
-        ghosts : array_like, optional
-            float (n, 2). Ghost-ball centres of the straight line [m], see ``snooker_env.planning.pot_aim``.
-
-        Returns
-        -------
-        numpy.ndarray
-            float64 (n,). Directions of the cue ball [rad], anticlockwise from +x.
-
-        Raises
-        ------
-        ValueError
-            If a number is out of range, a ball is off the table, or an array has the wrong shape.
-
-        Examples
-        --------
-        >>> from snooker_env.planning import Planner, Position
-        >>> position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)])
-        >>> float(Planner({}).pot_aim(position, [0], [1], [(0.8, 0.8)], 2.3)[0].round(3))
-        0.785
-        """
-        dynamics = (self.physics, self._rules.fidelity)
-        return solved_aims(
-            Positions.of(positions), rows, balls, targets, speeds, side, top, elevation, ghosts, dynamics
-        )
+        See ``snooker_env.planning.pot_aim``."""
+        dynamics = self.physics, self._rules.fidelity
+        return solved_aims(Positions.of(positions), rows, balls, targets, strokes, ghosts, dynamics)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_lock"}
@@ -413,8 +277,7 @@ class Planner:
 
 
 def options_in(source: Any) -> Options:
-    """The ``Options`` of an environment, or those given as such or as a dict; ValueError for anything
-    else."""
+    """The ``Options`` of an environment, of a dict, or as they are; ValueError for anything else."""
     if isinstance(source, Mapping):
         source = options_of(None, source)
     options = source if isinstance(source, Options) else getattr(bare(source), "options", None)
@@ -424,34 +287,25 @@ def options_in(source: Any) -> Options:
     return options
 
 
-def _errors(errors: Vectors, keys: Any, n: int) -> Floats:
-    """Standard normal errors (n, 5), checked."""
-    if keys is not None:
-        raise refuse_what("keys, errors", "both", "must be one of them: the errors are drawn or given")
-    return array("errors", errors, (n, STROKE))
-
-
 def _streams(keys: Integers | Sequence[Integers] | None, n: int, silent: bool) -> NDArray[np.uint64]:
     """The random stream of each stroke, key and counter: uint64 (n, 2)."""
     streams = np.zeros((n, 2), np.uint64)
+    if keys is None and silent:
+        return streams
+    allowed = f"{n} integers in [0, 2**64), a noise sample for each stroke"
     if keys is None:
-        if silent:
-            return streams
-        raise refuse(
-            "keys",
-            None,
-            f"must be given with execution noise: {n} integers in [0, 2**64), a noise sample for each stroke",
-        )
-    allowed = f"must be {n} integers in [0, 2**64), a noise sample for each stroke"
+        raise refuse("keys", None, f"must be given with execution noise: {allowed}")
     # NumPy converts a list of large and small integers to floats
-    given = keys if isinstance(keys, np.ndarray) else np.array(keys, object)
-    if given.dtype == object and all(isinstance(k, int | np.integer) and 0 <= k < 2**64 for k in given.flat):
-        given = given.astype(np.uint64)
-    if given.shape not in ((n,), (n, 2)):
-        raise refuse_what("keys", f"array of shape {given.shape}", allowed)
-    if given.dtype.kind not in "iu" or (given.dtype.kind == "i" and (given < 0).any()):
-        raise refuse_what(
-            "keys", "negative numbers" if given.dtype.kind == "i" else f"array of {given.dtype}", allowed
-        )
-    streams[:, : given.ndim] = given.reshape(n, -1)
+    numbers = keys if isinstance(keys, np.ndarray) else np.array(keys, object)
+    if numbers.dtype == object and all(
+        isinstance(k, int | np.integer) and 0 <= k < 2**64 for k in numbers.flat
+    ):
+        numbers = numbers.astype(np.uint64)
+    if numbers.shape not in ((n,), (n, 2)):
+        raise refuse_what("keys", f"array of shape {numbers.shape}", f"must be {allowed}")
+    negative = numbers.dtype.kind == "i" and bool((numbers < 0).any())
+    if negative or numbers.dtype.kind not in "iu":
+        what = "negative numbers" if negative else f"array of {numbers.dtype}"
+        raise refuse_what("keys", what, f"must be {allowed}")
+    streams[:, : numbers.ndim] = numbers.reshape(n, -1)
     return streams

@@ -1,6 +1,7 @@
 """How is a position written down? ``Position``: the balls by name and the ball on, validated; and the arrays
 for the kernels."""
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import InitVar, asdict, dataclass, fields
 from functools import wraps
@@ -10,7 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import array, integer, refuse, refuse_what, truth
+from .._check import array, choice, integer, refuse, refuse_what, truth
+from .._files import write_atomic
 from .._types import Flags, Integers, Place, Vectors
 from ..game.balls import (
     COLOUR_NAMES,
@@ -29,7 +31,6 @@ from ..game.frame import MOST_BREAK
 from ..game.in_hand import place_cue, within_d
 from ..geometry import BALL_RADIUS
 from ..physics.table import Table, TableLike
-from . import position_file
 
 ON = tuple(ball.name.lower() for ball in BallOn)
 """The names of all values of "on"."""
@@ -37,16 +38,15 @@ ON = tuple(ball.name.lower() for ball in BallOn)
 
 @dataclass(frozen=True, kw_only=True)
 class Position:
-    """The balls on a table in the middle of a visit, by name: validated and immutable.
+    """The balls on a table in the middle of a visit, by name: validated when it is made, and immutable.
 
     Parameters
     ----------
     cue : (float, float), optional
-        Centre of the cue ball [m]. The origin is the table's centre, +x points to the yellow side and +y to
-        the black end. It may be left out with ``in_hand=True``: then the cue ball lies at the free place of
-        the D nearest to its usual one, (0.18, -1.0475).
+        Centre of the cue ball [m] from the table's centre, +x to the yellow side, +y to the black end. Left
+        out with ``in_hand=True``, it lies at the free place of the D nearest to (0.18, -1.0475).
     reds : sequence of (float, float), optional
-        Up to 15 centres [m]. The reds get the ids 1, 2, ... in this order. Default: none.
+        Up to 15 centres [m], which get the ids 1, 2, ... in this order. Default: none.
     yellow, green, brown, blue, pink, black : (float, float), optional
         Centres [m]. A ball that is left out is off the table.
     on : str, optional
@@ -57,29 +57,21 @@ class Position:
     points : int, optional
         Points of the visit so far, in [0, 155]; default 0.
     over : bool, optional
-        Whether the visit has ended; default False. After its end anything may be on, and the cue ball may be
-        missing.
+        Whether the visit has ended; default False. Then anything may be on, and the cue ball may be missing.
     table : str, Table or None, optional
-        The table that the balls must fit on; it is not stored. None stands for unbounded cloth. Default:
-        "match".
+        The table that the balls must fit on, not stored; None: unbounded cloth. Default: "match".
 
     Raises
     ------
     ValueError
-        If a ball is off the table, in a cushion or over a pocket, if two balls overlap, or if the ball on
-        contradicts the balls.
-    TypeError
-        For an unknown field.
+        If a ball is off the table, in a cushion or over a pocket, balls overlap, or the ball on contradicts
+        them.
 
     Examples
     --------
     >>> from snooker_env.planning import Position
     >>> Position(cue=(0.0, -0.6), reds=[(0.3, 0.5)], black=(0.0, 1.4605)).on
     'red'
-    >>> Position(cue=(0.0, -0.6), black=(0.0, -0.62))
-    Traceback (most recent call last):
-    ...
-    ValueError: black = (0.0, -0.62): overlaps cue at (0.0, -0.6) by 0.0325 m, at most 1e-06 is allowed
     """
 
     cue: Place | None = None
@@ -120,12 +112,10 @@ class Position:
             check_playable(
                 on_table, BallOn[str(self.on).upper()], on="on", cue="cue", balls="the balls given"
             )
-            if self.in_hand and not within_d(*positions[CUE]):
-                raise refuse(
-                    "in_hand",
-                    True,
-                    f"must be False with the cue ball at ({positions[CUE, 0]:g}, {positions[CUE, 1]:g}), outside the D",
-                )
+            x, y = positions[CUE]
+            if self.in_hand and not within_d(x, y):
+                what = f"must be False with the cue ball at ({x:g}, {y:g}), outside the D"
+                raise refuse("in_hand", True, what)
 
     def _layout(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         positions, on_table = np.zeros((N_BALLS, 2)), np.zeros(N_BALLS, np.bool_)
@@ -140,69 +130,49 @@ class Position:
         return positions, on_table
 
     def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
-        """Return the position as the arrays that ``Positions`` holds.
+        """Return the arrays of a ``Positions``: centres [m] (22, 2), on_table (22,), game int64 (5,).
 
-        Returns ``positions``, float64 (22, 2), centres [m]; 0 for a ball off the table and ``on_table``, bool
-        (22,), which balls are on the table and ``game``, int64 (5,), the ball on (a ``BallOn``), whether the
-        cue ball is in hand, points, whether the visit is over, strokes (0).
-        """
+        The game: the ball on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit is
+        over, strokes (0)."""
         game = np.array([BallOn[str(self.on).upper()], self.in_hand, self.points, self.over, 0], np.int64)
         return *self._layout(), game
 
     @classmethod
     def of_arrays(cls, positions: Vectors, on_table: Flags, game: Integers) -> "Position":
-        """Make a ``Position`` from the arrays of one table. Reds are numbered anew.
-
-        ``positions``: float (22, 2), centres [m]. ``on_table``: bool (22,), which balls are on the table.
-        ``game``: int (5,), as returned by ``arrays``. Returns the same position by names. ValueError if the
-        balls overlap or the ball on contradicts them.
-        """
-        places, there = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
+        """Make the ``Position`` of one table's arrays, see ``arrays``; reds are numbered anew."""
+        places, present = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
         ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]
         named = {
             name: tuple(places[i])
             for name, i in {"cue": CUE, **{c: colour(c) for c in COLOUR_NAMES}}.items()
-            if there[i]
+            if present[i]
         }
-        reds = tuple(tuple(places[i]) for i in range(1, N_REDS + 1) if there[i])
+        reds = tuple(tuple(places[i]) for i in range(1, N_REDS + 1) if present[i])
         on = BallOn(ball_on).name.lower()
         return cls(
             **named, reds=reds, on=on, in_hand=bool(in_hand), points=points, over=bool(over), table=None
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the position as JSON types, without the balls off the table.
-
-        Returns fields and their values; ``Position(**fields)`` makes the position again.
-        """
+        """Return the fields as JSON types, without balls off the table; ``from_dict`` reads them."""
         kept = asdict(self) | {"reds": [list(place) for place in self.reds]}
         for name in ("cue", *COLOUR_NAMES):
             kept[name] = kept[name] and list(kept[name])
         return {name: value for name, value in kept.items() if value is not None}
 
     @classmethod
-    def from_dict(cls, given: Mapping[str, Any], *, table: TableLike = "match") -> "Position":
-        """Make the position that a dict of ``to_dict`` describes.
-
-        ``given``: fields of ``Position`` as JSON types. A ball that is left out or None is off the table.
-        ``table``: the table that the balls must fit on, see ``Position``; default "match". Returns the
-        validated position. ValueError for an unknown key, and for the same reasons as ``Position``.
-        """
-        return cls(**position_file.checked(given, _NAMES), table=table)
+    def from_dict(cls, kept: Mapping[str, Any], *, table: TableLike = "match") -> "Position":
+        """Make the position that a dict of ``to_dict`` describes; ValueError for an unknown key."""
+        return cls(**_checked(kept), table=table)
 
     def save(self, path: str | Path) -> None:
-        """Write the position to a file as JSON, see ``to_dict``."""
-        position_file.write(self.to_dict(), path)
+        """Write the position as JSON. An existing file is replaced in one step: it is never half written."""
+        write_atomic(path, json.dumps(self.to_dict()) + "\n")
 
     @classmethod
     def load(cls, path: str | Path, *, table: TableLike = "match") -> "Position":
-        """Read a position from a file that ``save`` wrote, or that was written manually.
-
-        ``path``: the file of JSON. ``table``: the table that the balls must fit on, see ``Position``; default
-        "match". Returns the validated position. ValueError if the file does not hold the JSON of a position.
-        The message names the unknown key or the ball that is wrong. OSError if the file cannot be read.
-        """
-        return cls(**position_file.read(path, _NAMES), table=table)
+        """Read a file of ``save``, or one written by hand; ValueError names what is wrong in it."""
+        return cls(**_read(path), table=table)
 
 
 _NAMES = tuple(f.name for f in fields(Position))
@@ -210,13 +180,12 @@ _NAMES = tuple(f.name for f in fields(Position))
 
 
 def _known(init: Any) -> Any:
-    """``Position.__init__`` with a word on a field that it does not have: which there are, and that the reds
-    are one list."""
+    """``Position.__init__`` whose TypeError says which fields there are, and that the reds are one list."""
     names = (*_NAMES, "table")
 
     @wraps(init)
-    def checked(self: Position, *args: Any, **given: Any) -> None:
-        for name in given:
+    def checked(self: Position, *args: Any, **fields_: Any) -> None:
+        for name in fields_:
             if name not in names:
                 hint = (
                     "the reds are one list, reds=[(x, y), ...]"
@@ -224,7 +193,7 @@ def _known(init: Any) -> Any:
                     else f"the fields are {', '.join(names)}"
                 )
                 raise TypeError(f"Position got an unexpected keyword argument {name!r}; {hint}")
-        init(self, *args, **given)
+        init(self, *args, **fields_)
 
     return checked
 
@@ -262,33 +231,66 @@ def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], t
         apart = np.hypot(*(positions[others] - positions[ball]).T)
         if len(others) and 2 * BALL_RADIUS - apart.min() > 1e-6:
             other, place = int(others[apart.argmin()]), tuple(positions[ball].tolist())
-            at = tuple(positions[other].tolist())
-            raise refuse(
-                _name(ball),
-                place,
-                f"overlaps {_name(other)} at {at} by {2 * BALL_RADIUS - apart.min():.3g} m, at most 1e-06 is allowed",
-            )
+            at, much = tuple(positions[other].tolist()), 2 * BALL_RADIUS - apart.min()
+            what = f"overlaps {_name(other)} at {at} by {much:.3g} m, at most 1e-06 is allowed"
+            raise refuse(_name(ball), place, what)
 
 
 def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue: str, balls: str) -> None:
-    """Raise ValueError unless there is a stroke to play. ``on``, ``cue``, ``balls``: names of the fields for
-    the message.
-
-    The rules are those of a saved state (``tasks.states.checked``).
-    """
-    there = mask_of_present(on_table)
-    if not there & 1:
+    """Raise ValueError, with these names of fields, unless there is a stroke to play (as
+    ``tasks.states.checked``)."""
+    present = mask_of_present(on_table)
+    if not present & 1:
         raise refuse(cue, None, "must be on the table while the visit goes on")
-    if not balls_on(ball_on, there):
+    if not balls_on(ball_on, present):
         raise refuse(on, ball_on.name.lower(), f"must name balls of which one is on the table ({balls})")
-    if ball_on > BallOn.RED and there & REDS_MASK:
+    if ball_on > BallOn.RED and present & REDS_MASK:
         raise refuse(
             on, ball_on.name.lower(), f"must be 'red' or 'any_colour' while reds are on the table ({balls})"
         )
-    lowest = next_on(there)
+    lowest = next_on(present)
     if ball_on not in (BallOn.ANY_COLOUR, lowest):
-        raise refuse(
-            on,
-            ball_on.name.lower(),
-            f"must be 'any_colour' or {BallOn(lowest).name.lower()!r}, the lowest on the table ({balls})",
+        what = f"'any_colour' or {BallOn(lowest).name.lower()!r}, the lowest on the table"
+        raise refuse(on, ball_on.name.lower(), f"must be {what} ({balls})")
+
+
+def _checked(raw: Any, field: str = "position") -> Mapping[str, Any]:
+    """A dict of JSON types that has keys of ``names`` only and no truth values where numbers belong."""
+    if not isinstance(raw, Mapping):
+        raise refuse_what(
+            field, f"a {type(raw).__name__}", f"must be a dict with keys of {', '.join(_NAMES)}"
         )
+    for key in raw:
+        choice(f"key of {field}", key, _NAMES)
+    for key, value in raw.items():
+        # NumPy converts them to 0 and 1
+        if any(isinstance(x, bool) for place in _places(value) for x in place):
+            raise refuse(key, value, "must be two real numbers" + (" for each ball" if key == "reds" else ""))
+    return raw
+
+
+def _places(value: Any) -> list[Any]:
+    """The lists of numbers in a value: of one ball, or of several."""
+    if not isinstance(value, list | tuple):
+        return []
+    return [part for part in value if isinstance(part, list | tuple)] or [value]
+
+
+def _read(path: str | Path) -> Mapping[str, Any]:
+    """The fields in a file of JSON; ValueError names the file or the key that is wrong."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+        raw = json.loads(text, object_pairs_hook=_once)
+    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+        raise refuse("path", str(path), f"must be a file of JSON ({error})") from None
+    return _checked(raw, str(path))
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A JSON object as a dict; ValueError if a key is there twice."""
+    out = dict(pairs)
+    if len(out) < len(pairs):
+        names = [key for key, _ in pairs]
+        repeated = next(key for key in names if names.count(key) > 1)
+        raise refuse("key of the position", repeated, "must be there once")
+    return out

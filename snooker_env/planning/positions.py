@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .._check import array, refuse, refuse_what
 from .._jit import entry
-from .._types import Batches, Environment, FlagRows, Integers
+from .._types import Batches, Environment, FlagRows, Integers, Ints
 from ..game.balls import CUE, N_BALLS, BallOn, bits, mask_of_present
 from ..game.frame import MOST_BREAK
 from ..game.frame_columns import (
@@ -82,7 +82,8 @@ class Positions:
     Examples
     --------
     >>> from snooker_env.planning import Position, Positions
-    >>> batch = Positions.of([Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)]), Position(cue=(0.0, 0.0), blue=(0.3, 0.3))])
+    >>> position = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)])
+    >>> batch = Positions.of([position, Position(cue=(0.0, 0.0), blue=(0.3, 0.3))])
     >>> len(batch), batch.ball_on.tolist(), batch[1].blue
     (2, [1, 5], (0.3, 0.3))
     """
@@ -98,17 +99,17 @@ class Positions:
     ):
         self.positions: NDArray[np.float64] = _floats("positions", positions, (-1, N_BALLS, 2))
         m = len(self.positions)
-        there, columns = np.asarray(on_table), np.asarray(game)
-        if there.shape != (m, N_BALLS) or there.dtype != np.bool_:
+        present, columns = np.asarray(on_table), np.asarray(game)
+        if present.shape != (m, N_BALLS) or present.dtype != np.bool_:
             raise refuse_what(
                 "on_table",
-                f"{there.dtype} array of shape {there.shape}",
+                f"{present.dtype} array of shape {present.shape}",
                 f"must be bool of shape {(m, N_BALLS)}",
             )
         if columns.shape not in ((m, VISIT_COLUMNS), (m, COLUMNS)) or columns.dtype.kind not in "iu":
             allowed = f"must be integers of shape {(m, VISIT_COLUMNS)}, or {(m, COLUMNS)} of frames"
             raise refuse_what("game", f"{columns.dtype} array of shape {columns.shape}", allowed)
-        self.on_table: NDArray[np.bool_] = np.ascontiguousarray(there)
+        self.on_table: NDArray[np.bool_] = np.ascontiguousarray(present)
         self.game: NDArray[np.int64] = np.ascontiguousarray(columns, np.int64)
         self.saved: Layouts | None = saved
 
@@ -116,10 +117,9 @@ class Positions:
     def of(cls, source: "PositionsLike") -> "Positions":
         """Collect the positions that an object holds, as a copy; a ``Positions`` is returned as it is.
 
-        ``source``: an environment, of one table or many, wrapped or not, gives its current tables, also those
-        whose visit has ended; those of frames and matches as their strikers see them. A dict is a state of a
-        visit from ``get_state()``, or the result of ``Position.to_dict()``. Returns one row for each table,
-        position or state. ValueError if the object holds no positions.
+        An environment, of one table or many, wrapped or not, gives all current tables, those of frames as
+        their strikers see them. Or a ``Position``, a state of a visit, a dict of ``Position.to_dict()``, or a
+        list of these.
         """
         if isinstance(source, Positions):
             return source
@@ -176,14 +176,10 @@ class Positions:
         return Positions(self.positions.copy(), self.on_table.copy(), self.game.copy(), saved)
 
     def as_visits(self) -> "Positions":
-        """Return the positions as those of visits, with ``game`` (m, 5).
+        """Return positions of visits, with ``game`` (m, 5), that share the balls' places; visits as they are.
 
-        A stroke is then judged as one of a visit. With a free ball any colour is on, which is right in all
-        but what it scores. A cue ball that may stand anywhere is played from where it lies: visits have no
-        ball in hand outside the D.
-
-        They share the places of the balls with these.
-        """
+        With a free ball any colour is on, which is right in all but what it scores. A cue ball that may stand
+        anywhere is played from where it lies: visits have no ball in hand outside the D."""
         if not self.of_frames:
             return self
         game = as_visits(self.game)[:, :VISIT_COLUMNS]
@@ -241,8 +237,7 @@ class Positions:
 
     @property
     def ball_on(self) -> NDArray[np.int64]:
-        """What must be struck first, int64 (m,): a ``BallOn`` for each row, without regard to a free ball; a
-        view."""
+        """What must be struck first, a ``BallOn``, without regard to a free ball: int64 (m,), a view."""
         return self.game[:, BALL_ON]
 
     @property
@@ -268,10 +263,7 @@ class Positions:
         return out
 
     def observations(self) -> NDArray[np.float32]:
-        """Return the flat observation of each position, as ``Snooker-v0`` returns it with ``task="visit"``.
-
-        Returns float32 (m, 121).
-        """
+        """The flat observation of each position, as ``task="visit"`` returns it: float32 (m, 121)."""
         out, game = np.empty((len(self), SIZE), np.float32), self.as_visits().game
         observe(np.arange(len(self)), self.positions, self.on_table, game, out)
         return out
@@ -318,12 +310,8 @@ def _of_tables(tables: Tables) -> Positions:
     if saved is None:
         game[:, STEPS] = 0
         return Positions(tables.positions.copy(), tables.on_table.copy(), game)
-    return Positions(
-        tables.positions.copy(),
-        tables.on_table.copy(),
-        strikers_own(game),
-        Layouts(*(each.copy() for each in saved)),
-    )
+    layouts = Layouts(*(each.copy() for each in saved))
+    return Positions(tables.positions.copy(), tables.on_table.copy(), strikers_own(game), layouts)
 
 
 PositionsLike: TypeAlias = (
@@ -333,7 +321,7 @@ PositionsLike: TypeAlias = (
 
 
 def rows_of(at: Positions, rows: Integers, n: int | None = None) -> NDArray[np.int64]:
-    """``rows`` as an int64 array (n,). ValueError unless each is a row of the positions."""
+    """``rows`` as an int64 array (n,); ValueError unless each is a row of the positions."""
     a = np.asarray(rows)
     if a.size == 0:
         a = a.astype(np.int64)
@@ -347,16 +335,24 @@ def rows_of(at: Positions, rows: Integers, n: int | None = None) -> NDArray[np.i
     return np.ascontiguousarray(a, np.int64)
 
 
+def seeds_of(seeds: Integers, n: int) -> Ints:
+    """``seeds`` as int64 (n,) in [0, 2**32); ValueError unless they are n integers."""
+    a = np.asarray(seeds)
+    if a.shape != (n,) or (a.dtype.kind not in "iu" and n):
+        allowed = f"must be {n} integers, one for each position"
+        raise refuse_what("seeds", f"{a.dtype} array of shape {a.shape}", allowed)
+    return (a.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
+
+
 def check_played(at: Positions, rows: NDArray[np.int64], table: Table, radius: float) -> None:
-    """Raise ValueError unless every position named in ``rows`` (n,) is valid on the table and has a stroke to
-    play."""
+    """Raise ValueError unless each position in ``rows`` (n,) is valid and has a stroke to play."""
     used = np.unique(rows)
     some = at if len(used) == len(at) else at[used]
-    on, there = some.ball_on, some.on_table
-    colours = there[:, 16:]
-    reds = there[:, 1:16].any(axis=1)
+    on, present = some.ball_on, some.on_table
+    colours = present[:, 16:]
+    reds = present[:, 1:16].any(axis=1)
     lowest = np.where(reds, int(BallOn.RED), 2 + colours.argmax(axis=1))
-    fine = there[:, CUE] & ~some.over & np.isfinite(some.positions).all(axis=(1, 2))
+    fine = present[:, CUE] & ~some.over & np.isfinite(some.positions).all(axis=(1, 2))
     fine &= np.where(
         on == int(BallOn.ANY_COLOUR), colours.any(axis=1), (on == lowest) & (reds | colours.any(axis=1))
     )
@@ -365,7 +361,7 @@ def check_played(at: Positions, rows: NDArray[np.int64], table: Table, radius: f
         k = int(used[np.argmin(fine)])
         _refuse_row(at, k)
     try:
-        table.check(some.positions, radius, "positions", there)
+        table.check(some.positions, radius, "positions", present)
     except ValueError:
         for k in used.tolist():  # for a message that names the row
             table.check(at.positions[k], radius, f"positions[{k}]", at.on_table[k])

@@ -33,7 +33,7 @@ from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
 from .positions import Positions
 from .prospects import FAR, FOLLOWS
 from .sobol import sobol
-from .strokes import Dynamics
+from .strokes import Dynamics, law_of
 from .trials import AIM, COLUMNS, SIDE, SPEED, TOP
 
 SLOWEST, FASTEST = 0.8, 6.5
@@ -73,8 +73,7 @@ class Proposals(NamedTuple):
     strokes : numpy.ndarray
         float64 (n, m, 5). Strokes in SI, see ``Planner``.
     chances : numpy.ndarray
-        float64 (n, m). Chance of each stroke's pot by its width; 1 for a stroke without a pot. 0 in a
-        position that the generator has no stroke for.
+        float64 (n, m). Chance of each stroke's pot by its width; 1 for a stroke without a pot; 0 for none.
 
     Examples
     --------
@@ -89,15 +88,15 @@ class Proposals(NamedTuple):
 
 
 @kernel
-def pot_chance(positions, found, spread, far):
-    """Chance of a pot by its width: the aim's error stays within the tolerance. ``far`` [1/m]: loss per metre
-    of both balls' paths."""
-    ball, pocket = int(found[POT_BALL]), int(found[POT_POCKET])
-    path = hypot(found[GHOST_X] - positions[0, 0], found[GHOST_Y] - positions[0, 1])
+def pot_chance(positions, pot, spread, far):
+    """Chance of a pot by its width: the aim's error stays within the tolerance; less exp(-``far`` [1/m] x
+    paths)."""
+    ball, pocket = int(pot[POT_BALL]), int(pot[POT_POCKET])
+    path = hypot(pot[GHOST_X] - positions[0, 0], pot[GHOST_Y] - positions[0, 1])
     run = hypot(
         POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
     )
-    return erf(found[TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
+    return erf(pot[TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
 
 
 @kernel
@@ -128,28 +127,22 @@ def _aim(stroke, positions, pot, law, work):
 
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
-def _propose(
-    positions, on_table, game, seeds, which, spread, phys, end_mass_ratio, fidelity, n_steps, strokes, chances
-):
-    """Fill strokes (n, m, 5) and chances (n, m) of n positions.
-
-    ``which`` (n, m): at which pot each stroke is, widest first, its speed and tip being given; without rows,
-    all are spread.
-    """
-    found, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
-    law, work = CueLaw(phys, end_mass_ratio, fidelity, n_steps), new_work()
+def _propose(balls, seeds, which, spread, law, strokes, chances):
+    """Fill strokes (n, m, 5) at the pots ``which`` (n, m), and their chances; without rows, spread them."""
+    lines, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
+    (positions, on_table, game), law, work = balls, CueLaw(*law), new_work()
     m = strokes.shape[1]
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
         on = balls_on_kernel(game[k, BALL_ON], bits(here))
-        many = find_pots(p, here, on, BALL_RADIUS, found)
+        many = find_pots(p, here, on, BALL_RADIUS, lines)
         if many == 0:
             chances[k, :] = 0.0
             continue
         total = 0.0
         for j in range(many):
             weights[j] = (
-                pot_chance(p, found[j], spread, FAR) ** POWER * (VALUES[int(found[j, POT_BALL])] + FOLLOWS)
+                pot_chance(p, lines[j], spread, FAR) ** POWER * (VALUES[int(lines[j, POT_BALL])] + FOLLOWS)
                 + 1e-12
             )
             total += weights[j]
@@ -163,8 +156,8 @@ def _propose(
                     j += 1
                     reached += weights[j] / total
                 _spread_stroke(i, seed, strokes[k, i])
-            _aim(strokes[k, i], p, found[j], law, work)
-            chances[k, i] = pot_chance(p, found[j], spread, LOST)
+            _aim(strokes[k, i], p, lines[j], law, work)
+            chances[k, i] = pot_chance(p, lines[j], spread, LOST)
 
 
 @kernel
@@ -178,9 +171,9 @@ def _plain_stroke(i, seed, hard, stroke):
 
 
 @entry(what="the contacts of positions", seconds=2)
-def _contacts(positions, on_table, game, seeds, strokes, chances):
+def _contacts(balls, seeds, strokes, chances):
     """Fill strokes (n, m, 5) and chances (n, m) with strokes at the balls on that are seen."""
-    windows = np.empty((MOST_EDGES, 3))
+    (positions, on_table, game), windows = balls, np.empty((MOST_EDGES, 3))
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
         on = balls_on_kernel(game[k, BALL_ON], bits(here))
@@ -192,9 +185,9 @@ def _contacts(positions, on_table, game, seeds, strokes, chances):
             continue
         for i in range(strokes.shape[1]):
             hard = i % 2 == 1  # two sequences: every other point of one would fill a part of the cube only
-            own = seed ^ 0xA5A5 if hard else seed
-            _plain_stroke(i // 2, own, hard, strokes[k, i])
-            w, along = 0, total * sobol(i // 2, 4, own)
+            scramble = seed ^ 0xA5A5 if hard else seed
+            _plain_stroke(i // 2, scramble, hard, strokes[k, i])
+            w, along = 0, total * sobol(i // 2, 4, scramble)
             while w < many - 1 and along > windows[w, HIGH] - windows[w, LOW]:
                 along -= windows[w, HIGH] - windows[w, LOW]
                 w += 1
@@ -203,10 +196,14 @@ def _contacts(positions, on_table, game, seeds, strokes, chances):
 
 
 @entry(what="the escapes of positions", seconds=5, uses=(escape_aim,))
-def _escapes(positions, on_table, game, seeds, phys, end_mass_ratio, strokes, chances):
+def _escapes(balls, seeds, law, strokes, chances):
     """Fill strokes (n, m, 5) and chances (n, m) with strokes over cushions, where hardly anything is seen."""
-    windows, lines = np.empty((MOST_EDGES, 3)), np.empty((ESCAPES, POT_COLUMNS))
-    law, work, aims = CueLaw(phys, end_mass_ratio, 0, 0), new_work(), np.empty(ESCAPES)
+    (positions, on_table, game), windows, lines = (
+        balls,
+        np.empty((MOST_EDGES, 3)),
+        np.empty((ESCAPES, POT_COLUMNS)),
+    )
+    law, work, aims = CueLaw(law[0], law[1], 0, 0), new_work(), np.empty(ESCAPES)
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
         on, touching = balls_on_kernel(game[k, BALL_ON], bits(here)), touching_balls(p, here)
@@ -233,7 +230,7 @@ def _escapes(positions, on_table, game, seeds, phys, end_mass_ratio, strokes, ch
             stroke[AIM] = turned(aims[j % many] + aside)
 
 
-_NOT_GIVEN = np.empty((0, 0), np.int64)
+_SPREAD = np.empty((0, 0), np.int64)
 
 
 def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: Dynamics) -> Proposals:
@@ -248,7 +245,7 @@ def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: 
     seeds : numpy.ndarray
         int64 (n,), in [0, 2**32): of the Sobol scrambles.
     spread : float
-        Standard deviation of the cue ball's direction [rad], as returned by ``spread_of``.
+        Standard deviation of the cue ball's direction [rad], see ``spread_of``.
     dynamics : tuple
         Physics and fidelity with which the aims are solved: ``StrokeSearch.dynamics``.
 
@@ -259,31 +256,29 @@ def spread_strokes(at: Positions, m: int, seeds: Ints, spread: float, dynamics: 
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.planning import Position, Positions, StrokeSearch, spread_strokes
     >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
-    >>> spread_strokes(at, 5, np.array([7]), search.spread, search.dynamics).strokes.shape
+    >>> spread_strokes(at, 5, [7], search.spread, search.dynamics).strokes.shape
     (1, 5, 5)
     """
-    return _proposed(at, np.zeros((len(at), m, COLUMNS)), seeds, _NOT_GIVEN, spread, dynamics)
+    return _proposed(at, np.zeros((len(at), m, COLUMNS)), seeds, _SPREAD, spread, dynamics)
 
 
 def strokes_at(
-    at: Positions, which: Ints, speeds_and_tips: Floats, seeds: Ints, spread: float, dynamics: Dynamics
+    at: Positions, which: Ints, speeds_and_tips: Floats, spread: float, dynamics: Dynamics
 ) -> Proposals:
-    """Propose strokes at given pots with given speeds and tips; their aims are solved.
+    """Propose strokes at chosen pots with chosen speeds and tips; their aims are solved.
 
     Parameters
     ----------
     at : Positions
         The n positions.
     which : numpy.ndarray
-        int64 (n, m). Index of each stroke's pot, widest first as of ``pots``; beyond the last pot, the last
-        one.
+        int64 (n, m). Index of each stroke's pot, widest first as of ``pots``, at most the last one's.
     speeds_and_tips : numpy.ndarray
-        float64 (n, m, 3). Cue speed [m/s], side and top (tip offset over R). A tip outside the disc of radius
-        0.49 is drawn in to it.
-    seeds, spread, dynamics
+        float64 (n, m, 3). Cue speed [m/s], side and top; a tip outside the disc of radius 0.49 is drawn in to
+        it.
+    spread, dynamics
         As for ``spread_strokes``.
 
     Returns
@@ -296,35 +291,25 @@ def strokes_at(
     >>> import numpy as np
     >>> from snooker_env.planning import Position, Positions, StrokeSearch, strokes_at
     >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
-    >>> given = np.array([[[2.0, 0.0, 0.2], [2.0, 0.0, -0.9]]])
-    >>> strokes_at(at, np.zeros((1, 2), int), given, np.array([7]), search.spread, search.dynamics).strokes[0, :, :3].tolist()
-    [[2.0, 0.0, 0.2], [2.0, 0.0, -0.49]]
+    >>> strokes_at(at, np.array([[0]]), [[[2.0, 0.0, -0.9]]], search.spread, search.dynamics).strokes.shape
+    (1, 1, 5)
     """
     n, m = which.shape
     strokes = np.zeros((n, m, COLUMNS))
     strokes[..., :AIM] = speeds_and_tips
-    return _proposed(at, strokes, seeds, np.ascontiguousarray(which, np.int64), spread, dynamics)
+    return _proposed(at, strokes, np.zeros(n), np.ascontiguousarray(which, np.int64), spread, dynamics)
 
 
 def _proposed(at, strokes, seeds, which, spread, dynamics):
-    at, (physics, (code, n_steps)) = at.as_visits(), dynamics
     chances = np.empty(strokes.shape[:2])
-    keys = np.asarray(seeds, np.int64)
-    _propose(
-        at.positions,
-        at.on_table,
-        at.game,
-        keys,
-        which,
-        spread,
-        physics.pack(),
-        physics.end_mass_ratio,
-        code,
-        n_steps,
-        strokes,
-        chances,
-    )
+    _propose(_balls(at), np.asarray(seeds, np.int64), which, spread, law_of(dynamics), strokes, chances)
     return Proposals(strokes, chances)
+
+
+def _balls(at):
+    """The arrays of visits that the kernels read."""
+    at = at.as_visits()
+    return at.positions, at.on_table, at.game
 
 
 def at_pots(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
@@ -348,10 +333,9 @@ def at_pots(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.planning import Position, Positions, StrokeSearch, at_pots
-    >>> search, at = StrokeSearch({"noise": "club"}), Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
-    >>> at_pots(search, at, 5, np.array([7])).strokes.shape
+    >>> at = Positions.of(Position(cue=(0.0, 0.9), black=(0.4, 1.3)))
+    >>> at_pots(StrokeSearch({}), at, 5, [7]).strokes.shape
     (1, 5, 5)
     """
     return spread_strokes(at, m, seeds, search.spread, search.dynamics)
@@ -372,14 +356,13 @@ def at_balls(search: Search, at: Positions, m: int, seeds: Integers) -> Proposal
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.planning import Position, Positions, StrokeSearch, at_balls
     >>> at = Positions.of(Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0)))
-    >>> at_balls(StrokeSearch({}), at, 4, np.array([7])).chances.tolist()
+    >>> at_balls(StrokeSearch({}), at, 4, [7]).chances.tolist()
     [[1.0, 1.0, 1.0, 1.0]]
     """
-    at, made = at.as_visits(), _nothing(at, m)
-    _contacts(at.positions, at.on_table, at.game, np.asarray(seeds, np.int64), *made)
+    made = _nothing(at, m)
+    _contacts(_balls(at), np.asarray(seeds, np.int64), *made)
     return made
 
 
@@ -398,22 +381,13 @@ def over_cushions(search: Search, at: Positions, m: int, seeds: Integers) -> Pro
 
     Examples
     --------
-    >>> import numpy as np
     >>> from snooker_env.planning import Position, Positions, StrokeSearch, over_cushions
     >>> hidden = Positions.of(Position(cue=(0.0, 0.0), reds=[(0.6, 0.0)], blue=(0.2, 0.0), on="red"))
-    >>> over_cushions(StrokeSearch({}), hidden, 4, np.array([7])).chances.tolist()
+    >>> over_cushions(StrokeSearch({}), hidden, 4, [7]).chances.tolist()
     [[1.0, 1.0, 1.0, 1.0]]
     """
-    at, made, physics = at.as_visits(), _nothing(at, m), search.dynamics[0]
-    _escapes(
-        at.positions,
-        at.on_table,
-        at.game,
-        np.asarray(seeds, np.int64),
-        physics.pack(),
-        physics.end_mass_ratio,
-        *made,
-    )
+    made = _nothing(at, m)
+    _escapes(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics), *made)
     return made
 
 

@@ -1,6 +1,7 @@
 """How good is a position? The chances of its pots, and the points to expect of them and of what follows, by a
 rule of thumb."""
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from math import erf, exp, radians, sqrt
 
@@ -38,17 +39,14 @@ SURE = (1e4, 1e-3, 0.0, 0.0)
 
 @entry(what="the value of positions", seconds=1)
 def _prospects(positions, on_table, ball_on, spread, constants, values, chances):
-    """Kernel of ``prospects_of``: fills ``values`` (n,) and ``chances`` (n, most).
-
-    ``spread`` [rad] is the result of ``spread_of``; ``constants`` as ``RULE_OF_THUMB``.
-    """
-    found = np.empty((16, POT_COLUMNS))
+    """Fill ``values`` (n,) and ``chances`` (n, most) of ``prospects_of``."""
+    lines = np.empty((16, POT_COLUMNS))
     follows, second, third, far = constants
     for k in range(len(values)):
         chances[k, :] = 0.0
         values[k] = 0.0
         p, on = positions[k], balls_on_kernel(ball_on[k], bits(on_table[k]))
-        many = find_pots(p, on_table[k], on, BALL_RADIUS, found) if on_table[k, 0] else 0
+        many = find_pots(p, on_table[k], on, BALL_RADIUS, lines) if on_table[k, 0] else 0
         # points: a black with each red, and one after a red just potted
         left = 7.0 if ball_on[k] == _ANY_COLOUR else 0.0
         for i in range(1, N_BALLS):
@@ -56,18 +54,14 @@ def _prospects(positions, on_table, ball_on, spread, constants, values, chances)
                 left += 8.0 if VALUES[i] == 1 else VALUES[i]
         a = b = c = 0.0
         for j in range(many):
-            ball, pocket, gx, gy = (
-                int(found[j, POT_BALL]),
-                int(found[j, POT_POCKET]),
-                found[j, GHOST_X],
-                found[j, GHOST_Y],
-            )
+            ball, pocket = int(lines[j, POT_BALL]), int(lines[j, POT_POCKET])
+            gx, gy = lines[j, GHOST_X], lines[j, GHOST_Y]
             path = sqrt((gx - p[0, 0]) ** 2 + (gy - p[0, 1]) ** 2)
             run = sqrt(
                 (POCKET_AIMS[pocket, AIM_X] - p[ball, 0]) ** 2
                 + (POCKET_AIMS[pocket, AIM_Y] - p[ball, 1]) ** 2
             )
-            chance = erf(found[j, TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
+            chance = erf(lines[j, TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
             if j < chances.shape[1]:
                 chances[k, j] = chance
             rest = max(0.0, left - VALUES[ball])
@@ -81,6 +75,17 @@ def _prospects(positions, on_table, ball_on, spread, constants, values, chances)
         values[k] = a + second * b + third * c
 
 
+def in_parts(n: int, threads: int, fill: Callable[[slice], None]) -> None:
+    """Call ``fill`` with slices of n positions, on as many threads as are worth it, at most ``threads``."""
+    threads = min(threads, n // WORTH_A_THREAD)
+    if threads <= 1:
+        fill(slice(0, n))
+        return
+    ends = np.linspace(0, n, threads + 1).astype(int).tolist()
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(fill, map(slice, ends[:-1], ends[1:])))
+
+
 def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
     """Return the standard deviation of the cue ball's direction, tip errors included; at least 1e-5 rad.
 
@@ -89,18 +94,12 @@ def spread_of(noise: Noise, physics: PhysicsLike = None) -> float:
     noise : Noise
         The execution noise.
     physics : str, dict, Physics or None, optional
-        Physical constants, as ``Physics.of`` takes them; they determine the squirt of a tip error. Default
-        None: the preset "paper".
+        Physical constants, for the squirt of a tip error. Default None: the preset "paper".
 
     Returns
     -------
     float
         Standard deviation [rad].
-
-    Raises
-    ------
-    ValueError
-        If ``physics`` is invalid.
 
     Examples
     --------
@@ -121,18 +120,18 @@ def prospects_of(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Estimate the value of positions and the chances of their pots by a rule of thumb.
 
-    The chance of a pot is the probability that a normal error of the aim stays within the pot's tolerance,
-    reduced for long paths. The value of a pot is its chance times its points plus what may follow. The value
-    of a position is that of its best pot, plus a small share of the second and the third.
+    The chance of a pot is that of a normal error of the aim within its tolerance, less for long paths. Its
+    value is its chance times its points plus what may follow. A position is worth its best pot, plus a small
+    share of the second and the third.
 
     Parameters
     ----------
     at : Positions
         The n positions.
     spread : float
-        Standard deviation of the cue ball's direction [rad], as returned by ``spread_of``.
+        Standard deviation of the cue ball's direction [rad], see ``spread_of``.
     constants : tuple of float, optional
-        Four constants: ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
+        ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
     most : int, optional
         Number of chances for each position; default 4.
     threads : int, optional
@@ -154,24 +153,10 @@ def prospects_of(
     """
     at, n = at.as_visits(), len(at)
     values, chances, ball_on = np.empty(n), np.empty((n, most)), at.ball_on.copy()
-    threads = min(threads, n // WORTH_A_THREAD)
+    balls = at.positions, at.on_table, ball_on
 
-    def fill(first: int, last: int) -> None:
-        here = slice(first, last)
-        _prospects(
-            at.positions[here],
-            at.on_table[here],
-            ball_on[here],
-            spread,
-            constants,
-            values[here],
-            chances[here],
-        )
+    def fill(rows: slice) -> None:
+        _prospects(*(part[rows] for part in balls), spread, constants, values[rows], chances[rows])
 
-    if threads <= 1:
-        fill(0, n)
-    else:
-        ends = np.linspace(0, n, threads + 1).astype(int)
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(fill, ends[:-1], ends[1:]))
+    in_parts(n, threads, fill)
     return values, chances

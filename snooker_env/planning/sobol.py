@@ -71,8 +71,7 @@ def _scrambled(x, seed):
 
 @kernel
 def sobol(index, dimension, seed):
-    """Coordinate ``dimension`` of point ``index`` of the scramble ``seed``: a number in (0, 1). An inner
-    kernel."""
+    """Coordinate ``dimension`` of point ``index`` of the scramble ``seed``: a number in (0, 1)."""
     bits, k, left = 0, 0, index
     while left:
         if left & 1:
@@ -126,6 +125,5 @@ _AIM_FIRST = [1, 2, 3, 0, 4]
 
 
 def normal_points(n: int, seed: int) -> Floats:
-    """n evenly spread standard normal errors of a stroke, float64 (n, 5): speed, side, top, aim,
-    elevation."""
+    """n evenly spread standard normal errors of speed, side, top, aim and elevation: float64 (n, 5)."""
     return _NORMAL(sobol_points(n, DIMENSIONS, seed ^ 0x5EED))[:, _AIM_FIRST]

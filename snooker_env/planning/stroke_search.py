@@ -18,7 +18,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from .._check import integer, number, refuse_what
+from .._check import integer, number
 from .._types import Bools, Environment, Floats, Integers, Ints
 from ..game.balls import CUE, SPOTS, BallOn
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS
@@ -26,7 +26,7 @@ from ..tasks.noise import Noise, NoiseLike
 from ..tasks.options import Options
 from ..tasks.tables import I_PENALTY, I_POINTS
 from .planner import Outcomes, Planner, options_in
-from .positions import Positions, PositionsLike, check_played
+from .positions import Positions, PositionsLike, check_played, seeds_of
 from .proposals import Proposals, at_balls, at_pots, over_cushions
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import DIMENSIONS, normal_points
@@ -62,7 +62,7 @@ WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)
 
 
 class Ranked(NamedTuple):
-    """The strokes tried in each of n positions, best first: what ``StrokeSearch.rank`` returns.
+    """The strokes that ``StrokeSearch.rank`` tried in n positions: most samples first, then best first.
 
     A stroke that was left behind in an earlier round may keep a higher score: fewer samples flatter it.
 
@@ -78,9 +78,9 @@ class Ranked(NamedTuple):
     Examples
     --------
     >>> from snooker_env.planning import Position, StrokeSearch
-    >>> ranked = StrokeSearch({"noise": "club"}, budget=30).rank(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), seeds=[7])
-    >>> ranked.samples[0, :5].tolist(), ranked.actions().shape
-    ([5, 5, 2, 2, 0], (1, 16, 4))
+    >>> position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> StrokeSearch({"noise": "club"}, budget=30).rank(position, [7]).samples[0, :5].tolist()
+    [5, 5, 2, 2, 0]
     """
 
     strokes: Floats
@@ -88,10 +88,7 @@ class Ranked(NamedTuple):
     samples: Ints
 
     def actions(self) -> NDArray[np.float32]:
-        """Convert the strokes to actions of ``aim="absolute"``.
-
-        Returns float32 (n, m, 4). Actions in [-1, 1].
-        """
+        """Convert the strokes to actions of ``aim="absolute"``: float32 (n, m, 4)."""
         flat = self.strokes.reshape(-1, COLUMNS)
         return actions_of(flat[:, SPEED], flat[:, AIM], flat[:, SIDE], flat[:, TOP]).reshape(
             *self.scores.shape, 4
@@ -99,15 +96,7 @@ class Ranked(NamedTuple):
 
 
 def schedule(budget: int) -> tuple[int, tuple[tuple[int, int], ...]]:
-    """Number of looks, and (strokes, further samples) of each round, for a budget of simulated shots;
-    together at most the budget.
-
-    Examples
-    --------
-    >>> from snooker_env.planning.stroke_search import schedule
-    >>> schedule(120)
-    (60, ((10, 3), (4, 7)))
-    """
+    """Number of looks, and (strokes, further samples) of each round; together at most ``budget`` shots."""
     for least, looks, rounds in reversed(SCHEDULES):
         if budget >= least:
             grown = tuple((many, each * budget // least) for many, each in rounds)
@@ -127,33 +116,24 @@ class StrokeSearch:
     value : callable, optional
         Values [points] of n ``Positions``: (n,). Default: the rule of thumb ``prospects_of``.
     propose : callable or sequence of callable, optional
-        One or several generators of the strokes that are looked at, ``propose(search, at, m, seeds)`` ->
-        ``Proposals``. Those that have strokes for a position share the looks evenly; the first is taken to
-        propose pots. Where none of these is likelier than ``doubtful``, ``at_balls`` and ``over_cushions``
-        share them, too. Default: ``at_pots``.
+        Generators of strokes, ``propose(search, at, m, seeds)`` -> ``Proposals``; those that have any for a
+        position share the looks evenly. The first one proposes pots; where none of these is likelier than
+        ``doubtful``, ``at_balls`` and ``over_cushions`` join. Default: ``at_pots``.
     doubtful : float, optional
-        Largest chance of a pot at which strokes without a pot are tried as well, in [0, 1]. Default 0: where
-        there is no pot.
+        Largest chance of a pot at which strokes without a pot are tried as well, in [0, 1]; default 0.
     pots_only : bool, optional
-        Score by the chance of the pot alone, without points and what follows; without a pot, less that of a
-        foul. Default False.
+        Score by the chance of the pot alone; without a pot, less that of a foul. Default False.
     noise : str, dict or Noise, optional
         Execution noise in place of the environment's own.
     threads : int, optional
         Number of threads, see ``Planner``. Results do not depend on it.
 
-    Raises
-    ------
-    ValueError
-        If an argument has the wrong type or is out of range.
-
     Examples
     --------
     >>> from snooker_env.planning import Position, StrokeSearch
     >>> search = StrokeSearch({"noise": "club"}, budget=30)
-    >>> ranked = search.rank(Position(cue=(0.0, 0.9), reds=[(0.4, 1.3)], black=(0.0, 1.4605), on="red"), seeds=[7])
-    >>> ranked.strokes.shape, bool(ranked.scores[0, 0] >= ranked.scores[0, 1]), search.shots
-    ((1, 16, 5), True, 30)
+    >>> search.rank(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), seeds=[7]).strokes.shape, search.shots
+    ((1, 16, 5), 30)
     """
 
     def __init__(
@@ -197,23 +177,13 @@ class StrokeSearch:
         )[0]
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> Ranked:
-        """Try strokes in n positions and rank them.
+        """Try strokes in n positions and return them ``Ranked``: each row's first one is to be played.
 
-        ``positions``: the n positions: anything that ``Positions.of`` accepts. A cue ball in hand is played
-        from where it lies. ``seeds``: int (n,), of the proposals and noise samples of each position. Equal
-        seeds give equal decisions. Returns ``strokes``, ``scores`` and ``samples`` with n rows each; the
-        first stroke of a row is the one to play. ValueError if a position is invalid or has no stroke left to
-        play, or ``seeds`` has the wrong shape.
-        """
+        ``seeds``, int (n,): of the proposals and noise samples; equal seeds give equal decisions. A cue ball
+        in hand is played from where it lies. ValueError if a position is invalid or has no stroke left to
+        play."""
         at = Positions.of(positions).as_visits()
-        n, own = len(at), np.asarray(seeds)
-        if own.shape != (n,) or own.dtype.kind not in "iu":
-            raise refuse_what(
-                "seeds",
-                f"{own.dtype} array of shape {own.shape}",
-                f"must be {n} integers, one for each position",
-            )
-        keys = (own.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)
+        n, keys = len(at), seeds_of(seeds, len(at))
         check_played(at, np.arange(n), self.planner.table, self.planner.physics.R)
         looks, rounds = self.strokes_tried, () if self.noise.silent else schedule(self.budget)[1]
         if not n:
@@ -245,18 +215,13 @@ class StrokeSearch:
         return Ranked(strokes[every, order], scores[every, order], tries[every, order])
 
     def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Outcomes:
-        """Play strokes under given execution errors.
-
-        ``at``: the n positions. ``rows``: int64 (m,), row of ``at`` for each stroke. ``strokes``: float64 (m,
-        5), as in ``Ranked``. ``errors``: float64 (m, 5), errors of speed, side, top, aim and elevation, in
-        standard deviations of the search's noise. Returns what ``Planner.play`` does. ValueError if a
-        position is invalid or has no stroke left to play.
-        """
+        """Play strokes (m, 5) on ``at[rows]`` under errors (m, 5) in standard deviations, see
+        ``Planner.play``."""
         return self.planner.play(at, rows, strokes=strokes, errors=errors)
 
     def _proposed(self, at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Ints, Bools]:
-        """Strokes (n, m, 5), chances and generators (n, m), and the positions (n,) where strokes without a
-        pot are among them."""
+        """Strokes (n, m, 5), chances and generators (n, m), and where strokes without a pot are among them
+        (n,)."""
         generators = (self.propose,) if callable(self.propose) else tuple(self.propose)
         strokes, chances, which = self._shared(generators, at, m, seeds)
         doubt = chances.max(axis=1) <= self.doubtful
@@ -269,8 +234,7 @@ class StrokeSearch:
     def _shared(
         self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints
     ) -> tuple[Floats, Floats, Ints]:
-        """Strokes of the generators in turn, in each position of those that have any; chances; which
-        generator each is of."""
+        """Strokes of the generators that have any, in turn; chances; which generator each is of."""
         made = [Proposals(*generate(self, at, m, seeds)) for generate in generators]
         if len(made) == 1:
             return made[0].strokes, made[0].chances, np.zeros((len(at), m), np.int64)
@@ -282,8 +246,8 @@ class StrokeSearch:
         return strokes, chances, which
 
     def _gains(self, at: Positions, safe: Bools, strokes: Floats, errors: Floats) -> Floats:
-        """What strokes (n, m, s, 5) under the errors (n, s, 5) of each position bring, and the value of what
-        they leave: (n, m, s)."""
+        """What strokes (n, m, s, 5) under errors (n, s, 5) bring, and the value of what they leave: (n, m,
+        s)."""
         n, m, s = strokes.shape[:3]
         every = np.broadcast_to(errors[:, None], (n, m, s, DIMENSIONS)).reshape(-1, DIMENSIONS)
         rows = np.repeat(np.arange(n), m * s)
@@ -301,8 +265,8 @@ class StrokeSearch:
 
 
 def in_turn(order: Ints, kinds: Ints) -> Ints:
-    """Rows (n, m) of indices, best first, in a new order: the best of each of their ``kinds`` (n, m), then
-    the second best, and so on."""
+    """Rows (n, m) of indices, best first, reordered: the best of each of ``kinds`` (n, m), the second best,
+    ..."""
     sorted_kinds = np.take_along_axis(kinds, order, 1)
     place = np.zeros_like(order)
     for kind in np.unique(kinds):
@@ -312,8 +276,7 @@ def in_turn(order: Ints, kinds: Ints) -> Ints:
 
 
 def for_opponent(after: Positions) -> Positions:
-    """Positions in which a visit has ended, as those in which the opponent's begins; a cue ball in hand lies
-    at its usual place."""
+    """Positions after a visit as those of the opponent's; a cue ball in hand lies at its usual place."""
     theirs = after.copy()
     reds = theirs.on_table[:, 1:16].any(axis=1)
     theirs.game[:, BALL_ON] = np.where(reds, int(BallOn.RED), 2 + theirs.on_table[:, 16:].argmax(axis=1))

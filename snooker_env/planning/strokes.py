@@ -6,7 +6,6 @@ offset over R), the direction in which the cue ball leaves [rad] (the cue itself
 the side), elevation of the cue [rad].
 """
 
-from dataclasses import replace
 from math import pi
 from typing import Any
 
@@ -23,9 +22,9 @@ from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
 from ..tasks.arrays import CueLaw
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, TARGET_SPAN, Actions
-from ..tasks.discrete_actions import SIZE, Choices, masks
+from ..tasks.discrete_actions import SIZE, masks
 from ..tasks.lines import new_work
-from ..tasks.options import Options, Rules
+from ..tasks.options import Options
 from ..tasks.pot_aim import solved_aim
 from ..tasks.tables import STROKES_ONLY
 from .positions import Positions, PositionsLike, rows_of
@@ -33,13 +32,16 @@ from .trials import AIM, COLUMNS, ELEVATION, SIDE, SPEED, TOP, decoded
 
 FARTHEST = 0.5
 """Largest tip offset over R: the miscue limit, and the end of the scale of an action."""
+NAMES = ("speed", "side", "top", "aim", "elevation")
+"""Of the columns of a stroke."""
 Dynamics = tuple[Physics, tuple[int, int]]
 """Physical constants, and a fidelity as ``parse_fidelity`` returns it."""
 
 
-def dynamics_of(physics: PhysicsLike, fidelity: Fidelity) -> Dynamics:
-    """The physics and fidelity that a caller gave, checked."""
-    return Physics.of(physics), parse_fidelity(fidelity)
+def law_of(dynamics: Dynamics) -> tuple[Floats, float, int, int]:
+    """The fields of a ``CueLaw``."""
+    physics, fidelity = dynamics
+    return physics.pack(), physics.end_mass_ratio, *fidelity
 
 
 def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
@@ -53,13 +55,7 @@ def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
     Returns
     -------
     numpy.ndarray
-        bool (m, 540). True for each available choice. In a position without a direct pot other lines of the
-        cue ball stand for the pots: parts of balls on that it sees, or escapes over cushions.
-
-    Raises
-    ------
-    ValueError
-        If ``positions`` holds no positions.
+        bool (m, 540). Without a direct pot other lines stand for the pots: parts of balls on, or escapes.
 
     Examples
     --------
@@ -90,11 +86,6 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
     numpy.ndarray
         float32 (n, 4). Actions in [-1, 1].
 
-    Raises
-    ------
-    ValueError
-        If a number is not finite or out of range.
-
     Examples
     --------
     >>> from snooker_env.planning import actions_of
@@ -106,52 +97,38 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
         number("speeds", float(fast.min() if fast.min() < MIN_SPEED else fast.max()), MIN_SPEED, MAX_SPEED)
     strokes = np.zeros((len(turns), COLUMNS))
     strokes[:, SPEED], strokes[:, SIDE], strokes[:, TOP], strokes[:, AIM] = fast, side, top, turns
-    if not (np.abs(strokes[:, [SIDE, TOP]]) <= FARTHEST).all():
-        raise refuse(
-            "side, top", float(np.abs(strokes[:, [SIDE, TOP]]).max()), "must be finite and within 0.5"
-        )
+    far = np.abs(strokes[:, [SIDE, TOP]])
+    if not (far <= FARTHEST).all():
+        raise refuse("side, top", float(far.max()), "must be finite and within 0.5")
     return encoded(_ABSOLUTE, strokes).astype(np.float32)
 
 
 def check_strokes(strokes: Any, n: int | None = None) -> Floats:
-    """Strokes (n, 5) as float64; ValueError names the first one with a number that is not finite or out of
-    range."""
+    """Strokes (n, 5) as float64; ValueError names the first one that is not finite or out of range."""
     a = np.asarray(strokes)
     if a.dtype.kind not in "iuf" or a.ndim != 2 or a.shape[1] != COLUMNS or (n is not None and len(a) != n):
-        raise refuse_what(
-            "strokes",
-            f"{a.dtype} array of shape {a.shape}",
-            f"must be real numbers of shape ({'n' if n is None else n}, 5)",
-        )
+        allowed = f"must be real numbers of shape ({'n' if n is None else n}, 5)"
+        raise refuse_what("strokes", f"{a.dtype} array of shape {a.shape}", allowed)
     a = np.ascontiguousarray(a, np.float64)
-    fair = (a[:, SPEED] >= MIN_SPEED) & (a[:, SPEED] <= MAX_SPEED) & np.isfinite(a[:, AIM])
-    fair &= (np.abs(a[:, SIDE]) <= FARTHEST) & (np.abs(a[:, TOP]) <= FARTHEST)
-    fair &= (a[:, ELEVATION] >= 0.0) & (a[:, ELEVATION] <= MAX_ELEVATION)
-    if not fair.all():
-        k = int(np.argmin(fair))
-        numbers = dict(zip(("speed", "side", "top", "aim", "elevation"), a[k].tolist(), strict=True))
-        high = {
-            "speed": MAX_SPEED,
-            "side": FARTHEST,
-            "top": FARTHEST,
-            "aim": np.inf,
-            "elevation": MAX_ELEVATION,
-        }
-        for name, value in numbers.items():
-            low = MIN_SPEED if name == "speed" else 0.0 if name == "elevation" else -high[name]
-            number(f"strokes[{k}], {name}", value, low, high[name])
+    most = (MAX_SPEED, FARTHEST, FARTHEST, np.inf, MAX_ELEVATION)
+    _check_columns(a, (MIN_SPEED, -FARTHEST, -FARTHEST, -np.inf, 0.0), most)
     return a
+
+
+def _check_columns(strokes: Floats, least: tuple[float, ...], most: tuple[float, ...]) -> None:
+    """ValueError names the first number of strokes (n, 5) that is not finite or out of range."""
+    fair = np.isfinite(strokes) & (strokes >= least) & (strokes <= most)
+    for k, c in np.argwhere(~fair)[:1].tolist():
+        number(f"strokes[{k}], {NAMES[c]}", float(strokes[k, c]), least[c], most[c])
 
 
 def encoded(
     actions: Actions, strokes: Floats, places: Vectors | None = None, lines: Vector | None = None
 ) -> Floats:
-    """Checked strokes (n, 5) as actions (n, k) of a box action space, in double precision.
+    """Checked strokes (n, 5) as box actions (n, k); what these say beside the stroke is 0: play.
 
     ``places`` (n, 2) [m]: of a cue ball in hand in the D, by default the middle of the baulk line. ``lines``
-    (n,) [rad]: with ``aim="target"``, the direction that each aim is measured from. What else an action says
-    is left at 0: play.
-    """
+    (n,) [rad]: with ``aim="target"``, the direction that each aim is measured from."""
     line = np.zeros(len(strokes)) if lines is None else np.asarray(lines, np.float64)
     out, turned = np.zeros((len(strokes), actions.size)), strokes[:, AIM] - line
     turned = turned - 2.0 * pi * np.round(turned / (2.0 * pi))
@@ -160,25 +137,16 @@ def encoded(
     out[:, 3] = turned / (pi if lines is None else TARGET_SPAN)
     if (np.abs(out[:, 3]) > 1.0 + 1e-9).any():
         k = int(np.argmax(np.abs(out[:, 3])))
-        raise refuse(
-            f"strokes[{k}], aim",
-            float(strokes[k, AIM]),
-            f"must be within 3 degrees of the target line, {line[k]:.6g} rad",
-        )
+        allowed = f"must be within 3 degrees of the target line, {line[k]:.6g} rad"
+        raise refuse(f"strokes[{k}], aim", float(strokes[k, AIM]), allowed)
     if actions.elevation:
         out[:, 4] = 2.0 * strokes[:, ELEVATION] / MAX_ELEVATION - 1.0
     elif strokes[:, ELEVATION].any():
-        raise refuse(
-            "elevation",
-            float(strokes[:, ELEVATION].max()),
-            "must be 0: actions without elevation=True have a level cue",
-        )
+        allowed = "must be 0: actions without elevation=True have a level cue"
+        raise refuse("elevation", float(strokes[:, ELEVATION].max()), allowed)
     if actions.placement:
-        x, y = (
-            (np.zeros(len(strokes)), np.full(len(strokes), BAULK_Y))
-            if places is None
-            else np.asarray(places, np.float64).T
-        )
+        lie: Any = (0.0, BAULK_Y) if places is None else places
+        x, y = np.broadcast_to(lie, (len(strokes), 2)).T
         across = np.clip(x / D_RADIUS, -1.0, 1.0)
         depth = D_RADIUS * np.sqrt(1.0 - across * across)
         back = np.where(depth > 1e-9, np.clip((BAULK_Y - y) / np.maximum(depth, 1e-9), 0.0, 1.0), 0.0)
@@ -198,7 +166,7 @@ def as_actions(
     physics: PhysicsLike = None,
     fidelity: Fidelity = "standard",
 ) -> NDArray[np.float32]:
-    """Convert choices of ``action="discrete"`` to actions of ``aim="absolute"``.
+    """Convert choices of ``action="discrete"`` to those of ``aim="absolute"``, up to float32's rounding.
 
     Parameters
     ----------
@@ -218,35 +186,25 @@ def as_actions(
     numpy.ndarray
         float32 (n, 4). Actions in [-1, 1].
 
-    Raises
-    ------
-    ValueError
-        If a row or a choice is out of range, or if ``physics`` or ``fidelity`` is invalid.
-
     Examples
     --------
     >>> from snooker_env.planning import Position, as_actions
     >>> as_actions(Position(cue=(0.0, 0.0), black=(0.0, 1.4605)), [0], [67]).shape
     (1, 4)
     """
-    given: Any = {"physics": Physics.of(physics), "fidelity": fidelity}
-    return solved_choices(Options(**given).rules, Positions.of(positions), rows, choices)
-
-
-def solved_choices(rules: Rules, at: Positions, rows: Integers, choices: Integers) -> NDArray[np.float32]:
-    """``as_actions`` with the physics and the fidelity of ``rules``."""
-    at, which = at.as_visits(), rows_of(at, rows)
+    options: Any = {"physics": Physics.of(physics), "fidelity": fidelity, "action": "discrete"}
+    at = Positions.of(positions).as_visits()
+    which = rows_of(at, rows)
     picks = _integers("choices", choices, len(which), 0, SIZE - 1)
-    discrete = replace(rules, actions=Choices(rules.physics))
-    strokes, _ = decoded(discrete, at, which, picks[:, None].astype(np.float64))
+    strokes, _ = decoded(Options(**options).rules, at, which, picks[:, None].astype(np.float64))
     return encoded(_ABSOLUTE, strokes).astype(np.float32)
 
 
 @entry(what="the solving of aims", uses=(solved_aim,))
-def _pot_aim(positions, rows, balls, targets, ghosts, strokes, phys, end_mass_ratio, fidelity, n_steps, aims):
-    law, work = CueLaw(phys, end_mass_ratio, fidelity, n_steps), new_work()
+def _pot_aim(positions, rows, balls, targets, ghosts, strokes, law, aims):
+    law, work = CueLaw(*law), new_work()
     for i in range(len(rows)):
-        stroke = strokes[i, 0], strokes[i, 1], strokes[i, 2], strokes[i, 3]
+        stroke = strokes[i, SPEED], strokes[i, SIDE], strokes[i, TOP], strokes[i, ELEVATION]
         target, ghost = (targets[i, 0], targets[i, 1]), (ghosts[i, 0], ghosts[i, 1])
         aims[i] = solved_aim(positions[rows[i]], balls[i], target, ghost, stroke, law, work)
 
@@ -256,21 +214,17 @@ def pot_aim(
     rows: Integers,
     balls: Integers,
     targets: Vectors,
-    speeds: Scalars,
+    strokes: Scalars | Vectors,
     *,
-    side: Scalars = 0.0,
-    top: Scalars = 0.0,
-    elevation: Scalars = 0.0,
     ghosts: Vectors | None = None,
     physics: PhysicsLike = None,
     fidelity: Fidelity = "standard",
 ) -> NDArray[np.float64]:
-    """Solve the direction in which the cue ball must leave to send a ball to a point.
+    """Solve the direction of the cue ball that sends a ball to a point, with throw, swerve and curve.
 
-    Only the cue ball and that ball are simulated, on unbounded cloth, until the ball rolls. Secant steps
-    correct the direction until the ball passes the point by less than 1e-6 rad
-    (``snooker_env.tasks.pot_aim``). If no direction succeeds (the stroke is too soft to arrive or the cut too
-    thin), the best direction tried is returned.
+    Only these two balls are simulated, on unbounded cloth; secant steps correct the direction until the ball
+    passes the point by less than 1e-6 rad (``snooker_env.tasks.pot_aim``). If none succeeds (a soft stroke or
+    a thin cut), the best direction tried is returned.
 
     Parameters
     ----------
@@ -281,18 +235,12 @@ def pot_aim(
     balls : array_like
         int (n,). Id of the ball to send, in [1, 21].
     targets : array_like
-        float (n, 2). Where to send it [m]; the aim points of the pockets are
-        ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
-    speeds : array_like or float
-        float, scalar or (n,). Cue speeds [m/s], at least 0.
-    side, top : array_like or float, optional
-        float, scalar or (n,). Tip offsets over R, to the right and up, within the miscue limit of the
-        physics; default 0.
-    elevation : array_like or float, optional
-        float, scalar or (n,). Elevation of the cue [rad], at least 0; default 0.
+        float (n, 2). Where to send it [m], for a pocket its ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
+    strokes : array_like or float
+        float (n, 5). Strokes in SI, see ``Planner``, whose aims are not read. Or float, scalar or (n,): cue
+        speeds [m/s] of strokes in the middle of the ball.
     ghosts : array_like, optional
-        float (n, 2). Ghost-ball centres of the straight line [m]; default: 2 R behind the ball as seen from
-        the target.
+        float (n, 2). Ghost-ball centres [m]; default: 2 R behind the ball as seen from the target.
     physics : str, dict, Physics or None, optional
         Physical constants; default None: the preset "paper".
     fidelity : str, optional
@@ -303,11 +251,6 @@ def pot_aim(
     numpy.ndarray
         float64 (n,). Directions [rad], anticlockwise from +x, as ``actions_of`` takes them.
 
-    Raises
-    ------
-    ValueError
-        If a number is out of range, a ball is off the table, or an array has the wrong shape.
-
     Examples
     --------
     >>> from snooker_env.planning import Position, pot_aim
@@ -315,10 +258,8 @@ def pot_aim(
     >>> float(pot_aim(position, [0], [1], [(0.8, 0.8)], 2.3)[0].round(3))
     0.785
     """
-    at = Positions.of(positions)
-    return solved_aims(
-        at, rows, balls, targets, speeds, side, top, elevation, ghosts, dynamics_of(physics, fidelity)
-    )
+    dynamics = Physics.of(physics), parse_fidelity(fidelity)
+    return solved_aims(Positions.of(positions), rows, balls, targets, strokes, ghosts, dynamics)
 
 
 def solved_aims(
@@ -326,58 +267,33 @@ def solved_aims(
     rows: Integers,
     balls: Integers,
     targets: Vectors,
-    speeds: Scalars,
-    side: Scalars,
-    top: Scalars,
-    elevation: Scalars,
+    strokes: Any,
     ghosts: Vectors | None,
     dynamics: Dynamics,
 ) -> NDArray[np.float64]:
     """``pot_aim`` with checked physics and fidelity."""
-    which = rows_of(at, rows)
-    n, (physics, (code, n_steps)) = len(which), dynamics
+    which, offset = rows_of(at, rows), dynamics[0].max_offset
+    n = len(which)
     ids, to = _integers("balls", balls, n, 1, N_BALLS - 1), array("targets", targets, (n, 2))
-    there = at.on_table[which, ids] & at.on_table[which, 0]
-    if not there.all():
-        raise refuse(
-            f"balls[{int(np.argmin(there))}]",
-            int(ids[np.argmin(there)]),
-            "must be on the table, and the cue ball too",
-        )
+    present = at.on_table[which, ids] & at.on_table[which, 0]
+    if not present.all():
+        k = int(np.argmin(present))
+        raise refuse(f"balls[{k}]", int(ids[k]), "must be on the table, and the cue ball too")
     if ghosts is None:
         lie = at.positions[which, ids]
         along = to - lie
         behind = lie - 2.0 * BALL_RADIUS * along / np.maximum(np.hypot(*along.T), 1e-9)[:, None]
     else:
         behind = array("ghosts", ghosts, (n, 2))
-    strokes = np.empty((n, 4))
-    high = (np.inf, physics.max_offset, physics.max_offset, cue.MAX_ELEVATION)
-    given: dict[str, Any] = {"speeds": speeds, "side": side, "top": top, "elevation": elevation}
-    for c, (name, value) in enumerate(given.items()):
-        strokes[:, c] = array(name, value, (n,) if np.ndim(value) else ())
-        low = -high[c] if name in ("side", "top") else 0.0
-        if n and not (low <= strokes[:, c].min() and strokes[:, c].max() <= high[c]):
-            number(
-                name,
-                float(strokes[:, c].min() if strokes[:, c].min() < low else strokes[:, c].max()),
-                low,
-                high[c],
-            )
-    out = np.empty(n)
-    _pot_aim(
-        at.positions,
-        which,
-        ids,
-        to,
-        behind,
-        strokes,
-        physics.pack(),
-        physics.end_mass_ratio,
-        code,
-        n_steps,
-        out,
-    )
-    return out
+    played, aims = np.zeros((n, COLUMNS)), np.empty(n)
+    if np.ndim(strokes) == 2:
+        played[:] = array("strokes", strokes, (n, COLUMNS))
+    else:
+        played[:, SPEED] = array("strokes", strokes, (n,) if np.ndim(strokes) else ())
+    most = (np.inf, offset, offset, np.inf, cue.MAX_ELEVATION)
+    _check_columns(played, (0.0, -offset, -offset, -np.inf, 0.0), most)
+    _pot_aim(at.positions, which, ids, to, behind, played, law_of(dynamics), aims)
+    return aims
 
 
 def _integers(field: str, values: Any, n: int, low: int, high: int) -> NDArray[np.int64]:

@@ -5,11 +5,14 @@ under drawn ones.
 """
 
 from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._jit import entry
 from .._types import Floats, Ints
+from ..game.balls import N_BALLS
 from ..physics.cue import squirt
 from ..tasks import stroke
 from ..tasks.arrays import StruckArrays, TableArrays
@@ -18,6 +21,7 @@ from ..tasks.declarations import A_END_MASS, A_MAX_OFFSET
 from ..tasks.noise import Noise, with_errors
 from ..tasks.options import Rules
 from ..tasks.stroke import ShotBuffers
+from ..tasks.tables import StepOutput
 from ..tasks.visit import Visits
 from .positions import Positions
 
@@ -30,8 +34,7 @@ NO_NOISE = Noise()
 
 @entry(what="strokes under given errors", seconds=2)
 def _strike(which, strokes, errors, tables, shots, options, noise, silent):
-    """Carry the strokes (n, 5) of the tables ``which`` out up to the strike, under their standard normal
-    errors (n, 5)."""
+    """Strike the strokes (n, 5) of the tables ``which`` under standard normal errors (n, 5)."""
     tables, shots = TableArrays(*tables), StruckArrays(*shots)
     for j in range(which.shape[0]):
         k = which[j]
@@ -46,8 +49,8 @@ def _strike(which, strokes, errors, tables, shots, options, noise, silent):
 
 
 class TrialVisits(Visits):
-    """Visits of one stroke each, to be filled by ``lay``: with ``errors`` (n, 5), what they play are strokes
-    (n, 5), else actions."""
+    """Visits of one stroke each, filled by ``lay``: of strokes (n, 5) with ``errors`` (n, 5), else of
+    actions."""
 
     errors: Floats | None = None
 
@@ -68,11 +71,9 @@ class TrialVisits(Visits):
 def decoded(
     rules: Rules, at: Positions, which: Ints, actions: Floats, nominated: Ints | None = None
 ) -> tuple[Floats, Positions]:
-    """Strokes (n, 5) that checked actions mean on ``at[which]``, and where they are played: the cue ball
-    placed where they say.
+    """Strokes (n, 5) that checked actions mean on ``at[which]``, and n positions with the cue ball so placed.
 
-    ``nominated`` (n,): of frames, what is nominated with each stroke; a choice is a pot of that ball.
-    """
+    ``nominated`` (n,): of frames, what is nominated with each stroke; a choice is a pot of that ball."""
     visits, after, n = TrialVisits(replace(rules, noise=NO_NOISE), 0), at[which], len(which)
     visits.lay(after, np.zeros((n, 2), np.uint64))
     if nominated is not None:
@@ -82,3 +83,65 @@ def decoded(
     strokes = buffers.shots[:, stroke.CUE_SPEED :].copy()
     strokes[:, AIM] = np.arctan2(buffers.shots[:, stroke.VY], buffers.shots[:, stroke.VX])
     return strokes, after
+
+
+class Stops(NamedTuple):
+    """Where n strokes left each ball, as returned by ``Planner.stops``.
+
+    Attributes
+    ----------
+    places : numpy.ndarray
+        float64 (n, 22, 2). Centres at rest [m] before colours are respotted; of a potted ball where it fell.
+    potted : numpy.ndarray
+        int64 (n, 22). Pocket of each ball, an index into ``snooker_env.POCKETS``; -1 if not potted.
+    first : numpy.ndarray
+        int64 (n,). Id of the ball struck first (the lowest of several at once); -1 if none was.
+    points : numpy.ndarray
+        float64 (n,). Points scored; 0 for a miss or a foul.
+    penalty : numpy.ndarray
+        int64 (n,). Penalty points of a foul; 0 for a fair stroke.
+    goes_on : numpy.ndarray
+        bool (n,). Whether the visit continues after the stroke.
+    afterstates : Positions
+        n rows: colours respotted, and the ball on for the next stroke.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Planner, Position
+    >>> stops = Planner({"action": "discrete"}).stops(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0], [67])
+    >>> int(stops.first[0]), int(stops.potted[0, 21]), stops.points.tolist()
+    (21, 3, [7.0])
+    """
+
+    places: NDArray[np.float64]
+    potted: NDArray[np.int64]
+    first: NDArray[np.int64]
+    points: NDArray[np.float64]
+    penalty: NDArray[np.int64]
+    goes_on: NDArray[np.bool_]
+    afterstates: Positions
+
+
+class WatchedVisits(TrialVisits):
+    """Trial visits that record where each table's last stroke left the balls."""
+
+    places: Floats
+    potted: Ints
+
+    def output(self, **kwargs: Any) -> StepOutput:
+        """As ``Tables.output``; also allocates ``places`` and ``potted``."""
+        self.places, self.potted = np.zeros((self.n, N_BALLS, 2)), np.zeros((self.n, N_BALLS), np.int64)
+        return super().output(**kwargs)
+
+    def run(self, which: Ints, buffers: ShotBuffers) -> list[int]:
+        """As ``Tables.run``."""
+        unfinished = super().run(which, buffers)
+        m = len(which)
+        self.places[which], self.potted[which] = buffers.r[:m], buffers.potted[:m]
+        return unfinished
+
+    def again(self, which: Ints, j: int, buffers: ShotBuffers) -> ShotBuffers:
+        """As ``Tables.again``."""
+        one = super().again(which, j, buffers)
+        self.places[which[j]], self.potted[which[j]] = one.r[0], one.potted[0]
+        return one

@@ -24,7 +24,8 @@ from .._check import choice, number, refuse
 from ..game.balls import CUE
 from ..game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
 from ..planning import Positions
-from ..players.player import Strokes, seeds_of
+from ..planning.positions import seeds_of
+from ..players.player import Strokes
 from ..players.simple import BoundPlayer
 from ..tasks.box_actions import MIN_SPEED
 from ..tasks.frame import Frames

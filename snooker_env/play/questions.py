@@ -34,8 +34,8 @@ def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
     if not session.tables.on_table[0, ball]:
         raise refuse("aim_at.pot[0]", NAMES[ball], "must be on the table")
     target = POCKET_AIMS[[pocket], :2]
-    tip: dict[str, Any] = {"side": stroke.side, "top": stroke.top, "elevation": stroke.elevation}
-    return float(pot_aim(session.planned(), [0], [ball], target, stroke.speed, **tip)[0])
+    numbers = [[stroke.speed, stroke.side, stroke.top, 0.0, stroke.elevation]]
+    return float(pot_aim(session.planned(), [0], [ball], target, numbers)[0])
 
 
 def exact(session: Session, stroke: CueStroke) -> Shot:

@@ -2,8 +2,7 @@
 
 >>> import snooker_env as sn
 >>> player = sn.player("search").at({"noise": "club"})
->>> strokes = player.play(sn.Position(cue=(0.0, 0.9), reds=[(0.4, 1.3)], black=(0.0, 1.4605), on="red"), seeds=[7])
->>> strokes.values.shape
+>>> player.play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), seeds=[7]).values.shape
 (1, 5)
 """
 

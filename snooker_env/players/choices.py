@@ -7,10 +7,11 @@ import numpy as np
 
 from .._types import Floats, Ints
 from ..planning import Planner, Positions, action_masks, pots
+from ..planning.positions import seeds_of
 from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS, choice_of
 from ..tasks.ghost_ball import geometric_strokes
 from ..tasks.options import Options
-from .player import Ranked, Strokes, seeds_of
+from .player import Ranked, Strokes
 from .simple import BoundPlayer, placed, streams_of
 
 MOST = 100
@@ -39,43 +40,29 @@ class ChoicePlayer(BoundPlayer):
         self._planner = Planner(Options(action="discrete", **same), threads=1)
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
-        """Score all choices in n positions.
-
-        ``at``: the n positions, of visits. ``seeds``: int64 (n,). Returns float (n, 540); -inf for choices
-        that are not available.
-        """
+        """Score all choices in n positions of visits, with seeds (n,): float (n, 540), -inf for unavailable
+        ones."""
         raise NotImplementedError
 
     def figures(self, scores: Floats) -> Floats | None:
-        """Return what a ranking shows of the scores of one position.
-
-        ``scores``: float (m,), highest first. Returns float64 (m,); None for nothing.
-        """
+        """What a ranking shows of one position's scores (m,), highest first: float64 (m,), or None."""
         return scores.astype(np.float64)
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """Return what the player does, see ``Player.play``."""
+        """See ``Player.play``."""
         visits, places, scores = self._scored(positions, seeds)
-        return Strokes(
-            self._planner.strokes_of(visits, np.arange(len(visits)), scores.argmax(axis=1))[0], places
-        )
+        choices = scores.argmax(axis=1)
+        return Strokes(self._planner.strokes_of(visits, np.arange(len(visits)), choices)[0], places)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """Rank the choices of each position.
-
-        ``positions``: the n positions. ``seeds``: int (n,). Returns one for each position: at most 100
-        strokes, highest score first.
-        """
+        """Rank the choices of each position: at most 100 strokes, highest score first."""
         visits, places, scores = self._scored(positions, seeds)
         ranked = []
         for k, row in enumerate(scores):
             choices = np.argsort(-row, kind="stable")[: max(1, min(MOST, int(np.isfinite(row).sum())))]
             values = self._planner.strokes_of(visits, np.full(len(choices), k), choices)[0]
-            ranked.append(
-                Ranked(
-                    Strokes(values, np.repeat(places[k : k + 1], len(choices), 0)), self.figures(row[choices])
-                )
-            )
+            strokes = Strokes(values, np.repeat(places[k : k + 1], len(choices), 0))
+            ranked.append(Ranked(strokes, self.figures(row[choices])))
         return ranked
 
     def _scored(self, positions: Any, seeds: Any) -> tuple[Positions, Floats, Floats]:
@@ -111,31 +98,27 @@ class Random(ChoicePlayer):
 
 
 class GhostBall(ChoicePlayer):
-    """``ghost_ball``: the widest direct pot, aim solved, at 2.3 m/s; without one the geometric player's.
+    """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; else the geometric player's.
 
-    It places the cue ball, breaks off, nominates and decides after a foul as the kernels of
-    ``tasks.ghost_ball`` do. The opponent of that name plays these kernels alone, at the straight line of the
-    pot, for speed.
-    """
+    It places, breaks off, nominates and decides as the kernels of ``tasks.ghost_ball`` do. The opponent of
+    that name plays these kernels alone, at the straight line of the pot, for speed."""
 
     name, training_shots = "ghost_ball", 0
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """The stroke that it plays, then the same at the other direct pots, with the tolerance of each pot
-        [mrad]."""
+        """Its stroke, then the same at the other direct pots, with the tolerance of each pot [mrad]."""
         at = Positions.of(positions)
         strokes, start = self._played(at, seeds)
-        found = pots(start)
+        direct = pots(start)
         ranked = []
-        for k, many in enumerate((found.ball >= 0).sum(axis=1).tolist()):
+        for k, many in enumerate((direct.ball >= 0).sum(axis=1).tolist()):
             if many < 2:
                 ranked.append(Ranked(strokes[k : k + 1], None))
                 continue
             values = self._planner.strokes_of(start, np.full(many, k), STROKES * np.arange(many) + _PLAIN)[0]
             others = Strokes(values, np.repeat(strokes.place[k : k + 1], many, 0))
-            ranked.append(
-                Ranked(Strokes.join([strokes[k : k + 1], others[1:]]), 1e3 * found.tolerance[k, :many])
-            )
+            joined = Strokes.join([strokes[k : k + 1], others[1:]])
+            ranked.append(Ranked(joined, 1e3 * direct.tolerance[k, :many]))
         return ranked
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
@@ -148,9 +131,8 @@ class GhostBall(ChoicePlayer):
         values, (nominate, decision) = np.empty((n, 5)), np.empty((2, n), np.int64)
         racks = at.in_hand & (at.on_table[:, 1:16].sum(axis=1) == 15)
         streams = streams_of(seeds_of(seeds, n))
-        geometric_strokes(
-            moved.positions, moved.on_table, moved.game, code, streams, values, nominate, decision
-        )
+        balls = moved.positions, moved.on_table, moved.game
+        geometric_strokes(*balls, code, streams, values, nominate, decision)
         start = moved.as_visits()
         again = at.of_frames and at.miss_called
         rows = np.flatnonzero((pots(start, most=1).ball[:, 0] >= 0) & ~racks & ~np.broadcast_to(again, n))

@@ -27,8 +27,7 @@ _KINDS = (ValueError, TypeError, ImportError)
 
 
 class PlayerOpponent(Opponent):
-    """A bound player as the opponent: asked once for all tables that wait, with a seed from each table's own
-    stream."""
+    """A bound player as opponent: asked once for all that wait, with a seed of each table's own stream."""
 
     def __init__(self, player: Player, name: str):
         self.player, self.name = player, name
@@ -48,16 +47,11 @@ class PlayerOpponent(Opponent):
             kind = next((kind for kind in _KINDS if isinstance(error, kind)), RuntimeError)
             raise kind(f"opponent {self.name} raised {type(error).__name__}: {error}") from error
         if not isinstance(strokes, Strokes) or len(strokes) != len(which):
-            what = (
-                f"{len(strokes)} Strokes" if isinstance(strokes, Strokes) else f"a {type(strokes).__name__}"
-            )
-            raise refuse_what(
-                f"opponent {self.name}: play(...)",
-                what,
-                f"must be {len(which)} Strokes, one for each position",
-            )
+            many = len(strokes) if isinstance(strokes, Strokes) else "a"
+            allowed = f"must be {len(which)} Strokes, one for each position"
+            raise refuse_what(f"opponent {self.name}: play(...)", f"{many} {type(strokes).__name__}", allowed)
         out = []
-        for part in (strokes.values, strokes.place, strokes.nominate, strokes.decision, strokes.declare):
+        for part in strokes.parts:
             out.append(np.zeros((frames.n, *part.shape[1:]), part.dtype))
             out[-1][which] = part
         return tuple(out)
@@ -94,14 +88,13 @@ def _of_train(name: str) -> bool:
 
 
 def _model(path: str, options: Options) -> Player:
-    """A model of Stable-Baselines3: its actions are read as the environment's own, with or without what is
-    said beside the stroke."""
-    own = {name: getattr(options, name) for name in Options.group("action", "visit")}
-    said = own | dict.fromkeys(options.says, True)
+    """A model of Stable-Baselines3, whose actions are the environment's, with or without what is said."""
+    plain = {name: getattr(options, name) for name in Options.group("action", "visit")}
+    full = plain | dict.fromkeys(options.says, True)
     try:
-        model = FittingModel.of(path, said, "opponent")
+        model = FittingModel.of(path, full, "opponent")
     except ValueError:
-        if said == own or "nominate" in options.says:  # a nomination cannot be left out
+        if full == plain or "nominate" in options.says:  # a nomination cannot be left out
             raise
-        model = FittingModel.of(path, own, "opponent")
+        model = FittingModel.of(path, plain, "opponent")
     return SeenPlayer(SavedNetwork(model, options.trust), name=path)

@@ -18,19 +18,15 @@ from ..game.balls import YELLOW
 from ..game.frame_columns import BALL_ON, PLAY, PLAY_AGAIN
 from ..game.ruling import AUTO
 from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
-from ..planning import Position, Positions
+from ..planning.positions import Positions, PositionsLike
+from ..planning.strokes import NAMES
+from ..planning.trials import AIM, ELEVATION, SIDE, SPEED, TOP
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.declarations import CLAIMS, COLOURS, SAYS_NOTHING
 from ..tasks.options import Options
 
 RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]
 """What ``Player.at`` takes: an environment, an ``Options``, or a dict of its fields."""
-PositionsLike: TypeAlias = (
-    Environment | Positions | Position | Mapping[str, Any] | Sequence[Position | Mapping[str, Any]]
-)
-"""What ``Player.play`` takes: anything that ``Positions.of`` accepts."""
-(SPEED, SIDE, TOP, AIM, ELEVATION) = range(5)
-"""Columns of a stroke."""
 
 
 @dataclass(frozen=True)
@@ -43,22 +39,16 @@ class Strokes:
         float64 (n, 5). Cue speed [m/s], side and top (tip offsets over R), direction in which the cue ball
         leaves [rad, anticlockwise from +x; squirt is compensated], elevation of the cue [rad].
     place : numpy.ndarray, optional
-        float64 (n, 2). Where a cue ball in hand is placed [m]; NaN where it is played from where it lies.
-        Default: NaN.
+        float64 (n, 2). Where a cue ball in hand is placed [m]; NaN (default): it is played from where it
+        lies.
     nominate : numpy.ndarray, optional
-        int64 (n,). Id of the colour that is nominated after a red or as a free ball; 0: the free ball is
-        declined; -1: the colour first struck. Default: -1.
+        int64 (n,). Id of the colour nominated after a red or as a free ball; 0: the free ball is declined; -1
+        (default): the colour first struck.
     decision : numpy.ndarray, optional
-        int64 (n,). After a foul of the opponent, of ``game.frame_columns``: PLAY, PLAY_AGAIN, REPLACE or
-        PLACE_ANYWHERE. Default: PLAY.
+        int64 (n,). After a foul of the opponent: PLAY (default), PLAY_AGAIN, REPLACE or PLACE_ANYWHERE of
+        ``game.frame_columns``.
     declare : numpy.ndarray, optional
-        int64 (n,). Of ``tasks.declarations``: SAYS_NOTHING, CONCEDES, CLAIMS or OTHER_BEGINS. Default:
-        SAYS_NOTHING.
-
-    Raises
-    ------
-    ValueError
-        If an array has another shape, or a stroke is not finite or out of range.
+        int64 (n,). SAYS_NOTHING (default), CONCEDES, CLAIMS or OTHER_BEGINS of ``tasks.declarations``.
 
     Examples
     --------
@@ -78,19 +68,16 @@ class Strokes:
     def __post_init__(self) -> None:
         values = np.asarray(self.values, np.float64)
         if values.ndim != 2 or values.shape[1] != 5:
-            raise refuse_what(
-                "values", f"array of shape {values.shape}", "must be (n, 5): speed, side, top, aim, elevation"
-            )
+            allowed = "must be (n, 5): speed, side, top, aim, elevation"
+            raise refuse_what("values", f"array of shape {values.shape}", allowed)
         n = len(values)
         most = np.array([MAX_SPEED, 0.5, 0.5, np.inf, MAX_ELEVATION]) + 1e-9
         least = np.array([MIN_SPEED, -0.5, -0.5, -np.inf, 0.0]) - 1e-9
         fine = np.isfinite(values) & (values >= least) & (values <= most)
         if not fine.all():
             k, c = np.argwhere(~fine)[0].tolist()
-            name = ("speed", "side", "top", "aim", "elevation")[c]
-            raise refuse(
-                f"{name}[{k}]", float(values[k, c]), f"must be finite and in [{least[c]:.3g}, {most[c]:.3g}]"
-            )
+            allowed = f"must be finite and in [{least[c]:.3g}, {most[c]:.3g}]"
+            raise refuse(f"{NAMES[c]}[{k}]", float(values[k, c]), allowed)
         usual: dict[str, Any] = {
             "place": np.full((n, 2), np.nan),
             "nominate": np.full(n, AUTO, np.int64),
@@ -109,18 +96,17 @@ class Strokes:
 
     def __getitem__(self, rows: Any) -> "Strokes":
         """Some of the strokes: ``rows`` is a slice, a mask or an array of rows."""
-        return Strokes(
-            *(getattr(self, name)[rows] for name in ("values", "place", "nominate", "decision", "declare"))
-        )
+        return Strokes(*(part[rows] for part in self.parts))
 
     @classmethod
     def join(cls, parts: "Sequence[Strokes]") -> "Strokes":
-        """Join several ``Strokes``.
+        """Join several ``Strokes`` in their order."""
+        return cls(*map(np.concatenate, zip(*(one.parts for one in parts), strict=True)))
 
-        ``parts``: the parts. Returns all strokes, in their order.
-        """
-        names = ("values", "place", "nominate", "decision", "declare")
-        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+    @property
+    def parts(self) -> tuple[NDArray[Any], ...]:
+        """The arrays, in the order of the fields."""
+        return self.values, self.place, self.nominate, self.decision, self.declare
 
     @property
     def speed(self) -> Floats:
@@ -148,22 +134,15 @@ class Strokes:
         return self.values[:, ELEVATION]
 
     def actions(self, options: Options, at: Positions) -> Floats:
-        """Convert to actions of an environment: the one encoder.
+        """Convert to actions of an environment, the one encoder: float64 (n, k) in [-1, 1].
 
-        ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. What the action holds
-        (elevation, placement, nomination, decision, declaration) is written; what it does not hold must not
-        be needed. ``at``: the n positions: a place means another action where the cue ball may stand
-        anywhere, and a nomination another one with a free ball. Returns float64 (n, k), in [-1, 1].
-        ValueError if the environment reads other actions, or a stroke has a part that its actions do not
-        hold.
-        """
+        ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. ``at``: the n
+        positions, on which the meaning of a place and a nomination depends. ValueError if the environment
+        reads other actions, or a stroke has a part that its actions do not hold."""
         box = options.rules.actions
         if not isinstance(box, Actions) or box.aim != "absolute":
-            raise refuse_what(
-                "options",
-                f"action={options.action!r}, aim={options.aim!r}",
-                'must be "box" and "absolute": strokes are continuous',
-            )
+            what = f"action={options.action!r}, aim={options.aim!r}"
+            raise refuse_what("options", what, 'must be "box" and "absolute": strokes are continuous')
         turns = self.aim / np.pi
         parts = [
             2.0 * (self.speed - MIN_SPEED) / (MAX_SPEED - MIN_SPEED) - 1.0,
@@ -171,38 +150,25 @@ class Strokes:
             2.0 * self.top,
             turns - 2.0 * np.round(0.5 * turns),
         ]
+        for name, holds, least in (
+            ("elevation", box.elevation, 0.0),
+            ("decision", box.decision, PLAY),
+            ("declare", box.declares, SAYS_NOTHING),
+        ):
+            if not holds and ((part := getattr(self, name)) > least).any():
+                raise refuse(name, part.max().item(), "must be left out: the actions do not hold it")
         if box.elevation:
             parts.append(2.0 * self.elevation / MAX_ELEVATION - 1.0)
-        elif (self.elevation > 0.0).any():
-            raise refuse(
-                "elevation",
-                float(self.elevation.max()),
-                "must be 0: the environment's actions hold no elevation",
-            )
         if box.placement:
             parts += self._placed(at)
         if box.nominate:
             parts.append(self._nominated(at))
         if box.decision:
-            parts.append(
-                np.where(self.decision == PLAY, 0.0, np.where(self.decision == PLAY_AGAIN, -1.0, 1.0))
-            )
-        elif (self.decision != PLAY).any():
-            raise refuse(
-                "decision",
-                int(self.decision.max()),
-                "must be PLAY: the environment's actions hold no decision",
-            )
+            again = np.where(self.decision == PLAY_AGAIN, -1.0, 1.0)
+            parts.append(np.where(self.decision == PLAY, 0.0, again))
         if box.declares:
-            parts.append(
-                np.where(self.declare == SAYS_NOTHING, 0.0, np.where(self.declare == CLAIMS, 1.0, -1.0))
-            )
-        elif (self.declare != SAYS_NOTHING).any():
-            raise refuse(
-                "declare",
-                int(self.declare.max()),
-                "must be SAYS_NOTHING: the environment's actions hold no declaration",
-            )
+            says = np.where(self.declare == CLAIMS, 1.0, -1.0)
+            parts.append(np.where(self.declare == SAYS_NOTHING, 0.0, says))
         return np.clip(np.stack(parts, axis=1), -1.0, 1.0)  # removes rounding errors
 
     def _placed(self, at: Positions) -> list[Floats]:
@@ -217,8 +183,7 @@ class Strokes:
         ]
 
     def _nominated(self, at: Positions) -> Floats:
-        """The component of the nomination: one of six parts of the range after a red, of seven with a free
-        ball."""
+        """The component of the nomination: sixths of the range after a red, sevenths with a free ball."""
         n = np.maximum(self.nominate - YELLOW + 1, 0)  # 0 none, 1 to 6 yellow to black
         after_red = at.game[:, BALL_ON] == 0
         return np.where(after_red, (np.maximum(n, 1) - 0.5) / COLOURS, (n + 0.5) / (1 + COLOURS)) * 2.0 - 1.0
@@ -262,29 +227,15 @@ class Player(Protocol):
     """
 
     def at(self, rules: RulesLike) -> "Player":
-        """Return the player bound to where it plays.
+        """Return a new player bound to physics, table, fidelity, noise and, for frames, the game.
 
-        ``rules``: physics, table, fidelity, execution noise and, for frames, the game. How the actions of an
-        environment are read does not matter: strokes are the same everywhere. Returns a new player, which may
-        be asked. ValueError if the options are invalid, or the player cannot play under them.
-        """
+        How an environment's actions are read does not matter: strokes are the same everywhere. ValueError if
+        the options are invalid, or the player cannot play under them."""
         ...
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """Return what the player does in each of n positions.
+        """Return what it does in each of n positions, of visits or of frames as the striker sees them.
 
-        ``positions``: the n positions, of visits or of frames as the striker sees them. ``seeds``: int (n,),
-        equal positions and seeds give equal strokes, however many are asked for at once. Returns n strokes
-        and what is said with them. ValueError if a position is invalid or ``seeds`` has the wrong shape.
+        ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once.
         """
         ...
-
-
-def seeds_of(seeds: Integers, n: int) -> Ints:
-    """``seeds`` as int64 (n,) in [0, 2**32); ValueError unless they are n integers."""
-    a = np.asarray(seeds)
-    if a.shape != (n,) or (a.dtype.kind not in "iu" and n):
-        raise refuse_what(
-            "seeds", f"{a.dtype} array of shape {a.shape}", f"must be {n} integers, one for each position"
-        )
-    return (a.astype(np.uint64) & np.uint64(0xFFFFFFFF)).astype(np.int64)

@@ -75,11 +75,10 @@ def decided(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats:
     --------
     >>> import numpy as np
     >>> import snooker_env as sn
-    >>> from snooker_env.players import VISITS, decided, decision_seeds
+    >>> from snooker_env.players import VISITS, decided
     >>> tables = sn.SnookerVectorEnv(2, **VISITS)
     >>> _ = tables.reset(seed=0)
-    >>> player = sn.player("ghost_ball").at(tables)
-    >>> decided(player, tables, np.array([True, False]), decision_seeds(0, np.arange(2), 0)).shape
+    >>> decided(sn.player("ghost_ball").at(tables), tables, np.array([True, False]), np.array([1, 2])).shape
     (2, 7)
     """
     rows = np.flatnonzero(going)

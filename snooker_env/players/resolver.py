@@ -27,7 +27,8 @@ RENAMED = {"lookahead": "search"}
 """Names of players of version 0.3 that are still understood."""
 OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")
 """MODULE:CLASS."""
-PROGRAM = "program:"
+PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"
+"""How names of programs begin, and their player, which is loaded as an entry point is."""
 _SEARCHING = re.compile(
     r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d{1,7}))?(?:@(.+))?"
 )
@@ -39,8 +40,7 @@ def players() -> list[str]:
     Returns
     -------
     list of str
-        Names that ``player`` accepts. ``best_pot``, ``search`` and ``planner`` also take a number of
-        simulated shots: "search_2000".
+        Names that ``player`` accepts; those that search also take a number of simulated shots: "search_2000".
 
     Examples
     --------
@@ -65,8 +65,7 @@ def player(name: Any, *, trust: bool = False) -> Player:
         * a model's ``.zip`` of Stable-Baselines3 or sb3-contrib, or a training run's folder or files of
           ``train.py``;
         * "program:COMMAND", an external program (docs/play/protocol.md);
-        * a player, which is returned as it is; or an object with ``options`` and
-          ``act(observations, masks, seeds)``.
+        * a player, or an object with ``options`` and ``act(observations, masks, seeds)``.
     trust : bool, optional
         Whether code in a model's ``.zip`` may run; default False.
 
@@ -83,8 +82,7 @@ def player(name: Any, *, trust: bool = False) -> Player:
     Examples
     --------
     >>> import snooker_env as sn
-    >>> strokes = sn.player("ghost_ball").at({}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [7])
-    >>> strokes.values.shape
+    >>> sn.player("ghost_ball").at({}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [7]).values.shape
     (1, 5)
     """
     truth("trust", trust)
@@ -94,9 +92,7 @@ def player(name: Any, *, trust: bool = False) -> Player:
     if (built_in := _built_in(text)) is not None:
         return built_in
     if text.startswith(PROGRAM):
-        from ..play.program import ProgramPlayer
-
-        return ProgramPlayer(text.removeprefix(PROGRAM))
+        return EntryPoint(text, PROGRAM_PLAYER, GROUP).load()(text.removeprefix(PROGRAM))
     if (entry := _installed().get(text)) is not None:
         return _of_object(_made(text, entry.load))
     if text and Path(text).exists():
@@ -107,11 +103,8 @@ def player(name: Any, *, trust: bool = False) -> Player:
     if Path(text).suffix in (".zip", ".npz") or "/" in text or "\\" in text:
         raise refuse("player", text, "must be a file or folder that is there: it is missing")
     known = ", ".join(map(repr, players()))
-    raise refuse(
-        "player",
-        text,
-        f"must be one of {known}, MODULE:CLASS, a model's file, a run's folder or program:COMMAND",
-    )
+    others = "MODULE:CLASS, a model's file, a run's folder or program:COMMAND"
+    raise refuse("player", text, f"must be one of {known}, {others}")
 
 
 def is_name(text: str) -> bool:
@@ -123,19 +116,15 @@ def is_name(text: str) -> bool:
 
 def _built_in(name: str) -> Player | None:
     """The player of the package with that name."""
-    if name == "random":
-        return Random()
-    if name == "ghost_ball":
-        return GhostBall()
+    if name in (Random.name, GhostBall.name):
+        return Random() if name == Random.name else GhostBall()
     form = _SEARCHING.fullmatch(name)
     if form is None:
         return None
     kind, budget, model = form.groups()
     if kind in RENAMED:
-        warnings.warn(
-            f"the player {kind!r} is called {RENAMED[kind]!r} now", DeprecationWarning, stacklevel=3
-        )
-        kind = RENAMED[kind]
+        kind, old = RENAMED[kind], kind
+        warnings.warn(f"the player {old!r} is called {kind!r} now", DeprecationWarning, stacklevel=3)
     if model is not None and not kind.startswith("planner"):
         raise refuse("player", name, f"must not name a model: {kind} has learned nothing")
     learned = None if model is None else _learned(model)
@@ -148,8 +137,7 @@ def _installed() -> dict[str, EntryPoint]:
 
 
 def _importable(module: str) -> bool:
-    """Whether there is a module: this repository's own ``agents`` are named by a wheel that does not hold
-    them."""
+    """Whether there is a module: a wheel names this repository's ``agents`` but does not hold them."""
     try:
         return importlib.util.find_spec(module) is not None
     except ModuleNotFoundError:
@@ -161,9 +149,8 @@ def _made(name: str, maker: Callable[[], Any]) -> Any:
     try:
         return maker()()
     except Exception as error:
-        raise refuse(
-            "player", name, f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})"
-        ) from error
+        allowed = f"must be MODULE:CLASS of a player ({type(error).__name__}: {error})"
+        raise refuse("player", name, allowed) from error
 
 
 def _of_object(thing: Any) -> Player:
@@ -174,7 +161,7 @@ def _of_object(thing: Any) -> Player:
         from .seen import SeenPlayer
 
         return SeenPlayer(thing, dict(getattr(thing, "options", {})), type(thing).__name__)
-    allowed = "must be a player: at(rules) and play(positions, seeds), or options and act(observations, masks, seeds)"
+    allowed = "must be a player: at(rules) and play(positions, seeds), or act(observations, masks, seeds)"
     raise refuse_what("player", f"a {type(thing).__name__}", allowed)
 
 
@@ -205,9 +192,6 @@ def _learned(model: str) -> Any:
     made = _read(Path(model)) if Path(model).exists() else None
     learned = getattr(made, "learned", None)
     if learned is None:
-        raise refuse(
-            "player",
-            f"planner@{model}",
-            f"must name a model with policy and value: {', '.join(levels())} or its file",
-        )
+        allowed = f"must name a model with policy and value: {', '.join(levels())} or its file"
+        raise refuse("player", f"planner@{model}", allowed)
     return learned

@@ -8,27 +8,24 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse
-from .._types import Bools, Ints, Observation, ObservationKind
+from .._types import Bools, Ints, Observation
 from ..tasks.declarations import SAYS
 from ..tasks.observations import OBSERVATIONS, space
 from ..tasks.options import Options
 from ..tasks.saved_models import SavedModel, by_train, entries, one_thread, outline
 from .seen import SeenPlayer
 
-_VIEW = "must be a model trained on the observation of a visit or a frame, flat, balls or masked, and nothing else"
+_VIEW = "must be a model trained on the observation of a visit or a frame, and nothing else"
 
 
 @dataclass(frozen=True)
 class FittingModel:
-    """A model's file whose spaces, as the file describes them, are those of an environment with these
-    options.
+    """A model's file whose spaces are those of an environment with these options.
 
-    ``saved``: the file, of which nothing was unpickled. ``options``: how it sees and acts, see ``Seen``.
-    """
+    ``saved``: the file, of which nothing was unpickled. ``options``: how it sees and acts, see ``Seen``."""
 
     saved: SavedModel
     options: dict[str, Any]
-    observation: ObservationKind
 
     @classmethod
     def of(cls, path: str | Path, options: dict[str, Any], field: str = "player") -> "FittingModel":
@@ -38,10 +35,8 @@ class FittingModel:
         for frame, replaced in ((False, False), (True, False), (True, True)):
             for kind in OBSERVATIONS:
                 task = {"task": "frame", "miss": "clear_path" if replaced else "off"} if frame else {}
-                told = (
-                    options if frame else {name: value for name, value in options.items() if name not in SAYS}
-                )
-                model = cls(saved, told | task | {"observation": kind}, kind)
+                told = {name: options[name] for name in options if frame or name not in SAYS}
+                model = cls(saved, told | task | {"observation": kind})
                 choices = getattr(model.actions, "n", 0)
                 if outline(space(kind, frame=frame, replaced=replaced, choices=choices)) == saved.observation:
                     if outline(model.actions) != saved.action:
@@ -58,24 +53,20 @@ class FittingModel:
     @property
     def other_actions(self) -> ValueError:
         """The error for a model with another action space; not raised."""
-        return self.saved.refused(
-            f"must be a model whose actions are {self.actions}: give the options of its training, for example placement=True"
-        )
+        told = "give the options of its training, for example placement=True"
+        return self.saved.refused(f"must be a model whose actions are {self.actions}: {told}")
 
     def network(self, trust: bool) -> Any:
         """Load its policy: the code in its pickles runs. ValueError without ``trust``."""
         network = self.saved.network(trust, "trust=True")
-        if (
-            outline(network.observation_space) != self.saved.observation
-            or network.action_space != self.actions
-        ):
+        same_view = outline(network.observation_space) == self.saved.observation
+        if not same_view or network.action_space != self.actions:
             raise self.saved.refused("must be a model whose spaces are those that its file describes")
         return network
 
 
 class SavedNetwork:
-    """The policy of a saved model as a ``Seen``; its actions are deterministic. It is loaded again in another
-    process."""
+    """The policy of a saved model, deterministic, as a ``Seen``; loaded again in another process."""
 
     def __init__(self, model: FittingModel, trust: bool):
         self.options, self.model, self._trust = model.options, model, trust
@@ -86,8 +77,7 @@ class SavedNetwork:
         return self.__dict__ | {"_network": None}
 
     def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
-        """The greedy actions, one row at a time: the products of a batch round otherwise than those of one
-        row."""
+        """The greedy actions, row by row: the products of a batch round otherwise than those of one row."""
         if self._network is None:
             self._network = self.model.network(self._trust)
         actions = []
@@ -106,8 +96,7 @@ class SavedNetwork:
 
 
 def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = "player") -> SeenPlayer:
-    """The player of a model's ``.zip``; ValueError if it is none, or for the files of ``train.py`` without
-    their reader."""
+    """The player of a model's ``.zip``; ValueError for other files and for those of ``train.py``."""
     try:
         ours = path.is_dir() or by_train(entries(path))
     except Exception as error:

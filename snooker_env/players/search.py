@@ -18,7 +18,7 @@ from ..planning import Positions, StrokeSearch
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.policy_proposals import PolicyProposals
 from ..tasks.options import Options
-from .player import Ranked, Strokes, seeds_of
+from .player import Ranked, Strokes
 from .simple import BoundPlayer, placed
 from .weights import Learned, learned_at, level_for
 
@@ -32,17 +32,8 @@ MOST = 40
 
 
 class SearchPlayer(BoundPlayer):
-    """A player that plays the best stroke of a ``StrokeSearch``.
-
-    Parameters
-    ----------
-    kind : str
-        One of ``KINDS``.
-    budget : int, optional
-        Simulated shots a decision, at least 8; default 120.
-    learned : Learned, optional
-        Policy and value of a planner. Default: the package's, by the execution noise.
-    """
+    """The best stroke of a ``StrokeSearch``; a planner's ``learned`` policy and value are by default the
+    package's."""
 
     def __init__(self, kind: str, budget: int = BUDGET, learned: Learned | None = None):
         self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"
@@ -67,8 +58,7 @@ class SearchPlayer(BoundPlayer):
         return Strokes(ranked.strokes[:, 0], places)
 
     def rank(self, positions: Any, seeds: Any) -> list[Ranked]:
-        """The strokes that met noise samples, those that met most first, best first, with their scores
-        [points]."""
+        """The strokes that met noise samples, most first, best first, with their scores [points]."""
         at = Positions.of(positions)
         ranked, places = self._ranked(at, seeds)
         met = (ranked.samples > 0).sum(axis=1)
@@ -81,6 +71,5 @@ class SearchPlayer(BoundPlayer):
     def _ranked(self, at: Positions, seeds: Any) -> tuple[Any, np.ndarray]:
         """The ranking of the search, and the places of cue balls in hand; NaN elsewhere."""
         _ = self.options  # it must be bound
-        keys = seeds_of(seeds, len(at))
-        visits, places = placed(at, keys)
-        return self.search.rank(visits, keys), places
+        visits, places = placed(at, seeds)
+        return self.search.rank(visits, seeds), places

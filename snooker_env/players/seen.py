@@ -22,6 +22,7 @@ from ..game.frame_columns import (
     WINNER,
 )
 from ..planning import Positions
+from ..planning.positions import seeds_of
 from ..planning.trials import decoded
 from ..tasks.declarations import SAYS
 from ..tasks.discrete_actions import Choices
@@ -30,7 +31,7 @@ from ..tasks.observations import shaped
 from ..tasks.options import Options
 from ..tasks.saying import said
 from ..tasks.visit import Visits
-from .player import Strokes, seeds_of
+from .player import Strokes
 from .simple import BoundPlayer, placed
 
 OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")
@@ -42,9 +43,8 @@ restores."""
 class Seen(Protocol):
     """What acts on observations: a network, or any model of another library.
 
-    It may have ``options``, a dict: how its observations look and its actions are read ("action", "aim",
-    "observation", "elevation", "placement", "decision", ... of ``Options``), and "task", "visit" (default) or
-    "frame".
+    It may have ``options``, a dict of how its observations look and its actions are read ("action", "aim",
+    "observation", "placement", ... of ``Options``), with "task": "visit" (default) or "frame".
 
     Examples
     --------
@@ -57,22 +57,18 @@ class Seen(Protocol):
     """
 
     def act(self, observations: Observation, masks: Bools | None, seeds: Ints) -> Any:
-        """Return n actions.
+        """Return n actions, for n observations, of the kinds that ``options`` say.
 
-        ``observations``: the n observations, of the kind that ``options`` says. ``masks``: bool (n, choices):
-        the available choices of ``action="discrete"``; None for box actions. ``seeds``: int64 (n,): of what
-        it draws. Equal rows and seeds must give equal actions, however many are asked for. Returns n actions
-        of the action space that ``options`` says.
-        """
+        ``masks``: bool (n, choices) with ``action="discrete"``, else None. ``seeds``, int64 (n,): equal rows
+        and seeds must give equal actions, however many are asked for."""
         ...
 
 
 class SeenPlayer(BoundPlayer):
     """A player that shows positions to a ``Seen`` as observations and reads its actions as strokes.
 
-    One that sees visits plays frames too: it sees the stroke to come as one of a visit, with a free ball as
-    any colour; a cue ball in hand that it does not place stands where ``ghost_ball`` puts it; after a foul it
-    plays.
+    One that sees visits plays frames too: with a free ball any colour is on; a cue ball in hand that it does
+    not place stands where ``ghost_ball`` puts it; after a foul it plays.
 
     Parameters
     ----------
@@ -88,30 +84,29 @@ class SeenPlayer(BoundPlayer):
     >>> import snooker_env as sn
     >>> from snooker_env.players import SeenPlayer
     >>> class First:
-    ...     options = {"action": "discrete"}
     ...     def act(self, observations, masks, seeds):
     ...         return masks.argmax(axis=1)
-    >>> SeenPlayer(First()).at({}).play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0]).speed.tolist()
+    >>> player = SeenPlayer(First(), {"action": "discrete"}).at({})
+    >>> player.play(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0]).speed.tolist()
     [0.9]
     """
 
     def __init__(self, seen: Any, options: Mapping[str, Any] | None = None, name: str | None = None):
-        given = dict(getattr(seen, "options", {}) if options is None else options)
+        sees = dict(getattr(seen, "options", {}) if options is None else options)
         self.seen, self.name = seen, name or type(seen).__name__
         self.frames = (
-            choice(f"task of player {self.name}", given.pop("task", "visit"), ("visit", "frame")) == "frame"
+            choice(f"task of player {self.name}", sees.pop("task", "visit"), ("visit", "frame")) == "frame"
         )
-        for key in given:
+        for key in sees:
             choice(f"key of the options of player {self.name}", key, OPTIONS)
         if not self.frames:
-            given.pop("decision", None)  # there is none in a visit
-        self.sees = given
+            sees.pop("decision", None)  # there is none in a visit
+        self.sees = sees
         self._rules: Any = None
         self._bind(Options())
 
     def _bind(self, options: Options) -> None:
-        """Read its options with the physics of ``options``; ValueError if they are not those of an
-        environment."""
+        """Read its options with the physics of ``options``; ValueError if they are no environment's."""
         same: dict[str, Any] = {name: getattr(options, name) for name in Options.group("shot")}
         if self.frames:
             match = (
@@ -121,7 +116,7 @@ class SeenPlayer(BoundPlayer):
         self._rules = Options(**same | self.sees).rules
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """Return what the player does, see ``Player.play``."""
+        """See ``Player.play``."""
         _ = self.options  # it must be bound
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at))
@@ -144,8 +139,7 @@ class SeenPlayer(BoundPlayer):
         return (at.in_hand & bool(self._rules.actions.placement))[:, None]
 
     def _shown(self, at: Positions, keys: Ints) -> tuple[Positions, NDArray[np.float64]]:
-        """The positions as it sees them, and where cue balls in hand have been placed for it (n, 2), else
-        NaN."""
+        """The positions as it sees them, and where cue balls in hand were placed for it (n, 2), else NaN."""
         none = np.full((len(at), 2), np.nan)
         if self.frames:
             return (at if at.of_frames else _begun(at)), none

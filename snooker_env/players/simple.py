@@ -8,13 +8,14 @@ import numpy as np
 from .._check import refuse
 from ..planning import Positions
 from ..planning.planner import options_in
+from ..planning.positions import seeds_of
 from ..tasks.ghost_ball import put_in_hand
 from ..tasks.options import Options
 from .player import RulesLike
 
 
 class BoundPlayer:
-    """Base class of players: ``at`` returns a copy bound to options; subclasses implement ``_bind``.
+    """Base class of players: ``at`` binds a copy to options, for which subclasses have ``_bind``.
 
     Examples
     --------
@@ -29,7 +30,7 @@ class BoundPlayer:
     _options: Options | None = None
 
     def at(self, rules: RulesLike) -> Any:
-        """Return a copy bound to where it plays, see ``Player.at``."""
+        """Return a copy of this player bound to where it plays, see ``Player.at``."""
         bound = copy.copy(self)
         bound._options = options_in(rules)
         bound._bind(bound._options)
@@ -54,13 +55,12 @@ def streams_of(seeds: Any) -> np.ndarray:
 
 
 def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
-    """Visits with each cue ball in hand placed where ``ghost_ball`` puts it, and these places (n, 2); NaN for
-    others."""
-    places = np.full((len(at), 2), np.nan)
+    """Visits with cue balls in hand put where ``ghost_ball`` does, and these places (n, 2), else NaN."""
+    places, keys = np.full((len(at), 2), np.nan), seeds_of(seeds, len(at))
     if not at.in_hand.any():
         return at.as_visits(), places
     moved = at.copy()
-    put_in_hand(moved.positions, moved.on_table, moved.game, streams_of(seeds))
+    put_in_hand(moved.positions, moved.on_table, moved.game, streams_of(keys))
     hand = at.in_hand
     places[hand] = moved.positions[hand, 0]
     return moved.as_visits(), places

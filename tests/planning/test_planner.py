@@ -131,7 +131,11 @@ def test_a_stroke_decoded_is_played_as_its_action(options):
     env = sn.SnookerVectorEnv(5, threads=1, **options)
     env.reset(seed=4)
     planner, rows, keys = Planner(env, threads=1), np.arange(60) % 5, np.arange(100, 160)
-    chosen = np.arange(60) * 9 if planner.discrete else actions(60, env.single_action_space.shape[0], seed=1)
+    chosen = (
+        np.arange(60) * 9
+        if (planner.rules.actions.size == 1)
+        else actions(60, env.single_action_space.shape[0], seed=1)
+    )
     strokes, at = planner.strokes_of(env, rows, chosen)
     assert strokes.shape == (60, 5) and len(at) == 60
     whole, errors = (
@@ -150,7 +154,7 @@ def test_a_stroke_decoded_is_played_as_its_action(options):
     assert (np.abs(exact - whole.afterstates.positions).max(axis=(1, 2)) > 1e-3).mean() > 0.5
     stops = planner.stops(at, np.arange(60), strokes=strokes, errors=errors)
     assert np.array_equal(stops.points, whole.points)
-    if not planner.discrete:
+    if planner.rules.actions.size != 1:
         back = planner.actions_of(strokes, positions=at, rows=np.arange(60), places=at.positions[:, 0])
         again, placed = planner.strokes_of(env, rows, back)
         assert np.allclose(again[:, [0, 1, 2, 4]], strokes[:, [0, 1, 2, 4]], atol=1e-12)
@@ -162,7 +166,7 @@ SOFT = [2.0, 0.0, 0.0, 0.3, 0.0]
 
 
 @pytest.mark.parametrize(
-    ("given", "complaint"),
+    ("passed", "complaint"),
     [
         ({}, "actions, strokes = none: must be one of them"),
         ({"actions": [[0, 0, 0, 0]], "strokes": [SOFT]}, "actions, strokes = both"),
@@ -184,10 +188,10 @@ SOFT = [2.0, 0.0, 0.0, 0.3, 0.0]
         ({"strokes": [[2.0, 0.0, 0.0, 0.0, -0.1]], "keys": [1]}, r"strokes\[0\], elevation = -0.1"),
     ],
 )
-def test_strokes_and_errors_that_make_no_sense_are_refused(given, complaint):
+def test_strokes_and_errors_that_make_no_sense_are_refused(passed, complaint):
     planner = Planner({"noise": "club"}, threads=1)
     with pytest.raises(ValueError, match=f"^{complaint}"):
-        planner.play(Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)]), [0], **given)
+        planner.play(Position(cue=(0.0, -0.5), reds=[(0.3, 0.3)]), [0], **passed)
     assert planner.shots == 0
 
 
@@ -259,7 +263,12 @@ def test_a_frame_and_a_match_are_planned_as_a_visit():
     match.reset(seed=0)
     for env in (frame, match):
         at, planner = Positions.of(env), Planner(env)
-        assert len(at) == 1 and at.in_hand[0] and at.ball_on[0] == 1 and planner.action_space.shape == (7,)
+        assert (
+            len(at) == 1
+            and at.in_hand[0]
+            and at.ball_on[0] == 1
+            and planner.rules.actions.space.shape == (7,)
+        )
         stroke = np.float32([[0.6, 0.0, 0.0, 0.1, 0.5, 0.5, 0.0]])
         _, _, left, seen = planner.play(at, [0], stroke)
         env.step(stroke[0])
@@ -273,8 +282,7 @@ def test_what_may_be_planned_for():
         {"aim": "target"},
         gymnasium.make("Snooker-v0", aim="target", max_episode_steps=3),
     ):
-        assert Planner(source).action_space.shape == (4,) and not Planner(source).discrete
-    assert Planner({"action": "discrete"}).discrete
+        assert Planner(source).rules.actions.space.shape == (4,)
     assert Planner({"physics": "match", "table": "tight"}).table.name == "tight"
     for wrong in (gymnasium.make("CartPole-v1"), None, 3, "Snooker-v0"):
         with pytest.raises(ValueError, match=r"env_or_options = a .*must be an environment of snooker_env"):

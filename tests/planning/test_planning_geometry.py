@@ -13,26 +13,26 @@ from snooker_env.planning import Position, Positions, clear_paths, obstructions,
 def test_pots_are_those_of_each_position():
     at = Positions.of(tables(20, layout="random:5"))
     at.ball_on[10:] = 0
-    found = pots(at, most=6)
+    direct = pots(at, most=6)
     for k in range(20):
         each = one_by_one.pots(
             at.positions[k], at.on_table[k], mask_of(np.flatnonzero(at.balls_on[k]).tolist()), most=6
         )
         n = len(each)
         assert (
-            found.ball[k, :n].tolist() == each[:, 0].tolist()
-            and found.pocket[k, :n].tolist() == each[:, 1].tolist()
+            direct.ball[k, :n].tolist() == each[:, 0].tolist()
+            and direct.pocket[k, :n].tolist() == each[:, 1].tolist()
         )
-        assert np.array_equal(found.ghost[k, :n], each[:, 2:4]) and np.array_equal(
-            found.tolerance[k, :n], each[:, 5]
+        assert np.array_equal(direct.ghost[k, :n], each[:, 2:4]) and np.array_equal(
+            direct.tolerance[k, :n], each[:, 5]
         )
-        assert np.cos(found.cut[k, :n]) == pytest.approx(each[:, 4], abs=1e-12)
+        assert np.cos(direct.cut[k, :n]) == pytest.approx(each[:, 4], abs=1e-12)
         assert (
-            (found.ball[k, n:] == -1).all()
-            and (found.pocket[k, n:] == -1).all()
-            and not found.tolerance[k, n:].any()
+            (direct.ball[k, n:] == -1).all()
+            and (direct.pocket[k, n:] == -1).all()
+            and not direct.tolerance[k, n:].any()
         )
-    assert (found.ball[:, 0] >= 16).sum() == 10 and np.array_equal(pots(at).ball, found.ball[:, :4])
+    assert (direct.ball[:, 0] >= 16).sum() == 10 and np.array_equal(pots(at).ball, direct.ball[:, :4])
     with pytest.raises(ValueError, match="most = 0"):
         pots(at, most=0)
 
@@ -40,16 +40,16 @@ def test_pots_are_those_of_each_position():
 def test_what_is_in_the_way_is_nearer_than_two_radii_to_the_path():
     at, rng = Positions.of(tables(10)), np.random.default_rng(0)
     rows, starts, ends = rng.integers(0, 10, 200), *(rng.uniform(-1.0, 1.0, (2, 200, 2)) * (0.85, 1.7))
-    found, some = obstructions(at, rows, starts, ends), np.linspace(0.0, 1.0, 2001)[:, None]
+    direct, some = obstructions(at, rows, starts, ends), np.linspace(0.0, 1.0, 2001)[:, None]
     for i in range(200):
         path = starts[i] + some * (ends[i] - starts[i])
         nearest = np.hypot(*(at.positions[rows[i]][:, None] - path).transpose(2, 0, 1)).min(axis=1)
         sure = np.abs(nearest - 0.0525) > 1e-5
-        assert np.array_equal(found[i, sure], (nearest < 0.0525)[sure] & at.on_table[rows[i], sure])
-    assert 0.02 < found.mean() < 0.5
+        assert np.array_equal(direct[i, sure], (nearest < 0.0525)[sure] & at.on_table[rows[i], sure])
+    assert 0.02 < direct.mean() < 0.5
     ignored = obstructions(at, rows, starts, ends, ignore=np.stack([np.zeros(200, int), np.full(200, 5)], 1))
     assert not ignored[:, [0, 5]].any() and np.array_equal(
-        np.delete(ignored, [0, 5], 1), np.delete(found, [0, 5], 1)
+        np.delete(ignored, [0, 5], 1), np.delete(direct, [0, 5], 1)
     )
 
 
@@ -65,10 +65,12 @@ def test_bad_paths_are_refused():
 
 def test_clear_paths_are_those_of_the_miss_rule():
     at = Positions.of(tables(40, layout="snookered"))
-    found = clear_paths(at)
+    direct = clear_paths(at)
     for k in range(40):
         on = mask_of(np.flatnonzero(at.balls_on[k]).tolist())
-        assert (found.any_part[k], found.full_ball[k]) == miss_rule.paths(at.positions[k], at.on_table[k], on)
-    assert not found.full_ball.all()
+        assert (direct.any_part[k], direct.full_ball[k]) == miss_rule.paths(
+            at.positions[k], at.on_table[k], on
+        )
+    assert not direct.full_ball.all()
     assert clear_paths(Positions.of(tables(5))).any_part.all()
     assert clear_paths(Position(black=(0.0, 1.4605), over=True)).any_part.tolist() == [False]

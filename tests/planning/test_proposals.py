@@ -60,16 +60,7 @@ def solved(at, row, strokes, ball, pocket, ghost):
     """The aims of ``Planner.pot_aim`` for strokes (m, 5) at one pot."""
     m = len(strokes)
     target, ghosts = np.tile(POCKET_AIMS[pocket, :2], (m, 1)), np.tile(ghost, (m, 1))
-    return PLANNER.pot_aim(
-        at,
-        np.full(m, row),
-        np.full(m, ball),
-        target,
-        strokes[:, SPEED],
-        side=strokes[:, SIDE],
-        top=strokes[:, TOP],
-        ghosts=ghosts,
-    )
+    return PLANNER.pot_aim(at, np.full(m, row), np.full(m, ball), target, strokes, ghosts=ghosts)
 
 
 def test_strokes_stay_within_their_limits_and_fill_them():
@@ -100,17 +91,17 @@ def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
     """Shares in plain Python from the chances of ``prospects_of``; aims by ``Planner.pot_aim``. Of two reds
     the likelier gets more."""
     at, m, several = some(), 150, 0
-    found, likely, chances = (
+    direct, likely, chances = (
         pots(at, most=MOST_POTS),
         prospects_of(at, SPREAD, most=MOST_POTS)[1],
         chances_by_width(at, SPREAD),
     )
     proposed = spread_strokes(at, m, seeds(20), SPREAD, DYNAMICS)
     for k in range(20):
-        many = int((found.ball[k] >= 0).sum())
+        many = int((direct.ball[k] >= 0).sum())
         if many == 0:
             continue
-        values = [1 if ball <= 15 else int(ball) - 14 for ball in found.ball[k, :many]]
+        values = [1 if ball <= 15 else int(ball) - 14 for ball in direct.ball[k, :many]]
         weights = [likely[k, j] ** 4 * (values[j] + 25.0) + 1e-12 for j in range(many)]
         ends, first, counts = np.cumsum(weights) / sum(weights), 0, []
         for j in range(many):
@@ -120,7 +111,7 @@ def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
                 np.full(last - first, chances[k, j]), rel=1e-9
             )
             if last > first:
-                expected = solved(at, k, strokes, found.ball[k, j], found.pocket[k, j], found.ghost[k, j])
+                expected = solved(at, k, strokes, direct.ball[k, j], direct.pocket[k, j], direct.ghost[k, j])
                 assert np.array_equal(strokes[:, AIM], expected)
             counts.append(last - first)
             first = last
@@ -235,20 +226,20 @@ def test_from_the_break_off_2000_contacts_nearly_always_pot_something():
 
 def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
     at, rng = some(6), np.random.default_rng(1)
-    found, chances = pots(at, most=MOST_POTS), chances_by_width(at, SPREAD)
-    many = (found.ball >= 0).sum(axis=1)
+    direct, chances = pots(at, most=MOST_POTS), chances_by_width(at, SPREAD)
+    many = (direct.ball >= 0).sum(axis=1)
     assert (many > 0).all()
     which = rng.integers(0, 4, (6, 30))
-    given = np.stack(
+    passed = np.stack(
         [rng.uniform(1.0, 5.0, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30))],
         axis=2,
     )
-    kept = which.copy(), given.copy()
-    strokes, of = strokes_at(at, which, given, seeds(6), SPREAD, DYNAMICS)
+    kept = which.copy(), passed.copy()
+    strokes, of = strokes_at(at, which, passed, SPREAD, DYNAMICS)
     assert (
-        np.array_equal(strokes[..., :AIM], given)
+        np.array_equal(strokes[..., :AIM], passed)
         and np.array_equal(which, kept[0])
-        and np.array_equal(given, kept[1])
+        and np.array_equal(passed, kept[1])
     )
     for k in range(6):
         for i in range(30):
@@ -257,36 +248,25 @@ def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
             assert (
                 strokes[k, i, AIM]
                 == solved(
-                    at, k, strokes[k, i : i + 1], found.ball[k, j], found.pocket[k, j], found.ghost[k, j]
+                    at, k, strokes[k, i : i + 1], direct.ball[k, j], direct.pocket[k, j], direct.ghost[k, j]
                 )[0]
             )
 
 
-def test_a_position_is_proposed_for_by_itself():
-    """Its strokes depend on its own seed and layout alone, and nothing that is given is changed."""
-    at = some(8)
-    kept = at.copy()
-    strokes, chances = spread_strokes(at, 40, seeds(8), SPREAD, DYNAMICS)
-    order = np.array([5, 2, 7])
-    again = spread_strokes(at[order], 40, seeds(8)[order], SPREAD, DYNAMICS)
-    assert np.array_equal(again.strokes, strokes[order]) and np.array_equal(again.chances, chances[order])
-    other = spread_strokes(at, 40, seeds(8, first=500), SPREAD, DYNAMICS).strokes
-    assert all(not np.array_equal(other[k], strokes[k]) for k in range(8))
-    assert all(
-        np.array_equal(getattr(at, name), getattr(kept, name)) for name in ("positions", "on_table", "game")
-    )
-
-
-@pytest.mark.parametrize("generate", [at_balls, over_cushions])
-def test_other_strokes_are_generated_for_a_position_by_itself(generate):
-    at = Positions.of(tables(30, layout="snookered", seed=6))
-    made = generate(SEARCH, at, 40, seeds(30))
+@pytest.mark.parametrize("generate", [at_pots, at_balls, over_cushions])
+def test_a_position_is_proposed_for_by_itself(generate):
+    """Its strokes depend on its own seed and layout alone, and nothing that is passed is changed."""
+    at = Positions.of(tables(30, layout="random:6" if generate is at_pots else "snookered", seed=6))
+    kept, made = at.copy(), generate(SEARCH, at, 40, seeds(30))
     some = np.flatnonzero(made.chances.any(axis=1))
     assert len(some) > 1
     again = generate(SEARCH, at[some[::-1]], 40, seeds(30)[some[::-1]])
     assert all(np.array_equal(one, whole[some[::-1]]) for one, whole in zip(again, made, strict=True))
     other = generate(SEARCH, at, 40, seeds(30, first=500)).strokes
     assert all(not np.array_equal(other[k], made.strokes[k]) for k in some)
+    assert all(
+        np.array_equal(getattr(at, name), getattr(kept, name)) for name in ("positions", "on_table", "game")
+    )
 
 
 def test_a_wider_hand_spares_the_doubtful_pots():

@@ -44,9 +44,11 @@ def test_prospects_prefer_easy_pots_and_more_to_come():
 
 def by_plain_python(positions, on_table, ball_on, spread, follows, second, third, far):
     """The value of a position and the chances of its pots, from the pots of ``game.pots``."""
-    there = [ball for ball in VALUE if on_table[ball]]
-    balls = [ball for ball in there if (VALUE[ball] == 1) == (ball_on == BallOn.RED)]
-    left = sum(8 if VALUE[ball] == 1 else VALUE[ball] for ball in there) + 7 * (ball_on == BallOn.ANY_COLOUR)
+    present = [ball for ball in VALUE if on_table[ball]]
+    balls = [ball for ball in present if (VALUE[ball] == 1) == (ball_on == BallOn.RED)]
+    left = sum(8 if VALUE[ball] == 1 else VALUE[ball] for ball in present) + 7 * (
+        ball_on == BallOn.ANY_COLOUR
+    )
     chances, worths = [], [0.0, 0.0, 0.0]
     for ball, pocket, gx, gy, _, tolerance in pots(positions, on_table, mask_of(balls)):
         (cx, cy), (bx, by), (px, py) = positions[CUE], positions[int(ball)], POCKET_AIMS[int(pocket), :2]

@@ -39,10 +39,10 @@ def test_unscrambled_they_are_the_sequence_of_joe_and_kuo():
     by_hand = [int(f"{i:032b}"[::-1], 2) for i in range(n)]
     assert np.array_equal((reference[:, 0] * 2**32).astype(np.uint64), np.array(by_hand, np.uint64))
     for seed in (0, 1, 0xFFFFFFFF):
-        found = whole(sobol_points(n, DIMENSIONS, seed))
+        direct = whole(sobol_points(n, DIMENSIONS, seed))
         for d in range(DIMENSIONS):
             assert np.array_equal(
-                shared_bits(found[:, d]), shared_bits((reference[:, d] * 2**32).astype(np.uint64))
+                shared_bits(direct[:, d]), shared_bits((reference[:, d] * 2**32).astype(np.uint64))
             ), (seed, d)
 
 

@@ -32,8 +32,8 @@ def test_stops_agree_with_outcomes():
         and (stops.penalty == 0).any()
         and not stops.points[stops.penalty > 0].any()
     )
-    there = POSITION.arrays()[1]
-    moved = there[None] & (stops.potted < 0)
+    present = POSITION.arrays()[1]
+    moved = present[None] & (stops.potted < 0)
     reds = moved[:, 1:16]
     # colours may be respotted, reds not
     assert np.array_equal(stops.places[:, 1:16][reds], stops.afterstates.positions[:, 1:16][reds])
@@ -52,8 +52,8 @@ def test_a_colour_that_was_potted_lies_in_its_pocket_and_not_on_its_spot():
 
 def test_stops_are_those_of_the_shot_simulated_by_itself():
     stops = Planner({}).stops(POSITION, np.zeros(60, int), ACTIONS)
-    places, there, _ = POSITION.arrays()
-    balls = np.flatnonzero(there)
+    places, present, _ = POSITION.arrays()
+    balls = np.flatnonzero(present)
     for k in range(0, 60, 7):
         speed = 0.2 + 0.5 * (float(ACTIONS[k, 0]) + 1.0) * 6.8
         v, w = sn.strike(speed, np.pi * float(ACTIONS[k, 3]))
@@ -86,8 +86,8 @@ def test_a_log_that_is_too_short_is_enlarged(monkeypatch):
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_any_number_of_threads_gives_the_same(threads):
-    own, other = (
+    mine, other = (
         Planner({"noise": "club"}, threads=t).stops(POSITION, np.zeros(60, int), ACTIONS, np.arange(60))
         for t in (2, threads)
     )
-    assert np.array_equal(own.places, other.places) and np.array_equal(own.first, other.first)
+    assert np.array_equal(mine.places, other.places) and np.array_equal(mine.first, other.first)

@@ -49,7 +49,7 @@ def by_place(at):
 
 
 # strokes under errors
-# ------------------------------------------------------------------------------------------------------------
+# ----------------------------------------------------------------------------------------------------------
 
 
 def random_strokes(m, rng):
@@ -161,7 +161,7 @@ def test_without_errors_a_stroke_leaves_along_its_aim_whatever_its_side():
 
 
 # budget
-# ------------------------------------------------------------------------------------------------------------
+# ----------------------------------------------------------------------------------------------------------
 
 
 def test_no_budget_is_exceeded_nor_left_unused():
@@ -197,7 +197,7 @@ def test_as_many_strokes_are_played_as_the_schedule_says(budget, noise):
 
 
 # scores
-# ------------------------------------------------------------------------------------------------------------
+# ----------------------------------------------------------------------------------------------------------
 
 
 def gains_by_hand(tool, at, strokes, errors, value):
@@ -301,7 +301,7 @@ def test_the_search_beats_the_first_of_its_looks_under_fresh_errors():
 
 
 # what a decision depends on
-# ------------------------------------------------------------------------------------------------------------
+# ----------------------------------------------------------------------------------------------------------
 
 
 def test_a_decision_is_the_same_alone_or_among_many_on_any_number_of_threads():
@@ -361,9 +361,9 @@ def test_without_a_pot_fouls_and_what_is_left_count():
 def test_generators_that_have_strokes_share_the_looks():
     at, calls = some(3), []
 
-    def soft(tool, here, m, own):
+    def soft(tool, here, m, scrambles):
         calls.append(len(here))
-        made = at_pots(tool, here, m, own)
+        made = at_pots(tool, here, m, scrambles)
         made.strokes[..., 0] = 1.0
         made.chances[1] = 0.0
         return made
@@ -392,20 +392,12 @@ def test_equal_seeds_give_equal_decisions_on_any_number_of_threads():
     )
 
 
-def test_a_decision_does_not_depend_on_the_other_positions():
-    at, order = some(9), np.array([7, 0, 4])
-    whole, part = search(60).rank(at, np.arange(9)), search(60).rank(at[order], order)
-    assert all(np.array_equal(a[order], b) for a, b in zip(whole, part, strict=True))
-    alone = search(60).rank(at[4], [4])
-    assert all(np.array_equal(a[4:5], b) for a, b in zip(whole, alone, strict=True))
-
-
 def test_nothing_given_is_changed_and_nothing_returned_is_shared():
     at, seeds = some(5), np.arange(5)
     kept, proposed = at.copy(), []
 
-    def propose(tool, here, m, own):
-        made = spread_strokes(here, m, own, tool.spread, tool.dynamics)
+    def propose(tool, here, m, scrambles):
+        made = spread_strokes(here, m, scrambles, tool.spread, tool.dynamics)
         proposed.append((made, made.strokes.copy(), made.chances.copy()))
         return made
 
@@ -448,7 +440,7 @@ def test_no_position_is_no_decision():
 
 
 # bad input
-# ------------------------------------------------------------------------------------------------------------
+# ----------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

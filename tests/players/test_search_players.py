@@ -87,7 +87,7 @@ def test_a_value_says_more_for_a_better_player():
     assert values[0] > values[1] > 1.5 * values[2] > 0
 
 
-def test_the_planner_makes_more_points_than_search_that_more_than_the_best_pot_and_that_more_than_the_widest():
+def test_planner_search_best_pot_and_ghost_ball_make_points_in_this_order():
     points = {
         name: summary(play_visits(sn.player(name), 60, threads=1))["points_a_visit"]
         for name in ("planner_60", "search_60", "best_pot_60", "ghost_ball")

@@ -76,7 +76,7 @@ GOOD = (
     "left: np.ndarray = outcomes.afterstates.positions",
     "states = sn.Positions.of([env.get_state(), env.get_state()])[:1]",
     "blue = sn.Positions.of([position, position])[1].blue",
-    "aims = sn.planning.pot_aim(states, [0], [1], [(0.8, 0.8)], 2.3, side=[0.1], elevation=0.1, physics='match')",
+    "aims = sn.planning.pot_aim(states, [0], [1], [(0.8, 0.8)], [[2.3, 0.1, 0.0, 0.0, 0.1]], physics='match')",
     "strokes = sn.planning.actions_of([3.6], aims, top=0.25)",
     "found = sn.planning.pots(envs, most=2).cut[0, 0] + sn.planning.clear_paths(position).full_ball[0]",
     "space = observation_space('balls', frame=True)",

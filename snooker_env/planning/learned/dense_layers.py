@@ -62,8 +62,7 @@ ACTIVATIONS: dict[str, Any] = {"tanh": lambda x: np.tanh(x, out=x), "relu": relu
 
 
 class Layers:
-    """A multilayer perceptron of layers (out, in) and (out,), which are copied, with "tanh" or "relu" between
-    two of them."""
+    """A multilayer perceptron of layers (out, in) and (out,), copied, with "tanh" or "relu" between them."""
 
     def __init__(self, weights: Sequence[tuple[Any, Any]], activation: str):
         self._layers = [

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..positions import Positions
+from ..prospects import in_parts
 from .dense_layers import Layers
-from .value_features import LOGIT, in_parts, value_features
+from .value_features import LOGIT, value_features
 
 POINTS = 40.0
 """Unit of U [points]."""
@@ -21,9 +22,8 @@ POINTS = 40.0
 class LearnedValue:
     """The value [points] of n ``Positions``: called with them, it returns float32 (n,).
 
-    ``members``: the layers of each network, (weight (out, in), bias (out,)). ``spread``: standard deviation
-    of the cue ball's direction [rad], of ``planning.spread_of``. ``threads``: at most; results do not depend
-    on it.
+    ``members``: the layers of each network, (weight (out, in), bias (out,)). ``spread`` [rad]: see
+    ``spread_of``.
     """
 
     def __init__(self, members: Sequence[Sequence[tuple[NDArray, NDArray]]], spread: float, threads: int = 1):

@@ -25,13 +25,7 @@ _SIDE_STEP, _TOP_STEP = _SIDES[1] - _SIDES[0], _TOPS[1] - _TOPS[0]
 
 
 class PolicyProposals:
-    """The proposals of a ``StrokeSearch`` by a masked policy over the discrete choices.
-
-    Parameters
-    ----------
-    policy : StrokePolicy
-        Scores the choices on tables as ``with_pots`` shows them.
-    """
+    """The proposals of a ``StrokeSearch`` by a ``StrokePolicy`` on tables as ``with_pots`` shows them."""
 
     def __init__(self, policy):
         self.policy = policy
@@ -66,4 +60,4 @@ class PolicyProposals:
         plain = (side == SIDES.index(0.0)) & (points[..., 3] < 0.5)
         tips[..., 1] = np.where(plain, 0.0, _SIDES[side] + _SIDE_STEP * (points[..., 1] - 0.5))
         tips[..., 2] = _TOPS[top] + _TOP_STEP * (points[..., 2] - 0.5)
-        return strokes_at(at, picks // STROKES, tips, seeds, search.spread, search.dynamics)
+        return strokes_at(at, picks // STROKES, tips, search.spread, search.dynamics)

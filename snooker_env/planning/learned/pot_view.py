@@ -32,9 +32,8 @@ def tolerance_of(shown):
 
 @entry(what="the view of the pots", seconds=1)
 def _add_pots(observations, shown):
-    """Copy the observations (n, OBSERVATION_SIZE) into ``shown`` and write the pots behind them, read from
-    the observations alone."""
-    found = np.empty((POTS, POT_COLUMNS))
+    """Copy observations (n, OBSERVATION_SIZE) to ``shown``, and the pots read from them behind."""
+    lines = np.empty((POTS, POT_COLUMNS))
     positions, on_table = np.empty((N_BALLS, 2)), np.empty(N_BALLS, np.bool_)
     for k in range(len(observations)):
         seen, row, on = observations[k], shown[k], 0
@@ -46,43 +45,30 @@ def _add_pots(observations, shown):
             positions[i, 0], positions[i, 1] = seen[5 * i] * HALF_WIDTH, seen[5 * i + 1] * HALF_LENGTH
             on_table[i] = seen[5 * i + 2] > 0.0
             on |= (1 << i) if seen[5 * i + 4] > 0.0 else 0
-        for p in range(find_pots(positions, on_table, on, BALL_RADIUS, found) if on_table[0] else 0):
-            ball, pocket, at = (
-                int(found[p, POT_BALL]),
-                int(found[p, POT_POCKET]),
-                OBSERVATION_SIZE + POT_ENTRIES * p,
-            )
-            bx, by, gx, gy = positions[ball, 0], positions[ball, 1], found[p, GHOST_X], found[p, GHOST_Y]
+        for p in range(find_pots(positions, on_table, on, BALL_RADIUS, lines) if on_table[0] else 0):
+            ball, pocket = int(lines[p, POT_BALL]), int(lines[p, POT_POCKET])
+            at = OBSERVATION_SIZE + POT_ENTRIES * p
+            bx, by, gx, gy = positions[ball, 0], positions[ball, 1], lines[p, GHOST_X], lines[p, GHOST_Y]
             px, py, rx, ry = gx - positions[0, 0], gy - positions[0, 1], bx - gx, by - gy
             away, run = hypot(px, py), hypot(rx, ry)
             px, py, rx, ry = px / away, py / away, rx / run, ry / run
             to_pocket = hypot(POCKET_AIMS[pocket, AIM_X] - bx, POCKET_AIMS[pocket, AIM_Y] - by)
-            row[at], row[at + 1], row[at + 2], row[at + 3], row[at + 4] = (
-                1.0,
-                px,
-                py,
-                px * ry - py * rx,
-                found[p, COS_CUT],
-            )
+            row[at], row[at + 1], row[at + 2] = 1.0, px, py
+            row[at + 3], row[at + 4] = px * ry - py * rx, lines[p, COS_CUT]
             row[at + 5], row[at + 6] = away / HALF_LENGTH - 1.0, to_pocket / HALF_LENGTH - 1.0
-            row[at + TOLERANCE], row[at + 8] = 1.0 + log10(found[p, POT_TOLERANCE]) / 2.0, VALUES[ball] / 7.0
+            row[at + TOLERANCE], row[at + 8] = 1.0 + log10(lines[p, POT_TOLERANCE]) / 2.0, VALUES[ball] / 7.0
             row[at + 9], row[at + 10] = bx / HALF_WIDTH, by / HALF_LENGTH
-            row[at + 11], row[at + 12] = (
-                POCKET_AIMS[pocket, AIM_X] / HALF_WIDTH,
-                POCKET_AIMS[pocket, AIM_Y] / HALF_LENGTH,
-            )
+            row[at + 11] = POCKET_AIMS[pocket, AIM_X] / HALF_WIDTH
+            row[at + 12] = POCKET_AIMS[pocket, AIM_Y] / HALF_LENGTH
             for c in range(at, at + POT_ENTRIES):
                 row[c] = min(1.0, max(-1.0, row[c]))
 
 
 def with_pots(observations):
-    """Flat observations (n, OBSERVATION_SIZE) with the four widest direct pots appended, ``POT_ENTRIES``
-    numbers each, 0 where none is.
+    """Flat observations (n, OBSERVATION_SIZE), then ``POT_ENTRIES`` of each of the four widest pots.
 
     1, direction cue ball -> ghost ball (x, y), sine and cosine of the cut, both distances, tolerance, the
-    ball's value and place (x, y), the pocket's place. A small network does not find these lines by itself in
-    a few minutes: without them the same run makes a third of the pots.
-    """
+    ball's value and place, the pocket's place: without them a small network makes a third of the pots."""
     shown = np.empty((len(observations), SHOWN), np.float32)
     _add_pots(np.ascontiguousarray(observations), shown)
     return shown

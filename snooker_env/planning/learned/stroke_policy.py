@@ -29,8 +29,7 @@ SCORED = -(-STROKES // 16) * 16
 
 
 class StrokePolicy:
-    """A policy over the discrete choices, from its weights: ``weights[name]`` is (weight (out, in), bias
-    (out,)) for each of ``LAYERS``."""
+    """Scores discrete choices; ``weights``: name in ``LAYERS`` -> (weight (out, in), bias (out,))."""
 
     def __init__(self, weights: Mapping[str, tuple[NDArray[np.float32], NDArray[np.float32]]]):
         self._layers = {}
@@ -42,8 +41,7 @@ class StrokePolicy:
             self._layers[name] = turned, shift
 
     def scores(self, seen: NDArray[np.float32], masks: NDArray[np.bool_]) -> NDArray[np.float32]:
-        """Scores of all choices (n, CHOICES) on tables seen (n, SHOWN) by ``with_pots``; ``NEVER`` for those
-        that masks do not allow."""
+        """Scores (n, CHOICES) on tables of ``with_pots`` (n, SHOWN); ``NEVER`` where masks are False."""
         scores = np.empty((len(seen), CHOICES), np.float32)
         for start in range(0, len(seen), BLOCK):
             rows = np.arange(start, min(start + BLOCK, len(seen)))

@@ -46,15 +46,9 @@ def read_tables(rows, seen, inputs, at):
                 continue
             ball = balls[m]
             x = row[b] * side
-            ball[0], ball[1], ball[2], ball[3], ball[4], ball[5], ball[6] = (
-                x,
-                row[b + 1],
-                row[b + 2],
-                row[b + 3],
-                row[b + 4],
-                x - cue_x,
-                row[b + 1] - cue_y,
-            )
+            ball[0], ball[5], ball[6] = x, x - cue_x, row[b + 1] - cue_y
+            for c in range(1, 5):
+                ball[c] = row[b + c]
             group[m] = (2 if i > N_REDS else 0) + (1 if row[b + 4] > 0.0 else 0)
             m += 1
         for p in range(POTS):
@@ -74,8 +68,8 @@ def read_tables(rows, seen, inputs, at):
 
 @entry
 def sum_balls(codes, group, first, context, width):
-    """ReLU of the balls' codes (m, width), in place; their sums / 5 into context[:, : 3 * width]: of balls
-    on, of reds, of colours."""
+    """ReLU of balls' codes (m, width) in place; sums / 5 of those on, reds, colours into context[:, : 3 *
+    width]."""
     for j in range(first.shape[0] - 1):
         sums = context[j]
         for c in range(3 * width):
@@ -96,8 +90,7 @@ def sum_balls(codes, group, first, context, width):
 
 @entry
 def sum_pots(codes, pots, context, at):
-    """ReLU of the pots' codes (n * POTS, width), in place, 0 where there is no pot; their sums into
-    context[:, at : at + width]."""
+    """ReLU of pots' codes (n * POTS, width) in place, 0 for no pot; sums into context[:, at : at + width]."""
     width = codes.shape[1]
     for j in range(context.shape[0]):
         sums = context[j, at : at + width]
@@ -130,11 +123,8 @@ def mirrored(choice):
 
 @entry
 def mask_scores(rows, masks, sides, scores, out):
-    """The scores (n, choices) of the choices that masks[rows] allows, ``NEVER`` for others; a mirrored
-    table's are those in the mirror.
-
-    scores (n * POTS, STROKES or more): of each pot's strokes.
-    """
+    """Scores (n, choices) of each pot's (n * POTS, STROKES or more); ``NEVER`` where the mask (in the mirror)
+    is False."""
     for j in range(rows.shape[0]):
         mask, row = masks[rows[j]], out[j]
         for p in range(POTS):

@@ -4,7 +4,6 @@ the ball on.
 The table is nearly symmetric: it is read mirrored so that the cue ball is on the right.
 """
 
-from concurrent.futures import ThreadPoolExecutor
 from math import cos, erf, exp, log, log10, radians, sqrt
 
 import numpy as np
@@ -24,6 +23,7 @@ from ...geometry import (
     IS_MIDDLE,
     POCKET_AIMS,
 )
+from ..prospects import in_parts
 
 POTS_SEEN = 6
 POT_ENTRIES = 13
@@ -36,8 +36,6 @@ FAR = 0.01
 this one."""
 LOGIT = SIZE - 1
 """The entry that holds the logit of the likeliest pot, where the network's own estimate begins."""
-WORTH_A_THREAD = 128
-"""Positions for which another thread pays."""
 _CORNER_EDGE, _MIDDLE_EDGE = cos(radians(50.0)), cos(radians(70.0))
 """Beyond these angles no pocket has a window (``kernels.window``)."""
 _NEAR_CUSHION, _CLUSTER = 3.0 * BALL_RADIUS, 2.3 * BALL_RADIUS
@@ -55,8 +53,7 @@ def _logit(p):
 
 @kernel
 def _clear(balls, many, ax, ay, bx, by, ball, reach):
-    """Whether the first ``many`` balls of ``balls`` (id, x, y), except ``ball``, are ``reach`` or more away
-    from a segment."""
+    """Whether ``many`` of ``balls`` (id, x, y), without ``ball``, keep ``reach`` away from a segment."""
     ux, uy = bx - ax, by - ay
     length = _length(ux, uy)
     if length > 0.0:
@@ -76,8 +73,7 @@ def _clear(balls, many, ax, ay, bx, by, ball, reach):
 
 @kernel
 def _open(balls, many, open_to):
-    """How open each ball is for each pocket (22, 6): its window as an angle [rad], 0 if the way is blocked,
-    wherever the cue ball lies."""
+    """Each ball's window for each pocket as an angle (22, 6) [rad], for any cue ball; 0: blocked."""
     d = 2.0 * BALL_RADIUS
     for i in range(many):
         b, x, y = int(balls[i, 0]), balls[i, 1], balls[i, 2]
@@ -218,20 +214,8 @@ def _features(positions, on_table, ball_on, spread, out):
         _fill(positions[k], on_table[k], ball_on[k], spread, balls, open_to, best, out[k])
 
 
-def in_parts(n, threads, fill):
-    """Call ``fill`` with slices of n positions, on as many threads as are worth it, at most ``threads``."""
-    threads = min(threads, n // WORTH_A_THREAD)
-    if threads <= 1:
-        fill(slice(0, n))
-        return
-    ends = np.linspace(0, n, threads + 1).astype(int).tolist()
-    with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(fill, map(slice, ends[:-1], ends[1:])))
-
-
 def value_features(at, spread, threads=1):
-    """Features of n ``Positions`` with the cue ball on the table: float32 (n, SIZE). ``spread``: of
-    ``planning.spread_of``."""
+    """Features of n ``Positions`` with the cue ball on the table: float32 (n, SIZE)."""
     ball_on, out = at.ball_on.copy(), np.empty((len(at), SIZE), np.float32)
     in_parts(
         len(at),

@@ -62,11 +62,11 @@ def test_every_pot_is_shown_entry_by_entry(ball_on):
     )
     assert np.array_equal(shown[:, :SIZE], observations) and shown.shape == (30, pot_view.SHOWN)
     for k in range(30):
-        found = pots(
+        direct = pots(
             at.positions[k], at.on_table[k], mask_of(i for i in balls if at.on_table[k, i]), most=POTS
         )
         wanted = np.zeros((POTS, pot_view.POT_ENTRIES))
-        for j, pot in enumerate(found):
+        for j, pot in enumerate(direct):
             wanted[j] = pot_entries(at.positions[k], pot)
             pockets.add(int(pot[1]))
         assert shown[k, SIZE:].reshape(POTS, -1) == pytest.approx(wanted, abs=2e-5)

@@ -93,17 +93,21 @@ def test_the_pots_are_the_best_ones_recomputed(ball_on):
     entries of each."""
     at = some(60, "random:4", seed=5)
     at.game[:, 0] = ball_on
-    rows, found = value_features(at, SPREAD), pots(at, most=40)
+    rows, direct = value_features(at, SPREAD), pots(at, most=40)
     chances = chances_by_width(at, SPREAD)
     several = 0
     for k in range(60):
         best = []
-        for j in np.flatnonzero(found.ball[k] >= 0):
-            ball, (gx, gy), tolerance = int(found.ball[k, j]), found.ghost[k, j], float(found.tolerance[k, j])
+        for j in np.flatnonzero(direct.ball[k] >= 0):
+            ball, (gx, gy), tolerance = (
+                int(direct.ball[k, j]),
+                direct.ghost[k, j],
+                float(direct.tolerance[k, j]),
+            )
             (cx, cy), (x, y) = at.positions[k, 0], at.positions[k, ball]
-            away, middle = hypot(gx - cx, gy - cy), found.pocket[k, j] in (2, 5)
+            away, middle = hypot(gx - cx, gy - cy), direct.pocket[k, j] in (2, 5)
             px, py = {0: (-1, -1), 1: (1, -1), 2: (1, 0), 3: (1, 1), 4: (-1, 1), 5: (-1, 0)}[
-                int(found.pocket[k, j])
+                int(direct.pocket[k, j])
             ]
             px, py = (
                 (px * (0.889 - 0.0016), 0.0) if middle else (px * (0.889 - 0.01524), py * (1.7845 - 0.01524))
@@ -116,7 +120,7 @@ def test_the_pots_are_the_best_ones_recomputed(ball_on):
                 chance,
                 0.25 * log((chance + 1e-3) / (1 - chance + 1e-3)),
                 VALUES[ball] / 7,
-                np.cos(found.cut[k, j]),
+                np.cos(direct.cut[k, j]),
             ]
             entries += [
                 away - 1,
@@ -225,13 +229,13 @@ def test_what_is_said_of_the_reds():
 def test_larger_errors_make_every_pot_less_likely():
     at = some(80, "random:5")
     small, large = (value_features(at, spread) for spread in (3e-4, 5e-3))
-    there = small[:, LIKELIEST] > 0.0
+    present = small[:, LIKELIEST] > 0.0
     assert (large[:, LIKELIEST] <= small[:, LIKELIEST]).all() and (
-        large[there, LIKELIEST] < small[there, LIKELIEST]
+        large[present, LIKELIEST] < small[present, LIKELIEST]
     ).mean() > 0.9
     # what is open and where the balls lie has nothing to do with errors
     apart = slice(POTS_SEEN * POT_ENTRIES, LIKELIEST - 3)
-    assert np.array_equal(small[:, apart], large[:, apart]) and there.sum() > 60
+    assert np.array_equal(small[:, apart], large[:, apart]) and present.sum() > 60
 
 
 def test_any_number_of_threads_and_any_rows_give_the_same():
