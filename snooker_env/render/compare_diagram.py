@@ -54,8 +54,6 @@ def compare(
     ValueError
         If there is no shot, if they were played on different tables, or if there is not one label, axes or
         cue for each shot.
-    ImportError
-        If matplotlib is not installed.
 
     Examples
     --------

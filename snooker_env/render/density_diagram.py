@@ -170,8 +170,6 @@ def density(
     ------
     ValueError
         If there is no point, or an argument is wrong.
-    ImportError
-        If matplotlib is not installed.
 
     Examples
     --------

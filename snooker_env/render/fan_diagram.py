@@ -108,8 +108,6 @@ def fan(
     ------
     ValueError
         If one of the strokes cannot pot the ball, or an argument is wrong.
-    ImportError
-        If matplotlib is not installed.
 
     Examples
     --------

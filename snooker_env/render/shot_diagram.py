@@ -110,8 +110,6 @@ def plot(
     ------
     ValueError
         If the shot has no path or more than 22 balls, or an option is wrong.
-    ImportError
-        If matplotlib is not installed.
 
     Examples
     --------

@@ -42,7 +42,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     Raises
     ------
     ValueError
-        If the environment is not one of this package with one table, or an argument is invalid.
+        If the environment is not one of this package with one table.
 
     Examples
     --------
@@ -100,56 +100,14 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begin a new episode, after writing what there is of the last one.
-
-        Parameters
-        ----------
-        seed : int, optional
-            As in ``SnookerEnv.reset``.
-        options : dict, optional
-            As in ``SnookerEnv.reset``.
-
-        Returns
-        -------
-        observation : numpy.ndarray or dict
-            The wrapped environment's.
-        info : dict
-            The wrapped environment's.
-
-        Raises
-        ------
-        OSError
-            If a replay cannot be written.
-        """
+        """See ``SnookerEnv.reset``; what there is of the last episode is written first, with OSError if it cannot be."""
         self._write()
         result = super().reset(seed=seed, options=options)
         self._number, self._written = self._number + 1, False
         return result
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """Play one step; write the replay of an episode that ends with it.
-
-        Parameters
-        ----------
-        action : array_like or int
-            As in ``SnookerEnv.step``.
-
-        Returns
-        -------
-        observation : numpy.ndarray or dict
-            The wrapped environment's.
-        reward : float
-            The wrapped environment's.
-        terminated, truncated : bool
-            The wrapped environment's.
-        info : dict
-            The wrapped environment's.
-
-        Raises
-        ------
-        OSError
-            If a replay cannot be written.
-        """
+        """See ``SnookerEnv.step``; an episode that ends is written, with OSError if it cannot be."""
         result = super().step(action)
         if self._written:  # an inner wrapper has begun another episode
             self._number, self._written = self._number + 1, False
