@@ -163,7 +163,6 @@ class Sketch:
             spine.set_visible(False)
 
     # the table
-    # ---------------------------------------------------------------------------------------------------------------
 
     def _draw_table(self):
         from matplotlib.patches import Circle, FancyBboxPatch, Polygon, Rectangle
@@ -253,7 +252,6 @@ class Sketch:
             ax.plot([w.low_y, w.high_y], [w.high_x] * 2, color=rgb("bar_edge"), lw=1.0, zorder=9.1, gid=TABLE)
 
     # things on the table
-    # -----------------------------------------------------------------------------------------------------
 
     def ball(self, ball: int, place: Vector, *, label: bool = False) -> None:
         """A ball at rest, with a highlight; ``label``: with its letter."""
@@ -356,7 +354,6 @@ class Sketch:
         self.ax.plot(y, x, marker=marker, ms=size, **style)
 
     # words
-    # -------------------------------------------------------------------------------------------------------------------
 
     def keep_clear(self, points: Floats, size: float) -> None:
         """Keep labels away from these points (m, 2), each ``size`` wide [m], and for a line from the points
@@ -449,5 +446,8 @@ class Sketch:
             & (busy[:, 0] < bottom + half)
         )
         weight = float((inside * np.where(busy[:, 2] > 0, 6.0, 1.0)).sum())
-        over = sum(100.0 for l, r, t, b in self._taken if l < right and left < r and t < bottom and top < b)  # noqa: E741
+        over = 0.0
+        for low_y, high_y, low_x, high_x in self._taken:
+            if low_y < right and left < high_y and low_x < bottom and top < high_x:
+                over += 100.0
         return weight + over + (1000.0 if out else 0.0)

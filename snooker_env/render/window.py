@@ -51,7 +51,8 @@ def require_display() -> None:
 
 def _no_display(why):
     return RuntimeError(
-        f'a window (render_mode="human") needs a display, and there is none ({why}): use render_mode="rgb_array" for pictures or "ansi" '
+        f'a window (render_mode="human") needs a display, and there is none ({why}): '
+        'use render_mode="rgb_array" for pictures or "ansi" '
         "for text, or set SDL_VIDEODRIVER=dummy for a window that nobody sees"
     )
 

@@ -166,7 +166,8 @@ class Replay:
     def _repr_html_(self) -> str:
         """In a notebook: the page in a frame."""
         return (
-            f'<iframe srcdoc="{html.escape(self.html(), quote=True)}" sandbox="allow-scripts" title="snooker replay" '
+            f'<iframe srcdoc="{html.escape(self.html(), quote=True)}" '
+            'sandbox="allow-scripts" title="snooker replay" '
             'style="width: 100%; aspect-ratio: 16 / 10; border: 0"></iframe>'
         )
 
@@ -185,8 +186,9 @@ class Replay:
     def save(self, path: str | Path, **film: Any) -> Path:
         """Write the replay, whole or not at all, in the format of the suffix; returns the path.
 
-        ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra ``render``;
-        ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF: 15 pictures a second of 640 x 360).
+        ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra
+        ``render``; ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (by default a GIF has 15
+        pictures of 640 x 360 a second).
         ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra.
         """
         target = Path(path)

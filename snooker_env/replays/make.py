@@ -107,7 +107,8 @@ def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
         raise refuse_what(
             "source",
             "an environment that keeps no history",
-            "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in sn.RecordReplay",
+            "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in "
+            "sn.RecordReplay",
         )
     if not env.history:
         raise refuse_what(

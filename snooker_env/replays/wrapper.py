@@ -49,7 +49,8 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     >>> import tempfile
     >>> import gymnasium
     >>> import snooker_env as sn
-    >>> env = sn.RecordReplay(gymnasium.make("Snooker-v0", action="discrete"), tempfile.mkdtemp(), suffix=".json")
+    >>> env = gymnasium.make("Snooker-v0", action="discrete")
+    >>> env = sn.RecordReplay(env, tempfile.mkdtemp(), suffix=".json")
     >>> _ = env.reset(seed=1)
     >>> _ = env.step(67)
     >>> env.close()
@@ -100,7 +101,7 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """See ``SnookerEnv.reset``; what there is of the last episode is written first, with OSError if it cannot be."""
+        """See ``SnookerEnv.reset``; writes what there is of the last episode first, OSError if it cannot."""
         self._write()
         result = super().reset(seed=seed, options=options)
         self._number, self._written = self._number + 1, False
