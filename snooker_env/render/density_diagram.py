@@ -142,8 +142,8 @@ def density(
     Parameters
     ----------
     points : array_like, float (m, 2)
-        Final positions [m], for instance ``snooker_env.advice.destinations(...).cue``. Rows of NaN (the ball
-        did not stop on the table) are left out; the share of the others is then written beside the cross.
+        Final positions [m], as of ``advice.destinations(...).cue``; rows of NaN (the ball left the table) are
+        left out, and the share of the others is written beside the cross.
     ax : matplotlib.axes.Axes, optional
         Axes to draw on; a diagram that is already there keeps its table. None makes a new figure.
     table : str, Table or None
@@ -165,11 +165,6 @@ def density(
     -------
     matplotlib.axes.Axes
         The axes of the diagram.
-
-    Raises
-    ------
-    ValueError
-        If there is no point, or an argument is wrong.
 
     Examples
     --------

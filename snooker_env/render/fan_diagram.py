@@ -107,7 +107,7 @@ def fan(
     Raises
     ------
     ValueError
-        If one of the strokes cannot pot the ball, or an argument is wrong.
+        If one of the strokes cannot pot the ball.
 
     Examples
     --------
@@ -151,8 +151,7 @@ def fan_options(
     table: Table,
     physics: Physics,
 ) -> list[Option]:
-    """The strokes of a fan: for each top and side the aim (as given, or one that pots the ball), and the
-    shot."""
+    """The strokes of a fan: for each top and side the aim (or one that pots the ball) and the shot."""
     speed, tops, sides, elevation, aim = strokes
     tops, sides = array("tops", tops, (-1,)).tolist(), array("sides", sides, (-1,)).tolist()
     if not tops or not sides:

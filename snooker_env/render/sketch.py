@@ -297,8 +297,7 @@ class Sketch:
     def ghost(
         self, ball: int, place: Vector, alpha: float = 0.4, *, radius: float | None = None, level: float = 6.0
     ) -> None:
-        """A faded ball with a rim, for a moment of the shot or its end. ``radius``: another size than the
-        ball's [m]."""
+        """A faded ball with a rim, for a moment of the shot or its end; ``radius``: another size [m]."""
         from matplotlib.patches import Circle
 
         (y, x), colour = flipped(place), COLOURS[ball % N_BALLS]
@@ -356,8 +355,7 @@ class Sketch:
     # words
 
     def keep_clear(self, points: Floats, size: float) -> None:
-        """Keep labels away from these points (m, 2), each ``size`` wide [m], and for a line from the points
-        between them."""
+        """Keep labels away from points (m, 2), each ``size`` wide [m], and from the line through them."""
         if len(points) > 1:
             steps = np.maximum(1, np.ceil(np.hypot(*np.diff(points, axis=0).T) / 0.02).astype(int))
             points = np.concatenate(
@@ -395,8 +393,7 @@ class Sketch:
             self._taken.append((w.low_y, w.low_y + 0.66 * line * len(words), w.low_x, w.low_x + 1.3 * line))
 
     def label(self, place: Vector, words: str, colour: Any = "text") -> bool:
-        """Write text near a place, where it covers least, with a line to it; False if there is no room for
-        it."""
+        """Write text near a place where it covers least, with a line to it; False if there is no room."""
         from matplotlib.patheffects import withStroke
 
         high = 1.25 * self.font / self.points_per_metre
