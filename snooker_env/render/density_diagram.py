@@ -26,8 +26,9 @@ _REACH = 3.0  # a Gaussian kernel is cut off at this many bandwidths
 
 
 def bandwidth_of(points: Floats) -> float:
-    """The bandwidth by Scott's rule: the standard deviation of the points times m^(-1/6), at least 1 cm and
-    at most 15 cm.
+    """The bandwidth by Scott's rule.
+
+    It is the standard deviation of the points times m^(-1/6), at least 1 cm and at most 15 cm.
 
     Parameters
     ----------

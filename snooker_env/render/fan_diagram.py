@@ -73,11 +73,11 @@ def fan(
     sides: Sequence[float] = SIDES,
     **options: Any,
 ) -> "Axes":
-    """Draw the cue ball's paths of one pot, played with every pair of a top and a side, as in Fig. 1 of the
-    paper.
+    """Draw the cue ball's paths of one pot, played with every pair of a top and a side.
 
-    Squirt and throw change the aim that pots the ball; of the aims that pot it, the middle one is played. The
-    colour of a path is its top, from screw (blue) to follow (red); the sign at its end is its side.
+    As in Fig. 1 of the paper. Squirt and throw change the aim that pots the ball; of the aims that pot it,
+    the middle one is played. The colour of a path is its top, from screw (blue) to follow (red); the sign at
+    its end is its side.
 
     Parameters
     ----------

@@ -168,8 +168,9 @@ def _throat(fall, noses, mouths):
 
 
 def scene_data(table: TableLike) -> dict[str, Any]:
-    """A table, its lines, the balls and all colours as JSON types: the description that pygame, matplotlib
-    and the browser share.
+    """A table, its lines, the balls and all colours as JSON types.
+
+    It is the description that pygame, matplotlib and the browser share.
 
     Parameters
     ----------

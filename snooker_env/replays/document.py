@@ -25,8 +25,7 @@ SUFFIXES = (".html", ".json", ".mp4", ".gif")
 
 
 class Replay:
-    """A sequence of strokes that can be shown: as a page (``html``, ``save``), in a notebook (as the value of
-    a cell), or as a film.
+    """A sequence of strokes that can be shown as a page, in a notebook, or as a film.
 
     ``snooker_env.replay`` makes replays from shots, histories, positions and environments.
 

@@ -12,11 +12,11 @@ from .document import SUFFIXES, Replay, checked_players
 
 
 class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):
-    """Records the strokes of ``Snooker-v0`` and writes each wanted episode as a replay:
-    ``FOLDER/PREFIX-episode-0.html``, and so on.
+    """Records the strokes of ``Snooker-v0`` and writes each wanted episode as a replay.
 
-    An episode is written when it ends, or when the next one or ``close()`` cuts it short. An episode without
-    a stroke gives no file. No render mode is needed. An existing file of that name is overwritten.
+    The files are ``FOLDER/PREFIX-episode-0.html``, and so on. An episode is written when it ends, or when the
+    next one or ``close()`` cuts it short. An episode without a stroke gives no file. No render mode is
+    needed. An existing file of that name is overwritten.
 
     Parameters
     ----------
