@@ -24,8 +24,7 @@ _LINE, _ARC, _SPOT, _PATH, _AIM, _GHOST, _POCKET = "│", "·", "+", ".", "-", "
 
 
 class _Grid:
-    """Characters on a table, ``columns`` by ``rows`` cells between the noses; a cell is about twice as high
-    as wide."""
+    """Characters on a table, ``columns`` by ``rows`` cells, each about twice as high as wide."""
 
     def __init__(self, columns, table):
         (self.left, self.right), (self.low, self.high) = extent(table).tolist()
@@ -83,8 +82,7 @@ def ansi(scene: Scene, width: int = WIDTH, *, colour: bool = False) -> str:
 
 
 def _balls(grid, scene):
-    """Put the balls' letters on the grid; returns the balls that could not be shown, for instance "r under
-    W"."""
+    """Put the balls' letters on the grid; returns those that could not be shown, as "r under W"."""
     shared = {}
     for ball, point in zip(scene.ids.tolist(), scene.positions, strict=True):
         at = grid.cell(np.clip(point, (grid.left, grid.low), (grid.right, grid.high)))

@@ -52,10 +52,7 @@ def compare(
     Raises
     ------
     ValueError
-        If there is no shot, if they were played on different tables, or if there is not one label, axes or
-        cue for each shot.
-    ImportError
-        If matplotlib is not installed.
+        If the shots were played on different tables.
 
     Examples
     --------

@@ -26,7 +26,9 @@ _REACH = 3.0  # a Gaussian kernel is cut off at this many bandwidths
 
 
 def bandwidth_of(points: Floats) -> float:
-    """The bandwidth by Scott's rule: the points' standard deviation times m^(-1/6), 1 to 15 cm.
+    """The bandwidth by Scott's rule.
+
+    It is the standard deviation of the points times m^(-1/6), at least 1 cm and at most 15 cm.
 
     Parameters
     ----------
@@ -141,8 +143,8 @@ def density(
     Parameters
     ----------
     points : array_like, float (m, 2)
-        Final positions [m], for instance ``snooker_env.advice.destinations(...).cue``. Rows of NaN (the ball
-        did not stop on the table) are left out; the share of the others is then written beside the cross.
+        Final positions [m], as of ``advice.destinations(...).cue``; rows of NaN (the ball left the table) are
+        left out, and the share of the others is written beside the cross.
     ax : matplotlib.axes.Axes, optional
         Axes to draw on; a diagram that is already there keeps its table. None makes a new figure.
     table : str, Table or None
@@ -164,13 +166,6 @@ def density(
     -------
     matplotlib.axes.Axes
         The axes of the diagram.
-
-    Raises
-    ------
-    ValueError
-        If there is no point, or an argument is wrong.
-    ImportError
-        If matplotlib is not installed.
 
     Examples
     --------

@@ -73,10 +73,11 @@ def fan(
     sides: Sequence[float] = SIDES,
     **options: Any,
 ) -> "Axes":
-    """Draw the cue ball's paths of one pot for every pair of a top and a side, as Fig. 1 of the paper.
+    """Draw the cue ball's paths of one pot, played with every pair of a top and a side.
 
-    Squirt and throw change the aim that pots the ball; of the aims that pot it, the middle one is played. The
-    colour of a path is its top, from screw (blue) to follow (red); the sign at its end is its side.
+    As in Fig. 1 of the paper. Squirt and throw change the aim that pots the ball; of the aims that pot it,
+    the middle one is played. The colour of a path is its top, from screw (blue) to follow (red); the sign at
+    its end is its side.
 
     Parameters
     ----------
@@ -106,9 +107,7 @@ def fan(
     Raises
     ------
     ValueError
-        If one of the strokes cannot pot the ball, or an argument is wrong.
-    ImportError
-        If matplotlib is not installed.
+        If one of the strokes cannot pot the ball.
 
     Examples
     --------
@@ -152,8 +151,7 @@ def fan_options(
     table: Table,
     physics: Physics,
 ) -> list[Option]:
-    """The strokes of a fan: for each top and side the aim (as given, or one that pots the ball), and the
-    shot."""
+    """The strokes of a fan: for each top and side the aim (or one that pots the ball) and the shot."""
     speed, tops, sides, elevation, aim = strokes
     tops, sides = array("tops", tops, (-1,)).tolist(), array("sides", sides, (-1,)).tolist()
     if not tops or not sides:

@@ -68,15 +68,13 @@ class Outline:
 
 
 def extent(table: Table) -> Floats:
-    """The part of a ``Table`` between its rails that a picture shows, (2, 2) [m]: its bounds, or snooker's
-    bed where it has none."""
+    """What a picture shows between the rails: a table's bounds, else snooker's bed, (2, 2) [m]."""
     snooker = np.array([(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)])
     return np.where(np.isfinite(table.bounds), table.bounds, snooker)
 
 
 def is_marked(table: Table) -> bool:
-    """Whether snooker's lines and spots are drawn on a ``Table``: on a snooker bed, and on unbounded
-    cloth."""
+    """Whether snooker's lines and spots are drawn: on a snooker bed, and on unbounded cloth."""
     ends = (HALF_WIDTH, HALF_LENGTH)
     return all(
         np.allclose(bounds, (-end, end), rtol=0.0, atol=1e-9)
@@ -128,8 +126,7 @@ def _point(axis, across, along):
 
 
 def _jaw(jaws, start):
-    """The jaw that begins at ``start`` on a nose, arc after arc to its end in the pocket: (m, 2); only
-    ``start`` if there is none."""
+    """The jaw (m, 2) that begins at ``start`` on a nose, arc after arc; only ``start`` if there is none."""
     points, left = [start], list(jaws)
     while (step := _arc_from(points[-1], left)) is not None:
         k, arc = step
@@ -139,8 +136,7 @@ def _jaw(jaws, start):
 
 
 def _arc_from(place, jaws):
-    """The index of an arc of which one end is at ``place``, and its points (25, 2) from there on; None if
-    there is none."""
+    """The index of an arc with an end at ``place``, and its points (25, 2) from there on, or None."""
     for k, (x, y, radius, ux, uy, cos_half) in enumerate(jaws):
         angles = np.arctan2(uy, ux) + np.arccos(cos_half) * np.linspace(-1.0, 1.0, 25)
         arc = np.array([x, y]) + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -151,8 +147,7 @@ def _arc_from(place, jaws):
 
 
 def _onward(jaw, out, level, ends):
-    """Where the straight continuation of a jaw behind its last arc meets the line at ``level``; two noses
-    that meet share a mitre."""
+    """Where a jaw, continued straight, meets the line at ``level``; two noses that meet share a mitre."""
     if len(jaw) > 1:
         onward = jaw[-1] - jaw[-2]
     else:
@@ -164,8 +159,7 @@ def _onward(jaw, out, level, ends):
 
 
 def _throat(fall, noses, mouths):
-    """The hole in the wood: from the middle of the pocket's mouth to the centre of its fall, as wide as its
-    jaws' ends are apart."""
+    """The hole in the wood, from the mouth's middle to the fall's centre, as wide as its jaws' ends."""
     jaw_ends = [end for nose in noses for end in (nose[0], nose[-1])]
     (a, b), (c, d) = (
         sorted(points, key=lambda point: np.hypot(*(point - fall[:2])))[:2] for points in (mouths, jaw_ends)
@@ -174,7 +168,9 @@ def _throat(fall, noses, mouths):
 
 
 def scene_data(table: TableLike) -> dict[str, Any]:
-    """A table, its lines, the balls and all colours as JSON types: what every picture is drawn from.
+    """A table, its lines, the balls and all colours as JSON types.
+
+    It is the description that pygame, matplotlib and the browser share.
 
     Parameters
     ----------
@@ -189,11 +185,6 @@ def scene_data(table: TableLike) -> dict[str, Any]:
         bed. ``rail``, ``cushion``: ``RAIL``, ``CUSHION``. ``lines``: {"baulk", "d", "spots"}, or None on a
         table without snooker's marks. ``ball_radius``. ``palette``: {name: [red, green, blue]}. ``balls``: by
         id {"name", "letter", "value", "rgb"}.
-
-    Raises
-    ------
-    ValueError
-        For an unknown table.
 
     Examples
     --------

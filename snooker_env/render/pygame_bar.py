@@ -114,8 +114,7 @@ def _break(page, bar, end):
 
 
 def _players(page, bar, width):
-    """In the middle: names and points, with the player whose turn it is emphasised. Returns the x where this
-    begins."""
+    """In the middle: names and points, the striker emphasised. Returns the x where this begins."""
     middle, half = width / 2, 46
     if len(bar.players) == 1:
         name, score = bar.players[0], str(bar.scores[0])
@@ -184,8 +183,7 @@ def _shown(ball_on):
 
 
 def _column(page, label, value, end, balls=(), size=36, widest=""):
-    """One value under its label, up to ``end``, with room for the ``widest`` value, so that nothing moves.
-    Returns the end of the next."""
+    """A value under its label, with room for ``widest`` so that nothing moves. Returns the next end."""
     step = 22 if len(balls) < 3 else 13
     taken = (step * (len(balls) - 1) + 30) if balls else 0
     across = max(

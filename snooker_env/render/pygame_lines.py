@@ -22,8 +22,7 @@ _LONGEST = 1e5  # pixels: a longer path is not drawn
 
 
 def line_width(scale: float) -> float:
-    """Width of a path [pixels] at ``scale`` pixels per metre: 3.4 on the match table in a picture 1080 pixels
-    high."""
+    """Width of a path [pixels] at ``scale`` pixels per metre: 3.4 in a picture of 1920 x 1080."""
     return max(1.5, 0.0072 * scale)
 
 

@@ -110,8 +110,6 @@ def plot(
     ------
     ValueError
         If the shot has no path or more than 22 balls, or an option is wrong.
-    ImportError
-        If matplotlib is not installed.
 
     Examples
     --------
@@ -362,9 +360,8 @@ def summary(shot: Shot, first: int | None) -> list[str]:
     met = next((contact for contact in contacts(shot, first) if contact.kind == EventKind.BALL_BALL), None)
     if met is not None:
         other = contact_of(shot, met)
-        lines.append(
-            f"{name(met.other)}: cut {np.degrees(cut_angle(shot, met)):.0f}°, leaves with {other.after:.2f} m/s"
-        )
+        cut = np.degrees(cut_angle(shot, met))
+        lines.append(f"{name(met.other)}: cut {cut:.0f}°, leaves with {other.after:.2f} m/s")
         lines.append(f"cue ball: {met.speed:.2f} m/s before, {met.after:.2f} after")
     pots = [
         f"{name(ball)} into {pocket(shot, int(shot.potted[ball]))}"

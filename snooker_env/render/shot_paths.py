@@ -55,8 +55,7 @@ class Meeting(NamedTuple):
 
 
 def pieces(shot: Shot, ball: int) -> list[Piece]:
-    """The path of a ball; empty if it never moves. Pieces of the same kind without an impact between them are
-    joined."""
+    """The path of a ball, empty if it never moves; like pieces without an impact between are joined."""
     rows = shot.segments[shot.segments[:, SEGMENT_BALL] == ball]
     ends = np.append(rows[1:, T0], shot.duration)
     impacts = set(
@@ -86,8 +85,7 @@ def pieces(shot: Shot, ball: int) -> list[Piece]:
 
 
 def _steps(row, duration):
-    """The number of straight lines that replace a segment: the distance of a parabola from its chord is at
-    most a dt^2 / 8."""
+    """How many chords replace a segment: a parabola is at most a dt^2 / 8 away from one."""
     if row[SEGMENT_STATE] in (ROLL, FALLING):  # straight, without a turning point
         return 1
     return int(np.clip(np.ceil(duration * np.sqrt(np.hypot(row[AX], row[AY]) / (8 * STRAY))), 1, 256))
@@ -124,8 +122,7 @@ def velocity_before(shot: Shot, ball: int, time: float) -> Floats:
 
 
 def contacts(shot: Shot, ball: int) -> Iterator[Meeting]:
-    """The meetings of a ball in order of time. ``ball`` is ``Meeting.ball``, also where the other ball struck
-    it."""
+    """A ball's meetings in order of time; it is ``Meeting.ball`` even where the other struck it."""
     R = shot.physics.R
     for time, number, i, j in shot.events[_is_impact(shot)].tolist():
         kind = EventKind(number)
@@ -152,8 +149,7 @@ def contacts(shot: Shot, ball: int) -> Iterator[Meeting]:
 
 
 def cut_angle(shot: Shot, contact: Meeting) -> float:
-    """Cut angle of a contact with a ball [rad]: between the ball's direction just before and the line of
-    centres; 0 is a full contact."""
+    """Cut angle [rad] between the direction before a contact and the line of centres; 0 is full."""
     v, line = velocity_before(shot, contact.ball, contact.time), contact.place - contact.centre
     return float(np.arctan2(abs(v[0] * line[1] - v[1] * line[0]), v @ line))
 

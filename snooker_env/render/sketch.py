@@ -163,7 +163,6 @@ class Sketch:
             spine.set_visible(False)
 
     # the table
-    # --------------------------------------------------------------------------------------------------------
 
     def _draw_table(self):
         from matplotlib.patches import Circle, FancyBboxPatch, Polygon, Rectangle
@@ -253,7 +252,6 @@ class Sketch:
             ax.plot([w.low_y, w.high_y], [w.high_x] * 2, color=rgb("bar_edge"), lw=1.0, zorder=9.1, gid=TABLE)
 
     # things on the table
-    # --------------------------------------------------------------------------------------------------------
 
     def ball(self, ball: int, place: Vector, *, label: bool = False) -> None:
         """A ball at rest, with a highlight; ``label``: with its letter."""
@@ -299,8 +297,7 @@ class Sketch:
     def ghost(
         self, ball: int, place: Vector, alpha: float = 0.4, *, radius: float | None = None, level: float = 6.0
     ) -> None:
-        """A faded ball with a rim, for a moment of the shot or its end. ``radius``: another size than the
-        ball's [m]."""
+        """A faded ball with a rim, for a moment of the shot or its end; ``radius``: another size [m]."""
         from matplotlib.patches import Circle
 
         (y, x), colour = flipped(place), COLOURS[ball % N_BALLS]
@@ -356,11 +353,9 @@ class Sketch:
         self.ax.plot(y, x, marker=marker, ms=size, **style)
 
     # words
-    # --------------------------------------------------------------------------------------------------------
 
     def keep_clear(self, points: Floats, size: float) -> None:
-        """Keep labels away from these points (m, 2), each ``size`` wide [m], and for a line from the points
-        between them."""
+        """Keep labels away from points (m, 2), each ``size`` wide [m], and from the line through them."""
         if len(points) > 1:
             steps = np.maximum(1, np.ceil(np.hypot(*np.diff(points, axis=0).T) / 0.02).astype(int))
             points = np.concatenate(
@@ -398,8 +393,7 @@ class Sketch:
             self._taken.append((w.low_y, w.low_y + 0.66 * line * len(words), w.low_x, w.low_x + 1.3 * line))
 
     def label(self, place: Vector, words: str, colour: Any = "text") -> bool:
-        """Write text near a place, where it covers least, with a line to it; False if there is no room for
-        it."""
+        """Write text near a place where it covers least, with a line to it; False if there is no room."""
         from matplotlib.patheffects import withStroke
 
         high = 1.25 * self.font / self.points_per_metre
@@ -449,5 +443,8 @@ class Sketch:
             & (busy[:, 0] < bottom + half)
         )
         weight = float((inside * np.where(busy[:, 2] > 0, 6.0, 1.0)).sum())
-        over = sum(100.0 for l, r, t, b in self._taken if l < right and left < r and t < bottom and top < b)  # noqa: E741
+        over = 0.0
+        for low_y, high_y, low_x, high_x in self._taken:
+            if low_y < right and left < high_y and low_x < bottom and top < high_x:
+                over += 100.0
         return weight + over + (1000.0 if out else 0.0)

@@ -51,14 +51,14 @@ def require_display() -> None:
 
 def _no_display(why):
     return RuntimeError(
-        f'a window (render_mode="human") needs a display, and there is none ({why}): use render_mode="rgb_array" for pictures or "ansi" '
+        f'a window (render_mode="human") needs a display, and there is none ({why}): '
+        'use render_mode="rgb_array" for pictures or "ansi" '
         "for text, or set SDL_VIDEODRIVER=dummy for a window that nobody sees"
     )
 
 
 class Window:
-    """A window with a table, opened by the first ``draw``; closed by the user, it stays so until
-    ``close``."""
+    """A window with a table, opened by the first ``draw``; once closed by its user, shut until ``close``."""
 
     def __init__(
         self, height: int | None = None, title: str = "snooker", *, size: tuple[int, int] | None = None
@@ -220,8 +220,7 @@ class _FilmReel:
 
 
 class _SceneReel:
-    """The same for an iterable of scenes: at speeds above 1 some are left out, below 1 some are shown
-    again."""
+    """The same for an iterable of scenes: some are left out above speed 1, or shown again below it."""
 
     def __init__(self, scenes: Iterable[Scene]):
         self._scenes, self._due = iter(scenes), 0.0

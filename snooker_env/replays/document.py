@@ -25,7 +25,7 @@ SUFFIXES = (".html", ".json", ".mp4", ".gif")
 
 
 class Replay:
-    """A sequence of strokes that can be shown: as a page, in a notebook, or as a film.
+    """A sequence of strokes that can be shown as a page, in a notebook, or as a film.
 
     ``snooker_env.replay`` makes replays from shots, histories, positions and environments.
 
@@ -34,12 +34,11 @@ class Replay:
     strokes : iterable of Shot or Played
         The strokes in the order in which they were played; at least one, each with its path.
     title : str, optional
-        Title of the page; default none.
+        Title of the page.
     players : iterable of str, optional
-        Names of the players: two for a frame, one for a visit, none for bare shots. Default: "Player 1" and
-        "Player 2", or "Player".
+        Two names for a frame, one for a visit; default: "Player 1" and "Player 2", or "Player".
     table : str, Table or None, optional
-        The table on which the strokes were played; default: that of the shots, or "match".
+        The table of the strokes; default: that of the shots, or "match".
 
     Attributes
     ----------
@@ -55,8 +54,7 @@ class Replay:
     Raises
     ------
     ValueError
-        If there is no stroke, if strokes differ in ball radius, spin deceleration or table, or if an argument
-        is invalid.
+        If there is no stroke, or strokes differ in ball radius, spin deceleration or table.
 
     Examples
     --------
@@ -138,10 +136,9 @@ class Replay:
         return f"Replay({len(self)} strokes, {self.title!r})"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the replay as JSON types, in the format that docs/play/replay.md describes.
+        """The replay as JSON types, in the format of docs/play/replay.md; treat what is inside as read-only.
 
-        The top level is new at each call; treat everything inside as read-only. ValueError if a shot
-        has no path, or more than 22 balls.
+        ValueError if a shot has no path, or more than 22 balls.
         """
         if self._data is None:
             strokes = [encoded_stroke(stroke, self.players) for stroke in self.strokes]
@@ -159,10 +156,7 @@ class Replay:
         return dict(self._data)
 
     def html(self) -> str:
-        """Return the replay as one HTML page that needs no other file and no network.
-
-        ValueError if a shot has no path, or more than 22 balls.
-        """
+        """The replay as one HTML page that needs no other file and no network; errors as in ``to_dict``."""
         data = json.dumps(self.to_dict(), separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
         parts = {"title": html.escape(self.title or "Snooker replay"), "module": table_js(), "data": data}
         page = (WEB / "replay.html").read_text("utf-8")
@@ -171,32 +165,30 @@ class Replay:
     def _repr_html_(self) -> str:
         """In a notebook: the page in a frame."""
         return (
-            f'<iframe srcdoc="{html.escape(self.html(), quote=True)}" sandbox="allow-scripts" title="snooker replay" '
+            f'<iframe srcdoc="{html.escape(self.html(), quote=True)}" '
+            'sandbox="allow-scripts" title="snooker replay" '
             'style="width: 100%; aspect-ratio: 16 / 10; border: 0"></iframe>'
         )
 
     def frames(
         self, *, fps: float = 30.0, speed: float = 1.0, size: tuple[int, int] = (1920, 1080)
     ) -> Iterator[NDArray[np.uint8]]:
-        """Iterate over the pictures of the film.
+        """The pictures of the film, each uint8 (height, width, 3): treat them as read-only.
 
-        ``fps``: pictures per second of the film, in (0, 1000]; default 30. ``speed``: speed of the film over
-        that of the strokes, in (0, 1000]; default 1. ``size``: (int, int), width and height [pixels]; default
-        (1920, 1080). Returns uint8 (height, width, 3). Treat them as read-only: while nothing moves, the same
-        array comes again. ValueError if ``fps`` or ``speed`` is out of range. ImportError without pygame.
+        ``fps`` and ``speed`` (over that of the strokes) in (0, 1000], else ValueError; ``size``: width and
+        height [pixels]. Without pygame ImportError.
         """
         from .film import frames, shown
 
         return frames(shown(self.strokes, self.table, self.players, self.title), fps, speed, size)
 
     def save(self, path: str | Path, **film: Any) -> Path:
-        """Write the replay to a file in the format of its suffix.
+        """Write the replay, whole or not at all, in the format of the suffix; returns the path.
 
-        ``path``: ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the
-        extra ``render``. The file is written whole or not at all. ``**film``: ``fps``, ``speed`` and ``size``
-        of a film, as in ``frames``. Default for ``.gif``: 640 x 360 at 15 pictures per second. Returns the
-        file. ValueError for another suffix, or if an argument is invalid. OSError if the file cannot be
-        written. ImportError if the extra ``render`` is missing for a film.
+        ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra
+        ``render``; ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (by default a GIF has 15
+        pictures of 640 x 360 a second).
+        ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra.
         """
         target = Path(path)
         suffix = choice("suffix", target.suffix.lower(), SUFFIXES)

@@ -145,8 +145,7 @@ def _in_video_colours(pictures: Iterator[NDArray[np.uint8]]) -> Iterator[NDArray
 
 
 def _swatches(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The colours of a picture as a picture (256, 256, 3), with rare ones much enlarged: a ball is small, and
-    its colour matters."""
+    """A picture's colours as a picture (256, 256, 3), rare ones enlarged: a ball's colour matters."""
     coarse = (picture >> 2).astype(np.uint32)
     codes, counts = np.unique(
         (coarse[..., 0] << 12) | (coarse[..., 1] << 6) | coarse[..., 2], return_counts=True

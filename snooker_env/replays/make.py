@@ -14,7 +14,10 @@ from ..simulation import Shot, simulate
 from ..tasks.played import Played
 from .document import Replay
 
-_ALLOWED = "must be a Shot, a list of shots or of strokes of env.history, a Position, a Replay, or an environment that keeps its history"
+_ALLOWED = (
+    "must be a Shot, a list of shots or of strokes of env.history, a Position, a Replay, or an environment "
+    "that keeps its history"
+)
 
 
 def replay(
@@ -36,15 +39,9 @@ def replay(
         * A ``Position`` is shown as it stands.
         * A ``Replay`` is copied, with the other arguments applied.
     path : str or Path, optional
-        Where to write it, see ``Replay.save``: a file that ends in ``.html``, ``.json``, ``.mp4`` or
-        ``.gif``. Default None: nowhere.
-    title : str, optional
-        Title of the page; default none.
-    players : iterable of str, optional
-        Names of the players: two for a frame, one for a visit. Default: "Player 1" and "Player 2", or
-        "Player".
-    table : str, Table or None, optional
-        The table on which the shots were played; default None: the table stored in them.
+        A file that ends in ``.html``, ``.json``, ``.mp4`` or ``.gif``, see ``Replay.save``.
+    title, players, table
+        As in ``Replay``.
 
     Returns
     -------
@@ -110,7 +107,8 @@ def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
         raise refuse_what(
             "source",
             "an environment that keeps no history",
-            "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in sn.RecordReplay",
+            "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in "
+            "sn.RecordReplay",
         )
     if not env.history:
         raise refuse_what(

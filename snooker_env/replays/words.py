@@ -59,7 +59,8 @@ def sentence(played: Played, players: tuple[str, ...]) -> str:
     else:
         words = "Nothing potted"
     if played.winner is not None and len(players) > played.winner:
-        words += f". Frame to {players[played.winner]}, {played.scores[played.winner]}-{played.scores[1 - played.winner]}"
+        winner = played.winner
+        words += f". Frame to {players[winner]}, {played.scores[winner]}-{played.scores[1 - winner]}"
     elif played.over and played.next_on == BallOn.NOTHING and not played.fouls:
         words += ". Table cleared"
     return words + "."

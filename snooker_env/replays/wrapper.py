@@ -14,8 +14,8 @@ from .document import SUFFIXES, Replay, checked_players
 class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.RecordConstructorArgs):
     """Records the strokes of ``Snooker-v0`` and writes each wanted episode as a replay.
 
-    Files are called ``FOLDER/PREFIX-episode-0.html``, and so on. An episode is written when it ends, or when
-    the next one or ``close()`` cuts it short. An episode without a stroke gives no file. No render mode is
+    The files are ``FOLDER/PREFIX-episode-0.html``, and so on. An episode is written when it ends, or when the
+    next one or ``close()`` cuts it short. An episode without a stroke gives no file. No render mode is
     needed. An existing file of that name is overwritten.
 
     Parameters
@@ -42,14 +42,15 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     Raises
     ------
     ValueError
-        If the environment is not one of this package with one table, or an argument is invalid.
+        If the environment is not one of this package with one table.
 
     Examples
     --------
     >>> import tempfile
     >>> import gymnasium
     >>> import snooker_env as sn
-    >>> env = sn.RecordReplay(gymnasium.make("Snooker-v0", action="discrete"), tempfile.mkdtemp(), suffix=".json")
+    >>> env = gymnasium.make("Snooker-v0", action="discrete")
+    >>> env = sn.RecordReplay(env, tempfile.mkdtemp(), suffix=".json")
     >>> _ = env.reset(seed=1)
     >>> _ = env.step(67)
     >>> env.close()
@@ -100,24 +101,14 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Begin a new episode, after writing what there is of the last one.
-
-        ``seed``: as in ``SnookerEnv.reset``. ``options``: as in ``SnookerEnv.reset``. Returns
-        ``observation``, the wrapped environment's and ``info``, the wrapped environment's. OSError if a
-        replay cannot be written.
-        """
+        """See ``SnookerEnv.reset``; writes what there is of the last episode first, OSError if it cannot."""
         self._write()
         result = super().reset(seed=seed, options=options)
         self._number, self._written = self._number + 1, False
         return result
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """Play one step; write the replay of an episode that ends with it.
-
-        ``action``: as in ``SnookerEnv.step``. Returns ``observation``, the wrapped environment's and
-        ``reward``, the wrapped environment's and ``terminated, truncated``, the wrapped environment's and
-        ``info``, the wrapped environment's. OSError if a replay cannot be written.
-        """
+        """See ``SnookerEnv.step``; an episode that ends is written, with OSError if it cannot be."""
         result = super().step(action)
         if self._written:  # an inner wrapper has begun another episode
             self._number, self._written = self._number + 1, False

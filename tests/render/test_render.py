@@ -256,7 +256,8 @@ def test_a_picture_shows_the_table_and_the_balls_of_another_game(name):
     assert empty.shape[0] * 14 / 15 == pytest.approx((last - first)[1] + 2 * scale * (0.155 + 0.012), abs=2)
 
     def pixel(point):
-        return empty[tuple(np.floor(to_pixels(point, height, table)).astype(int)[::-1])].astype(int)
+        column, row = np.floor(to_pixels(point, height, table)).astype(int)
+        return empty[row, column].astype(int)
 
     for x, y, radius in table.falls:
         inner = np.array([x, y]) - 0.8 * radius * np.array([np.sign(x), np.sign(y)]) / np.hypot(
@@ -295,7 +296,8 @@ def test_a_text_shows_the_table_of_another_game(name):
     rails = rows[0] + rows[len(grid) + 1]
     corners = rails[0] + rails[79] + rails[80] + rails[159]
     has = {pocket.split()[0] for pocket in table.pockets}
-    assert corners == ("OOOO" if "top" in has else "╔╗╚╝") and ("O" in rails[1:79]) == ("middle" in has)
+    assert corners == ("OOOO" if "top" in has else "╔╗╚╝")
+    assert ("O" in rails[1:79]) == ("middle" in has)
 
 
 @pytest.mark.parametrize("name", ["pool9", "mine", "carom"])
