@@ -30,44 +30,52 @@ AT = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "ph
 
 
 @pytest.fixture(autouse=True, scope="module")
-def reachable():
-    """Workers find the tests and the package by PYTHONPATH; each computes with one thread."""
+def folder(tmp_path_factory):
+    """Workers find the tests and the package by PYTHONPATH, each computes with one thread; they note here what they play."""
+    made = tmp_path_factory.mktemp("notes")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("PYTHONPATH", str(ROOT))
+        patience = {"RAY_task_oom_retry_delay_base_ms": 100}  # Ray waits for seconds before it tries again
+        for name, value in {"PYTHONPATH": ROOT, "OMP_NUM_THREADS": 1, "SLOW": 0.15, **patience}.items():
+            patch.setenv(name, str(value))
+        for name in ("NOTED", "HANGS"):
+            patch.setenv(name, str(made / name.lower()))
         patch.syspath_prepend(str(ROOT))
-        patch.setenv("OMP_NUM_THREADS", "1")
-        yield
+        yield made
+
+
+@pytest.fixture(scope="module")
+def head():
+    """A node with one core, to which others are added; all their processes end with the module."""
+    made = Nodes(initialize_head=True, head_node_args=NODE)
+    yield made
+    made.shutdown()
 
 
 @pytest.fixture
-def nodes(tmp_path, monkeypatch):
-    """Two nodes with a core each, and the second of them; all their processes end with the test."""
-    monkeypatch.setenv("NOTED", str(tmp_path / "noted"))
-    monkeypatch.setenv("SLOW", "0.15")
-    monkeypatch.setenv("HANGS", str(tmp_path / "hangs"))
-    made = Nodes(initialize_head=True, head_node_args=NODE)
-    try:
-        node = {name: value for name, value in NODE.items() if name != "include_dashboard"}
-        second = made.add_node(**node, env_vars={"DIES": "1"})
-        made.wait_for_nodes()
-        yield made, second
-    finally:
-        made.shutdown()
+def nodes(head, folder):
+    """Two nodes with a core each, and the second of them, which may have been killed before."""
+    for file in folder.iterdir():
+        file.unlink()
+    others = [node for node in head.list_all_nodes() if node != head.head_node]
+    node = {name: value for name, value in NODE.items() if name != "include_dashboard"}
+    second = others[0] if others else head.add_node(**node, env_vars={"DIES": "1"})
+    head.wait_for_nodes()
+    return head, second
 
 
 @pytest.fixture
 def cluster(nodes):
-    found = connected(nodes[0].address)
+    joined = connected(nodes[0].address)
     try:
-        yield found
+        yield joined
     finally:
-        found.close()
+        joined.close()
 
 
 @contextmanager
-def killed(nodes, tmp_path, ready=lambda: True):
+def killed(nodes, folder, ready):
     """The second node is killed amid a part at which it hangs, once all is ``ready``."""
-    hangs = tmp_path / "hangs"
+    hangs = folder / "hangs"
     hangs.touch()
 
     def kill():
@@ -82,9 +90,9 @@ def killed(nodes, tmp_path, ready=lambda: True):
     assert nodes[1] not in nodes[0].list_all_nodes()
 
 
-def noted(tmp_path):
+def noted(folder):
     """(process, decision, tables) of every decision of ``Noted``."""
-    return [tuple(map(int, line.split())) for line in (tmp_path / "noted").read_text().splitlines()]
+    return [tuple(map(int, line.split())) for line in (folder / "noted").read_text().splitlines()]
 
 
 def same(a, b):
@@ -107,7 +115,7 @@ def results_of(agents, seeds, where, count=None):
     return in_order(counted())
 
 
-def test_two_nodes_play_what_one_machine_plays(cluster, monkeypatch):
+def test_two_nodes_play_what_one_machine_plays(cluster, folder, monkeypatch):
     """Every kind of player; by the workers of both nodes."""
     monkeypatch.setattr(visits, "SIZE", 10)
     names = ("tests.cluster.players:Noted", "random", "ghost_ball", "best_pot_30", "planner_30", "ppo_mask")
@@ -121,15 +129,15 @@ def test_two_nodes_play_what_one_machine_plays(cluster, monkeypatch):
             for results in (far, near)
         )
         assert same(one, other), agent.label
-    assert len({process for process, *_ in noted(Path(os.environ["NOTED"]).parent)} - {os.getpid()}) == 2
+    assert len({process for process, *_ in noted(folder)} - {os.getpid()}) == 2
 
 
 def test_a_node_killed_amid_an_evaluation_is_survived_and_nothing_counts_twice(
-    nodes, cluster, tmp_path, monkeypatch
+    nodes, cluster, folder, monkeypatch
 ):
     monkeypatch.setattr(visits, "SIZE", 5)
     agent, seeds, done = Entrant.of("tests.cluster.players:Noted"), tables_of("held_out", 60), []
-    with killed(nodes, tmp_path, lambda: len(done) >= 3):
+    with killed(nodes, folder, lambda: len(done) >= 3):
         metrics = protocol.play_agent(
             agent, AT, seeds, 100, False, results_of([agent], seeds, cluster, done)
         )
@@ -203,9 +211,8 @@ def test_what_befalls_a_worker_is_one_line(cluster):
         assert "\n" not in str(error.value)
 
 
-def test_a_worker_that_ray_ends_for_its_memory_is_one_line(tmp_path, monkeypatch):
+def test_a_worker_that_ray_ends_for_its_memory_is_one_line(monkeypatch):
     """On a node whose limit is already passed; the head, which plays nothing, has none of it."""
-    monkeypatch.setenv("NOTED", str(tmp_path / "noted"))
     monkeypatch.setenv("SLOW", "60")
     made, found = Nodes(initialize_head=True, head_node_args=NODE | {"num_cpus": 0}), None
     try:
@@ -276,12 +283,12 @@ def test_the_data_of_imitation_are_the_same(cluster, monkeypatch):
 
 
 def test_a_node_killed_amid_a_search_for_data_is_survived_and_nothing_counts_twice(
-    nodes, cluster, tmp_path, monkeypatch
+    nodes, cluster, folder, tmp_path, monkeypatch
 ):
     shared, done = {"search": sent(Entrant.of("tests.cluster.players:Thinking"), 0)}, []
     parts = searched.parts_of(6 * searched.TABLES * searched.ROUNDS, 0, AT | {"layout": "random:6"})
     store = Store(tmp_path / "data")
-    with killed(nodes, tmp_path, lambda: len(done) >= 2):
+    with killed(nodes, folder, lambda: len(done) >= 2):
         for k, _ in ended(parts, shared, cluster, store):
             done.append(k)
     assert sorted(done) == list(range(6))  # that at which the node hung was begun twice
