@@ -114,7 +114,7 @@ def _settings() -> Any:
 
 @contextmanager
 def drawing() -> Iterator[Any]:
-    """``matplotlib.pyplot`` that draws into files, in this style: whatever belongs to a chart is made within."""
+    """``matplotlib.pyplot`` that draws into files, in this style: a chart is made within."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -204,7 +204,7 @@ def colour_bar(figure: Any, shown: Any, axes: Any, label: str, ticks: Any = None
 
 
 def label_points(figure: Any, labels: list[tuple[Any, tuple[float, float], str, dict[str, Any]]]) -> None:
-    """Write labels beside points, each where it lies on no other text: below its point, else right, left or above.
+    """Write labels beside points, each where it lies on no other text: below, else right, left or above.
 
     ``labels``: of each its Axes, the point (x, y), the text, and keywords of ``Axes.annotate``.
     """

@@ -1,4 +1,4 @@
-"""Who is compared? Players by name and trained models, one for each training seed, and how each was trained."""
+"""Who is compared? Players by name and trained models, one a training seed, and how each was trained."""
 
 import glob
 from dataclasses import dataclass
@@ -126,7 +126,7 @@ def add_models(p):
 
 
 def entrants_of(texts, args, field):
-    """The entrants of a command line with ``add_models``, whose labels differ; their models are read. Raises ValueError."""
+    """The entrants of a command line, with labels of their own and readable models. Raises ValueError."""
     options = options_of(args.options)
     entrants = [Entrant.of(text, args.trust, options) for text in texts]
     labels = [entrant.label for entrant in entrants]
@@ -141,7 +141,7 @@ def entrants_of(texts, args, field):
 
 
 def _names(name):
-    """The player of that name in a list; several for a planner whose model is a pattern; [] for another text."""
+    """The player of that name in a list; several for a planner with a pattern; [] for another text."""
     kind, at, pattern = name.partition("@")
     if at and is_name(name):
         return [f"{kind}@{model}" for model in sorted(glob.glob(pattern))] or [name]

@@ -2,9 +2,9 @@
 several training seeds.
 
     python -m agents.evaluate --agent ghost_ball runs/ppo_mask-0
-    python -m agents.evaluate --agent "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against ghost_ball "pots only" \\
+    python -m agents.evaluate --agent "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against "pots only" \\
         --json agents/results/main.json --markdown agents/results/main.md --picture
-    python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/reference-*" --fidelity fast reference --noise professional
+    python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/ref-*" --fidelity fast reference
     python -m agents.evaluate --agent search_2000 --visits 50 --layouts held_out --noise professional
 
 Every agent plays the same tables with the same execution errors (stroke by stroke): 2,000 opened tables that
@@ -117,7 +117,7 @@ def about(report, shared):
 def parser():
     """The command line."""
     p = parser_of("python -m agents.evaluate", __doc__)
-    what = "NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... or MODULE:CLASS; NAME: "
+    what = "NAME, MODEL (a .zip, an .npz of weights, a run's folder), LABEL=PATH,PATH,... or MODULE:CLASS; NAME: "
     p.add_argument(
         "--agent", nargs="+", required=True, metavar="AGENT", help=what + ", ".join(snooker_env.players())
     )

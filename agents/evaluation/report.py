@@ -39,7 +39,7 @@ _pm = partial(shown, form="{:.2f}")
 
 
 def _trials(row, below):
-    """How often a run could have done it: the entry ``below`` of ``benchmark.counts``; None if it was not kept."""
+    """How often a run could have done it: the entry ``below`` of ``benchmark.counts``; None: not kept."""
     f, visits = row["figures"], row["visits"]
     known = {"visits": visits, "strokes": row["strokes"] / row["runs"]}
     if f["pots_a_visit"]["value"] is not None and f["clearances"]["value"] is not None:
@@ -145,7 +145,7 @@ COSTS = (
     ("shots", "shots", 0.0),
     ("seconds", "seconds of training", SAME),
 )
-"""What a training costs: how it is kept, how it is called, and by what share it may differ to be called equal."""
+"""What a training costs: its key, its name, and by what share it may differ to be called equal."""
 
 
 def fairness(report):
@@ -239,7 +239,7 @@ def conditions(report):
 
 
 def _columns(against, most):
-    """The tables of a condition: name -> {heading: cell of a result}; no breaks of more than ``most`` points."""
+    """The tables of a condition: name -> {heading: cell of a result}; no breaks above ``most`` points."""
 
     def figure(name):
         return lambda r: _pm(r["figures"][name])
@@ -310,7 +310,8 @@ def markdown(report, picture=None):
     if tournament_report.is_tournament(report):
         return tournament_report.markdown(report)
     version = report.get("version", "of an unknown version")
-    made = f"snooker_env {version}, at commit {report['commit']} on {report['machine']}, Python {report['python']}"
+    where = f"commit {report['commit']} on {report['machine']}, Python {report['python']}"
+    made = f"snooker_env {version}, at {where}"
     drawn = [f"![where the cue ball stops after a red, and what follows]({picture})"] if picture else []
     return page(title(report), report["command"], made, [*drawn, *parts(report)])
 

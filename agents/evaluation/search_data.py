@@ -1,7 +1,7 @@
 """How are positions searched to learn from? The command ``python -m agents.search``.
 
     python -m agents.search --positions 10000 --out runs/searched
-    python -m agents.search --agent search_2000 --positions 1000000 --noise club --out s3://bucket/club --ray 10.0.0.1:6379
+    python -m agents.search --positions 1000000 --noise club --out s3://bucket/club --ray 10.0.0.1:6379
 
 A search plays visits, and what it thinks of each position is kept: the strokes that met most noise samples,
 best first, with their scores. Data are written in parts as they are played; after an interruption the same
@@ -111,8 +111,8 @@ def main(argv=None):
     except ClusterError as error:
         why, code = str(error), 1
     if code:
-        kept = f"{each * len(store.names('parts')):,} of {total:,} positions are kept in {store}, the same command goes on"
-        print(f"agents.search: {why}; {kept}", file=sys.stderr)
+        kept = f"{each * len(store.names('parts')):,} of {total:,} positions are kept in {store}"
+        print(f"agents.search: {why}; {kept}, the same command goes on", file=sys.stderr)
         return code
     index = {"positions": total, "parts": keys_of(parts, shared)}
     store.write(INDEX, (json.dumps(index, indent=1) + "\n").encode())

@@ -21,7 +21,7 @@ KEYS = ("first", "second", "seed", "opener", "frame", "winner")
 """Of a row: indices of the two players; seed of the match; who of them (0 or 1) broke in its first frame; the
 frame's index in the match; who won it, -1 if it was stopped."""
 COUNTED = ("points", "scored", "visits", "strokes", "fouls", "best")
-"""What is counted for each player: points, those of its own pots, visits, strokes, fouls, points of its best visit."""
+"""What is counted of each player: points, those of its own pots, visits, strokes, fouls, its best visit."""
 COLUMNS = (*KEYS, *(f"{name}_{side}" for name in COUNTED for side in KEYS[:2]))
 ANCHOR_ELO = 1000.0
 """Elo of the anchor."""
@@ -187,7 +187,7 @@ def _elo(pairs, k, anchor, resamples):
 
 
 def _bounds(elo, j, sound, wins, seeds):
-    """ "low" and "high" of a player that won all matches, or none, against those comparable with the anchor."""
+    """ "low" and "high" of a player that won all or none of those comparable with the anchor."""
     others = np.flatnonzero(sound & (seeds[j] > 0))
     strength, many = elo[others] / ELO, seeds[j, others]
     if not wins[others, j].any():

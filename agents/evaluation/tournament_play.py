@@ -137,7 +137,7 @@ class Encounter:
             self.sums["points"][which, side] = info[name][which]
 
     def ended(self, which, info):
-        """The frames on the tables ``which`` (n,) bool have ended: write the rows, take up the next frames."""
+        """The frames on the tables ``which`` (n,) bool have ended: write rows, take up the next frames."""
         for k in np.flatnonzero(which).tolist():
             winner, (seed, opener) = int(info["winner"][k]), self.unit[k].tolist()
             sides = (1, 0) if self.exchanged else (0, 1)  # of the pair's first player and of its second
@@ -176,7 +176,7 @@ def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
 
 
 def drawn(label, other, first):
-    """The seed of what a player draws against the label ``other`` in the matches from the seed ``first`` on."""
+    """The seed of what a player draws against ``other`` in the matches from the seed ``first`` on."""
     return zlib.crc32(f"{label}\n{other}\n{first}".encode())
 
 

@@ -14,13 +14,13 @@ from ..learning.hyperparameters import SHOT_OPTIONS
 from ..players.trained import player_of_model
 
 
-def evaluate(recipe, model, visits, said):
+def evaluate(recipe, model, visits, part_of):
     """Figures of held-out visits of the agent, ``ghost_ball`` and ``random``, on the same tables, under the
     training's noise and physics.
 
     The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also
     figures of the planner with it and of the search by the rule of thumb (``search``). These are the first
-    tables of ``agents.evaluate``. Raises ValueError if there are not so many tables. ``said(total)``: the
+    tables of ``agents.evaluate``. Raises ValueError if there are not so many tables. ``part_of(total)``: the
     ``Progress`` of so many visits.
     """
     trained = player_of_model(model)
@@ -35,7 +35,7 @@ def evaluate(recipe, model, visits, said):
         shared.pop("fidelity", None)
     seeds = tables_of("held_out", visits)
     figures = {}
-    with said(visits * len(players)) as progress:
+    with part_of(visits * len(players)) as progress:
         for k, (name, one) in enumerate(players.items()):
 
             def each(going, done=(k + 1) * visits, name=name):

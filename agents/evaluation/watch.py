@@ -134,9 +134,8 @@ def main(argv=None):
     )
     for line in described(replay):
         print(line)
-    print(
-        f"{label}: {env.points} points in {len(replay)} strokes (table {seed}, layout {args.layout}, noise {args.noise})"
-    )
+    where = f"table {seed}, layout {args.layout}, noise {args.noise}"
+    print(f"{label}: {env.points} points in {len(replay)} strokes ({where})")
     if args.out:
         replay.save(args.out, **film)
         print(f"written: {args.out}")
