@@ -117,7 +117,8 @@ def about(report, shared):
 def parser():
     """The command line."""
     p = parser_of("python -m agents.evaluate", __doc__)
-    what = "NAME, MODEL (a .zip, an .npz of weights, a run's folder), LABEL=PATH,PATH,... or MODULE:CLASS; NAME: "
+    what = "NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... "
+    what += "or MODULE:CLASS; NAME: "
     p.add_argument(
         "--agent", nargs="+", required=True, metavar="AGENT", help=what + ", ".join(snooker_env.players())
     )
