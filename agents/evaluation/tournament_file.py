@@ -178,8 +178,9 @@ def _differences(value, want, name):
         return [line for key in want for line in _differences(value[key], want[key], f"{name}.{key}")]
     if isinstance(want, list) and isinstance(value, list) and len(value) == len(want):
         return [line for k in range(len(want)) for line in _differences(value[k], want[k], f"{name}[{k}]")]
-    numbers = isinstance(want, float) and isinstance(value, int | float)
-    close = numbers and abs(value - want) <= 1e-6 * max(1.0, abs(want))
+    close = False
+    if isinstance(want, float) and isinstance(value, int | float):
+        close = abs(value - want) <= 1e-6 * max(1.0, abs(want))
     return [] if value == want or close else [f"{name}: must be what follows from the rows"]
 
 

@@ -60,7 +60,9 @@ class Starts:
         which = rng.choice(len(STARTS), n, p=[share for _, share in STARTS])
         rows = (rng.random(n) * [len(self._pools[k]) for k in which]).astype(np.int64)
         parts = [self._pools[k][row : row + 1] for k, row in zip(which.tolist(), rows.tolist(), strict=True)]
-        return Positions(*map(np.concatenate, zip(*map(positions_given, parts), strict=True)))
+        columns = zip(*map(positions_given, parts), strict=True)
+        positions, on_table, game = (np.concatenate(column) for column in columns)
+        return Positions(positions, on_table, game)
 
 
 class ExpertIteration:

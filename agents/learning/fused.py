@@ -69,8 +69,9 @@ class FusedTable:
         self._views = [self.gradient[end - p.numel() : end].view_as(p) for p, end in pairs]
         self._layers = {}
         for k, (name, layer) in enumerate(layers.items()):
-            views = self._views[2 * k : 2 * k + 2]
-            self._layers[name] = _Layer(layer, *views, SCORED if name == "scores" else None)
+            d_weight, d_bias = self._views[2 * k : 2 * k + 2]
+            wider = SCORED if name == "scores" else None
+            self._layers[name] = _Layer(layer, d_weight, d_bias, wider)
         self._blocks, self._lock = {}, Lock()
 
     def zero_grad(self):
