@@ -110,12 +110,8 @@ BOUNDS = {
     "eval_visits": (2, HELD_OUT),
     "checkpoint_every": (1, 10**12),
 }
-FREE_ON_RESUME = (
-    "steps",
-    "parallel",
-    "eval_visits",
-    "checkpoint_every",
-)  # how long and where, not what; the learning rate falls over the new steps
+FREE_ON_RESUME = ("steps", "parallel", "eval_visits", "checkpoint_every")
+"""How long and where, not what; the learning rate falls over the new steps."""
 
 
 def parse(argv):
@@ -134,33 +130,24 @@ def parse(argv):
             help=f.metadata["help"] + (f" [{f.default}]" if f.default not in ("", (), 0) else ""),
         )
     parser.add_argument("--out", type=Path, help="the run's folder [runs/AGENT-SEED]")
-    parser.add_argument(
-        "--resume",
-        action="store_true",
-        help="continue the run in that folder; options left out keep their values",
-    )
+    what = "continue the run in that folder; options left out keep their values"
+    parser.add_argument("--resume", action="store_true", help=what)
     add_ray(parser)
-    parser.add_argument(
-        "--mirror",
-        metavar="URL",
-        help="copy each checkpoint to this folder or fsspec URL; --resume goes on from there",
-    )
-    parser.add_argument(
-        "--no-progress", action="store_true", help="do not say every few seconds how far it is"
-    )
-    given = vars(parser.parse_args(argv))
-    rest = {name: given.pop(name) for name in ("out", "resume", "no_progress", "ray", "mirror")}
+    what = "copy each checkpoint to this folder or fsspec URL; --resume goes on from there"
+    parser.add_argument("--mirror", metavar="URL", help=what)
+    what = "do not say every few seconds how far it is"
+    parser.add_argument("--no-progress", action="store_true", help=what)
+    chosen = vars(parser.parse_args(argv))
+    rest = {name: chosen.pop(name) for name in ("out", "resume", "no_progress", "ray", "mirror")}
     for name, (low, high) in BOUNDS.items():
-        if not low <= given.get(name, low) <= high:
-            parser.error(
-                f"--{name.replace('_', '-')} is {given[name]}, must be an integer in [{low}, {high}]"
-            )
-    if "set" in given:
-        given["set"] = tuple(given["set"])
-    rest["out"] = rest["out"] or Path(
-        "runs", f"{given.get('agent', Settings.agent)}-{given.get('seed', Settings.seed)}"
-    )
-    return parser, given, argparse.Namespace(**rest)
+        if not low <= chosen.get(name, low) <= high:
+            value = f"--{name.replace('_', '-')} is {chosen[name]}"
+            parser.error(f"{value}, must be an integer in [{low}, {high}]")
+    if "set" in chosen:
+        chosen["set"] = tuple(chosen["set"])
+    agent, seed = chosen.get("agent", Settings.agent), chosen.get("seed", Settings.seed)
+    rest["out"] = rest["out"] or Path("runs", f"{agent}-{seed}")
+    return parser, chosen, argparse.Namespace(**rest)
 
 
 def recipe_of(settings):
@@ -168,32 +155,22 @@ def recipe_of(settings):
     chosen = {"layout": settings.layout, "noise": settings.noise, "fidelity": settings.fidelity}
     chosen["physics"] = physics_option(settings.physics) if settings.physics else ""
     numbers = {"n_timesteps": settings.steps, "n_envs": settings.envs}
-    given = {key: value for key, value in numbers.items() if value}
+    numbers = {key: value for key, value in numbers.items() if value}
     if settings.start:
         if settings.imitate > 0:
-            raise refuse(
-                "imitate",
-                settings.imitate,
-                "must be 0 or left out with --start: the weights given there are already trained",
-            )
-        given["imitation"] = 0
+            wanted = "must be 0 or left out with --start: the weights given there are already trained"
+            raise refuse("imitate", settings.imitate, wanted)
+        numbers["imitation"] = 0
     elif settings.imitate >= 0:
-        given["imitation"] = settings.imitate
-    recipe = Recipe.of(
-        settings.agent, settings.set, {key: value for key, value in chosen.items() if value}, **given
-    )
+        numbers["imitation"] = settings.imitate
+    chosen = {key: value for key, value in chosen.items() if value}
+    recipe = Recipe.of(settings.agent, settings.set, chosen, **numbers)
     if recipe.imitation and recipe.algo != "ppo_mask":
-        raise refuse(
-            "imitate",
-            recipe.imitation,
-            f"must be 0 for {recipe.name}: only agents with masks can imitate the search",
-        )
+        wanted = f"must be 0 for {recipe.name}: only agents with masks can imitate the search"
+        raise refuse("imitate", recipe.imitation, wanted)
     if recipe.expert and not recipe.imitation and not settings.start:
-        raise refuse(
-            "imitate",
-            0,
-            f"must be 1 or more for {recipe.name} without --start: PPO needs the value that is learned there",
-        )
+        why = "PPO needs the value that is learned there"
+        raise refuse("imitate", 0, f"must be 1 or more for {recipe.name} without --start: {why}")
     return recipe
 
 
@@ -206,30 +183,28 @@ def command_of(settings):
     words = ["python", "train.py"]
     for f in fields(Settings):
         value = getattr(settings, f.name)
-        if f.name == "agent" or (
-            value != f.default and f.name not in ("parallel", "eval_visits", "checkpoint_every")
-        ):
+        same = value == f.default or f.name in ("parallel", "eval_visits", "checkpoint_every")
+        if f.name == "agent" or not same:
             words += [f"--{f.name}", *map(str, value if f.name == "set" else [value])]
     return shlex.join(words)
 
 
-def open_run(parser, given, out, resume):
+def open_run(parser, chosen, out, resume):
     """(settings, checkpoint or None) from the folder and the options given."""
     if not resume:
-        return Settings(**given), None
+        return Settings(**chosen), None
     state, was = read_checkpoint(out, Settings)
-    for name, value in given.items():
+    for name, value in chosen.items():
         if value != getattr(was, name) and name not in FREE_ON_RESUME:
-            before = f"the run in {out} has {getattr(was, name)!r}"
-            parser.error(
-                f"--{name.replace('_', '-')} is {value!r} but {before}: give the same or leave it out"
+            differs = (
+                f"--{name.replace('_', '-')} is {value!r} but the run in {out} has {getattr(was, name)!r}"
             )
-    return replace(was, **given), state
+            parser.error(f"{differs}: give the same or leave it out")
+    return replace(was, **chosen), state
 
 
-def prepared(parser, given, rest, ending):
-    """(settings, recipe, checkpoint or None, tables, model). Every error of input is found here, before
-    anything is compiled or played.
+def prepared(parser, chosen, rest, ending):
+    """(settings, recipe, checkpoint or None, tables, model). Every wrong input is refused here, before the work.
 
     ``ending`` releases the folder and the tables.
     """
@@ -240,24 +215,17 @@ def prepared(parser, given, rest, ending):
             if mirror:
                 mirror.fetch(out)
             ending.enter_context(claimed(out, resume))
-        settings, state = open_run(parser, given, out, resume)
+        settings, state = open_run(parser, chosen, out, resume)
         recipe = recipe_of(settings)
         if state:
             recipe = replace(recipe, env_kwargs=options_of(out, state))
         checked_ray(ray)
         if ray and not recipe.imitation:
-            raise refuse(
-                "ray",
-                ray,
-                f"must be left out for {recipe.name}: only expert iteration and imitation are played on a cluster",
-            )
+            why = "only expert iteration and imitation are played on a cluster"
+            raise refuse("ray", ray, f"must be left out for {recipe.name}: {why}")
         settings = replace(settings, steps=recipe.n_timesteps, envs=recipe.n_envs, imitate=recipe.imitation)
-        tables = training_tables(
-            recipe.n_envs,
-            threads=1 if settings.parallel == "one" else None,
-            view=recipe.view,
-            **recipe.env_kwargs,
-        )
+        threads = 1 if settings.parallel == "one" else None
+        tables = training_tables(recipe.n_envs, threads=threads, view=recipe.view, **recipe.env_kwargs)
         ending.callback(tables.close)
         if state:
             model = load_model(out, state, recipe.algo, tables)
@@ -279,27 +247,25 @@ def prepared(parser, given, rest, ending):
 
 
 def speaker(settings, recipe, quiet):
-    """``said(number, what, total, unit, done)``: the ``Progress`` of a part of this run; number 0 is before
+    """``part_of(number, what, total, unit, done)``: the ``Progress`` of a part of this run; number 0 is before
     PPO, 2 the evaluation."""
     before = int(recipe.imitation > 0)
 
-    def said(number, what, total, unit, done=0):
+    def part_of(number, what, total, unit, done=0):
         what = f"{settings.agent}, part {number + before} of {2 + before}, {what}"
         return Progress(what, total, unit, done=done, to=sys.stdout, quiet=quiet)
 
-    return said
+    return part_of
 
 
-def train(out, settings, recipe, state, tables, model, said, ray=None):
+def train(out, settings, recipe, state, tables, model, part_of, ray=None):
     """Imitate, then train, to the end or to a signal. Simulations of the imitation are played by the cluster
     at ``ray``, if it is given.
 
     Returns (``RunCallback``, or None if stopped before it; the curve of the imitation; the signal or None).
     """
-    threads, imitation = (
-        1 if settings.parallel == "one" else processors(),
-        state["imitation"] if state else [],
-    )
+    threads = 1 if settings.parallel == "one" else processors()
+    imitation = state["imitation"] if state else []
     begun = state["imitating"] if state else None
     model.tensorboard_log = str(out / "tb")
     with Stop() as stop:
@@ -309,9 +275,8 @@ def train(out, settings, recipe, state, tables, model, said, ray=None):
                 imitated = teacher(model, tables, recipe.imitation, settings.seed, threads, begun, where)
                 of_all = f"{imitated.done:,} of {imitated.states:,} positions"
                 print(f"{settings.agent} in {out}: {recipe.pretraining}{where.says}, {of_all}", flush=True)
-                with said(
-                    0, f"{recipe.pretraining}{where.says}", imitated.states, "positions", imitated.done
-                ) as progress:
+                what = f"{recipe.pretraining}{where.says}"
+                with part_of(0, what, imitated.states, "positions", imitated.done) as progress:
                     completed = imitate(imitated, out, settings, model, stop, progress)
             if not completed:
                 print(f"Saved at {imitated.done:,} of {imitated.states:,} positions. {go_on(out)}")
@@ -325,16 +290,12 @@ def train(out, settings, recipe, state, tables, model, said, ray=None):
             judge_rewards(tables, model.policy, threads)
         stop.running = f"this rollout of {rollout_of(model):,} shots"
         goal, asked = goal_of(model, settings.steps), settings.steps
-        progress = said(1, recipe.method, goal, "shots", model.num_timesteps)
+        progress = part_of(1, recipe.method, goal, "shots", model.num_timesteps)
         callback = RunCallback(out, settings, seconds, curve, imitation, running, stop, progress)
-        whole = (
-            f" ({asked:,} asked for; whole rollouts of {rollout_of(model):,})"
-            if goal > asked > model.num_timesteps
-            else ""
-        )
-        print(
-            f"{settings.agent} in {out}: {model.num_timesteps:,} of {goal:,} shots played{whole}", flush=True
-        )
+        played = f"{model.num_timesteps:,} of {goal:,} shots played"
+        if goal > asked > model.num_timesteps:
+            played += f" ({asked:,} asked for; whole rollouts of {rollout_of(model):,})"
+        print(f"{settings.agent} in {out}: {played}", flush=True)
         if model.num_timesteps >= settings.steps:
             print("All steps are done: nothing left to train.", flush=True)
         else:
@@ -376,7 +337,7 @@ def trained_parts(recipe, model, seconds, imitation):
     ]
 
 
-def judge(out, settings, recipe, model, callback, imitation, said):
+def judge(out, settings, recipe, model, callback, imitation, part_of):
     """Play held-out visits, write the model and every figure, print the conclusion."""
     steps, parts = model.num_timesteps, trained_parts(recipe, model, callback.seconds_before, imitation)
     lines = [
@@ -387,7 +348,7 @@ def judge(out, settings, recipe, model, callback, imitation, said):
     write_atomic(out / "model.zip", made := zipped(model))
     copied(out, made, "model.zip")
     figures = evaluate(
-        recipe, model, settings.eval_visits, lambda total: said(2, "evaluation", total, "visits")
+        recipe, model, settings.eval_visits, lambda total: part_of(2, "evaluation", total, "visits")
     )
     learned = conclusion(settings.agent, steps, model.imitated, figures, model.start)
     results = {
@@ -424,11 +385,13 @@ def main(argv=None):
         settings, recipe, state, tables, model = prepared(parser, given, rest, ending)
         try:
             snooker_env.warmup()
-            said = speaker(settings, recipe, rest.no_progress)
-            callback, imitation, stopped = train(out, settings, recipe, state, tables, model, said, rest.ray)
+            part_of = speaker(settings, recipe, rest.no_progress)
+            callback, imitation, stopped = train(
+                out, settings, recipe, state, tables, model, part_of, rest.ray
+            )
             if stopped:
                 return 128 + stopped
-            judge(out, settings, recipe, model, callback, imitation, said)
+            judge(out, settings, recipe, model, callback, imitation, part_of)
         except KeyboardInterrupt:
             print(f"Interrupted. {kept(out)}", file=sys.stderr)
             return 130

@@ -1,5 +1,4 @@
-"""How fast do agents learn? The command ``python -m agents.curves``, which is in
-``agents/evaluation/learning_curves.py``."""
+"""The command ``python -m agents.curves``; see ``agents/evaluation/learning_curves.py``."""
 
 import sys
 

@@ -1,5 +1,4 @@
-"""How well do agents play? The command ``python -m agents.evaluate``, which is in
-``agents/evaluation/protocol.py``."""
+"""The command ``python -m agents.evaluate``; see ``agents/evaluation/protocol.py``."""
 
 import sys
 

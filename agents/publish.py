@@ -1,5 +1,4 @@
-"""How is a trained model published? The command ``python -m agents.publish``, which is in
-``agents/evaluation/publish.py``."""
+"""The command ``python -m agents.publish``; see ``agents/evaluation/publish.py``."""
 
 import sys
 

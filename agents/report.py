@@ -1,5 +1,4 @@
-"""How are stored figures reported again? The command ``python -m agents.report``, which is in
-``agents/evaluation/report.py``."""
+"""The command ``python -m agents.report``; see ``agents/evaluation/report.py``."""
 
 import sys
 

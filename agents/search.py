@@ -1,5 +1,4 @@
-"""How are positions searched to learn from? The command ``python -m agents.search``, which is in
-``agents/evaluation/search_data.py``."""
+"""The command ``python -m agents.search``; see ``agents/evaluation/search_data.py``."""
 
 import sys
 

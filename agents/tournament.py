@@ -1,5 +1,4 @@
-"""Who is the better player of frames? The command ``python -m agents.tournament``, which is in
-``agents/evaluation/tournament.py``."""
+"""The command ``python -m agents.tournament``; see ``agents/evaluation/tournament.py``."""
 
 import sys
 

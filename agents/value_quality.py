@@ -1,5 +1,4 @@
-"""How good is a learned value? The command ``python -m agents.value_quality``, which is in
-``agents/evaluation/value_quality.py``."""
+"""The command ``python -m agents.value_quality``; see ``agents/evaluation/value_quality.py``."""
 
 import sys
 

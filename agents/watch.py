@@ -1,5 +1,4 @@
-"""How does an agent play? The command ``python -m agents.watch``, which is in
-``agents/evaluation/watch.py``."""
+"""The command ``python -m agents.watch``; see ``agents/evaluation/watch.py``."""
 
 import sys
 

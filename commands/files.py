@@ -7,7 +7,7 @@ import tempfile
 from snooker_env._files import UNFINISHED, write_atomic
 from snooker_env.checks import refuse
 
-__all__ = ["UNFINISHED", "save_figure", "writable", "write_atomic", "write_json"]
+__all__ = ["UNFINISHED", "read_json", "save_figure", "writable", "write_atomic", "write_json"]
 
 
 def writable(name, file):
@@ -21,6 +21,14 @@ def writable(name, file):
             pass
     except OSError as error:
         raise refuse(name, str(file), f"must be a file that can be written ({error.strerror})") from None
+
+
+def read_json(name, file, wanted):
+    """The content of a JSON file. ValueError that says what is ``wanted`` if it cannot be read."""
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        raise refuse(name, str(file), wanted) from None
 
 
 def write_json(file, content):

@@ -4,6 +4,7 @@ stops it is reported in one line.
 Only the standard library is imported here: missing packages are reported before they are needed.
 """
 
+import argparse
 import errno
 import functools
 import io
@@ -48,6 +49,13 @@ class needs:  # noqa: N801 - reads as a word: with needs("train.py"): import tor
             raise SystemExit(f"{self._name}: {what_is_missing(error)}") from None
         if isinstance(error, KeyboardInterrupt):
             raise SystemExit(130) from None
+
+
+def parser_of(name, doc):
+    """The parser of the command ``name``, with its module's docstring as it stands."""
+    return argparse.ArgumentParser(
+        name, description=doc, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
 
 
 def any_terminal():

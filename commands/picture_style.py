@@ -114,13 +114,7 @@ def _settings() -> Any:
 
 @contextmanager
 def drawing() -> Iterator[Any]:
-    """``matplotlib.pyplot`` that draws into files, in this style: whatever belongs to a chart is made within.
-
-    Yields
-    ------
-    module
-        ``matplotlib.pyplot``.
-    """
+    """``matplotlib.pyplot`` that draws into files, in this style: a chart is made within."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -133,22 +127,10 @@ def drawing() -> Iterator[Any]:
 def page(
     plt: Any, height: float, title: str, note: str = "", *, foot: str = "", **grid: Any
 ) -> tuple[Any, Any]:
-    """A figure with its title, a note below it, a line at the foot, and room for panels between.
+    """A figure with its title, a note on how to read it, its source at the foot, and room for panels between.
 
-    Parameters
-    ----------
-    plt : module
-        Of ``drawing``.
-    height : float
-        [inches]
-    title, note, foot : str
-        The subject in plain words; how to read the chart; its source. A line break starts a new line.
-    **grid
-        Of ``Figure.subplots``: rows, columns, ratios. Without any there are no axes yet.
-
-    Returns
-    -------
-    (Figure, Axes or array of Axes or None)
+    ``height`` in inches; ``grid``: of ``Figure.subplots`` (rows, columns, ratios). Returns the figure and its
+    axes, None without ``grid``.
     """
     figure = plt.figure(figsize=(WIDTH, height), layout="constrained")
     line = 1.42 / 72  # of a text of one point [inches]
@@ -187,14 +169,7 @@ def page(
 
 
 def number(value: float, _position: int | None = None) -> str:
-    """A number as an axis shows it: 0.001, 0.5, 20, 1,000; a power of ten where it is smaller or greater than
-    that.
-
-    Examples
-    --------
-    >>> [number(x) for x in (0.001, 0.5, 20, 1e5, 1e-6)]
-    ['0.001', '0.5', '20', '100,000', '$10^{-6}$']
-    """
+    """A number as an axis shows it: 0.001, 0.5, 20, 1,000; a power of ten where it is smaller or greater."""
     from math import floor, log10
 
     if value == 0:
@@ -229,15 +204,9 @@ def colour_bar(figure: Any, shown: Any, axes: Any, label: str, ticks: Any = None
 
 
 def label_points(figure: Any, labels: list[tuple[Any, tuple[float, float], str, dict[str, Any]]]) -> None:
-    """Write labels beside points, each where it lies on no other text: below its point, else right, left or
-    above.
+    """Write labels beside points, each where it lies on no other text: below, else right, left or above.
 
-    Parameters
-    ----------
-    figure : Figure
-        With everything else on it.
-    labels : list of (Axes, (x, y), str, dict)
-        Where, what, and how (keywords of ``Axes.annotate``).
+    ``labels``: of each its Axes, the point (x, y), the text, and keywords of ``Axes.annotate``.
     """
     from matplotlib.text import Text
 
@@ -250,31 +219,13 @@ def label_points(figure: Any, labels: list[tuple[Any, tuple[float, float], str, 
         if text.get_visible() and text.get_text()
     ]
     for axes, point, text, how in labels:
-        for dx, dy, across, up in (
-            (0, -8, "center", "top"),
-            (8, 0, "left", "center"),
-            (-8, 0, "right", "center"),
-            (0, 8, "center", "bottom"),
-        ):
-            note = axes.annotate(
-                text, point, xytext=(dx, dy), textcoords="offset points", ha=across, va=up, size=SMALL, **how
-            )
+        for k, side in enumerate((*_SIDES, _SIDES[0])):  # below where no side is free
+            note = axes.annotate(text, point, textcoords="offset points", size=SMALL, **side, **how)
             box = note.get_window_extent(renderer)
-            if not any(box.overlaps(other) for other in placed):
+            if k == len(_SIDES) or not any(box.overlaps(other) for other in placed):
                 break
             note.remove()
-        else:
-            note = axes.annotate(
-                text,
-                point,
-                xytext=(0, -8),
-                textcoords="offset points",
-                ha="center",
-                va="top",
-                size=SMALL,
-                **how,
-            )
-        placed.append(note.get_window_extent(renderer))
+        placed.append(box)
 
 
 def colours_of(name: str, places: Any) -> Any:

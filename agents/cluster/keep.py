@@ -69,9 +69,8 @@ class Store:
             self._files.pipe_file(beside, data)
             self._files.mv(beside, path)
         except Exception as error:
-            raise OSError(
-                getattr(error, "errno", None) or errno.EIO, _why(error), f"{self.url}/{name}"
-            ) from None
+            number = getattr(error, "errno", None) or errno.EIO
+            raise OSError(number, _why(error), f"{self.url}/{name}") from None
 
     def clear(self):
         """Remove the folder and all that is in it."""
@@ -89,9 +88,8 @@ class Store:
         before = self.read("job.json")
         if before is None:
             if self.names("parts"):
-                raise self._refused(
-                    "be a new folder, or that of the same job: it holds parts and no job.json"
-                )
+                same = "be a new folder, or that of the same job"
+                raise self._refused(f"{same}: it holds parts and no job.json")
             self.write("job.json", (json.dumps(job, indent=1) + "\n").encode())
             return
         try:
@@ -101,9 +99,8 @@ class Store:
         for name in {**now, **was}:
             if was.get(name) != now.get(name):
                 before, asked = (f"{json.dumps(one.get(name)):.200}" for one in (was, now))
-                raise self._refused(
-                    f"be a new folder, or that of the same job: its {name} is {before}, and {asked} is asked for"
-                )
+                differs = f"its {name} is {before}, and {asked} is asked for"
+                raise self._refused(f"be a new folder, or that of the same job: {differs}")
 
     def _refused(self, wanted):
         return refuse(self._field, self.url, f"must {wanted}")
@@ -159,11 +156,9 @@ class Keep:
     @property
     def ends(self):
         """What becomes of the parts that were not used, in words."""
-        return (
-            f"what was played is kept in {self.store}, the same command goes on"
-            if self.store
-            else "the others are lost"
-        )
+        if self.store is None:
+            return "the others are lost"
+        return f"what was played is kept in {self.store}, the same command goes on"
 
     def done(self):
         """The job is complete, its results are written: a folder of its own goes."""

@@ -37,16 +37,15 @@ class Mirror:
         return json.loads(self.store.read(name) or b"{}")
 
     def fetch(self, out):
-        """Write the checkpoint into the run's folder if that holds none or an older one. Raises ValueError if
-        both went on."""
+        """Write the checkpoint into the run's folder if its own is older. ValueError if both went on."""
         saves, local = self._json(SAVES), out / CHECKPOINT
         if local.is_file():
             known = json.loads((out / SAVES).read_bytes()) if (out / SAVES).is_file() else {}
             if saves.get("count", 0) <= known.get("count", 0):
                 return
             if hashlib.sha256(local.read_bytes()).hexdigest() != known.get("digest"):
-                wanted = f"was gone on with by another machine, and so was {out}: remove {local} to go on from the mirror"
-                raise refuse("mirror", str(self.store), wanted)
+                both = f"was gone on with by another machine, and so was {out}"
+                raise refuse("mirror", str(self.store), f"{both}: remove {local} to go on from the mirror")
         data = self.store.read(CHECKPOINT)
         if data is None:
             raise refuse("mirror", str(self.store), "holds no checkpoint: start the run without --resume")
@@ -55,33 +54,24 @@ class Mirror:
         write_atomic(out / SAVES, json.dumps(saves))
 
     def claim(self, out, settings, resume):
-        """Become the one that writes, for the run in ``out``. Raises ValueError if a run with other settings
-        is kept here."""
+        """Become the one that writes, for the run in ``out``. ValueError if another run is kept here."""
         now, was = json.loads(json.dumps(settings)), self._json(RUN)
         if CHECKPOINT in self.store.names(""):
             if not resume:
-                raise refuse(
-                    "mirror",
-                    str(self.store),
-                    "holds a run: --resume continues it, another --mirror keeps a new one",
-                )
+                why = "holds a run: --resume continues it, another --mirror keeps a new one"
+                raise refuse("mirror", str(self.store), why)
             for name in {**now, **was}:
                 if was.get(name) != now.get(name):
                     differs = f"its {name} is {was.get(name)!r}, not {now.get(name)!r}"
                     raise refuse("mirror", str(self.store), f"must be that of the same run: {differs}")
-        owner = {
-            "token": self._mine,
-            "process": os.getpid(),
-            "machine": platform.node(),
-            "since": time.strftime("%Y-%m-%d %H:%M:%S"),
-        }
+        owner = {"token": self._mine, "process": os.getpid(), "machine": platform.node()}
+        owner["since"] = time.strftime("%Y-%m-%d %H:%M:%S")
         self.store.write(RUN, json.dumps(now, indent=1).encode())
         self.store.write(OWNER, json.dumps(owner, indent=1).encode())
         _mirrors[out.resolve()] = self
 
     def save(self, data, name=CHECKPOINT):
-        """Copy a file, with patience for a network. Raises ClusterError if it fails on, or if another took
-        over."""
+        """Copy a file, with patience for a network. ClusterError if it fails on, or if another took over."""
         for k in range(TRIES):
             try:
                 owner = self._json(OWNER)
@@ -90,9 +80,8 @@ class Mirror:
                     return
             except Exception as error:  # each kind of store has its own errors
                 if k + 1 == TRIES:
-                    raise ClusterError(
-                        f"the mirror {self.store} cannot be written: {getattr(error, 'strerror', None) or error}"
-                    ) from None
+                    why = getattr(error, "strerror", None) or error
+                    raise ClusterError(f"the mirror {self.store} cannot be written: {why}") from None
                 time.sleep(PAUSE * 2**k)
                 continue
             who = f"process {owner.get('process')} on {owner.get('machine')} since {owner.get('since')}"

@@ -29,26 +29,20 @@ LOCAL_STORE = 2**28
 
 def add_ray(p, keep=False):
     """Add ``--ray`` to a parser, and ``--keep``."""
-    text = "play on a Ray cluster: local (all cores of this machine), or HOST:PORT of a head; results do not depend on it"
+    text = "play on a Ray cluster: local (all cores here), or HOST:PORT of a head; results are the same"
     p.add_argument("--ray", metavar="ADDRESS", help=text)
     if keep:
-        text = "keep each part that was played in this folder or fsspec URL: after an interruption the same command goes on there"
-        p.add_argument(
-            "--keep",
-            metavar="URL",
-            help=f"{text} [with --ray: a folder in {KEPT}, until the job is complete]",
-        )
+        text = "keep each part in this folder or fsspec URL: the same command goes on after an interruption"
+        usual = f"[with --ray: a folder in {KEPT}, until the job is complete]"
+        p.add_argument("--keep", metavar="URL", help=f"{text} {usual}")
 
 
 def checked_ray(address):
     """Raise ValueError unless it is None, local or HOST:PORT."""
     port = re.fullmatch(r"[^/\s]+:(\d{1,5})", address or "head:6379")
     if address != "local" and (port is None or not 0 < int(port[1]) < 2**16):
-        raise refuse(
-            "ray",
-            address,
-            "must be local, or HOST:PORT of the head of a Ray cluster that this machine is part of",
-        )
+        wanted = "must be local, or HOST:PORT of the head of a Ray cluster that this machine is part of"
+        raise refuse("ray", address, wanted)
 
 
 @contextmanager
@@ -80,19 +74,13 @@ def connected(address, cores=None):
     ray = ray_of()
     quiet = {"log_to_driver": False, "logging_level": "ERROR", "configure_logging": True}
     if address == "local":
-        ray.init(
-            "local",
-            num_cpus=cores or processors(),
-            include_dashboard=False,
-            object_store_memory=LOCAL_STORE,
-            **quiet,
-        )
+        small = {"include_dashboard": False, "object_store_memory": LOCAL_STORE}
+        ray.init("local", num_cpus=cores or processors(), **small, **quiet)
         return Cluster(ray)
     if not _is_head(address):  # ray.init would wait for minutes
         start = f"start one with  ray start --head --port={address.rpartition(':')[2]}"
-        raise ClusterError(
-            str(refuse("ray", address, f"must be the head of a Ray cluster that runs: {start}"))
-        )
+        wanted = f"must be the head of a Ray cluster that runs: {start}"
+        raise ClusterError(str(refuse("ray", address, wanted)))
     try:
         ray.init(address=address, **quiet)
     except (RuntimeError, ConnectionError, ValueError, TimeoutError, AssertionError) as error:
@@ -103,15 +91,8 @@ def connected(address, cores=None):
 
 
 def _is_head(address):
-    command = [
-        sys.executable,
-        "-m",
-        "ray.scripts.scripts",
-        "health-check",
-        "--skip-version-check",
-        "--address",
-        address,
-    ]
+    asks = ["health-check", "--skip-version-check", "--address", address]
+    command = [sys.executable, "-m", "ray.scripts.scripts", *asks]
     host, _, port = address.rpartition(":")
     try:
         socket.create_connection((host, int(port)), ANSWER / 6).close()
@@ -164,15 +145,12 @@ class Cluster(Here):
             where = re.search(r"\bip=([^,)\s]+)", str(error))
             raise fault_of(error.cause, where[1] if where else "another machine") from None
         except exceptions.RayError as error:
-            raise ClusterError(
-                f"a part was given up, its worker died {RETRIES + 1} times ({_line(error)})"
-            ) from None
+            died = f"its worker died {RETRIES + 1} times"
+            raise ClusterError(f"a part was given up, {died} ({_line(error)})") from None
         if self._processors and processor not in self._processors:
+            several = f"the nodes have different processors ({processor}, {', '.join(self._processors)})"
             differ = "the last bits of a network's results may differ from those of one machine"
-            print(
-                f"the nodes have different processors ({processor}, {', '.join(self._processors)}): {differ}",
-                file=sys.stderr,
-            )
+            print(f"{several}: {differ}", file=sys.stderr)
         self._processors.add(processor)
         return result
 

@@ -55,11 +55,8 @@ def figures_of(report, strokes):
     for agent in report["agents"][:MOST]:
         places, scored = first_reds(strokes[agent["label"]][0])  # of one run each: the same chances
         figures = {name: rows[agent["label"]]["figures"][name] for name, *_ in FIGURES}
-        agents[agent["label"]] = {
-            "places": np.round(places, 3).tolist(),
-            "next_scores": scored.tolist(),
-            "figures": figures,
-        }
+        drawn = {"places": np.round(places, 3).tolist(), "next_scores": scored.tolist()}
+        agents[agent["label"]] = drawn | {"figures": figures}
     visits = next(iter(rows.values()))["visits"]
     return {"version": report["version"], "visits": visits, "noise": at["noise"], "agents": agents}
 
@@ -80,20 +77,16 @@ def draw_figures(found, file):
     )
     foot = f"python -m agents.evaluate --picture, snooker_env {found['version']}"
     with picture_style.drawing() as plt:
-        figure, _ = picture_style.page(
-            plt, 8.6, "Where the cue ball stops after a potted red", note, foot=foot
-        )
+        title = "Where the cue ball stops after a potted red"
+        figure, _ = picture_style.page(plt, 8.6, title, note, foot=foot)
         upper, lower = figure.subfigures(2, 1, height_ratios=(4.9, 1.1 + 0.22 * len(agents)))
         axes, shown = upper.subplots(1, len(agents), squeeze=False)[0], None
         for ax, (label, of) in zip(axes, agents.items(), strict=True):
             shown = table(ax, label, np.array(of["places"]).reshape(-1, 2), np.array(of["next_scores"], bool))
-        ticks = range(int(DENSEST) + 1)
-        picture_style.colour_bar(
-            upper, shown, list(axes), "times the density of an even spread", ticks, extend="max"
-        )
-        for k, (ax, (name, title, scale, form)) in enumerate(
-            zip(lower.subplots(1, len(FIGURES)), FIGURES, strict=True)
-        ):
+        ticks, label = range(int(DENSEST) + 1), "times the density of an even spread"
+        picture_style.colour_bar(upper, shown, list(axes), label, ticks, extend="max")
+        panels = zip(lower.subplots(1, len(FIGURES)), FIGURES, strict=True)
+        for k, (ax, (name, title, scale, form)) in enumerate(panels):
             names = list(agents) if k == 0 else [""] * len(agents)
             bars(ax, names, [of["figures"][name] for of in agents.values()], title, scale, form)
         picture_style.save(figure, file)
@@ -105,15 +98,8 @@ def table(axes, label, places, went_in):
     from matplotlib.patches import Circle, Polygon, Rectangle
 
     parts, high = outline(Table.preset("match")), np.array([HALF_WIDTH, HALF_LENGTH])
-    axes.add_patch(
-        Rectangle(
-            tuple(-high - CUSHION),
-            *(2 * (high + CUSHION)),
-            fc=picture_style.GRID,
-            ec=picture_style.GREY,
-            lw=1.0,
-        )
-    )
+    outer, frame = high + CUSHION, {"fc": picture_style.GRID, "ec": picture_style.GREY}
+    axes.add_patch(Rectangle(tuple(-outer), *(2 * outer), lw=1.0, **frame))
     axes.add_patch(Rectangle(tuple(-high), *(2 * high), fc="white", lw=0))
     inner, shown = high - BALL_RADIUS, None
     if len(places):
@@ -122,25 +108,11 @@ def table(axes, label, places, went_in):
     else:
         times = np.zeros((2, 2))
     edges = (-inner[0], inner[0], -inner[1], inner[1])
-    shown = axes.imshow(
-        times.T,
-        extent=edges,
-        origin="lower",
-        vmin=0,
-        vmax=DENSEST,
-        cmap=picture_style.HEAT,
-        zorder=1,
-        aspect="equal",
-    )
+    colours = {"vmin": 0, "vmax": DENSEST, "cmap": picture_style.HEAT}
+    shown = axes.imshow(times.T, extent=edges, origin="lower", zorder=1, aspect="equal", **colours)
     if len(places):
-        axes.contour(
-            times.T,
-            levels=[level_of(times, 0.5)],
-            extent=edges,
-            colors=[picture_style.INK],
-            linewidths=1.0,
-            zorder=2,
-        )
+        line = {"levels": [level_of(times, 0.5)], "colors": [picture_style.INK], "linewidths": 1.0}
+        axes.contour(times.T, extent=edges, zorder=2, **line)
     for polygon in parts.cushions:
         axes.add_patch(Polygon(polygon, fc=picture_style.GREY, lw=0, zorder=3))
     for x, y, radius in parts.falls:
@@ -154,15 +126,8 @@ def table(axes, label, places, went_in):
     axes.axis("off")
     axes.set_title(label, loc="center")
     share = f"{100 * went_in.mean():.0f} %" if len(went_in) else "none"
-    axes.text(
-        0.5,
-        -0.01,
-        f"the next stroke scores: {share}",
-        transform=axes.transAxes,
-        ha="center",
-        va="top",
-        size=picture_style.TEXT,
-    )
+    below = {"transform": axes.transAxes, "ha": "center", "va": "top", "size": picture_style.TEXT}
+    axes.text(0.5, -0.01, f"the next stroke scores: {share}", **below)
     return shown
 
 
@@ -175,10 +140,8 @@ def bars(axes, labels, figures, title, scale, form):
         axes.barh(-k, scale * f["value"], color=BARS[k], height=0.72)
         if f["low"] is not None:
             axes.plot([scale * f["low"], scale * f["high"]], [-k, -k], color=picture_style.INK, lw=1.4)
-        high = scale * (f["high"] if f["high"] is not None else f["value"])
-        axes.text(
-            high + 0.05 * largest, -k, form.format(scale * f["value"]), va="center", size=picture_style.SMALL
-        )
+        at = scale * (f["high"] if f["high"] is not None else f["value"]) + 0.05 * largest
+        axes.text(at, -k, form.format(scale * f["value"]), va="center", size=picture_style.SMALL)
     axes.set_title(title, size=picture_style.TEXT)
     axes.set_xlim(0, 1.6 * largest)
     axes.set_ylim(-len(figures) + 0.4, 0.6)

@@ -1,12 +1,11 @@
-"""Who is compared? Players by name and trained models, one for each training seed, and how each was
-trained."""
+"""Who is compared? Players by name and trained models, one a training seed, and how each was trained."""
 
 import glob
-import json
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from commands.files import read_json
 from commands.physics_option import physics_text
 from snooker_env import Options, player, players
 from snooker_env.checks import integer, number, refuse
@@ -48,11 +47,8 @@ class Entrant:
                 path = str(PRETRAINED / f"{path}.zip")
             some = [path] if Path(path).exists() else _names(path) or sorted(glob.glob(path))
             if not some:
-                known = ", ".join(players())
-                allowed = (
-                    f"must be {known}, MODULE:CLASS, or name existing models: a .zip, a run folder, a pattern"
-                )
-                raise refuse("agent", path, allowed)
+                models = "MODULE:CLASS, or name existing models: a .zip, a run folder, a pattern"
+                raise refuse("agent", path, f"must be {', '.join(players())}, {models}")
             runs += some
         if equals and not label:
             raise refuse("agent", text, "must have a label before the =")
@@ -61,34 +57,30 @@ class Entrant:
         if is_name(runs[0]):
             return cls(label or runs[0].rpartition(":")[2], tuple(runs))
         path = Path(runs[0])
-        return cls(
-            label or (path.parent if path.name in ("model.zip", POLICY) else path).stem,
-            tuple(runs),
-            trust,
-            options,
-        )
+        named = path.parent if path.name in ("model.zip", POLICY) else path
+        return cls(label or named.stem, tuple(runs), trust, options)
 
     def trained(self):
-        """How each run was trained, as far as its files say: a dict a run, {} for a player that was not
-        trained."""
+        """How each run was trained, as far as its files say: a dict a run, {} for an untrained player."""
         return [self._training(run) for run in self.runs]
+
+    def origins(self):
+        """The same with "from", the name or file of each run."""
+        return [{"from": run, **how} for run, how in zip(self.runs, self.trained(), strict=True)]
 
     @property
     def foreign(self):
         """Whether a model is among them that train.py did not make."""
-        return not is_name(self.runs[0]) and any(
-            isinstance(_model(run, self.trust, self.options), Foreign) for run in self.runs
-        )
+        return any(isinstance(self.player(k), Foreign) for k in range(len(self.runs)))
 
     def player(self, k):
         """The player of its run k; a model is read once."""
-        return (
-            player(self.runs[k]) if is_name(self.runs[k]) else _model(self.runs[k], self.trust, self.options)
-        )
+        run = self.runs[k]
+        return player(run) if is_name(run) else _model(run, self.trust, self.options)
 
     def _training(self, run):
         if is_name(run):
-            _ = player(run)  # one's own may not be there
+            _ = player(run)  # a player of one's own may be missing
             run = run.partition("@")[2]
             if not run or not Path(run).exists():
                 return {}
@@ -118,17 +110,38 @@ def options_of(changes):
     for change in changes:
         key, equals, value = change.partition("=")
         if not equals or key not in ACTION_OPTIONS or key in chosen:
-            raise refuse(
-                "options", change, f"must be KEY=VALUE, KEY once each of {', '.join(ACTION_OPTIONS)}"
-            )
+            keys = f"KEY once each of {', '.join(ACTION_OPTIONS)}"
+            raise refuse("options", change, f"must be KEY=VALUE, {keys}")
         chosen[key] = value_of(value)
     Options(**chosen)  # makes sure of the values
     return tuple(chosen.items())
 
 
+def add_models(p):
+    """Add ``--trust`` and ``--options`` to a parser."""
+    trusted = "run the pickled code in models of Stable-Baselines3 that train.py did not make"
+    p.add_argument("--trust", action="store_true", help=trusted)
+    how = "how the actions of such models are read, for example aim=target"
+    p.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help=how)
+
+
+def entrants_of(texts, args, field):
+    """The entrants of a command line, with labels of their own and readable models. Raises ValueError."""
+    options = options_of(args.options)
+    entrants = [Entrant.of(text, args.trust, options) for text in texts]
+    labels = [entrant.label for entrant in entrants]
+    for entrant in entrants:
+        if labels.count(entrant.label) > 1:
+            raise refuse(field, entrant.label, f"must be another for each {field}: give LABEL=PATH")
+        entrant.trained()  # reads its models
+    if options and not any(entrant.foreign for entrant in entrants):
+        unfit = "must be left out: it is for models that train.py did not make"
+        raise refuse("options", " ".join(args.options), unfit)
+    return entrants
+
+
 def _names(name):
-    """The player of that name in a list; several for a planner whose model is a pattern; [] if it is not a
-    player's name."""
+    """The player of that name in a list; several for a planner with a pattern; [] for another text."""
     kind, at, pattern = name.partition("@")
     if at and is_name(name):
         return [f"{kind}@{model}" for model in sorted(glob.glob(pattern))] or [name]
@@ -169,10 +182,7 @@ def _told(saved, options):
 
 def _number_in(file, name):
     """The number of this name that a JSON file holds; None if it holds none. Raises ValueError."""
-    try:
-        found = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    except ValueError as error:
-        raise refuse("agent", str(file), f"must be JSON ({error})") from None
-    if not isinstance(found, dict):
+    content = read_json("agent", file, "must be JSON") if file.is_file() else {}
+    if not isinstance(content, dict):
         raise refuse("agent", str(file), f"must hold {name} in an object")
-    return None if found.get(name) is None else number(f"{file}: {name}", found[name], 0)
+    return None if content.get(name) is None else number(f"{file}: {name}", content[name], 0)

@@ -15,17 +15,16 @@ range of its seeds' lines, read off the chart of that version, and the ends with
 agents/results.
 """
 
-import argparse
-import json
+from itertools import cycle
 from pathlib import Path
 
-from commands.lifecycle import command, needs
+from commands.lifecycle import command, needs, parser_of
 
 with needs("agents.curves"):
     import numpy as np
 
     from commands import picture_style
-    from commands.files import writable, write_json
+    from commands.files import read_json, writable, write_json
     from snooker_env import __version__
     from snooker_env.checks import choice, refuse
 
@@ -46,8 +45,8 @@ def run_of(path):
     file = Path(path) / "results.json"
     if not file.is_file():
         raise refuse("run", str(path), "must be the folder of a finished run: it holds results.json")
+    run = read_json("run", file, "must be what today's train.py writes")
     try:
-        run = json.loads(file.read_text(encoding="utf-8"))
         imitating = run["imitation"][-1]["seconds"] if run["imitation"] else 0.0
         shots = np.array([at["steps"] for at in run["curve"]], float)
         points = np.array([at["points"] for at in run["curve"]], float)
@@ -57,52 +56,40 @@ def run_of(path):
             name: (float(end["points_a_visit"]), float(end["points_a_visit_se"]))
             for name, end in ends.items()
         }
-        return {
-            "shots": shots,
-            "minutes": minutes,
-            "points": points,
-            "end": (run["steps"], run["seconds"] / 60.0),
-            "levels": levels,
-        }
+        end = run["steps"], run["seconds"] / 60.0
+        return {"shots": shots, "minutes": minutes, "points": points, "end": end, "levels": levels}
     except (ValueError, KeyError, TypeError, IndexError, AttributeError):
         raise refuse("run", str(file), "must be what today's train.py writes") from None
 
 
 def figures_of(agents):
     """What is drawn of ``agents``, JSON-able: label -> list of ``run_of``."""
-    found = {}
+    drawn = {}
     for label, runs in agents.items():
         lines, ends = [], []
         for run in runs:
-            seen, (score, error), (shots, minutes) = (
-                run["points"] >= LEAST,
-                run["levels"]["trained"],
-                run["end"],
-            )
+            seen, (score, error) = run["points"] >= LEAST, run["levels"]["trained"]
             lines.append({name: run[name][seen].tolist() for name in ("minutes", "shots", "points")})
-            interval = {
-                "points": max(score, LEAST),
-                "low": max(score - 2 * error, LEAST),
-                "high": max(score + 2 * error, LEAST),
-            }
-            ends.append({"shots": shots, "minutes": minutes, **interval})
-        found[label] = {"lines": lines, "ends": ends}
+            interval = {"points": score, "low": score - 2 * error, "high": score + 2 * error}
+            ends.append(dict(zip(("shots", "minutes"), run["end"], strict=True)))
+            ends[-1] |= {name: max(value, LEAST) for name, value in interval.items()}
+        drawn[label] = {"lines": lines, "ends": ends}
     level = next(iter(agents.values()))[0]["levels"]["ghost_ball"][0]
-    return {"version": __version__, "ghost_ball": level, "agents": found}
+    return {"version": __version__, "ghost_ball": level, "agents": drawn}
 
 
-def draw(found, file):
+def draw(drawn, file):
     """Draw what ``figures_of`` gives, or what is kept of it."""
     note = (
         "Lines and bands (range of the training seeds): visits of training, with exploration. Discs: the finished agents on held-out\n"
         "tables, without exploration; vertical lines: 95 % intervals. ghost_ball: the rule-based player."
     )
     with picture_style.drawing() as plt:
-        foot = f"python -m agents.curves, snooker_env {found['version']}, professional execution errors"
+        foot = f"python -m agents.curves, snooker_env {drawn['version']}, professional execution errors"
         figure, sides = picture_style.page(
             plt, 5.4, "How fast the agents learn: points a visit", note, foot=foot, columns=2, sharey=True
         )
-        for (label, of), colour in zip(found["agents"].items(), _cycle(picture_style.SERIES), strict=False):
+        for (label, of), colour in zip(drawn["agents"].items(), cycle(picture_style.SERIES), strict=False):
             for axes, (name, _) in zip(sides, PANELS, strict=True):
                 for line in of.get("lines", ()):
                     axes.plot(line[name], line["points"], color=colour, lw=1.2, alpha=0.85)
@@ -111,60 +98,38 @@ def draw(found, file):
                     axes.fill_between(band["x"], band["low"], band["high"], color=colour, alpha=0.55, lw=1.0)
                 for i, end in enumerate(of["ends"]):
                     reach = [[end["points"] - end["low"]], [end["high"] - end["points"]]]
-                    axes.errorbar(
-                        end[name],
-                        end["points"],
-                        reach,
-                        fmt="o",
-                        ms=6,
-                        color=colour,
-                        mec="white",
-                        mew=0.8,
-                        elinewidth=1.4,
-                        label=label if i == 0 else None,
-                    )
+                    disc = {
+                        "fmt": "o",
+                        "ms": 6,
+                        "mec": "white",
+                        "mew": 0.8,
+                        "elinewidth": 1.4,
+                        "color": colour,
+                    }
+                    named = label if i == 0 else None
+                    axes.errorbar(end[name], end["points"], reach, label=named, **disc)
         for axes, (_, name) in zip(sides, PANELS, strict=True):
-            axes.axhline(found["ghost_ball"], color=picture_style.INK, lw=1.1, ls=":")
+            axes.axhline(drawn["ghost_ball"], color=picture_style.INK, lw=1.1, ls=":")
             picture_style.log_axis(axes.xaxis)
             picture_style.log_axis(axes.yaxis, subs=(1, 2, 5))
             axes.set_xlabel(name)
-        sides[0].annotate(
-            "ghost_ball",
-            (0.01, found["ghost_ball"]),
-            xycoords=("axes fraction", "data"),
-            va="bottom",
-            size=picture_style.SMALL,
-            color=picture_style.INK,
-        )
+        how = {"va": "bottom", "size": picture_style.SMALL, "color": picture_style.INK}
+        at = 0.01, drawn["ghost_ball"]
+        sides[0].annotate("ghost_ball", at, xycoords=("axes fraction", "data"), **how)
         sides[0].set_ylabel("points a visit")
         sides[1].legend(loc="lower right")
         picture_style.save(figure, file)
         plt.close(figure)
 
 
-def _cycle(colours):
-    while True:
-        yield from colours
-
-
 @command("agents.curves")
 def main(argv=None):
     """Check, draw. Exit code 0."""
-    p = argparse.ArgumentParser(
-        "python -m agents.curves", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    p.add_argument(
-        "agents", nargs="*", metavar="AGENT", help="a run folder, or LABEL=FOLDER,FOLDER,... or patterns"
-    )
-    p.add_argument(
-        "--from",
-        dest="kept",
-        type=Path,
-        nargs="?",
-        const=KEPT,
-        metavar="FILE",
-        help="no runs: draw the figures that --json wrote [agents/pictures/curves.json]",
-    )
+    p = parser_of("python -m agents.curves", __doc__)
+    what = "a run folder, or LABEL=FOLDER,FOLDER,... or patterns"
+    p.add_argument("agents", nargs="*", metavar="AGENT", help=what)
+    what = "no runs: draw the figures that --json wrote [agents/pictures/curves.json]"
+    p.add_argument("--from", dest="kept", type=Path, nargs="?", const=KEPT, metavar="FILE", help=what)
     p.add_argument("--json", type=Path, metavar="FILE", help="write what is drawn into this file")
     p.add_argument("--out", type=Path, default=PICTURE, help="the picture [agents/pictures/curves.png]")
     args = p.parse_args(argv)
@@ -172,23 +137,19 @@ def main(argv=None):
         choice("out", args.out.suffix, formats())
         if (args.kept is None) == (not args.agents):
             raise refuse("agents", " ".join(args.agents), "must be runs, or none with --from FILE")
-        found = figures_of(_runs(args.agents)) if args.kept is None else _kept(args.kept)
+        if args.kept is None:
+            drawn = figures_of(_runs(args.agents))
+        else:
+            drawn = read_json("from", args.kept, "must be a file that --json wrote")
         for name in ("json", "out"):
             writable(name, getattr(args, name))
     except ValueError as error:
         p.error(str(error))
     if args.json:
-        write_json(args.json, found)
-    draw(found, args.out)
+        write_json(args.json, drawn)
+    draw(drawn, args.out)
     print(args.out)
     return 0
-
-
-def _kept(file):
-    try:
-        return json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        raise refuse("from", str(file), "must be a file that --json wrote") from None
 
 
 def _runs(texts):
@@ -197,7 +158,6 @@ def _runs(texts):
     if len(agents) < len(texts):
         raise refuse("agents", " ".join(texts), "must have another label each")
     if len({run["levels"]["ghost_ball"] for runs in agents.values() for run in runs}) > 1:
-        raise refuse(
-            "agents", " ".join(texts), "must have been judged on the same tables: ghost_ball's score differs"
-        )
+        same = "must have been judged on the same tables: ghost_ball's score differs"
+        raise refuse("agents", " ".join(texts), same)
     return agents

@@ -1,12 +1,11 @@
 """How well do agents play, and is it positional play? A research tool: held-out tables, all noise levels,
 several training seeds.
 
-    python -m agents.evaluate --agent ghost_ball runs/ppo_mask-0 python -m agents.evaluate --agent
-    "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against ghost_ball "pots only" \\
+    python -m agents.evaluate --agent ghost_ball runs/ppo_mask-0
+    python -m agents.evaluate --agent "ppo=runs/ppo_mask-*" "pots only=runs/gamma0-*" --against "pots only" \\
         --json agents/results/main.json --markdown agents/results/main.md --picture
-    python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/reference-*" --fidelity fast
-    reference --noise professional python -m agents.evaluate --agent search_2000 --visits 50 --layouts
-    held_out --noise professional
+    python -m agents.evaluate --agent "fast=runs/fast-*" "reference=runs/ref-*" --fidelity fast reference
+    python -m agents.evaluate --agent search_2000 --visits 50 --layouts held_out --noise professional
 
 Every agent plays the same tables with the same execution errors (stroke by stroke): 2,000 opened tables that
 are never used in training, no two of them equal or mirrored, 500 line-ups and 500 times the colours. Every
@@ -23,14 +22,13 @@ ones, --options, for example aim=target. Intervals are 95 % bootstrap intervals 
 (snooker_env/benchmark/statistics.py); the ratios are paired: same tables above and below.
 """
 
-import argparse
 import os
 import shlex
 import sys
 from itertools import islice, product
 from pathlib import Path
 
-from commands.lifecycle import command, needs, of_disk
+from commands.lifecycle import command, needs, of_disk, parser_of
 
 with needs("agents.evaluate"):
     import numpy as np
@@ -50,9 +48,9 @@ with needs("agents.evaluate"):
     from ..cluster.keep import Keep, digest_of
     from ..cluster.ray_cluster import add_ray, checked_ray, place
     from ..cluster.software import software
-    from .entrants import Entrant, options_of
+    from .entrants import Entrant, add_models, entrants_of
     from .metrics import EntrantMetrics
-    from .report import AXES, main_condition, markdown, parts
+    from .report import AXES, PICTURE, main_condition, markdown, parts
     from .travel import sent
     from .visits import joined, parts_of
 
@@ -60,7 +58,6 @@ PROTOCOL = {"held_out": 2000, "line_up": 500, "colours": 500}
 """Visits on each layout."""
 NOISES = ("none", "professional", "amateur", "club")
 REFERENCE = "ghost_ball"
-PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
 
 
 def parts_of_agent(agent, condition, seeds, rekey):
@@ -78,9 +75,8 @@ def play_agent(agent, condition, seeds, resamples, rekey=False, results=None):
         results = in_order(ended([part for run in each for part in run], _shared([agent]), Here()))
     runs = [joined(list(islice(results, len(run))), len(seeds)) for run in each]
     counted = [counts(strokes) for strokes in runs]
-    return EntrantMetrics(
-        agent, {name: np.stack([one[name] for one in counted]) for name in counted[0]}, runs, resamples
-    )
+    columns = {name: np.stack([one[name] for one in counted]) for name in counted[0]}
+    return EntrantMetrics(agent, columns, runs, resamples)
 
 
 def _name(agent, k):
@@ -114,38 +110,19 @@ def all_parts(report, agents, seeds):
 def about(report, shared):
     """What is played, for a ``Keep``: two evaluations with the same share their parts."""
     played = {name: report["protocol"][name] for name in ("layouts", "first_seed", *AXES, "rekey")}
-    return {
-        "command": "agents.evaluate",
-        **played,
-        "agents": {name: digest_of(one) for name, one in shared.items()},
-    } | software()
+    agents = {name: digest_of(one) for name, one in shared.items()}
+    return {"command": "agents.evaluate", **played, "agents": agents, **software()}
 
 
 def parser():
     """The command line."""
-    p = argparse.ArgumentParser(
-        "python -m agents.evaluate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    p = parser_of("python -m agents.evaluate", __doc__)
+    what = "NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... "
+    what += "or MODULE:CLASS; NAME: "
     p.add_argument(
-        "--agent",
-        nargs="+",
-        required=True,
-        metavar="AGENT",
-        help="NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... or MODULE:CLASS; NAME: "
-        + ", ".join(snooker_env.players()),
+        "--agent", nargs="+", required=True, metavar="AGENT", help=what + ", ".join(snooker_env.players())
     )
-    p.add_argument(
-        "--trust",
-        action="store_true",
-        help="run the pickled code in models of Stable-Baselines3 that train.py did not make",
-    )
-    p.add_argument(
-        "--options",
-        nargs="+",
-        default=[],
-        metavar="KEY=VALUE",
-        help="how the actions of such models are read, for example aim=target",
-    )
+    add_models(p)
     p.add_argument(
         "--against",
         nargs="+",
@@ -192,17 +169,13 @@ def parser():
 def checked(args):
     """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError before
     anything is played."""
-    options = options_of(args.options)
-    agents = [Entrant.of(text, args.trust, options) for text in args.agent]
+    agents = entrants_of(args.agent, args, "agent")
     labels = [agent.label for agent in agents]
     for label in args.against:
         if label == REFERENCE and label not in labels:
             agents.append(Entrant(REFERENCE, (REFERENCE,)))
         elif label not in labels:
             raise refuse("against", label, f"must be one of {', '.join(labels)}, {REFERENCE}")
-    for label in labels:
-        if labels.count(label) > 1:
-            raise refuse("agent", label, "must be another for each agent: give LABEL=PATH")
     sizes = {}
     for text in args.layouts:
         name, _, n = text.partition("=")
@@ -220,20 +193,11 @@ def checked(args):
     integer("resamples", args.resamples, 100, 10**6)
     if args.picture and "held_out" not in sizes:
         raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
-    for agent in agents:
-        agent.trained()  # reads its models
-    if options and not any(agent.foreign for agent in agents):
-        raise refuse(
-            "options", " ".join(args.options), "must be left out: it is for models that train.py did not make"
-        )
     checked_ray(args.ray)
     for name in ("json", "markdown", "picture"):
         writable(name, getattr(args, name))
-    return (
-        agents,
-        list(dict.fromkeys(args.against)),
-        {name: tables_of(name, visits) for name, visits in sizes.items()},
-    )
+    seeds = {name: tables_of(name, visits) for name, visits in sizes.items()}
+    return agents, list(dict.fromkeys(args.against)), seeds
 
 
 def evaluate(report, agents, seeds, shown, results):
@@ -245,18 +209,14 @@ def evaluate(report, agents, seeds, shown, results):
     for condition in _conditions(report, seeds):
         layout, metrics = condition["layout"], {}
         for agent in agents:
-            metrics[agent.label] = play_agent(
-                agent, condition, seeds[layout], p["resamples"], p["rekey"], results
-            )
-        others, rows = [metrics[label] for label in p["against"]], []
-        for one in metrics.values():
-            row = {
-                "agent": one.agent.label,
-                **condition,
-                "visits": len(seeds[layout]),
-                "runs": len(one.agent.runs),
-            }
-            rows.append(row | one.result([other for other in others if other is not one]))
+            played = play_agent(agent, condition, seeds[layout], p["resamples"], p["rekey"], results)
+            metrics[agent.label] = played
+        rows = []
+        for agent in agents:
+            mine = metrics[agent.label]
+            others = [metrics[label] for label in p["against"] if label != agent.label]
+            played = {"visits": len(seeds[layout]), "runs": len(agent.runs)}
+            rows.append({"agent": agent.label, **condition, **played, **mine.result(others)})
         report["results"] += rows
         if condition == main_condition(report):
             shown |= {label: one.strokes for label, one in metrics.items()}
@@ -295,13 +255,7 @@ def main(argv=None):
             "resamples": args.resamples,
             "rekey": args.rekey,
         },
-        "agents": [
-            {
-                "label": agent.label,
-                "runs": [{"from": run, **how} for run, how in zip(agent.runs, agent.trained(), strict=True)],
-            }
-            for agent in agents
-        ],
+        "agents": [{"label": agent.label, "runs": agent.origins()} for agent in agents],
         "results": [],
     }
     shown, why, code = {}, "", 0
@@ -312,17 +266,14 @@ def main(argv=None):
         p.error(str(error))
     with keep:
         try:
-            with (
-                place(args.ray) as where,
-                Progress("evaluation", sum(len(one.args["seeds"]) for one in job), "visits") as progress,
-            ):
+            total = sum(len(one.args["seeds"]) for one in job)
+            with place(args.ray) as where, Progress("evaluation", total, "visits") as progress:
 
                 def counted():
                     for k, result in ended(job, shared, where, keep.store):
-                        progress.at(
-                            progress.done + len(job[k].args["seeds"]),
-                            job[k].args["condition"]["layout"] + where.says,
-                        )
+                        part = job[k].args
+                        layout = part["condition"]["layout"] + where.says
+                        progress.at(progress.done + len(part["seeds"]), layout)
                         yield k, result
 
                 evaluate(report, agents, seeds, shown, in_order(counted()))
@@ -331,14 +282,10 @@ def main(argv=None):
         except ClusterError as error:
             why, code = str(error), 1
         if code:
-            complete, conditions = (
-                len(report["results"]) // len(agents),
-                len(list(_conditions(report, seeds))),
-            )
+            complete, conditions = len(report["results"]) // len(agents), list(_conditions(report, seeds))
             kept = keep.ends if complete or keep.store else "nothing is kept"
-            report["incomplete"] = (
-                f"{why} when {complete} of {conditions} parts (layouts under one noise) were complete: {kept}"
-            )
+            many = f"{complete} of {len(conditions)} parts (layouts under one noise)"
+            report["incomplete"] = f"{why} when {many} were complete: {kept}"
             print(f"agents.evaluate: {report['incomplete']}", file=sys.stderr)
         if report["results"]:
             write(report, shown, args)

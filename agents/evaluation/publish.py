@@ -7,15 +7,13 @@ it. The zip holds figures as JSON and weights, no pickled code as a run's own mo
 needs to trust it (agents/learning/model_files.py).
 """
 
-import argparse
-import json
 import re
 from pathlib import Path
 
-from commands.lifecycle import command, needs
+from commands.lifecycle import command, needs, parser_of
 
 with needs("agents.publish"):
-    from commands.files import write_atomic, write_json
+    from commands.files import read_json, write_atomic, write_json
     from snooker_env.checks import refuse
     from snooker_env.players.resolver import is_name
 
@@ -29,45 +27,41 @@ final evaluation."""
 
 def results_of(run):
     """Every figure of a finished run and its ``Trained`` agent, once both are sound. Raises ValueError."""
+    wanted = "must be the folder of a finished run, with a whole results.json"
     try:
-        found = json.loads((run / "results.json").read_text(encoding="utf-8"))
-        card_of(found, "")
-        name_of(found, "any")
-    except (OSError, ValueError, KeyError, TypeError, IndexError):
-        raise refuse(
-            "run", str(run), "must be the folder of a finished run, with a whole results.json"
-        ) from None
-    return found, load_trained(run, "run")
+        results = read_json("run", run / "results.json", wanted)
+        card_of(results, "")
+        name_of(results, "any")
+    except (ValueError, KeyError, TypeError, IndexError):
+        raise refuse("run", str(run), wanted) from None
+    return results, load_trained(run, "run")
 
 
-def card_of(found, limits):
+def card_of(results, limits):
     """The card of the model of a run with these results: where it comes from, and how well it plays."""
-    imitated = found["imitation"][-1]["states"] if found["imitation"] else 0
+    imitated = results["imitation"][-1]["states"] if results["imitation"] else 0
     return {
-        "command": found["command"],
-        "seed": found["settings"]["seed"],
-        "commit": found["git_commit"],
-        "hours": round(found["seconds"] / 3600.0, 3),
-        "shots": found["steps"],
+        "command": results["command"],
+        "seed": results["settings"]["seed"],
+        "commit": results["git_commit"],
+        "hours": round(results["seconds"] / 3600.0, 3),
+        "shots": results["steps"],
         "imitated": imitated,
-        "start": found["settings"]["start"] or None,
-        "scores": found["evaluation"],
-        "learned": found["learned"],
-        "versions": found["versions"],
+        "start": results["settings"]["start"] or None,
+        "scores": results["evaluation"],
+        "learned": results["learned"],
+        "versions": results["versions"],
         "limits": limits,
     }
 
 
-def name_of(found, name):
+def name_of(results, name):
     """What the model is called: ``name``, or its recipe if the run is one of it. Raises ValueError."""
-    agent, settings = found["settings"]["agent"], found["settings"]
+    agent, settings = results["settings"]["agent"], results["settings"]
     other = [key for key, usual in AS_IT_STANDS.items() if settings[key] != usual]
     if name is None and other:
-        raise refuse(
-            "name",
-            name,
-            f"must be given: the run is not one of {agent} as its recipe stands ({', '.join(other)} is not the same)",
-        )
+        why = f"the run is not one of {agent} as its recipe stands ({', '.join(other)} is not the same)"
+        raise refuse("name", name, f"must be given: {why}")
     name = agent if name is None else name
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", name):
         raise refuse("name", name, "must be letters, digits and _ . -")
@@ -81,13 +75,10 @@ def publish(run, name, limits, replace=False):
     written."""
     if not limits.strip():
         raise refuse("limits", limits, "must say what a user should know that it cannot do")
-    found, trained = results_of(run)
-    path = PRETRAINED / name_of(found, name)
-    card, model, about = (
-        card_of(found, limits),
-        path.with_name(f"{path.name}.zip"),
-        path.with_name(f"{path.name}.json"),
-    )
+    results, trained = results_of(run)
+    path = PRETRAINED / name_of(results, name)
+    card = card_of(results, limits)
+    model, about = (path.with_name(path.name + suffix) for suffix in (".zip", ".json"))
     if not replace and (model.exists() or about.exists()):
         raise refuse("name", path.name, "must be new: there is such a model; --replace overwrites it")
     PRETRAINED.mkdir(exist_ok=True)
@@ -99,9 +90,7 @@ def publish(run, name, limits, replace=False):
 @command("agents.publish")
 def main(argv=None):
     """Command line."""
-    parser = argparse.ArgumentParser(
-        "python -m agents.publish", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of("python -m agents.publish", __doc__)
     parser.add_argument("run", type=Path, help="a run's folder")
     parser.add_argument("--name", help="of the model [the agent's]")
     parser.add_argument("--limits", required=True, help="what the model cannot do, for its card")

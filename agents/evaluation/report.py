@@ -9,18 +9,17 @@ playing, by
 which writes ``agents/results/*.md``; --show prints the tables instead.
 """
 
-import argparse
-import json
 import os
 import re
 import shlex
 from functools import partial
+from itertools import product
 from pathlib import Path
 
-from commands.lifecycle import command, needs
+from commands.lifecycle import command, needs, parser_of
 
 with needs("agents.report"):
-    from commands.files import write_atomic
+    from commands.files import read_json, write_atomic
     from commands.tables import TextTable, page, show, shown
     from snooker_env.benchmark import CENTURY, MAXIMUM, most_points
     from snooker_env.checks import refuse
@@ -33,15 +32,14 @@ SEEDS = 5
 SAME = 0.1
 """Times that differ by less than this share are called equal."""
 AXES = ("noise", "fidelity", "physics")
+PICTURE = Path(__file__).parents[1] / "pictures" / "destinations.png"
 USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
-
 
 _pm = partial(shown, form="{:.2f}")
 
 
 def _trials(row, below):
-    """How often a run could have done it: the entry ``below`` of what snooker_env/benchmark/counts.py counts.
-    None if that was not kept."""
+    """How often a run could have done it: the entry ``below`` of ``benchmark.counts``; None: not kept."""
     f, visits = row["figures"], row["visits"]
     known = {"visits": visits, "strokes": row["strokes"] / row["runs"]}
     if f["pots_a_visit"]["value"] is not None and f["clearances"]["value"] is not None:
@@ -104,15 +102,9 @@ def title(report):
         return tournament_report.title(report)
     p, layouts = report["protocol"], _listed(report["protocol"]["layouts"])
     for axis in AXES:
-        made = {str(run[axis]) for agent in report["agents"] for run in agent["runs"] if axis in run}
-        if len(made) > 1 and len(p[axis]) > 1:
-            planners = all(
-                run["from"].startswith("planner")
-                for agent in report["agents"]
-                for run in agent["runs"]
-                if axis in run
-            )
-            who = "planners" if planners else "agents"
+        runs = [run for agent in report["agents"] for run in agent["runs"] if axis in run]
+        if len({str(run[axis]) for run in runs}) > 1 and len(p[axis]) > 1:
+            who = "planners" if all(run["from"].startswith("planner") for run in runs) else "agents"
             return f"How {who} trained under one {axis} play under another, on {layouts}: {_listed(p[axis])}"
     under = "" if len(p["noise"]) > 1 or p["noise"] == [USUAL["noise"]] else f", noise {p['noise'][0]}"
     return f"How {_listed(agent['label'] for agent in report['agents'])} play on {layouts}{under}"
@@ -125,29 +117,21 @@ def agents_tables(report):
         runs, label = agent["runs"], agent["label"]
         if "recipe" not in runs[0]:
             by_noise = re.fullmatch(r"planner(_value|_policy)?(_\d+)?", runs[0]["from"])
-            trained.append(
-                [label, "pre-trained, by the noise played" if by_noise else "not trained", "", "", "", ""]
-            )
+            how = "pre-trained, by the noise played" if by_noise else "not trained"
+            trained.append([label, how, "", "", "", ""])
             continue
-        words = [
-            ", ".join(sorted({str(run[key]) for run in runs}))
-            for key in ("recipe", "noise", "fidelity", "physics")
-        ]
+        keys = ("recipe", "noise", "fidelity", "physics")
+        words = [", ".join(sorted({str(run[key]) for run in runs})) for key in keys]
         rates = [run["shots"] / run["seconds"] if run["seconds"] else None for run in runs]
         numbers = [_between([run[key] for run in runs]) for key in ("imitated", "shots", "seconds")]
         gammas = ", ".join(sorted({f"{run['gamma']:g}" for run in runs}))
         trained.append([label, *words, gammas])
         long.append([label, str(_seeds(runs)), *numbers, _between(rates)])
-    header = ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
+    how = ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
+    how_long = ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
     return [
-        TextTable("The agents", header, trained, 1, 5),
-        TextTable(
-            "How long they were trained",
-            ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"],
-            long,
-            1,
-            1,
-        ),
+        TextTable("The agents", how, trained, 1, 5),
+        TextTable("How long they were trained", how_long, long, 1, 1),
     ]
 
 
@@ -156,52 +140,49 @@ def _seeds(runs):
     return len({run["seed"] for run in runs})
 
 
-GIVEN = (
+COSTS = (
     ("imitated", "positions imitated", 0.0),
     ("shots", "shots", 0.0),
     ("seconds", "seconds of training", SAME),
 )
-"""What agents are given: how it is kept, how it is called, and by what share it may differ to be called
-equal."""
+"""What a training costs: its key, its name, and by what share it may differ to be called equal."""
 
 
 def fairness(report):
     """Sentences: were the trained agents given the same, and are the tables new to them?"""
-    trained = [agent for agent in report["agents"] if "recipe" in agent["runs"][0]]
-    said = []
+    trained, sentences = [agent for agent in report["agents"] if "recipe" in agent["runs"][0]], []
     for agent in trained:
-        n = _seeds(agent["runs"])
-        if n < SEEDS:
-            few = (
-                "1 training seed: its intervals say nothing about other seeds"
-                if n == 1
-                else f"{n} training seeds, fewer than {SEEDS}"
-            )
-            said.append(f"{agent['label']} has {few}.")
+        label, n = agent["label"], _seeds(agent["runs"])
+        if n == 1:
+            sentences.append(f"{label} has 1 training seed: its intervals say nothing about other seeds.")
+        elif n < SEEDS:
+            sentences.append(f"{label} has {n} training seeds, fewer than {SEEDS}.")
         known = {run["layout"] for run in agent["runs"]} & {*report["protocol"]["layouts"], USUAL["layout"]}
-        said += [
-            f"{agent['label']} was trained on layout {layout}: its tables are not new to it."
-            for layout in sorted(known)
-        ]
-    if len(trained) > 1:
-        for key, name, share in GIVEN:
-            given = {agent["label"]: [run[key] for run in agent["runs"]] for agent in trained}
-            unknown = [label for label, values in given.items() if None in values]
-            values = [value for some in given.values() for value in some]
-            if unknown:
-                said.append(
-                    f"Whether the trained agents had equal {name} is not known: no record for {', '.join(unknown)}."
-                )
-            elif max(values) <= (1 + share) * min(values):
-                said.append(f"The trained agents had equal {name} ({_between(values)}).")
-            else:
-                said.append(f"The trained agents had unequal {name} ({_between(values)}).")
-    return said
+        told = "was trained on layout"
+        sentences += [f"{label} {told} {layout}: its tables are not new to it." for layout in sorted(known)]
+    for key, name, share in COSTS if len(trained) > 1 else ():
+        costs = {agent["label"]: [run[key] for run in agent["runs"]] for agent in trained}
+        unknown = ", ".join(label for label, values in costs.items() if None in values)
+        if unknown:
+            whether = f"Whether the trained agents had equal {name} is not known"
+            sentences.append(f"{whether}: no record for {unknown}.")
+            continue
+        values = [value for some in costs.values() for value in some]
+        same = "equal" if max(values) <= (1 + share) * min(values) else "unequal"
+        sentences.append(f"The trained agents had {same} {name} ({_between(values)}).")
+    return sentences
+
+
+AGAIN = {
+    "next_pot_after_a_pot": "after a pot it pots again:",
+    "easy_pot_left_by_a_pot": "an easy pot is left:",
+    "high_colour_after_a_red": "after a red it pots pink or black:",
+}
 
 
 def comparison(report):
     """Sentences: each agent against those it is compared with."""
-    at, said, done = main_condition(report), [], set()
+    at, sentences, done = main_condition(report), [], set()
     rows = {r["agent"]: r for r in _picked(report, **at)}
     for name, row in rows.items():
         for other, ratios in row["ratios"].items():
@@ -211,21 +192,16 @@ def comparison(report):
             ratio, mine, its = ratios["points_a_visit"], row["figures"], rows[other]["figures"]
             if ratio["value"] is None or ratio["low"] is None:
                 continue
-            apart = ratio["low"] > 1 or ratio["high"] < 1
-            start = f"{name} makes {_pm(ratio)} times the points of {other}"
-            start += "" if apart else f", a difference that {row['visits']:,} visits do not show"
-            shares = [
-                f"{words} {100 * mine[key]['value']:.1f} against {100 * its[key]['value']:.1f} %"
-                for key, words in (
-                    ("next_pot_after_a_pot", "after a pot it pots again:"),
-                    ("easy_pot_left_by_a_pot", "an easy pot is left:"),
-                    ("high_colour_after_a_red", "after a red it pots pink or black:"),
-                )
-                if mine[key]["value"] is not None and its[key]["value"] is not None
-            ]
-            said.append(f"{start}; {'; '.join(shares)}." if shares else f"{start}.")
+            clauses = [f"{name} makes {_pm(ratio)} times the points of {other}"]
+            if ratio["low"] <= 1 <= ratio["high"]:
+                clauses[0] += f", a difference that {row['visits']:,} visits do not show"
+            for key, words in AGAIN.items():
+                one, two = mine[key]["value"], its[key]["value"]
+                if one is not None and two is not None:
+                    clauses.append(f"{words} {100 * one:.1f} against {100 * two:.1f} %")
+            sentences.append(f"{'; '.join(clauses)}.")
     where = ", ".join(f"{key} {value}" for key, value in at.items())
-    return [f"On {where}:", *said] if said else []
+    return [f"On {where}:", *sentences] if sentences else []
 
 
 def crossed(report):
@@ -240,14 +216,9 @@ def crossed(report):
             rows = []
             for agent in report["agents"]:
                 made = ", ".join(sorted({str(run[axis]) for run in agent["runs"] if axis in run}))
-                found = [_picked(report, agent=agent["label"], **rest, **{axis: value}) for value in p[axis]]
-                rows.append(
-                    [
-                        agent["label"],
-                        made,
-                        *(_pm(some[0]["figures"]["points_a_visit"]) if some else "" for some in found),
-                    ]
-                )
+                played = [_picked(report, agent=agent["label"], **rest, **{axis: value}) for value in p[axis]]
+                points = (_pm(some[0]["figures"]["points_a_visit"]) if some else "" for some in played)
+                rows.append([agent["label"], made, *points])
             under = ", ".join(f"{key} {value}" for key, value in rest.items() if key != "layout")
             title = f"{layout}: points a visit, played under {axis} ..., {under}"
             tables.append(TextTable(title, ["agent", "trained under", *p[axis]], rows, 2, 2))
@@ -258,22 +229,17 @@ def conditions(report):
     """Tables of every layout and condition: what was scored, and how the cue ball was placed."""
     p, tables = report["protocol"], []
     for layout, visits in p["layouts"].items():
-        most = most_points(layout)
-        for physics in p["physics"]:
-            for fidelity in p["fidelity"]:
-                rows = _picked(report, layout=layout, physics=physics, fidelity=fidelity)
-                where = f"{layout}, {visits:,} visits, physics {physics}, fidelity {fidelity}"
-                for name, columns in _columns(p["against"], most).items():
-                    cells = [[r["noise"], r["agent"], *(cell(r) for cell in columns.values())] for r in rows]
-                    tables.append(
-                        TextTable(f"{where}: {name}", ["noise", "agent", *columns], cells, 2, 2, True)
-                    )
+        for physics, fidelity in product(p["physics"], p["fidelity"]):
+            rows = _picked(report, layout=layout, physics=physics, fidelity=fidelity)
+            where = f"{layout}, {visits:,} visits, physics {physics}, fidelity {fidelity}"
+            for name, columns in _columns(p["against"], most_points(layout)).items():
+                cells = [[r["noise"], r["agent"], *(cell(r) for cell in columns.values())] for r in rows]
+                tables.append(TextTable(f"{where}: {name}", ["noise", "agent", *columns], cells, 2, 2, True))
     return tables
 
 
 def _columns(against, most):
-    """The tables of a condition: name -> {heading: cell of a result}, without breaks of more than ``most``
-    points, which cannot be."""
+    """The tables of a condition: name -> {heading: cell of a result}; no breaks above ``most`` points."""
 
     def figure(name):
         return lambda r: _pm(r["figures"][name])
@@ -296,10 +262,7 @@ def _columns(against, most):
             "best": lambda r: str(r["longest_break"]),
         },
         "points against others": {f"times {other}": times(other) for other in against},
-        "pots": {
-            "pots a visit": figure("pots_a_visit"),
-            "IQM": figure("pots_a_visit_iqm"),
-        },
+        "pots": {"pots a visit": figure("pots_a_visit"), "IQM": figure("pots_a_visit_iqm")},
         "breaks": {heading: share(name) for heading, (name, least) in breaks.items() if least <= most},
         "potting and position": {
             "pot rate %": share("pot_rate"),
@@ -334,18 +297,12 @@ def parts(report):
     if tournament_report.is_tournament(report):
         yield from tournament_report.parts(report)
         return
-    all_parts = [
-        *agents_tables(report),
-        *fairness(report),
-        *comparison(report),
-        *crossed(report),
-        *conditions(report),
-        LEGEND,
-    ]
     if "incomplete" in report:
-        all_parts.insert(0, f"INCOMPLETE: {report['incomplete']}.")
-    for part in all_parts:
-        yield from [part] if isinstance(part, str) else part.tidy().narrow()
+        yield f"INCOMPLETE: {report['incomplete']}."
+    for made in (agents_tables, fairness, comparison, crossed, conditions):
+        for part in made(report):
+            yield from [part] if isinstance(part, str) else part.tidy().narrow()
+    yield LEGEND
 
 
 def markdown(report, picture=None):
@@ -353,7 +310,8 @@ def markdown(report, picture=None):
     if tournament_report.is_tournament(report):
         return tournament_report.markdown(report)
     version = report.get("version", "of an unknown version")
-    made = f"snooker_env {version}, at commit {report['commit']} on {report['machine']}, Python {report['python']}"
+    where = f"commit {report['commit']} on {report['machine']}, Python {report['python']}"
+    made = f"snooker_env {version}, at {where}"
     drawn = [f"![where the cue ball stops after a red, and what follows]({picture})"] if picture else []
     return page(title(report), report["command"], made, [*drawn, *parts(report)])
 
@@ -364,42 +322,28 @@ def picture_of(report, folder):
     if "--picture" not in words:
         return None
     named = words[words.index("--picture") + 1 :][:1]
-    file = (
-        Path(named[0])
-        if named and not named[0].startswith("--")
-        else Path(__file__).parents[1] / "pictures" / "destinations.png"
-    )
+    file = Path(named[0]) if named and not named[0].startswith("--") else PICTURE
     return Path(os.path.relpath(file, folder)).as_posix()
 
 
 def read(file):
     """The report in a JSON file. Raises ValueError."""
+    wanted = "must be what agents.evaluate writes with --json, or agents.tournament with --out"
+    report = read_json("file", file, wanted)
     try:
-        report = json.loads(file.read_text(encoding="utf-8"))
         list(parts(report))
         title(report)
-    except (OSError, ValueError, KeyError, TypeError, IndexError, AttributeError):
-        raise refuse(
-            "file",
-            str(file),
-            "must be what agents.evaluate writes with --json, or agents.tournament with --out",
-        ) from None
+    except (ValueError, KeyError, TypeError, IndexError, AttributeError):
+        raise refuse("file", str(file), wanted) from None
     return report
 
 
 @command("agents.report")
 def main(argv=None):
     """Make the Markdown again from kept figures, or print them. Exit code 0."""
-    p = argparse.ArgumentParser(
-        "python -m agents.report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    p.add_argument(
-        "files",
-        nargs="+",
-        type=Path,
-        metavar="FILE.json",
-        help="what agents.evaluate wrote with --json, or agents.tournament with --out",
-    )
+    p = parser_of("python -m agents.report", __doc__)
+    what = "what agents.evaluate wrote with --json, or agents.tournament with --out"
+    p.add_argument("files", nargs="+", type=Path, metavar="FILE.json", help=what)
     p.add_argument("--show", action="store_true", help="print the tables, write nothing")
     args = p.parse_args(argv)
     try:

@@ -1,7 +1,7 @@
 """How are positions searched to learn from? The command ``python -m agents.search``.
 
-    python -m agents.search --positions 10000 --out runs/searched python -m agents.search --agent search_2000
-    --positions 1000000 --noise club --out s3://bucket/club --ray 10.0.0.1:6379
+    python -m agents.search --positions 10000 --out runs/searched
+    python -m agents.search --positions 1000000 --noise club --out s3://bucket/club --ray 10.0.0.1:6379
 
 A search plays visits, and what it thinks of each position is kept: the strokes that met most noise samples,
 best first, with their scores. Data are written in parts as they are played; after an interruption the same
@@ -9,11 +9,10 @@ command goes on, and with other options it is refused. One machine and a cluster
 bit. ``read`` gives them as arrays.
 """
 
-import argparse
 import json
 import sys
 
-from commands.lifecycle import command, needs
+from commands.lifecycle import command, needs, parser_of
 
 with needs("agents.search"):
     import numpy as np
@@ -40,28 +39,17 @@ INDEX = "index.json"
 
 def parser():
     """The command line."""
-    p = argparse.ArgumentParser(
-        "python -m agents.search", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    p.add_argument(
-        "--agent",
-        default="search_2000",
-        help="who searches: search_2000, planner_500, planner@MODEL [search_2000]",
-    )
-    p.add_argument(
-        "--positions",
-        type=int,
-        required=True,
-        metavar="N",
-        help=f"rounded up to whole parts of {TABLES * ROUNDS}",
-    )
+    p = parser_of("python -m agents.search", __doc__)
+    what = "who searches: search_2000, planner_500, planner@MODEL [search_2000]"
+    p.add_argument("--agent", default="search_2000", help=what)
+    what = f"rounded up to whole parts of {TABLES * ROUNDS}"
+    p.add_argument("--positions", type=int, required=True, metavar="N", help=what)
     p.add_argument("--out", required=True, metavar="URL", help="a folder or fsspec URL for these data alone")
     p.add_argument("--layout", default="opened", help="layout of the tables [opened]")
     p.add_argument("--noise", default="professional", help="level of execution noise [professional]")
     p.add_argument("--fidelity", default="standard", help="fast, standard, reference or euler:N [standard]")
-    p.add_argument(
-        "--physics", default="paper", help="paper, match, or one with changes: paper,mu_bb=marlow [paper]"
-    )
+    what = "paper, match, or one with changes: paper,mu_bb=marlow [paper]"
+    p.add_argument("--physics", default="paper", help=what)
     p.add_argument("--seed", type=int, default=0, help="seed of tables and search [0]")
     add_ray(p)
     return p
@@ -80,11 +68,8 @@ def checked(args):
     agent = Entrant.of(args.agent)
     runs = list(agent.runs)
     if len(runs) > 1 or not isinstance(agent.player(0), SearchPlayer):
-        raise refuse(
-            "agent",
-            args.agent,
-            "must be one player that searches: search, planner, with _SHOTS and @MODEL if you wish",
-        )
+        wanted = "must be one player that searches: search, planner, with _SHOTS and @MODEL if you wish"
+        raise refuse("agent", args.agent, wanted)
     return sent(agent, 0), {name: getattr(args, name) for name in ("layout", "noise", "fidelity", "physics")}
 
 
@@ -126,11 +111,10 @@ def main(argv=None):
     except ClusterError as error:
         why, code = str(error), 1
     if code:
-        kept = f"{each * len(store.names('parts')):,} of {total:,} positions are kept in {store}, the same command goes on"
-        print(f"agents.search: {why}; {kept}", file=sys.stderr)
+        kept = f"{each * len(store.names('parts')):,} of {total:,} positions are kept in {store}"
+        print(f"agents.search: {why}; {kept}, the same command goes on", file=sys.stderr)
         return code
-    store.write(
-        INDEX, (json.dumps({"positions": total, "parts": keys_of(parts, shared)}, indent=1) + "\n").encode()
-    )
+    index = {"positions": total, "parts": keys_of(parts, shared)}
+    store.write(INDEX, (json.dumps(index, indent=1) + "\n").encode())
     print(f"{total:,} positions: {store}")
     return 0

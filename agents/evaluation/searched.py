@@ -45,22 +45,13 @@ def play(shared, args, threads):
     for decision in range(ROUNDS):
         at = Positions.of(tables)
         ranked = player.rank(at, decision_seeds(args["seed"], first + np.arange(TABLES), decision))
-        strokes, scores = (
-            np.full((TABLES, KEPT, 5), np.nan, np.float32),
-            np.full((TABLES, KEPT), np.nan, np.float32),
-        )
+        strokes = np.full((TABLES, KEPT, 5), np.nan, np.float32)
+        scores = strokes[..., 0].copy()
         for k, one in enumerate(ranked):
             m = min(KEPT, len(one.strokes))
             strokes[k, :m], scores[k, :m] = one.strokes.values[:m], one.scores[:m]
-        rounds.append(
-            {
-                "positions": at.positions,
-                "on_table": at.on_table,
-                "game": at.game,
-                "strokes": strokes,
-                "scores": scores,
-            }
-        )
+        seen = {"positions": at.positions, "on_table": at.on_table, "game": at.game}
+        rounds.append(seen | {"strokes": strokes, "scores": scores})
         played = Strokes.join([one.strokes[:1] for one in ranked]).actions(tables.options, at)
         _, _, ended, stopped, _ = tables.step(played.astype(np.float32))
         if (done := ended | stopped).any():

@@ -1,24 +1,24 @@
 """Who is the better player of whole frames? A round robin: every player against every other, each seed twice,
 both colours of the break.
 
-    python -m agents.tournament random ghost_ball ppo_mask --frames 200 python -m agents.tournament
-    "mine=runs/ppo_mask-0" search search_2000 --frames 200 --fewer search_2000=20 --out ladder.json --resume
-    python -m agents.tournament ppo_mask search --match 7 --frames 40 --noise amateur python -m
-    agents.tournament --check ladder.json python -m agents.tournament --show ladder.json --markdown ladder.md
+    python -m agents.tournament random ghost_ball ppo_mask --frames 200
+    python -m agents.tournament "mine=runs/0" search_2000 --fewer search_2000=20 --out ladder.json --resume
+    python -m agents.tournament ppo_mask search --match 7 --frames 40 --noise amateur
+    python -m agents.tournament --check ladder.json
+    python -m agents.tournament --show ladder.json --markdown ladder.md
 
 A player is a NAME (of ``snooker_env.players()``), a model's .zip or run folder, LABEL=PATH, or MODULE:CLASS
 for a player of your own, whose module is imported. --trust and --options are those of
 ``python -m agents.evaluate``. What is played and what the figures mean: docs/agents/tournament.md.
 """
 
-import argparse
 import shlex
 import sys
 import time
 from pathlib import Path
 from typing import Any
 
-from commands.lifecycle import command, needs
+from commands.lifecycle import command, needs, parser_of
 
 with needs("agents.tournament"):
     import snooker_env
@@ -33,11 +33,11 @@ with needs("agents.tournament"):
 
     from ..cluster.job import ClusterError, Part, ended
     from ..cluster.ray_cluster import add_ray, checked_ray, place
-    from . import encounters
-    from .entrants import Entrant, options_of
+    from . import tournament_play
+    from .entrants import add_models, entrants_of
     from .tournament_figures import ANCHOR_ELO, schedule
     from .tournament_file import faults, kept, result_of, seeds_of
-    from .tournament_play import CHUNK, TABLES
+    from .tournament_play import CHUNK, TABLES, drawn
     from .tournament_report import markdown, parts
     from .tournament_strengths import PRIOR
     from .travel import sent
@@ -50,83 +50,37 @@ SAVED = 60.0
 
 def parser():
     """The command line."""
-    p = argparse.ArgumentParser(
-        "python -m agents.tournament",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    names = ", ".join(snooker_env.players())
-    p.add_argument(
-        "players", nargs="*", metavar="PLAYER", help=f"NAME, MODEL, LABEL=PATH or MODULE:CLASS; NAME: {names}"
-    )
-    p.add_argument(
-        "--frames",
-        type=int,
-        default=100,
-        metavar="N",
-        help="frames of each pair, or matches with --match; even [100]",
-    )
-    p.add_argument(
-        "--fewer",
-        nargs="+",
-        default=[],
-        metavar="LABEL=N",
-        help="only so many of each pair with a slow player",
-    )
-    p.add_argument(
-        "--match",
-        type=int,
-        default=1,
-        metavar="BEST_OF",
-        help="play matches, each the best of so many frames; odd [1]",
-    )
+    p = parser_of("python -m agents.tournament", __doc__)
+    what = f"NAME, MODEL, LABEL=PATH or MODULE:CLASS; NAME: {', '.join(snooker_env.players())}"
+    p.add_argument("players", nargs="*", metavar="PLAYER", help=what)
+    what = "frames of each pair, or matches with --match; even [100]"
+    p.add_argument("--frames", type=int, default=100, metavar="N", help=what)
+    what = "only so many of each pair with a slow player"
+    p.add_argument("--fewer", nargs="+", default=[], metavar="LABEL=N", help=what)
+    what = "play matches, each the best of so many frames; odd [1]"
+    p.add_argument("--match", type=int, default=1, metavar="BEST_OF", help=what)
     p.add_argument("--noise", default="professional", help="level of execution noise [professional]")
-    p.add_argument(
-        "--physics", default="paper", help="paper, match, or one with changes: paper,mu_bb=marlow [paper]"
-    )
+    what = "paper, match, or one with changes: paper,mu_bb=marlow [paper]"
+    p.add_argument("--physics", default="paper", help=what)
     p.add_argument("--miss", default="off", help="rule for a foul and a miss [off]")
     p.add_argument("--rules", default="snooker", help="the option game of frames: which rules [snooker]")
-    p.add_argument(
-        "--max-strokes",
-        type=int,
-        default=1000,
-        help="strokes after which a frame is stopped, half a win for each [1000]",
-    )
+    what = "strokes after which a frame is stopped, half a win for each [1000]"
+    p.add_argument("--max-strokes", type=int, default=1000, help=what)
     p.add_argument("--seed", type=int, default=0, help="seed of the first match of each pair [0]")
-    p.add_argument(
-        "--anchor",
-        metavar="LABEL",
-        help=f"the player whose Elo is {ANCHOR_ELO:.0f} [{ANCHOR}, else the first]",
-    )
+    what = f"the player whose Elo is {ANCHOR_ELO:.0f} [{ANCHOR}, else the first]"
+    p.add_argument("--anchor", metavar="LABEL", help=what)
     p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
-    p.add_argument(
-        "--trust",
-        action="store_true",
-        help="run the pickled code in models of Stable-Baselines3 that train.py did not make",
-    )
-    p.add_argument(
-        "--options",
-        nargs="+",
-        default=[],
-        metavar="KEY=VALUE",
-        help="how the actions of such models are read, for example aim=target",
-    )
+    add_models(p)
     p.add_argument("--threads", type=int, help="threads that play the tables [one for each core]")
     add_ray(p)
     p.add_argument("--out", type=Path, metavar="FILE", help="write every frame and figure here, as JSON")
     p.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here")
-    p.add_argument(
-        "--resume", action="store_true", help="go on with an incomplete --out; leave a complete one as it is"
-    )
+    what = "go on with an incomplete --out; leave a complete one as it is"
+    p.add_argument("--resume", action="store_true", help=what)
     p.add_argument("--force", action="store_true", help="replace --out if it is there")
     p.add_argument("--quiet", action="store_true", help="show no progress")
-    p.add_argument(
-        "--check",
-        nargs="+",
-        type=Path,
-        metavar="FILE",
-        help="verify files of tournaments instead; exit code 1 if one is wrong",
-    )
+    what = "verify files of tournaments instead; exit code 1 if one is wrong"
+    p.add_argument("--check", nargs="+", type=Path, metavar="FILE", help=what)
     p.add_argument("--show", type=Path, metavar="FILE", help="show a file of a tournament instead")
     return p
 
@@ -139,23 +93,14 @@ def game_of(args):
 
 def checked(args):
     """(entrants, protocol, game) of the command line. Raises ValueError before anything is played."""
-    options = options_of(args.options)
-    entrants = [Entrant.of(text, args.trust, options) for text in args.players]
-    labels = [entrant.label for entrant in entrants]
-    if len(labels) < 2:
+    if len(args.players) < 2:
         raise refuse("players", " ".join(args.players), "must be two or more")
+    entrants = entrants_of(args.players, args, "player")
+    labels = [entrant.label for entrant in entrants]
     for entrant, text in zip(entrants, args.players, strict=True):
-        if labels.count(entrant.label) > 1:
-            raise refuse("player", entrant.label, "must be another for each player: give LABEL=PATH")
         if len(entrant.runs) > 1:
-            raise refuse(
-                "player", text, "must be one player or model: give each training seed a label of its own"
-            )
-        entrant.trained()  # reads its model
-    if options and not any(entrant.foreign for entrant in entrants):
-        raise refuse(
-            "options", " ".join(args.options), "must be left out: it is for models that train.py did not make"
-        )
+            single = "must be one player or model: give each training seed a label of its own"
+            raise refuse("player", text, single)
     anchor = args.anchor or (ANCHOR if ANCHOR in labels else labels[0])
     protocol = {
         "first_seed": integer("seed", args.seed, 0, 2**53),
@@ -181,11 +126,8 @@ def checked(args):
     if args.threads is not None:
         integer("threads", args.threads, 1, 1024)
     if args.out and args.out.exists() and not (args.resume or args.force):
-        raise refuse(
-            "out",
-            str(args.out),
-            "must be a new file; --resume goes on with an incomplete one, --force replaces it",
-        )
+        how = "--resume goes on with an incomplete one, --force replaces it"
+        raise refuse("out", str(args.out), f"must be a new file; {how}")
     if args.resume and not args.out:
         raise refuse("resume", True, "must be given together with --out")
     for name in ("out", "markdown"):
@@ -213,12 +155,10 @@ class Tournament:
     def __init__(self, entrants, protocol, game, command, before=None):
         self.entrants, self.protocol, self.game, self.command = entrants, protocol, game, command
         self.labels, self.load = [entrant.label for entrant in entrants], machine()
-        self.rows = list(before["rows"]) if before else []
-        self.times = (
-            [[p["decisions"], p["seconds"]] for p in before["players"]]
-            if before
-            else [[0, 0.0] for _ in entrants]
-        )
+        self.rows, self.times = [], [[0, 0.0] for _ in entrants]
+        if before:
+            self.rows = list(before["rows"])
+            self.times = [[player["decisions"], player["seconds"]] for player in before["players"]]
 
     @property
     def parts(self):
@@ -227,18 +167,11 @@ class Tournament:
         for pair in schedule(self.labels):
             seeds = seeds_of(p, self.labels, pair)
             for some in (seeds[k : k + CHUNK] for k in range(0, len(seeds), CHUNK)):
-                draws = [
-                    encounters.drawn(self.labels[k], self.labels[other], some[0])
-                    for k, other in (pair, pair[::-1])
-                ]
-                args = {
-                    "pair": list(pair),
-                    "seeds": some,
-                    "draws": draws,
-                    "game": self.game,
-                    "best_of": p["best_of"],
-                }
-                parts.append(Part("agents.evaluation.encounters:play", "players", args))
+                first, second = (self.labels[k] for k in pair)
+                draws = [drawn(first, second, some[0]), drawn(second, first, some[0])]
+                args = {"pair": list(pair), "seeds": some, "draws": draws}
+                args |= {"game": self.game, "best_of": p["best_of"]}
+                parts.append(Part("agents.evaluation.tournament_play:play", "players", args))
         return parts
 
     @property
@@ -258,26 +191,20 @@ class Tournament:
             if not all((*part.args["pair"], seed) in done for seed in part.args["seeds"])
         ]
         shared = {"players": {"players": [sent(entrant, 0) for entrant in self.entrants]}}
-        results = (
-            self._here(parts, shared["players"], threads, tick) if where.here else ended(parts, shared, where)
-        )
-        for k, result in results:
+        here = self._here(parts, shared["players"], threads, tick)
+        for k, result in here if where.here else ended(parts, shared, where):
             self.rows = sorted([*self.rows, *result["rows"].tolist()], key=lambda row: row[:5])
-            for player, decisions, seconds in zip(
-                parts[k].args["pair"], result["decisions"], result["seconds"], strict=True
-            ):
-                self.times[player][0] += int(decisions)
-                self.times[player][1] += float(seconds)
+            for side, player in enumerate(parts[k].args["pair"]):
+                self.times[player][0] += int(result["decisions"][side])
+                self.times[player][1] += float(result["seconds"][side])
             tick(self.ended)
             saved()
 
     def _here(self, parts, shared, threads, tick):
         """In this process each match is counted as it ends."""
         for k, part in enumerate(parts):
-            yield (
-                k,
-                encounters.play(shared, part.args, threads, lambda n, before=self.ended: tick(before + n)),
-            )
+            counted = lambda n, before=self.ended: tick(before + n)  # noqa: E731
+            yield k, tournament_play.play(shared, part.args, threads, counted)
 
     def result(self, incomplete=None):
         """The content of the file; ``incomplete``: why frames are missing."""
@@ -291,15 +218,8 @@ class Tournament:
             }
             for entrant, (decisions, seconds) in zip(self.entrants, self.times, strict=True)
         ]
-        return result_of(
-            self.protocol,
-            self.game,
-            players,
-            self.rows,
-            command=self.command,
-            load=self.load,
-            incomplete=incomplete,
-        )
+        about = {"command": self.command, "load": self.load, "incomplete": incomplete}
+        return result_of(self.protocol, self.game, players, self.rows, **about)
 
 
 @command("agents.tournament")
@@ -323,19 +243,18 @@ def main(argv=None):
         p.error(str(error))
     if before is not None and before["incomplete"] is None:
         return _shown(before, args.markdown)
-    tournament = Tournament(
-        entrants, protocol, game, "python -m agents.tournament " + shlex.join(argv), before
-    )
+    line = "python -m agents.tournament " + shlex.join(argv)
+    tournament = Tournament(entrants, protocol, game, line, before)
     snooker_env.warmup()
     why, code = _play(tournament, args)
     if why is not None:
         print(f"agents.tournament: {why}", file=sys.stderr)
     if not tournament.rows:
         return code
-    found = tournament.result(why)
+    content = tournament.result(why)
     if args.out:
-        write_result(args.out, found)
-    _shown(found, args.markdown)
+        write_result(args.out, content)
+    _shown(content, args.markdown)
     if args.out:
         print(f"out: {args.out}")
     return code
@@ -350,25 +269,17 @@ def _play(tournament, args):
             write_result(args.out, tournament.result("it was still running"))
             last[0] = time.monotonic()
 
-    total, units = (
-        sum(2 * len(part.args["seeds"]) for part in tournament.parts),
-        "frames" if args.match == 1 else "matches",
-    )
+    total = sum(2 * len(part.args["seeds"]) for part in tournament.parts)
+    units = "frames" if args.match == 1 else "matches"
     try:
-        with (
-            place(args.ray) as where,
-            Progress(
-                f"tournament{where.says}", total, units, done=tournament.ended, quiet=args.quiet
-            ) as progress,
-        ):
-            tournament.play(where, args.threads, progress.at, saved)
+        with place(args.ray) as where:
+            what = f"tournament{where.says}"
+            with Progress(what, total, units, done=tournament.ended, quiet=args.quiet) as progress:
+                tournament.play(where, args.threads, progress.at, saved)
     except (KeyboardInterrupt, ClusterError) as error:
         stopped, number = isinstance(error, KeyboardInterrupt), tournament.ended
-        kept = "these are kept" if number else "nothing is kept"
-        return (
-            f"{'interrupted' if stopped else error} after {number:,} of {total:,} {units}: {kept}",
-            130 if stopped else 1,
-        )
+        why = f"{'interrupted' if stopped else error} after {number:,} of {total:,} {units}"
+        return f"{why}: {'these are kept' if number else 'nothing is kept'}", 130 if stopped else 1
     except BaseException as error:
         # of a player's own code: its traceback is for its author, what was played is kept
         if args.out and tournament.rows:
@@ -377,13 +288,13 @@ def _play(tournament, args):
     return None, 0
 
 
-def _shown(found, file):
+def _shown(content, file):
     """Print the tables and write them as Markdown."""
-    if found["figures"] is None:
+    if content["figures"] is None:
         raise refuse("show", "a file", "must hold frames")
-    show(parts(found))
+    show(parts(content))
     if file:
-        write_atomic(file, markdown(found))
+        write_atomic(file, markdown(content))
         print(f"markdown: {file}")
     return 0
 

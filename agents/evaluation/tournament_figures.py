@@ -21,8 +21,7 @@ KEYS = ("first", "second", "seed", "opener", "frame", "winner")
 """Of a row: indices of the two players; seed of the match; who of them (0 or 1) broke in its first frame; the
 frame's index in the match; who won it, -1 if it was stopped."""
 COUNTED = ("points", "scored", "visits", "strokes", "fouls", "best")
-"""What is counted for each player: points, those of his own pots, visits to the table, strokes, fouls, points
-of his best visit."""
+"""What is counted of each player: points, those of its own pots, visits, strokes, fouls, its best visit."""
 COLUMNS = (*KEYS, *(f"{name}_{side}" for name in COUNTED for side in KEYS[:2]))
 ANCHOR_ELO = 1000.0
 """Elo of the anchor."""
@@ -32,7 +31,7 @@ RATIOS = {
     "fouls_a_frame": ("fouls", "frames"),
     "strokes_a_frame": ("strokes", "frames"),
 }
-"""Figures of a player that are ratios of two sums over all his frames."""
+"""Figures of a player that are ratios of two sums over all its frames."""
 
 
 @dataclass
@@ -58,10 +57,7 @@ class PlayedPair:
         def total(values, where=None):
             return np.bincount(at if where is None else at[where], values, m)
 
-        sides = (
-            (column["winner"] == 0) + 0.5 * (column["winner"] < 0),
-            (column["winner"] == 1) + 0.5 * (column["winner"] < 0),
-        )
+        sides = [(column["winner"] == side) + 0.5 * (column["winner"] < 0) for side in (0, 1)]
         lead = np.zeros((2, m))  # frames of the match, by its opener
         np.add.at(lead, (column["opener"], at), sides[0] - sides[1])
         won = 0.5 * (1.0 + np.sign(lead))  # of the first player
@@ -87,8 +83,8 @@ class PlayedPair:
 def pairs_of(rows):
     """The ``PlayedPair`` of every pair in the rows, in order."""
     table = np.array(rows, np.int64).reshape(-1, len(COLUMNS))
-    found = sorted({(int(a), int(b)) for a, b in table[:, :2]})
-    return [PlayedPair.of(pair, table[(table[:, 0] == pair[0]) & (table[:, 1] == pair[1])]) for pair in found]
+    pairs = sorted({(int(a), int(b)) for a, b in table[:, :2]})
+    return [PlayedPair.of(pair, table[(table[:, :2] == pair).all(1)]) for pair in pairs]
 
 
 def _share(won, matches, drawn, seeds):
@@ -99,10 +95,10 @@ def _share(won, matches, drawn, seeds):
 def figures_of(labels, rows, anchor, resamples=RESAMPLES):
     """All figures of a tournament.
 
-    "players": for each label "matches", "frames", "won", "drawn", "win_rate" (the mean over his opponents),
+    "players": for each label "matches", "frames", "won", "drawn", "win_rate" (the mean over its opponents),
     "frame_rate", "elo", "elo_by_prior", the ratios of ``RATIOS`` and "highest_break". "pairs": for each pair
     "first", "second", "matches", "won", "drawn", "win_rate" of the first player and "when_opening", that of
-    each in the matches that he opened. "opener": the share of matches won by the player who opened them;
+    each in the matches that it opened. "opener": the share of matches won by the player who opened them;
     "stopped": frames that were stopped. A figure is {"value", "low", "high"}.
     """
     pairs = pairs_of(rows)
@@ -121,54 +117,41 @@ def figures_of(labels, rows, anchor, resamples=RESAMPLES):
 
 
 def _player(mine, resamples):
-    """The figures of a player in these pairs; with each his place in it."""
+    """The figures of a player in these pairs; with each its place in it."""
     sums, drawn = {}, {}
     for pair, side in mine:
         for name, values in pair.sums.items():
             sums[name] = sums.get(name, 0.0) + values[side].sum()
             drawn[name] = drawn.get(name, 0.0) + pair.samples(values[side], resamples)
     seeds = sum(pair.seeds for pair, _ in mine)
-    found = {
-        "matches": int(sums["matches"]),
-        "frames": int(sums["frames"]),
-        "won": sums["won"],
-        "drawn": sum(p.draws for p, _ in mine),
-    }
+    figures = {"matches": int(sums["matches"]), "frames": int(sums["frames"]), "won": sums["won"]}
+    figures["drawn"] = sum(pair.draws for pair, _ in mine)
     for name, won, many in (("win_rate", "won", "matches"), ("frame_rate", "frames_won", "frames")):
         shares = [pair.sums[won][side].sum() / pair.sums[many][side].sum() for pair, side in mine]
         samples = [
             pair.samples(pair.sums[won][side], resamples) / pair.samples(pair.sums[many][side], resamples)
             for pair, side in mine
         ]
-        found[name] = _share(np.mean(shares), 1.0, np.mean(samples, axis=0), seeds)
+        figures[name] = _share(np.mean(shares), 1.0, np.mean(samples, axis=0), seeds)
     for name, (above, below) in RATIOS.items():
-        found[name] = (
-            figure(sums[above] / sums[below], drawn[above] / drawn[below])
-            if sums[below]
-            else figure(np.nan, [np.nan])
+        known = (
+            (sums[above] / sums[below], drawn[above] / drawn[below]) if sums[below] else (np.nan, [np.nan])
         )
-    return found | {"highest_break": max(pair.best[side] for pair, side in mine)}
+        figures[name] = figure(*known)
+    return figures | {"highest_break": max(pair.best[side] for pair, side in mine)}
 
 
 def _pair(pair, labels, resamples):
     """The figures of two players against each other."""
-    won, matches = pair.sums["won"], pair.sums["matches"][0].sum()
-    opening = [
-        _share(
-            pair.opened[side].sum(),
-            pair.seeds,
-            pair.samples(pair.opened[side], resamples) / pair.seeds,
-            pair.seeds,
-        )
-        for side in (0, 1)
-    ]
+    won, matches, n = pair.sums["won"], pair.sums["matches"][0].sum(), pair.seeds
+    opening = [_share(wins.sum(), n, pair.samples(wins, resamples) / n, n) for wins in pair.opened]
     return {
         "first": labels[pair.players[0]],
         "second": labels[pair.players[1]],
         "matches": int(matches),
         "won": float(won[0].sum()),
         "drawn": pair.draws,
-        "win_rate": _share(won[0].sum(), matches, pair.samples(won[0], resamples) / matches, pair.seeds),
+        "win_rate": _share(won[0].sum(), matches, pair.samples(won[0], resamples) / matches, n),
         "when_opening": opening,
     }
 
@@ -185,11 +168,8 @@ def _elo(pairs, k, anchor, resamples):
     wins, drawn, seeds = np.zeros((k, k)), np.zeros((resamples, k, k)), np.zeros((k, k))
     for pair in pairs:
         for (i, j), values in zip((pair.players, pair.players[::-1]), pair.sums["won"], strict=True):
-            wins[i, j], drawn[:, i, j], seeds[i, j] = (
-                values.sum(),
-                pair.samples(values, resamples),
-                pair.seeds,
-            )
+            wins[i, j], seeds[i, j] = values.sum(), pair.seeds
+            drawn[:, i, j] = pair.samples(values, resamples)
     met = linked(seeds > 0, anchor)
     here = np.flatnonzero(met)
     at = int(np.searchsorted(here, anchor))
@@ -197,18 +177,17 @@ def _elo(pairs, k, anchor, resamples):
     both = strengths(np.concatenate([wins[None], drawn])[(slice(None), *among)], PRIOR)
     elo = ANCHOR_ELO + ELO * (both - both[:, at : at + 1])
     sound = compared(wins[among], at)
-    found = [{"elo": figure(np.nan, [np.nan]), "elo_by_prior": True} for _ in range(k)]
+    all_elo = [{"elo": figure(np.nan, [np.nan]), "elo_by_prior": True} for _ in range(k)]
     for j, i in enumerate(here):
         mine = figure(elo[0, j], elo[1:, j])
         if not sound[j]:
             mine |= _bounds(elo[0], j, sound, wins[among], seeds[among])
-        found[i] = {"elo": mine, "elo_by_prior": not sound[j]}
-    return found
+        all_elo[i] = {"elo": mine, "elo_by_prior": not sound[j]}
+    return all_elo
 
 
 def _bounds(elo, j, sound, wins, seeds):
-    """ "low" and "high" of a player who won all his matches, or none, against those who can be compared with
-    the anchor."""
+    """ "low" and "high" of a player that won all or none of those comparable with the anchor."""
     others = np.flatnonzero(sound & (seeds[j] > 0))
     strength, many = elo[others] / ELO, seeds[j, others]
     if not wins[others, j].any():

@@ -1,9 +1,7 @@
 """What is the file of a tournament? Its fields with their meanings, one row for each frame, and whether it is
 what it says.
 
-The fields about software, machine, command, commit and date are those of a benchmark's result
-(``docs/benchmark.md``), written and checked by the same code. The rest differs, since a tournament has many
-players and no frozen task: so the file has a name of its own.
+Software, machine, command, commit and date are those of a benchmark's result (``docs/benchmark.md``).
 """
 
 from datetime import datetime, timezone
@@ -31,7 +29,7 @@ FIELDS = {
     "protocol.resamples": (int, False, "bootstrap samples of the intervals"),
     "protocol.prior": (NUMBER, False, "drawn matches added to each pair for the strengths"),
     "protocol.anchor": (str, False, "the player whose Elo is given"),
-    "protocol.anchor_elo": (NUMBER, False, "his Elo"),
+    "protocol.anchor_elo": (NUMBER, False, "its Elo"),
     "game": (dict, False, "options of the frames: noise, physics, max_strokes and those that were changed"),
     "players": (list, False, "one object for each, see below"),
     **{
@@ -126,11 +124,10 @@ def faults(content):
     labels = [player["label"] for player in content["players"]]
     if len(labels) < 2 or len(set(labels)) < len(labels) or protocol["anchor"] not in labels:
         return ["players: must be two or more with different labels, the anchor among them"]
+    even = "must be an even number, at least 2 and at most protocol.matches"
     for name, matches in [("matches", protocol["matches"]), *protocol["fewer"].items()]:
         if type(matches) is not int or not 2 <= matches <= protocol["matches"] or matches % 2:
-            wrong.append(
-                f"protocol: {name} = {matches!r}: must be an even number, at least 2 and at most protocol.matches"
-            )
+            wrong.append(f"protocol: {name} = {matches!r}: {even}")
     wrong += [f"protocol.fewer: {label!r} is no player" for label in protocol["fewer"] if label not in labels]
     return wrong or _faults_of_rows(content, labels)
 
@@ -138,19 +135,12 @@ def faults(content):
 def _faults_of_rows(content, labels):
     rows, protocol = content["rows"], content["protocol"]
     for k, row in enumerate(rows):
-        if (
-            not isinstance(row, list)
-            or len(row) != len(COLUMNS)
-            or any(type(x) is not int or abs(x) > 2**53 for x in row)
-        ):
+        whole = isinstance(row, list) and all(type(x) is int and abs(x) <= 2**53 for x in row)
+        if not whole or len(row) != len(COLUMNS):
             return [f"rows[{k}]: must be {len(COLUMNS)} whole numbers"]
     matches = {key: list(frames) for key, frames in groupby(rows, key=lambda row: tuple(row[:4]))}
-    want = [
-        (*pair, seed, opener)
-        for pair in schedule(labels)
-        for seed in seeds_of(protocol, labels, pair)
-        for opener in (0, 1)
-    ]
+    seeds = [(*pair, seed) for pair in schedule(labels) for seed in seeds_of(protocol, labels, pair)]
+    want = [(*seed, opener) for seed in seeds for opener in (0, 1)]
     order = {key: n for n, key in enumerate(want)}
     for key, frames in matches.items():
         where = f"rows: a match of players {key[:2]} on seed {key[2]}, opener {key[3]}"
@@ -188,11 +178,9 @@ def _differences(value, want, name):
         return [line for key in want for line in _differences(value[key], want[key], f"{name}.{key}")]
     if isinstance(want, list) and isinstance(value, list) and len(value) == len(want):
         return [line for k in range(len(want)) for line in _differences(value[k], want[k], f"{name}[{k}]")]
-    close = (
-        isinstance(want, float)
-        and isinstance(value, int | float)
-        and abs(value - want) <= 1e-6 * max(1.0, abs(want))
-    )
+    close = False
+    if isinstance(want, float) and isinstance(value, int | float):
+        close = abs(value - want) <= 1e-6 * max(1.0, abs(want))
     return [] if value == want or close else [f"{name}: must be what follows from the rows"]
 
 

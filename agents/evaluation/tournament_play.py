@@ -14,20 +14,22 @@ A visit is all strokes of a player in succession: also over the lot at a re-spot
 
 import copy
 import time
+import zlib
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from commands.physics_option import physics_option
 from snooker_env import Options, SnookerVectorEnv
 from snooker_env.players import FRAMES, decided, decision_seeds
 
 from .tournament_figures import COUNTED
+from .travel import arrived
 
 TABLES = 128
 """Tables side by side."""
 CHUNK = 100
-"""Seeds that are played in one go. A player is made anew for each, so that a tournament can be resumed
-between two of them."""
+"""Seeds that are played in one go, by players made anew: between two a tournament can be resumed."""
 
 
 class TimedPlayer:
@@ -36,31 +38,21 @@ class TimedPlayer:
 
     def __init__(self, player, seed=0):
         self._player, self.seed = player, seed
-        self.count = {"decisions": 0, "seconds": 0.0}
+        self.count = {"decisions": 0, "seconds": 0.0}  # shared by all that are bound
 
     def at(self, rules):
-        """Bound; the count is shared."""
+        """See ``Player.at``."""
         bound = copy.copy(self)
         bound._player = self._player.at(rules)
         return bound
 
     def play(self, positions, seeds):
-        """The player's own strokes."""
+        """See ``Player.play``."""
         began = time.perf_counter()
         strokes = self._player.play(positions, np.asarray(seeds) ^ (self.seed & 0xFFFFFFFF))
         self.count["seconds"] += time.perf_counter() - began
         self.count["decisions"] += len(strokes)
         return strokes
-
-    @property
-    def decisions(self):
-        """Decisions so far."""
-        return self.count["decisions"]
-
-    @property
-    def seconds(self):
-        """Their time [s]."""
-        return self.count["seconds"]
 
 
 @dataclass
@@ -91,11 +83,6 @@ class Encounter:
             self.unit[k] = self.queue.pop(0)
 
     @property
-    def n(self):
-        """How many tables there are."""
-        return len(self.frame)
-
-    @property
     def going(self):
         """Tables with a match."""
         return self.unit[:, 0] >= 0
@@ -115,31 +102,28 @@ class Encounter:
 
     def stepped(self, which, info):
         """One step was made on the tables ``which`` (n,) bool."""
-        own = which & (info["strokes"] - self.played - info["opponent_strokes"] > 0)
-        points, penalty = (
-            np.where(own, info["points"], 0).astype(int),
-            np.where(own, info["penalty"], 0).astype(int),
-        )
+        struck = which & (info["strokes"] - self.played - info["opponent_strokes"] > 0)
+        points, penalty = (np.where(struck, info[name], 0).astype(int) for name in ("points", "penalty"))
         gained = info["opponent_score"].astype(int) - self.sums["points"][:, 1] - penalty
-        given = info["score"].astype(int) - self.sums["points"][:, 0] - points
-        self.visit[own & self.fresh] = 0
+        conceded = info["score"].astype(int) - self.sums["points"][:, 0] - points
+        self.visit[struck & self.fresh] = 0
         self.visit += points
-        self.sums["visits"][:, 0] += own & self.fresh
-        self.sums["strokes"][:, 0] += own
-        self.sums["fouls"][:, 0] += own & (info["fouls"] != 0)
+        self.sums["visits"][:, 0] += struck & self.fresh
+        self.sums["strokes"][:, 0] += struck
+        self.sums["fouls"][:, 0] += struck & (info["fouls"] != 0)
         self.sums["scored"][:, 0] += points
-        self._best(own, 0, self.visit)
-        self.fresh = np.where(own, points == 0, self.fresh) | (which & (info["opponent_strokes"] > 0))
-        self._opponent(which, gained, given, info["opponent_strokes"])
+        self._best(struck, 0, self.visit)
+        self.fresh = np.where(struck, points == 0, self.fresh) | (which & (info["opponent_strokes"] > 0))
+        self._opponent(which, gained, conceded, info["opponent_strokes"])
         self._score(which, info)
 
-    def _opponent(self, which, scored, given, strokes):
-        """One visit of the opponent, if he had any stroke; ``given``: points for his fouls."""
+    def _opponent(self, which, scored, conceded, strokes):
+        """One visit of the opponent, if it had any stroke; ``conceded``: points for its fouls."""
         struck = which & (strokes > 0)
         scored = np.where(struck, scored, 0).astype(int)
         self.sums["visits"][:, 1] += struck
         self.sums["strokes"][:, 1] += np.where(struck, strokes, 0)
-        self.sums["fouls"][:, 1] += struck & (given > 0)  # a foul ends the visit
+        self.sums["fouls"][:, 1] += struck & (conceded > 0)  # a foul ends the visit
         self.sums["scored"][:, 1] += scored
         self._best(struck, 1, scored)
 
@@ -153,22 +137,13 @@ class Encounter:
             self.sums["points"][which, side] = info[name][which]
 
     def ended(self, which, info):
-        """The frames on the tables ``which`` (n,) bool have ended: write the rows, and give each table its
-        next frame."""
+        """The frames on the tables ``which`` (n,) bool have ended: write rows, take up the next frames."""
         for k in np.flatnonzero(which).tolist():
             winner, (seed, opener) = int(info["winner"][k]), self.unit[k].tolist()
             sides = (1, 0) if self.exchanged else (0, 1)  # of the pair's first player and of its second
             sums = [int(self.sums[name][k, side]) for name in COUNTED for side in sides]
-            self.rows.append(
-                [
-                    *self.pair,
-                    seed,
-                    sides[opener],
-                    int(self.frame[k]),
-                    -1 if winner < 0 else sides[winner],
-                    *sums,
-                ]
-            )
+            won = -1 if winner < 0 else sides[winner]
+            self.rows.append([*self.pair, seed, sides[opener], int(self.frame[k]), won, *sums])
             self.won[k] += 0.5 if winner < 0 else [winner == 0, winner == 1]
             self.frame[k] += 1
             if self.frame[k] == self.best_of or self.won[k].max() > 0.5 * self.best_of:
@@ -193,26 +168,46 @@ def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
     for exchanged in (False, True):
         meeting = Encounter(pair, exchanged, [(seed, seed % 2) for seed in seeds], best_of)
         one, other = players[::-1] if exchanged else players
-        _play(meeting, one, other, game, threads, _after(tick, len(seeds) * exchanged))
+        before = len(seeds) * exchanged
+        counted = tick and (lambda n, before=before: tick(before + n))
+        _play(meeting, one, other, game, threads, counted)
         rows += meeting.rows
     return sorted(rows)
 
 
-def _after(tick, before):
-    """``tick`` with so many matches before."""
-    return None if tick is None else lambda n: tick(before + n)
+def drawn(label, other, first):
+    """The seed of what a player draws against ``other`` in the matches from the seed ``first`` on."""
+    return zlib.crc32(f"{label}\n{other}\n{first}".encode())
+
+
+def play(shared, args, threads, tick=None):
+    """The task of a part, a pair on some seeds: the rows, and each player's decisions and their time [s].
+
+    ``shared``: "players", of ``travel.sent``. ``args``: "pair" (indices), "seeds" of the matches, "draws"
+    (each player's ``drawn``), "game" as it stands in the file, "best_of"; ``tick`` is that of ``play_pair``.
+    """
+    players = [
+        TimedPlayer(arrived(shared["players"][k]), seed)
+        for k, seed in zip(args["pair"], args["draws"], strict=True)
+    ]
+    game = args["game"] | {"physics": physics_option(args["game"]["physics"])}
+    rows = play_pair(tuple(args["pair"]), players, game, args["seeds"], args["best_of"], threads, tick)
+    counted = {name: np.array([player.count[name] for player in players]) for name in players[0].count}
+    return {"rows": np.array(rows, np.int64), **counted}
 
 
 def _play(meeting, agent, opponent, game, threads, tick):
     """Play all matches of an encounter."""
     options = Options(task="frame", **FRAMES, **game)
     agent = agent.at(options)
-    matches, ended = len(meeting.queue) + meeting.n, 0
-    tables = _tables(meeting.n, options, opponent, threads)
+    matches, ended = len(meeting.queue) + len(meeting.frame), 0
+    tables = _tables(meeting, options, opponent, threads)
     _, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
     meeting.begun(meeting.going, info)
-    moved = np.zeros(meeting.n, bool)  # since the reset: only then is a state sure to hold a stroke to play
-    over = info["winner"] >= 0  # won by the opponent in his first visit: the next step plays nothing
+    moved = np.zeros(
+        len(meeting.frame), bool
+    )  # since the reset: only then is a state sure to hold a stroke to play
+    over = info["winner"] >= 0  # won by the opponent in its first visit: the next step plays nothing
     while (going := meeting.going).any():
         to_play = going & ~over
         actions = decided(agent, tables, to_play, decision_seeds(0, meeting.unit[:, 0], meeting.decision))
@@ -220,7 +215,7 @@ def _play(meeting, agent, opponent, game, threads, tick):
         _, _, terminated, truncated, info = tables.step(actions.astype(np.float32))
         meeting.stepped(going, info)
         done = terminated | truncated
-        moved, over = ~done, np.zeros(meeting.n, bool)
+        moved, over = ~done, np.zeros(len(done), bool)
         if done.any():
             before = meeting.unit.copy()
             meeting.ended(going & done, info)
@@ -229,18 +224,19 @@ def _play(meeting, agent, opponent, game, threads, tick):
         if tick is not None and now != ended:
             tick(now)
         ended = now
-        if 0 < (left := meeting.going).sum() <= meeting.n / 2 and moved[left].all():
+        if 0 < (left := meeting.going).mean() <= 0.5 and moved[left].all():
             states = [state for state, some in zip(tables.get_state(), left, strict=True) if some]
             tables.close()
             meeting.keep(left)
-            tables = _tables(meeting.n, options, opponent, threads)
+            tables = _tables(meeting, options, opponent, threads)
             _, info = tables.reset(options={"states": states})
-            over = np.zeros(meeting.n, bool)
+            over = np.zeros(len(states), bool)
     tables.close()
 
 
-def _tables(n, options, opponent, threads):
-    return SnookerVectorEnv(n, options, opponent=opponent, threads=threads, autoreset_mode="Disabled")
+def _tables(meeting, options, opponent, threads):
+    how = {"threads": threads, "autoreset_mode": "Disabled"}
+    return SnookerVectorEnv(len(meeting.frame), options, opponent=opponent, **how)
 
 
 def _renewed(tables, meeting, done, before):

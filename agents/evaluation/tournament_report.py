@@ -9,79 +9,41 @@ NAME = "snooker_env.tournament"
 """Name of the schema of a tournament's file."""
 
 
-def ranked(found):
+def ranked(content):
     """The labels of those who played, the highest Elo first."""
-    players = found["figures"]["players"]
-    there = [label for label, one in players.items() if one is not None]
-    return sorted(there, key=lambda label: (-(players[label]["elo"]["value"] or 0.0), label))
+    players = content["figures"]["players"]
+    played = [label for label, one in players.items() if one is not None]
+    return sorted(played, key=lambda label: (-(players[label]["elo"]["value"] or 0.0), label))
 
 
-def _unit(found):
-    return "frame" if found["protocol"]["best_of"] == 1 else "match"
+def _unit(content):
+    return "frame" if content["protocol"]["best_of"] == 1 else "match"
 
 
-def tables_of(found):
+def tables_of(content):
     """The tables of a tournament."""
-    figures, order, unit = found["figures"], ranked(found), _unit(found)
-    players, best_of = figures["players"], found["protocol"]["best_of"]
+    figures, order, best_of = content["figures"], ranked(content), content["protocol"]["best_of"]
     won = "matches" if best_of > 1 else "frames"
+    spent = {player["label"]: player for player in content["players"]}
     standing, play = [], []
     for rank, label in enumerate(order, 1):
-        p = players[label]
+        p, one = figures["players"][label], spent[label]
         elo = shown(p["elo"], form="{:.0f}") + (" *" if p["elo_by_prior"] else "")
-        frames = [shown(p["frame_rate"], 100.0)] if best_of > 1 else []
-        standing.append(
-            [
-                str(rank),
-                label,
-                elo,
-                shown(p["win_rate"], 100.0),
-                *frames,
-                f"{p['matches']:,}",
-                f"{p['drawn']:,}",
-            ]
-        )
-        highest = str(p["highest_break"])
-        play.append(
-            [
-                label,
-                shown(p["points_a_frame"]),
-                shown(p["average_break"], form="{:.2f}"),
-                highest,
-                shown(p["fouls_a_frame"], form="{:.2f}"),
-                shown(p["strokes_a_frame"]),
-            ]
-        )
+        shares = [shown(p[name], 100.0) for name in ("win_rate", "frame_rate")[: 2 if best_of > 1 else 1]]
+        standing.append([str(rank), label, elo, *shares, f"{p['matches']:,}", f"{p['drawn']:,}"])
+        average, fouls = (shown(p[name], form="{:.2f}") for name in ("average_break", "fouls_a_frame"))
+        time = f"{1e3 * one['seconds'] / one['decisions']:.3g}" if one["decisions"] else ""
+        points, strokes = shown(p["points_a_frame"]), shown(p["strokes_a_frame"])
+        play.append([label, points, average, str(p["highest_break"]), fouls, strokes, time])
     more = ["frames won [%]"] if best_of > 1 else []
-    spent = {player["label"]: player for player in found["players"]}
-    for row in play:
-        one = spent[row[0]]
-        row.append(f"{1e3 * one['seconds'] / one['decisions']:.3g}" if one["decisions"] else "")
+    wins = ["", "player", "Elo", f"{won} won [%]", *more, won, "draws"]
+    does = ["points a frame", "average break", "highest", "fouls a frame", "strokes a frame", "ms a decision"]
     cross = [[label, *(_cell(figures["pairs"], label, other) for other in order)] for label in order]
+    of_each = f"Share of the {won} that a player (row) won against another (column) [%]"
     return [
-        TextTable("Who wins", ["", "player", "Elo", f"{won} won [%]", *more, won, "draws"], standing, 2, 2),
-        TextTable(
-            "How they play",
-            [
-                "player",
-                "points a frame",
-                "average break",
-                "highest",
-                "fouls a frame",
-                "strokes a frame",
-                "ms a decision",
-            ],
-            play,
-            1,
-            1,
-        ),
-        TextTable(
-            f"Share of the {won} that a player (row) won against another (column) [%]",
-            [unit, *order],
-            cross,
-            1,
-            1,
-        ),
+        TextTable("Who wins", wins, standing, 2, 2),
+        TextTable("How they play", ["player", *does], play, 1, 1),
+        TextTable(of_each, [_unit(content), *order], cross, 1, 1),
     ]
 
 
@@ -95,15 +57,13 @@ def _cell(pairs, label, other):
     return ""
 
 
-def sentences(found):
+def sentences(content):
     """What a reader of the tables must know."""
-    p, figures, game = found["protocol"], found["figures"], found["game"]
-    unit, plural = (
-        _unit(found),
-        "frames" if p["best_of"] == 1 else f"matches, each the best of {p['best_of']} frames",
-    )
+    p, figures, game = content["protocol"], content["figures"], content["game"]
+    unit = _unit(content)
+    plural = "frames" if p["best_of"] == 1 else f"matches, each the best of {p['best_of']} frames"
     fewer = ", ".join(f"{n:,} with {label}" for label, n in p["fewer"].items())
-    said = [
+    notes = [
         f"Each pair plays {p['matches']:,} {plural}{f' ({fewer})' if fewer else ''}: two on each seed, each player breaking first in one.",
         "Options: " + ", ".join(f"{name}={value}" for name, value in game.items()) + ".",
         f"Who breaks first wins {shown(figures['opener'], 100.0)} %. Frames that were stopped, half for each: {figures['stopped']:,}.",
@@ -112,47 +72,40 @@ def sentences(found):
         f"Elo: Bradley and Terry's model, {p['anchor']} at {p['anchor_elo']:.0f}; to each pair {PRIOR:g} drawn {unit} is added.",
     ]
     if any(one is not None and one["elo_by_prior"] for one in figures["players"].values()):
-        said.append(
+        notes.append(
             f"* won or lost every {unit} against those who can be compared with {p['anchor']}: only the bound follows from results, "
             "the distance itself from the added draws."
         )
-    if found["incomplete"]:
-        said.append(f"INCOMPLETE: {found['incomplete']}.")
-    return said
+    if content["incomplete"]:
+        notes.append(f"INCOMPLETE: {content['incomplete']}.")
+    return notes
 
 
-def is_tournament(found):
+def is_tournament(content):
     """Whether that is the content of a tournament's file, and not another report."""
-    schema = found.get("schema") if isinstance(found, dict) else None
+    schema = content.get("schema") if isinstance(content, dict) else None
     return isinstance(schema, dict) and schema.get("name") == NAME
 
 
-def title(found):
+def title(content):
     """Who met."""
-    *others, last = ranked(found)
-    where = (
-        "frames"
-        if found["protocol"]["best_of"] == 1
-        else f"matches, the best of {found['protocol']['best_of']} frames"
-    )
-    return f"Tournament of {', '.join(others)} and {last}: {where}, noise {found['game']['noise']}"
+    *others, last = ranked(content)
+    best_of = content["protocol"]["best_of"]
+    where = "frames" if best_of == 1 else f"matches, the best of {best_of} frames"
+    return f"Tournament of {', '.join(others)} and {last}: {where}, noise {content['game']['noise']}"
 
 
-def parts(found):
+def parts(content):
     """Tables no wider than a terminal and sentences, in order."""
-    for table in tables_of(found):
+    for table in tables_of(content):
         yield from table.narrow()
-    yield from sentences(found)
+    yield from sentences(content)
 
 
-def markdown(found):
+def markdown(content):
     """The page of a tournament."""
-    made, m = found["software"], found["machine"]
-    how = f"snooker_env {made['snooker_env']}, at commit {found['commit'] or 'unknown'} on {m['cpu']}, {m['cores']} cores, "
-    how += f"{m['platform']}, Python {made['python']}, {found['date'][:10]}"
-    return page(
-        title(found),
-        found["command"],
-        how,
-        [*tables_of(found), "\n".join(f"* {line}" for line in sentences(found))],
-    )
+    made, m = content["software"], content["machine"]
+    how = f"snooker_env {made['snooker_env']}, at commit {content['commit'] or 'unknown'} on {m['cpu']}, {m['cores']} cores, "
+    how += f"{m['platform']}, Python {made['python']}, {content['date'][:10]}"
+    notes = "\n".join(f"* {line}" for line in sentences(content))
+    return page(title(content), content["command"], how, [*tables_of(content), notes])

@@ -15,7 +15,7 @@ PRIOR = 1.0
 ELO = 400.0 / np.log(10.0)
 """Points of Elo for one unit of strength."""
 SMALLEST = 1e-10
-"""The fit ends when no player's expected wins differ by more from his own, as a share of his matches."""
+"""The fit ends when no player's expected wins differ by more from the real ones, in shares of all."""
 LONGEST = 2.0
 """Longest step of Newton's method in a strength: further from the maximum it would overshoot."""
 ROUNDS = 200
@@ -62,8 +62,7 @@ def linked(edges, start):
 
 
 def compared(wins, anchor):
-    """Who (k,) can be compared with the anchor by results alone: who won something of it and lost something,
-    perhaps by way of others."""
+    """Who (k,) won and lost something against the anchor, perhaps by way of others: results compare them."""
     won = np.asarray(wins) > 0
     return linked(won, anchor) & linked(won.T, anchor)
 

@@ -14,13 +14,13 @@ from ..learning.hyperparameters import SHOT_OPTIONS
 from ..players.trained import player_of_model
 
 
-def evaluate(recipe, model, visits, said):
+def evaluate(recipe, model, visits, part_of):
     """Figures of held-out visits of the agent, ``ghost_ball`` and ``random``, on the same tables, under the
     training's noise and physics.
 
     The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also
     figures of the planner with it and of the search by the rule of thumb (``search``). These are the first
-    tables of ``agents.evaluate``. Raises ValueError if there are not so many tables. ``said(total)``: the
+    tables of ``agents.evaluate``. Raises ValueError if there are not so many tables. ``part_of(total)``: the
     ``Progress`` of so many visits.
     """
     trained = player_of_model(model)
@@ -35,7 +35,7 @@ def evaluate(recipe, model, visits, said):
         shared.pop("fidelity", None)
     seeds = tables_of("held_out", visits)
     figures = {}
-    with said(visits * len(players)) as progress:
+    with part_of(visits * len(players)) as progress:
         for k, (name, one) in enumerate(players.items()):
 
             def each(going, done=(k + 1) * visits, name=name):
@@ -73,23 +73,18 @@ def _of_the_agent(agent, steps, imitated, figures, start):
         begun = f" on top of the {start['shots']:,} of {start['model']}"
     after, visits = f"With {steps:,} shots of training{begun}, {agent}", f"{trained['visits']} visits"
     if not _better(trained, random):
-        how = (
-            "plays worse than" if _better(random, trained) else f"is not shown by {visits} to be better than"
-        )
+        unsure = f"is not shown by {visits} to be better than"
+        how = "plays worse than" if _better(random, trained) else unsure
         return f"{after} {how} random strokes: {made(trained)} against {made(random)}."
+    against = f"ghost_ball: {made(trained)} against {made(ghost)}"
     if _better(ghost, trained):
-        return f"{after} is better than random strokes but worse than ghost_ball: {made(trained)} against {made(ghost)}."
+        return f"{after} is better than random strokes but worse than {against}."
     if not _better(trained, ghost):
-        return f"{after} is not shown by {visits} to be better than ghost_ball: {made(trained)} against {made(ghost)}."
-    shares = [player["next_pot_after_a_pot"] for player in (trained, ghost)]
-    again = (
-        ""
-        if None in shares
-        else "; after a pot the next one follows in {:.1f} % against {:.1f} %".format(
-            *(100 * x for x in shares)
-        )
-    )
-    return f"{after} is better than ghost_ball: {made(trained)} against {made(ghost)}{again}."
+        return f"{after} is not shown by {visits} to be better than {against}."
+    one, other = (player["next_pot_after_a_pot"] for player in (trained, ghost))
+    if one is not None and other is not None:
+        against += f"; after a pot the next one follows in {100 * one:.1f} % against {100 * other:.1f} %"
+    return f"{after} is better than {against}."
 
 
 def _of_the_planner(figures):
@@ -102,11 +97,8 @@ def _of_the_planner(figures):
     if _better(learned, rule):
         times = learned["points_a_visit"] / rule["points_a_visit"]
         return f" Its value and its proposals are worth {times:.2f} times a rule by hand: {shots}."
-    how = (
-        "are worth less than"
-        if _better(rule, learned)
-        else f"are not shown by {learned['visits']} visits to be worth more than"
-    )
+    unsure = f"are not shown by {learned['visits']} visits to be worth more than"
+    how = "are worth less than" if _better(rule, learned) else unsure
     return f" Its value and its proposals {how} a rule by hand: {shots}."
 
 
@@ -114,25 +106,15 @@ def show(figures):
     """Print them."""
     rows = []
     for name, f in figures.items():
-        cells = [
-            f"{f[key]:.2f} ± {f[key + '_se']:.2f}"
-            for key in ("pots_a_visit", "points_a_visit", "fouls_a_visit")
-        ]
-        cells += [
-            "-" if f[key] is None else f"{100 * f[key]:.1f} %" for key in ("pot_rate", "next_pot_after_a_pot")
-        ]
+        means = ("pots_a_visit", "points_a_visit", "fouls_a_visit")
+        cells = [f"{f[key]:.2f} ± {f[key + '_se']:.2f}" for key in means]
+        shares = (f["pot_rate"], f["next_pot_after_a_pot"])
+        cells += ["-" if share is None else f"{100 * share:.1f} %" for share in shares]
         rows.append([name, *cells, str(f["longest_break"])])
     title = f"Means of {figures['random']['visits']} held-out visits on the same tables (± standard error)"
-    lines = [
-        title,
-        *text_table(["agent", "pots", "points", "fouls", "pot rate", "next pot", "best"], rows),
-        "",
-    ]
-    lines.append(
-        "ghost_ball: the widest pot, always softly. random: a random stroke at one of the direct pots."
-    )
+    table = text_table(["agent", "pots", "points", "fouls", "pot rate", "next pot", "best"], rows)
+    print("", title, *table, "", sep="\n")
+    print("ghost_ball: the widest pot, always softly. random: a random stroke at one of the direct pots.")
     if "planner" in figures:
-        lines.append(
-            f"planner: {BUDGET} simulated shots a decision, by what was learned; search: the same by a rule of thumb."
-        )
-    print("\n".join(["", *lines]))
+        shots = f"{BUDGET} simulated shots a decision, by what was learned"
+        print(f"planner: {shots}; search: the same by a rule of thumb.")

@@ -26,14 +26,14 @@ def sent(entrant, k):
         file, run = file_of(Path(path), "agent"), f"{kind}@"
     elif not is_name(run):
         file, run = file_of(Path(run), "agent"), ""
-    own = _module_digest(run) if ":" in run else ""
+    module = _module_digest(run) if ":" in run else ""
     return {
         "run": run,
         "model": file and file.read_bytes(),
         "suffix": file and file.suffix,
         "trust": entrant.trust,
         "options": [list(pair) for pair in entrant.options],
-        "module": own,
+        "module": module,
     }
 
 
@@ -41,9 +41,8 @@ def arrived(agent):
     """The player of what ``sent`` made."""
     run = agent["run"]
     if ":" in run and _module_digest(run) != agent["module"]:
-        raise ClusterError(
-            f"the module of {run} on this node is another than on the machine that sent it: copy the same to every node"
-        )
+        differs = f"the module of {run} on this node is another than on the machine that sent it"
+        raise ClusterError(f"{differs}: copy the same to every node")
     if agent["model"] is not None:
         run += _unpacked(agent["model"], agent["suffix"])
     one_thread(run)
@@ -51,8 +50,7 @@ def arrived(agent):
 
 
 def one_thread(run):
-    """Let a player of one's own compute with one thread of PyTorch, as models do: the last bits of its
-    products depend on their number."""
+    """One thread of PyTorch for a player of one's own, as models have: last bits depend on their number."""
     if ":" in run:
         try:
             import torch
@@ -78,7 +76,8 @@ def _unpacked(model, suffix):
 
 def _module_digest(run):
     """Digest of the file of the module of MODULE:CLASS; of what it imports it says nothing."""
-    found = importlib.util.find_spec(run.partition(":")[0])
-    if found is None or not found.origin or not Path(found.origin).is_file():
-        raise ModuleNotFoundError(f"no module of {run}", name=run.partition(":")[0])
-    return hashlib.sha256(Path(found.origin).read_bytes()).hexdigest()
+    name = run.partition(":")[0]
+    spec = importlib.util.find_spec(name)
+    if spec is None or not spec.origin or not Path(spec.origin).is_file():
+        raise ModuleNotFoundError(f"no module of {run}", name=name)
+    return hashlib.sha256(Path(spec.origin).read_bytes()).hexdigest()

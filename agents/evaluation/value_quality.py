@@ -9,12 +9,11 @@ good one is. Calibration: positions sorted by the value, in ten equal groups; in
 and of what followed. The rule of thumb is judged in the same positions. Standard errors are over visits.
 """
 
-import argparse
 import shlex
 import sys
 from pathlib import Path
 
-from commands.lifecycle import command, needs
+from commands.lifecycle import command, needs, parser_of
 
 with needs("agents.value_quality"):
     import numpy as np
@@ -41,13 +40,13 @@ class Recording(BoundPlayer):
         self._planner, self.name, self.rows = planner, planner.name, []
 
     def at(self, rules):
-        """Bound, with the same notes."""
+        """See ``Player.at``; the notes are the same."""
         bound = super().at(rules)
         bound._planner = self._planner.at(rules)
         return bound
 
     def play(self, positions, seeds):
-        """The planner's own strokes."""
+        """See ``Player.play``."""
         at, search = Positions.of(positions), self._planner.search
         rule = prospects_of(at, search.spread, SURE if search.noise.silent else RULE_OF_THUMB)[0]
         self.rows.append(np.column_stack([at.points, search.value(at), rule]))
@@ -61,19 +60,12 @@ def quality(player, visits, layout, noise):
     so_far, value, rule = np.concatenate(recording.rows).T
     visit = strokes.visit  # strokes are in the order of play, as the planner was asked
     followed = strokes.a_visit(strokes.points)[visit] - so_far
-    figures = {
-        "layout": layout,
-        "noise": noise,
-        "visits": visits,
-        "positions": len(visit),
-        "followed": float(followed.mean()),
-    }
+    figures = {"layout": layout, "noise": noise, "visits": visits}
+    figures |= {"positions": len(visit), "followed": float(followed.mean())}
     for name, of in (("value", value), ("rule", rule)):
         known = of.std() > 0 and followed.std() > 0
-        figures[name] = {
-            "mean": float(of.mean()),
-            "correlation": float(np.corrcoef(of, followed)[0, 1]) if known else 0.0,
-        }
+        correlation = float(np.corrcoef(of, followed)[0, 1]) if known else 0.0
+        figures[name] = {"mean": float(of.mean()), "correlation": correlation}
     groups = np.array_split(np.argsort(value, kind="stable"), max(1, min(GROUPS, len(visit) // LEAST)))
     figures["groups"] = [
         {
@@ -95,16 +87,14 @@ def _standard_error(values, visit):
 def parts(report):
     """The figures as tables."""
     for one in report["results"]:
-        where = (
-            f"{one['layout']}, noise {one['noise']}: {one['visits']} visits, {one['positions']:,} positions"
-        )
+        many = f"{one['visits']} visits, {one['positions']:,} positions"
+        where = f"{one['layout']}, noise {one['noise']}: {many}"
         rows = [
             [words, f"{one[name]['correlation']:.3f}", f"{one[name]['mean']:.1f}", f"{one['followed']:.1f}"]
             for name, words in (("value", "learned"), ("rule", "rule of thumb"))
         ]
-        yield TextTable(
-            where, ["value", "correlation with what followed", "mean", "really followed"], rows, 1, 1
-        )
+        head = ["value", "correlation with what followed", "mean", "really followed"]
+        yield TextTable(where, head, rows, 1, 1)
         rows = [
             [str(k), f"{g['value']:.1f}", f"{g['followed']:.1f} ± {g['se']:.1f}"]
             for k, g in enumerate(one["groups"], 1)
@@ -116,19 +106,13 @@ def parts(report):
 @command("agents.value_quality")
 def main(argv=None):
     """Play, compare, report. Exit code 0."""
-    p = argparse.ArgumentParser(
-        "python -m agents.value_quality",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    p.add_argument(
-        "--agent", default="planner", help="a planner: planner, planner@MODEL, planner_500@MODEL [planner]"
-    )
+    p = parser_of("python -m agents.value_quality", __doc__)
+    what = "a planner: planner, planner@MODEL, planner_500@MODEL [planner]"
+    p.add_argument("--agent", default="planner", help=what)
     p.add_argument("--visits", type=int, default=500, help="visits under each condition [500]")
     p.add_argument("--layouts", nargs="+", default=["held_out"], help="[held_out]")
-    p.add_argument(
-        "--noise", nargs="+", default=["professional"], help="levels of execution noise [professional]"
-    )
+    what = "levels of execution noise [professional]"
+    p.add_argument("--noise", nargs="+", default=["professional"], help=what)
     p.add_argument("--json", type=Path, help="write every figure here")
     p.add_argument("--markdown", type=Path, help="write the tables here")
     argv = sys.argv[1:] if argv is None else argv
@@ -147,20 +131,15 @@ def main(argv=None):
     except ValueError as error:
         p.error(str(error))
     snooker_env.warmup()
-    report = {
-        "command": "python -m agents.value_quality " + shlex.join(argv),
-        "agent": args.agent,
-        **provenance(),
-    }
+    line = "python -m agents.value_quality " + shlex.join(argv)
+    report = {"command": line, "agent": args.agent, **provenance()}
     conditions = [(layout, noise) for layout in args.layouts for noise in args.noise]
     report["results"] = [quality(snooker_env.player(args.agent), args.visits, *each) for each in conditions]
     if args.json:
         write_json(args.json, report)
     if args.markdown:
         made = f"snooker_env {report['version']}, at commit {report['commit']} on {report['machine']}"
-        write_atomic(
-            args.markdown,
-            page(f"How good the value of {args.agent} is", report["command"], made, parts(report)),
-        )
+        title = f"How good the value of {args.agent} is"
+        write_atomic(args.markdown, page(title, line, made, parts(report)))
     show(parts(report))
     return 0

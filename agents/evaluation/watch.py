@@ -86,26 +86,23 @@ def _film(args):
     """The options of the film that is wanted, {} for a page."""
     suffix = args.out.suffix.lower() if args.out else ".html"
     choice("out", suffix, SUFFIXES)
-    film: dict[str, Any] = (
-        {"speed": number("speed", args.speed, 0.0, 100.0, open_low=True)} if args.speed != 1.0 else {}
-    )
+    film: dict[str, Any] = {}
+    if args.speed != 1.0:
+        film["speed"] = number("speed", args.speed, 0.0, 100.0, open_low=True)
     if args.fps is not None:
         film["fps"] = number("fps", args.fps, 0.0, 240.0, open_low=True)
     if args.size is not None:
         width, _, height = args.size.partition("x")
         if not (width.isdigit() and height.isdigit()) or int(width) % 2 or int(height) % 2:
-            raise refuse(
-                "size",
-                args.size,
-                "must be WIDTHxHEIGHT such as 1280x720, both even, as video encoders want them",
-            )
+            even = "must be WIDTHxHEIGHT such as 1280x720, both even, as video encoders want them"
+            raise refuse("size", args.size, even)
         film["size"] = int(width), int(height)
     if film and suffix not in FILMS:
         raise refuse("out", str(args.out), "must be a film (.mp4, .gif) with --size, --fps or --speed")
     return film
 
 
-def found(args):
+def sought(args):
     """The environment after the visit that is wanted, and its seed. SystemExit if there is none."""
     entrant = Entrant.of(args.agent, trust=args.trust)
     longest = -1
@@ -129,7 +126,7 @@ def main(argv=None):
         integer("seed", args.seed, 0, 2**63)
         integer("tries", args.tries, 1, 10**9)
         writable("out", args.out)
-        env, seed, label = found(args)
+        env, seed, label = sought(args)
     except ValueError as error:
         p.error(str(error))
     replay = sn.replay(
@@ -137,9 +134,8 @@ def main(argv=None):
     )
     for line in described(replay):
         print(line)
-    print(
-        f"{label}: {env.points} points in {len(replay)} strokes (table {seed}, layout {args.layout}, noise {args.noise})"
-    )
+    where = f"table {seed}, layout {args.layout}, noise {args.noise}"
+    print(f"{label}: {env.points} points in {len(replay)} strokes ({where})")
     if args.out:
         replay.save(args.out, **film)
         print(f"written: {args.out}")

@@ -29,23 +29,8 @@ PICKS = np.array(
 )
 """The choices that are simulated."""
 STROKES_SEEN = len(PICKS)
-(
-    THERE,
-    CHANCE,
-    SCORED,
-    GOES_ON,
-    POINTS,
-    CUE_X,
-    CUE_Y,
-    FIRST,
-    SECOND,
-    THIRD,
-    VALUE,
-    SPREAD,
-    SPEED,
-    TOP,
-    RED_ON,
-) = range(15)
+(THERE, CHANCE, SCORED, GOES_ON, POINTS, CUE_X, CUE_Y) = range(7)
+(FIRST, SECOND, THIRD, VALUE, SPREAD, SPEED, TOP, RED_ON) = range(7, 15)
 """Places in a row: 1 if there is such a pot, its chance by its width; share of samples that score, that go
 on; mean points / 7; of those that go on: where the cue ball stops (x, y), chances of the three likeliest next
 pots; mean value, by the rule of thumb, of what is left / 25 (0 for a visit that ended), its standard
@@ -90,35 +75,25 @@ class ForesightView:
         table, stroke = np.nonzero(masks)
         k, m = len(self._samples), len(table)
         # the samples of a stroke in succession: its aim is solved once for all of them
-        points, goes_on, left, _ = self._planner.play(
-            at, np.repeat(table, k), np.repeat(PICKS[stroke], k), np.tile(self._samples, m)
-        )
+        each = np.repeat(table, k), np.repeat(PICKS[stroke], k), np.tile(self._samples, m)
+        points, goes_on, left, _ = self._planner.play(at, *each)
         on = np.flatnonzero(goes_on)
         values, chances = np.zeros(k * m), np.zeros((k * m, 3))
-        values[on], found = prospects_of(left[on], self._spread, most=8, threads=self._planner.threads)
-        chances[on] = -np.sort(-found, axis=1)[:, :3]
+        values[on], likely = prospects_of(left[on], self._spread, most=8, threads=self._planner.threads)
+        chances[on] = -np.sort(-likely, axis=1)[:, :3]
         values, points, goes_on = values.reshape(m, k), points.reshape(m, k), goes_on.reshape(m, k)
         share = (goes_on / np.maximum(1, goes_on.sum(1))[:, None])[:, :, None]
         row = np.empty((m, ENTRIES), np.float32)
-        row[:, THERE], row[:, CHANCE] = (
-            1.0,
-            prospects_of(at, self._spread)[1][table, PICKS[stroke] // STROKES],
-        )
-        row[:, SCORED], row[:, GOES_ON], row[:, POINTS] = (
-            (points > 0).mean(1),
-            goes_on.mean(1),
-            points.mean(1) / 7.0,
-        )
-        row[:, CUE_X : CUE_Y + 1] = (
-            share * (left.positions[:, 0] / (HALF_WIDTH, HALF_LENGTH)).reshape(m, k, 2)
-        ).sum(1)
+        row[:, THERE] = 1.0
+        row[:, CHANCE] = prospects_of(at, self._spread)[1][table, PICKS[stroke] // STROKES]
+        row[:, SCORED], row[:, GOES_ON] = (points > 0).mean(1), goes_on.mean(1)
+        row[:, POINTS] = points.mean(1) / 7.0
+        places = (left.positions[:, 0] / (HALF_WIDTH, HALF_LENGTH)).reshape(m, k, 2)
+        row[:, CUE_X : CUE_Y + 1] = (share * places).sum(1)
         row[:, FIRST : THIRD + 1] = (share * chances.reshape(m, k, 3)).sum(1)
         row[:, VALUE], row[:, SPREAD] = values.mean(1) / RULE_OF_THUMB[0], values.std(1) / RULE_OF_THUMB[0]
-        row[:, SPEED], row[:, TOP], row[:, RED_ON] = (
-            _SPEEDS[stroke],
-            _TOPS[stroke],
-            at.ball_on[table] == BallOn.RED,
-        )
+        row[:, SPEED], row[:, TOP] = _SPEEDS[stroke], _TOPS[stroke]
+        row[:, RED_ON] = at.ball_on[table] == BallOn.RED
         seen = np.zeros((*masks.shape, ENTRIES), np.float32)
         seen[table, stroke] = row
         return seen
@@ -131,6 +106,5 @@ class ForesightView:
 def worth_by_rule(ahead):
     """Expected points of the strokes of rows (n, STROKES_SEEN, ENTRIES), with the value of the afterstate;
     -inf where there is no pot."""
-    return np.where(
-        ahead[..., THERE] > 0, 7.0 * ahead[..., POINTS] + RULE_OF_THUMB[0] * ahead[..., VALUE], -np.inf
-    )
+    worth = 7.0 * ahead[..., POINTS] + RULE_OF_THUMB[0] * ahead[..., VALUE]
+    return np.where(ahead[..., THERE] > 0, worth, -np.inf)

@@ -9,10 +9,9 @@ uncorrelated. All positions and strokes use the same samples (common random numb
 under equal luck. Five errors scaled to variance 1 would lie further out and overstate the number of misses.
 """
 
-import argparse
 from statistics import NormalDist
 
-from commands.lifecycle import command, needs
+from commands.lifecycle import command, needs, parser_of
 
 with needs("agents.noise_samples"):
     import numpy as np
@@ -33,13 +32,11 @@ def unevenness(errors):
     """How unevenly sets of errors (..., k, 5) are spread: weighted squares of the distances from k equally
     likely values, plus weighted squares of the correlations between kinds."""
     k = errors.shape[-2]
-    apart = (
-        np.sort(errors, axis=-2) - np.array([NormalDist().inv_cdf((i + 0.5) / k) for i in range(k)])[:, None]
-    )
+    even = np.array([NormalDist().inv_cdf((i + 0.5) / k) for i in range(k)])
+    apart = np.sort(errors, axis=-2) - even[:, None]
     products = np.einsum("...ki,...kj->...ij", errors, errors) / k * (1.0 - np.eye(5))
-    return (WEIGHTS * (apart**2).mean(-2)).sum(-1) + 0.5 * (np.outer(WEIGHTS, WEIGHTS) * products**2).sum(
-        (-1, -2)
-    )
+    together = (np.outer(WEIGHTS, WEIGHTS) * products**2).sum((-1, -2))
+    return (WEIGHTS * (apart**2).mean(-2)).sum(-1) + 0.5 * together
 
 
 def find(k, keys=5_000, starts=20, seed=0):
@@ -64,14 +61,9 @@ def find(k, keys=5_000, starts=20, seed=0):
 @command("agents.noise_samples")
 def main(argv=None):
     """Find the samples and print them; takes seconds. Exit code 0."""
-    argparse.ArgumentParser(
-        "python -m agents.noise_samples",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    ).parse_args(argv)
+    parser_of("python -m agents.noise_samples", __doc__).parse_args(argv)
     best, least, median = find(len(EVEN_SAMPLES))
-    print(
-        f"EVEN_SAMPLES = {tuple(map(int, best))}: unevenness {least:.3f}, of a set drawn at random {median:.2f} (median)"
-    )
+    compared = f"unevenness {least:.3f}, of a set drawn at random {median:.2f} (median)"
+    print(f"EVEN_SAMPLES = {tuple(map(int, best))}: {compared}")
     print(errors_of(first_of(best)).round(2))
     return 0

@@ -18,7 +18,7 @@ LOSSES = {
     "actor": "train/actor_loss",
     "critic": "train/critic_loss",
 }
-"""The losses that are said, by the names under which SB3 records them: of PPO, of SAC and TQC."""
+"""The losses that are shown, by the names under which SB3 records them: of PPO, of SAC and TQC."""
 
 
 class Stop:
@@ -31,9 +31,8 @@ class Stop:
         """The work that is finished before the run is saved, in words."""
 
     def __enter__(self):
-        self._before = {
-            number: signal.signal(number, self._note) for number in (signal.SIGINT, signal.SIGTERM)
-        }
+        stops = signal.SIGINT, signal.SIGTERM
+        self._before = {number: signal.signal(number, self._note) for number in stops}
         return self
 
     def __exit__(self, *error) -> None:
@@ -45,9 +44,8 @@ class Stop:
         signal.signal(signal.SIGINT, signal.default_int_handler)
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         name = signal.Signals(number).name
-        rich.get_console().print(
-            f"\n{name}: saving after {self.running} ... (a second signal stops at once, without saving)"
-        )
+        second = "(a second signal stops at once, without saving)"
+        rich.get_console().print(f"\n{name}: saving after {self.running} ... {second}")
 
 
 def rollout_of(model):
@@ -58,9 +56,8 @@ def rollout_of(model):
 
 def goal_of(model, steps):
     """The number of shots at the end of a training to ``steps``."""
-    return model.num_timesteps + rollout_of(model) * -(
-        -max(0, steps - model.num_timesteps) // rollout_of(model)
-    )
+    left = max(0, steps - model.num_timesteps)
+    return model.num_timesteps + rollout_of(model) * -(-left // rollout_of(model))
 
 
 class RunCallback(BaseCallback):
@@ -92,18 +89,14 @@ class RunCallback(BaseCallback):
         if recent and due and self.num_timesteps > (self.curve[-1]["steps"] if self.curve else -1):
             self.curve.append({"steps": self.num_timesteps, "points": round(float(np.mean(recent)), 3)})
         rollout, losses = rollout_of(self.model), self.model.logger.name_to_value
-        words = [
-            f"round {self.num_timesteps // rollout + 1:,} of {goal_of(self.model, self.settings.steps) // rollout:,}"
-        ]
+        rounds = goal_of(self.model, self.settings.steps) // rollout
+        words = [f"round {self.num_timesteps // rollout + 1:,} of {rounds:,}"]
         words += [f"{name} loss {losses[key]:.3g}" for name, key in LOSSES.items() if key in losses]
         words += [f"{np.mean(recent):.2f} points a visit"] if recent else []
         self.figures = ", ".join(words)
         self.stopping = self.stop.signal is not None
-        if (
-            self.stopping
-            or self.saved is None
-            or self.num_timesteps - self.saved >= self.settings.checkpoint_every
-        ):
+        old = self.saved is None or self.num_timesteps - self.saved >= self.settings.checkpoint_every
+        if self.stopping or old:
             self.save()
 
     def _on_step(self):

@@ -23,7 +23,7 @@ from snooker_env.planning import Positions, StrokeSearch, spread_of
 from ..cluster.job import Here
 from .imitation import round_of
 from .judged_choices import JudgedChoices
-from .self_play import in_slices, policy_given, positions_given
+from .self_play import in_slices, policy_for, positions_given
 from .value_learning import ValueLearning
 from .value_network import value_of
 
@@ -33,15 +33,8 @@ FRESH = 4
 """Fresh noise samples of the best stroke for a target."""
 EXPLORED, AMONG = 0.2, 12
 """Share of exploratory strokes, each one of the best ``AMONG``."""
-STARTS = (
-    ("", 0.6),
-    ("random:12", 0.06),
-    ("random:9", 0.06),
-    ("random:6", 0.06),
-    ("random:3", 0.06),
-    ("line_up", 0.06),
-    ("colours", 0.1),
-)
+_EACH = ("random:12", "random:9", "random:6", "random:3", "line_up")
+STARTS = (("", 0.6), *((name, 0.06) for name in _EACH), ("colours", 0.1))
 """Layouts in which visits begin, and their shares; "" is the layout of the training tables."""
 POOL = 4096
 """Positions in which visits begin, of all layouts."""
@@ -67,10 +60,8 @@ class Starts:
         which = rng.choice(len(STARTS), n, p=[share for _, share in STARTS])
         rows = (rng.random(n) * [len(self._pools[k]) for k in which]).astype(np.int64)
         parts = [self._pools[k][row : row + 1] for k, row in zip(which.tolist(), rows.tolist(), strict=True)]
-        positions, on_table, game = (
-            np.concatenate([getattr(one, name) for one in parts])
-            for name in ("positions", "on_table", "game")
-        )
+        columns = zip(*map(positions_given, parts), strict=True)
+        positions, on_table, game = (np.concatenate(column) for column in columns)
         return Positions(positions, on_table, game)
 
 
@@ -87,14 +78,8 @@ class ExpertIteration:
         options = {name: getattr(tables.options, name) for name in ("noise", "physics", "table", "fidelity")}
         self.states, self._n, self._rng = states, venv.num_envs, np.random.default_rng((seed, 19))
         self._model, self._where = model, where or Here(threads)
-        self._sent = {
-            "run": uuid.uuid4().hex,
-            "options": options,
-            "budget": BUDGET,
-            "fresh": FRESH,
-            "value": None,
-            "policy": None,
-        }
+        self._sent = {"run": uuid.uuid4().hex, "options": options, "budget": BUDGET, "fresh": FRESH}
+        self._sent |= {"value": None, "policy": None}  # the rule of thumb, even proposals
         search = StrokeSearch(options, BUDGET)
         self._looks = search.strokes_tried
         self._starts = Starts(seed, tables.options.layout, options)
@@ -120,32 +105,27 @@ class ExpertIteration:
         return self._seconds + time.perf_counter() - self._began
 
     def get_state(self):
-        """The state, beside the model and the random generators of the process; most of it are the positions
-        that are kept."""
+        """The state, beside the model and the process's random generators; most of it are positions."""
         return {
             "done": self.done,
             "curve": self.curve,
             "seconds": self.seconds,
             "rng": self._rng.bit_generator.state,
-            "at": (self._at.positions, self._at.on_table, self._at.game),
+            "at": positions_given(self._at),
             "value": self._value.get_state(),
             "choices": self._choices.get_state(),
         }
 
     def round(self):
-        """Play a stroke from every position and learn. Every twentieth of all positions gives an entry of
-        ``curve``."""
-        hand, even, remaining = (
-            min(HAND, self.states // 8),
-            min(EVEN, self.states // 5),
-            1.0 - self.done / self.states,
-        )
+        """Play a stroke from every position and learn; each twentieth of all is an entry of ``curve``."""
+        hand, even = min(HAND, self.states // 8), min(EVEN, self.states // 5)
+        remaining = 1.0 - self.done / self.states
         learned = self.done > hand
         if learned:
             self._sent["value"] = self._value.value()
             self._choices.round(self._at, self._sent["value"], remaining)
         if self.done >= even:
-            self._sent["policy"] = policy_given(self._model, self._where)
+            self._sent["policy"] = policy_for(self._model, self._where)
         self._play()
         self.done += self._n
         if self.done > hand:
@@ -154,30 +134,19 @@ class ExpertIteration:
             self.curve.append({"states": self.done, "seconds": round(self.seconds, 1), **self._figures()})
 
     def _figures(self):
-        """Mean losses of the last gradient steps, and the points that the value expects of a position; None
-        before there are any."""
-        losses = [
-            round(float(np.mean(one)), 3) if one else None
-            for one in (self._choices.losses, self._value.losses)
-        ]
+        """Mean losses of the last gradient steps, and the points that the value expects; None before any."""
+        both = {"loss": self._choices.losses, "value_loss": self._value.losses}
+        figures = {name: round(float(np.mean(one)), 3) if one else None for name, one in both.items()}
         value = self._value.mean_target
-        return {
-            "loss": losses[0],
-            "value_loss": losses[1],
-            "value": None if value is None else round(value, 2),
-        }
+        return figures | {"value": None if value is None else round(value, 2)}
 
     @property
     def figures(self):
         """The same and the number of the round, in words."""
-        found = {name: value for name, value in self._figures().items() if value is not None}
         words = {"loss": "loss {:.1f}", "value_loss": "value loss {:.2f}", "value": "{:.1f} points expected"}
-        return ", ".join(
-            [
-                round_of(self.done, self.states, self._n),
-                *(words[name].format(value) for name, value in found.items()),
-            ]
-        )
+        known = {name: value for name, value in self._figures().items() if value is not None}
+        known_words = [words[name].format(value) for name, value in known.items()]
+        return ", ".join([round_of(self.done, self.states, self._n), *known_words])
 
     def _play(self):
         """Choose a stroke for each position, keep what its samples lead to, and go on with one of them."""
@@ -186,21 +155,16 @@ class ExpertIteration:
         pick = rng.integers(min(AMONG, self._looks), size=n)
         errors = rng.standard_normal((n * (FRESH + 1), 5))
         errors = np.concatenate([errors[: n * FRESH].reshape(n, FRESH, 5), errors[n * FRESH :, None]], axis=1)
+        drawn = {"seeds": seeds, "explored": explored, "pick": pick, "errors": errors}
         slices = [
-            {
-                "at": positions_given(at[k]),
-                "seeds": seeds[k],
-                "explored": explored[k],
-                "pick": pick[k],
-                "errors": errors[k],
-            }
+            {"at": positions_given(at[k]), **{name: one[k] for name, one in drawn.items()}}
             for k in in_slices(n)
         ]
         played = self._where.map("agents.learning.self_play:strokes", self._sent, slices)
-        found = {name: np.concatenate([one[name] for one in played]) for name in played[0]}
-        follows = found["follows"]
-        self._value.add(found["seen"], found["after"], found["points"], found["goes_on"], follows & ~explored)
-        self._at = Positions(found["positions"], found["on_table"], found["game"])
+        made = {name: np.concatenate([one[name] for one in played]) for name in played[0]}
+        follows = made["follows"]
+        self._value.add(made["seen"], made["after"], made["points"], made["goes_on"], follows & ~explored)
+        self._at = Positions(made["positions"], made["on_table"], made["game"])
         ended = np.flatnonzero(~follows)
         if len(ended):
             fresh = self._starts.draw(len(ended), rng)

@@ -56,35 +56,22 @@ class FusedTable:
 
     def __init__(self, policy):
         reader, value = policy.features_extractor, policy.value_net.value
-        layers = {
-            "ball_1": reader.ball[0],
-            "ball_2": reader.ball[2],
-            "pot_1": reader.pot[0],
-            "pot_2": reader.pot[2],
-            "context_1": reader.context[0],
-            "context_2": reader.context[2],
-            "shared": reader.joint[0],
-            "joint": reader.joint[1],
-            "scores": policy.action_net.score,
-            "value_1": value[0],
-            "value_2": value[2],
-        }
+        layers = {}
+        for name, net in {"ball": reader.ball, "pot": reader.pot, "context": reader.context}.items():
+            layers |= {f"{name}_1": net[0], f"{name}_2": net[2]}
+        layers |= {"shared": reader.joint[0], "joint": reader.joint[1], "scores": policy.action_net.score}
+        layers |= {"value_1": value[0], "value_2": value[2]}
         self.parameters = [p for layer in layers.values() for p in (layer.weight, layer.bias)]
         ends = np.cumsum([p.numel() for p in self.parameters]).tolist()
         self.gradient = torch.zeros(ends[-1])
-        """The gradient of all parameters, one after another; ``zero_grad`` makes their ``grad`` views of
-        it."""
-        parts = [
-            self.gradient[end - p.numel() : end].view_as(p)
-            for p, end in zip(self.parameters, ends, strict=True)
-        ]
-        self._views = parts
-        pairs = zip(layers.items(), parts[::2], parts[1::2], strict=True)
-        wider = {"scores": SCORED}
-        self._layers = {
-            name: _Layer(layer, d_weight, d_bias, wider.get(name))
-            for (name, layer), d_weight, d_bias in pairs
-        }
+        """The gradient of all parameters in a row; ``zero_grad`` makes their ``grad`` views of it."""
+        pairs = zip(self.parameters, ends, strict=True)
+        self._views = [self.gradient[end - p.numel() : end].view_as(p) for p, end in pairs]
+        self._layers = {}
+        for k, (name, layer) in enumerate(layers.items()):
+            d_weight, d_bias = self._views[2 * k : 2 * k + 2]
+            wider = SCORED if name == "scores" else None
+            self._layers[name] = _Layer(layer, d_weight, d_bias, wider)
         self._blocks, self._lock = {}, Lock()
 
     def zero_grad(self):
@@ -97,9 +84,8 @@ class FusedTable:
     def policy(self):
         """The ``StrokePolicy`` with the present weights: how this network plays."""
         parameters = [p.detach().numpy() for p in self.parameters]
-        return StrokePolicy(
-            dict(zip(self._layers, zip(parameters[::2], parameters[1::2], strict=True), strict=True))
-        )
+        pairs = zip(parameters[::2], parameters[1::2], strict=True)
+        return StrokePolicy(dict(zip(self._layers, pairs, strict=True)))
 
     def scores(self, seen, masks):
         """The scores of all choices (n, CHOICES) on n tables, ``NEVER`` for those not available. Arguments as
@@ -137,9 +123,8 @@ class FusedTable:
                 m = self._forward(b, here, seen, masks)
                 torch.sum(torch.mul(b.likely, b.by_table, out=b.d_by_table), 1, out=b.mean)
                 passed = b.by_table_, b.likely_, b.mean_, b.sides, b.value_2_
-                kernels.ppo_gradient(
-                    here, passed, tuple(played), tuple(loss), size, (b.d_by_table_, b.d_value_2_), sums
-                )
+                wanted = b.d_by_table_, b.d_value_2_
+                kernels.ppo_gradient(here, passed, tuple(played), tuple(loss), size, wanted, sums)
                 self._backward(b, m)
         return sums / size
 
@@ -153,17 +138,15 @@ class FusedTable:
 
     def _block(self, n):
         if n not in self._blocks:
-            self._blocks = {k: b for k, b in self._blocks.items() if k == BLOCK} | {
-                n: _Block(n, self._layers)
-            }
+            whole = {k: b for k, b in self._blocks.items() if k == BLOCK}
+            self._blocks = whole | {n: _Block(n, self._layers)}
         return self._blocks[n]
 
     def _forward(self, b, rows, seen, masks):
         """The results of all layers for the tables seen[rows]; returns their number of object balls."""
         layers = self._layers
-        m = table_kernels.read_tables(
-            rows, seen, (b.balls_, b.group, b.first, b.pots_, b.context_, b.sides), b.at
-        )
+        read = b.balls_, b.group, b.first, b.pots_, b.context_, b.sides
+        m = table_kernels.read_tables(rows, seen, read, b.at)
         layers["ball_2"](_relu(layers["ball_1"](b.balls_[:m], b.ball_1_[:m])), b.ball_2_[:m])
         table_kernels.sum_balls(b.ball_2_, b.group, b.first, b.context_, b.width)
         layers["pot_2"](_relu(layers["pot_1"](b.pots_, b.pot_1_)), b.pot_2_)
@@ -230,19 +213,16 @@ class _Layer:
     """A linear layer, its weights and their gradients, without autograd."""
 
     def __init__(self, layer, d_weight, d_bias, columns=None):
-        self.weight, self._bias, self.outputs = (
-            layer.weight.detach(),
-            layer.bias.detach(),
-            int(layer.out_features),
-        )
+        self.weight, self._bias = layer.weight.detach(), layer.bias.detach()
+        self.outputs = int(layer.out_features)
         columns = columns or self.outputs
-        self._own = np.zeros((layer.in_features, columns), np.float32), np.zeros(columns, np.float32)
-        self._turned, self._bias_turned = map(torch.from_numpy, self._own)
+        self._copies = np.zeros((layer.in_features, columns), np.float32), np.zeros(columns, np.float32)
+        self._turned, self._bias_turned = map(torch.from_numpy, self._copies)
         self.d_weight, self.d_bias, self.d_turned = d_weight, d_bias, d_weight.t()
 
     def refresh(self):
         """Take the present weights."""
-        weight, bias = self._own
+        weight, bias = self._copies
         weight[:, : self.outputs], bias[: self.outputs] = self.weight.numpy().T, self._bias.numpy()
 
     def __call__(self, rows, out):
@@ -276,8 +256,5 @@ class _Block(SimpleNamespace):
         made["likely"], made["mean"] = torch.zeros(n, CHOICES), torch.zeros(n)
         super().__init__(**made, **{f"{name}_": array.numpy() for name, array in made.items()})
         self.width, self.at = width, at
-        self.group, self.first, self.sides = (
-            np.zeros(most, np.int64),
-            np.zeros(n + 1, np.int64),
-            np.zeros(n, np.float32),
-        )
+        self.group, self.first = np.zeros(most, np.int64), np.zeros(n + 1, np.int64)
+        self.sides = np.zeros(n, np.float32)

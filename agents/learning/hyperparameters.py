@@ -10,7 +10,7 @@ instead: the Zoo itself then trains with the same file, if the policy is one of 
 
 import ast
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import yaml
@@ -32,17 +32,12 @@ BY_OPTION = ("n_timesteps", "n_envs", "imitation")
 
 def rate(field, value, low, high):
     """A learning rate: a number, or lin_X."""
+    falls = isinstance(value, str) and value.startswith("lin_")
     try:
-        number(
-            field,
-            value_of(value[4:]) if isinstance(value, str) and value.startswith("lin_") else value,
-            low,
-            high,
-        )
+        number(field, value_of(value[4:]) if falls else value, low, high)
     except ValueError:
-        raise refuse(
-            field, value, f"must be a number in [{low}, {high}], or lin_X with such a number X"
-        ) from None
+        wanted = f"must be a number in [{low}, {high}], or lin_X with such a number X"
+        raise refuse(field, value, wanted) from None
     return value
 
 
@@ -97,52 +92,29 @@ class Recipe:
     fidelity_given: bool = False
 
     @classmethod
-    def of(cls, name, changes=(), env_kwargs=None, **given):
+    def of(cls, name, changes=(), env_kwargs=None, **more):
         """The recipe of that name with some "key=value" changed, then options of the environment and other
         keys. Raises ValueError.
 
         Algorithm, policy, network, view and action belong together: a change of them needs a recipe of its
         own.
         """
-        written = yaml.safe_load(
-            (FOLDER / f"{choice('agent', name, names())}.yml").read_text(encoding="utf-8")
-        )
-        found = (
-            {"view": "pots", "imitation": 0, "expert": False, "first_aim_std": None}
-            | written[ENV_ID]
-            | written.get("agent", {})
-        )
-        changed = _changes(
-            changes,
-            [
-                key
-                for key, value in found.items()
-                if key == "env_kwargs" or (key in KINDS and value is not None)
-            ],
-        )
-        usual = found["env_kwargs"]
-        found |= changed | given
+        file = FOLDER / f"{choice('agent', name, names())}.yml"
+        written = yaml.safe_load(file.read_text(encoding="utf-8"))
+        keys = {"view": "pots", "imitation": 0, "expert": False, "first_aim_std": None}
+        keys |= written[ENV_ID] | written.get("agent", {})
+        usual, env_kwargs = keys["env_kwargs"], env_kwargs or {}
+        unset = [key for key in KINDS if keys.get(key) is None]
+        known = [key for key in keys if key == "env_kwargs" or (key in KINDS and key not in unset)]
+        changed = _changes(changes, known)
+        keys |= changed | more
         for key, (check, low, high) in KINDS.items():
-            if found.get(key) is not None:
-                found[key] = check(key, found[key], low, high)
-        found["env_kwargs"] = _options(found["env_kwargs"], env_kwargs or {}, usual, found["policy"])
-        own = (
-            "algo",
-            "policy",
-            "n_timesteps",
-            "n_envs",
-            "env_kwargs",
-            "first_aim_std",
-            "view",
-            "imitation",
-            "expert",
-        )
-        fidelity_given = any(
-            "fidelity" in options for options in (env_kwargs or {}, changed.get("env_kwargs", {}))
-        )
-        return cls(
-            name, **{key: found.pop(key) for key in own}, settings=found, fidelity_given=fidelity_given
-        )
+            if keys.get(key) is not None:
+                keys[key] = check(key, keys[key], low, high)
+        keys["env_kwargs"] = _options(keys["env_kwargs"], env_kwargs, usual, keys["policy"])
+        asked = "fidelity" in env_kwargs or "fidelity" in changed.get("env_kwargs", {})
+        mine = {f.name: keys.pop(f.name) for f in fields(cls) if f.name in keys}
+        return cls(name, **mine, settings=keys, fidelity_given=asked)
 
     @property
     def method(self):
@@ -184,9 +156,8 @@ class Recipe:
         network = policy(self.policy)
         if isinstance(network, str):
             network = algorithm_class(self.algo).policy_aliases[network]
-        return network(
-            observation_space, action_space, lambda _: 0.0, **self.settings.get("policy_kwargs", {})
-        )
+        kwargs = self.settings.get("policy_kwargs", {})
+        return network(observation_space, action_space, lambda _: 0.0, **kwargs)
 
 
 def value_of(text):
@@ -199,16 +170,16 @@ def value_of(text):
 
 def _changes(changes, keys):
     """The values of the "key=value" in ``changes``, each key at most once."""
-    free, found = [key for key in keys if key not in BY_OPTION], {}
+    free, changed = [key for key in keys if key not in BY_OPTION], {}
     for change in changes:
         key, equals, value = change.partition("=")
         if not equals or key not in free:
-            own = f" ({', '.join(BY_OPTION)} have options of their own)"
-            raise refuse("set", change, f"must be KEY=VALUE with KEY one of {', '.join(free)}{own}")
-        if key in found:
+            others = f" ({', '.join(BY_OPTION)} have options of their own)"
+            raise refuse("set", change, f"must be KEY=VALUE with KEY one of {', '.join(free)}{others}")
+        if key in changed:
             raise refuse("set", change, f"must give {key} only once")
-        found[key] = value_of(value)
-    return found
+        changed[key] = value_of(value)
+    return changed
 
 
 def _options(options, more, usual, policy):
@@ -221,16 +192,12 @@ def _options(options, more, usual, policy):
         choice("key of env_kwargs", key, known)
     options = options | more
     for key in ("action",) if policy == "MlpPolicy" else ACTION_OPTIONS:
-        if options.get(key, ACTION_OPTIONS[key]) != usual.get(key, ACTION_OPTIONS[key]):
-            raise refuse(
-                key,
-                options.get(key, ACTION_OPTIONS[key]),
-                f"must be {usual.get(key, ACTION_OPTIONS[key])!r} for this agent",
-            )
+        value, wanted = (some.get(key, ACTION_OPTIONS[key]) for some in (options, usual))
+        if value != wanted:
+            raise refuse(key, value, f"must be {wanted!r} for this agent")
     if options.get("layout") == "held_out":
-        raise refuse(
-            "layout", "held_out", "must be another for training: the held-out tables are kept for evaluation"
-        )
+        why = "the held-out tables are kept for evaluation"
+        raise refuse("layout", "held_out", f"must be another for training: {why}")
     return options
 
 
@@ -241,12 +208,8 @@ def algorithm_class(name):
 
     from .fast_ppo import FastPPO
 
-    classes = {
-        "ppo": stable_baselines3.PPO,
-        "ppo_mask": FastPPO,
-        "sac": stable_baselines3.SAC,
-        "tqc": sb3_contrib.TQC,
-    }
+    classes = {"ppo": stable_baselines3.PPO, "ppo_mask": FastPPO}
+    classes |= {"sac": stable_baselines3.SAC, "tqc": sb3_contrib.TQC}
     return classes[choice("algo", name, classes)]
 
 

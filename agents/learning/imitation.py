@@ -46,38 +46,27 @@ class Expert:
     def __init__(self, tables, threads, rng, ahead=True, where=None):
         self._tables, self._rng, self._where = tables, rng, where or Here(threads)
         rules, options = tables.options.rules, {name: getattr(tables.options, name) for name in USED}
-        self._sent = {
-            "run": uuid.uuid4().hex,
-            "options": options,
-            "spread": spread_of(rules.noise, rules.physics),
-            "ahead": ahead,
-        }
+        self._sent = {"run": uuid.uuid4().hex, "options": options, "ahead": ahead}
+        self._sent["spread"] = spread_of(rules.noise, rules.physics)
 
-    def worth(self, picks, there):
-        """Values [points] of the choices ``picks`` (n, k) from one simulation each: float32 (n, k), 0 where
-        ``there`` (n, k) is False."""
-        row, column = np.nonzero(there)
+    def worth(self, picks, valid):
+        """Values [points] of the ``valid`` choices among ``picks`` (n, k), each simulated once; else 0."""
+        row, column = np.nonzero(valid)
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
-        worth = np.zeros(picks.shape, np.float32)
-        worth[row, column] = worths(
-            self._where, self._sent, Positions.of(self._tables), row, picks[row, column], keys
-        )
+        worth, at = np.zeros(picks.shape, np.float32), Positions.of(self._tables)
+        worth[row, column] = worths(self._where, self._sent, at, row, picks[row, column], keys)
         return worth
 
 
 def to_try(scores, masks, rng):
-    """``TRIES`` choices of each row of masks (n, SIZE), half with the highest scores, half random; and which
-    of them are valid.
+    """``TRIES`` choices of each row of masks (n, SIZE), half the best, half random; which are valid.
 
-    A choice can be in both halves; if there are fewer valid choices than half of ``TRIES``, all of them are
-    in both.
+    A choice can be in both halves; of fewer valid choices than half of ``TRIES``, all are in both.
     """
     half = TRIES // 2
     best = np.argpartition(np.where(masks, -scores, np.inf), half, axis=1)[:, :half]
-    any_of = np.argpartition(np.where(masks, rng.random(masks.shape), np.inf), TRIES - half, axis=1)[
-        :, : TRIES - half
-    ]
-    picks = np.concatenate([best, any_of], axis=1)
+    lots, rest = np.where(masks, rng.random(masks.shape), np.inf), TRIES - half
+    picks = np.concatenate([best, np.argpartition(lots, rest, axis=1)[:, :rest]], axis=1)
     return picks, np.take_along_axis(masks, picks, axis=1)
 
 
@@ -100,9 +89,8 @@ class Imitation:
         else:
             self._rng.bit_generator.state = before["rng"]
             self._optimizer.load_state_dict(before["optimizer"])
-            self.done, self.curve, self._kept, self._seconds = (
-                before[name] for name in ("done", "curve", "kept", "seconds")
-            )
+            self.done, self.curve = before["done"], before["curve"]
+            self._kept, self._seconds = before["kept"], before["seconds"]
             self._losses.extend(before["losses"])
         self._seen = venv.reset()
         self._began = time.perf_counter()
@@ -113,8 +101,7 @@ class Imitation:
         return self._seconds + time.perf_counter() - self._began
 
     def get_state(self):
-        """The state of the imitation, beside the model, its tables and its random generators; most of it is
-        the buffer of positions."""
+        """The state beside model, tables and random generators; most of it is the buffer of positions."""
         return {
             "done": self.done,
             "curve": self.curve,
@@ -134,16 +121,15 @@ class Imitation:
         return ", ".join(words)
 
     def round(self):
-        """Learn from the present position of every table and play on. Every twentieth of all positions gives
-        an entry of ``curve``."""
+        """Learn from every table's position and play on; each twentieth of all is an entry of ``curve``."""
         policy, n = self._model.policy, self._venv.num_envs
         for group in self._optimizer.param_groups:
             group["lr"] = RATE * (1.0 - self.done / self.states) + 1e-5
         masks = np.array(self._venv.env_method("action_masks"))
         with torch.no_grad():
             scores = policy.get_distribution(torch.as_tensor(self._seen), masks).distribution.logits.numpy()
-        picks, there = to_try(scores, masks, self._rng)
-        self._kept.append((self._seen, masks, picks, there, self._expert.worth(picks, there)))
+        picks, valid = to_try(scores, masks, self._rng)
+        self._kept.append((self._seen, masks, picks, valid, self._expert.worth(picks, valid)))
         del self._kept[: -max(1, KEPT // n)]
         for _ in range(max(1, n // PER_UPDATE)):
             rounds = self._rng.integers(len(self._kept), size=max(1, BATCH // n))
@@ -153,10 +139,8 @@ class Imitation:
         self._points.extend(info["episode"]["r"] for info in infos if "episode" in info)
         self.done += n
         if self.done * 20 // self.states > len(self.curve):
-            loss = float(np.mean(self._losses))
-            self.curve.append(
-                {"states": self.done, "seconds": round(self.seconds, 1), "loss": round(loss, 3)}
-            )
+            loss = round(float(np.mean(self._losses)), 3)
+            self.curve.append({"states": self.done, "seconds": round(self.seconds, 1), "loss": loss})
 
 
 def round_of(done, total, n):
@@ -164,16 +148,15 @@ def round_of(done, total, n):
     return f"round {-(-done // n):,} of {-(-total // n):,}"
 
 
-def fit_values(policy, optimizer, seen, masks, picks, there, worths):
-    """One gradient step towards the values ``worths`` of choices (n, k). Returns the mean square error
-    [points^2]."""
+def fit_values(policy, optimizer, seen, masks, picks, valid, worths):
+    """One gradient step towards the values ``worths`` of choices (n, k); the mean square error [points^2]."""
     features = policy.extract_features(torch.as_tensor(seen))
     distribution = policy._get_action_dist_from_latent(features)
     distribution.apply_masking(masks)
     logits = distribution.distribution.logits
     mean = (logits.exp() * logits.clamp(min=-1e3)).sum(1, keepdim=True)
     fitted = policy.value_net(features) + TEMPERATURE * (logits.gather(1, torch.as_tensor(picks)) - mean)
-    weight = torch.as_tensor(there).float()
+    weight = torch.as_tensor(valid).float()
     loss = ((fitted - torch.as_tensor(worths)).square() * weight).sum() / weight.sum()
     optimizer.zero_grad()
     loss.backward()

@@ -39,14 +39,13 @@ class JudgedChoices:
         seen, masks = with_pots(at.observations()), action_masks(at)
         with torch.no_grad():
             scores = self._policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
-        picks, there = to_try(scores, masks, self._rng)
-        row, column = np.nonzero(there)
+        picks, valid = to_try(scores, masks, self._rng)
+        row, column = np.nonzero(valid)
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
         worths = np.zeros(picks.shape, np.float32)
-        worths[row, column] = judged(
-            self._where, self._sent | {"value": value}, at, row, picks[row, column], keys
-        )
-        kept = seen, np.packbits(masks, axis=1), picks.astype(np.int16), there, worths
+        sent = self._sent | {"value": value}
+        worths[row, column] = judged(self._where, sent, at, row, picks[row, column], keys)
+        kept = seen, np.packbits(masks, axis=1), picks.astype(np.int16), valid, worths
         # sums depend on the layout, and a saved array comes back in this one
         self._rounds.append(tuple(map(np.ascontiguousarray, kept)))
         del self._rounds[: -max(1, KEPT // self._n)]
@@ -56,30 +55,21 @@ class JudgedChoices:
             self.losses.append(fit_values(self._policy, self._optimizer, *self._batch(masks.shape[1])))
 
     def _batch(self, choices):
-        """Positions of several rounds: seen, masks, picks, there, worths."""
+        """Positions of several rounds: seen, masks, picks, valid, worths."""
         size = min(self._n, BATCH // _PARTS)
         parts = [
             (self._rounds[k], self._rng.choice(self._n, size, replace=False))
             for k in self._rng.integers(len(self._rounds), size=_PARTS)
         ]
-        seen, masks, picks, there, worths = (
-            np.concatenate([one[c][rows] for one, rows in parts]) for c in range(5)
-        )
-        return (
-            seen,
-            np.unpackbits(masks, axis=1, count=choices).astype(bool),
-            picks.astype(np.int64),
-            there,
-            worths,
-        )
+        columns = (np.concatenate([one[c][rows] for one, rows in parts]) for c in range(5))
+        seen, masks, picks, valid, worths = columns
+        masks = np.unpackbits(masks, axis=1, count=choices).astype(bool)
+        return seen, masks, picks.astype(np.int64), valid, worths
 
     def get_state(self):
         """Everything but the policy."""
-        return {
-            "rounds": self._rounds,
-            "losses": list(self.losses),
-            "optimizer": self._optimizer.state_dict(),
-        }
+        state = {"rounds": self._rounds, "losses": list(self.losses)}
+        return state | {"optimizer": self._optimizer.state_dict()}
 
     def set_state(self, state):
         """Go on from a state of ``get_state``."""

@@ -59,9 +59,8 @@ def lines_of(seen):
     direction = torch.cat([first[:, None], pots[:, 1:, 1:3]], 1)
     line = torch.atan2(direction[:, :, 1], direction[:, :, 0]) / pi
     tolerance = tolerance_of(pots[:, :, pot_view.TOLERANCE]).clamp(min=LEAST_TOLERANCE)
-    return torch.stack(
-        [offered, line, pots[:, :, 3], pots[:, :, 4], (pots[:, :, 5] + 1.0) * HALF_LENGTH, tolerance], 2
-    )
+    path = (pots[:, :, 5] + 1.0) * HALF_LENGTH
+    return torch.stack([offered, line, pots[:, :, 3], pots[:, :, 4], path, tolerance], 2)
 
 
 def nearest_image(turn):
@@ -92,9 +91,8 @@ class Throw(nn.Module):
     def __init__(self, width=32):
         super().__init__()
         self.last = nn.Linear(width, 1)
-        self.net = nn.Sequential(
-            nn.Linear(6, width), nn.Tanh(), nn.Linear(width, width), nn.Tanh(), self.last
-        )
+        hidden = nn.Linear(6, width), nn.Tanh(), nn.Linear(width, width), nn.Tanh()
+        self.net = nn.Sequential(*hidden, self.last)
         self.mirror: torch.Tensor
         self.register_buffer("mirror", torch.tensor([-1.0, 1.0, 1.0, 1.0, -1.0, 1.0]), persistent=False)
 
@@ -109,9 +107,8 @@ class Throw(nn.Module):
         tip = played[:, :, 1:]
         tip = tip / torch.linalg.vector_norm(tip, dim=2, keepdim=True).clamp(min=1.0)
         sine, cosine, path = lines[:, :, SIN_CUT], lines[:, :, COS_CUT], lines[:, :, PATH]
-        known = torch.cat(
-            [torch.stack([sine, cosine, path / HALF_LENGTH - 1.0], 2), played[:, :, :1], tip], 2
-        )
+        line = torch.stack([sine, cosine, path / HALF_LENGTH - 1.0], 2)
+        known = torch.cat([line, played[:, :, :1], tip], 2)
         angle = THROW_UNIT * (self.net(known) - self.net(known * self.mirror)).squeeze(2)
         # the ghost ball, seen along the line, when the line of centres is turned by this angle
         turned_sine = sine * torch.cos(angle) + cosine * torch.sin(angle)
@@ -140,20 +137,16 @@ class MixtureHead(nn.Module):
         """One pass: logarithms of the weights (n, POTS), means (n, POTS, 3), lines, and a function that gives
         the aims of strokes."""
         n = len(read)
-        codes, side = (
-            read[:, CONTEXT : CONTEXT + POTS * POT].reshape(n, POTS, POT),
-            read[:, CONTEXT + POTS * POT, None],
-        )
-        lines = read[:, CONTEXT + POTS * POT + 1 :].reshape(n, POTS, LINE_ENTRIES)
-        there, first = lines[:, :, OFFERED] > 0.0, torch.arange(POTS, device=read.device) == 0
-        none = ~there.any(1, keepdim=True)
+        end = CONTEXT + POTS * POT
+        codes, side = read[:, CONTEXT:end].reshape(n, POTS, POT), read[:, end, None]
+        lines = read[:, end + 1 :].reshape(n, POTS, LINE_ENTRIES)
+        offered, first = lines[:, :, OFFERED] > 0.0, torch.arange(POTS, device=read.device) == 0
+        alone = ~offered.any(1, keepdim=True) & first  # the one line of a table without a pot
         out = self.pot(codes)
         # before training: in proportion to the pot's width
         scores = out[:, :, 0] + torch.log(lines[:, :, TOLERANCE])
-        log_weights = torch.log_softmax(scores.masked_fill(~there & ~(none & first), -1e8), 1)
-        means = torch.where(
-            (none & first)[:, :, None], self.no_pot(read[:, :CONTEXT])[:, None], out[:, :, 1:]
-        )
+        log_weights = torch.log_softmax(scores.masked_fill(~offered & ~alone, -1e8), 1)
+        means = torch.where(alone[:, :, None], self.no_pot(read[:, :CONTEXT])[:, None], out[:, :, 1:])
         means = torch.stack([means[:, :, 0], means[:, :, 1] * side, means[:, :, 2]], 2)
         return log_weights, means, lines, lambda strokes: lines[:, :, LINE] + self.throw(lines, strokes)
 
@@ -173,8 +166,7 @@ class StrokeMixture(Distribution):
         return self
 
     def log_prob(self, actions):
-        """Logarithm of the density. An aim counts at its image nearest to the mean: the others are thousands
-        of deviations away."""
+        """Logarithm of the density; an aim counts at its image nearest to the mean alone."""
         strokes = actions[:, None, :3].expand_as(self.means)
         aside = nearest_image(actions[:, None, 3] - self.aims_of(strokes)) / self.aim_stds
         off = ((strokes - self.means) / self.stds).square().sum(2) + aside.square()
@@ -182,18 +174,16 @@ class StrokeMixture(Distribution):
         return torch.logsumexp(self.log_weights - 0.5 * off - scale, 1)
 
     def entropy(self):
-        """The joint entropy of weight and component: that of the mixture where components do not overlap,
-        else an upper bound."""
-        own = self.stds.log().sum() + self.aim_stds.log() + 2.0 * log(2.0 * pi) + 2.0
-        return (self.log_weights.exp() * (own - self.log_weights)).sum(1)
+        """The joint entropy of weight and component; if components overlap, more than the mixture's."""
+        of_each = self.stds.log().sum() + self.aim_stds.log() + 2.0 * log(2.0 * pi) + 2.0
+        return (self.log_weights.exp() * (of_each - self.log_weights)).sum(1)
 
     def sample(self):
         """A pot by its weight, a stroke at it, then the aim for this stroke, in [-1, 1]."""
         chosen = torch.multinomial(self.log_weights.exp(), 1)
         strokes = self.means + self.stds * torch.randn_like(self.means)
-        return self._chosen(
-            chosen, strokes, self.aims_of(strokes) + self.aim_stds * torch.randn_like(self.aim_stds)
-        )
+        aims = self.aims_of(strokes) + self.aim_stds * torch.randn_like(self.aim_stds)
+        return self._chosen(chosen, strokes, aims)
 
     def mode(self):
         """The mean stroke at the pot of the largest weight, and the aim for it."""

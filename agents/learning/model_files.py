@@ -100,11 +100,8 @@ def read(path, field):
     try:
         return Trained(_network(path, described, seen), **described)
     except _MismatchError:
-        raise refuse(
-            field,
-            str(path),
-            f"must be a model of the current {described['recipe']}: this one is older, train it again",
-        ) from None
+        wanted = f"must be a model of the current {described['recipe']}: this one is older, train it again"
+        raise refuse(field, str(path), wanted) from None
     except ImportError:
         raise
     except Exception as error:  # any error of zip or torch on weights of another kind
@@ -127,11 +124,10 @@ def _network(path, described, seen):
         raise _MismatchError from None
     if network.observation_space.shape != (seen,):
         raise _MismatchError
-    own = network.state_dict()
-    weights = _weights(
-        path, 2**16 + sum(4096 + tensor.numel() * tensor.element_size() for tensor in own.values())
-    )
-    if _forms(weights) != _forms(own):
+    initial = network.state_dict()
+    sizes = (4096 + tensor.numel() * tensor.element_size() for tensor in initial.values())
+    weights = _weights(path, 2**16 + sum(sizes))
+    if _forms(weights) != _forms(initial):
         raise _MismatchError
     if not all(torch.isfinite(tensor).all() for tensor in weights.values()):
         raise ValueError
@@ -164,9 +160,8 @@ def packed(trained):
     reproducible."""
     import torch
 
-    described = {key: getattr(trained, key) for key in KEPT} | {
-        "seen": trained.policy.observation_space.shape[0]
-    }
+    described = {key: getattr(trained, key) for key in KEPT}
+    described["seen"] = trained.policy.observation_space.shape[0]
     weights, file = io.BytesIO(), io.BytesIO()
     torch.save(dict(trained.policy.state_dict()), weights)
     with zipfile.ZipFile(file, "w") as made:  # ZipInfo: without a time stamp

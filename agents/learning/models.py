@@ -26,12 +26,9 @@ def file_of(path, field):
     here = [path / name for name in ("model.zip", POLICY)] if path.is_dir() else [path]
     file = next((file for file in here if file.is_file()), here[0])
     if not file.is_file():
-        unfinished = (path / CHECKPOINT).is_file()
-        ends = (
-            f"; this run has not ended, continue it with: python train.py --resume --out {path}"
-            if unfinished
-            else ""
-        )
+        ends = ""
+        if (path / CHECKPOINT).is_file():
+            ends = f"; this run has not ended, continue it with: python train.py --resume --out {path}"
         raise refuse(field, str(path), f"must be a model's .zip or a folder that holds model.zip{ends}")
     return file
 
@@ -41,11 +38,8 @@ def load_trained(path, field):
     did not make it."""
     file = file_of(path, field)
     if file.suffix == ".npz":
-        raise refuse(
-            field,
-            str(file),
-            "must be a model that train.py saved, its .zip or a run's folder: an .npz holds plain weights alone",
-        )
+        wanted = "must be a model that train.py saved, its .zip or a run's folder"
+        raise refuse(field, str(file), f"{wanted}: an .npz holds plain weights alone")
     trained = read(file, field)
     if trained is None:
         raise refuse(field, str(file), "must be a model that train.py saved")
@@ -61,26 +55,17 @@ def load_weights(model, path):
     """
     other = load_trained(path, "start")
     if not isinstance(other.policy, type(model.policy)):
-        raise refuse(
-            "start",
-            str(path),
-            f"must be a model of {model.recipe}, or of another agent with its network, not of {other.recipe}",
-        )
+        wanted = f"must be a model of {model.recipe}, or of another agent with its network"
+        raise refuse("start", str(path), f"{wanted}, not of {other.recipe}")
     spaces = other.action_space == model.action_space
     if not spaces or any(other.env_options.get(key) != model.env_options.get(key) for key in ACTION_OPTIONS):
-        told = [
-            {key: m.env_options[key] for key in ACTION_OPTIONS if key in m.env_options}
-            for m in (model, other)
-        ]
-        raise refuse("start", str(path), f"must be a model with actions {told[0]}, not {told[1]}")
+        both = [one.env_options for one in (model, other)]
+        mine, its = ({key: one[key] for key in ACTION_OPTIONS if key in one} for one in both)
+        raise refuse("start", str(path), f"must be a model with actions {mine}, not {its}")
     weights = other.policy.state_dict()
     model.policy.load_state_dict({name: weights[name] for name in model.policy.state_dict()})
-    model.start = {
-        "model": str(path),
-        "shots": other.num_timesteps,
-        "imitated": other.imitated,
-        "start": other.start,
-    }
+    model.start = {"model": str(path), "shots": other.num_timesteps}
+    model.start |= {"imitated": other.imitated, "start": other.start}
 
 
 def zipped(model):

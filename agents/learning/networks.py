@@ -111,16 +111,11 @@ class ForesightReader(TableReader):
         read = super().forward(seen[:, :SHOWN])
         context, pots, side = read[:, :CONTEXT], read[:, CONTEXT:-1].reshape(n, POTS, POT), read[:, -1:]
         rows = seen[:, SHOWN:].reshape(n, STROKES_SEEN, ENTRIES)
-        rows = torch.cat(
-            [rows[..., :CUE_X], rows[..., CUE_X : CUE_X + 1] * side[:, None], rows[..., CUE_X + 1 :]], 2
-        )
+        turned = rows[..., CUE_X : CUE_X + 1] * side[:, None]
+        rows = torch.cat([rows[..., :CUE_X], turned, rows[..., CUE_X + 1 :]], 2)
         of_pot = self.outcome[1](pots[:, :POTS_SEEN]).repeat_interleave(STROKES_SEEN // POTS_SEEN, 1)
-        codes = (
-            torch.relu(
-                self.code(torch.relu(self.outcome[0](context)[:, None] + of_pot + self.outcome[2](rows)))
-            )
-            * rows[..., :1]
-        )
+        joint = torch.relu(self.outcome[0](context)[:, None] + of_pot + self.outcome[2](rows))
+        codes = torch.relu(self.code(joint)) * rows[..., :1]
         context = context + self.best(codes.amax(1))
         return torch.cat([context, codes.reshape(n, -1)], 1)
 
@@ -169,9 +164,8 @@ class _Policy(MaskableActorCriticPolicy):
 
     def _new_optimizer(self, parameters, lr_schedule):
         """Adam in one call for all parameters: their 22 small arrays one by one take ten times as long."""
-        return self.optimizer_class(
-            parameters, **{"fused": True, **self.optimizer_kwargs, "lr": lr_schedule(1)}
-        )
+        settings = {"fused": True, **self.optimizer_kwargs, "lr": lr_schedule(1)}
+        return self.optimizer_class(parameters, **settings)
 
 
 class TablePolicy(_Policy):
@@ -202,35 +196,29 @@ class TablePolicy(_Policy):
         PyTorch's generator."""
         if deterministic or not self._plays(obs, action_masks):
             return super().forward(obs, deterministic, action_masks)
-        choices, values, logs = self.fused.act(*_given(obs, action_masks), torch.rand(len(obs)).numpy())
+        choices, values, logs = self.fused.act(*_arrays(obs, action_masks), torch.rand(len(obs)).numpy())
         return torch.as_tensor(choices), torch.as_tensor(values)[:, None], torch.as_tensor(logs)
 
     def get_distribution(self, obs, action_masks=None):
         """As in the base class; with masks and without gradients by the quick passes."""
         if not self._plays(obs, action_masks):
             return super().get_distribution(obs, action_masks)
-        seen, masks = _given(obs, action_masks)
-        found = self.action_dist.proba_distribution(
-            action_logits=torch.from_numpy(self.fused.scores(seen, masks))
-        )
-        found.apply_masking(masks)
-        return found
+        seen, masks = _arrays(obs, action_masks)
+        logits = torch.from_numpy(self.fused.scores(seen, masks))
+        distribution = self.action_dist.proba_distribution(action_logits=logits)
+        distribution.apply_masking(masks)
+        return distribution
 
     def _plays(self, obs, action_masks):
         """Whether there are quick passes for these observations."""
-        return (
-            self.has_fused
-            and action_masks is not None
-            and not torch.is_grad_enabled()
-            and obs.device.type == "cpu"
-        )
+        quick = self.has_fused and not torch.is_grad_enabled()
+        return quick and action_masks is not None and obs.device.type == "cpu"
 
 
-def _given(obs, action_masks):
+def _arrays(obs, action_masks):
     """Observations and masks as ``FusedTable`` takes them."""
-    return np.ascontiguousarray(obs.float().numpy()), np.ascontiguousarray(action_masks, np.bool_).reshape(
-        len(obs), -1
-    )
+    masks = np.ascontiguousarray(action_masks, np.bool_).reshape(len(obs), -1)
+    return np.ascontiguousarray(obs.float().numpy()), masks
 
 
 class JudgedPolicy(TablePolicy):
@@ -239,9 +227,9 @@ class JudgedPolicy(TablePolicy):
 
     def _build(self, lr_schedule):
         super()._build(lr_schedule)
-        own = list(self.parameters())  # those that PPO learns
+        by_ppo = list(self.parameters())
         self.position_value = ValueNetwork()
-        self.optimizer = self._new_optimizer(own, lr_schedule)
+        self.optimizer = self._new_optimizer(by_ppo, lr_schedule)
 
 
 class ForesightPolicy(_Policy):

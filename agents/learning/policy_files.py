@@ -56,32 +56,23 @@ def read_policy(path, field):
                 raise ValueError(f"it holds more than {MOST:,} bytes")
         with np.load(path, allow_pickle=False) as arrays:
             about = json.loads(arrays["about"].item())
-            layers = [
-                (arrays[f"weight_{k}"], arrays[f"bias_{k}"]) for k in range(_number_of_layers(arrays.files))
-            ]
+            many = next(k for k in count() if f"weight_{k}" not in arrays.files)
+            layers = [(arrays[f"weight_{k}"], arrays[f"bias_{k}"]) for k in range(many)]
         _check_layers(layers)
         return _described(about, layers)
     except Exception as error:  # any error of zip, NumPy or JSON on a file of another kind
-        wanted = "must be a policy's .npz: weights of layers from the flat observation to the choices, and what they are about"
-        raise refuse(field, str(path), f"{wanted} ({' '.join(str(error).split())[:200]})") from None
-
-
-def _number_of_layers(names):
-    return next(k for k in count() if f"weight_{k}" not in names)
+        wanted = "must be a policy's .npz: weights of layers from the flat observation to the choices"
+        why = " ".join(str(error).split())[:200]
+        raise refuse(field, str(path), f"{wanted}, and what they are about ({why})") from None
 
 
 def _check_layers(layers):
     size = OBSERVATION_SIZE
     for k, (weight, bias) in enumerate(layers):
-        if (
-            weight.dtype != np.float32
-            or bias.dtype != np.float32
-            or weight.shape != (len(bias), size)
-            or bias.ndim != 1
-        ):
-            raise ValueError(
-                f"weight_{k} {weight.dtype} {weight.shape}, bias_{k} {bias.dtype} {bias.shape} after {size} numbers"
-            )
+        floats = weight.dtype == bias.dtype == np.float32
+        if not floats or weight.shape != (len(bias), size) or bias.ndim != 1:
+            both = f"weight_{k} {weight.dtype} {weight.shape}, bias_{k} {bias.dtype} {bias.shape}"
+            raise ValueError(f"{both} after {size} numbers")
         if not (np.isfinite(weight).all() and np.isfinite(bias).all()):
             raise ValueError(f"layer {k} is not finite")
         size = len(bias)

@@ -64,8 +64,7 @@ def kept(out):
 
 
 def save_checkpoint(out, settings, model, seconds, curve, imitation, imitating=None):
-    """Save the state of training, with tables and random generators: a resumed run equals an uninterrupted
-    one.
+    """Save the state of training, tables and random generators: a resumed run equals an uninterrupted one.
 
     ``imitating``: of ``Imitation.get_state`` while the agent imitates the search, else None.
     """
@@ -88,8 +87,9 @@ def save_checkpoint(out, settings, model, seconds, curve, imitation, imitating=N
 
 def stale(out):
     """The ValueError for a checkpoint that cannot be used."""
-    wanted = "must be a complete checkpoint of the current train.py: this one is damaged or older, start the run again"
-    return refuse("resume", str(out / CHECKPOINT), wanted)
+    wanted = "must be a complete checkpoint of the current train.py"
+    damaged = "this one is damaged or older, start the run again"
+    return refuse("resume", str(out / CHECKPOINT), f"{wanted}: {damaged}")
 
 
 def read_checkpoint(out, settings):
@@ -98,16 +98,9 @@ def read_checkpoint(out, settings):
         state = pickle.loads((out / CHECKPOINT).read_bytes())
         state.setdefault("imitating", state.get("teaching"))  # its name before 0.3, and later than the rest
         was = settings(**state["settings"])
-        if not state.keys() >= {
-            "model",
-            "tables",
-            "random",
-            "replay",
-            "running",
-            "imitation",
-            "curve",
-            "seconds",
-        }:
+        if not state.keys() >= set(
+            ["model", "tables", "random", "replay", "running", "imitation", "curve", "seconds"]
+        ):
             raise KeyError
     except Exception:  # any error of pickle on a file of another kind
         raise stale(out) from None

@@ -27,9 +27,8 @@ def positions_given(at):
     return at.positions, at.on_table, at.game
 
 
-def policy_given(model, where):
-    """The policy of a model for slices: itself in this process, its weights and how to build it for
-    another."""
+def policy_for(model, where):
+    """The policy for slices: itself in this process, for another its weights and how to build it."""
     if where.here:
         return model.policy
     weights = {name: one.numpy() for name, one in model.policy.state_dict().items()}
@@ -40,12 +39,12 @@ def strokes(shared, args, threads):
     """The task: the best stroke of each position under fresh noise samples, and where play goes on.
 
     ``shared``: "run" (an id), "options", "budget", "fresh", "value" (or None), "policy" (or None, see
-    ``policy_given``). ``args``: "at" (arrays of m positions), "seeds" (m,), "explored" bool (m,), "pick"
+    ``policy_for``). ``args``: "at" (arrays of m positions), "seeds" (m,), "explored" bool (m,), "pick"
     (m,), "errors" (m, fresh + 1, 5). Returns "seen" (m, SIZE) and "after" (m, fresh, SIZE) float16, "points"
     and "goes_on" (m, fresh), "follows" (m,), and where play goes on: "positions", "on_table", "game".
     """
     at, fresh, every = Positions(*args["at"]), shared["fresh"], np.arange(len(args["seeds"]))
-    # which keeps its own value, the rule of thumb, and its own proposals
+    # the original keeps its value, the rule of thumb, and its proposals
     search = copy(search_of(shared, threads))
     if shared["value"] is not None:
         search.value = shared["value"]
@@ -54,9 +53,8 @@ def strokes(shared, args, threads):
     m = len(every)
     ranked = search.rank(at, args["seeds"])
     rows = np.concatenate([np.repeat(every, fresh), every])
-    tried = np.concatenate(
-        [np.repeat(ranked.strokes[:, 0], fresh, axis=0), ranked.strokes[every, args["pick"]]]
-    )
+    best, picked = ranked.strokes[:, 0], ranked.strokes[every, args["pick"]]
+    tried = np.concatenate([np.repeat(best, fresh, axis=0), picked])
     errors = np.concatenate([args["errors"][:, :fresh].reshape(-1, 5), args["errors"][:, fresh]])
     out = search.outcomes(at, rows, tried, errors)
     features = lambda some: value_features(some, search.spread, search.planner.threads)  # noqa: E731
@@ -78,14 +76,12 @@ def strokes(shared, args, threads):
 
 
 def choices(shared, args, threads):
-    """The task: what discrete choices are worth, each simulated once: points, and the value of what they
-    leave.
+    """The task: discrete choices' points and the value of what they leave, each simulated once.
 
     ``args``: "at" (arrays of m positions), "rows", "picks" and "keys" (k,). Returns "gains", float32 (k,).
     """
-    played = once(("planner", shared["run"], threads), lambda: planner_of(shared["options"], threads)).play(
-        Positions(*args["at"]), args["rows"], args["picks"], args["keys"]
-    )
+    planner = once(("planner", shared["run"], threads), lambda: planner_of(shared["options"], threads))
+    played = planner.play(Positions(*args["at"]), args["rows"], args["picks"], args["keys"])
     gains, on = played.points.astype(np.float32), np.flatnonzero(played.goes_on)
     gains[on] += shared["value"](played.afterstates[on])
     return {"gains": gains}
@@ -114,17 +110,14 @@ def of_choices(at, rows, picks, keys):
 
 def judged(where, shared, at, rows, picks, keys):
     """``choices`` of all positions: float32 (k,)."""
-    return np.concatenate(
-        [one["gains"] for one in where.map(f"{__name__}:choices", shared, of_choices(at, rows, picks, keys))]
-    )
+    slices = where.map(f"{__name__}:choices", shared, of_choices(at, rows, picks, keys))
+    return np.concatenate([one["gains"] for one in slices])
 
 
 def search_of(shared, threads):
     """The ``StrokeSearch`` of a training, made once in a process."""
-    return once(
-        ("search", shared["run"], threads),
-        lambda: StrokeSearch(shared["options"], shared["budget"], threads=threads),
-    )
+    key = "search", shared["run"], threads
+    return once(key, lambda: StrokeSearch(shared["options"], shared["budget"], threads=threads))
 
 
 def planner_of(options, threads):
@@ -150,10 +143,8 @@ def _proposals(shared):
         return PolicyProposals(policy.fused)
     import torch
 
-    network = once(
-        ("network", shared["run"]),
-        lambda: _network(**{name: policy[name] for name in ("recipe", "env_options", "view")}),
-    )
+    made = {name: policy[name] for name in ("recipe", "env_options", "view")}
+    network = once(("network", shared["run"]), lambda: _network(**made))
     network.load_state_dict({name: torch.from_numpy(one.copy()) for name, one in policy["weights"].items()})
     return PolicyProposals(network.fused)
 

@@ -25,8 +25,7 @@ REFRESH = 8
 BATCH, EACH, RATE = 1024, 32, 2e-3
 """Positions in the batch of a gradient step, new positions for each step, and the first learning rate."""
 FIRST_STEPS, FIRST_GUESS = 25, 25.0
-"""The first time, so many times the steps; and the points that follow a visit's last known stroke in its
-first targets."""
+"""The first time, so many times the steps; first targets: the points after a visit's last stroke."""
 
 
 class ValueLearning:

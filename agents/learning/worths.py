@@ -19,6 +19,5 @@ def play(shared, args, threads):
 
 def worths(where, shared, at, rows, picks, keys):
     """The task for all positions: float64 (k,)."""
-    return np.concatenate(
-        [one["worth"] for one in where.map(f"{__name__}:play", shared, of_choices(at, rows, picks, keys))]
-    )
+    slices = where.map(f"{__name__}:play", shared, of_choices(at, rows, picks, keys))
+    return np.concatenate([one["worth"] for one in slices])

@@ -76,16 +76,14 @@ class Aimer:
         n, ball_on = len(at), at.ball_on.copy()
         shots, counts = np.empty((n, 1, COLUMNS)), np.empty(n, np.int64)
         direct_pots(at.positions, at.on_table, ball_on, shots, counts)
-        strokes = plain(
-            np.full(n, self._speed), self._solve(at, np.arange(n), shots[:, 0], (self._speed,))[:, 0]
-        )
+        lines = self._solve(at, np.arange(n), shots[:, 0], (self._speed,))[:, 0]
+        strokes = plain(np.full(n, self._speed), lines)
         for k in np.flatnonzero(~self.pots(at, np.arange(n), strokes)).tolist():
             one, (p, on) = at[k : k + 1], (at.positions[k], at.on_table[k])
-            found = self.widest(one, direct(p, on, ball_on[k]))
-            if found is None:
-                found = self.widest(one, indirect(p, on, ball_on[k], *self._bed))
-            if found is not None:
-                strokes[k] = found[0]
+            best = self.widest(one, direct(p, on, ball_on[k]))
+            best = best or self.widest(one, indirect(p, on, ball_on[k], *self._bed))
+            if best:
+                strokes[k] = best[0]
         return strokes
 
     def widest(self, one, shots):
@@ -124,14 +122,10 @@ class Aimer:
             x, y = at.positions[rows[j], 0]
             aims[j] = atan2(shots[j, GHOST_Y] - y, shots[j, GHOST_X] - x)
         pots = np.repeat(np.flatnonzero(~plain), s)
-        aims[~plain] = self._planner.pot_aim(
-            at,
-            rows[pots],
-            shots[pots, BALL].astype(np.int64),
-            shots[pots][:, [AIM_X, AIM_Y]],
-            np.tile(speeds, len(pots) // s),
-            ghosts=shots[pots][:, [GHOST_X, GHOST_Y]],
-        ).reshape(-1, s)
+        balls, ghosts = shots[pots, BALL].astype(np.int64), shots[pots][:, [GHOST_X, GHOST_Y]]
+        targets, tried = shots[pots][:, [AIM_X, AIM_Y]], np.tile(speeds, len(pots) // s)
+        solved = self._planner.pot_aim(at, rows[pots], balls, targets, tried, ghosts=ghosts)
+        aims[~plain] = solved.reshape(-1, s)
         return aims
 
     def pots(self, at, rows, strokes):

@@ -19,13 +19,7 @@ from ..learning.policy_files import read_policy
 
 
 class PolicyPlayer(ChoicePlayer):
-    """A policy over the discrete choices: the one that it likes most.
-
-    Parameters
-    ----------
-    model : Trained
-        The model; ``model.policy`` scores the choices.
-    """
+    """The choice that the policy of a ``Trained`` model likes most."""
 
     def __init__(self, model):
         self.model, self.name = model, model.recipe
@@ -33,9 +27,8 @@ class PolicyPlayer(ChoicePlayer):
 
     def _bind(self, options):
         super()._bind(options)
-        self._view = (
-            None if isinstance(self.model.policy, Layers) else view_of(self.model.view, threads=1).at(options)
-        )
+        plain = isinstance(self.model.policy, Layers)
+        self._view = None if plain else view_of(self.model.view, threads=1).at(options)
 
     @property
     def learned(self):
@@ -51,11 +44,8 @@ class PolicyPlayer(ChoicePlayer):
         if self._view is None:
             return np.where(masks, policy(observations), -np.inf)
         masks, seen = self._view.allowed(masks), self._view(at, observations)
-        scores = (
-            policy.fused.scores(seen, masks)
-            if getattr(policy, "has_fused", False)
-            else _logits(policy, seen, masks)
-        )
+        fused = getattr(policy, "has_fused", False)
+        scores = policy.fused.scores(seen, masks) if fused else _logits(policy, seen, masks)
         return np.where(masks, scores, -np.inf)
 
     def figures(self, scores):
@@ -72,9 +62,8 @@ def _logits(policy, seen, masks):
     with one_thread(), torch.no_grad():
         for k in range(len(seen)):
             row = policy.obs_to_tensor(seen[k : k + 1])[0]
-            logits[k] = (
-                policy.get_distribution(row, action_masks=masks[k : k + 1]).distribution.logits[0].numpy()
-            )
+            distribution = policy.get_distribution(row, action_masks=masks[k : k + 1]).distribution
+            logits[k] = distribution.logits[0].numpy()
     return logits
 
 

@@ -80,15 +80,9 @@ def _own_seeds(*, env, env_context, env_runner, **more):
 def started(runners, paths):
     """Start Ray on this machine, for so many runners, whose processes find modules in ``paths``."""
     variables = {"PYTHONPATH": paths, "OMP_NUM_THREADS": "1", "SNOOKER_ENV_QUIET": "1"}
-    ray.init(
-        "local",
-        num_cpus=runners + 1,
-        object_store_memory=MEMORY,
-        include_dashboard=False,
-        log_to_driver=False,
-        logging_level="ERROR",
-        runtime_env={"env_vars": variables},
-    )
+    quiet = {"include_dashboard": False, "log_to_driver": False, "logging_level": "ERROR"}
+    small = {"num_cpus": runners + 1, "object_store_memory": MEMORY}
+    ray.init("local", runtime_env={"env_vars": variables}, **small, **quiet)
 
 
 def algorithm_of(settings, seed):

@@ -1,10 +1,10 @@
 """How is an agent trained with RLlib from the command line? Trains, saves, resumes, and judges the policy on
 held-out tables.
 
-    python -m agents.train_rllib                                 300,000 shots with one env runner: some minutes
-    python -m agents.train_rllib --runners 2 --out runs/two      two env runners, each with its own tables
-    python -m agents.train_rllib --resume --out runs/two         go on after Ctrl-C or a kill
-    python -m agents.evaluate --agent runs/two                   our protocol, beside any other agent
+    python -m agents.train_rllib                             300,000 shots with one env runner: some minutes
+    python -m agents.train_rllib --runners 2 --out runs/two  two env runners, each with its own tables
+    python -m agents.train_rllib --resume --out runs/two     go on after Ctrl-C or a kill
+    python -m agents.evaluate --agent runs/two               our protocol, beside any other agent
 
 Files of a run folder: ``policy.npz``, the policy as plain weights; ``untrained.npz``, the same before the
 first update; ``results.json``, every figure; ``state.json`` and a folder ``checkpoint-N`` of RLlib's own,
@@ -111,11 +111,8 @@ def parse(argv):
             name, type=type(f.default), default=argparse.SUPPRESS, help=f"{HELP[f.name]} [{f.default}]"
         )
     parser.add_argument("--out", type=Path, help="the run's folder [runs/rllib-SEED]")
-    parser.add_argument(
-        "--resume",
-        action="store_true",
-        help="go on with the run in that folder; options left out keep their values",
-    )
+    what = "go on with the run in that folder; options left out keep their values"
+    parser.add_argument("--resume", action="store_true", help=what)
     given = vars(parser.parse_args(argv))
     out, resume = given.pop("out"), given.pop("resume")
     return parser, given, out or Path("runs", f"rllib-{given.get('seed', RunSettings.seed)}"), resume
@@ -126,9 +123,8 @@ def checked(settings):
     for name, (low, high) in BOUNDS.items():
         integer(name, getattr(settings, name), low, high)
     if settings.layout == "held_out":
-        raise refuse(
-            "layout", "held_out", "must be another for training: the held-out tables are kept for evaluation"
-        )
+        why = "the held-out tables are kept for evaluation"
+        raise refuse("layout", "held_out", f"must be another for training: {why}")
     Options(action="discrete", observation="masked", **settings.env_options)
     return settings
 
@@ -194,40 +190,33 @@ def save(out, settings, progress, algorithm):
 
 
 def _write(file, settings, progress, algorithm):
-    write_policy(
-        file,
-        layers_of(algorithm),
-        trainer="RLlib",
-        activation=ACTIVATION,
-        shots=progress.shots,
-        seed=settings.seed,
-        gamma=GAMMA,
-        env_options=settings.env_options,
-    )
+    about = {"trainer": "RLlib", "activation": ACTIVATION, "gamma": GAMMA, "shots": progress.shots}
+    about |= {"seed": settings.seed, "env_options": settings.env_options}
+    write_policy(file, layers_of(algorithm), **about)
 
 
 def train(out, settings, progress, algorithm, stop):
     """Updates until all shots are played or a signal comes, with checkpoints."""
-    with Progress("RLlib", settings.steps, "shots", done=progress.shots, to=sys.stdout) as said:
-        _train(out, settings, progress, algorithm, stop, said)
+    with Progress("RLlib", settings.steps, "shots", done=progress.shots, to=sys.stdout) as shown:
+        _train(out, settings, progress, algorithm, stop, shown)
     save(out, settings, progress, algorithm)
 
 
-def _train(out, settings, progress, algorithm, stop, said):
+def _train(out, settings, progress, algorithm, stop, shown):
     saved, before, began = progress.shots, progress.seconds, time.perf_counter()
     while progress.shots < settings.steps and stop.signal is None:
-        found = algorithm.train().get("env_runners")
-        if not found or "num_env_steps_sampled_lifetime" not in found:  # RLlib goes on without a sample
+        sampled = algorithm.train().get("env_runners")
+        if not sampled or "num_env_steps_sampled_lifetime" not in sampled:  # RLlib goes on without a sample
             save(out, settings, progress, algorithm)
-            raise SystemExit(
-                f"agents.train_rllib: no env runner gave a sample in {PATIENCE:.0f} s; saved at {progress.shots:,} shots"
-            )
-        progress.shots, progress.updates = int(found["num_env_steps_sampled_lifetime"]), progress.updates + 1
-        progress.seconds = before + time.perf_counter() - began
-        said.at(
-            progress.shots,
-            f"update {progress.updates:,}, {found.get('episode_return_mean', float('nan')):.2f} points a visit",
+            why = f"no env runner gave a sample in {PATIENCE:.0f} s; saved at {progress.shots:,} shots"
+            raise SystemExit(f"agents.train_rllib: {why}")
+        progress.shots, progress.updates = (
+            int(sampled["num_env_steps_sampled_lifetime"]),
+            progress.updates + 1,
         )
+        progress.seconds = before + time.perf_counter() - began
+        points = sampled.get("episode_return_mean", float("nan"))
+        shown.at(progress.shots, f"update {progress.updates:,}, {points:.2f} points a visit")
         if progress.shots - saved >= settings.checkpoint_every:
             save(out, settings, progress, algorithm)
             saved = progress.shots
@@ -276,10 +265,8 @@ def main(argv=None):
         snooker_env.warmup()  # before the runners start: each would compile everything for itself
         torch.set_num_threads(1)
         ending.callback(ray.shutdown)
-        started(
-            settings.runners,
-            os.pathsep.join([str(Path(snooker_env.__file__).parents[1]), str(Path(__file__).parents[2])]),
-        )
+        roots = Path(snooker_env.__file__).parents[1], Path(__file__).parents[2]
+        started(settings.runners, os.pathsep.join(map(str, roots)))
         algorithm = algorithm_of(settings, settings.seed + SEEDS * progress.parts)
         ending.callback(algorithm.stop)
         progress.parts += 1
@@ -292,9 +279,8 @@ def main(argv=None):
             print(f"RLlib in {out}: {progress.shots:,} of {settings.steps:,} shots played", flush=True)
             train(out, settings, progress, algorithm, stop)
     if stop.signal:
-        print(
-            f"Saved at {progress.shots:,} shots. Continue with:  python -m agents.train_rllib --resume --out {out}"
-        )
+        again = f"python -m agents.train_rllib --resume --out {out}"
+        print(f"Saved at {progress.shots:,} shots. Continue with:  {again}")
         return 128 + stop.signal
     judge(out, settings, progress)
     return 0

@@ -42,7 +42,10 @@ def test_agents_with_longer_actions_are_judged(tmp_path):
 
 
 def test_imitation_comes_first_and_is_kept(tmp_path):
-    assert train.main([*TINY[:-1], "256", "--agent", "ppo_foresight", "--out", str(tmp_path / "run")]) == 0
+    few = ["--envs", "16", "--set", "n_steps=32"]  # of 512 shots a rollout
+    assert (
+        train.main([*TINY[:-1], "256", "--agent", "ppo_foresight", *few, "--out", str(tmp_path / "run")]) == 0
+    )
     found = results(tmp_path / "run")
     assert found["settings"]["imitate"] == 256 and found["imitation"][-1]["states"] == 256
     assert "after 256 positions of imitation, ppo_" in found["learned"]

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from agents.evaluation import encounters, tournament
+from agents.evaluation import tournament, tournament_play
 from agents.evaluation.tournament_figures import COLUMNS, figures_of
 from agents.evaluation.tournament_file import FIELDS, NUMBER, PLAYER, faults
 from tests.processes import ROOT
@@ -115,7 +115,7 @@ def test_a_match_is_the_unit(tmp_path, capsys):
 
 def interrupted_at(monkeypatch, call, error=KeyboardInterrupt):
     """Stopped when ``play_pair`` is called for the so-manyth time."""
-    original, calls = encounters.play_pair, []
+    original, calls = tournament_play.play_pair, []
 
     def play_pair(*arguments):
         calls.append(1)
@@ -123,7 +123,7 @@ def interrupted_at(monkeypatch, call, error=KeyboardInterrupt):
             raise error
         return original(*arguments)
 
-    monkeypatch.setattr(encounters, "play_pair", play_pair)
+    monkeypatch.setattr(tournament_play, "play_pair", play_pair)
     return calls
 
 

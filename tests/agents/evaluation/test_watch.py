@@ -44,7 +44,7 @@ def test_films_last_as_long_as_the_play(tmp_path, suffix):
     moviepy = pytest.importorskip("moviepy")
     file = tmp_path / f"visit{suffix}"
     args = watch.parser().parse_args([*SHORT, "--out", str(file)])
-    env, _, _ = watch.found(args)
+    env, _, _ = watch.sought(args)
     watch.main([*SHORT, "--out", str(file), "--size", "320x180", "--speed", "2", "--fps", "10"])
     seconds = sum(p.shot.duration / 2 + 0.8 for p in env.history)
     with moviepy.VideoFileClip(str(file)) as clip:
@@ -53,7 +53,7 @@ def test_films_last_as_long_as_the_play(tmp_path, suffix):
 
 def test_the_first_visit_that_is_long_enough_is_taken(capsys):
     args = watch.parser().parse_args([*SHORT, "--at-least", "1", "--seed", str(HELD_OUT_SEED)])
-    env, seed, _ = watch.found(args)
+    env, seed, _ = watch.sought(args)
     assert env.points >= 1
     for earlier in range(HELD_OUT_SEED, seed):
         assert watch.visit(player("ghost_ball"), earlier, layout="held_out", noise="club").points < 1

@@ -45,8 +45,8 @@ MEASURE = """if True:
         return lambda: player.play(at, np.arange(tables))
 
     rows, weight = np.ones((2, 256, 256), np.float32)
-    given = torch.from_numpy(rows)
-    found = {"numpy": share(lambda: rows @ weight), "torch": share(lambda: given @ given)}
+    tensor = torch.from_numpy(rows)
+    found = {"numpy": share(lambda: rows @ weight), "torch": share(lambda: tensor @ tensor)}
     for name in sys.argv[1:]:
         for tables in (1, 64):
             found[f"{name} {tables}"] = share(decisions(name, tables))
