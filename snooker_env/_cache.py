@@ -89,9 +89,9 @@ def _check_own(folder: Path, *, home: bool = False) -> None:
     """
     if not hasattr(os, "geteuid"):  # Windows: no such numbers, and a user's folders are closed to others
         return
-    for found in (os.lstat(folder), os.stat(folder)):
-        if found.st_uid not in (os.geteuid(), 0):
-            raise UnsafeFolderError(f"{folder} belongs to another user (uid {found.st_uid})")
+    for status in (os.lstat(folder), os.stat(folder)):
+        if status.st_uid not in (os.geteuid(), 0):
+            raise UnsafeFolderError(f"{folder} belongs to another user (uid {status.st_uid})")
     mode = os.stat(folder).st_mode & 0o7777
     if mode & (_WRITE_OTHERS if home else _WRITE_OTHERS | _WRITE_GROUP) and not (home and mode & _STICKY):
         raise UnsafeFolderError(f"others can write to {folder} (mode {mode:04o})")
@@ -143,12 +143,12 @@ CACHE_FOLDER = cache_folder()
 
 # numba's cache of one kernel in such a folder
 
-_said = set()
+_warned = set()
 
 
 def _warn_once(kind, message):
-    if kind not in _said:
-        _said.add(kind)
+    if kind not in _warned:
+        _warned.add(kind)
         warnings.warn(message, RuntimeWarning, stacklevel=3)
 
 
@@ -256,14 +256,16 @@ class Kept(FunctionCache):
         except OSError as error:
             _warn_once(
                 "place",
-                f"machine code is not read from {self.cache_path} ({error}): every process compiles for itself",
+                f"machine code is not read from {self.cache_path} ({error}): "
+                "every process compiles for itself",
             )
         except Exception as error:  # a damaged file can make pickle, numba or LLVM raise anything
             self._cache_file.discard()
             what = f"{type(error).__name__}: {error}"
             _warn_once(
                 "broken",
-                f"machine code kept in {self.cache_path} cannot be used ({what}): it is compiled and kept anew",
+                f"machine code kept in {self.cache_path} cannot be used ({what}): "
+                "it is compiled and kept anew",
             )
         return None
 
@@ -274,5 +276,6 @@ class Kept(FunctionCache):
         except Exception as error:  # for instance a full disk, or an index that was damaged in the meantime
             _warn_once(
                 "place",
-                f"machine code cannot be kept in {self.cache_path} ({error}): every process compiles for itself",
+                f"machine code cannot be kept in {self.cache_path} ({error}): "
+                "every process compiles for itself",
             )
