@@ -137,10 +137,8 @@ def main(argv=None):
         choice("out", args.out.suffix, formats())
         if (args.kept is None) == (not args.agents):
             raise refuse("agents", " ".join(args.agents), "must be runs, or none with --from FILE")
-        if args.kept is None:
-            drawn = figures_of(_runs(args.agents))
-        else:
-            drawn = read_json("from", args.kept, "must be a file that --json wrote")
+        kept = "must be a file that --json wrote"
+        drawn = figures_of(_runs(args.agents)) if args.kept is None else read_json("from", args.kept, kept)
         for name in ("json", "out"):
             writable(name, getattr(args, name))
     except ValueError as error:
