@@ -19,8 +19,7 @@ from .spotting import spot
 
 @kernel
 def _put_in_order(positions, on_table, result, gone, radius):
-    """Apply a ``Ruling`` in place: balls in the mask ``gone`` leave, colours return, the cue ball is in hand.
-    """
+    """Apply a ``Ruling`` in place: balls in the mask ``gone`` leave, colours return, cue ball in hand."""
     for i in range(N_BALLS):
         if (gone >> i) & 1:
             on_table[i] = False
@@ -31,8 +30,7 @@ def _put_in_order(positions, on_table, result, gone, radius):
 
 @kernel
 def settle_visit(positions, on_table, ball_on, lead, seen, radius):
-    """``settle`` for a visit, where no free ball follows a foul; ``seen``: (first, touching, moved, potted).
-    """
+    """``settle`` for a visit, where no free ball follows a foul; seen: (first, touching, moved, potted)."""
     first, touching, moved, potted = seen
     facts = Facts(first, touching, moved, potted, 0, AUTO)
     result = ruling(Before(bits(on_table), ball_on, 0, lead), facts, 0)
@@ -55,9 +53,8 @@ def settle(positions, on_table, situation, facts, flags, jaws, radius):
     before = Before(bits(on_table), ball_on, free_ball, lead)
     result = ruling(before, facts, flags)
     _put_in_order(positions, on_table, result, facts.potted | facts.off, radius)
-    # A snooker matters after a foul (free ball), and after a free ball that was not potted (no snooker may be
-    # behind that ball); in six-red snooker after any nominated ball that was not potted; in the Shoot Out
-    # never.
+    # A snooker matters after a foul (free ball), and behind a free ball that was not potted (six-red snooker:
+    # behind any nominated ball); in the Shoot Out never.
     nominating = free_ball or (flags & FLAG.SIX_RED and ball_on == 0)
     matters = (result.fouls and not flags & FLAG.SHOOT_OUT) or (
         nominating and result.nominated and not result.points

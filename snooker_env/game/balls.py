@@ -90,8 +90,7 @@ def _spots():
     spots[CUE] = 0.18, BAULK_Y
     spots[YELLOW:] = COLOUR_SPOTS
     pink_y = spots[PINK, 1]
-    # Rows sqrt(3) R apart with a pitch of 2 R: each red touches its neighbours to rounding. Places rounded to
-    # mm would overlap.
+    # Rows sqrt(3) R apart, a pitch of 2 R: each red touches its neighbours. Rounded to mm they would overlap.
     ball = 1
     for row in range(5):
         for k in range(row + 1):

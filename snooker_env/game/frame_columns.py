@@ -136,8 +136,7 @@ def needs_snookers(row, player):
 
 @kernel
 def _decided(row):
-    """Whether the scores rule a miss out: a player needs penalty points, or the difference is what is left.
-    """
+    """Whether the scores rule a miss out: a player needs penalty points, or the lead is what is left."""
     level = abs(lead_of(row, 0)) == available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
     return level or needs_snookers(row, 0) or needs_snookers(row, 1)
 

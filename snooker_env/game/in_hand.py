@@ -142,8 +142,7 @@ def nearest_place(positions, on_table, x, y, radius):
 
 @kernel
 def _disc(positions, on_table, i, reach):
-    """Disc i that bars places, of ball i or pocket i - 22: (x, y, radius); radius 0 for a ball off the table.
-    """
+    """Disc i that bars places, of ball i or pocket i - 22: (x, y, radius); radius 0 for an absent ball."""
     if i >= N_BALLS:
         return POCKET_PLACES[i - N_BALLS, 0], POCKET_PLACES[i - N_BALLS, 1], POCKET_REACH
     return positions[i, 0], positions[i, 1], reach if on_table[i] else 0.0

@@ -1,15 +1,8 @@
-"""Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke, as a
-pure function.
+"""Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke.
 
-``ruling`` is a kernel on integers and masks (bit i is ball i), so the same machine code judges one table from
-Python and thousands in a batch. ``referee.judge`` calls it from Python; ``apply_ruling.settle`` also sets up
-the table.
-
-Its input is what a simulator can observe. It does not judge intent or effort (whether a miss was deliberate
-or the attempt good enough; ``frame.py`` has the part of that rule that geometry decides), time wasting or
-conduct. Acts outside the simulation (a foot off the floor, playing out of turn, measuring ...) are passed in
-as flags. So are an illegal jump, a push and a double hit, which depend on the cue ball's flight and the tip's
-contact.
+``ruling`` is a pure kernel on integers and masks (bit i is ball i), the same for one table and thousands. It
+does not judge intent or effort (``frame`` has what geometry decides of that), time wasting or conduct. Acts
+outside the simulation, jumps, pushes and double hits are passed in as flags.
 """
 
 from collections import namedtuple
@@ -21,8 +14,7 @@ from .balls import BLACK, COLOURS_MASK, CUE_BIT, N_BALLS, PINK, VALUES, balls_on
 from .rule_sets import LATE_PENALTY
 
 AUTO = -1
-"""The referee decides which ball was nominated: the one that was evidently played at (see
-``_nomination``)."""
+"""The referee decides which ball was nominated: the one evidently played at (see ``_nomination``)."""
 
 
 class Flag(IntFlag):
@@ -155,31 +147,21 @@ FLAG, FOUL, VISIT, OUTCOME = _plain(Flag), _plain(Foul), _plain(VisitEnd), _plai
 class Before(NamedTuple):
     """What ``ruling`` knows of the frame before the stroke, all integers."""
 
-    on_table: int
-    """Mask of the balls on the table."""
-    ball_on: int
-    """A ``BallOn``."""
-    free_ball: int
-    """1 if the striker has a free ball."""
-    lead: int
-    """The striker's score minus the opponent's."""
+    on_table: int  # mask of the balls on the table
+    ball_on: int  # a ``BallOn``
+    free_ball: int  # 1 if the striker has a free ball
+    lead: int  # the striker's score minus the opponent's
 
 
 class Facts(NamedTuple):
     """What ``ruling`` knows of the stroke, all integers: masks of balls, and an id."""
 
-    first: int
-    """The balls struck by the first impact; more than one: simultaneously."""
-    touching: int
-    """The balls that touched the cue ball before it."""
-    moved: int
-    """Those of them that the cue ball moved as it left them."""
-    potted: int
-    """The balls in pockets, bit 0 the cue ball."""
-    off: int
-    """The balls off the table, bit 0 the cue ball."""
-    nominated: Any
-    """The id of the ball nominated, 0 for none, or AUTO."""
+    first: int  # the balls struck by the first impact; more than one: simultaneously
+    touching: int  # the balls that touched the cue ball before it
+    moved: int  # those of them that the cue ball moved as it left them
+    potted: int  # the balls in pockets, bit 0 the cue ball
+    off: int  # the balls off the table, bit 0 the cue ball
+    nominated: Any  # the id of the ball nominated, 0 for none, or AUTO
 
 
 class Ruling(NamedTuple):
@@ -220,11 +202,10 @@ def _top_ball(mask):
 
 @kernel
 def _nomination(on, ball_on, free_ball, first, touching, nominated):
-    """The id of the colour on, or of the free ball, or 0 for none.
+    """The id of the colour on, or of the free ball, or 0 for none ("any colour" or a free ball need one).
 
-    A nomination is needed only on "any colour" or with a free ball. With AUTO it is the colour first struck
-    among those allowed, the highest if there are several; if none was struck, an allowed colour that the cue
-    ball was touching.
+    With AUTO it is the colour first struck among those allowed, the highest if there are several; if none was
+    struck, an allowed colour that the cue ball was touching.
     """
     if ball_on != 0 and not free_ball:
         return 0
@@ -232,8 +213,7 @@ def _nomination(on, ball_on, free_ball, first, touching, nominated):
         return nominated
     could_be = COLOURS_MASK if ball_on == 0 else COLOURS_MASK & ~on
     ball = _top_ball(first & could_be)
-    # A striker who plays from a touching ball and strikes the real ball on first has not nominated a free
-    # ball.
+    # From a touching ball, a striker who first strikes the real ball on has not nominated a free ball.
     return ball if ball != 0 or (ball_on != 0 and first & on != 0) else _top_ball(touching & could_be)
 
 
@@ -310,8 +290,7 @@ def ruling(before, facts, flags):
         fouls |= FOUL.NO_CUSHION
         penalty = max(penalty, base)
 
-    # 6. No snooker behind the free ball after a stroke that does not score, unless only pink and black are
-    #    left.
+    # 6. No snooker behind the free ball without a score, unless only pink and black are left.
     behind = flags & FLAG.BEHIND_FREE_BALL and (fouls or not down)
     if behind and (
         (choice and flags & FLAG.SIX_RED) or (free and reds_and_colours != (1 << PINK | 1 << BLACK))
@@ -327,8 +306,7 @@ def ruling(before, facts, flags):
         fouls |= FOUL.NO_NOMINATION
         penalty = 7
 
-    # Points, and the colours that return: after a foul all, else those that were not potted as the ball on of
-    # the sequence.
+    # Points, and the colours that return: after a foul all, else those not potted as the sequence's ball on.
     points = 0
     respotted = down & COLOURS_MASK
     if not fouls:
@@ -349,8 +327,7 @@ def ruling(before, facts, flags):
     if remaining == 0 and not fouls:
         visit_end = VISIT.CLEARANCE
 
-    # The frame ends when the table is empty, and with the first score or foul when only the black is left. If
-    # level, the black returns.
+    # The frame ends on an empty table, and with a foul when only the black is left; if level, it returns.
     outcome = OUTCOME.PLAYING
     if remaining == 0 or (fouls and reds_and_colours == 1 << BLACK):
         lead += points - penalty
