@@ -18,40 +18,23 @@ AUTO = -1
 
 
 class Flag(IntFlag):
-    """Other facts about a stroke: input of ``ruling``.
+    """Other facts about a stroke: input of ``ruling``."""
 
-    ================= ==================================================================================================
-    JUMP              An illegal jump: the cue ball passed over a part of a ball before it struck one, or landed on the
-                      far side of the ball that it struck.
-    PUSH              A push stroke.
-    DOUBLE_HIT        The tip struck the cue ball twice.
-    OUTSIDE_D         In hand, but not played from on or within the lines of the D.
-    FEET              Both feet off the floor.
-    OUT_OF_TURN       Played out of turn.
-    SEVEN             An act that costs 7 points whatever is on: wrong cue ball, a ball off the table used, measuring, no
-                      declaration on request ...
-    SNOOKERED         After the stroke, with colours respotted, the next striker is snookered on the next ball on.
-    BEHIND_FREE_BALL  As SNOOKERED, and the effective snookering ball is the one just nominated.
-    NO_CUSHION        No ball reached a cushion. A foul in the Shoot Out if none was potted either.
-    LATE              The stroke was not begun within the shot clock; it was not played.
-    SIX_RED           The rules of six-red snooker hold.
-    SHOOT_OUT         The rules of the Shoot Out hold.
-    ================= ==================================================================================================
-    """
-
-    JUMP = 1
-    PUSH = 2
-    DOUBLE_HIT = 4
-    OUTSIDE_D = 8
-    FEET = 16
+    JUMP = (
+        1  # illegal: over a part of a ball before striking one, or landed on the far side of the one struck
+    )
+    PUSH = 2  # a push stroke
+    DOUBLE_HIT = 4  # the tip struck the cue ball twice
+    OUTSIDE_D = 8  # in hand, but not played from on or within the lines of the D
+    FEET = 16  # both feet off the floor
     OUT_OF_TURN = 32
-    SEVEN = 64
-    SNOOKERED = 128
-    BEHIND_FREE_BALL = 256
-    NO_CUSHION = 512
-    LATE = 1024
-    SIX_RED = 2048
-    SHOOT_OUT = 4096
+    SEVEN = 64  # an act that always costs 7: wrong cue ball, a ball off the table used, measuring, not declaring ...
+    SNOOKERED = 128  # with colours respotted, the next striker is snookered on the next ball on
+    BEHIND_FREE_BALL = 256  # as SNOOKERED, and the effective snookering ball is the one just nominated
+    NO_CUSHION = 512  # no ball reached a cushion: a foul in the Shoot Out if none was potted either
+    LATE = 1024  # not begun within the shot clock, and so not played
+    SIX_RED = 2048  # the rules of six-red snooker hold
+    SHOOT_OUT = 4096  # the rules of the Shoot Out hold
 
 
 RULE_FLAGS = (Flag(0), Flag.SIX_RED, Flag.SHOOT_OUT)
@@ -59,81 +42,43 @@ RULE_FLAGS = (Flag(0), Flag.SIX_RED, Flag.SHOOT_OUT)
 
 
 class Foul(IntFlag):
-    """The fouls of a stroke: output of ``ruling``.
+    """The fouls of a stroke: output of ``ruling``. Those named as a ``Flag`` are explained there."""
 
-    ================= ==================================================================================================
-    NO_CONTACT        The cue ball struck no ball.
-    WRONG_FIRST       It first struck a ball that was not on.
-    WRONG_POT         A ball was potted that was not on.
-    CUE_POTTED        The cue ball was potted.
-    CUE_OFF           The cue ball left the table.
-    BALL_OFF          An object ball left the table.
-    JUMP              An illegal jump shot.
-    PUSH              A push stroke.
-    DOUBLE_HIT        The tip struck the cue ball twice.
-    OUTSIDE_D         In hand, and played from outside the D.
-    FEET              Both feet off the floor.
-    OUT_OF_TURN       Played out of turn.
-    BEHIND_FREE_BALL  A snooker was laid behind the free ball; in six-red snooker, behind any nominated ball.
-    NO_NOMINATION     A foul on a colour that was never nominated; reds played in successive strokes are of this kind.
-    SEVEN             An act that costs 7 points whatever is on.
-    NO_CUSHION        In the Shoot Out: no ball was potted and none reached a cushion.
-    LATE              In the Shoot Out: not begun within the shot clock.
-    ================= ==================================================================================================
-    """
-
-    NO_CONTACT = 1
-    WRONG_FIRST = 2
-    WRONG_POT = 4
+    NO_CONTACT = 1  # the cue ball struck no ball
+    WRONG_FIRST = 2  # it first struck a ball that was not on
+    WRONG_POT = 4  # a ball was potted that was not on
     CUE_POTTED = 8
-    CUE_OFF = 16
-    BALL_OFF = 32
+    CUE_OFF = 16  # the cue ball left the table
+    BALL_OFF = 32  # an object ball left the table
     JUMP = 64
     PUSH = 128
     DOUBLE_HIT = 256
     OUTSIDE_D = 512
     FEET = 1024
     OUT_OF_TURN = 2048
-    BEHIND_FREE_BALL = 4096
-    NO_NOMINATION = 8192
+    BEHIND_FREE_BALL = 4096  # a snooker behind the free ball; in six-red snooker, behind any nominated ball
+    NO_NOMINATION = 8192  # a foul on a colour never nominated, such as reds played in successive strokes
     SEVEN = 16384
     NO_CUSHION = 32768
     LATE = 65536
 
 
 class VisitEnd(IntEnum):
-    """Whether and why the striker's visit ended with this stroke.
-
-    ========== ===================================
-    CONTINUES  It goes on.
-    MISS       A fair stroke that potted nothing.
-    FOUL       A foul.
-    CLEARANCE  No object ball is left.
-    ========== ===================================
-    """
+    """Whether and why the striker's visit ended with this stroke."""
 
     CONTINUES = 0
-    MISS = 1
+    MISS = 1  # a fair stroke that potted nothing
     FOUL = 2
-    CLEARANCE = 3
+    CLEARANCE = 3  # no object ball is left
 
 
 class Outcome(IntEnum):
-    """Whether the frame goes on after the stroke, and if not, how it ended.
-
-    =============== ==================================================================================================
-    PLAYING         It goes on.
-    STRIKER_WINS    The striker has won it.
-    OPPONENT_WINS   The opponent has won it.
-    RESPOTTED_BLACK Scores are level and no ball is left: the black is re-spotted, the cue ball is in hand, and the winner
-                    of a lot decides who plays first.
-    =============== ==================================================================================================
-    """
+    """Whether the frame goes on after the stroke, and if not, how it ended."""
 
     PLAYING = 0
     STRIKER_WINS = 1
     OPPONENT_WINS = 2
-    RESPOTTED_BLACK = 3
+    RESPOTTED_BLACK = 3  # level and no ball left: cue ball in hand, and a lot decides who plays first
 
 
 def _plain(enum):
