@@ -20,15 +20,13 @@ AUTO = -1
 class Flag(IntFlag):
     """Other facts about a stroke: input of ``ruling``."""
 
-    JUMP = (
-        1  # illegal: over a part of a ball before striking one, or landed on the far side of the one struck
-    )
+    JUMP = 1  # illegal: passed over a part of a ball before striking one, or landed behind the one struck
     PUSH = 2  # a push stroke
     DOUBLE_HIT = 4  # the tip struck the cue ball twice
     OUTSIDE_D = 8  # in hand, but not played from on or within the lines of the D
     FEET = 16  # both feet off the floor
     OUT_OF_TURN = 32
-    SEVEN = 64  # an act that always costs 7: wrong cue ball, a ball off the table used, measuring, not declaring ...
+    SEVEN = 64  # an act that always costs 7: wrong cue ball, use of a ball off the table, measuring ...
     SNOOKERED = 128  # with colours respotted, the next striker is snookered on the next ball on
     BEHIND_FREE_BALL = 256  # as SNOOKERED, and the effective snookering ball is the one just nominated
     NO_CUSHION = 512  # no ball reached a cushion: a foul in the Shoot Out if none was potted either

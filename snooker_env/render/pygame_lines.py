@@ -1,8 +1,7 @@
 """How is a ball's path drawn? As a line with a dark edge, smooth at every angle, in pieces that are kept.
 
-A path that grows from frame to frame changes only at its end. So it is cut at equal lengths from its start,
-and the picture of each piece is made once. First all edges are drawn, then all lines, so that no piece
-darkens its neighbour.
+A path that grows from frame to frame changes only at its end, so it is cut at equal lengths from its start.
+All edges are drawn before all lines, so that no piece darkens its neighbour.
 """
 
 from functools import lru_cache
