@@ -34,7 +34,7 @@ ARC_X, ARC_Y, ARC_RADIUS, ARC_UX, ARC_UY, ARC_COS = range(6)
 
 @kernel
 def to_cushion(cx, cy, ux, uy, noses, jaws, radius):
-    """Distance [m] that the cue ball rolls from c along the unit vector u until it meets a cushion, or inf."""
+    """How far [m] the cue ball rolls from c along the unit vector u until it meets a cushion, or inf."""
     run = np.inf
     for k in range(noses.shape[0]):
         c, u, other, slide = (cx, ux, cy, uy) if noses[k, AXIS] == 0.0 else (cy, uy, cx, ux)

@@ -49,7 +49,7 @@ def normals(stream):
 
 
 def stream_of(rng: np.random.Generator) -> Words:
-    """A new stream, uint64 (2,), whose key is drawn from a numpy ``Generator``; ValueError for anything else."""
+    """A new stream, uint64 (2,), whose key is drawn from a numpy ``Generator``; else ValueError."""
     if not isinstance(rng, np.random.Generator):
         raise refuse("rng", rng, "must be a numpy.random.Generator")
     return np.array([rng.integers(0, 2**64 - 1, dtype=np.uint64, endpoint=True), 0], np.uint64)

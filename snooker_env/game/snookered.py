@@ -130,7 +130,7 @@ def _open_beside(positions, on_table, on, i, jaws, radius):
 
 @kernel
 def snookered_in_hand(positions, on_table, on, jaws, radius):
-    """Whether the cue ball is snookered from every place in the D; its entry in ``on_table`` must be False."""
+    """Whether the cue ball is snookered from every place in the D; on_table[0] must be False."""
     for k in range(PLACES_IN_D.shape[0]):
         if _open_at(positions, on_table, on, PLACES_IN_D[k, 0], PLACES_IN_D[k, 1], jaws, radius):
             return False
@@ -156,7 +156,7 @@ def _snookered(positions, on_table, on, jaws, radius):
 def is_snookered(
     positions: Vectors, on_table: Flags, on: int, *, jaws: Vectors = NO_JAWS, radius: float = BALL_RADIUS
 ) -> tuple[bool, int]:
-    """``snookered`` for Python: (bool, mask of the effective snookering balls); ValueError for wrong input."""
+    """``snookered`` for Python: (bool, mask of effective snookering balls); ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if integer("on", on, 0, ALL_MASK) & CUE_BIT:
         raise refuse("on", on, "must name object balls only")

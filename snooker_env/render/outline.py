@@ -177,9 +177,9 @@ def scene_data(table: TableLike) -> dict[str, Any]:
     dict
         Lengths in metres, rounded to 1e-6. ``cushions``, ``noses``, ``falls``, ``throats``: as in
         ``Outline``, as lists. ``extent``: [[lowest x, highest x], [lowest y, highest y]] of the bed.
-        ``rail``, ``cushion``: ``RAIL``, ``CUSHION``. ``lines``: {"baulk", "d", "spots"}, or None on a table without them.
-        ``ball_radius``. ``palette``: {name: [red, green, blue]}. ``balls``: by id {"name", "letter", "value",
-        "rgb"}.
+        ``rail``, ``cushion``: ``RAIL``, ``CUSHION``. ``lines``: {"baulk", "d", "spots"}, or None on a
+        table without them. ``ball_radius``. ``palette``: {name: [red, green, blue]}. ``balls``: by id
+        {"name", "letter", "value", "rgb"}.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""How is pygame-ce imported? At the first picture, with an error that says how to install it. And its font."""
+"""How is pygame-ce imported? At the first picture; an error says how to install it. And its font."""
 
 import os
 from functools import lru_cache

@@ -85,7 +85,7 @@ def plot(
         The horizontal axis is y [m], the vertical one x [m] downwards: ``ax.plot(y, x)``.
     cue : mapping, optional
         How the cue ball was struck: "side" and "top" (tip offset over R, right and up), and if known "speed"
-        [m/s], "elevation" and "aim" [rad]. None: computed from velocity and spin; the cue is level if no side.
+        [m/s], "elevation" and "aim" [rad]. None: computed from velocity and spin, level without side.
     view : "table", "shot" or ((float, float), (float, float))
         The part of the table to show: all of it (if it has cushions on all sides), as much as the shot needs,
         or a range of x and one of y [m].

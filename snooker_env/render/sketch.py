@@ -67,7 +67,7 @@ class Region(NamedTuple):
     def around(
         cls, points: Floats, table: Table, margin: float = 0.18, ratio: tuple[float, float] = (1.35, 2.1)
     ) -> "Region":
-        """Around points (m, 2) [m]: at least 1 m wide, width / height in ``ratio``, inside the table's picture."""
+        """Around points (m, 2) [m]: at least 1 m wide, width / height in ``ratio``, inside ``of_table``."""
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         height, width = high - low
         width, height = max(width, 1.0, ratio[0] * height), height
