@@ -88,11 +88,9 @@ def settle_table(
     radius: float = BALL_RADIUS,
 ) -> tuple[Verdict, Floats, Bools]:
     """Judge a ``Stroke`` and set up the table: the ``Verdict``, new ``positions`` (22, 2) [m], ``on_table``
-    (22,).
-
-    ``positions`` are after the stroke, ``on_table`` before it, in agreement with ``situation.on_table``.
-    ``snookered`` and ``behind_free_ball`` of the stroke are computed here. ValueError for wrong input.
-    """
+    (22,). ``positions`` are after the stroke, ``on_table`` before it, in agreement with
+    ``situation.on_table``. ``snookered`` and ``behind_free_ball`` of the stroke are computed here.
+    ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if (mask_of(np.flatnonzero(present)) ^ situation.on_table) & ~1:
         raise refuse("situation.on_table", situation.on_table, "must be the mask of the array on_table")

@@ -70,10 +70,8 @@ def nearest_on_piece(dx, dy, vx, vy, ax, ay, T):
 @kernel
 def closest_approach(segments, n_segments, until, positions, on_table, on, radius):
     """The smallest gap [m] of the cue ball to a ball of the mask ``on``, up to the time ``until`` [s]; or
-    inf.
-
-    ``segments``, ``n_segments``: the path log; ``positions``, ``on_table``: before the shot, still unmoved.
-    """
+    inf. ``segments``, ``n_segments``: the path log; ``positions``, ``on_table``: before the shot, still
+    unmoved."""
     best, k = np.inf, 0
     while k < n_segments:
         if segments[k, BALL] != CUE:

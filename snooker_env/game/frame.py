@@ -113,11 +113,9 @@ def _act(row, act, number):
 
 @dataclass(frozen=True, kw_only=True)
 class Saved:
-    """The position before a stroke, to be restored after a foul and a miss.
-
-    The fields are those of the ``Frame``. ``layout``: the caller's own record of the positions, anything that
-    JSON can hold, or None; it is stored and returned, never read.
-    """
+    """The position before a stroke, to be restored after a foul and a miss; fields as in ``Frame``.
+    ``layout``: the caller's record of the positions, anything that JSON can hold; stored and returned,
+    never read."""
 
     on_table: int
     ball_on: BallOn
@@ -393,10 +391,8 @@ class Frame:
 
     @classmethod
     def from_dict(cls, plain: dict[str, Any], field: str = "frame") -> "Frame":
-        """The frame from the result of ``to_dict``, also after a round trip through JSON.
-
-        ValueError names the wrong part of ``field``; also where the rules forbid a combination of parts.
-        """
+        """The frame from the result of ``to_dict``, also after JSON. ValueError names the wrong part of
+        ``field``, also where the rules forbid a combination of parts."""
         check_fields(field, plain, cls)
         saved, scores = plain["saved"], plain["scores"]
         if saved is not None:

@@ -14,8 +14,7 @@ from .rule_sets import CLOCK_LIMIT, MOST_MISSES, SHOOT_OUT, SHOT_CLOCK, SIX_RED
 from .ruling import FOUL, OUTCOME
 
 (BALL_ON, IN_HAND, POINTS, OVER, STEPS) = range(5)
-"""A ``BallOn``; is the cue ball in hand; points of the break; has the episode ended by the rules; its steps.
-"""
+"""A ``BallOn``; cue ball in hand; points of the break; whether the episode has ended by the rules; steps."""
 VISIT_COLUMNS = 5
 (
     FREE_BALL,
@@ -88,8 +87,7 @@ class Layouts(NamedTuple):
 
 @kernel
 def strikeable(row, mask):
-    """Mask of the balls in ``mask`` that may be struck first, free balls too, for a row of a visit or a
-    frame."""
+    """Mask of the balls of ``mask`` that may be struck first, free balls too; ``row``: of visit or frame."""
     on = balls_on_kernel(row[BALL_ON], mask)
     if row.shape[0] > FREE_BALL and row[FREE_BALL]:
         on |= COLOURS_MASK & mask

@@ -17,8 +17,7 @@ from .balls import CLEARANCE, N_BALLS, REFEREE_TOUCH, check_table
 from .spotting import touches
 
 POCKET_REACH = 0.15
-"""Least distance of the cue ball's centre from a pocket's nominal place [m]: clear of the jaws, as in
-layouts."""
+"""Least distance of the cue ball's centre from a pocket's nominal place [m]: clear of the jaws."""
 ROUNDING = 1e-12
 """Tolerance for points on the lines of the D [m]."""
 D_STEP, BED_STEP = 0.005, 0.05
@@ -26,8 +25,7 @@ D_STEP, BED_STEP = 0.005, 0.05
 
 
 def _places_in_d():
-    """(n, 2) [m]: the ends of the D's straight line and the brown spot, then a grid of ``D_STEP`` with the
-    arc."""
+    """(n, 2) [m]: the D's straight line's ends and the brown spot, then a grid of ``D_STEP`` with the arc."""
     places = [(side * D_RADIUS, BAULK_Y) for side in (-1, 0, 1)]
     rows = int(np.ceil(D_RADIUS / D_STEP))
     for row in range(rows + 1):
@@ -47,8 +45,7 @@ def _places_on_bed():
 
 
 PLACES_IN_D, PLACES_ON_BED = _places_in_d(), _places_on_bed()
-"""Places that are tried where a rule asks what the cue ball in hand could do: float64 (n, 2) [m], read-only.
-"""
+"""Places that are tried for what the cue ball in hand could do: float64 (n, 2) [m], read-only."""
 for _places in (PLACES_IN_D, PLACES_ON_BED):
     _places.setflags(write=False)
 
@@ -150,8 +147,7 @@ def _disc(positions, on_table, i, reach):
 
 @kernel
 def nearest_anywhere(positions, on_table, x, y, radius):
-    """``nearest_place`` on the whole bed: pockets bar places too, and the edges of the bed replace the D's
-    lines."""
+    """``nearest_place`` on the whole bed, where pockets bar places too, and edges replace the D's lines."""
     wide, high, reach = (
         HALF_WIDTH - radius - CLEARANCE,
         HALF_LENGTH - radius - CLEARANCE,
@@ -199,10 +195,7 @@ def place_cue(
     anywhere: bool = False,
 ) -> Place:
     """The free place (x, y) in the D (``anywhere``: on the bed) nearest to (x, y) [m], whatever
-    ``positions[0]``.
-
-    ValueError for wrong input, and if there is no free place (which no legal table has).
-    """
+    ``positions[0]``. ValueError for wrong input, and if there is no free place (which no legal table has)."""
     placed, present = check_table(positions, on_table)
     present[0] = False
     px, py, found = _nearest_place(

@@ -88,11 +88,8 @@ def _opened(positions, on_table, tables, first, last, stream):
 
 @kernel
 def _line_up_y(k):
-    """The y of red k of 15 in the practice line-up on the centre line [m].
-
-    Two reds are below the blue, seven below the pink, four below the black, two above it: about 112 mm apart,
-    so that a ball just passes.
-    """
+    """The y of red k of 15 in the practice line-up on the centre line [m]: two below the blue, seven below
+    the pink, four below the black, two above it; about 112 mm apart, so that a ball just passes."""
     blue, pink, black = SPOTS[19, 1], SPOTS[20, 1], SPOTS[21, 1]
     low, high = (pink - blue) / 8, (black - pink) / 5
     if k <= 9:
@@ -139,8 +136,7 @@ either side, by ``game.pots``. Along the solved line at 2.3 m/s a professional's
 
 @kernel
 def _deal(code, tables, stream, positions, on_table, found):
-    """One layout: racked and spotted balls, loose reds, last the cue ball; repeated until its condition
-    holds."""
+    """One layout: racked and spotted balls, loose reds, last the cue ball; until its condition holds."""
     kind, reds, low, high = int(code[0]), int(code[1]), code[2], code[3]
     if kind == OPENED:
         _opened(positions, on_table, tables, int(low), int(high), stream)
@@ -173,10 +169,8 @@ def _deal(code, tables, stream, positions, on_table, found):
 
 @entry(what="the dealing of tables", seconds=4)
 def deal_tables(which, code, tables, streams, positions, on_table):
-    """Write a new layout for each of the tables ``which`` into positions (n, 22, 2) [m], on_table (n, 22).
-
-    ``code``, ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64, one for each table.
-    """
+    """Write new layouts for the tables ``which`` into positions (n, 22, 2) [m] and on_table (n, 22);
+    ``code``, ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64, one for each table."""
     found = np.empty((1, POT_COLUMNS))
     for k in which:
         _deal(code, tables, streams[k], positions[k], on_table[k], found)
@@ -184,8 +178,9 @@ def deal_tables(which, code, tables, streams, positions, on_table):
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """A layout by name, in the form that the kernels read; ``plan_of`` makes one, also in pickling and
-    copying.
+    """A layout by name, in the form that the kernels read; ``plan_of`` makes one.
+
+    Pickling and copying make it again from the name, so the bank of tables is never copied.
 
     Attributes
     ----------

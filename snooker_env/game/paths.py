@@ -99,10 +99,8 @@ def _open_direction(positions, on_table, on, target, angle, noses, jaws, radius)
 @kernel
 def _cushion_edges(edges, n, c, t, towards, noses, jaws, radius):
     """Append the directions at which a cushion may open or close the path from c to t; returns their number.
-
-    A nose: the cue ball meets it and the target at the same time, or passes its end. A jaw: also if it grazes
-    it.
-    """
+    A nose: the cue ball meets it and the target at the same time, or passes its end. A jaw: also if it
+    grazes it."""
     (cx, cy), (tx, ty) = c, t
     for k in range(noses.shape[0]):
         level, vertical = noses[k, SIDE] * (noses[k, LEVEL] - radius), noses[k, AXIS] == 0.0
@@ -234,11 +232,8 @@ def paths(
     jaws: Vectors = NO_ARCS,
     radius: float = BALL_RADIUS,
 ) -> tuple[bool, bool]:
-    """Both tests for Python: (any part, full ball); ``noses``, ``jaws``: of a ``Table``.
-
-    A cue ball off the table is in hand: in the D or, with ``anywhere``, on the bed. ValueError for wrong
-    input.
-    """
+    """Both tests for Python: (any part, full ball); ``noses``, ``jaws``: of a ``Table``. A cue ball off the
+    table is in hand: in the D or, with ``anywhere``, on the bed. ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if truth("anywhere", anywhere) and present[0]:
         raise refuse(

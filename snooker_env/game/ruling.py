@@ -162,10 +162,8 @@ def _nomination(on, ball_on, free_ball, first, touching, nominated):
 
 @kernel
 def ruling(before, facts, flags):
-    """The ``Ruling`` on the stroke ``facts`` in the frame ``before``; ``flags``: Flag bits.
-
-    The order is that of the rule book; the highest penalty counts, and a foul scores nothing.
-    """
+    """The ``Ruling`` on the stroke ``facts`` in the frame ``before``; ``flags``: Flag bits. The order is that
+    of the rule book; the highest penalty counts, and a foul scores nothing."""
     on_table, ball_on, free_ball, lead = before
     first, touching, moved, potted, off, nominated = facts
     reds_and_colours = on_table & ~CUE_BIT

@@ -39,8 +39,7 @@ def segment_distance(px, py, ax, ay, bx, by):
 
 @kernel
 def _edge(cx, cy, tx, ty, side, radius):
-    """Where the cue ball from c grazes the ball at t at its edge ``side`` (+1 left, -1 right of c-t): (x, y)
-    [m]."""
+    """Where the cue ball from c grazes the ball at t at its edge ``side`` (+1 left, -1 right): (x, y) [m]."""
     dx, dy = tx - cx, ty - cy
     d = np.hypot(dx, dy)
     s = 2.0 * radius / d  # the sine of the angle between the line of centres and the tangent
@@ -51,10 +50,8 @@ def _edge(cx, cy, tx, ty, side, radius):
 
 @kernel
 def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
-    """Mask of the nearest balls not on that hide an edge of ``target`` from (cx, cy); 0: both edges are open.
-
-    -1: a jaw obstructs an edge and is nearer than those balls. Nearest: by the distance of centres.
-    """
+    """Mask of the balls not on, nearest by centres, that hide an edge of ``target`` from (cx, cy); 0: both
+    edges are open; -1: a jaw obstructs an edge and is nearer than those balls."""
     tx, ty = positions[target, 0], positions[target, 1]
     if np.hypot(tx - cx, ty - cy) <= 2.0 * radius + REFEREE_TOUCH:
         return 0
@@ -81,10 +78,7 @@ def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
 @kernel
 def snookered_from(positions, on_table, on, cx, cy, jaws, radius):
     """Whether the cue ball at (cx, cy) is snookered, and the mask of the effective snookering balls: (bool,
-    int).
-
-    The mask is 0 if there is none: reds hidden by different balls have no effective snookering ball.
-    """
+    int). The mask is 0 if reds are hidden by different balls: then no ball is the effective one."""
     effective = -1
     for target in range(1, N_BALLS):
         if on_table[target] and (on >> target) & 1:
@@ -106,8 +100,7 @@ def _open_at(positions, on_table, on, x, y, jaws, radius):
 
 @kernel
 def _open_beside(positions, on_table, on, i, jaws, radius):
-    """Whether the cue ball is not snookered from some place in the D beside ball i: round it, on the baulk
-    line."""
+    """Whether the cue ball is not snookered at some place in the D beside ball i, baulk line included."""
     gap = 2.0 * radius + CLEARANCE
     x, y = positions[i, 0], positions[i, 1]
     if np.hypot(x, y - BAULK_Y) > D_RADIUS + gap:

@@ -84,10 +84,8 @@ def place_colour(positions, on_table, ball, radius):
 
 @kernel
 def spot(positions, on_table, mask, radius):
-    """Write the colours in ``mask`` into ``positions`` (22, 2) [m] and ``on_table`` (22,) bool.
-
-    Those still on the table are removed first (the black of a re-spotted black).
-    """
+    """Write the colours in ``mask`` into ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; those still
+    on the table are removed first (the black of a re-spotted black)."""
     for ball in range(YELLOW, BLACK + 1):
         if (mask >> ball) & 1:
             on_table[ball] = False
@@ -113,9 +111,7 @@ def spot_colours(
     positions: Vectors, on_table: Flags, mask: int, *, radius: float = BALL_RADIUS
 ) -> tuple[Floats, Bools]:
     """New ``positions`` (22, 2) [m] and ``on_table`` (22,) with the colours in ``mask`` placed by the rule.
-
-    ValueError for wrong arrays, or a mask that contains a ball that is no colour.
-    """
+    ValueError for wrong arrays, or a mask that contains a ball that is no colour."""
     if integer("mask", mask, 0, ALL_MASK) & ~COLOURS_MASK:
         raise refuse("mask", mask, "must name colours only (ids 16 to 21)")
     placed, present = check_table(positions, on_table)

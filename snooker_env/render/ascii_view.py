@@ -1,8 +1,6 @@
-"""How is a scene drawn in a terminal? From above in characters, baulk left and black right.
-
-A ball is a letter in the cell of its centre (N brown, K black), several reds are their number; the cue ball
-is never hidden, and a line below names the balls under another one.
-"""
+"""How is a scene drawn in a terminal? From above in characters, baulk left and black right. A ball is a
+letter in the cell of its centre (N brown, K black), several reds are their number; the cue ball is never
+hidden, and a line below names the balls under another one."""
 
 from itertools import pairwise
 from textwrap import wrap

@@ -1,8 +1,5 @@
 """Which parts of a table never move, and where are they? Cushions, falls, holes and snooker's lines, in
-metres.
-
-Table frame: origin at the table's centre, +x to the yellow side, +y to the black end.
-"""
+metres. Table frame: origin at the table's centre, +x to the yellow side, +y to the black end."""
 
 from dataclasses import dataclass
 from functools import lru_cache

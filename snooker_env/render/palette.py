@@ -1,8 +1,5 @@
-"""Which colours does everything have? One table, red, green, blue, for pygame, matplotlib and the browser.
-
-Each ball differs from the cloth by at least 25 in CIEDE2000, so that it is easy to see: the cloth is bright
-as on television, and green, brown and black are dark.
-"""
+"""Which colours does everything have? One table for pygame, matplotlib and the browser. Each ball differs
+from the cloth by at least 25 in CIEDE2000, so that it is easy to see."""
 
 import numpy as np
 from numpy.typing import NDArray

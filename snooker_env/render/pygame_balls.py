@@ -1,7 +1,5 @@
 """How is a ball drawn? Shaded, with reflections of the lamps over the table and a faint shadow from each.
-
-Pictures of balls, reflections and shadows are kept for each colour, size and quarter of a pixel.
-"""
+Pictures of these are kept for each colour, size and quarter of a pixel."""
 
 from functools import lru_cache
 from typing import Any

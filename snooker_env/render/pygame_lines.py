@@ -1,8 +1,6 @@
-"""How is a ball's path drawn? As a line with a dark edge, smooth at every angle, in pieces that are kept.
-
-A path that grows from frame to frame changes only at its end, so it is cut at equal lengths from its start.
-All edges are drawn before all lines, so that no piece darkens its neighbour.
-"""
+"""How is a ball's path drawn? As a line with a dark edge, smooth at every angle, in kept pieces: a path that
+grows changes only at its end. All edges are drawn before all lines, so that no piece darkens its
+neighbour."""
 
 from functools import lru_cache
 from typing import Any

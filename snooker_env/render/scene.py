@@ -1,8 +1,5 @@
 """What is there to draw? A table, its lines, balls and overlays, in metres and without a drawing library.
-
-``scene`` describes one picture; ``Film`` and ``shot_scenes`` make those of a film from a shot. Table frame:
-origin at the centre, +x to the yellow side, +y to the black end.
-"""
+Table frame: origin at the centre, +x to the yellow side, +y to the black end."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass

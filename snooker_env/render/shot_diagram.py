@@ -1,5 +1,4 @@
-"""How is a shot drawn as a diagram? Paths, ghost balls, impacts, speeds, the cut and the tip, on a
-``Sketch``."""
+"""How is a shot drawn as a diagram? Paths, ghosts, impacts, speeds, the cut and the tip, on a ``Sketch``."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
@@ -31,16 +30,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 View: TypeAlias = Literal["table", "shot"] | Sequence[Sequence[float]]
-"""The part of the table to show: all, as much as the shot needs, or ((lowest x, highest x), (lowest y,
-highest y)) [m]."""
+"""All of it, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) of the table [m].
+"""
 
 SLIDES = (255, 168, 36)
 """Colour of the stripes of a path on which the ball slides."""
 DASHES = (0, (2.0, 1.6))
 """Lengths of these stripes, in widths of the path."""
 MOST_PATHS = 7
-"""If more balls move, only the paths of the cue ball, its first object ball and potted balls are wide.
-"""
+"""If more balls move, only paths of the cue ball, its first object ball and potted balls are wide."""
 
 _SIGNS: dict[EventKind, tuple[Any, Any, float]] = {
     EventKind.BALL_BALL: ("o", "text", 4.5),

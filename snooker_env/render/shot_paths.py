@@ -1,8 +1,6 @@
 """What does a diagram show of a shot? Paths in pieces that slide or roll, contacts and speeds, and the tip.
-
-In metres. The lines between a piece's points are within ``STRAY`` of it: a rolling ball moves straight, a
-sliding one on a parabola.
-"""
+The lines between a piece's points are within ``STRAY`` of it: a rolling ball moves straight, a sliding one
+on a parabola."""
 
 from collections.abc import Iterator
 from typing import Literal, NamedTuple

@@ -1,7 +1,5 @@
-"""How is a table drawn with matplotlib? By a ``Sketch``: axes in metres, a point (x, y) at ``ax.plot(y, x)``.
-
-All is drawn on the table's own colours, so that light and dark pages show it alike.
-"""
+"""How is a table drawn with matplotlib? By a ``Sketch``: axes in metres, a point (x, y) at ``ax.plot(y, x)``,
+all on the table's own colours, so that light and dark pages show it alike."""
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 

@@ -1,7 +1,5 @@
-"""How is a table drawn from above? Everything that does not move, as an array; needs only numpy.
-
-Each part is a signed distance [m] (negative inside); an edge covers a part of a pixel, smooth at every size.
-"""
+"""How is a table drawn from above? Everything that does not move, as an array; needs only numpy. Each part is
+a signed distance [m] (negative inside); an edge covers a part of a pixel, smooth at every size."""
 
 from functools import lru_cache
 
@@ -86,8 +84,7 @@ class _Canvas:
         return outside + np.minimum(np.maximum(across, along), 0) - radius
 
     def grain(self, rows, columns, fine, run):
-        """Noise, mean 0, deviation about 1, correlated over ``fine`` pixels across and ``run`` along the
-        columns."""
+        """Noise, mean 0, deviation about 1, correlated over ``fine`` pixels across and ``run`` along."""
         across, along = int(rows / fine) + 2, int(columns / run) + 3
         noise = self.random.standard_normal((across, along)).astype(np.float32)
         at, part = np.divmod(np.arange(columns) / run, 1.0)
