@@ -38,8 +38,7 @@ def strikers_own(game: Ints) -> Ints:
 
 
 def as_visits(game: Ints) -> Ints:
-    """Copied rows as a player of visits sees them: a free ball as any colour, a cue ball for anywhere as
-    placed."""
+    """Copied rows as a player of visits sees them: free ball as any colour, anywhere as already placed."""
     seen = game.copy()
     free, anywhere = game[:, FREE_BALL] != 0, game[:, ANYWHERE] != 0
     seen[free, BALL_ON] = seen[free, FREE_BALL] = 0

@@ -96,7 +96,7 @@ def density_of(
 
 
 def level_of(values: Floats, share: float) -> float:
-    """The density above which a share (0 to 1) of the total lies.
+    """The density above which a share of the total lies.
 
     Parameters
     ----------

@@ -30,8 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 View: TypeAlias = Literal["table", "shot"] | Sequence[Sequence[float]]
-"""All of it, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) of the table [m].
-"""
+"""The part to show: all, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) [m]."""
 
 SLIDES = (255, 168, 36)
 """Colour of the stripes of a path on which the ball slides."""
