@@ -113,16 +113,14 @@ def _act(row, act, number):
 
 @dataclass(frozen=True, kw_only=True)
 class Saved:
-    """The position before a stroke, to be restored after a foul and a miss; fields as in ``Frame``.
-    ``layout``: the caller's record of the positions, anything that JSON can hold; stored and returned,
-    never read."""
+    """The position before a stroke, to be restored after a foul and a miss; other fields as in ``Frame``."""
 
     on_table: int
     ball_on: BallOn
     in_hand: bool
     free_ball: bool
     anywhere: bool = False
-    layout: tuple[Any, ...] | None = None
+    layout: tuple[Any, ...] | None = None  # the caller's record, for JSON; stored and returned, never read
 
     def __post_init__(self) -> None:
         _set(self, "on_table", _object_balls(self.on_table))
@@ -137,43 +135,29 @@ class Saved:
 
 @dataclass(frozen=True, kw_only=True)
 class Frame:
-    """A frame between two strokes.
+    """A frame between two strokes."""
 
-    ``striker``: the player who is next; in phase "choice" the one who chooses, in "lot" the last striker.
-    ``breaker``: who broke off, also after a restart. ``break_points``: of the striker's visit so far.
-    ``on_table``, ``rack``: masks of the object balls now, and at the start for a restart. ``in_hand``: the
-    stroke is played from the D; ``anywhere``: from anywhere on the table. ``free_ball``: the striker may
-    nominate one (in phase "choice": after the choice to play). ``respotted_black``: scores were level.
-
-    ``phase``: "stroke" (``play`` is next), "choice" (after a foul, ``choose``), "lot" (before a re-spotted
-    black, ``draw``) or "over"; only then there is a ``winner``. ``rules``: one of ``rule_sets.RULES``;
-    ``miss``: one of ``MISS_RULES``, "off" in the Shoot Out. ``miss_called``: the position may be replaced.
-    ``failures``: misses in succession from one position with a clear full-ball path. ``warned``: one more
-    loses the frame. ``misses``: six-red snooker's calls in succession. ``saved``: the position before the
-    last stroke, if it was a foul. ``clock``: simulated time played in a game with a clock [ms].
-    """
-
-    scores: tuple[int, int] = (0, 0)
-    striker: int = 0
-    breaker: int = 0
-    break_points: int = 0
-    on_table: int = FULL_TABLE
-    ball_on: BallOn = BallOn.RED
-    in_hand: bool = True
-    free_ball: bool = False
-    respotted_black: bool = False
-    phase: Literal["stroke", "choice", "lot", "over"] = "stroke"
-    winner: int | None = None
-    rules: RulesName = "snooker"
-    miss: MissRule = "off"
-    miss_called: bool = False
-    failures: int = 0
-    warned: bool = False
-    saved: Saved | None = None
-    clock: int = 0
-    misses: int = 0
-    anywhere: bool = False
-    rack: int = FULL_TABLE
+    scores: tuple[int, int] = (0, 0)  # of the two players
+    striker: int = 0  # the next player; in phase "choice" who chooses, in "lot" the last striker
+    breaker: int = 0  # who broke off; unchanged by a restart
+    break_points: int = 0  # of the striker's visit so far
+    on_table: int = FULL_TABLE  # mask of the object balls
+    ball_on: BallOn = BallOn.RED  # what the striker must hit first
+    in_hand: bool = True  # the stroke is played from the D
+    free_ball: bool = False  # the striker may nominate one; in phase "choice": after the choice to play
+    respotted_black: bool = False  # scores were level
+    phase: Literal["stroke", "choice", "lot", "over"] = "stroke"  # next: play, choose, draw, nothing
+    winner: int | None = None  # in phase "over" only
+    rules: RulesName = "snooker"  # one of ``rule_sets.RULES``
+    miss: MissRule = "off"  # one of ``MISS_RULES``; "off" in the Shoot Out, which has none
+    miss_called: bool = False  # the last stroke was a foul and a miss, so that the position may be replaced
+    failures: int = 0  # misses in succession from one position with a clear full-ball path
+    warned: bool = False  # one more failure loses the frame
+    saved: Saved | None = None  # the position before the last stroke, if it was a foul
+    clock: int = 0  # simulated time played in a game with a clock [ms]
+    misses: int = 0  # in six-red snooker: foul-and-a-miss calls in succession
+    anywhere: bool = False  # a cue ball in hand may be placed anywhere on the table, not in the D only
+    rack: int = FULL_TABLE  # mask of the object balls that the frame began with, for a restart
 
     def __post_init__(self) -> None:
         choice("phase", self.phase, PHASES)

@@ -17,17 +17,12 @@ MOST_POINTS = 2**60
 
 @dataclass(frozen=True, kw_only=True)
 class Situation:
-    """The state of the frame before the stroke, as far as the referee needs it. Masks have bit i for ball i.
+    """What the referee needs of the frame before the stroke. Masks have bit i for ball i."""
 
-    ``on_table``: object balls (the cue ball's bit does not matter), among them one of ``ball_on``, which is
-    not NOTHING. ``free_ball``: only with a red or a colour of the sequence on. ``lead``: the striker's score
-    minus the opponent's; used at the end of the frame only.
-    """
-
-    on_table: int = FULL_TABLE
-    ball_on: BallOn = BallOn.RED
-    free_ball: bool = False
-    lead: int = 0
+    on_table: int = FULL_TABLE  # mask of the object balls; the cue ball's bit does not matter
+    ball_on: BallOn = BallOn.RED  # not NOTHING, and at least one of it on the table
+    free_ball: bool = False  # the striker may nominate one: with a red or a colour of the sequence on
+    lead: int = 0  # the striker's score minus the opponent's; used at the end of the frame only
     rules: RulesName = "snooker"
 
     def __post_init__(self) -> None:
@@ -53,21 +48,14 @@ class Situation:
 
 @dataclass(frozen=True, kw_only=True)
 class Stroke:
-    """The events of one stroke. Masks have bit i for ball i; every ball in them must be on the table.
+    """The events of one stroke; every ball in a mask must be on the table. ``Flag`` explains the bools."""
 
-    ``first``: object balls struck by the cue ball's first impact (several: simultaneously). ``potted``,
-    ``off``: balls in pockets, and forced off the table; bit 0 the cue ball. ``touching``: object balls that
-    touched the cue ball before the stroke; ``moved``: those of them that it moved as it left them.
-    ``nominated``: id of the colour nominated, after a red or as the free ball; 0 for none; AUTO: the colour
-    first struck. The bools are explained in ``Flag``.
-    """
-
-    first: int = 0
-    potted: int = 0
-    off: int = 0
-    touching: int = 0
-    moved: int = 0
-    nominated: int = AUTO
+    first: int = 0  # object balls struck by the cue ball's first impact; several: simultaneously
+    potted: int = 0  # balls that entered a pocket, bit 0 the cue ball
+    off: int = 0  # balls forced off the table, bit 0 the cue ball
+    touching: int = 0  # object balls that touched the cue ball before the stroke
+    moved: int = 0  # those of them that the cue ball moved as it left them, not another ball later
+    nominated: int = AUTO  # id of a colour, after a red or as the free ball; 0: none; AUTO: first struck
     jump: bool = False
     push: bool = False
     double_hit: bool = False
@@ -108,28 +96,20 @@ class Stroke:
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """The referee's decision. A stroke with a foul scores nothing.
+    """The referee's decision. A stroke with a foul scores nothing."""
 
-    ``penalty``: points to the opponent, the highest that any of the fouls costs (4 to 7), or 0; ``points``:
-    to the striker. ``respotted``: mask of the colours to be spotted; ``on_table``: of the object balls after
-    that. ``ball_on``: next; NOTHING when the frame is over. ``stays``: the striker plays on (None: a lot
-    decides); after a foul the opponent may decide otherwise. ``in_hand``: the next stroke is played from the
-    D. ``free_ball``: the next striker has one, if it is the opponent. ``nominated``: id of the colour that
-    counted as nominated or as the free ball, or 0.
-    """
-
-    fouls: Foul
-    penalty: int
-    points: int
-    respotted: int
-    on_table: int
-    ball_on: BallOn
-    stays: bool | None
-    in_hand: bool
-    free_ball: bool
+    fouls: Foul  # false if it was fair
+    penalty: int  # to the opponent: the highest that any of the fouls costs (4 to 7), or 0
+    points: int  # to the striker
+    respotted: int  # mask of the colours to be spotted
+    on_table: int  # mask of the object balls after that
+    ball_on: BallOn  # next; NOTHING when the frame is over
+    stays: bool | None  # the striker plays on, unless a foul's choice says otherwise; None: a lot decides
+    in_hand: bool  # the next stroke is played from the D
+    free_ball: bool  # the next striker has one, if it is the opponent
     visit_end: VisitEnd
     outcome: Outcome
-    nominated: int
+    nominated: int  # id of the colour that counted as nominated or as the free ball, or 0
 
     @property
     def over(self) -> bool:

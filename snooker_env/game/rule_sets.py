@@ -18,26 +18,17 @@ SNOOKER, SIX_RED, SHOOT_OUT = range(3)
 
 @dataclass(frozen=True, kw_only=True)
 class RuleSet:
-    """What one kind of game changes in the rules of snooker; kernels know it by its ``code``.
-
-    ``reds``: in the rack, the first places of the triangle. ``most_misses``: calls in succession after which
-    the non-offender may place the cue ball anywhere instead of a replacement; 0 for no limit.
-    ``behind_nominated``: a snooker behind any nominated ball is a foul, also after a red, and with pink and
-    black. ``anywhere``: after every foul the opponent plays from anywhere on the table; no choice, no free
-    ball, no miss. ``cushion``: a stroke without a pot must drive a ball, the cue ball included, to a cushion.
-    ``clock``: simulated time of a frame [ms]; ``shot_clock``: longest time to play a stroke in its first and
-    second half [ms]; 0 for none.
-    """
+    """What one kind of game changes in the rules of snooker."""
 
     name: RulesName
-    code: int
-    reds: int = N_REDS
-    most_misses: int = 0
-    behind_nominated: bool = False
-    anywhere: bool = False
-    cushion: bool = False
-    clock: int = 0
-    shot_clock: tuple[int, int] = (0, 0)
+    code: int  # for kernels
+    reds: int = N_REDS  # in the rack: the first places of the triangle
+    most_misses: int = 0  # calls in succession, then ``anywhere`` replaces the restored position; 0: no limit
+    behind_nominated: bool = False  # a snooker behind any nominated ball is a foul, also after a red
+    anywhere: bool = False  # after every foul: in hand, anywhere; no choice, free ball or miss
+    cushion: bool = False  # a stroke without a pot must drive a ball, the cue ball included, to a cushion
+    clock: int = 0  # simulated time after which the frame ends [ms]; 0: none
+    shot_clock: tuple[int, int] = (0, 0)  # [ms] for a stroke in each half of that time
 
     @property
     def on_table(self) -> int:
