@@ -1,5 +1,4 @@
-"""How near did a snookered striker's cue ball come to a ball on? The rule ``miss="attempt"``, exact, as
-kernels.
+"""How near did a snookered striker's cue ball come to a ball on? Exact, for ``miss="attempt"``.
 
 S3 R14(a) demands the striker's best endeavour, which a referee judges. The rule declared here: the cue ball
 passes within ``ATTEMPT_GAP`` of a ball on before its first contact with any ball, or before it comes to rest.
