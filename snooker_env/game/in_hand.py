@@ -1,5 +1,4 @@
-"""Where may the cue ball in hand stand? The free place nearest to a point in the D or anywhere, exact, as
-kernels.
+"""Where may the cue ball in hand stand? At the free place nearest to a point, in the D or anywhere; exact.
 
 The centre must be on or within the lines of the D: the baulk line between yellow and green, and the half
 circle behind it. Anywhere on the table: within the rectangle that leaves a gap to the cushions, off pockets.

@@ -24,7 +24,7 @@ class RuleSet:
     code: int  # for kernels
     reds: int = N_REDS  # in the rack: the first places of the triangle
     most_misses: int = 0  # calls in succession, then no replacement but the cue ball anywhere; 0: no limit
-    behind_nominated: bool = False  # a snooker behind any nominated ball is a foul, also after a red
+    behind_nominated: bool = False  # snookers behind any nominated ball are fouls: after a red, on pink too
     anywhere: bool = False  # after every foul: in hand, anywhere; no choice, free ball or miss
     cushion: bool = False  # a stroke without a pot must drive a ball, the cue ball included, to a cushion
     clock: int = 0  # simulated time after which the frame ends [ms]; 0: none
