@@ -1,5 +1,4 @@
-"""The game of snooker: balls, rules, frames and layouts, without physics and Gymnasium. ``__all__`` is
-public; the modules are not."""
+"""The game of snooker: balls, rules, frames, layouts, without physics and Gymnasium; public: ``__all__``."""
 
 from .balls import COLOUR_NAMES, CUE, N_BALLS, NAMES, SPOTS, TOUCH, VALUES, BallOn, balls_on, ids_of, mask_of
 from .layouts import LAYOUTS, POT_WINDOWS, Plan, layout, plan_of

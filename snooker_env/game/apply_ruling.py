@@ -1,8 +1,7 @@
 """How is the table after the referee has finished? Judge, spot, test for a snooker, judge again: one kernel.
 
-The verdict on a stroke can depend on the table after it (a free ball, a snooker laid behind the free ball),
-and that table on the verdict (which colours return, what is on next). ``settle`` does both steps; a simulator
-calls nothing else after its shot.
+The verdict can depend on the table after the stroke (a free ball, a snooker behind the free ball), and that
+table on the verdict (which colours return, what is on next).
 """
 
 import numpy as np
@@ -20,8 +19,7 @@ from .spotting import spot
 
 @kernel
 def _put_in_order(positions, on_table, result, gone, radius):
-    """Apply a ``Ruling`` in place: balls in the mask ``gone`` leave, colours return, the cue ball comes in
-    hand."""
+    """Apply a ``Ruling`` in place: balls in the mask ``gone`` leave, colours return, cue ball in hand."""
     for i in range(N_BALLS):
         if (gone >> i) & 1:
             on_table[i] = False
@@ -32,11 +30,7 @@ def _put_in_order(positions, on_table, result, gone, radius):
 
 @kernel
 def settle_visit(positions, on_table, ball_on, lead, seen, radius):
-    """``settle`` for a single visit: nobody plays on after a foul, so there is no test for a snooker and no
-    free ball.
-
-    ``seen``: (first, touching, moved, potted) of ``Facts``; no ball is off the table, nothing is nominated.
-    """
+    """``settle`` for a visit, where no free ball follows a foul; seen: (first, touching, moved, potted)."""
     first, touching, moved, potted = seen
     facts = Facts(first, touching, moved, potted, 0, AUTO)
     result = ruling(Before(bits(on_table), ball_on, 0, lead), facts, 0)
@@ -46,23 +40,21 @@ def settle_visit(positions, on_table, ball_on, lead, seen, radius):
 
 @kernel
 def settle(positions, on_table, situation, facts, flags, jaws, radius):
-    """Judge a stroke and set up the table for the next one. Returns a ``Ruling``, complete with free ball and
-    snooker behind it.
+    """Judge a stroke and set up the table for the next one: a ``Ruling`` with free ball and snooker behind
+    it.
 
-    ``positions`` (22, 2) [m]: where the balls came to rest. ``on_table`` (22,) bool: *before* the stroke.
-    Both are changed in place: balls potted or off leave, colours are spotted, and on_table[0] is False if the
-    cue ball is in hand. When the frame is over, the potted balls leave and the others stay. ``situation``:
-    (ball_on, free_ball, lead) of ``Before``; ``facts``: ``Facts``. Of ``flags``, this function sets SNOOKERED
-    and BEHIND_FREE_BALL itself. ``jaws`` (m, 3): see ``snookered.NO_JAWS``.
+    ``positions`` (22, 2) [m] after the stroke and ``on_table`` (22,) bool *before* it are changed in place;
+    on_table[0] is False if the cue ball is in hand. At the end of the frame only potted balls leave.
+    ``situation``: (ball_on, free_ball, lead) of ``Before``. SNOOKERED and BEHIND_FREE_BALL of ``flags`` are
+    set here. ``jaws``: see ``snookered.NO_JAWS``.
     """
     flags = flags & ~(FLAG.SNOOKERED | FLAG.BEHIND_FREE_BALL)
     ball_on, free_ball, lead = situation
     before = Before(bits(on_table), ball_on, free_ball, lead)
     result = ruling(before, facts, flags)
     _put_in_order(positions, on_table, result, facts.potted | facts.off, radius)
-    # A snooker matters after a foul (free ball), and after a free ball that was not potted (no snooker may be
-    # behind that ball); in six-red snooker after any nominated ball that was not potted; in the Shoot Out
-    # never.
+    # A snooker matters after a foul (free ball), and behind a free ball that was not potted (six-red snooker:
+    # behind any nominated ball); in the Shoot Out never.
     nominating = free_ball or (flags & FLAG.SIX_RED and ball_on == 0)
     matters = (result.fouls and not flags & FLAG.SHOOT_OUT) or (
         nominating and result.nominated and not result.points
@@ -95,13 +87,10 @@ def settle_table(
     jaws: Vectors = NO_JAWS,
     radius: float = BALL_RADIUS,
 ) -> tuple[Verdict, Floats, Bools]:
-    """Judge a ``Stroke`` and set up the table: the ``Verdict`` and new ``positions`` (22, 2) [m] and
-    ``on_table`` (22,) bool.
-
-    ``positions`` are those after the stroke. ``on_table`` is that before it, and must agree with
-    ``situation.on_table``. The fields ``snookered`` and ``behind_free_ball`` of the stroke are ignored and
-    computed here. Raises ``ValueError`` for wrong input.
-    """
+    """Judge a ``Stroke`` and set up the table: the ``Verdict``, new ``positions`` (22, 2) [m], ``on_table``
+    (22,). ``positions`` are after the stroke, ``on_table`` before it, in agreement with
+    ``situation.on_table``. ``snookered`` and ``behind_free_ball`` of the stroke are computed here.
+    ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if (mask_of(np.flatnonzero(present)) ^ situation.on_table) & ~1:
         raise refuse("situation.on_table", situation.on_table, "must be the mask of the array on_table")

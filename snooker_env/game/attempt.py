@@ -1,13 +1,11 @@
-"""Was it the best effort? How near a snookered striker's cue ball came to a ball on, exact, as kernels: the
-rule ``miss="attempt"``.
+"""How near did a snookered striker's cue ball come to a ball on? Exact, for ``miss="attempt"``.
 
-S3 R14(a) demands that the striker "endeavours to the best of his ability to hit a ball on", which a referee
-judges. Here a declared rule of geometry does: the cue ball must pass within ``ATTEMPT_GAP`` of a ball on
-before its first contact with any ball, or before it comes to rest if it strikes none. Until then no ball on
-has moved, so the gap is that to balls at rest, along the path that was really played, off every cushion.
+S3 R14(a) demands the striker's best endeavour, which a referee judges. The rule declared here: the cue ball
+passes within ``ATTEMPT_GAP`` of a ball on before its first contact with any ball, or before it comes to rest.
+Until then no ball on has moved, so the gap is that to balls at rest, along the path really played.
 
-The cue ball moves on pieces x + v t + a t^2 / 2. Its squared distance from a ball has a cubic as derivative;
-between the extremes of that cubic it changes sign at most once, so that bisection finds every minimum.
+The cue ball moves on pieces x + v t + a t^2 / 2. The derivative of its squared distance from a ball is a
+cubic, monotone between its extremes, so bisection finds every minimum.
 """
 
 import numpy as np
@@ -17,8 +15,7 @@ from ..geometry import BALL_RADIUS
 from .balls import CUE, N_BALLS
 
 ATTEMPT_GAP = 2.0 * BALL_RADIUS
-"""A gap up to this between the cue ball and a ball on counts as the best effort [m]: one ball would just fit
-between them."""
+"""A gap up to this counts as the best effort [m]: one ball would just fit between cue ball and ball on."""
 
 X, Y, VX, VY, AX, AY, START, END, BALL = 0, 1, 2, 3, 4, 5, 9, 10, 15
 """Columns of a piece of a path, as in ``physics.cloth``."""
@@ -49,8 +46,7 @@ def _minimum(c0, c1, c2, c3, low, high):
 
 @kernel
 def nearest_on_piece(dx, dy, vx, vy, ax, ay, T):
-    """The smallest distance from the origin of a point that moves as d + v t + a t^2 / 2 for t in [0, T]
-    [m]."""
+    """The smallest distance [m] from the origin of a point at d + v t + a t^2 / 2 for t in [0, T]."""
     c0, c1 = dx * vx + dy * vy, vx * vx + vy * vy + dx * ax + dy * ay
     c2, c3 = 1.5 * (vx * ax + vy * ay), 0.5 * (ax * ax + ay * ay)
     # The slope turns where c1 + 2 c2 t + 3 c3 t^2 = 0.
@@ -72,12 +68,9 @@ def nearest_on_piece(dx, dy, vx, vy, ax, ay, T):
 
 @kernel
 def closest_approach(segments, n_segments, until, positions, on_table, on, radius):
-    """The smallest gap between the cue ball and a ball of the mask ``on`` up to the time ``until`` [s], along
-    its path [m]; inf for none.
-
-    ``segments``, ``n_segments``: the path log of the shot; ``positions``, ``on_table``: the balls before it,
-    which must not have moved.
-    """
+    """The smallest gap [m] of the cue ball to a ball of the mask ``on``, up to the time ``until`` [s]; or
+    inf. ``segments``, ``n_segments``: the path log; ``positions``, ``on_table``: before the shot, still
+    unmoved."""
     best, k = np.inf, 0
     while k < n_segments:
         if segments[k, BALL] != CUE:

@@ -1,9 +1,7 @@
-"""Which balls are there, what is each worth and where does it belong? Ids, values and places; those of the
-table are in ``geometry``.
+"""Which balls are there, what is each worth and where does it belong? The table's places are in ``geometry``.
 
-Table frame as in ``geometry``. The 22 balls have fixed ids: 0 is the cue ball, 1 to 15 are the reds, 16 to 21
-the colours in the order of their values. A set of balls is an integer whose bit i stands for ball i, or a
-bool array (22,). Positions are float64 (22, 2) [m].
+Ids: 0 the cue ball, 1 to 15 the reds, 16 to 21 the colours by value. A set of balls is an integer whose bit i
+stands for ball i, or a bool array (22,). Positions are float64 (22, 2) [m] in the table frame.
 """
 
 from collections.abc import Iterable
@@ -76,16 +74,14 @@ PINK_GAP = 0.0005
 """Gap between the pink on its spot and the red at the apex [m]: small, without contact."""
 
 TOUCH = 1e-6
-"""Two balls touch when the gap between them is below this [m]: far below what can be seen, far above
-rounding."""
+"""Two balls touch when the gap between them is below this [m]: far below sight, far above rounding."""
 
 REFEREE_TOUCH = 50e-6
-"""The referee calls a touching ball when the gap to the cue ball is below this [m]. The eye resolves about
-one arc minute, 70 um at 25 cm, so nobody sees light through a smaller gap; and balls that a referee would
-call touching come to rest 1 to 40 um apart in the simulation. The physics keeps ``TOUCH``."""
+"""The referee calls a touching ball when the gap to the cue ball is below this [m]. The eye resolves about 70
+um at 25 cm (one arc minute), and balls that touch come to rest 1 to 40 um apart in the simulation."""
 CLEARANCE = 2.0 * REFEREE_TOUCH
-"""The gap to a ball or cushion beside which a ball is put down without touching it [m]: a colour that
-returns, a cue ball in hand. The referee sees that they do not touch."""
+"""The gap beside a ball or cushion at which a ball is put down [m]: the referee sees that they do not touch.
+"""
 
 
 def _spots():
@@ -94,8 +90,7 @@ def _spots():
     spots[CUE] = 0.18, BAULK_Y
     spots[YELLOW:] = COLOUR_SPOTS
     pink_y = spots[PINK, 1]
-    # Rows sqrt(3) R apart with a pitch of 2 R: each red touches its neighbours to rounding. Places rounded to
-    # mm would overlap.
+    # Rows sqrt(3) R apart, a pitch of 2 R: each red touches its neighbours. Rounded to mm they would overlap.
     ball = 1
     for row in range(5):
         for k in range(row + 1):
@@ -108,9 +103,8 @@ def _spots():
 
 
 SPOTS = _spots()
-"""A place for each ball: float64 (22, 2) [m], read-only. The spot of each colour, the place of each red in
-the triangle, and the usual place of the cue ball in hand: on the baulk line between brown and yellow. It
-breaks off from there or from its mirror image."""
+"""A place for each ball: float64 (22, 2) [m], read-only. The spots, the racked triangle, and for the cue ball
+in hand the baulk line between brown and yellow; it breaks off from there or from its mirror image."""
 
 for _constant in (VALUES, SPOTS):
     _constant.setflags(write=False)
@@ -159,8 +153,7 @@ def count(mask):
 
 
 def next_on(mask: int) -> int:
-    """The ball on (a ``BallOn``) for a player who comes to the table: red while there is one, then the lowest
-    colour, else NOTHING (-1)."""
+    """The ``BallOn`` for a new visit: red while there is one, then the lowest colour, else -1."""
     if mask & REDS_MASK:
         return 1
     for i in range(YELLOW, N_BALLS):
@@ -202,12 +195,9 @@ def balls_on(ball_on: int, on_table: int) -> int:
 
 
 def points_available(on_table: int, ball_on: int, free_ball: bool = False) -> int:
-    """The most points that the striker can still score with these balls, without any from fouls.
-
-    8 for each red, the value of each colour, and 7 if any colour is on, after a red. A free ball adds 8 to
-    them with a red on: it is one more red. With a colour on it adds that colour's value: it scores as much
-    and comes back. It must be another ball than the one on.
-    """
+    """The most points that the striker can still score with these balls, without any from fouls: 8 for each
+    red, the value of each colour, 7 if any colour is on. A free ball, which must be another ball than the
+    one on, adds 8 with a red on (one more red), else the value of the colour on."""
     points, colours = 0, 0
     for i in range(1, N_BALLS):
         if (on_table >> i) & 1:
@@ -232,17 +222,12 @@ def mask_of(balls: Iterable[int]) -> int:
     Parameters
     ----------
     balls : iterable of int
-        Ids of the balls, 0 to 21.
+        Ids of the balls, 0 to 21; ValueError for others.
 
     Returns
     -------
     int
         Mask with bit i for ball i.
-
-    Raises
-    ------
-    ValueError
-        If an id is not an integer from 0 to 21.
 
     Examples
     --------
@@ -267,17 +252,12 @@ def ids_of(mask: int) -> tuple[int, ...]:
     Parameters
     ----------
     mask : int
-        Mask with bit i for ball i.
+        Mask with bit i for ball i; ValueError for a bit above 21.
 
     Returns
     -------
     tuple of int
         The ids in rising order.
-
-    Raises
-    ------
-    ValueError
-        If the mask is not an integer, or has a bit above 21.
 
     Examples
     --------
@@ -290,8 +270,7 @@ def ids_of(mask: int) -> tuple[int, ...]:
 
 
 def check_table(positions: Vectors, on_table: Flags) -> tuple[Floats, Bools]:
-    """New copies of ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; raises ``ValueError`` for anything
-    else."""
+    """New copies of ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; ValueError for anything else."""
     present = np.array(on_table)
     if present.shape != (N_BALLS,) or present.dtype != np.bool_:
         raise refuse(

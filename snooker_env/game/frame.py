@@ -1,23 +1,18 @@
-"""How does a frame between two players go on? A pure, serialisable state machine around the referee, without
-physics.
+"""How does a frame between two players go on? A pure, serialisable state machine around the referee.
 
     frame = Frame.start(breaker=0)
     frame, verdict = frame.play(stroke)         # a Stroke from a simulation, or any other
     frame = frame.choose("play")                # after a foul the opponent decides
     Frame.from_dict(json.loads(json.dumps(frame.to_dict()))) == frame
 
-A ``Frame`` never changes: each act returns the next one. It is the readable face of one row of integers: each
-act packs the frame into a row, lets a kernel of ``frame_columns`` change it, as tables do, and unpacks it.
-Players are 0 and 1. An act that is not allowed raises ``ValueError``. ``rules`` names the game
-(``rule_sets``): snooker, six-red snooker or the Shoot Out.
+A ``Frame`` never changes: each act packs it into a row, lets a kernel of ``frame_columns`` change that, and
+unpacks the next frame. Players are 0 and 1. An act that is not allowed raises ValueError.
 
-A foul and a miss (S3 R14): ``miss="off"`` never calls it. ``miss="clear_path"`` calls it where geometry alone
-decides: the striker failed to strike a ball on first although a straight path to a part of one was clear. It
-is not called when either player needed penalty points before or after the stroke, or when the points left
-equalled the difference: the penalties of a striker who fails again and again decide the frame in the end.
-After a miss with a clear full-ball path, a second failure from the same position is a miss whatever the
-scores; then the striker is warned, and the third loses the frame. ``miss="attempt"`` calls it on a snookered
-striker too, whose cue ball did not come near a ball on (``attempt``).
+A foul and a miss (S3 R14): ``miss="off"`` never calls it. ``miss="clear_path"`` calls it where a straight
+path to a part of a ball on was clear and none was struck first; not when either player needed penalty points
+before or after the stroke, or the points left equalled the difference. After a miss with a clear full-ball
+path, a second failure from the same position is a miss whatever the scores; then the striker is warned, and
+the third loses the frame. ``miss="attempt"`` calls it on a snookered striker too (``attempt``).
 
 Left out, because a simulator cannot judge it: whether a failure was deliberate; when there is a stalemate
 (``restart`` only carries one out); time wasting and conduct; balls that fall in unprovoked or are moved by
@@ -118,31 +113,14 @@ def _act(row, act, number):
 
 @dataclass(frozen=True, kw_only=True)
 class Saved:
-    """The position before a stroke, to be restored after a foul and a miss.
-
-    Attributes
-    ----------
-    on_table : int
-        Mask of the object balls on the table.
-    ball_on : BallOn
-        What the striker must hit first.
-    in_hand : bool
-        The stroke is played from the D.
-    free_ball : bool
-        The striker had a free ball.
-    anywhere : bool
-        The stroke is played from anywhere on the table.
-    layout : tuple or None
-        The caller's own record of the positions, anything that JSON can hold. It is stored and returned,
-        never read.
-    """
+    """The position before a stroke, to be restored after a foul and a miss; other fields as in ``Frame``."""
 
     on_table: int
     ball_on: BallOn
     in_hand: bool
     free_ball: bool
     anywhere: bool = False
-    layout: tuple[Any, ...] | None = None
+    layout: tuple[Any, ...] | None = None  # the caller's record, for JSON; stored and returned, never read
 
     def __post_init__(self) -> None:
         _set(self, "on_table", _object_balls(self.on_table))
@@ -157,76 +135,29 @@ class Saved:
 
 @dataclass(frozen=True, kw_only=True)
 class Frame:
-    """A frame between two strokes.
+    """A frame between two strokes."""
 
-    Attributes
-    ----------
-    scores : (int, int)
-        Points of the two players.
-    striker : int
-        The player who is next. In phase "choice" the one who chooses; in phase "lot" the last striker.
-    breaker : int
-        The player who broke off; unchanged by a restart.
-    break_points : int
-        Points of the striker's visit so far.
-    on_table : int
-        Mask of the object balls on the table.
-    ball_on : BallOn
-        What the striker must hit first.
-    in_hand : bool
-        The stroke is played from the D.
-    free_ball : bool
-        The striker may nominate a free ball (in phase "choice": after the choice to play).
-    respotted_black : bool
-        The black has been re-spotted: scores were level.
-    phase : {"stroke", "choice", "lot", "over"}
-        "stroke": ``play`` is next. "choice": after a foul, ``choose``. "lot": before a re-spotted black,
-        ``draw``. "over".
-    winner : int, or None
-        The player who has won; None before the end.
-    rules : {"snooker", "six_red", "shoot_out"}
-        The rule set: one of ``rule_sets.RULES``.
-    miss : {"off", "clear_path", "attempt"}
-        The rule for a foul and a miss: one of ``MISS_RULES``; "off" in the Shoot Out, which has none.
-    miss_called : bool
-        The last stroke was a foul and a miss, so that the position may be replaced.
-    failures : int
-        Misses in succession from one position with a clear full-ball path.
-    warned : bool
-        The striker has been warned that one more failure loses the frame.
-    saved : Saved, or None
-        The position before the last stroke, if it was a foul.
-    clock : int
-        Simulated time played in a frame with a clock [ms]; otherwise 0.
-    misses : int
-        In six-red snooker: foul-and-a-miss calls in succession; otherwise 0.
-    anywhere : bool
-        The cue ball in hand may be placed anywhere on the table, not in the D only.
-    rack : int
-        Mask of the object balls that the frame began with, for a restart.
-    """
-
-    scores: tuple[int, int] = (0, 0)
-    striker: int = 0
-    breaker: int = 0
-    break_points: int = 0
-    on_table: int = FULL_TABLE
-    ball_on: BallOn = BallOn.RED
-    in_hand: bool = True
-    free_ball: bool = False
-    respotted_black: bool = False
-    phase: Literal["stroke", "choice", "lot", "over"] = "stroke"
-    winner: int | None = None
-    rules: RulesName = "snooker"
-    miss: MissRule = "off"
-    miss_called: bool = False
-    failures: int = 0
-    warned: bool = False
-    saved: Saved | None = None
-    clock: int = 0
-    misses: int = 0
-    anywhere: bool = False
-    rack: int = FULL_TABLE
+    scores: tuple[int, int] = (0, 0)  # of the two players
+    striker: int = 0  # the next player; in phase "choice" who chooses, in "lot" the last striker
+    breaker: int = 0  # who broke off; unchanged by a restart
+    break_points: int = 0  # of the striker's visit so far
+    on_table: int = FULL_TABLE  # mask of the object balls
+    ball_on: BallOn = BallOn.RED  # what the striker must hit first
+    in_hand: bool = True  # the stroke is played from the D
+    free_ball: bool = False  # the striker may nominate one; in phase "choice": after the choice to play
+    respotted_black: bool = False  # scores were level
+    phase: Literal["stroke", "choice", "lot", "over"] = "stroke"  # next: play, choose, draw, nothing
+    winner: int | None = None  # in phase "over" only
+    rules: RulesName = "snooker"  # one of ``rule_sets.RULES``
+    miss: MissRule = "off"  # one of ``MISS_RULES``; "off" in the Shoot Out, which has none
+    miss_called: bool = False  # the last stroke was a foul and a miss, so that the position may be replaced
+    failures: int = 0  # misses in succession from one position with a clear full-ball path
+    warned: bool = False  # one more failure loses the frame
+    saved: Saved | None = None  # the position before the last stroke, if it was a foul
+    clock: int = 0  # simulated time played in a game with a clock [ms]
+    misses: int = 0  # in six-red snooker: foul-and-a-miss calls in succession
+    anywhere: bool = False  # a cue ball in hand may be placed anywhere on the table, not in the D only
+    rack: int = FULL_TABLE  # mask of the object balls that the frame began with, for a restart
 
     def __post_init__(self) -> None:
         choice("phase", self.phase, PHASES)
@@ -359,16 +290,15 @@ class Frame:
     ) -> tuple["Frame", Verdict]:
         """One stroke: the next frame and the referee's ``Verdict``.
 
-        ``clear_path``, ``full_ball_path``: whether before the stroke a straight path was clear to any part,
-        and to the full face, of a ball on, in hand from any place (``paths.paths``); ``attempt``: whether the
-        cue ball came near one (``attempt.ATTEMPT_GAP``). They matter with a miss rule only. ``layout``: see
-        ``Saved``.
+        For the miss rules, ``clear_path``, ``full_ball_path``: whether before the stroke a straight path was
+        clear to any part, and to the full face, of a ball on (``paths.paths``); ``attempt``: whether the cue
+        ball came near one (``attempt.ATTEMPT_GAP``). ``layout``: see ``Saved``.
 
-        ``time_to_play``, ``duration``: the time [ms] from the rest of the balls to this stroke, and to the
-        next rest; they matter with a clock only. The clock starts with the first stroke. A stroke that needs
-        longer than ``shot_clock`` is not played: the caller leaves the balls as they lie, and ``stroke`` is
-        read as ``Stroke(late=True)``. The frame ends when another stroke with the same ``time_to_play`` could
-        not begin in time.
+        For a clock, ``time_to_play``, ``duration``: the time [ms] from the rest of the balls to this stroke,
+        and to the next rest; it starts with the first stroke. A stroke that needs longer than ``shot_clock``
+        is not played: the caller leaves the balls as they lie, and ``stroke`` is read as
+        ``Stroke(late=True)``. The frame ends when another stroke with the same ``time_to_play`` could not
+        begin in time.
         """
         self._in_phase("stroke", "play")
         late, lasted, rules = False, 0, self.rule_set
@@ -393,11 +323,10 @@ class Frame:
     def choose(self, what: Choice) -> "Frame":
         """The opponent's decision after a foul, which is final.
 
-        "play": the opponent plays the table as it lies (with the free ball, if there is one). "play_again":
-        the offender plays it, and a free ball is void. "replace", after a miss: ``saved`` is restored and the
-        offender plays from there; the penalty stands. "anywhere", after the last miss that may be called in
-        succession: the opponent plays with the cue ball in hand, from anywhere on the table, and a free ball
-        is void.
+        "play": the opponent plays the table as it lies, with the free ball, if any. "play_again": the
+        offender plays it, without. "replace", after a miss: the offender plays from ``saved``; the penalty
+        stands. "anywhere", after the last miss in succession: the opponent plays from anywhere on the table,
+        without a free ball.
         """
         self._in_phase("choice", "choose")
         choice("choice", what, self.choices)
@@ -432,8 +361,7 @@ class Frame:
         return self._acted(_CONCEDE)
 
     def restart(self) -> "Frame":
-        """The referee ends a stalemate: scores are void, the balls of ``rack`` are set up again and the same
-        player breaks."""
+        """A stalemate: scores are void, the balls of ``rack`` are set up again and the same player breaks."""
         if self.phase == "over":
             raise refuse("phase", self.phase, "must not be over to restart")
         return Frame.start(breaker=self.breaker, miss=self.miss, rules=self.rules, on_table=self.rack)
@@ -447,11 +375,8 @@ class Frame:
 
     @classmethod
     def from_dict(cls, plain: dict[str, Any], field: str = "frame") -> "Frame":
-        """The frame from the result of ``to_dict``, also after a round trip through JSON.
-
-        Raises ValueError, which names the wrong part of ``field``; also where the rules forbid a combination
-        of parts.
-        """
+        """The frame from the result of ``to_dict``, also after JSON. ValueError names the wrong part of
+        ``field``, also where the rules forbid a combination of parts."""
         check_fields(field, plain, cls)
         saved, scores = plain["saved"], plain["scores"]
         if saved is not None:

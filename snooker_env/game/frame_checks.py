@@ -1,5 +1,4 @@
-"""Which frames are impossible? What a ``Frame`` that is read from a dict is checked for, beyond the type and
-range of each field."""
+"""Which frames are impossible? The checks of a ``Frame`` from a dict beyond each field's type and range."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,8 +9,7 @@ from .._check import refuse, refuse_what
 from .balls import BLACK, REDS_MASK, BallOn, next_on
 
 MOST_BREAK = 155
-"""The highest break: a free ball and the colour after it, then 147. A break and the points still on the table
-are never more together."""
+"""The highest break (a free ball and the colour after it, then 147), points still on the table included."""
 
 SETTLED: dict[str, Any] = {
     "ball_on": BallOn.NOTHING,
@@ -30,8 +28,7 @@ REPLACED = ("on_table", "ball_on", "in_hand", "free_ball", "anywhere")
 
 
 def is_plain(value: Any, high: int) -> bool:
-    """Whether it is an int in [0, high]: a quick test before the full check, which it nearly always
-    spares."""
+    """Whether it is an int in [0, high]: a quick test that nearly always spares the full check."""
     return type(value) is int and 0 <= value <= high
 
 

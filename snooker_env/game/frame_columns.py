@@ -1,11 +1,8 @@
 """How does a frame go on? One row of integers for each, and the rules of frames as kernels that change it.
 
-A row (int64, ``COLUMNS`` wide) holds a frame between two strokes; ``frame.Frame`` is its readable face. Five
-acts change it: ``after_stroke``, ``choose``, ``draw``, ``claim`` and ``concede``; whether an act is allowed,
-the caller asks first. The layouts that "replace" restores are in separate arrays, ``Layouts``. What is the
-same for all frames of an environment is not in the row: ``Conditions``.
-
-The first five columns have the same meaning for a visit without a frame, whose rows have no others.
+A row (int64, ``COLUMNS`` wide) holds a frame between two strokes; ``frame.Frame`` is its readable face.
+``after_stroke``, ``choose``, ``draw``, ``claim`` and ``concede`` change it; the caller first asks whether
+they may. What "replace" restores is in ``Layouts``. A visit without a frame has the first five columns only.
 """
 
 from typing import NamedTuple
@@ -17,8 +14,7 @@ from .rule_sets import CLOCK_LIMIT, MOST_MISSES, SHOOT_OUT, SHOT_CLOCK, SIX_RED
 from .ruling import FOUL, OUTCOME
 
 (BALL_ON, IN_HAND, POINTS, OVER, STEPS) = range(5)
-"""A ``BallOn``; whether the cue ball is in hand; points of the break so far; whether the episode has ended by
-the rules; its steps."""
+"""A ``BallOn``; cue ball in hand; points of the break; whether the episode has ended by the rules; steps."""
 VISIT_COLUMNS = 5
 (
     FREE_BALL,
@@ -51,10 +47,9 @@ VISIT_COLUMNS = 5
     RACK,
 ) = range(5, 33)
 """The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether a frame has one;
-SAVED_IN_HAND: 2 if the cue ball could be placed anywhere). Of tables only: strokes of both players; the
-agent's lead that rewards have already paid; frames won in a match and who broke in its first frame; which
-member of a pool of opponents plays, counted from 1 (0: none is drawn yet).
-"""
+SAVED_IN_HAND: 2 for anywhere). Of tables only: strokes of both players; the agent's lead that rewards have
+already paid; frames won in a match and who broke in its first frame; which of a pool of opponents plays,
+from 1 (0: not drawn)."""
 COLUMNS = 33
 
 (STROKE, CHOICE, LOT, FINISHED) = range(4)
@@ -70,12 +65,9 @@ MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
 class Conditions(NamedTuple):
     """What is the same for all frames of an environment."""
 
-    rules: int
-    """Code of the rule set (``rule_sets``)."""
-    miss: int
-    """Code of the miss rule."""
-    time_to_play: int
-    """From the rest of the balls to each stroke [ms], in a game with a clock."""
+    rules: int  # code of the rule set (``rule_sets``)
+    miss: int  # code of the miss rule
+    time_to_play: int  # from the rest of the balls to each stroke [ms], in a game with a clock
 
 
 class Effort(NamedTuple):
@@ -89,16 +81,13 @@ class Effort(NamedTuple):
 class Layouts(NamedTuple):
     """The positions of the balls on n tables before the last foul."""
 
-    positions: Floats
-    """(n, 22, 2) [m]."""
-    on_table: Bools
-    """(n, 22) bool."""
+    positions: Floats  # (n, 22, 2) [m]
+    on_table: Bools  # (n, 22) bool
 
 
 @kernel
 def strikeable(row, mask):
-    """Mask of the balls in ``mask`` that may be struck first; with a free ball, all colours too. ``row``: of
-    a visit or a frame."""
+    """Mask of the balls of ``mask`` that may be struck first, free balls too; ``row``: of visit or frame."""
     on = balls_on_kernel(row[BALL_ON], mask)
     if row.shape[0] > FREE_BALL and row[FREE_BALL]:
         on |= COLOURS_MASK & mask
@@ -145,8 +134,7 @@ def needs_snookers(row, player):
 
 @kernel
 def _decided(row):
-    """Whether the scores rule a miss out: a player needs penalty points, or the difference is what is
-    left."""
+    """Whether the scores rule a miss out: a player needs penalty points, or the lead is what is left."""
     level = abs(lead_of(row, 0)) == available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
     return level or needs_snookers(row, 0) or needs_snookers(row, 1)
 
@@ -174,17 +162,13 @@ def shot_clock(row, rules):
 
 @kernel
 def is_late(row, rules, time_to_play):
-    """Whether a stroke that takes ``time_to_play`` [ms] is not begun within the shot clock: it must not be
-    played."""
+    """Whether a stroke after ``time_to_play`` [ms] is too late for the shot clock: it must not be played."""
     return 0 < shot_clock(row, rules) < time_to_play
 
 
 @kernel
 def after_stroke(row, result, conditions, effort, layout, duration):
-    """One stroke with the referee's ``Ruling`` result, under ``Conditions`` and with an ``Effort``.
-
-    ``layout``: whether that before the stroke is stored; ``duration`` [ms].
-    """
+    """One stroke with the ``Ruling``; ``layout``: whether that before it is stored; ``duration`` [ms]."""
     rules, time_to_play, full = conditions.rules, conditions.time_to_play, effort.full_ball_path
     me = row[STRIKER]
     other = 1 - me

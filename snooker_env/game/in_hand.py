@@ -1,9 +1,7 @@
-"""Where may the cue ball in hand stand? In the D or, in some games, anywhere; and the free place nearest to a
-given point, as kernels.
+"""Where may the cue ball in hand stand? At the free place nearest to a point, in the D or anywhere; exact.
 
-The centre must lie on or within the lines of the D: the part of the baulk line between yellow and green, and
-the half circle behind it. Anywhere on the table, it must lie within the rectangle that leaves a gap to the
-cushions; the pockets lie outside it. Both are exact.
+The centre must be on or within the lines of the D: the baulk line between yellow and green, and the half
+circle behind it. Anywhere on the table: within the rectangle that leaves a gap to the cushions, off pockets.
 """
 
 from typing import Any
@@ -18,8 +16,7 @@ from .balls import CLEARANCE, N_BALLS, REFEREE_TOUCH, check_table
 from .spotting import touches
 
 POCKET_REACH = 0.15
-"""Least distance of the cue ball's centre from a pocket's nominal place, anywhere on the table [m]: clear of
-the jaws, as in layouts."""
+"""Least distance of the cue ball's centre from a pocket's nominal place [m]: clear of the jaws."""
 ROUNDING = 1e-12
 """Tolerance for points on the lines of the D [m]."""
 D_STEP, BED_STEP = 0.005, 0.05
@@ -27,8 +24,7 @@ D_STEP, BED_STEP = 0.005, 0.05
 
 
 def _places_in_d():
-    """The ends of the baulk line's part in the D and the brown spot, then a grid of ``D_STEP`` with the arc:
-    (n, 2) [m]."""
+    """(n, 2) [m]: the D's straight line's ends and the brown spot, then a grid of ``D_STEP`` with the arc."""
     places = [(side * D_RADIUS, BAULK_Y) for side in (-1, 0, 1)]
     rows = int(np.ceil(D_RADIUS / D_STEP))
     for row in range(rows + 1):
@@ -48,8 +44,7 @@ def _places_on_bed():
 
 
 PLACES_IN_D, PLACES_ON_BED = _places_in_d(), _places_on_bed()
-"""Places that are tried where a rule asks what the cue ball in hand could do: float64 (n, 2) [m],
-read-only."""
+"""Places that are tried for what the cue ball in hand could do: float64 (n, 2) [m], read-only."""
 for _places in (PLACES_IN_D, PLACES_ON_BED):
     _places.setflags(write=False)
 
@@ -60,7 +55,6 @@ def within_d(x: float, y: float) -> bool:
 
 
 in_d: Any = kernel(within_d)
-"""``within_d`` as an inner kernel."""
 
 
 @kernel
@@ -87,7 +81,7 @@ def _meet(ax, ay, a, bx, by, b, sign):
 
 @kernel
 def on_bed(x, y, radius):
-    """Whether a cue ball in hand may be placed at (x, y) [m] as far as cushions and pockets are concerned."""
+    """Whether cushions and pockets let a cue ball in hand stand at (x, y) [m]."""
     room = radius + CLEARANCE
     if abs(x) > HALF_WIDTH - room + ROUNDING or abs(y) > HALF_LENGTH - room + ROUNDING:
         return False
@@ -99,10 +93,7 @@ def on_bed(x, y, radius):
 
 @kernel
 def _better(positions, on_table, wish, p, best, anywhere, radius):
-    """The better of a candidate p and the ``best`` place: (x, y, distance from the wish) [m]; never a NaN.
-
-    ``anywhere``: on the whole bed, not in the D only.
-    """
+    """The better of a candidate p and the ``best`` place: (x, y, distance from the wish) [m]; never a NaN."""
     far = np.hypot(p[0] - wish[0], p[1] - wish[1])
     if not far < best[2] or not (on_bed(p[0], p[1], radius) if anywhere else in_d(p[0], p[1])):
         return best
@@ -113,12 +104,11 @@ def _better(positions, on_table, wish, p, best, anywhere, radius):
 
 @kernel
 def nearest_place(positions, on_table, x, y, radius):
-    """The free place in the D nearest to (x, y) [m], and whether there is one: (x, y, bool). At a free place
-    a ball touches no other.
+    """The free place in the D nearest to (x, y) [m], and whether there is one: (x, y, bool).
 
-    Each ball excludes a disc around it. The nearest point outside all discs is the wish itself (moved into
-    the D), the nearest point of one circle, or a point where two of the circles and the lines of the D cross:
-    all are tried. ``on_table[0]`` must be False.
+    Each ball excludes a disc. The nearest point outside all discs is the wish itself (moved into the D), the
+    nearest point of one circle, or a crossing of two circles or of one with the lines of the D: all are
+    tried. ``on_table[0]`` must be False.
     """
     wish = x, y = _into_d(x, y)
     reach = 2.0 * radius + CLEARANCE
@@ -148,8 +138,7 @@ def nearest_place(positions, on_table, x, y, radius):
 
 @kernel
 def _disc(positions, on_table, i, reach):
-    """Disc i that bars places: of ball i, or of pocket i - 22: (x, y, radius); radius 0 for a ball that is
-    not on the table."""
+    """Disc i that bars places, of ball i or pocket i - 22: (x, y, radius); radius 0 for an absent ball."""
     if i >= N_BALLS:
         return POCKET_PLACES[i - N_BALLS, 0], POCKET_PLACES[i - N_BALLS, 1], POCKET_REACH
     return positions[i, 0], positions[i, 1], reach if on_table[i] else 0.0
@@ -157,12 +146,7 @@ def _disc(positions, on_table, i, reach):
 
 @kernel
 def nearest_anywhere(positions, on_table, x, y, radius):
-    """The free place on the whole bed nearest to (x, y) [m], and whether there is one: (x, y, bool); as
-    ``nearest_place``.
-
-    Tried are the wish, moved onto the bed; the nearest point of the circle of each ball and pocket; and where
-    two circles, or a circle and an edge of the bed, cross.
-    """
+    """``nearest_place`` on the whole bed, where pockets bar places too, and edges replace the D's lines."""
     wide, high, reach = (
         HALF_WIDTH - radius - CLEARANCE,
         HALF_LENGTH - radius - CLEARANCE,
@@ -209,12 +193,8 @@ def place_cue(
     radius: float = BALL_RADIUS,
     anywhere: bool = False,
 ) -> Place:
-    """The free place (x, y) in the D (``anywhere``: on the bed) nearest to (x, y) [m]. The cue ball's own
-    position is ignored.
-
-    Raises ``ValueError`` for wrong arrays or numbers, and if there is no free place (which no legal table
-    has).
-    """
+    """The free place (x, y) in the D (``anywhere``: on the bed) nearest to (x, y) [m], whatever
+    ``positions[0]``. ValueError for wrong input, and if there is no free place (which no legal table has)."""
     placed, present = check_table(positions, on_table)
     present[0] = False
     px, py, found = _nearest_place(

@@ -1,9 +1,7 @@
-"""Which tables can a task start from? Layouts from a stream of random numbers: geometry only, no shot is
-simulated.
+"""Which tables can a task start from? Layouts from a stream of random numbers, by geometry only.
 
-A layout is ``positions`` (22, 2) [m] and ``on_table`` (22,) bool. It depends on the stream alone: same key
-and counter, same table. The row of a ball off the table is that of ``balls.SPOTS``. Balls that are not racked
-or on a spot are at least ``GAP`` from any other.
+A layout is ``positions`` (22, 2) [m] and ``on_table`` (22,) bool, and depends on the stream alone: same key
+and counter, same table. The row of a ball off the table is that of ``balls.SPOTS``.
 """
 
 from dataclasses import dataclass
@@ -25,8 +23,7 @@ from .snookered import NO_JAWS, snookered_from
 GAP = 0.001
 """Least gap between a ball placed at random and any other ball [m]."""
 CUSHION_GAP = 0.05
-"""Least gap between such a ball and a cushion [m]: about a ball's width, so that it can be struck
-normally."""
+"""Least gap between such a ball and a cushion [m]: about a ball's width, to be struck normally."""
 POCKET_GAP = 0.15
 """Least distance of such a ball's centre from a pocket's nominal place [m]: clear of the jaws."""
 
@@ -53,11 +50,7 @@ def clear(positions, on_table, x, y):
 
 @kernel
 def _put(positions, on_table, ball, kind, stream):
-    """Put a ball at the first random place that is clear; the cue ball within the bounds of its kind of
-    layout.
-
-    For the break-off it stands at its usual place, left or right of the brown.
-    """
+    """Put a ball at the first random place that is clear; the cue ball within the bounds of its layout."""
     left, bottom, right, top = -HALF_WIDTH, -HALF_LENGTH, HALF_WIDTH, HALF_LENGTH
     if ball == CUE and kind == BREAK_OFF:
         u, _ = pair(stream)
@@ -82,7 +75,7 @@ def _put(positions, on_table, ball, kind, stream):
 
 @kernel
 def _opened(positions, on_table, tables, first, last, stream):
-    """One of the tables ``first`` to ``last`` of the bank, with probability 1/2 mirrored in the long axis."""
+    """One of the tables first to last - 1 of the bank, with probability 1/2 mirrored in the long axis."""
     u, v = pair(stream)
     table = tables[first + int(u * (last - first))]
     for i in range(N_BALLS):
@@ -95,11 +88,8 @@ def _opened(positions, on_table, tables, first, last, stream):
 
 @kernel
 def _line_up_y(k):
-    """The y of red k of 15 in the practice line-up on the centre line [m].
-
-    Two reds are below the blue, seven between blue and pink, four between pink and black, two above the
-    black. They are about 112 mm apart, so that a ball just passes between two.
-    """
+    """The y of red k of 15 in the practice line-up on the centre line [m]: two below the blue, seven below
+    the pink, four below the black, two above it; about 112 mm apart, so that a ball just passes."""
     blue, pink, black = SPOTS[19, 1], SPOTS[20, 1], SPOTS[21, 1]
     low, high = (pink - blue) / 8, (black - pink) / 5
     if k <= 9:
@@ -110,8 +100,7 @@ def _line_up_y(k):
 SNOOKERED_REDS = 3
 """The most reds on the table in the layout "snookered"."""
 BEHIND = (0.08, 0.5)
-"""Least and largest distance of its cue ball from the snookering colour [m]: from 1.5 ball widths to 28 % of
-the table's width."""
+"""Range of its cue ball's distance from the snookering colour [m]: 1.5 balls to 28 % of the table's width."""
 
 
 @kernel
@@ -119,9 +108,8 @@ def _hide(positions, on_table, reds, stream):
     """Try to snooker the cue ball on every red, 1 to ``reds``, by a random colour; returns whether this
     succeeded.
 
-    The cue ball is placed behind the colour as seen from a red. The place is accepted only if the rule's
-    tangent test (``snookered.is_snookered``) finds no red that can be struck at both edges. An escape needs a
-    cushion, swerve, or a contact with the one open edge of a red.
+    The cue ball goes behind the colour as seen from a red, and the rule's tangent test
+    (``snookered.is_snookered``) must agree. An escape needs a cushion, swerve, or the one open edge of a red.
     """
     u, v = pair(stream)
     far, _ = pair(stream)
@@ -142,17 +130,13 @@ def _hide(positions, on_table, reds, stream):
 
 POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e-3)}
 """Difficulty -> range of the tolerance of the layout's widest pot [rad]: by how much the aim may err to
-either side, by ``game.pots``.
-
-Played along the solved line at 2.3 m/s, with the execution errors of a professional 94, 90 and 61 % of them
-are potted; with those of a club player 92, 63 and 24 % (``python -m benchmarks.execution --strokes
-2000``)."""
+either side, by ``game.pots``. Along the solved line at 2.3 m/s a professional's execution errors pot 94,
+90 and 61 % of them, a club player's 92, 63 and 24 % (``python -m benchmarks.execution --strokes 2000``)."""
 
 
 @kernel
 def _deal(code, tables, stream, positions, on_table, found):
-    """One layout: first the racked and spotted balls, then the loose reds, last the cue ball; repeated until
-    its condition holds."""
+    """One layout: racked and spotted balls, loose reds, last the cue ball; until its condition holds."""
     kind, reds, low, high = int(code[0]), int(code[1]), code[2], code[3]
     if kind == OPENED:
         _opened(positions, on_table, tables, int(low), int(high), stream)
@@ -185,11 +169,8 @@ def _deal(code, tables, stream, positions, on_table, found):
 
 @entry(what="the dealing of tables", seconds=4)
 def deal_tables(which, code, tables, streams, positions, on_table):
-    """Write a new layout for each of the tables ``which``, from its own stream, into positions (n, 22, 2) [m]
-    and on_table (n, 22).
-
-    ``code`` and ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64.
-    """
+    """Write new layouts for the tables ``which`` into positions (n, 22, 2) [m] and on_table (n, 22);
+    ``code``, ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64, one for each table."""
     found = np.empty((1, POT_COLUMNS))
     for k in which:
         _deal(code, tables, streams[k], positions[k], on_table[k], found)
@@ -206,8 +187,7 @@ class Plan:
     name : str
         Name of the layout.
     code : float64 (4,)
-        Kind, number of reds, and two numbers: the first and last table of the bank, or the range of a pot's
-        tolerance [rad].
+        Kind, number of reds, and the range of tables of the bank or of a pot's tolerance [rad].
     tables : float64 (b, 22, 2)
         The bank of opened tables [m]; b = 0 for a layout without one.
     unfit : tuple of int
@@ -244,7 +224,7 @@ _NAMES = {
 _COUNTED = {"random": RANDOM, "break_off": BREAK_OFF}
 _COUNTS = [str(n) for n in range(N_REDS + 1)]
 LAYOUTS = ("opened", "held_out", *_NAMES)
-"""Names of the layouts without a number: "opened", "held_out", "break_off", "line_up", "colours" and
+"""Names of the layouts without a number: "opened", "held_out", "break_off", "line_up", "colours",
 "snookered"."""
 
 
@@ -255,7 +235,7 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     ----------
     name : str
         One of ``LAYOUTS``, ``"random:N"`` or ``"break_off:N"`` with N reds from 0 to 15, or ``"pots:D"`` with
-        D one of ``POT_WINDOWS``.
+        D one of ``POT_WINDOWS``; ValueError for others.
     unfit : tuple of int
         Indices of tables of the bank that are not to be dealt, in rising order.
 
@@ -263,11 +243,6 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     -------
     Plan
         The layout for ``layout``, ready for repeated use.
-
-    Raises
-    ------
-    ValueError
-        For an unknown name.
 
     Examples
     --------
@@ -302,7 +277,7 @@ def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
     plan : str or Plan
         The layout, see ``plan_of``.
     rng : numpy.random.Generator
-        Source of the randomness; one number is drawn from it, the key of the layout's stream.
+        One number is drawn from it, the key of the layout's stream.
 
     Returns
     -------
@@ -310,11 +285,6 @@ def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
         Centres of the balls [m], a new array.
     on_table : bool (22,)
         Which balls are on the table, a new array.
-
-    Raises
-    ------
-    ValueError
-        For an unknown layout, or an ``rng`` that is no numpy ``Generator``.
 
     Examples
     --------
@@ -331,8 +301,7 @@ def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
 
 
 def break_off(rng: np.random.Generator) -> tuple[Floats, Bools]:
-    """The start of a frame: reds racked, colours on their spots, the cue ball at its usual place, on either
-    side of the brown."""
+    """The start of a frame: the cue ball at its usual place, on either side of the brown."""
     return layout("break_off", rng)
 
 

@@ -1,10 +1,8 @@
-"""Where do opened tables come from? From a bank of tables opened by simulated play, shipped as data:
-``opened.npz``.
+"""Where do opened tables come from? From a bank of tables opened by simulated play, ``opened.npz``.
 
-Each table is a break-off and further hard strokes at the reds, all simulated and refereed, until the pack is
-spread. It is in the bank if all 22 balls are still on it and some red can be potted.
-``python -m benchmarks.make_opened`` makes the file. The last ``HELD_OUT`` tables are never dealt by the
-layout "opened": they are for evaluation ("held_out"). Every table is also dealt mirrored in the long axis.
+Each is a break-off and further hard strokes at the reds until the pack is spread; all 22 balls are on it and
+some red can be potted. ``python -m benchmarks.make_opened`` makes the file. The last ``HELD_OUT`` tables are
+for evaluation (the layout "held_out").
 """
 
 from functools import cache, lru_cache
@@ -17,7 +15,7 @@ from .balls import N_BALLS
 
 FILE = Path(__file__).with_name("opened.npz")
 HELD_OUT = 2048
-"""Number of tables of the bank that are held out for evaluation: the layout "held_out"."""
+"""Number of tables of the bank that only the layout "held_out" deals, for evaluation."""
 NO_BANK = np.zeros((0, N_BALLS, 2))
 """An empty bank, for layouts without one."""
 NO_BANK.setflags(write=False)
@@ -39,11 +37,8 @@ def kept(size: int) -> tuple[range, range]:
 
 @lru_cache(8)
 def bank_without(unfit: tuple[int, ...]) -> Floats:
-    """The bank with each table of ``unfit`` (indices) replaced by the next table of its part (held out or
-    not) that is not in ``unfit``.
-
-    So a stream deals the same tables as before, except for these. Some tables of each part must be left.
-    """
+    """The bank with each table of ``unfit`` replaced by the next one of its part (held out or not) that fits,
+    so that a stream deals the same tables as before, except for these. Some of each part must be left."""
     if not unfit:
         return bank()
     tables = bank().copy()

@@ -1,19 +1,15 @@
 """Was there a clear path to a ball on? The two tests of the rule of the foul and a miss, as kernels.
 
 *Any part*: in some direction the cue ball, rolling straight, meets a ball on before any ball not on; other
-balls on never obstruct. *Full ball* (S3 R14): the cue ball can roll straight onto the centre of some ball on.
-For reds this is "a complete diameter of any Red that is not obstructed by a ball or balls not on": a strip as
-wide as a ball, from the cue ball onto the whole of one red; other reds in it do not matter, everything else
-does. A colour is met in its centre only if no other ball at all is in the strip. This holds too where several
-colours could be on: the striker nominates one of them, and then the others are not on.
+balls on never obstruct. *Full ball* (S3 R14): it can roll straight onto the centre of some ball on. For reds
+this is "a complete diameter of any Red that is not obstructed by a ball or balls not on": a strip as wide as
+a ball, from the cue ball onto the whole of one red, where only other reds do not matter. A colour's strip
+must be free of all balls, also where several could be on: the striker nominates one of them.
 
-A path leads over the bed: it ends where the cue ball would meet a cushion, a straight nose or the curved face
-of a jaw (R14 speaks of a path of the cue ball; only the test for a snooker leaves cushions out).
-
-In hand the striker chooses the place, and the best of his ability (R14(a)) is a place with a path: a path
-counts that is clear from any place where the cue ball may stand, as for a snooker (S2 R17). Tried are the
-places of ``in_hand``, 5 mm apart in the D, 50 mm apart anywhere on the bed; an opening that falls between
-them is in the striker's favour.
+A path ends where the cue ball would meet a cushion, nose or jaw (R14 speaks of a path of the cue ball; only
+the test for a snooker leaves cushions out). In hand a path counts that is clear from any place where the cue
+ball may stand (R14(a), and S2 R17 for a snooker). Tried are the places of ``in_hand``; an opening that falls
+between them is in the striker's favour.
 """
 
 import numpy as np
@@ -38,8 +34,7 @@ ARC_X, ARC_Y, ARC_RADIUS, ARC_UX, ARC_UY, ARC_COS = range(6)
 
 @kernel
 def to_cushion(cx, cy, ux, uy, noses, jaws, radius):
-    """Distance that the cue ball rolls from c along the unit vector u until it meets a cushion [m]; inf if it
-    meets none."""
+    """How far [m] the cue ball rolls from c along the unit vector u until it meets a cushion, or inf."""
     run = np.inf
     for k in range(noses.shape[0]):
         c, u, other, slide = (cx, ux, cy, uy) if noses[k, AXIS] == 0.0 else (cy, uy, cx, ux)
@@ -85,8 +80,7 @@ def full_ball_path(positions, on_table, on, noses, jaws, radius):
 
 @kernel
 def _open_direction(positions, on_table, on, target, angle, noses, jaws, radius):
-    """Whether the cue ball, rolling at ``angle`` [rad], meets ``target`` before any ball not on and any
-    cushion."""
+    """Whether the cue ball, rolling at ``angle`` [rad], meets ``target`` before balls not on and cushions."""
     ux, uy = np.cos(angle), np.sin(angle)
     cx, cy = positions[0, 0], positions[0, 1]
     run = meets(positions[target, 0] - cx, positions[target, 1] - cy, ux, uy, radius)
@@ -104,12 +98,9 @@ def _open_direction(positions, on_table, on, target, angle, noses, jaws, radius)
 
 @kernel
 def _cushion_edges(edges, n, c, t, towards, noses, jaws, radius):
-    """Append the directions at which a cushion may open or close the path from c to the target at t; returns
-    their number.
-
-    A nose: the cue ball meets it and the target at the same time, or passes its end. A jaw: the same, or it
-    grazes the curve.
-    """
+    """Append the directions at which a cushion may open or close the path from c to t; returns their number.
+    A nose: the cue ball meets it and the target at the same time, or passes its end. A jaw: also if it
+    grazes it."""
     (cx, cy), (tx, ty) = c, t
     for k in range(noses.shape[0]):
         level, vertical = noses[k, SIDE] * (noses[k, LEVEL] - radius), noses[k, AXIS] == 0.0
@@ -155,9 +146,9 @@ def _cushion_edges(edges, n, c, t, towards, noses, jaws, radius):
 def clear_path(positions, on_table, on, noses, jaws, radius):
     """Whether there is a straight path to any part of a ball on (mask ``on``) from the place of the cue ball.
 
-    The path can open or close only at finitely many directions: tangents to a ball or a jaw, those to an end
-    of a cushion, and those in which the cue ball would meet the target and another ball or a cushion at the
-    same time. Between two neighbouring ones nothing changes, so it is exact to test their midpoints.
+    It can open or close only at finitely many directions: tangents to a ball or a jaw, to an end of a
+    cushion, and where target and obstacle are met at the same time. So it is exact to test the midpoints
+    between them.
     """
     cx, cy = positions[0, 0], positions[0, 1]
     edges = np.empty(4 * N_BALLS + 4 * noses.shape[0] + 6 * jaws.shape[0])
@@ -208,8 +199,8 @@ def best_paths(positions, on_table, on, in_hand, noses, jaws, radius):
     """Both tests: (any part, full ball).
 
     ``in_hand``: 0 the cue ball is played from where it lies, 1 from the D, 2 from anywhere on the bed. In
-    hand, its place in ``positions`` is tried first, if it is on the table, then the others until there is a
-    full-ball path.
+    hand, its place in ``positions`` is tried first, if on the table, then others until one has a full-ball
+    path.
     """
     if on_table[0]:
         full = full_ball_path(positions, on_table, on, noses, jaws, radius)
@@ -241,11 +232,8 @@ def paths(
     jaws: Vectors = NO_ARCS,
     radius: float = BALL_RADIUS,
 ) -> tuple[bool, bool]:
-    """Both tests for Python: (any part, full ball); ``noses``, ``jaws``: of a ``Table``.
-
-    A cue ball that is not on the table is in hand: in the D or, with ``anywhere``, on the whole bed. Raises
-    ``ValueError`` for wrong input.
-    """
+    """Both tests for Python: (any part, full ball); ``noses``, ``jaws``: of a ``Table``. A cue ball off the
+    table is in hand: in the D or, with ``anywhere``, on the bed. ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if truth("anywhere", anywhere) and present[0]:
         raise refuse(

@@ -1,12 +1,9 @@
-"""Where do random numbers come from inside a kernel? From a counter-based generator, whose whole state is a
-key and a counter.
+"""Where do random numbers come from inside a kernel? From a counter-based generator.
 
 Philox 4x32-10 [Salmon, Moraes, Dror & Shaw, Parallel random numbers: as easy as 1, 2, 3, SC 2011]: ten rounds
-of multiplications and exchanges turn a counter of 128 bits and a key of 64 into 128 random bits. Different
-keys give independent streams. Each table has its own, so its numbers never depend on another table, on the
-number of tables or on the number of threads.
-
-A stream is a uint64 array (2,): key and counter. Each draw takes one block and adds 1 to the counter.
+turn a counter of 128 bits and a key of 64 into 128 random bits. A stream is a uint64 array (2,), key and
+counter; each draw takes one block and adds 1 to the counter. Each table has a key and so an independent
+stream: its numbers never depend on other tables or on the number of threads.
 """
 
 from math import cos, log, pi, sin, sqrt
@@ -26,8 +23,7 @@ _ROUNDS = 10
 
 @kernel
 def philox(c0, c1, c2, c3, k0, k1):
-    """One block: four words of 32 bits (each in a uint64) from the counter c and the key k, which are also
-    words of 32 bits."""
+    """One block: four words of 32 bits (each in a uint64) from the counter c and the key k, words too."""
     for _ in range(_ROUNDS):
         p0, p1 = _M0 * c0, _M1 * c2
         c0, c1, c2, c3 = (p1 >> _32) ^ c1 ^ k0, p1 & _LOW, (p0 >> _32) ^ c3 ^ k1, p0 & _LOW
@@ -46,16 +42,14 @@ def pair(stream):
 
 @kernel
 def normals(stream):
-    """Two independent standard normal numbers [Box & Muller 1958]: sqrt(-2 ln(1 - u)) times cosine and sine
-    of 2 pi v. One block."""
+    """Two independent standard normal numbers [Box & Muller 1958] from one block."""
     u, v = pair(stream)
     far = sqrt(-2.0 * log(1.0 - u))
     return far * cos(2.0 * pi * v), far * sin(2.0 * pi * v)
 
 
 def stream_of(rng: np.random.Generator) -> Words:
-    """A new stream, uint64 (2,), whose key is drawn from a numpy ``Generator``. Raises ValueError for
-    anything else."""
+    """A new stream, uint64 (2,), whose key is drawn from a numpy ``Generator``; else ValueError."""
     if not isinstance(rng, np.random.Generator):
         raise refuse("rng", rng, "must be a numpy.random.Generator")
     return np.array([rng.integers(0, 2**64 - 1, dtype=np.uint64, endpoint=True), 0], np.uint64)

@@ -1,16 +1,15 @@
-"""Which direct pots does a layout have, and how wide is each? Ghost-ball geometry: straight lines, no throw,
-no spin.
+"""Which direct pots does a layout have, and how wide is each? Ghost balls: straight lines, no throw, no spin.
 
-For object ball b and pocket k the object ball must go along d, the unit vector from b to the pocket's aim
-point; the cue ball must arrive at the ghost ball G = b - 2 R d. With theta the cut angle (between d and the
-cue ball's path C -> G), the aim may err by about::
+Object ball b must go along d, the unit vector to the pocket's aim point; the cue ball must arrive at the
+ghost ball G = b - 2 R d. With theta the cut angle (between d and the cue ball's path C -> G), the aim may err
+by::
 
     tolerance = w(a) / (2 |b pocket|)  *  2 R cos(theta) / |C G|      [rad]
 
-This is the half window of the pocket as an angle of the object ball's path, divided by the magnification of
-an aiming error at the impact. w(a) is the width of the lateral window of the pocket at the angle a off its
-axis [m], for a ball that rolls at 1.5 m/s on table "match", jaws included, to a millimetre
-(tests/benchmarks/test_pocket_windows.py). The window is smaller for a fast ball and larger for a slow one.
+This is the half window of the pocket as an angle of the object ball's path over the magnification of an
+aiming error at the impact. w(a) is the lateral window of the pocket at the angle a off its axis [m], jaws
+included, to a millimetre, for a ball that rolls at 1.5 m/s on table "match"
+(tests/benchmarks/test_pocket_windows.py); it is smaller for a fast ball and larger for a slow one.
 """
 
 from math import acos, cos, radians, sqrt
@@ -35,16 +34,14 @@ from .balls import N_BALLS
 # degrees, metres
 _CORNER_ANGLE, _CORNER_WINDOW = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0)
 _MIDDLE_ANGLE, _MIDDLE_WINDOW = (0.0, 15.0, 30.0, 45.0, 60.0, 70.0), (0.073, 0.071, 0.063, 0.043, 0.018, 0.0)
-# Squared cosines of the last angles, less a margin far above rounding: below them a window is certainly
-# closed.
+# Squared cosines of the last angles, less a margin above rounding: below them a window is certainly closed.
 _CORNER_SHUT, _MIDDLE_SHUT = (
     cos(radians(angle)) ** 2 - 1e-9 for angle in (_CORNER_ANGLE[-1], _MIDDLE_ANGLE[-1])
 )
 _CORNER_WIDEST, _MIDDLE_WIDEST = max(_CORNER_WINDOW), max(_MIDDLE_WINDOW)
 
 POT_BALL, POT_POCKET, GHOST_X, GHOST_Y, COS_CUT, TOLERANCE = range(6)
-"""Columns of a pot: object ball, pocket, place of the ghost ball [m], cosine of the cut angle, tolerance of
-the aim [rad]."""
+"""Columns of a pot: object ball, pocket, ghost ball [m], cosine of the cut, tolerance of the aim [rad]."""
 POT_COLUMNS = 6
 """Number of columns of a pot."""
 
@@ -84,10 +81,8 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
         Centres of the balls [m].
     on_table : bool (22,)
         Which balls are on the table.
-    ax, ay : float
-        One end of the segment [m].
-    bx, by : float
-        The other end [m].
+    ax, ay, bx, by : float
+        The ends of the segment [m].
     skip1, skip2 : int
         Ids of the balls that do not count.
     d : float
@@ -119,14 +114,11 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
 
 @kernel
 def pot_at(positions, on_table, ball, k, d, least):
-    """The direct pot of a ball into pocket k: (tolerance, ghost ball x, y, cosine of the cut).
-
-    The tolerance is 0 if there is no pot with one above ``least``. d: diameter of the balls [m].
-    """
+    """The pot of a ball into pocket k: (tolerance, ghost ball x, y, cosine of the cut), the tolerance 0 if
+    there is no pot with one above ``least``. d: diameter of the balls [m]."""
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     dx, dy = POCKET_AIMS[k, AIM_X] - bx, POCKET_AIMS[k, AIM_Y] - by
-    # most pots are out of the question, and that is seen without a root: the object ball would have to come
-    # back towards the cue ball, or the pocket is shut from there
+    # seen without a root: the object ball would come back towards the cue ball, or the pocket is shut
     along, middle = dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
     shut = (_MIDDLE_SHUT if middle else _CORNER_SHUT) * (dx * dx + dy * dy)
     if dx * (bx - cx) + dy * (by - cy) <= 0.0 or along <= 0.0 or along * along < shut:
@@ -173,11 +165,11 @@ def find_pots(positions, on_table, on, radius, pots):
     on_table : bool (22,)
         Which balls are on the table.
     on : int
-        Mask of the balls that may be potted, bit i for ball i.
+        Mask of the balls that may be potted.
     radius : float
         Radius of the balls [m].
     pots : float64 (m, POT_COLUMNS)
-        Output: the pots, columns ``POT_BALL`` to ``TOLERANCE``. If there are more than m, the m widest.
+        Output: the m widest pots, columns ``POT_BALL`` to ``TOLERANCE``.
 
     Returns
     -------
@@ -207,8 +199,7 @@ def find_pots(positions, on_table, on, radius, pots):
 
 @kernel
 def count_pots(positions, on_table, on, radius, most):
-    """The number of rows that ``find_pots`` writes into ``most`` rows. It stops at the last one that
-    counts."""
+    """The number of rows that ``find_pots`` writes into ``most`` rows; stops at the last that counts."""
     count = 0
     for ball in range(1, N_BALLS):
         if not on_table[ball] or not (on >> ball) & 1:
@@ -229,8 +220,7 @@ def _pots(positions, on_table, on, radius, pots):
 def pots(
     positions: Vectors, on_table: Flags, on: int, *, most: int = 32, radius: float = BALL_RADIUS
 ) -> Floats:
-    """The direct pots (k, POT_COLUMNS) of the balls in the mask ``on``, widest tolerance first, k at most
-    ``most``."""
+    """Direct pots (k, POT_COLUMNS) of the mask ``on``, widest tolerance first, k at most ``most``."""
     out = np.zeros((most, POT_COLUMNS))
     n = _pots(
         np.ascontiguousarray(positions, dtype=np.float64),

@@ -1,5 +1,4 @@
-"""How does Python call the referee? ``judge(Situation, Stroke) -> Verdict``: checked input, named results,
-and the kernel ``ruling``."""
+"""How does Python call the referee? ``judge(Situation, Stroke) -> Verdict``: checked input, named results."""
 
 from dataclasses import dataclass
 
@@ -13,32 +12,17 @@ FULL_TABLE = ALL_MASK & ~CUE_BIT
 """The mask of all 21 object balls."""
 
 MOST_POINTS = 2**60
-"""Upper limit of scores: no play reaches it, and the kernel's integers of 64 bits can hold it."""
+"""Upper limit of scores: beyond any play, within the kernel's 64 bits."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Situation:
-    """The state of the frame before the stroke, as far as the referee needs it. Masks have bit i for ball i
-    (``balls.mask_of``).
+    """What the referee needs of the frame before the stroke. Masks have bit i for ball i."""
 
-    Attributes
-    ----------
-    on_table : int
-        Mask of the object balls on the table (the cue ball's bit does not matter).
-    ball_on : BallOn
-        What the striker must hit first; not NOTHING, and of it at least one ball must be on the table.
-    free_ball : bool
-        The striker may nominate a free ball: only with a red or a colour of the sequence on.
-    lead : int
-        The striker's score minus the opponent's; used at the end of the frame only.
-    rules : {"snooker", "six_red", "shoot_out"}
-        The rule set.
-    """
-
-    on_table: int = FULL_TABLE
-    ball_on: BallOn = BallOn.RED
-    free_ball: bool = False
-    lead: int = 0
+    on_table: int = FULL_TABLE  # mask of the object balls; the cue ball's bit does not matter
+    ball_on: BallOn = BallOn.RED  # not NOTHING, and at least one of it on the table
+    free_ball: bool = False  # the striker may nominate one: with a red or a colour of the sequence on
+    lead: int = 0  # the striker's score minus the opponent's; used at the end of the frame only
     rules: RulesName = "snooker"
 
     def __post_init__(self) -> None:
@@ -64,57 +48,14 @@ class Situation:
 
 @dataclass(frozen=True, kw_only=True)
 class Stroke:
-    """The events of one stroke. Masks have bit i for ball i; every ball in them must be on the table.
+    """The events of one stroke; every ball in a mask must be on the table. ``Flag`` explains the bools."""
 
-    Attributes
-    ----------
-    first : int
-        Object balls struck by the cue ball's first impact: 0 for none, more than one for simultaneous
-        impacts.
-    potted : int
-        Balls that entered a pocket, bit 0 the cue ball.
-    off : int
-        Balls forced off the table, bit 0 the cue ball.
-    touching : int
-        Object balls that touched the cue ball before the stroke.
-    moved : int
-        Those of ``touching`` that the cue ball moved as it left them (not those that another ball moved
-        later).
-    nominated : int
-        Id of the colour nominated, after a red or as the free ball; 0 for none (a free ball declined); AUTO:
-        the colour first struck.
-    jump : bool
-        An illegal jump shot.
-    push : bool
-        A push stroke.
-    double_hit : bool
-        The tip struck the cue ball twice.
-    outside_d : bool
-        In hand, and played from outside the D.
-    feet : bool
-        Both feet off the floor.
-    out_of_turn : bool
-        Played out of turn.
-    seven : bool
-        An act that costs 7 points whatever is on: wrong cue ball, a ball off the table used, measuring, no
-        declaration on request ...
-    snookered : bool
-        After the stroke, with colours respotted, the next striker is snookered on the next ball on.
-    behind_free_ball : bool
-        As ``snookered``, and the snookering ball is the one that was nominated, as the free ball or after a
-        red.
-    no_cushion : bool
-        No ball reached a cushion.
-    late : bool
-        Not begun within the shot clock, and so not played: nothing was struck.
-    """
-
-    first: int = 0
-    potted: int = 0
-    off: int = 0
-    touching: int = 0
-    moved: int = 0
-    nominated: int = AUTO
+    first: int = 0  # object balls struck by the cue ball's first impact; several: simultaneously
+    potted: int = 0  # balls that entered a pocket, bit 0 the cue ball
+    off: int = 0  # balls forced off the table, bit 0 the cue ball
+    touching: int = 0  # object balls that touched the cue ball before the stroke
+    moved: int = 0  # those of them that the cue ball moved as it left them, not another ball later
+    nominated: int = AUTO  # id of a colour, after a red or as the free ball; 0: none; AUTO: first struck
     jump: bool = False
     push: bool = False
     double_hit: bool = False
@@ -155,49 +96,20 @@ class Stroke:
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """The referee's decision. A stroke with a foul scores nothing.
+    """The referee's decision. A stroke with a foul scores nothing."""
 
-    Attributes
-    ----------
-    fouls : Foul
-        The fouls of the stroke; false if it was fair.
-    penalty : int
-        Points to the opponent: 0, or the highest that any of the fouls costs (4 to 7).
-    points : int
-        Points to the striker.
-    respotted : int
-        Mask of the colours to be spotted.
-    on_table : int
-        Mask of the object balls on the table after that.
-    ball_on : BallOn
-        The next ball on; NOTHING when the frame is over.
-    stays : bool, or None
-        Whether the striker plays on; None: a lot decides (re-spotted black). After a foul the opponent may
-        decide otherwise.
-    in_hand : bool
-        The next stroke is played from the D.
-    free_ball : bool
-        The next striker, if it is the opponent, has a free ball.
-    visit_end : VisitEnd
-        Whether and why the visit ended.
-    outcome : Outcome
-        Whether the frame goes on, and if not, how it ended.
-    nominated : int
-        Id of the colour that counted as nominated (or as the free ball), 0 if none.
-    """
-
-    fouls: Foul
-    penalty: int
-    points: int
-    respotted: int
-    on_table: int
-    ball_on: BallOn
-    stays: bool | None
-    in_hand: bool
-    free_ball: bool
+    fouls: Foul  # false if it was fair
+    penalty: int  # to the opponent: the highest that any of the fouls costs (4 to 7), or 0
+    points: int  # to the striker
+    respotted: int  # mask of the colours to be spotted
+    on_table: int  # mask of the object balls after that
+    ball_on: BallOn  # next; NOTHING when the frame is over
+    stays: bool | None  # the striker plays on, unless a foul's choice says otherwise; None: a lot decides
+    in_hand: bool  # the next stroke is played from the D
+    free_ball: bool  # the next striker has one, if it is the opponent
     visit_end: VisitEnd
     outcome: Outcome
-    nominated: int
+    nominated: int  # id of the colour that counted as nominated or as the free ball, or 0
 
     @property
     def over(self) -> bool:
@@ -229,7 +141,7 @@ def verdict_of(result: Ruling) -> Verdict:
 
 
 def check(situation: Situation, stroke: Stroke) -> None:
-    """Raise ``ValueError`` if a ``Stroke`` cannot have been played in a ``Situation``."""
+    """ValueError if a ``Stroke`` cannot have been played in a ``Situation``."""
     for name in ("first", "touching", "potted", "off"):
         absent = getattr(stroke, name) & ~CUE_BIT & ~situation.on_table
         if absent:
@@ -267,9 +179,6 @@ def ruling_of(situation: Situation, stroke: Stroke) -> Ruling:
 
 
 def judge(situation: Situation, stroke: Stroke) -> Verdict:
-    """Judge one stroke: the ``Verdict`` on a ``Stroke`` in a ``Situation``. A pure function.
-
-    Raises ``ValueError`` if the two do not fit together (a ball potted that was not on the table, a
-    nomination that is not allowed).
-    """
+    """The ``Verdict`` on a ``Stroke`` in a ``Situation``. A pure function; ValueError if they do not fit
+    together (a ball potted that was not on the table, a nomination not allowed)."""
     return verdict_of(ruling_of(situation, stroke))

@@ -1,8 +1,6 @@
-"""Which game is played? Snooker, six-red snooker or the Shoot Out: what each changes in the rules of a frame,
-as data.
+"""Which game is played? What six-red snooker and the Shoot Out change in the rules of a frame, as data.
 
-``docs/environment/rules.md`` says where each rule comes from, what is left out and why. Kernels know a rule
-set by its ``code``.
+``docs/environment/rules.md`` says where each rule comes from, what is left out and why.
 """
 
 from dataclasses import dataclass
@@ -20,48 +18,17 @@ SNOOKER, SIX_RED, SHOOT_OUT = range(3)
 
 @dataclass(frozen=True, kw_only=True)
 class RuleSet:
-    """What one kind of game changes in the rules of snooker.
-
-    Attributes
-    ----------
-    name : {"snooker", "six_red", "shoot_out"}
-        Its name.
-    code : int
-        Its number, for kernels.
-    reds : int
-        Reds in the rack at the start: the first ``reds`` places of the triangle.
-    most_misses : int
-        Foul-and-a-miss calls in succession after which the position is not replaced again, and the
-        non-offender may place the cue ball anywhere instead; 0 for no limit.
-    behind_nominated : bool
-        A snooker behind a nominated ball is a foul at any time: behind a colour nominated after a red, too,
-        and with pink and black.
-    anywhere : bool
-        After every foul the opponent plays from in hand, from anywhere on the table: no choice, no free ball
-        and no miss.
-    cushion : bool
-        A stroke that pots no ball must drive a ball, the cue ball included, to a cushion.
-    clock : int
-        Simulated time after which the frame ends [ms]; 0 for none.
-    shot_clock : tuple of int
-        Longest time to play a stroke in the first and in the second half of that time [ms]; zeros for none.
-
-    Examples
-    --------
-    >>> from snooker_env.game.rule_sets import rule_set
-    >>> rule_set("six_red").reds, rule_set("shoot_out").shot_clock
-    (6, (15000, 10000))
-    """
+    """What one kind of game changes in the rules of snooker."""
 
     name: RulesName
-    code: int
-    reds: int = N_REDS
-    most_misses: int = 0
-    behind_nominated: bool = False
-    anywhere: bool = False
-    cushion: bool = False
-    clock: int = 0
-    shot_clock: tuple[int, int] = (0, 0)
+    code: int  # for kernels
+    reds: int = N_REDS  # in the rack: the first places of the triangle
+    most_misses: int = 0  # calls in succession, then no replacement but the cue ball anywhere; 0: no limit
+    behind_nominated: bool = False  # snookers behind any nominated ball are fouls: after a red, on pink too
+    anywhere: bool = False  # after every foul: in hand, anywhere; no choice, free ball or miss
+    cushion: bool = False  # a stroke without a pot must drive a ball, the cue ball included, to a cushion
+    clock: int = 0  # simulated time after which the frame ends [ms]; 0: none
+    shot_clock: tuple[int, int] = (0, 0)  # [ms] for a stroke in each half of that time
 
     @property
     def on_table(self) -> int:
@@ -95,27 +62,5 @@ SHOT_CLOCK = RULE_SETS[SHOOT_OUT].shot_clock
 
 
 def rule_set(name: RulesName) -> RuleSet:
-    """The ``RuleSet`` of a name.
-
-    Parameters
-    ----------
-    name : {"snooker", "six_red", "shoot_out"}
-        Its name.
-
-    Returns
-    -------
-    RuleSet
-        The rule set.
-
-    Raises
-    ------
-    ValueError
-        For an unknown name.
-
-    Examples
-    --------
-    >>> from snooker_env.game.rule_sets import rule_set
-    >>> rule_set("snooker").reds
-    15
-    """
+    """The ``RuleSet`` of a name; ValueError for an unknown one."""
     return RULE_SETS[RULES.index(choice("rules", name, RULES))]

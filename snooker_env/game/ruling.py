@@ -1,15 +1,8 @@
-"""Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke, as a
-pure function.
+"""Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke.
 
-``ruling`` is a kernel on integers and masks (bit i is ball i), so the same machine code judges one table from
-Python and thousands in a batch. ``referee.judge`` calls it from Python; ``apply_ruling.settle`` also sets up
-the table.
-
-Its input is what a simulator can observe. It does not judge intent or effort (whether a miss was deliberate
-or the attempt good enough; ``frame.py`` has the part of that rule that geometry decides), time wasting or
-conduct. Acts outside the simulation (a foot off the floor, playing out of turn, measuring ...) are passed in
-as flags. So are an illegal jump, a push and a double hit, which depend on the cue ball's flight and the tip's
-contact.
+``ruling`` is a pure kernel on integers and masks (bit i is ball i), the same for one table and thousands. It
+does not judge intent or effort (``frame`` has what geometry decides of that), time wasting or conduct. Acts
+outside the simulation, jumps, pushes and double hits are passed in as flags.
 """
 
 from collections import namedtuple
@@ -21,45 +14,25 @@ from .balls import BLACK, COLOURS_MASK, CUE_BIT, N_BALLS, PINK, VALUES, balls_on
 from .rule_sets import LATE_PENALTY
 
 AUTO = -1
-"""The referee decides which ball was nominated: the one that was evidently played at (see
-``_nomination``)."""
+"""The referee decides which ball was nominated: the one evidently played at (see ``_nomination``)."""
 
 
 class Flag(IntFlag):
-    """Other facts about a stroke: input of ``ruling``.
+    """Other facts about a stroke: input of ``ruling``."""
 
-    ================= ==================================================================================================
-    JUMP              An illegal jump: the cue ball passed over a part of a ball before it struck one, or landed on the
-                      far side of the ball that it struck.
-    PUSH              A push stroke.
-    DOUBLE_HIT        The tip struck the cue ball twice.
-    OUTSIDE_D         In hand, but not played from on or within the lines of the D.
-    FEET              Both feet off the floor.
-    OUT_OF_TURN       Played out of turn.
-    SEVEN             An act that costs 7 points whatever is on: wrong cue ball, a ball off the table used, measuring, no
-                      declaration on request ...
-    SNOOKERED         After the stroke, with colours respotted, the next striker is snookered on the next ball on.
-    BEHIND_FREE_BALL  As SNOOKERED, and the effective snookering ball is the one just nominated.
-    NO_CUSHION        No ball reached a cushion. A foul in the Shoot Out if none was potted either.
-    LATE              The stroke was not begun within the shot clock; it was not played.
-    SIX_RED           The rules of six-red snooker hold.
-    SHOOT_OUT         The rules of the Shoot Out hold.
-    ================= ==================================================================================================
-    """
-
-    JUMP = 1
-    PUSH = 2
-    DOUBLE_HIT = 4
-    OUTSIDE_D = 8
-    FEET = 16
+    JUMP = 1  # illegal: passed over a part of a ball before striking one, or landed behind the one struck
+    PUSH = 2  # a push stroke
+    DOUBLE_HIT = 4  # the tip struck the cue ball twice
+    OUTSIDE_D = 8  # in hand, but not played from on or within the lines of the D
+    FEET = 16  # both feet off the floor
     OUT_OF_TURN = 32
-    SEVEN = 64
-    SNOOKERED = 128
-    BEHIND_FREE_BALL = 256
-    NO_CUSHION = 512
-    LATE = 1024
-    SIX_RED = 2048
-    SHOOT_OUT = 4096
+    SEVEN = 64  # an act that always costs 7: wrong cue ball, use of a ball off the table, measuring ...
+    SNOOKERED = 128  # with colours respotted, the next striker is snookered on the next ball on
+    BEHIND_FREE_BALL = 256  # as SNOOKERED, and the effective snookering ball is the one just nominated
+    NO_CUSHION = 512  # no ball reached a cushion: a foul in the Shoot Out if none was potted either
+    LATE = 1024  # not begun within the shot clock, and so not played
+    SIX_RED = 2048  # the rules of six-red snooker hold
+    SHOOT_OUT = 4096  # the rules of the Shoot Out hold
 
 
 RULE_FLAGS = (Flag(0), Flag.SIX_RED, Flag.SHOOT_OUT)
@@ -67,81 +40,43 @@ RULE_FLAGS = (Flag(0), Flag.SIX_RED, Flag.SHOOT_OUT)
 
 
 class Foul(IntFlag):
-    """The fouls of a stroke: output of ``ruling``.
+    """The fouls of a stroke: output of ``ruling``. Those named as a ``Flag`` are explained there."""
 
-    ================= ==================================================================================================
-    NO_CONTACT        The cue ball struck no ball.
-    WRONG_FIRST       It first struck a ball that was not on.
-    WRONG_POT         A ball was potted that was not on.
-    CUE_POTTED        The cue ball was potted.
-    CUE_OFF           The cue ball left the table.
-    BALL_OFF          An object ball left the table.
-    JUMP              An illegal jump shot.
-    PUSH              A push stroke.
-    DOUBLE_HIT        The tip struck the cue ball twice.
-    OUTSIDE_D         In hand, and played from outside the D.
-    FEET              Both feet off the floor.
-    OUT_OF_TURN       Played out of turn.
-    BEHIND_FREE_BALL  A snooker was laid behind the free ball; in six-red snooker, behind any nominated ball.
-    NO_NOMINATION     A foul on a colour that was never nominated; reds played in successive strokes are of this kind.
-    SEVEN             An act that costs 7 points whatever is on.
-    NO_CUSHION        In the Shoot Out: no ball was potted and none reached a cushion.
-    LATE              In the Shoot Out: not begun within the shot clock.
-    ================= ==================================================================================================
-    """
-
-    NO_CONTACT = 1
-    WRONG_FIRST = 2
-    WRONG_POT = 4
+    NO_CONTACT = 1  # the cue ball struck no ball
+    WRONG_FIRST = 2  # it first struck a ball that was not on
+    WRONG_POT = 4  # a ball was potted that was not on
     CUE_POTTED = 8
-    CUE_OFF = 16
-    BALL_OFF = 32
+    CUE_OFF = 16  # the cue ball left the table
+    BALL_OFF = 32  # an object ball left the table
     JUMP = 64
     PUSH = 128
     DOUBLE_HIT = 256
     OUTSIDE_D = 512
     FEET = 1024
     OUT_OF_TURN = 2048
-    BEHIND_FREE_BALL = 4096
-    NO_NOMINATION = 8192
+    BEHIND_FREE_BALL = 4096  # a snooker behind the free ball; in six-red snooker, behind any nominated ball
+    NO_NOMINATION = 8192  # a foul on a colour never nominated, such as reds played in successive strokes
     SEVEN = 16384
     NO_CUSHION = 32768
     LATE = 65536
 
 
 class VisitEnd(IntEnum):
-    """Whether and why the striker's visit ended with this stroke.
-
-    ========== ===================================
-    CONTINUES  It goes on.
-    MISS       A fair stroke that potted nothing.
-    FOUL       A foul.
-    CLEARANCE  No object ball is left.
-    ========== ===================================
-    """
+    """Whether and why the striker's visit ended with this stroke."""
 
     CONTINUES = 0
-    MISS = 1
+    MISS = 1  # a fair stroke that potted nothing
     FOUL = 2
-    CLEARANCE = 3
+    CLEARANCE = 3  # no object ball is left
 
 
 class Outcome(IntEnum):
-    """Whether the frame goes on after the stroke, and if not, how it ended.
-
-    =============== ==================================================================================================
-    PLAYING         It goes on.
-    STRIKER_WINS    The striker has won it.
-    OPPONENT_WINS   The opponent has won it.
-    RESPOTTED_BLACK Scores are level and no ball is left: the black is re-spotted, the cue ball is in hand, and the winner
-                    of a lot decides who plays first.
-    =============== ==================================================================================================
-    """
+    """Whether the frame goes on after the stroke, and if not, how it ended."""
 
     PLAYING = 0
     STRIKER_WINS = 1
     OPPONENT_WINS = 2
-    RESPOTTED_BLACK = 3
+    RESPOTTED_BLACK = 3  # level and no ball left: cue ball in hand, and a lot decides who plays first
 
 
 def _plain(enum):
@@ -155,31 +90,21 @@ FLAG, FOUL, VISIT, OUTCOME = _plain(Flag), _plain(Foul), _plain(VisitEnd), _plai
 class Before(NamedTuple):
     """What ``ruling`` knows of the frame before the stroke, all integers."""
 
-    on_table: int
-    """Mask of the balls on the table."""
-    ball_on: int
-    """A ``BallOn``."""
-    free_ball: int
-    """1 if the striker has a free ball."""
-    lead: int
-    """The striker's score minus the opponent's."""
+    on_table: int  # mask of the balls on the table
+    ball_on: int  # a ``BallOn``
+    free_ball: int  # 1 if the striker has a free ball
+    lead: int  # the striker's score minus the opponent's
 
 
 class Facts(NamedTuple):
     """What ``ruling`` knows of the stroke, all integers: masks of balls, and an id."""
 
-    first: int
-    """The balls struck by the first impact; more than one: simultaneously."""
-    touching: int
-    """The balls that touched the cue ball before it."""
-    moved: int
-    """Those of them that the cue ball moved as it left them."""
-    potted: int
-    """The balls in pockets, bit 0 the cue ball."""
-    off: int
-    """The balls off the table, bit 0 the cue ball."""
-    nominated: Any
-    """The id of the ball nominated, 0 for none, or AUTO."""
+    first: int  # the balls struck by the first impact; more than one: simultaneously
+    touching: int  # the balls that touched the cue ball before it
+    moved: int  # those of them that the cue ball moved as it left them
+    potted: int  # the balls in pockets, bit 0 the cue ball
+    off: int  # the balls off the table, bit 0 the cue ball
+    nominated: Any  # the id of the ball nominated, 0 for none, or AUTO
 
 
 class Ruling(NamedTuple):
@@ -220,11 +145,10 @@ def _top_ball(mask):
 
 @kernel
 def _nomination(on, ball_on, free_ball, first, touching, nominated):
-    """The id of the colour on, or of the free ball, or 0 for none.
+    """The id of the colour on, or of the free ball, or 0 for none ("any colour" or a free ball need one).
 
-    A nomination is needed only on "any colour" or with a free ball. With AUTO it is the colour first struck
-    among those allowed, the highest if there are several; if none was struck, an allowed colour that the cue
-    ball was touching.
+    With AUTO it is the colour first struck among those allowed, the highest if there are several; if none was
+    struck, an allowed colour that the cue ball was touching.
     """
     if ball_on != 0 and not free_ball:
         return 0
@@ -232,17 +156,14 @@ def _nomination(on, ball_on, free_ball, first, touching, nominated):
         return nominated
     could_be = COLOURS_MASK if ball_on == 0 else COLOURS_MASK & ~on
     ball = _top_ball(first & could_be)
-    # A striker who plays from a touching ball and strikes the real ball on first has not nominated a free
-    # ball.
+    # From a touching ball, a striker who first strikes the real ball on has not nominated a free ball.
     return ball if ball != 0 or (ball_on != 0 and first & on != 0) else _top_ball(touching & could_be)
 
 
 @kernel
 def ruling(before, facts, flags):
-    """The ``Ruling`` on the stroke ``facts`` in the frame ``before``; ``flags``: Flag bits.
-
-    The order is that of the rule book; the highest penalty counts, and a foul scores nothing.
-    """
+    """The ``Ruling`` on the stroke ``facts`` in the frame ``before``; ``flags``: Flag bits. The order is that
+    of the rule book; the highest penalty counts, and a foul scores nothing."""
     on_table, ball_on, free_ball, lead = before
     first, touching, moved, potted, off, nominated = facts
     reds_and_colours = on_table & ~CUE_BIT
@@ -310,8 +231,7 @@ def ruling(before, facts, flags):
         fouls |= FOUL.NO_CUSHION
         penalty = max(penalty, base)
 
-    # 6. No snooker behind the free ball after a stroke that does not score, unless only pink and black are
-    #    left.
+    # 6. No snooker behind the free ball without a score, unless only pink and black are left.
     behind = flags & FLAG.BEHIND_FREE_BALL and (fouls or not down)
     if behind and (
         (choice and flags & FLAG.SIX_RED) or (free and reds_and_colours != (1 << PINK | 1 << BLACK))
@@ -327,8 +247,7 @@ def ruling(before, facts, flags):
         fouls |= FOUL.NO_NOMINATION
         penalty = 7
 
-    # Points, and the colours that return: after a foul all, else those that were not potted as the ball on of
-    # the sequence.
+    # Points, and the colours that return: after a foul all, else those not potted as the sequence's ball on.
     points = 0
     respotted = down & COLOURS_MASK
     if not fouls:
@@ -349,8 +268,7 @@ def ruling(before, facts, flags):
     if remaining == 0 and not fouls:
         visit_end = VISIT.CLEARANCE
 
-    # The frame ends when the table is empty, and with the first score or foul when only the black is left. If
-    # level, the black returns.
+    # The frame ends on an empty table, and with a foul when only the black is left; if level, it returns.
     outcome = OUTCOME.PLAYING
     if remaining == 0 or (fouls and reds_and_colours == 1 << BLACK):
         lead += points - penalty

@@ -1,5 +1,4 @@
-"""How does a player see a frame? Rows of frames from the other side, from the striker's own, and as a visit;
-whole arrays at once."""
+"""How does a player see a frame? Rows from the other side, from the striker's, and as a visit."""
 
 import numpy as np
 
@@ -39,8 +38,7 @@ def strikers_own(game: Ints) -> Ints:
 
 
 def as_visits(game: Ints) -> Ints:
-    """Rows of frames as a player of visits sees them, copied: a free ball is any colour, what may stand
-    anywhere is placed."""
+    """Copied rows as a player of visits sees them: free ball as any colour, anywhere as already placed."""
     seen = game.copy()
     free, anywhere = game[:, FREE_BALL] != 0, game[:, ANYWHERE] != 0
     seen[free, BALL_ON] = seen[free, FREE_BALL] = 0

@@ -1,15 +1,13 @@
-"""Is the cue ball snookered, by which ball, and is there a clear path? Straight lines past circles, as
-kernels.
+"""Is the cue ball snookered, and by which ball? Straight lines past circles, as kernels.
 
-A ball on can be struck at an extreme edge if the cue ball's centre can move straight along the line that
-passes the ball's centre at 2 R; the path ends at the grazing contact, and no ball not on may be nearer to it
-than 2 R. The cue ball is not snookered if one ball on can be struck in this way at both edges (or touches
-it). Other balls on never hide a ball on. A cushion does not snooker: where the curved face of a jaw obstructs
-an edge and is nearer to the cue ball than any ball not on that does, the cue ball counts as not snookered.
+A ball on can be struck at an extreme edge if the cue ball's centre can move along the line that passes the
+ball's centre at 2 R up to the grazing contact, with no ball not on nearer than 2 R. The cue ball is not
+snookered if it can strike one ball on so at both edges, or touches it. A cushion does not snooker: where the
+curved face of a jaw obstructs an edge and is nearer than any ball not on that does, it counts as open.
 
-In hand all of the D is tested: the places of ``in_hand.PLACES_IN_D``, 5 mm apart, then places right beside
-each ball, where most narrow openings are. A place counts only if a ball can stand there. An opening narrower
-than the step and away from every ball may be missed; no player places a ball more exactly.
+In hand the places of ``in_hand.PLACES_IN_D`` are tested, 5 mm apart, then places right beside each ball,
+where most narrow openings are. An opening narrower than the step and away from every ball may be missed; no
+player places a ball more exactly.
 """
 
 import numpy as np
@@ -25,10 +23,9 @@ from .spotting import touches
 BESIDE = 360
 """Number of directions in which places beside a ball are tested."""
 SLACK = 1e-9
-"""A ball obstructs only if it is nearer than 2 R by more than this [m]; touching the path is no
-obstruction."""
+"""A ball obstructs only if it is nearer than 2 R by more than this [m]: touching does not obstruct."""
 NO_JAWS = np.empty((0, 3))
-"""No curved cushion faces. Other arrays are (m, 3): their circles (x, y, radius) in the table frame [m]."""
+"""No curved cushion faces; other arrays (m, 3) hold their circles (x, y, radius) [m]."""
 
 
 @kernel
@@ -42,8 +39,7 @@ def segment_distance(px, py, ax, ay, bx, by):
 
 @kernel
 def _edge(cx, cy, tx, ty, side, radius):
-    """Where the cue ball, starting at c, grazes the ball at t at its edge ``side`` (+1 left, -1 right of the
-    line c-t): (x, y) [m]."""
+    """Where the cue ball from c grazes the ball at t at its edge ``side`` (+1 left, -1 right): (x, y) [m]."""
     dx, dy = tx - cx, ty - cy
     d = np.hypot(dx, dy)
     s = 2.0 * radius / d  # the sine of the angle between the line of centres and the tangent
@@ -54,12 +50,8 @@ def _edge(cx, cy, tx, ty, side, radius):
 
 @kernel
 def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
-    """Mask of the nearest balls not on that hide an edge of ``target`` from the cue ball at (cx, cy); 0: both
-    edges can be struck.
-
-    -1: a jaw obstructs an edge and is nearer than those balls. ``on`` is the mask of the balls on. Nearest:
-    by the distance of centres.
-    """
+    """Mask of the balls not on, nearest by centres, that hide an edge of ``target`` from (cx, cy); 0: both
+    edges are open; -1: a jaw obstructs an edge and is nearer than those balls."""
     tx, ty = positions[target, 0], positions[target, 1]
     if np.hypot(tx - cx, ty - cy) <= 2.0 * radius + REFEREE_TOUCH:
         return 0
@@ -85,11 +77,8 @@ def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
 
 @kernel
 def snookered_from(positions, on_table, on, cx, cy, jaws, radius):
-    """Whether the cue ball at (cx, cy) is snookered on the mask ``on``, and the mask of the effective
-    snookering balls: (bool, int).
-
-    The mask is 0 if there is none: reds hidden by different balls have no effective snookering ball.
-    """
+    """Whether the cue ball at (cx, cy) is snookered, and the mask of the effective snookering balls: (bool,
+    int). The mask is 0 if reds are hidden by different balls: then no ball is the effective one."""
     effective = -1
     for target in range(1, N_BALLS):
         if on_table[target] and (on >> target) & 1:
@@ -111,8 +100,7 @@ def _open_at(positions, on_table, on, x, y, jaws, radius):
 
 @kernel
 def _open_beside(positions, on_table, on, i, jaws, radius):
-    """Whether the cue ball is not snookered from some place in the D right beside ball i: all round it, and
-    on the baulk line."""
+    """Whether the cue ball is not snookered at some place in the D beside ball i, baulk line included."""
     gap = 2.0 * radius + CLEARANCE
     x, y = positions[i, 0], positions[i, 1]
     if np.hypot(x, y - BAULK_Y) > D_RADIUS + gap:
@@ -135,8 +123,7 @@ def _open_beside(positions, on_table, on, i, jaws, radius):
 
 @kernel
 def snookered_in_hand(positions, on_table, on, jaws, radius):
-    """Whether the cue ball in hand is snookered from every place in the D. The cue ball's entry in
-    ``on_table`` must be False."""
+    """Whether the cue ball is snookered from every place in the D; on_table[0] must be False."""
     for k in range(PLACES_IN_D.shape[0]):
         if _open_at(positions, on_table, on, PLACES_IN_D[k, 0], PLACES_IN_D[k, 1], jaws, radius):
             return False
@@ -148,8 +135,7 @@ def snookered_in_hand(positions, on_table, on, jaws, radius):
 
 @kernel
 def snookered(positions, on_table, on, jaws, radius):
-    """Whether the next striker is snookered on the mask ``on``, and by which balls: (bool, int). In hand if
-    on_table[0] is False."""
+    """Whether the next striker is snookered, and by which balls: (bool, int); in hand if not on_table[0]."""
     if on_table[0]:
         return snookered_from(positions, on_table, on, positions[0, 0], positions[0, 1], jaws, radius)
     return snookered_in_hand(positions, on_table, on, jaws, radius), 0
@@ -163,11 +149,7 @@ def _snookered(positions, on_table, on, jaws, radius):
 def is_snookered(
     positions: Vectors, on_table: Flags, on: int, *, jaws: Vectors = NO_JAWS, radius: float = BALL_RADIUS
 ) -> tuple[bool, int]:
-    """``snookered`` for Python: (bool, mask of the effective snookering balls). ``on`` is the mask of the
-    balls on.
-
-    Raises ``ValueError`` for wrong arrays, or a mask that contains the cue ball.
-    """
+    """``snookered`` for Python: (bool, mask of effective snookering balls); ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if integer("on", on, 0, ALL_MASK) & CUE_BIT:
         raise refuse("on", on, "must name object balls only")

@@ -1,11 +1,10 @@
 """Where does a colour go when it returns? The spotting rule, exact, as kernels.
 
-A colour goes on its own spot. If that is occupied, it goes on the free spot of the highest value. If every
-spot is occupied, it goes as near its own spot as possible without touching another ball, on the straight line
-from there to the top cushion. If that line has no room, it goes on the same line below the spot (the rules
-state this for pink and black, whose line is the centre line). A spot is occupied if a ball placed there would
-touch another, as the referee sees it (``balls.REFEREE_TOUCH``): he puts no ball down where he would then call
-a touching ball. Of several colours, those whose own spot is free go first, then the highest value first.
+A colour goes on its own spot; if that is occupied, on the free spot of the highest value; if all are, as near
+its own spot as possible without touching another ball, on the straight line towards the top cushion; if that
+has no room, below the spot (the rules state this for pink and black). A spot is occupied if a ball there
+would touch another as the referee sees it (``balls.REFEREE_TOUCH``). Of several colours, those whose own spot
+is free go first, then the highest value.
 """
 
 import numpy as np
@@ -47,11 +46,10 @@ def occupied(positions, on_table, x, y, radius):
 @kernel
 def nearest_free(positions, on_table, x, y, direction, radius):
     """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no
-    other [m]. Cushions are ignored.
+    other [m].
 
-    Each ball i excludes an open interval of the line, y_i - h to y_i + h with h^2 = (2 R + clearance)^2 -
-    (x_i - x)^2. To move y to the far end of each interval that contains it, until none does, gives the
-    nearest free place exactly.
+    Ball i excludes y_i - h to y_i + h with h^2 = (2 R + clearance)^2 - (x_i - x)^2; y moves to the far end of
+    each interval that contains it, until none does, which is exact. Cushions are ignored.
     """
     reach = 2.0 * radius + CLEARANCE
     moved = True
@@ -70,8 +68,7 @@ def nearest_free(positions, on_table, x, y, direction, radius):
 
 @kernel
 def place_colour(positions, on_table, ball, radius):
-    """The place of the colour ``ball`` by the rule: (x, y) [m]. Its own entry in ``on_table`` must be
-    False."""
+    """The place of the colour ``ball`` by the rule: (x, y) [m]; its entry in ``on_table`` must be False."""
     x, y = SPOTS[ball, 0], SPOTS[ball, 1]
     if not occupied(positions, on_table, x, y, radius):
         return x, y
@@ -87,12 +84,8 @@ def place_colour(positions, on_table, ball, radius):
 
 @kernel
 def spot(positions, on_table, mask, radius):
-    """Return the colours in ``mask`` to the table: write their rows of ``positions`` (22, 2) [m] and
-    ``on_table`` (22,) bool.
-
-    ``mask`` may contain balls that are still on the table; they are removed first (the black of a re-spotted
-    black).
-    """
+    """Write the colours in ``mask`` into ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; those still
+    on the table are removed first (the black of a re-spotted black)."""
     for ball in range(YELLOW, BLACK + 1):
         if (mask >> ball) & 1:
             on_table[ball] = False
@@ -117,12 +110,8 @@ def _spot(positions, on_table, mask, radius):
 def spot_colours(
     positions: Vectors, on_table: Flags, mask: int, *, radius: float = BALL_RADIUS
 ) -> tuple[Floats, Bools]:
-    """Return colours to the table: new ``positions`` (22, 2) [m] and ``on_table`` (22,) with the colours in
-    ``mask`` placed by the rule.
-
-    The arrays given are not changed. Raises ``ValueError`` for other shapes, or a mask that contains a ball
-    that is no colour.
-    """
+    """New ``positions`` (22, 2) [m] and ``on_table`` (22,) with the colours in ``mask`` placed by the rule.
+    ValueError for wrong arrays, or a mask that contains a ball that is no colour."""
     if integer("mask", mask, 0, ALL_MASK) & ~COLOURS_MASK:
         raise refuse("mask", mask, "must name colours only (ids 16 to 21)")
     placed, present = check_table(positions, on_table)

@@ -1,8 +1,4 @@
-"""Pictures of a table: ``scene`` describes one in metres, ``pygame_view`` draws it as a picture,
-``ascii_view`` as text.
-
-``__all__`` is public: the geometry and the colours for drawing tables with another library.
-"""
+"""Pictures of a table. ``__all__`` is public: geometry and colours for drawing with another library."""
 
 from .outline import BAULK_LINE, CUSHION, D_ARC, RAIL, SPOT_MARKS, Outline, outline, scene_data
 from .palette import COLOURS, PALETTE

@@ -1,10 +1,6 @@
-"""How is a scene drawn in a terminal? From above in characters, baulk left and black right, as the picture of
-``pygame_view``.
-
-A ball is a letter in the cell of its centre: W the white cue ball, r a red, Y G N B P K the colours (N brown
-and K black, because B is blue). Reds that share a cell are shown as their number. The cue ball is never
-hidden; a line below names the balls under another one.
-"""
+"""How is a scene drawn in a terminal? From above in characters, baulk left and black right. A ball is a
+letter in the cell of its centre (N brown, K black), several reds are their number; the cue ball is never
+hidden, and a line below names the balls under another one."""
 
 from itertools import pairwise
 from textwrap import wrap

@@ -1,5 +1,4 @@
-"""How are two ways to play a stroke compared? By their diagrams side by side, of the same part of the
-table."""
+"""How are two ways to play a stroke compared? By diagrams of the same part of the table, side by side."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -32,7 +31,7 @@ def compare(
     Parameters
     ----------
     shots : sequence of Shot
-        The shots, all on the same table.
+        The shots, all on the same table; else ValueError.
     labels : sequence of str
         A title for each shot, or () for none.
     axes : sequence of matplotlib.axes.Axes, optional
@@ -48,11 +47,6 @@ def compare(
     -------
     tuple of matplotlib.axes.Axes
         The axes of the diagrams.
-
-    Raises
-    ------
-    ValueError
-        If the shots were played on different tables.
 
     Examples
     --------

@@ -1,5 +1,4 @@
-"""Where does a ball stop, and how likely? A heat map of final positions, with the areas that hold half and
-nine tenths of them."""
+"""Where does a ball stop, and how likely? A heat map, with the areas of 50 and 90 % of the points."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -26,9 +25,7 @@ _REACH = 3.0  # a Gaussian kernel is cut off at this many bandwidths
 
 
 def bandwidth_of(points: Floats) -> float:
-    """The bandwidth by Scott's rule.
-
-    It is the standard deviation of the points times m^(-1/6), at least 1 cm and at most 15 cm.
+    """The bandwidth by Scott's rule: standard deviation times m^(-1/6), at least 1 cm and at most 15 cm.
 
     Parameters
     ----------
@@ -99,7 +96,7 @@ def density_of(
 
 
 def level_of(values: Floats, share: float) -> float:
-    """The density above which a given share of the total lies.
+    """The density above which a share of the total lies.
 
     Parameters
     ----------

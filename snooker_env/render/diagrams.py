@@ -1,10 +1,8 @@
-"""Which diagrams are there? One shot, options side by side, a fan over top and side, and where a ball stops:
-with matplotlib.
+"""Which diagrams are there? One shot, shots side by side, a fan over top and side, and where a ball stops.
 
-``plot``, ``compare``, ``fan`` and ``density`` draw on the axes that they are given, or on a new figure, and
-return the axes. The table is seen from above, baulk left and black right: the horizontal axis is y [m] to the
-right, the vertical one x [m] down. ``bandwidth_of``, ``density_of`` and ``level_of`` are what ``density``
-draws, as numbers.
+``plot``, ``compare``, ``fan`` and ``density`` draw with matplotlib on the axes that they are given, or on a
+new figure, and return the axes: baulk left and black right, y [m] to the right and x [m] down.
+``bandwidth_of``, ``density_of`` and ``level_of`` are what ``density`` draws, as numbers.
 """
 
 from .compare_diagram import compare

@@ -1,5 +1,4 @@
-"""Where can the cue ball go? A fan: the same pot with every top and side of a range, and the cue ball's path
-of each."""
+"""Where can the cue ball go? A fan: its paths for the same pot with every top and side of a range."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -57,8 +56,7 @@ class Option(NamedTuple):
 
     top: float
     side: float
-    aim: float
-    """Direction of the cue [rad]."""
+    aim: float  # direction of the cue [rad]
     shot: Shot
 
 
@@ -75,9 +73,9 @@ def fan(
 ) -> "Axes":
     """Draw the cue ball's paths of one pot, played with every pair of a top and a side.
 
-    As in Fig. 1 of the paper. Squirt and throw change the aim that pots the ball; of the aims that pot it,
-    the middle one is played. The colour of a path is its top, from screw (blue) to follow (red); the sign at
-    its end is its side.
+    As in Fig. 1 of the paper. Of the aims that pot the ball, which squirt and throw change, the middle one is
+    played. The colour of a path is its top, from screw (blue) to follow (red); the sign at its end is its
+    side.
 
     Parameters
     ----------
@@ -92,22 +90,16 @@ def fan(
     speed : float
         Speed that the cue gives [m/s].
     tops, sides : sequence of float
-        Tip offsets over R, up and to the right.
+        Tip offsets over R, up and to the right; ValueError if one of the strokes cannot pot the ball.
     **options
         ``elevation``: of the cue [rad]. ``aim``: direction of every stroke [rad]; then no ball needs to be
-        potted. ``table``, ``physics``: as in ``snooker_env.simulate``. ``on_table``: bool (n,), False for the
-        balls to leave out, with an array of positions. ``view``, ``labels``, ``title``: as in ``plot``; here
-        ``view`` is "shot" by default.
+        potted. ``table``, ``physics``: as in ``snooker_env.simulate``. ``on_table``: bool (n,), False for
+        balls of an array to leave out. ``view`` ("shot" by default), ``labels``, ``title``: as in ``plot``.
 
     Returns
     -------
     matplotlib.axes.Axes
         The axes of the diagram.
-
-    Raises
-    ------
-    ValueError
-        If one of the strokes cannot pot the ball.
 
     Examples
     --------

@@ -1,9 +1,5 @@
-"""Which parts of a table never move, and where are they? Cushions, falls and holes, and snooker's lines, in
-metres.
-
-They are computed from the noses, jaws and falls of a ``Table``. Table frame: origin at the table's centre, +x
-to the yellow side, +y to the black end.
-"""
+"""Which parts of a table never move, and where are they? Cushions, falls, holes and snooker's lines, in
+metres. Table frame: origin at the table's centre, +x to the yellow side, +y to the black end."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -42,15 +38,13 @@ class Outline:
     Attributes
     ----------
     cushions : tuple of float64 (m, 2)
-        Closed polygons, one for each cushion: nose, the jaws at its two ends, and the cushion's back under
-        the wood [m].
+        Closed polygons [m]: nose, the jaws at its ends, and the cushion's back under the wood.
     noses : tuple of float64 (m, 2)
         Polylines, one for each cushion: the part that balls meet, jaw - nose - jaw [m].
     falls : float64 (k, 3)
-        x and y of the centre and radius of the slate circles over which balls drop [m].
+        Centre x, y and radius of the slate circles over which balls drop [m].
     throats : float64 (k, 5)
-        The holes in the wood: x and y of the middle of the mouth, x and y of the fall's centre, and half the
-        width [m].
+        The holes in the wood [m]: x, y of the mouth's middle and of the fall's centre, and half the width.
 
     Examples
     --------
@@ -168,9 +162,7 @@ def _throat(fall, noses, mouths):
 
 
 def scene_data(table: TableLike) -> dict[str, Any]:
-    """A table, its lines, the balls and all colours as JSON types.
-
-    It is the description that pygame, matplotlib and the browser share.
+    """A table, its lines, the balls and all colours as JSON types, for drawing with any library.
 
     Parameters
     ----------
@@ -181,10 +173,10 @@ def scene_data(table: TableLike) -> dict[str, Any]:
     -------
     dict
         Lengths in metres, rounded to 1e-6. ``cushions``, ``noses``, ``falls``, ``throats``: as in
-        ``Outline``, with lists for arrays. ``extent``: [[lowest x, highest x], [lowest y, highest y]] of the
-        bed. ``rail``, ``cushion``: ``RAIL``, ``CUSHION``. ``lines``: {"baulk", "d", "spots"}, or None on a
-        table without snooker's marks. ``ball_radius``. ``palette``: {name: [red, green, blue]}. ``balls``: by
-        id {"name", "letter", "value", "rgb"}.
+        ``Outline``, as lists. ``extent``: [[lowest x, highest x], [lowest y, highest y]] of the bed.
+        ``rail``, ``cushion``: ``RAIL``, ``CUSHION``. ``lines``: {"baulk", "d", "spots"}, or None on a
+        table without them. ``ball_radius``. ``palette``: {name: [red, green, blue]}. ``balls``: by id
+        {"name", "letter", "value", "rgb"}.
 
     Examples
     --------

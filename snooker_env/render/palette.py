@@ -1,10 +1,5 @@
-"""Which colours does everything have? One table of them, red, green, blue, for pygame, matplotlib and the
-browser.
-
-The cloth is as bright as under a table's lamps on television, and the green, the brown and the black are
-dark: each ball differs from the cloth by at least 25 in CIEDE2000, so that it is easy to see. The balls that
-are alike for colour-blind people carry letters when labels are on.
-"""
+"""Which colours does everything have? One table for pygame, matplotlib and the browser. Each ball differs
+from the cloth by at least 25 in CIEDE2000, so that it is easy to see."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,8 +27,8 @@ PALETTE: dict[str, tuple[int, int, int]] = {
     "text_quiet": (164, 170, 184),
 }
 """Colours by name, (red, green, blue), 0 to 255. ``cloth_edge``: the cloth where it bends over a fall;
-``line``: the baulk line, the D and the spots; ``nose``: the edge of a cushion that balls meet; ``path_edge``:
-the outline of a path; ``lamp``: its reflection in a ball; ``bar``: the score bar."""
+``line``: the lines and spots; ``nose``: the edge of a cushion that balls meet; ``path_edge``: the outline
+of a path; ``lamp``: its reflection in a ball; ``bar``: the score bar."""
 
 COLOURS: NDArray[np.uint8] = np.array(
     [(252, 248, 234)]
@@ -43,8 +38,7 @@ COLOURS: NDArray[np.uint8] = np.array(
 )
 """Colours of the balls by id: uint8 (22, 3), red, green, blue; read-only."""
 PALE: NDArray[np.uint8] = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)
-"""Lighter colours of the balls, for a ball's path on the cloth and for letters on a dark terminal: uint8 (22,
-3), read-only."""
+"""Lighter colours, for paths on the cloth and letters on a dark terminal: uint8 (22, 3), read-only."""
 LETTERS = "W" + "r" * 15 + "YGNBPK"
 """Letters by ball id: W the white cue ball, r a red; N is brown and K black, because B is blue."""
 

@@ -1,9 +1,5 @@
-"""How is a ball drawn? Shaded, with reflections of the lamps over the table, and with a faint shadow from
-each lamp.
-
-Pictures of balls, reflections and shadows are made once for each colour, size and quarter of a pixel; a frame
-only copies them to their places.
-"""
+"""How is a ball drawn? Shaded, with reflections of the lamps over the table and a faint shadow from each.
+Pictures of these are kept for each colour, size and quarter of a pixel."""
 
 from functools import lru_cache
 from typing import Any
@@ -61,15 +57,13 @@ def _at(place, make, *what):
 
 
 def _grid(half, fx, fy):
-    """Columns and rows of a picture's pixels from its middle, which is fx / 4, fy / 4 pixels right of and
-    below a pixel's corner."""
+    """Columns and rows of pixels from a middle fx / 4, fy / 4 pixels right of and below a pixel's corner."""
     steps = np.arange(-half, half + 1) + 0.5
     return np.meshgrid(steps - fx / 4, steps - fy / 4)
 
 
 def _shaded(colour, nz):
-    """A ball's colours (..., 3) where the z of its unit normal is ``nz``: lit from above, and by the cloth
-    from below."""
+    """Colours (..., 3) where the z of the unit normal is ``nz``: lit from above, and by the cloth below."""
     nz = nz[..., None]
     lit = np.asarray(colour, dtype=np.float64) * (0.50 + 0.56 * nz)
     rim = (1 - nz) ** 2.5
@@ -115,8 +109,7 @@ def _rays(positions, over):
 
 
 def _mirrored(positions, over, where, radius):
-    """The reflections of the lamps: each where the surface normal is half-way between the eye, straight
-    above, and the lamp."""
+    """Reflections: each lamp's where the normal is half-way between the lamp and the eye, straight above."""
     images = []
     ends = over[:, None] + np.array([(0.0, -0.5), (0.0, 0.0), (0.0, 0.5)])[None] * PANEL
     across, far = _rays(positions, ends.reshape(-1, 2))
@@ -150,8 +143,7 @@ def _lamp(half, radius, fx, fy):
 
 
 def _shadows(positions, over, where, radius):
-    """A soft shadow from each lamp, fainter for a lower angle of its light, and the dark place where the ball
-    touches the cloth."""
+    """A soft shadow from each lamp, fainter for a lower light, and the dark place where the ball touches."""
     images = []
     across, far = _rays(positions, over)
     strength = (LAMP_HEIGHT / far) ** 3

@@ -1,5 +1,4 @@
-"""How is the score bar drawn? As on television: the break and its balls, the players and their points, the
-ball on and what is left."""
+"""How is the score bar drawn? As on television: the break, the players, the ball on and what is left."""
 
 from functools import lru_cache
 from typing import Any

@@ -1,5 +1,4 @@
-"""How is pygame-ce imported? At the first picture, with an error that says how to install it where it is
-missing; and its typeface."""
+"""How is pygame-ce imported? At the first picture; an error says how to install it. And its font."""
 
 import os
 from functools import lru_cache
@@ -25,8 +24,7 @@ def pygame_() -> Any:
 
 
 def typeset(text: str, colour: Any, size: float, file: str = MEDIUM) -> Any:
-    """A line of text as a surface, ``size`` pixels from the top of a capital to the bottom of its
-    descenders."""
+    """A line of text as a surface, ``size`` pixels from a capital's top to the bottom of its descenders."""
     pygame = pygame_()
     if not pygame.font.get_init():
         pygame.font.init()

@@ -1,9 +1,6 @@
-"""How is a ball's path drawn? As a line with a dark edge, smooth at every angle, in pieces that are kept.
-
-A path that grows from frame to frame changes only at its end. So it is cut at equal lengths from its start,
-and the picture of each piece is made once. First all edges are drawn, then all lines, so that no piece
-darkens its neighbour.
-"""
+"""How is a ball's path drawn? As a line with a dark edge, smooth at every angle, in kept pieces: a path that
+grows changes only at its end. All edges are drawn before all lines, so that no piece darkens its
+neighbour."""
 
 from functools import lru_cache
 from typing import Any

@@ -1,9 +1,4 @@
-"""How is a picture made? The kept picture of the table is copied; then paths, balls and the score bar are
-drawn on it.
-
-Pictures of balls (for each quarter of a pixel) and of pieces of paths are kept too, so that this takes a few
-milliseconds.
-"""
+"""How is a picture made? Paths, balls and the score bar are drawn on a copy of the table's kept picture."""
 
 from typing import Any
 

@@ -1,7 +1,4 @@
-"""How is a scene drawn as a picture? From above as on television, baulk left and black right, with pygame-ce.
-
-Pictures need no display and do not touch pygame's; only ``Window`` opens one.
-"""
+"""How is a scene drawn as a picture? With pygame-ce, without a display; only ``Window`` opens one."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,9 +1,5 @@
 """What is there to draw? A table, its lines, balls and overlays, in metres and without a drawing library.
-
-Table frame: origin at the table's centre, +x to the yellow side, +y to the black end. ``scene`` describes one
-picture; ``Film`` and ``shot_scenes`` make the pictures of a film from a shot. The parts of a table that never
-move, and ``scene_data`` for drawing in another language, are in ``outline``; colours are in ``palette``.
-"""
+Table frame: origin at the centre, +x to the yellow side, +y to the black end."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -101,8 +97,7 @@ def scene(
     lettered: bool = False,
     **overlays: Any,
 ) -> Scene:
-    """Describe one picture: n <= 22 balls, ids 0 to n-1, and overlays (``_Overlays``) as in ``Scene``. Arrays
-    are copied."""
+    """One picture: n <= 22 balls, ids 0 to n-1, and ``_Overlays`` as in ``Scene``. Arrays are copied."""
     r = array("positions", positions, (-1, 2))
     if len(r) > N_BALLS:
         raise refuse("positions", f"array of shape {r.shape}", f"must hold at most {N_BALLS} balls")

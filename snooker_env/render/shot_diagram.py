@@ -1,5 +1,4 @@
-"""How is a shot drawn as a diagram? Sliding and rolling paths, ghost balls, impacts, speeds, the cut and the
-tip, on a ``Sketch``."""
+"""How is a shot drawn as a diagram? Paths, ghosts, impacts, speeds, the cut and the tip, on a ``Sketch``."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
@@ -31,16 +30,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 View: TypeAlias = Literal["table", "shot"] | Sequence[Sequence[float]]
-"""The part of the table to show: all of it, as much as the shot needs, or ((lowest x, highest x), (lowest y,
-highest y)) [m]."""
+"""The part to show: all, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) [m]."""
 
 SLIDES = (255, 168, 36)
 """Colour of the stripes of a path on which the ball slides."""
 DASHES = (0, (2.0, 1.6))
 """Lengths of these stripes, in widths of the path."""
 MOST_PATHS = 7
-"""If more balls move, only the paths of the cue ball, of the ball that it strikes first and of potted balls
-are drawn in full width."""
+"""If more balls move, only paths of the cue ball, its first object ball and potted balls are wide."""
 
 _SIGNS: dict[EventKind, tuple[Any, Any, float]] = {
     EventKind.BALL_BALL: ("o", "text", 4.5),
@@ -71,22 +68,21 @@ def plot(
 ) -> "Axes":
     """Draw a shot from above, baulk left and black right.
 
-    Balls are drawn at their places before the shot. Paths are 3 pixels wide in the colours of the balls,
-    striped where the ball slides and plain where it rolls, with arrowheads. Faded balls show a ball when it
-    meets another, and where it comes to rest. Signs mark impacts: a disc with a ball, a diamond with a
-    cushion, a triangle with a jaw, a cross in a pocket. Under the table: the tip, speeds and the cut.
+    Balls are drawn where they were before the shot; faded ones show them when they meet another, and at rest.
+    Paths have the balls' colours, striped where the ball slides and plain where it rolls. Signs mark impacts:
+    a disc with a ball, a diamond with a cushion, a triangle with a jaw, a cross in a pocket. Under the table:
+    the tip, speeds and the cut.
 
     Parameters
     ----------
     shot : Shot
-        The shot, with its path and at most 22 balls.
+        The shot, with its path and at most 22 balls; else ValueError.
     ax : matplotlib.axes.Axes, optional
-        Axes to draw on; None makes a new figure. Axes with an earlier diagram keep their table and their
-        limits. The horizontal axis is y [m], the vertical one x [m] downwards: ``ax.plot(y, x)``.
+        Axes to draw on; None makes a new figure. Axes with an earlier diagram keep their table and limits.
+        The horizontal axis is y [m], the vertical one x [m] downwards: ``ax.plot(y, x)``.
     cue : mapping, optional
         How the cue ball was struck: "side" and "top" (tip offset over R, right and up), and if known "speed"
-        [m/s], "elevation" and "aim" [rad]. None: computed from the cue ball's velocity and spin; without side
-        the cue is taken as level.
+        [m/s], "elevation" and "aim" [rad]. None: computed from velocity and spin, level without side.
     view : "table", "shot" or ((float, float), (float, float))
         The part of the table to show: all of it (if it has cushions on all sides), as much as the shot needs,
         or a range of x and one of y [m].
@@ -105,11 +101,6 @@ def plot(
     -------
     matplotlib.axes.Axes
         The axes of the diagram.
-
-    Raises
-    ------
-    ValueError
-        If the shot has no path or more than 22 balls, or an option is wrong.
 
     Examples
     --------
@@ -178,8 +169,7 @@ def area(shot: Shot) -> Floats:
 
 
 def principals(shot: Shot, moved: Mapping[int, Any], first: int | None) -> set[int]:
-    """The important balls: all that move, or if many do, the cue ball, the first ball that it meets, and
-    those that are potted."""
+    """The balls that matter: all that move, or if many do, cue ball, its first object ball, potted balls."""
     if len(moved) <= MOST_PATHS or first is None:
         return set(moved)
     met = [contact.other for contact in contacts(shot, first) if contact.kind == EventKind.BALL_BALL]
@@ -187,8 +177,7 @@ def principals(shot: Shot, moved: Mapping[int, Any], first: int | None) -> set[i
 
 
 def draw_path(sketch: Sketch, path: Sequence[Piece], ball: int, colour: Any = None) -> None:
-    """The path of a ball in its colour: striped while it slides, plain while it rolls, dotted while it
-    falls."""
+    """A ball's path in its colour: striped while it slides, plain while it rolls, dotted while it falls."""
     colour = PALE[ball] if colour is None else colour
     for piece in path:
         style: dict[str, Any] = {"gid": f"{piece.kind}-{ball}"}
@@ -231,8 +220,7 @@ def _write_speeds(sketch, shot, first, start):
 
 
 def _draw_cut(sketch, shot, contact):
-    """The cut as an angle, if balls are large enough: the old direction, the line of centres, and an arc
-    between them."""
+    """The cut, if balls are large enough: the old direction, the line of centres, and an arc between them."""
     if sketch.R * sketch.points_per_metre < 5.0:
         return
     v, line = velocity_before(shot, contact.ball, contact.time), contact.place - contact.centre
@@ -296,8 +284,7 @@ def tip_words(tip: Tip) -> str:
 def draw_tip(
     sketch: Sketch, tip: Tip | None, middle: tuple[float, float], radius: float, limit: float
 ) -> None:
-    """The cue ball as the player sees it, and where the tip struck it. ``middle``: (y, x) [m]; ``limit``:
-    offset of a miscue over R."""
+    """Where the tip struck the cue ball; ``middle``: (y, x) [m]; ``limit``: offset of a miscue over R."""
     from matplotlib.patches import Circle
 
     (y, x), add = middle, sketch.ax.add_patch

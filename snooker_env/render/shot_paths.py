@@ -1,9 +1,6 @@
-"""What does a diagram show of a shot? Its paths in pieces that slide or roll, its contacts with their speeds,
-and where the tip struck.
-
-Without a drawing library, in metres. A piece of a path has so many points that the straight lines between
-them are within ``STRAY`` of it: a rolling ball moves straight, a sliding one on a parabola.
-"""
+"""What does a diagram show of a shot? Paths in pieces that slide or roll, contacts and speeds, and the tip.
+The lines between a piece's points are within ``STRAY`` of it: a rolling ball moves straight, a sliding one
+on a parabola."""
 
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
@@ -30,10 +27,8 @@ class Piece(NamedTuple):
     """A part of a ball's path in which it does one thing: slides, rolls, or falls into a pocket."""
 
     kind: Kind
-    times: Floats
-    """(m,) times [s]."""
-    points: Floats
-    """(m, 2) positions at these times, from ``Shot.at`` [m]."""
+    times: Floats  # (m,) times [s]
+    points: Floats  # (m, 2) positions at these times, from ``Shot.at`` [m]
 
 
 class Meeting(NamedTuple):
@@ -42,16 +37,11 @@ class Meeting(NamedTuple):
     time: float
     kind: EventKind
     ball: int
-    other: int
-    """Index of the ball, nose, jaw or pocket, as in the log of events."""
-    place: Floats
-    """(2,) the point of contact [m]; for a pocket the centre of its fall."""
-    centre: Floats
-    """(2,) centre of the ball [m]."""
-    speed: float
-    """Speed of the ball just before [m/s]."""
-    after: float
-    """Speed of the ball just after [m/s]."""
+    other: int  # index of the ball, nose, jaw or pocket, as in the log of events
+    place: Floats  # (2,) the point of contact [m]; for a pocket the centre of its fall
+    centre: Floats  # (2,) centre of the ball [m]
+    speed: float  # of the ball just before [m/s]
+    after: float  # of the ball just after [m/s]
 
 
 def pieces(shot: Shot, ball: int) -> list[Piece]:

@@ -1,10 +1,5 @@
-"""How is a table drawn with matplotlib? By a ``Sketch``: axes in metres, baulk left and black right, with
-cloth, cushions, balls and marks.
-
-The horizontal axis of the picture is y [m] to the right, the vertical one x [m] down, as from above on
-television: a point (x, y) of the table is drawn by ``ax.plot(y, x)``. Everything is drawn on the table's own
-colours, so that light and dark pages show it alike.
-"""
+"""How is a table drawn with matplotlib? By a ``Sketch``: axes in metres, a point (x, y) at ``ax.plot(y, x)``,
+all on the table's own colours, so that light and dark pages show it alike."""
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -23,13 +18,11 @@ if TYPE_CHECKING:
 WIDTH = 8.3
 """Width of a new figure [inches]: 830 pixels, the width of a README."""
 PATH_WIDTH, OUTLINE = 2.16, 1.6
-"""Width of a path [points], 3 pixels at 100 dots per inch; and by how much its dark outline is wider
-[points]."""
+"""Width of a path [points], 3 pixels at 100 dpi, and by how much its dark outline is wider [points]."""
 TABLE = "snooker-table"
 """The gid of the parts that a sketch draws once on its axes."""
 CAPTIONS = {"full": 0.118, "short": 0.2, "none": 0.0}
-"""Height of the strip for text under the picture over the width of the picture: for wide axes, for axes of
-half the width, and none."""
+"""Height of the strip of text over the picture's width: for wide axes, axes of half the width, and none."""
 
 _MARGIN = 0.02  # floor shown around the rails [m]
 
@@ -72,8 +65,7 @@ class Region(NamedTuple):
     def around(
         cls, points: Floats, table: Table, margin: float = 0.18, ratio: tuple[float, float] = (1.35, 2.1)
     ) -> "Region":
-        """The region around points (m, 2) [m]: at least 1 m wide, width over height within ``ratio``, and
-        inside the table's picture."""
+        """Around points (m, 2) [m]: at least 1 m wide, width / height in ``ratio``, inside ``of_table``."""
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         height, width = high - low
         width, height = max(width, 1.0, ratio[0] * height), height
@@ -92,8 +84,7 @@ class Region(NamedTuple):
 
 
 def is_closed(table: Table) -> bool:
-    """Whether there is a cushion on each side. If so, the table has a wooden frame; if not, cloth fills the
-    picture."""
+    """Whether there is a cushion on each side: then a wooden frame, otherwise cloth fills the picture."""
     return bool(np.isfinite(table.bounds).all())
 
 

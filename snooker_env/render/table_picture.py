@@ -1,9 +1,5 @@
-"""How is a table drawn from above? Everything that does not move, as an array: floor, wood, leather, cloth,
-cushions, pockets, light.
-
-Each part is a signed distance [m] (negative inside) on the pixels around it. An edge covers a part of a
-pixel, so that edges are smooth at every size. Needs only numpy.
-"""
+"""How is a table drawn from above? Everything that does not move, as an array; needs only numpy. Each part is
+a signed distance [m] (negative inside); an edge covers a part of a pixel, smooth at every size."""
 
 from functools import lru_cache
 
@@ -52,8 +48,7 @@ def table_picture(table: Table, view: View) -> NDArray[np.uint8]:
 
 
 class _Canvas:
-    """An unfinished picture, float32 (height, width, 3), and the coordinates of its pixels on the table
-    [m]."""
+    """An unfinished picture, float32 (height, width, 3), and its pixels' coordinates on the table [m]."""
 
     def __init__(self, view, table):
         self.view, self.extent = view, extent(table)
@@ -89,8 +84,7 @@ class _Canvas:
         return outside + np.minimum(np.maximum(across, along), 0) - radius
 
     def grain(self, rows, columns, fine, run):
-        """Noise of mean 0 and standard deviation about 1, correlated over ``fine`` pixels across and ``run``
-        pixels along the columns."""
+        """Noise, mean 0, deviation about 1, correlated over ``fine`` pixels across and ``run`` along."""
         across, along = int(rows / fine) + 2, int(columns / run) + 3
         noise = self.random.standard_normal((across, along)).astype(np.float32)
         at, part = np.divmod(np.arange(columns) / run, 1.0)
@@ -156,8 +150,7 @@ def _marks(canvas):
 
 
 def _pockets(canvas, parts: Outline):
-    """The holes: in front the cloth bends down over the slate's edge; behind, the inside of the leather goes
-    down into the dark."""
+    """The holes: cloth bends down over the slate's edge in front, leather goes down into the dark behind."""
     for (cx, cy, radius), throat in zip(parts.falls.tolist(), parts.throats.tolist(), strict=True):
         image, x, y = canvas.around([(cx, cy), throat[:2]], max(radius, throat[4]) + 0.03)
         fall = np.hypot(x - cx, y - cy) - radius
@@ -270,8 +263,7 @@ def _wood(canvas, table, parts):
 
 
 def _leather(canvas, image, x, y, throat):
-    """The leather of a pocket: round, bright along its ridge, cut off square where its ends lie over the
-    cushions."""
+    """A pocket's leather: round, bright along its ridge, cut off square where its ends lie over cushions."""
     x0, y0, x1, y1, half = throat
     around = _near(x, y, (x0, y0), (x1, y1), half + 0.06)
     image, x, y = image[around], x[around[0]], y[:, around[1]]

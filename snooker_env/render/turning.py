@@ -1,9 +1,6 @@
-"""How is a ball oriented at any time of a shot? Its spin is integrated once, from the shot's start, as unit
-quaternions (w, x, y, z).
-
-A quaternion q is the rotation since the start: a vector v of the ball is q v q* in the table frame. Spins are
-in the table frame, so the rotation of a short time step is multiplied from the left.
-"""
+"""How is a ball oriented at any time of a shot? Its spin, integrated once, as unit quaternions (w, x, y, z).
+q is the rotation since the start: a vector v of the ball is q v q* in the table frame. Spins are in the
+table frame too, so a short step's rotation is multiplied from the left."""
 
 import numpy as np
 

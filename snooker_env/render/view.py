@@ -1,5 +1,4 @@
-"""How do metres map to pixels? The table is in the middle of the picture, +y to the right and +x down; the
-score bar is below it."""
+"""How do metres map to pixels? The table in the middle, +y to the right and +x down, the score bar below."""
 
 from typing import NamedTuple
 
@@ -24,19 +23,14 @@ class View(NamedTuple):
 
     width: int
     height: int
-    bar: int
-    """Rows of the score bar, at the bottom."""
-    scale: float
-    """Pixels per metre."""
-    x: float
-    """Column of the origin."""
-    y: float
-    """Row of the origin."""
+    bar: int  # rows of the score bar, at the bottom
+    scale: float  # pixels per metre
+    x: float  # column of the origin
+    y: float  # row of the origin
 
     @classmethod
     def of(cls, table: Table, height: int | None = None, size: tuple[int, int] | None = None) -> "View":
-        """The view of a table. ``size`` (width, height): as large as fits; ``height``: with the width of that
-        table; neither: ``SIZE``."""
+        """``size`` (width, height): as large as fits; ``height``: that table's width; neither: ``SIZE``."""
         low, high = extent(table).T
         (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + _MARGIN), (low + high) / 2
         if height is not None and size is not None:

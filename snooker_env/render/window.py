@@ -35,8 +35,7 @@ _INVISIBLE = ("dummy", "offscreen")  # drivers of SDL
 
 
 def display_missing() -> bool:
-    """Whether nobody could see a window. ``SDL_VIDEODRIVER=dummy`` allows a window without a screen, as in
-    tests."""
+    """Whether nobody could see a window; ``SDL_VIDEODRIVER=dummy`` allows one without a screen (tests)."""
     linux = not (sys.platform.startswith("win") or sys.platform == "darwin")
     return linux and not any(
         os.environ.get(name) for name in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY")
