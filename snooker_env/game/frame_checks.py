@@ -149,8 +149,8 @@ def check_fields(field: str, plain: Any, kind: type) -> None:
     if not isinstance(plain, dict):
         raise refuse(field, plain, "must be a dict with the fields " + ", ".join(names))
     if set(plain) != set(names):
-        found = f"a dict without {[n for n in names if n not in plain]} and with the others {[n for n in plain if n not in names]}"
-        raise refuse_what(field, found, "must have exactly the fields " + ", ".join(names))
+        what = f"a dict without {[n for n in names if n not in plain]} and with the others {[n for n in plain if n not in names]}"
+        raise refuse_what(field, what, "must have exactly the fields " + ", ".join(names))
 
 
 @contextmanager

@@ -197,9 +197,9 @@ def place_cue(
     ``positions[0]``. ValueError for wrong input, and if there is no free place (which no legal table has)."""
     placed, present = check_table(positions, on_table)
     present[0] = False
-    px, py, found = _nearest_place(
+    px, py, free = _nearest_place(
         placed, present, number("x", x), number("y", y), float(radius), bool(anywhere)
     )
-    if not found:
+    if not free:
         raise refuse("on_table", int(present.sum()), "must leave a free place")
     return px, py

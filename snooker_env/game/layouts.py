@@ -135,7 +135,7 @@ either side, by ``game.pots``. Along the solved line at 2.3 m/s a professional's
 
 
 @kernel
-def _deal(code, tables, stream, positions, on_table, found):
+def _deal(code, tables, stream, positions, on_table, pot):
     """One layout: racked and spotted balls, loose reds, last the cue ball; until its condition holds."""
     kind, reds, low, high = int(code[0]), int(code[1]), code[2], code[3]
     if kind == OPENED:
@@ -159,8 +159,8 @@ def _deal(code, tables, stream, positions, on_table, found):
                 return
         elif kind == POT:
             if (
-                find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, found)
-                and low <= found[0, TOLERANCE] < high
+                find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, pot)
+                and low <= pot[0, TOLERANCE] < high
             ):
                 return
         else:
@@ -171,9 +171,9 @@ def _deal(code, tables, stream, positions, on_table, found):
 def deal_tables(which, code, tables, streams, positions, on_table):
     """Write new layouts for the tables ``which`` into positions (n, 22, 2) [m] and on_table (n, 22);
     ``code``, ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64, one for each table."""
-    found = np.empty((1, POT_COLUMNS))
+    pot = np.empty((1, POT_COLUMNS))
     for k in which:
-        _deal(code, tables, streams[k], positions[k], on_table[k], found)
+        _deal(code, tables, streams[k], positions[k], on_table[k], pot)
 
 
 @dataclass(frozen=True, eq=False)
