@@ -1,5 +1,5 @@
-"""Who sits at a frame's table? A seat: how actions are read there, with which errors they are executed, and
-who decides."""
+"""Who sits at a frame's table? A seat: how actions are read, with which errors they are executed, who
+decides."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
