@@ -101,7 +101,7 @@ class Actions:
                       then yellow to black. At other times ignored
     next decision     only if it says "decision": what to do after a foul of the opponent, else
                       ignored. Below -1/3: the offender plays again from here. Above 1/3: the
-                      balls are replaced and he plays again, if a miss was called. In between,
+                      balls are replaced and it plays again, if a miss was called. In between,
                       or without a miss: play, with this same action
     last declaration  only if it says "concede", "claim" or "lot". Below -2/3: concede. Above 2/3:
                       claim the frame, where the rules allow it. At the lot, below 0: the other

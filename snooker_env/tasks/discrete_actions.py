@@ -75,8 +75,7 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
 def chosen(index, positions, on_table, on, law, work):
     """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``."""
     lines = work.lines
-    # what else the choice says is read by ``declarations``; one that may not be said now is played as a
-    # stroke
+    # ``declarations`` reads what else the choice says; what may not be said now is played as a stroke
     index = index % SIZE
     pot, stroke = index // STROKES, index % STROKES
     speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]

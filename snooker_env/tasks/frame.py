@@ -278,7 +278,7 @@ class Frames(Tables):
             self.complete(self.prepare(acting, actions, buffers), out, buffers, crew, own=True, alone=alone)
             self.go_on(acting)
             if alone:
-                # also after a decision or lot of a state in which there were two players
+                # even if a state of two players left a decision or lot
                 self.game[acting, STRIKER] = AGENT
                 self._finish(which, out)
 
@@ -314,7 +314,7 @@ class Frames(Tables):
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew, *, breakers: Ints | None = None) -> None:
         """See ``Tables.reset``. ``breakers``: see ``deal``."""
-        self.begun[wanted] = False  # until the opponent has played, if he breaks
+        self.begun[wanted] = False  # until the opponent has played, if it breaks
         self._start(np.flatnonzero(wanted), out, crew, breakers)
         crew(np.flatnonzero(~wanted), lambda which, _: self._show(which, out, fresh=False))
         crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))

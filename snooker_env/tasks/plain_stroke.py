@@ -38,8 +38,7 @@ def break_off(positions, end_red):
 
 @kernel
 def _goes_in(positions, ball, ux, uy, v2):
-    """Whether a cue ball rolling along u into ``ball``, squared speed v2 [m^2/s^2], likely goes on into a
-    pocket."""
+    """Whether a cue ball rolling along u into ``ball``, squared speed v2 [m^2/s^2], may go into a pocket."""
     x, y = positions[0, 0], positions[0, 1]
     bx, by = positions[ball, 0] - x, positions[ball, 1] - y
     along, across = bx * ux + by * uy, bx * uy - by * ux

@@ -72,8 +72,7 @@ def _passes(aim, stroke, c, b, p, law, work):
     else:
         qx, qy = qx - gx, qy - gy
     ahead = qx * ux + qy * uy
-    # relative to where the ball lay, even if it begins to roll near the pocket: so the correction's slope
-    # hardly changes
+    # from where the ball lay, even if it begins to roll near the pocket: the slope hardly changes
     return (qx * uy - qy * ux) / (hypot(ux, uy) * away) if ahead > 0.0 else 9.0
 
 
@@ -85,8 +84,7 @@ def solved_aim(positions, ball, target, ghost, stroke, law, work):
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     line = atan2(gy - cy, gx - cx)
-    # an error of the cue ball's direction turns the object ball's the other way, magnified by path / (2 R cos
-    # cut)
+    # an error turns the object ball's direction the other way, magnified by path / (2 R cos cut)
     far = hypot(gx - cx, gy - cy)
     run = hypot(px - bx, py - by)
     cut = ((gx - cx) * (px - bx) + (gy - cy) * (py - by)) / (far * run)

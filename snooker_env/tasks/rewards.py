@@ -35,8 +35,7 @@ def earned(kind, lead, frames_lead):
 
 @kernel
 def frame_reward_of(kind, gained, winner, player):
-    """A step's reward; ``kind``: index into ``MATCH_REWARDS``, ``gained``: ``earned`` unpaid, ``winner``: -1
-    for none."""
+    """A step's reward; ``kind``: of ``MATCH_REWARDS``, ``gained``: ``earned`` unpaid, ``winner``: or -1."""
     if kind != WIN_PAID:
         return float(gained)
     return 0.0 if winner < 0 else 1.0 if winner == player else -1.0

@@ -1,5 +1,4 @@
-"""What do actions of frames say beside the stroke? Nominations, decisions and declarations, for many
-frames."""
+"""What do actions of frames say beside the stroke? Nominations, decisions, declarations, for many frames."""
 
 import numpy as np
 
