@@ -194,6 +194,5 @@ class Actions:
 
 
 def line(positions: Vectors, on_table: Flags, on: int) -> float:
-    """Direction [rad] of the target line: to the ghost ball of the widest direct pot (``game.pots``), else
-    the first of the other ``lines``, over cushions that of a rolling ball."""
+    """Direction [rad] of the target line: to the widest direct pot's ghost ball, else the best line."""
     return _line(np.array(positions, np.float64), np.array(on_table, np.bool_), int(on))

@@ -45,9 +45,8 @@ if TYPE_CHECKING:
 
 @entry(what="the strokes of players in frames", seconds=3)
 def _carry_out(which, said, tables, saved, packed, codes, shots, playing):
-    """The strokes of the tables ``which``: shots 0 to m - 1 are on the tables ``playing[:m]``. Returns m.
-    ``said``: values, place, nominate, decision, declare of ``players.Strokes``. ``codes``: of the rule set
-    and the reward."""
+    """Strokes of the tables ``which``: shots 0 to m - 1, on the tables ``playing[:m]``; returns m. ``said``:
+    values, place, nominate, decision, declare of ``players.Strokes``; ``codes``: rule set, reward."""
     values, places, nominate, decisions, declared = said
     tables, saved, shots = TableArrays(*tables), Layouts(*saved), StruckArrays(*shots)
     (options, noise), (rules, reward), m = packed, codes, 0

@@ -261,9 +261,8 @@ def _succeeds(aim, stroke, positions, on_table, on, law, work):
 
 @kernel(uses=(_succeeds,))
 def escape_aim(about, stroke, positions, on_table, on, law, work):
-    """Direction [rad] in which the stroke meets a ball on: the middle of the widest window near ``about``, of
-    equally wide ones the nearest; sought farther away if there is none, as with much side; ``about`` if none
-    succeeds."""
+    """Direction [rad] in which the stroke meets a ball on: the middle of the widest, then nearest window
+    about ``about``, farther away if there is none, as with much side; ``about`` if none succeeds."""
     best, low, high = 0.0, about, about
     for steps in _STEPS:
         run = 0

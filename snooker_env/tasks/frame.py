@@ -9,8 +9,8 @@ go to the opponent's score; after a foul the agent plays on from where the balls
 
 A frame that ends in the opponent's first visit is shown by that reset; the next step plays nothing, reports
 the end and pays its reward (``Frames.due``). A cue ball in hand is placed at once on the free place of the D
-nearest to its usual one (``balls.SPOTS``), so that it can be seen. The physics is planar: no ball leaves the
-table or jumps over another, so those fouls never occur.
+nearest to its usual one (``balls.SPOTS``), so that it can be seen; the player may place it elsewhere. The
+physics is planar: no ball leaves the table or jumps over another, so those fouls never occur.
 """
 
 from collections.abc import Callable, Sequence
@@ -67,7 +67,8 @@ class Frames(Tables):
 
     nominated: Ints
     """(n,) The colour that the striker has nominated after a red or as its free ball, 0 for a free ball
-    declined; AUTO, as always between two strokes: the colour first struck. It is not checked."""
+    declined; AUTO, as always between two strokes: the colour first struck. Code that sets it must check
+    it."""
     due: Bools
     """(n,) Which episodes have ended in a reset, so that the next step reports their end."""
 

@@ -154,9 +154,8 @@ def give_up(row, reward):
 
 @entry(what="the decisions of frames", seconds=2)
 def decide(which, actions, tables, saved, setting, plays):
-    """What strikers say before a stroke; ``plays[j]``: whether one follows. A decision below -1/3: the
-    offender plays again; above 1/3: from the position before, if a miss was called, or the striker from
-    anywhere, where that may be."""
+    """What strikers say before a stroke; ``plays[j]``: one follows. A decision below -1/3: the offender plays
+    again; above 1/3: from the position before, or by the striker from anywhere, where that may be."""
     tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
     options = setting.options
     for j in range(which.shape[0]):

@@ -108,9 +108,8 @@ def put(positions, on_table, mask, anywhere, found, stream):
 
 @kernel
 def stroke_at(positions, on_table, on, in_hand, failed, drive, found, stream):
-    """The geometric player's shot: (speed, side, top, direction of the cue ball). ``in_hand``: just placed;
-    ``failed``: a stroke from here has; ``drive``: how much farther than needed one without a pot is to roll
-    [m]."""
+    """The geometric player's shot: (speed, side, top, direction). ``in_hand``: just placed; ``failed``: a
+    stroke from here has; ``drive``: how much farther than needed one without a pot is to roll [m]."""
     end_red = racked(positions, on_table) if in_hand else 0
     if end_red:
         return break_off(positions, end_red)
@@ -187,8 +186,7 @@ def _ghost_ball(which, tables, shots, packed, rules):
 
 @entry(what="the geometric player", seconds=3)
 def geometric_strokes(positions, on_table, game, rules, streams, strokes, nominated, decisions):
-    """The geometric player's strokes (n, 5), nominations and decisions (n,), of visits or frames. Cue balls
-    in hand are placed. ``rules``: the code of the rule set."""
+    """The geometric player's strokes (n, 5), nominations and decisions (n,); places cue balls in hand."""
     found = np.empty((LINE_ROWS, POT_COLUMNS))
     for k in range(len(game)):
         speed, side, top, aim, colour, decision = geometric_turn(

@@ -1,6 +1,5 @@
-"""How is a match played? Best of N frames, in which the players break in turn. The next rack follows in the
-same step; the match ends with the frame that decides it. A frame that the referee stops truncates the
-match."""
+"""How is a match played? Best of N frames, the players break in turn, the next rack follows in the same step.
+A frame that the referee stops truncates the match."""
 
 from typing import Any
 

@@ -58,17 +58,16 @@ FRAME_ENTRIES = (
 and the opponent's, as s / (s + 147); their difference d / (abs(d) + 147); points on the table / 155. Flags:
 it is its turn, the striker has a free ball, the other player has just fouled (a decision is open), the foul
 was called a miss, the black was re-spotted, it broke off in this frame. Failures in succession from one
-position / 2, and whether the next one loses the frame. Whether the winner of the lot decides who begins. Of a
-match, each f / (f + 1): the frames that it has won, those of the opponent, those that win the match (1 in a
-single frame). The share of the frame's time that has been played (0 without a clock); misses m in succession,
+position / 2, and whether the next one loses the frame. Whether the lot is won and its winner decides who
+begins. Of a match, f / (f + 1): the frames that it has won, the opponent's, those that win it (1 in a single
+frame). The share of the frame's time that has been played (0 without a clock); misses m in succession,
 m / (m + 5); whether the cue ball in hand may be placed anywhere."""
 REPLACED_COLUMNS = ("x", "y", "on_table")
 """Columns of the layout that "replace" restores, one row a ball; 0 unless a miss has just been called."""
 
 REACH = 1.1
-"""Bound of the spaces that hold places. The noses are at 1; a ball at rest in the mouth of a pocket lies up
-to 1.013 on snooker's own tables, and within this bound on any table that an environment takes
-(``table_fit``)."""
+"""Bound of the spaces that hold places. The noses are at 1; a ball in the mouth of a pocket lies up to 1.013
+on snooker's own tables, and within this bound on any that an environment takes (``table_fit``)."""
 
 _COLUMNS = len(BALL_COLUMNS)
 BALLS_SIZE = N_BALLS * _COLUMNS

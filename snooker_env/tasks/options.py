@@ -46,7 +46,8 @@ OPPONENTS = (
 )
 """What may be the opponent, for messages."""
 GROUPS = ("task", "action", "view", "shot", "frame")
-"""Groups of options, see ``Options.group``."""
+"""Groups of options: what is played, how one acts, what one sees, what decides a shot, the rules of
+frames."""
 _UNSAID: Any = object()
 OBJECT = "object"
 """As the option ``opponent``: whoever was passed to the environment as an object."""
@@ -59,7 +60,6 @@ class Rules:
     """The options of a game in the form that the kernels need, as ``Options.rules`` holds them."""
 
     actions: Actions | Choices
-    """``Actions`` or ``Choices``."""
     noise: Noise
     physics: Physics
     table: Table
@@ -456,8 +456,7 @@ def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:
 
 
 def options_of(options: Options | None, given: Mapping[str, Any]) -> Options:
-    """The ``Options`` of an environment that was given ``options`` or the keywords ``given``. ValueError for
-    invalid values, TypeError for an unknown keyword."""
+    """The ``Options`` that are ``options`` or of the keywords ``given``; TypeError for an unknown keyword."""
     if options is None:
         for name in given:
             if name not in NAMES:

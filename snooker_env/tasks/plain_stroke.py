@@ -103,8 +103,7 @@ def soft(positions, on_table, on, touching, drive, found):
 
 @kernel
 def _escape(positions, on_table, on, vary, lines, stream):
-    """The escape with the widest window: (speed, direction) and half the window [rad], 0: none is known.
-    ``vary``: they are weighted at random, so that another one is tried after a failure."""
+    """The widest escape: (speed, direction, half its window [rad], 0: none). ``vary``: weighted at random."""
     best, speed, aim, window = 0.0, 2.0, 0.0, 0.0
     for k in range(find_escapes(positions, on_table, on, lines, 0)):
         weight = 1.0
@@ -124,9 +123,9 @@ def _escape(positions, on_table, on, vary, lines, stream):
 @kernel
 def plain(positions, on_table, on, touching, vary, drive, found, stream):
     """A stroke without a pot: (speed, side, top, direction). Straight away from a touching ball on, which
-    counts as striking it; else a soft stroke; else an escape; else where it sees a little of a ball on, or at
-    the nearest one. ``vary``: a stroke from here has failed, so another is played; ``drive``: how much
-    farther than needed it rolls [m]."""
+    counts as striking it; else soft; else an escape; else at a little of a ball on, or the nearest one.
+    ``vary``: a stroke from here has failed, so another is played; ``drive``: how much farther than needed it
+    rolls [m]."""
     u, _ = pair(stream)
     shift = (1.6 if vary else 0.5) * (u - 0.5)
     for ball in range(1, N_BALLS):

@@ -60,7 +60,8 @@ class Played:
     --------
     >>> import snooker_env as sn
     >>> env = sn.SnookerEnv(action="discrete")
-    >>> env.keep_history, _, _ = True, env.reset(seed=1), env.step(67)
+    >>> env.keep_history = True
+    >>> _ = env.reset(seed=1), env.step(67)
     >>> env.history[0].player, env.history[0].ball_on.name
     (0, 'RED')
     """

@@ -78,9 +78,8 @@ def _passes(aim, stroke, c, b, p, law, work):
 
 @kernel(seconds=5, uses=(collide_balls,))
 def solved_aim(positions, ball, target, ghost, stroke, law, work):
-    """Direction [rad] in which the stroke (speed, side, top, elevation) sends ``ball`` to ``target``;
-    ``ghost``: the ghost ball of the straight line. If none succeeds (too soft, or too thin a cut), the best
-    one tried."""
+    """Direction [rad] in which the stroke (speed, side, top, elevation) sends ``ball`` to ``target``, sought
+    from the straight line to ``ghost``; the best one tried if none succeeds (too soft, or too thin a cut)."""
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     line = atan2(gy - cy, gx - cx)

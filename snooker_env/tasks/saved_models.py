@@ -37,7 +37,7 @@ _ALGORITHMS = (
 """Library, class, and the names that only its models save, in addition to those of the classes above. A
 recurrent model has no class of rollout buffers."""
 _PLAYED = ("policy_class", "policy_kwargs", "observation_space", "action_space")
-"""The pickles that playing needs; the others (schedules, callbacks, buffers) may name packages that are
+"""The pickles that playing needs; others (schedules, callbacks, buffers) may name packages that are
 missing."""
 _UNPICKLED = {"learning_rate": 0.0, "clip_range": 0.2, "train_freq": 1, "target_entropy": 0.0}
 """What takes the place of a pickle that is left out; else None. Nothing is learned by these."""
@@ -130,9 +130,7 @@ def entries(path: str | Path) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If the part is no JSON object, or too large.
-    KeyError, zipfile.BadZipFile, OSError
-        For the same reasons as ``part``.
+        If the part is no JSON object; the other errors are those of ``part``.
 
     Examples
     --------
@@ -239,16 +237,13 @@ class SavedModel:
     path: Path
     field: str
     data: dict[str, Any]
-    """Its ``data``, in which pickles are text."""
     observation: tuple[str, Any]
     action: tuple[str, Any]
-    """``outline`` of its spaces, by what it says itself."""
 
     @classmethod
     def of(cls, path: str | Path, field: str) -> "SavedModel":
-        """Read the plain data of a ``.zip``; ``field``: the argument that errors name. ValueError if it is no
-        model of Stable-Baselines3, or one of ``train.py``, whose agents observe more than the environment
-        shows."""
+        """Read a ``.zip``; ``field``: the argument that errors name. ValueError if it is no model of
+        Stable-Baselines3, or one of ``train.py``, whose agents observe more than the environment shows."""
         try:
             data = entries(path)
             ours = by_train(data)

@@ -306,8 +306,8 @@ def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> No
 def run_again(
     buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats
 ) -> ShotBuffers:
-    """Play shot j, on table k, once more with a longer log; returns its own buffers. SimulationError if a
-    full log is not why it did not end."""
+    """Play shot j, on table k, with a longer log in its own buffers; SimulationError if that does not
+    help."""
     one, status = buffers, buffers.status[j]
     while status == Status.LOG_FULL:
         one = buffers.again(j, 4 * one.log)

@@ -60,8 +60,7 @@ def _conclude(which, positions, on_table, game, shots, rules, output):
 
 @entry(what="the start of a visit", seconds=1)
 def _begin(which, fresh, in_hand, tables, output, last):
-    """Write the results of a reset; ``fresh``: start visits, already dealt; ``last`` keeps the rows
-    before."""
+    """Write the results of a reset; ``fresh``: start visits, already dealt; ``last`` keeps the old rows."""
     (positions, on_table, game, _, _), out = tables, OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
