@@ -335,8 +335,8 @@ class Frames(Tables):
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
     def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
-        """New frames on the tables ``which``. Who breaks: ``breakers`` (n,) where it is not -1, else drawn if
-        ``drawn``, otherwise the agent."""
+        """New frames on the tables ``which``. Who breaks: without ``drawn`` the agent; else ``breakers``
+        (n,), where it is -1 whoever is drawn."""
         plan = self.rules.plan
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         breakers = np.full(self.n, -1) if breakers is None else breakers

@@ -378,8 +378,9 @@ def inform(player, game, output):
 
 @entry(what="the start of a frame", seconds=1)
 def begin(which, drawn, breakers, in_hand, on_table, game, streams):
-    """New frames on tables already dealt. Who breaks: ``breakers`` (n,) where it is not -1, else drawn if
-    ``drawn``; it is drawn in any case, so that the errors of the strokes do not depend on it."""
+    """New frames on tables already dealt. Who breaks: without ``drawn`` the agent; else ``breakers`` (n,),
+    where it is -1 whoever is drawn, and a number is drawn in any case, so that the errors of strokes do not
+    depend on it."""
     for j in range(which.shape[0]):
         k = which[j]
         breaker = AGENT

@@ -21,7 +21,7 @@ give them.
   speed 0.075 m/s, offsets 0.5 mm. The squirt of the offset is added to the aim.
 
 A pot that loses the cue ball counts as missed, also in the fit: 17 % of a professional's strokes at the
-longest straight pot, without spin, do. If it counted as made, as in the published derivation, the fit would give
+longest straight pot, without spin. If it counted as made, as in the published derivation, the fit would give
 about 0.040, 0.056 and 0.122 deg. The aim errors published for professionals, 0.02 to 0.03 deg, make 83 to 92
 % of those four pots, this level 76 %: both figures cannot be met at once, and we chose the long pots.
 
@@ -46,7 +46,7 @@ from ..game.philox import normals
 from ..physics.cue import MAX_ELEVATION
 from ..physics.parameters import Physics, PhysicsLike
 
-# Packed deviations: 1 if there is no noise, speed [m/s], speed (relative), tip offset / R, aim, elevation [rad].
+# Packed deviations: 1 if there are none, speed [m/s], speed (relative), tip offset / R, aim, elevation [rad].
 (N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION) = range(6)
 
 

@@ -123,9 +123,8 @@ def _escape(positions, on_table, on, vary, lines, stream):
 @kernel
 def plain(positions, on_table, on, touching, vary, drive, found, stream):
     """A stroke without a pot: (speed, side, top, direction). Straight away from a touching ball on, which
-    counts as striking it; else soft; else an escape; else at a little of a ball on, or the nearest one.
-    ``vary``: a stroke from here has failed, so another is played; ``drive``: how much farther than needed it
-    rolls [m]."""
+    counts as striking it; else soft; else an escape; else at a little of a ball on, or the nearest. ``vary``:
+    one from here has failed, so another is played; ``drive``: how much farther than needed it rolls [m]."""
     u, _ = pair(stream)
     shift = (1.6 if vary else 0.5) * (u - 0.5)
     for ball in range(1, N_BALLS):

@@ -32,13 +32,12 @@ if TYPE_CHECKING:
 AT_ONCE = 1e-9
 """Contacts within this time [s] are simultaneous."""
 
-# Columns of a strike: the cue ball's velocity and spin after it, the intended speed, the strike with errors.
+# Columns of a strike: the cue ball's velocity and spin after it, intended speed, the strike with errors.
 (VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
 STRIKE_COLUMNS = 11
 
 # Columns of the referee's facts: masks of balls, clear paths before a stroke that failed (where misses are
-# called), whether it was an attempt (``miss="attempt"``); and of the ruling: player, ball on, free ball, break
-# with it, points, penalty, fouls.
+# called), whether it was an attempt (``miss="attempt"``); and of the ruling (``BREAK``: with this stroke).
 (
     FIRST,
     TOUCHING,
@@ -306,8 +305,7 @@ def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> No
 def run_again(
     buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats
 ) -> ShotBuffers:
-    """Play shot j, on table k, with a longer log in its own buffers; SimulationError if that does not
-    help."""
+    """Play shot j, on table k, with a longer log in its own buffers; SimulationError if it does not help."""
     one, status = buffers, buffers.status[j]
     while status == Status.LOG_FULL:
         one = buffers.again(j, 4 * one.log)
