@@ -1,11 +1,6 @@
 """What does the miss rule need to know of a stroke that failed? Its clear paths and, with ``miss="attempt"``,
-whether it was an attempt.
-
-Both are found on shots just played, before the referee rules. To judge attempts, only the strokes in question
-are played once more, with the path of the cue ball: those without a clear path to a ball on that struck no
-ball on first. The second time costs as much as the first; it is no shot of an agent and is not counted. All
-other strokes cost nothing.
-"""
+whether it was an attempt. For that, strokes without a clear path that struck no ball on first are played once
+more, with the path of the cue ball, before the referee rules; they are not counted."""
 
 from typing import TYPE_CHECKING
 
@@ -31,14 +26,9 @@ _BALL_BALL, _OK = int(EventKind.BALL_BALL), int(Status.OK)
 
 @entry(what="the paths of the miss rule", seconds=2)
 def remember(which, tables, saved, shots, noses, jaws):
-    """Record what the miss rule needs of the tables ``which``, after the shots and before the referee moves a
-    ball.
-
-    The position, and which paths were clear before a stroke that failed to strike a ball on first; of others
-    ``seen`` says that one was. S3 R14(c) speaks of every ball "that is or could be on": after a red of all
-    colours, whichever the striker has nominated. ``tables``, ``saved``, ``shots``: the parts of
-    ``TableArrays``, ``Layouts`` and ``PlayedArrays``.
-    """
+    """Record the layouts before the strokes, and which paths were clear before those that struck no ball on
+    first; of others ``seen`` says that one was. S3 R14(c) speaks of every ball "that is or could be on":
+    after a red, all colours."""
     tables, saved, shots = TableArrays(*tables), Layouts(*saved), PlayedArrays(*shots)
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
@@ -60,8 +50,7 @@ def remember(which, tables, saved, shots, noses, jaws):
 
 @entry(what="the strokes of snookered strikers", seconds=1)
 def question(which, on_table, game, status, seen, asked):
-    """Find the shots whose attempt must be judged: ``asked[j]``. All others count as attempts. ``remember``
-    has seen them."""
+    """Find the shots whose attempt must be judged: ``asked[j]``; all others count as attempts."""
     for j in range(which.shape[0]):
         k = which[j]
         asked[j] = False
@@ -72,10 +61,7 @@ def question(which, on_table, game, status, seen, asked):
 
 @entry(what="the attempts of snookered strikers", seconds=1)
 def gap_of(positions, on_table, row, shots, path, j):
-    """How near the cue ball came to a ball on in shot j, before it struck another or came to rest [m].
-
-    ``row``: the frame before it; ``path``: the segments of all paths and their numbers.
-    """
+    """How near the cue ball came to a ball on in shot j, before it struck another or came to rest [m]."""
     shots, (segments, n_segments) = PlayedArrays(*shots), path
     until, on = shots.duration[j], strikeable(row, bits(on_table) & ~1)
     for e in range(shots.n_events[j]):
@@ -94,10 +80,7 @@ def judge_attempts(
     rules: "Rules",
     phys: Floats,
 ) -> dict[int, float]:
-    """Write into ``buffers.seen`` whether the shots just played on the tables ``which`` were attempts.
-
-    Returns the gap [m] of each shot in question by its row.
-    """
+    """Write into ``buffers.seen`` which shots were attempts; returns the gaps [m] of those asked by row."""
     b, asked = buffers, np.empty(len(which), np.bool_)
     question(which, on_table, game, b.status, b.seen, asked)
     gaps = {}

@@ -1,5 +1,4 @@
-"""What shot does an action mean? The vector in [-1, 1]^k as cue speed, tip offset, aim, elevation, place in
-the D."""
+"""What shot does an action mean? A vector in [-1, 1]^k as speed, tip offset, aim, elevation, place."""
 
 from collections.abc import Collection
 from math import atan2, hypot, pi, radians, sqrt
@@ -24,9 +23,8 @@ MIN_SPEED, MAX_SPEED = 0.2, 7.0
 """Smallest and largest cue speed [m/s], for -1 and +1 of an action: from a ball just rolled to the hardest
 power shot."""
 TARGET_SPAN = radians(3.0)
-"""With ``aim="target"``: angle off the target line for +-1 of an action [rad]. The largest throw and a club
-player's errors are smaller.
-"""
+"""With ``aim="target"``: angle off the target line for +-1 [rad], more than any throw or a club player's
+errors."""
 MAX_ELEVATION = radians(30.0)
 
 
@@ -47,16 +45,14 @@ def place_of(a, options):
 
 @kernel
 def place_anywhere_of(a, options):
-    """The place anywhere on the table (x, y) [m] that they mean where the cue ball may stand anywhere: shares
-    of half its width, length."""
+    """The place (x, y) [m] that they mean on the whole bed: shares of half its width and length."""
     at = 5 if options[A_ELEVATION] else 4
     return HALF_WIDTH * a[at], HALF_LENGTH * a[at + 1]
 
 
 @kernel(uses=(aim_along,))
 def _target(positions, on_table, on, stroke, law, work):
-    """Direction [rad] from which ``aim="target"`` is measured for a stroke: the straight line of the widest
-    pot, else the first line."""
+    """Direction [rad] from which ``aim="target"`` is measured: the widest pot's line, else the first line."""
     lines = work.lines
     if find_pots(positions, on_table, on, BALL_RADIUS, lines[:1]):
         return atan2(lines[0, GHOST_Y] - positions[0, 1], lines[0, GHOST_X] - positions[0, 0])
@@ -105,7 +101,7 @@ class Actions:
                       then yellow to black. At other times ignored
     next decision     only if it says "decision": what to do after a foul of the opponent, else
                       ignored. Below -1/3: the offender plays again from here. Above 1/3: the
-                      balls are replaced and he plays again, if a miss was called. In between,
+                      balls are replaced and it plays again, if a miss was called. In between,
                       or without a miss: play, with this same action
     last declaration  only if it says "concede", "claim" or "lot". Below -2/3: concede. Above 2/3:
                       claim the frame, where the rules allow it. At the lot, below 0: the other
@@ -142,8 +138,7 @@ class Actions:
         return self.concede or self.claim or self.lot
 
     def check(self, action: Action) -> list[float]:
-        """The action as a list of floats; ValueError unless it is finite, has the right shape and lies within
-        [-1, 1]."""
+        """The action as a list of floats; ValueError unless it has the right shape, within [-1, 1]."""
         allowed = f"must have shape ({self.size},), real numbers"
         try:
             a = np.asarray(action)
@@ -159,8 +154,7 @@ class Actions:
         return a
 
     def check_many(self, actions: Any, n: int) -> Floats:
-        """The actions of n tables as a new float64 array (n, size); ValueError names the first table with an
-        invalid action."""
+        """The actions of n tables, float64 (n, size); ValueError names the first invalid one."""
         allowed = f"must have shape ({n}, {self.size}), real numbers"
         try:
             a = np.asarray(actions)
@@ -200,10 +194,5 @@ class Actions:
 
 
 def line(positions: Vectors, on_table: Flags, on: int) -> float:
-    """Direction [rad] of the target line, which ``aim="target"`` is measured from.
-
-    It runs from the cue ball to the ghost ball of the direct pot with the widest tolerance (``game.pots``)
-    among the balls on. If there is no direct pot, it is the first of the other lines (``lines``), over
-    cushions that of a rolling ball.
-    """
+    """Direction [rad] of the target line: to the widest direct pot's ghost ball, else the best line."""
     return _line(np.array(positions, np.float64), np.array(on_table, np.bool_), int(on))

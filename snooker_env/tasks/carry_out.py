@@ -1,5 +1,4 @@
-"""How are the strokes of players carried out in frames? What is said with each, its place, the stroke itself:
-up to the strike."""
+"""How are players' strokes carried out in frames? What is said with each, its place, the strike."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -46,12 +45,8 @@ if TYPE_CHECKING:
 
 @entry(what="the strokes of players in frames", seconds=3)
 def _carry_out(which, said, tables, saved, packed, codes, shots, playing):
-    """The strokes of the tables ``which``; ``playing[:m]``: those with one, whose shots are 0 to m - 1.
-    Returns m.
-
-    ``said``: values, place, nominate, decision, declare of ``players.Strokes``, one row for each table.
-    ``packed``: options, noise. ``codes``: of the rule set and the reward.
-    """
+    """Strokes of the tables ``which``: shots 0 to m - 1, on the tables ``playing[:m]``; returns m. ``said``:
+    values, place, nominate, decision, declare of ``players.Strokes``; ``codes``: rule set, reward."""
     values, places, nominate, decisions, declared = said
     tables, saved, shots = TableArrays(*tables), Layouts(*saved), StruckArrays(*shots)
     (options, noise), (rules, reward), m = packed, codes, 0
@@ -91,11 +86,8 @@ def _carry_out(which, said, tables, saved, packed, codes, shots, playing):
 
 
 def carry_out(frames: "Frames", which: Ints, said: tuple[Any, ...], buffers: ShotBuffers, side: int) -> Ints:
-    """Carry out what players do on the tables ``which``, up to the strike; returns the tables with a stroke.
-
-    ``said``: the arrays of ``players.Strokes``, with a row for each table; ``side``: of the seat whose errors
-    are made.
-    """
+    """Carry out the strokes ``said``, arrays of ``players.Strokes``, up to the strike, with the errors of the
+    seat ``side``; returns the tables with a stroke."""
     playing, codes = (
         np.empty(len(which), np.int64),
         (frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward)),

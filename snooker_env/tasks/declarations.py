@@ -1,10 +1,7 @@
-"""What does a player say beside his stroke? The colour that he nominates, and whether he concedes, claims or
-lets the other begin.
-
-Inner kernels that read it from an action. The packed options of an action space say where: ``A_NOMINATE``,
-``A_DECISION`` and ``A_DECLARATION`` hold the index of a component of a box action, or -1; of discrete
-actions, ``A_NOMINATE`` is 0 or -1.
-"""
+"""What does a player say beside its stroke? The colour that it nominates, and whether it concedes, claims or
+lets the other begin. The packed options of an action space say where: ``A_NOMINATE``, ``A_DECISION``,
+``A_DECLARATION`` hold the index of a component of a box action, or -1; of discrete actions, the first is 0 or
+-1."""
 
 from .._jit import kernel
 from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
@@ -49,12 +46,9 @@ STROKE_CHOICES = 540
 
 @kernel
 def nominated_ball(n, row):
-    """The ball that the nomination ``n`` means for the striker of a frame: 0 none, 1 to 6 yellow to black.
-
-    After a red: that colour or, if it is not on the table, the next one that is. With a free ball: that
-    colour; 0, the ball on itself, if n is 0 or the colour is on anyway or not on the table. At other times
-    AUTO: nothing is nominated.
-    """
+    """The ball that ``n`` (0 none, 1 to 6 yellow to black) nominates. After a red: that colour or, if it is
+    not on the table, the next one that is. Of a free ball: that colour; 0, the ball on itself, if n is 0 or
+    the colour is on anyway or not on the table. Else AUTO: nothing."""
     if row[BALL_ON] == 0:
         for c in range(COLOURS):
             ball = YELLOW + (max(n, 1) - 1 + c) % COLOURS
@@ -77,8 +71,7 @@ def may_nominate(n, row):
 
 @kernel
 def nomination_of(a, options, row):
-    """The ball that the action ``a`` nominates in the frame ``row``: a colour, 0 for a free ball declined, or
-    AUTO."""
+    """The ball that the action ``a`` nominates: a colour, 0 for a free ball declined, or AUTO."""
     if options[A_NOMINATE] < 0:
         return AUTO
     if options[A_DISCRETE]:
@@ -92,8 +85,7 @@ def nomination_of(a, options, row):
 
 @kernel
 def playable(row, mask, nominated):
-    """Mask of the balls in ``mask`` that may be struck first once ``nominated`` has been said: a colour, 0
-    for none, or AUTO."""
+    """The balls in ``mask`` that may be struck first once ``nominated`` (0: none; or AUTO) has been said."""
     if nominated > 0:
         return (1 << nominated) & mask
     return balls_on_kernel(row[BALL_ON], mask) if nominated == 0 else strikeable(row, mask)
@@ -111,7 +103,7 @@ def may_declare(what, row):
 
 @kernel
 def declaration_of(a, options, row):
-    """What the striker of a frame says with the action ``a``, if he may."""
+    """What the striker of a frame says with the action ``a``, if that is allowed now."""
     what = SAYS_NOTHING
     if options[A_DISCRETE]:
         extra = int(a[0]) - STROKE_CHOICES * (1 + COLOURS if options[A_NOMINATE] >= 0 else 1)

@@ -1,10 +1,6 @@
 """Which shots does ``action="discrete"`` choose from? One number means a pot, a speed, a side and a top; the
-aim is solved for them.
-
-The pots are the widest direct ones on the table (``game.pots``). If no aim can be solved for one, it is
-played along its straight line. If the table has no direct pot, the other lines of the cue ball stand in their
-places (``lines``): what it sees of the balls on, or escapes. ``action_masks`` says how many there are.
-"""
+aim is solved for them, or is the straight line if none can be. Without a direct pot (``game.pots``), other
+``lines`` stand in the pots' places. ``action_masks`` says how many there are."""
 
 from collections.abc import Collection
 from typing import Any
@@ -48,8 +44,7 @@ TOPS = (-0.4, -0.2, 0.0, 0.2, 0.4)
 STROKES = len(SPEEDS) * len(SIDES) * len(TOPS)
 """Number of strokes at one pot: speeds x sides x tops."""
 SIZE = POTS * STROKES
-"""Number of strokes to choose from; without options of frames, all choices. Public as
-``snooker_env.tasks.CHOICES``."""
+"""Number of strokes to choose from: all choices without options of frames. Public as ``tasks.CHOICES``."""
 
 
 def choice_of(pot: int, speed: int, side: int, top: int) -> int:
@@ -59,12 +54,8 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
     ----------
     pot : int
         Index of the pot, widest first, in [0, 4).
-    speed : int
-        Index into ``SPEEDS``, in [0, 9).
-    side : int
-        Index into ``SIDES``, in [0, 3).
-    top : int
-        Index into ``TOPS``, in [0, 5).
+    speed, side, top : int
+        Indices into ``SPEEDS``, ``SIDES`` and ``TOPS``.
 
     Returns
     -------
@@ -84,8 +75,7 @@ def choice_of(pot: int, speed: int, side: int, top: int) -> int:
 def chosen(index, positions, on_table, on, law, work):
     """(speed, side, top, aim, elevation) of choice ``index``, as ``box_actions.shot_of``."""
     lines = work.lines
-    # what else the choice says is read by ``declarations``; one that may not be said now is played as a
-    # stroke
+    # ``declarations`` reads what else the choice says; what may not be said now is played as a stroke
     index = index % SIZE
     pot, stroke = index // STROKES, index % STROKES
     speed = SPEEDS[stroke // (len(SIDES) * len(TOPS))]
@@ -104,8 +94,7 @@ def chosen(index, positions, on_table, on, law, work):
 
 @entry
 def masks(which, positions, on_table, game, options, out):
-    """Available choices on the tables ``which``: one row of ``out`` each, bool (choices,). ``game`` (n,
-    columns): of visits or frames."""
+    """Available choices on the tables ``which``, of visits or frames: bool, one row of ``out`` each."""
     found = np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k, parts = which[j], 1 + COLOURS if options[A_NOMINATE] >= 0 else 1
@@ -127,9 +116,8 @@ class Choices:
     """The discrete action space and its meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``choice_of``.
 
     With ``nominate``, n * 540 + that: n = 0 nominates nothing, 1 to 6 yellow to black, and the pots are those
-    of the ball that is then on. The last choices, as far as the options are on: concede, claim, let the other
-    player begin after the lot. A declaration that is not allowed, and a nomination of nothing after a red, is
-    played as the stroke of the same remainder: ``action_masks`` says what is allowed.
+    of the ball that is then on. The last choices, as far as they are on: concede, claim, let the other player
+    begin after the lot. What may not be said is played as the stroke of the same remainder.
     """
 
     size: int = 1
@@ -162,8 +150,7 @@ class Choices:
         return [float(a.item())]
 
     def check_many(self, actions: Any, n: int) -> Floats:
-        """The choices of n tables, float64 (n, 1); ValueError names the first table with an invalid
-        choice."""
+        """The choices of n tables, float64 (n, 1); ValueError names the first table with an invalid one."""
         a = np.asarray(actions)
         if a.dtype.kind not in "iu" or a.shape not in ((n,), (n, 1)):
             raise refuse_what("actions", f"array of {a.dtype} and shape {a.shape}", f"must be {n} integers")

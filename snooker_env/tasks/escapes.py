@@ -1,15 +1,14 @@
-"""Over which cushions does the cue ball reach a ball on that it does not see? A quick search, and the aim of
-one stroke; kernels.
+"""Over which cushions does the cue ball reach a ball on that it does not see? A search, and one stroke's aim.
 
-Search. A cue ball that leaves a cushion slides along a curve before it rolls again, so a plain mirror image
-misses by up to 20 degrees. What becomes of a ball that rolls into a cushion depends on its angle alone, up to
-a scale: its velocity in proportion to that before, the length of its curve to the square of it. ``_REBOUND``
-holds this, from shots in the simulator, for a ball struck ``ROLLING`` above its middle, where it rolls at
-once. The table holds for the physics "paper" at any speed and for "match" up to 2 m/s.
+Search. A ball that leaves a cushion slides along a curve before it rolls again, so a mirror image misses by
+up to 20 degrees. What becomes of a rolling ball depends on its angle alone, up to a scale: velocities in
+proportion to that before, the curve's length to its square. ``_REBOUND`` holds this, from shots in the
+simulator, for a ball struck ``ROLLING`` above its middle: for the physics "paper" at any speed, for "match"
+up to 2 m/s.
 
-Aim. Another speed, height or side of the strike turns the escape. So for a stroke the cue ball alone is
-played with the models of the engine, cloth and cushions, until it meets a ball, in directions about the one
-found, and is sent along the middle of those that succeed.
+Aim. Speed, height and side of the strike turn the escape. So the cue ball alone is played with the models of
+the engine until it meets a ball, in directions about the one of the search, and sent along the middle of
+those that succeed.
 """
 
 from math import atan2, cos, hypot, pi, sin, sqrt
@@ -33,8 +32,8 @@ ROLL = 0.25
 ROLLING = 0.4
 """Tip offset over R with which a ball rolls from the start."""
 LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH = range(4)
-"""Columns of a line of the cue ball: its direction and by how much it may err [rad]; the cue speed of an
-escape [m/s], 0 for what is seen; its worth among escapes."""
+"""Columns of a line of the cue ball: direction and by how much it may err [rad]; cue speed of an escape
+[m/s], 0 for what is seen; worth among escapes."""
 
 _ANGLES = 9
 """The rows of ``_REBOUND`` are 10 degrees apart."""
@@ -50,11 +49,11 @@ _REBOUND = (
     (0.099, 0.928, 0.0046, 0.0317),
     (0.000, 1.000, 0.0000, 0.0000),
 )
-"""A ball rolls into a cushion at speed v, at an angle of 0, 10, .. 90 degrees to its normal. When it rolls
-again: its velocity along the normal and along the cushion, over v, and how far it has come along each, over
-v^2 [s^2/m]."""
+"""A ball rolls into a cushion at speed v, at 0, 10, .. 90 degrees to its normal. When it rolls again: its
+velocity along the normal and along the cushion, over v, and how far it has come along each, over v^2
+[s^2/m]."""
 _MOUTH = 0.12
-"""No cushion is used within this distance of a pocket's nominal place, along the cushion [m]."""
+"""No cushion is used within this distance of a pocket's nominal place [m]."""
 _DIRECTIONS = 720
 _SPEEDS = (1.7, 2.8, 4.2)
 """Cue speeds of an escape [m/s]: the next one is tried where the one before leaves no window of ``_WIDE``."""
@@ -82,8 +81,8 @@ _CLEAR = (
     HALF_LENGTH - BALL_RADIUS,
 )
 _STEP, _STEPS = 0.0087, (30, 75)
-"""Directions about an escape that are tried for a stroke: their distance [rad]; their number on either side,
-and if none succeeds."""
+"""Directions about an escape tried for a stroke: their distance [rad]; number on either side, and if none
+succeeds."""
 _HALVINGS = 3
 """How often that distance is halved to find where a window ends."""
 
@@ -96,7 +95,7 @@ def _in_mouth(x, y, end):
 
 @kernel
 def _rebound(cosine):
-    """The row of ``_REBOUND`` for the cosine of an angle to the cushion's normal, by linear interpolation."""
+    """The row of ``_REBOUND`` for the cosine of an angle to the normal, by linear interpolation."""
     at = atan2(sqrt(max(0.0, 1.0 - cosine * cosine)), cosine) * 18.0 / pi
     k = min(int(at), _ANGLES - 1)
     s = at - k
@@ -111,8 +110,7 @@ def _rebound(cosine):
 
 @kernel
 def _reaches(positions, on_table, on, ux, uy, speed):
-    """Whether the cue ball, rolling along u, meets a ball on first: the worth of the direction, less for each
-    cushion; 0 if it does not."""
+    """Worth of a rolling cue ball's direction u, less for each cushion; 0 if it meets no ball on first."""
     x, y, v2 = positions[0, 0], positions[0, 1], speed * speed
     width, length = HALF_WIDTH - BALL_RADIUS, HALF_LENGTH - BALL_RADIUS
     worth = 1.0
@@ -153,8 +151,7 @@ def _reaches(positions, on_table, on, ux, uy, speed):
 
 @kernel
 def _keep(lines, first, count, aim, half, speed, worth):
-    """Insert an escape into the rows ``first`` to ``count`` of ``lines``, the best one first; returns the new
-    ``count``."""
+    """Insert an escape into the rows ``first`` to ``count``, best first; returns the new ``count``."""
     for k in range(first, count):
         if abs(turned(lines[k, LINE_AIM] - aim)) < _SAME:
             if lines[k, LINE_WORTH] >= worth:
@@ -184,8 +181,7 @@ def _keep(lines, first, count, aim, half, speed, worth):
 
 @kernel
 def find_escapes(positions, on_table, on, lines, first):
-    """Write the escapes with the widest windows of directions into the rows of ``lines`` from ``first`` on;
-    returns the rows in use."""
+    """Write the escapes with the widest windows into the rows from ``first`` on; returns the rows in use."""
     turn, count = 2.0 * pi / _DIRECTIONS, first
     for s in range(len(_SPEEDS)):
         begin = 0
@@ -211,11 +207,8 @@ def find_escapes(positions, on_table, on, lines, first):
 
 @kernel(seconds=1, uses=(collide_cushion,))
 def _played(aim, stroke, positions, on_table, law, work):
-    """The ball that the cue ball meets first, sent in the direction ``aim``, by the models of the engine; 0:
-    none, or a pocket first.
-
-    ``stroke``: (speed, side, top). ``law``: a ``Law``, but cushion impacts are of the fidelity "fast".
-    """
+    """The ball that the cue ball meets first, by the models of the engine, cushions at fidelity "fast"; 0:
+    none, or a pocket first. ``stroke``: (speed, side, top)."""
     (speed, side, top), phys, motion, state = stroke, law.phys, work.motion, work.state
     R, m = phys[P_R], law.end_mass_ratio
     (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, m), side, top, 0.0, R, m)
@@ -268,12 +261,8 @@ def _succeeds(aim, stroke, positions, on_table, on, law, work):
 
 @kernel(uses=(_succeeds,))
 def escape_aim(about, stroke, positions, on_table, on, law, work):
-    """Direction [rad] in which the stroke meets a ball on: the middle of the widest window about the
-    direction ``about``.
-
-    Of equally wide windows it is the nearest one. It is sought farther away if there is none nearby, as with
-    much side; if no direction succeeds at all, it is ``about``.
-    """
+    """Direction [rad] in which the stroke meets a ball on: the middle of the widest, then nearest window
+    about ``about``, farther away if there is none, as with much side; ``about`` if none succeeds."""
     best, low, high = 0.0, about, about
     for steps in _STEPS:
         run = 0

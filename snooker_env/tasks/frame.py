@@ -1,20 +1,16 @@
-"""How is a frame played, on one table or on thousands? Turns of two players by the rules of
-``game.frame_columns``, each table on its own.
+"""How is a frame played, on one table or on thousands? Turns of two players, each table on its own.
 
-A turn of the striker: ``frame_kernels.decide`` (after a foul of the opponent), ``stroke.address``,
-``stroke.run``, then the referee, ``frame_kernels.conclude``. A step of the frame task is the agent's turn and
-all turns of the opponent up to the agent's next one. The agent is player 0, the opponent player 1.
+A turn of the striker: ``frame_kernels.decide`` (after a foul), ``stroke.address``, ``stroke.run``, then the
+referee, ``frame_kernels.conclude``. A step of the frame task is the turn of the agent, player 0, and all
+turns of the opponent, player 1, up to the agent's next one. A match is played turn by turn by both players.
 
-With ``opponent="none"`` the table returns to the agent at once whenever it would go to the opponent.
-Penalties still go to the opponent's score, and after a foul the agent plays on from where the balls lie,
-without a free ball. A match is played turn by turn by both players.
+With ``opponent="none"`` the table returns to the agent whenever it would go to the opponent. Penalties still
+go to the opponent's score; after a foul the agent plays on from where the balls lie, without a free ball.
 
-Nothing is ever dealt again. A frame that ends in the opponent's first visit, in a reset, is shown by that
-reset, and the next step plays nothing: it reports the end and pays its reward (``Frames.due``).
-
-A cue ball in hand is placed at once on the free place of the D nearest to its usual one (``balls.SPOTS``), so
-that it can be seen. The player may place it elsewhere before the stroke. The physics is planar: no ball
-leaves the table and the cue ball cannot jump over a ball, so those fouls never occur.
+A frame that ends in the opponent's first visit is shown by that reset; the next step plays nothing, reports
+the end and pays its reward (``Frames.due``). A cue ball in hand is placed at once on the free place of the D
+nearest to its usual one (``balls.SPOTS``), so that it can be seen; the player may place it elsewhere. The
+physics is planar: no ball leaves the table or jumps over another, so those fouls never occur.
 """
 
 from collections.abc import Callable, Sequence
@@ -70,16 +66,15 @@ class Frames(Tables):
     COLUMNS = COLUMNS
 
     nominated: Ints
-    """(n,) The colour that the striker has nominated after a red or as his free ball, 0 for a free ball
-    declined. AUTO, as always between two strokes: the colour first struck. Code that sets it must check it;
-    the referee resets it after the stroke.
-    """
+    """(n,) The colour that the striker has nominated after a red or as its free ball, 0 for a free ball
+    declined; AUTO, as always between two strokes: the colour first struck. Code that sets it must check
+    it."""
     due: Bools
     """(n,) Which episodes have ended in a reset, so that the next step reports their end."""
 
     seats: tuple[Seat, ...]
-    """The agent's seat, and the other player's; without the second the agent plays alone. A seat without a
-    player is played by ``turn``."""
+    """The agent's, and the other player's if it does not play alone. One without a player is played by
+    ``turn``."""
     packs: tuple[Any, ...]
     """``packed`` of each seat."""
 
@@ -151,8 +146,7 @@ class Frames(Tables):
         return frame_of(self.game[k], self.rules.miss, self.saved, k, self.rules.game)
 
     def on(self, k: int) -> int:
-        """The mask of the balls that may be struck first on table k: the balls on and, with a free ball,
-        every colour."""
+        """The mask of the balls that may be struck first on table k; with a free ball every colour."""
         return super().on(k) | (
             COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, FREE_BALL] else 0
         )
@@ -162,30 +156,26 @@ class Frames(Tables):
         return self.game[:, SCORE_0 + AGENT] - self.game[:, SCORE_1 - AGENT]
 
     def stopped(self) -> Bools:
-        """Which frames the referee stops because ``max_strokes`` have been played: bool (n,)."""
+        """Which frames the referee stops after ``max_strokes``: bool (n,)."""
         return self.game[:, STROKES] >= self.rules.max_strokes
 
     def ended(self) -> Bools:
-        """Which tables have no stroke left to play: bool (n,)."""
+        """See ``Tables.ended``."""
         return super().ended() | self.stopped()
 
     def finished(self) -> Bools:
-        """Which episodes have ended, and a step has said so: bool (n,)."""
+        """See ``Tables.finished``."""
         return self.ended() & ~self.due
 
     def interrupted(self) -> None:
-        """A step or reset was cut short: tables at which it is the opponent's turn need a reset."""
+        """See ``Tables.interrupted``: tables at which it is the opponent's turn."""
         self.begun[self.game[:, STRIKER] != AGENT] = False
 
     # a turn
     # --------------------------------------------------------------------------------------------------------
 
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = AGENT) -> Ints:
-        """Take the decisions on the tables ``which`` and carry the strokes out up to the strike; returns the
-        tables with a stroke.
-
-        ``side``: the seat by which the actions are read and executed.
-        """
+        """Decisions and strokes of the seat ``side`` up to the strike; returns the tables with a stroke."""
         said = self.seats[side].actions
         if said.nominate or said.declares or self.game[which, PHASE].any():
             which = which[self.decide(which, actions, side)]
@@ -194,15 +184,13 @@ class Frames(Tables):
         return which
 
     def hold_late(self, which: Ints, buffers: ShotBuffers) -> None:
-        """In a game with a shot clock: shots of the tables ``which`` that would not be begun within it are
-        not played."""
+        """With a shot clock: shots that would not be begun within it are not played."""
         if self.rules.rule_set.clock:
             b, code = buffers, self.rules.rule_set.code
             frame_kernels.hold_late(which, self.game, code, self.rules.time_to_play, b.v, b.w, b.shots)
 
     def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
-        """What the strikers of the tables ``which`` say before their strokes; returns which of them play
-        one."""
+        """What the strikers say before their strokes; returns which of the tables ``which`` play one."""
         plays = np.empty(len(which), np.bool_)
         frame_kernels.decide(
             which, actions, self.arrays, self.saved_arrays, self._setting_of(self.packs[side][0]), plays
@@ -219,11 +207,8 @@ class Frames(Tables):
         own: bool,
         alone: bool = False,
     ) -> None:
-        """Play and judge the shots of the tables ``which`` that have been struck.
-
-        ``own``: ``out`` reports the strokes; otherwise they are only counted. ``alone``: the table returns to
-        the agent.
-        """
+        """Play and judge the shots that have been struck. ``own``: ``out`` reports the strokes; otherwise
+        they are only counted. ``alone``: the table returns to the agent."""
         if not len(which):
             return
         unfinished = self.run(which, buffers)
@@ -249,12 +234,8 @@ class Frames(Tables):
         crew: Crew,
         which: Ints | None = None,
     ) -> Bools:
-        """One turn of the striker on the tables ``which`` (those that go on), of two players. Returns where
-        there was a stroke, (n,) bool.
-
-        ``prepare(which, buffers)``: takes decisions and carries strokes out up to the strike, as the method
-        ``prepare``; the tables with a stroke. ``out`` gets the infos.
-        """
+        """One turn of the striker on the tables ``which`` (those that go on). ``prepare(which, buffers)``: as
+        the method. Returns where there was a stroke, (n,) bool. ``out`` gets the infos."""
         playing = np.flatnonzero(~self.ended()) if which is None else which
         self._played[playing] = 0
         crew(playing, lambda which, b: self.complete(prepare(which, b), out, b, crew, own=True))
@@ -262,8 +243,7 @@ class Frames(Tables):
         return self._played > 0
 
     def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> None:
-        """One turn on each table that goes on, of two players, into ``out`` as player 0 sees it; ``actions``:
-        of each side (n, k)."""
+        """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k)."""
         going, striker = ~self.ended(), self.game[:, STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
@@ -279,8 +259,7 @@ class Frames(Tables):
         return self.prepare(which, actions, buffers, side)
 
     def go_on(self, which: Ints) -> None:
-        """After each turn on the tables ``which``: the next frame of a match, where one has ended. Here there
-        is none."""
+        """After each turn: the next frame of a match, where one has ended. Here there is none."""
         return
 
     # steps and resets of the frame task
@@ -289,15 +268,8 @@ class Frames(Tables):
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
     ) -> None:
-        """One step of all tables: checked actions (n, k) float64, results into ``out``.
-
-        ``waiting`` (n,) bool: tables that begin a new frame instead of playing. ``same_step``: tables whose
-        frame ends begin a new one at once.
-
-        Raises SimulationError if a shot cannot be computed. Its balls are then left as they lay, except for a
-        cue ball that was placed; a decision already taken stands; other tables may have been played. Errors
-        raised by an opponent are passed on.
-        """
+        """See ``Tables.step``. After SimulationError a cue ball that was placed and a decision already taken
+        stand, and other tables may have been played. Errors raised by an opponent are passed on."""
         anew, alone = bool(waiting.any()), len(self.seats) == 1
         playing = np.flatnonzero(~waiting) if anew else np.arange(self.n)
         self._replies[:] = self._played[:] = 0
@@ -307,7 +279,7 @@ class Frames(Tables):
             self.complete(self.prepare(acting, actions, buffers), out, buffers, crew, own=True, alone=alone)
             self.go_on(acting)
             if alone:
-                # also after a decision or lot of a state in which there were two players
+                # even if a state of two players left a decision or lot
                 self.game[acting, STRIKER] = AGENT
                 self._finish(which, out)
 
@@ -329,8 +301,7 @@ class Frames(Tables):
         frame_kernels.finish(which, self.arrays, self.saved_arrays, self._setting, *counted, out.arrays)
 
     def _reply(self, which, out, crew):
-        """All strokes of the opponent on the tables ``which`` until it is the agent's turn or the frame has
-        ended."""
+        """All strokes of the opponent until it is the agent's turn or the frame has ended."""
         opponent = self.seats[1].player
         assert opponent is not None  # ``turn`` plays for two without
         while len(which := which[(self.game[which, STRIKER] != AGENT) & ~self.ended()[which]]):
@@ -343,15 +314,14 @@ class Frames(Tables):
                 crew(tables, play)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew, *, breakers: Ints | None = None) -> None:
-        """New frames on the tables ``wanted`` (n,) bool; the results for all tables into ``out``.
-        ``breakers``: see ``deal``."""
-        self.begun[wanted] = False  # until the opponent has played, if he breaks
+        """See ``Tables.reset``. ``breakers``: see ``deal``."""
+        self.begun[wanted] = False  # until the opponent has played, if it breaks
         self._start(np.flatnonzero(wanted), out, crew, breakers)
         crew(np.flatnonzero(~wanted), lambda which, _: self._show(which, out, fresh=False))
         crew(np.arange(self.n), lambda which, _: self.show_masks(which, out.masks))
 
     def _start(self, which, out, crew, breakers=None):
-        """New frames, with the opponent's first visit if he breaks."""
+        """New frames, with the opponent's first visit if it breaks."""
         alone = len(self.seats) == 1
         self._replies[which] = 0
         crew(which, lambda part, _: self.deal(part, drawn=not alone, breakers=breakers))
@@ -365,10 +335,8 @@ class Frames(Tables):
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
     def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
-        """New frames on the tables ``which``; ``drawn``: who breaks is drawn, otherwise it is the agent.
-
-        ``breakers`` (n,): who breaks instead of the draw on each table, -1 for nobody.
-        """
+        """New frames on the tables ``which``. Who breaks: without ``drawn`` the agent; else ``breakers``
+        (n,), where it is -1 whoever is drawn."""
         plan = self.rules.plan
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         breakers = np.full(self.n, -1) if breakers is None else breakers
@@ -380,8 +348,7 @@ class Frames(Tables):
         frame_kernels.show(which, fresh, *tables, self._replies, out.arrays, out.last)
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
-        """The info of the first table as ``player`` sees it; ``last``: the output of the last stroke, or None
-        if there is none."""
+        """The info of the first table as ``player`` sees it; ``last``: output of the last stroke."""
         out = self.output()  # the entries that depend on the player
         frame_kernels.inform(player, self.game, out.arrays)
         if last is not None:
@@ -397,12 +364,12 @@ class Frames(Tables):
         return unpaid
 
     def action_masks(self, which: Ints | None = None, side: int = AGENT) -> Bools:
-        """As ``Tables.action_masks``, of the player in seat ``side``."""
+        """See ``Tables.action_masks``; of the player in seat ``side``."""
         which = np.arange(self.n) if which is None else which
         return self.masks_of(which, self.seats[side].actions, self.packs[side][0])
 
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
-        """The observations of ``player`` on the tables ``which``: float32 (len(which), SIZE), a new array."""
+        """See ``Tables.observe``."""
         rows = np.empty((len(which), self.SIZE), np.float32)
         frame_kernels.observe(which, player, self.arrays, self.saved_arrays, self._setting, rows)
         return rows
@@ -411,7 +378,7 @@ class Frames(Tables):
     # --------------------------------------------------------------------------------------------------------
 
     def get_state(self, k: int) -> dict[str, Any]:
-        """Table k as JSON types: the fields of a ``states.FrameState`` except "rng"."""
+        """See ``Tables.get_state``: the fields of a ``states.FrameState`` except "rng"."""
         return {
             "positions": self.positions[k].tolist(),
             "on_table": self.on_table[k].tolist(),
@@ -434,11 +401,7 @@ class Frames(Tables):
     def checked(
         self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False
     ) -> FrameState:
-        """The ``states.FrameState`` that a dict describes.
-
-        ValueError if it is invalid, if no stroke is left with ``to_play``, or if the striker is not the
-        agent, unless ``either``.
-        """
+        """See ``Tables.checked``. The striker must be the agent, unless ``either``."""
         sound = checked_frame(state, self.rules, generator)
         over, stopped = sound.frame.phase == "over", sound.strokes >= self.rules.max_strokes
         if sound.due and not (over or stopped):
@@ -465,7 +428,7 @@ class Frames(Tables):
         return sound
 
     def set_state(self, k: int, state: FrameState) -> None:
-        """Restore a valid ``states.FrameState`` on table k."""
+        """See ``Tables.set_state``."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
         self.game[k, OPPONENT] = state.opponent
@@ -475,7 +438,7 @@ class Frames(Tables):
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, state.due, AUTO
 
     def standing(self, k: int) -> dict[str, Any]:
-        """The fields of ``Played`` that the frame on table k determines."""
+        """See ``Tables.standing``."""
         frame = self.frame(k)
         return {
             "next_player": frame.striker,
@@ -487,11 +450,7 @@ class Frames(Tables):
         }
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin a frame on table k with a valid position; ``game`` is the row of a visit.
-
-        Player 0 is at the table, both scores are 0, and the points of the visit are his break so far. The
-        random stream goes on.
-        """
+        """See ``Tables.set_position``. Player 0 is at the table; the points are its break."""
         ball_on, in_hand, points = game[[BALL_ON, IN_HAND, POINTS]].tolist()
         balls = mask_of_present(on_table) & ~CUE_BIT
         frame = Frame(
@@ -508,7 +467,7 @@ class Frames(Tables):
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, False, AUTO
 
     def text(self, k: int) -> str:
-        """One line of text for pictures."""
+        """See ``Tables.text``."""
         frame = self.frame(k)
         on = frame.ball_on.name.lower().replace("_", " ")
         ended = "" if frame.winner is None else f"   player {frame.winner} wins"

@@ -1,10 +1,6 @@
-"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos, as kernels
-over tables.
-
-``tasks.frame`` calls them in the order of a turn. ``which``: the tables concerned; row j of a shot's arrays
-belongs to which[j]. ``tables``, ``saved``, ``shots``, ``output``, ``setting``: the parts of ``TableArrays``,
-``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``.
-"""
+"""What happens to frames inside a step? Decisions, the referee, observations, rewards and infos, over tables.
+Row j of a shot's arrays belongs to which[j]. ``tables``, ``saved``, ``shots``, ``output``, ``setting``: the
+parts of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``Setting``."""
 
 from typing import NamedTuple
 
@@ -132,7 +128,7 @@ class Setting(NamedTuple):
 
 @kernel
 def choose_as(k, wish, rules, tables, saved):
-    """The decision ``wish`` after a foul; whether a stroke follows."""
+    """Make the decision ``wish`` in [-1, 1] after a foul (see ``decide``); whether a stroke follows."""
     row = tables.game[k]
     what = PLAY_AGAIN if wish < -1.0 / 3.0 else PLAY
     if wish > 1.0 / 3.0:
@@ -149,11 +145,8 @@ def choose_as(k, wish, rules, tables, saved):
 
 @kernel
 def give_up(row, reward):
-    """Charge the loser of a frame that was given up, or lost by a third miss, with the points left.
-
-    S4 R5(b), for matches in which points are added up: eight for each red, and the colours. Otherwise it
-    would pay to give up at once.
-    """
+    """Charge whoever gave the frame up, or lost it by a third miss, with the points left, S4 R5(b), where
+    points are added up: eight for each red, and the colours. Otherwise it would pay to give up at once."""
     if reward != FRAMES_PAID:
         left = available(row[ON_TABLE], -1, 0)
         row[PAID] += -left if row[WINNER] == AGENT else left
@@ -161,13 +154,8 @@ def give_up(row, reward):
 
 @entry(what="the decisions of frames", seconds=2)
 def decide(which, actions, tables, saved, setting, plays):
-    """What the strikers of the tables ``which`` say before a stroke: declarations, decisions after a foul,
-    nominations.
-
-    A decision below -1/3: the offender plays again; above 1/3: from the position before, if a miss was
-    called, or, after the last one that may be, the striker from anywhere on the table. ``plays[j]``: whether
-    a stroke follows.
-    """
+    """What strikers say before a stroke; ``plays[j]``: one follows. A decision below -1/3: the offender plays
+    again; above 1/3: from the position before, or by the striker from anywhere, where that may be."""
     tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
     options = setting.options
     for j in range(which.shape[0]):
@@ -200,8 +188,7 @@ def _hand_back(row):
 
 @kernel
 def _leave_the_black(positions, on_table):
-    """Before a re-spotted black: nothing else is on the table, also where the time was up with more of the
-    balls on it."""
+    """Before a re-spotted black: nothing else is on the table, also where the time was up with more on it."""
     for i in range(1, N_BALLS):
         on_table[i] = i == BLACK
     positions[BLACK, 0], positions[BLACK, 1] = SPOTS[BLACK, 0], SPOTS[BLACK, 1]
@@ -209,8 +196,7 @@ def _leave_the_black(positions, on_table):
 
 @entry
 def hold_late(which, game, rules, time_to_play, v, w, shots):
-    """Shots of the tables ``which`` that would not be begun within the shot clock are not played: the cue
-    ball is not struck."""
+    """Shots that would not be begun within the shot clock are not played: the cue ball is not struck."""
     for j in range(which.shape[0]):
         if is_late(game[which[j]], rules, time_to_play):
             v[j, CUE, 0] = v[j, CUE, 1] = w[j, CUE, 0] = w[j, CUE, 1] = w[j, CUE, 2] = 0.0
@@ -220,10 +206,7 @@ def hold_late(which, game, rules, time_to_play, v, w, shots):
 @entry(what="the referee of frames", seconds=6)
 def conclude(which, tables, shots, setting, own, alone, played, output):
     """Judge the shots that came to rest and update tables and frames. ``own``: infos report the strokes;
-    ``played`` counts them.
-
-    What each striker has nominated is AUTO afterwards. ``alone``: the table returns to the agent.
-    """
+    ``played`` counts them. ``alone``: the table returns to the agent."""
     tables, shots, setting = TableArrays(*tables), PlayedArrays(*shots), Setting(*setting)
     out = OutputArrays(*output)
     rules, conditions = setting.rules, Conditions(setting.rules, setting.miss, setting.time_to_play)
@@ -335,8 +318,7 @@ def observe(which, player, tables, saved, setting, rows):
 
 @kernel
 def _write_frame_info(k, row, player, replies, out):
-    """Write the entries of the info that concern the frame, as ``player`` sees it: a break, a choice and a
-    free ball are the striker's."""
+    """Write the info of the frame as ``player`` sees it: break, choice, free ball are the striker's."""
     reals, counts = out.reals, out.counts
     mine, other, at_table = row[SCORE_0 + player], row[SCORE_1 - player], row[STRIKER] == player
     reals[k, I_BREAK], reals[k, I_SCORE], reals[k, I_OPPONENT_SCORE] = (
@@ -367,10 +349,7 @@ def _worth(row, reward):
 
 @entry(what="the steps of frames", seconds=1)
 def finish(which, tables, saved, setting, due, replies, played, output):
-    """Write the results of a step for the tables ``which``; ``played`` (n,): whether the agent had a stroke.
-
-    ``due`` (n,): whether the end of the frame has still to be reported: it is not, afterwards.
-    """
+    """Write a step's results; ``played`` (n,): whether the agent had a stroke. No end stays ``due``."""
     tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
@@ -399,11 +378,9 @@ def inform(player, game, output):
 
 @entry(what="the start of a frame", seconds=1)
 def begin(which, drawn, breakers, in_hand, on_table, game, streams):
-    """New frames on the tables ``which``, already dealt.
-
-    ``drawn``: who breaks is drawn, otherwise it is the agent. ``breakers`` (n,): who breaks instead, -1 for
-    nobody; something is drawn all the same, so that the errors of the strokes do not depend on it.
-    """
+    """New frames on tables already dealt. Who breaks: without ``drawn`` the agent; else ``breakers`` (n,),
+    where it is -1 whoever is drawn, and a number is drawn in any case, so that the errors of strokes do not
+    depend on it."""
     for j in range(which.shape[0]):
         k = which[j]
         breaker = AGENT
@@ -425,8 +402,7 @@ def count_frames(which, game, needed, goes_on):
 
 @entry(what="the next frame of a match", seconds=1)
 def begin_next(which, alone, reward, in_hand, on_table, game):
-    """The next frames of the matches on the tables ``which``, already dealt: the players break in turn. What
-    was not paid remains so."""
+    """The next frames of matches, already dealt: the players break in turn; what was not paid stays so."""
     for j in range(which.shape[0]):
         k = which[j]
         row = game[k]

@@ -1,5 +1,4 @@
-"""How does the built-in opponent "ghost_ball" play? The widest direct pot, softly; without one, a plain
-stroke. A kernel over tables."""
+"""How does the opponent "ghost_ball" play? The widest direct pot, softly; without one, a plain stroke."""
 
 from math import atan2, cos, hypot, sin, sqrt
 from typing import TYPE_CHECKING, Any
@@ -47,19 +46,14 @@ _PLACES = tuple(
 _BEHIND = 0.3
 """How far behind the ghost ball the cue ball is placed, where it may stand anywhere [m]."""
 DRIVE = 4.0
-"""How much farther than needed a plain stroke would roll where some ball must reach a cushion [m]. A ball
-struck full comes half as far.
-"""
+"""How much farther than needed a plain stroke would roll where some ball must reach a cushion [m]; a ball
+struck full comes half as far."""
 
 
 @kernel
 def _put_on_bed(positions, on_table, mask, found):
-    """Place a cue ball that may stand anywhere behind the ball of the easiest pot; without a pot, where most
-    of a ball on is seen.
-
-    The places tried lie on the straight line from each pocket through each of the balls in ``mask``, or as
-    near as the bed allows.
-    """
+    """Place a cue ball behind the ball of the easiest pot, on the line from the pocket, or as near as the bed
+    allows; without a pot, where most of a ball on is seen."""
     widest, best_x, best_y = 0.0, positions[0, 0], positions[0, 1]
     for tries in range(2):
         for ball in range(1, N_BALLS):
@@ -88,12 +82,8 @@ def _put_on_bed(positions, on_table, mask, found):
 
 @kernel
 def put(positions, on_table, mask, anywhere, found, stream):
-    """Place a cue ball in hand where the widest pot of the balls in ``mask`` is; without a pot, where most of
-    a ball on is seen.
-
-    For the break-off it is placed to the left or right of the brown, as the stream decides. ``anywhere``: not
-    in the D only.
-    """
+    """Place a cue ball in hand for the widest pot, else where most of a ball on is seen; for the break-off to
+    the left or right of the brown, as the stream decides. ``anywhere``: not in the D only."""
     if anywhere:
         _put_on_bed(positions, on_table, mask, found)
         return
@@ -118,12 +108,8 @@ def put(positions, on_table, mask, anywhere, found, stream):
 
 @kernel
 def stroke_at(positions, on_table, on, in_hand, failed, drive, found, stream):
-    """The shot of the geometric player at the balls in the mask ``on``: (speed, side, top, direction of the
-    cue ball).
-
-    ``in_hand``: the cue ball has just been placed; ``failed``: a stroke from this position has failed;
-    ``drive``: how much farther than needed a stroke without a pot is to roll [m].
-    """
+    """The geometric player's shot: (speed, side, top, direction). ``in_hand``: just placed; ``failed``: a
+    stroke from here has; ``drive``: how much farther than needed one without a pot is to roll [m]."""
     end_red = racked(positions, on_table) if in_hand else 0
     if end_red:
         return break_off(positions, end_red)
@@ -152,8 +138,7 @@ def stroke_at(positions, on_table, on, in_hand, failed, drive, found, stream):
 
 @kernel
 def named(positions, on_table, row, aim):
-    """The ball that the geometric player nominates: the colour that its line meets first; without one, the
-    cheapest, or no free ball."""
+    """What the geometric player nominates: the colour on its line; else the cheapest, or no free ball."""
     dx, dy, near, ball = cos(aim), sin(aim), np.inf, 0
     for i in range(1, N_BALLS):
         x, y = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
@@ -165,12 +150,8 @@ def named(positions, on_table, row, aim):
 
 @kernel
 def geometric_turn(positions, on_table, row, rules, found, stream):
-    """A turn of the geometric player: (speed, side, top, aim, what it nominates, what it decides after a
-    foul).
-
-    ``row``: of a visit or a frame, after its decision; a cue ball in hand is placed. ``rules``: the code of
-    the rule set.
-    """
+    """Its turn: (speed, side, top, aim, what it nominates, what it decides after a foul). ``row``: of a visit
+    or frame, after its decision; a cue ball in hand is placed. ``rules``: the code of the rule set."""
     frame, decision = row.shape[0] > ANYWHERE, PLAY
     if frame and row[PHASE] == CHOICE:
         decision = PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
@@ -190,8 +171,7 @@ def geometric_turn(positions, on_table, row, rules, found, stream):
 
 @entry(what="the geometric opponent", seconds=3)
 def _ghost_ball(which, tables, shots, packed, rules):
-    """The turns of ``GhostBallOpponent`` on the tables ``which``, up to the strike. ``rules``: the code of
-    the rule set."""
+    """The turns of ``GhostBallOpponent``, up to the strike. ``rules``: the code of the rule set."""
     positions, on_table, game, streams, nominated = tables
     shots, (options, noise, _), found = StruckArrays(*shots), packed, np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
@@ -206,11 +186,7 @@ def _ghost_ball(which, tables, shots, packed, rules):
 
 @entry(what="the geometric player", seconds=3)
 def geometric_strokes(positions, on_table, game, rules, streams, strokes, nominated, decisions):
-    """The strokes (n, 5) of the geometric player, what it nominates and decides (n,), for rows of visits or
-    frames.
-
-    The arrays are changed: cue balls in hand are placed. ``rules``: the code of the rule set.
-    """
+    """The geometric player's strokes (n, 5), nominations and decisions (n,); places cue balls in hand."""
     found = np.empty((LINE_ROWS, POT_COLUMNS))
     for k in range(len(game)):
         speed, side, top, aim, colour, decision = geometric_turn(
@@ -239,24 +215,22 @@ def put_in_hand(positions, on_table, game, streams):
 
 
 class GhostBallOpponent(Opponent):
-    """The geometric player ``ghost_ball`` as a kernel: the widest direct pot (``game.pots``), as softly as
-    possible.
+    """The geometric player ``ghost_ball`` as a kernel: the widest direct pot (``game.pots``), softly.
 
-    * Without a pot it plays a plain stroke (``plain_stroke``): the break-off, a soft stroke at a ball on that
-      it sees, an escape.
-    * It nominates the colour that its line meets first. It never concedes or claims, and begins if it wins
-      the lot.
-    * With the cue ball in hand it takes the best of ten places in the D. Where it may stand anywhere, it is
-      placed straight behind the ball of the easiest pot. After a foul it always plays the table as it lies.
-    * In the Shoot Out its plain strokes are harder, so that a ball reaches a cushion.
+    * Without a pot: a plain stroke (``plain_stroke``). In the Shoot Out it is harder, so that a ball reaches
+      a cushion.
+    * It nominates the colour that its line meets first, never concedes or claims, and begins if it wins the
+      lot.
+    * A cue ball in hand goes to the best of ten places in the D; where it may stand anywhere, straight behind
+      the ball of the easiest pot. After a foul it always plays the table as it lies.
     * It allows for neither throw nor position.
     * Its speed varies by a tenth (at the break-off by a fiftieth), and the direction of a plain stroke within
-      the window that strikes the ball. From a position that was restored after its miss it tries no pot, and
-      varies more: two exact players cannot repeat one failing stroke for ever.
+      the window that strikes the ball. From a position restored after its miss it tries no pot and varies
+      more: two exact players cannot repeat one failing stroke for ever.
     """
 
     def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
-        """Carry its strokes out up to the strike, one on each table."""
+        """See ``Opponent.prepare``."""
         _ghost_ball(which, frames.arrays, buffers.struck, frames.packs[SIDE], frames.rules.rule_set.code)
         frames.hold_late(which, buffers)
         return which

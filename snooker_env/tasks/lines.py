@@ -1,14 +1,9 @@
-"""Along which lines may the cue ball be sent? To the direct pots; where there is none, to what it sees of the
-balls on, or over cushions.
+"""Along which lines may the cue ball be sent? To the direct pots, else to what it sees, or over cushions.
 
-``action="discrete"`` chooses among up to ``POTS`` lines, and ``aim="target"`` is measured from the first.
-Without a direct pot they are, the best first:
-
-* at the start of a frame, thin at the end red of either side, as far as they are seen: the break-off;
-* the middle of the widest window of directions in which a ball on is met first, its two edges, thin, and the
-  middles of other windows;
-* where hardly anything is seen, before these, escapes over cushions: the aim is then found for the stroke
-  that is played.
+``action="discrete"`` chooses among up to ``POTS`` lines; ``aim="target"`` is measured from the first. Without
+a direct pot they are, best first: at the start of a frame, thin at the end red of either side, the break-off;
+where hardly anything is seen, escapes, whose aim is found for the stroke; the middle of the widest window of
+directions in which a ball on is met first, its two edges, thin, and the middles of other windows.
 """
 
 from math import atan2, cos, hypot, pi, sin
@@ -51,8 +46,7 @@ def new_work():
 
 @kernel
 def racked(positions, on_table):
-    """The end red of the last row if all balls stand as at the start of a frame, with 15 reds or 6; else
-    0."""
+    """The end red of the last row if all balls stand as at a start of a frame, with 15 or 6 reds; else 0."""
     end = 0
     for i in range(1, N_BALLS):
         if on_table[i] and (
@@ -66,8 +60,7 @@ def racked(positions, on_table):
 
 @kernel
 def thin_at_end(positions, end_red, sign):
-    """Direction of the cue ball that strikes the end red on the right (``sign`` 1) or left (-1) thinly on its
-    outer side [rad]."""
+    """Direction [rad] that strikes the right (``sign`` 1) or left (-1) end red thinly on its outer side."""
     dx, dy = sign * SPOTS[end_red, 0] - positions[0, 0], SPOTS[end_red, 1] - positions[0, 1]
     return atan2(dy, dx) - sign * THIN * 2.0 * BALL_RADIUS / hypot(dx, dy)
 
@@ -85,8 +78,7 @@ def nearest(positions, on_table, on):
 
 @kernel
 def _add(lines, count, aim, space):
-    """Append what is seen at ``aim``, unless it is there already or leaves no room for error; returns the
-    number of lines."""
+    """Append a line at ``aim``, unless it is there or leaves no room for error; returns the number."""
     if count == POTS or space < _SLIT:
         return count
     for k in range(count):
@@ -103,8 +95,7 @@ def _add(lines, count, aim, space):
 
 @kernel
 def _seen(positions, on_table, lines, windows, many, count):
-    """Append the middle of the widest of ``many`` windows, a thin contact at either edge of it, and the
-    middles of the other windows."""
+    """Append the middle of the widest window, a thin contact at either edge of it, and the other middles."""
     x, y = positions[0, 0], positions[0, 1]
     for k in range(many):
         half = 0.5 * (windows[k, HIGH] - windows[k, LOW])
@@ -123,12 +114,8 @@ def _seen(positions, on_table, lines, windows, many, count):
 
 @kernel(uses=(find_escapes,))
 def find_lines(positions, on_table, on, found):
-    """Write up to ``POTS`` lines of a table without a direct pot, best first, into the first rows of
-    ``found``; returns their number.
-
-    found (LINE_ROWS, POT_COLUMNS): columns ``LINE_AIM`` to ``LINE_WORTH``. There is one at least: if need be,
-    at the nearest ball on.
-    """
+    """Write up to ``POTS`` lines, best first, into the first rows of ``found`` (LINE_ROWS, POT_COLUMNS), for
+    a table without a direct pot. Returns their number, at least 1: if need be, at the nearest ball on."""
     lines, windows = found[:POTS], found[POTS:]
     touching, end_red, count = touching_balls(positions, on_table), racked(positions, on_table), 0
     many = open_windows(positions, on_table, on, touching, windows)
@@ -149,8 +136,7 @@ def find_lines(positions, on_table, on, found):
 
 @kernel
 def count_lines(positions, on_table, on, found):
-    """The number of lines to choose from, at least 1: direct pots or, if there is none, others. ``found``:
-    work space (LINE_ROWS, ..)."""
+    """The number of lines to choose from, at least 1: direct pots, else others. ``found``: work space."""
     many = count_pots(positions, on_table, on, BALL_RADIUS, POTS)
     return many if many else find_lines(positions, on_table, on, found)
 
@@ -173,9 +159,8 @@ def line_of(positions, on_table, on, found):
     Returns
     -------
     float
-        Direction [rad], anticlockwise from +x: to the ghost ball of the widest direct pot; where there is
-        none, the best of the lines of ``action="discrete"``. Over cushions it is that of a rolling ball,
-        which another stroke must correct.
+        Direction [rad] from +x: to the ghost ball of the widest direct pot, else the best line of
+        ``action="discrete"``. Over cushions it is that of a rolling ball, which another stroke must correct.
     """
     if find_pots(positions, on_table, on, BALL_RADIUS, found[:1]):
         return atan2(found[0, GHOST_Y] - positions[0, 1], found[0, GHOST_X] - positions[0, 0])
@@ -185,11 +170,7 @@ def line_of(positions, on_table, on, found):
 
 @kernel(uses=(escape_aim,))
 def aim_along(line, stroke, positions, on_table, on, law, work):
-    """Direction [rad] in which a stroke leaves along a line of ``find_lines``, a row: where it is over
-    cushions, found for the stroke.
-
-    ``stroke``: (speed, side, top).
-    """
+    """Direction [rad] of the stroke (speed, side, top) along a row of ``find_lines``."""
     if line[LINE_SPEED] == 0.0:
         return line[LINE_AIM]
     return escape_aim(line[LINE_AIM], stroke, positions, on_table, on, law, work)

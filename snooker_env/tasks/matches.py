@@ -1,9 +1,5 @@
-"""How is a match of several frames played, on one table or on thousands? Best of N frames, in which the
-players break in turn.
-
-A frame that ends is followed at once by the next rack, in the same step. The match ends with the frame that
-decides it. A frame that the referee stops (``max_strokes``) truncates the match.
-"""
+"""How is a match played? Best of N frames, the players break in turn, the next rack follows in the same step.
+A frame that the referee stops truncates the match."""
 
 from typing import Any
 
@@ -25,8 +21,7 @@ class Matches(Frames):
     COUNTS: tuple[str, ...] = (*Frames.COUNTS, "frames_won", "opponent_frames", "frame")
 
     def go_on(self, which: Ints) -> None:
-        """Count the frames that have just ended on the tables ``which``, and set up the next ones unless the
-        match is decided."""
+        """Count the frames that have just ended, and set up the next ones unless the match is decided."""
         ended = which[self.game[which, OVER] != 0]
         if not len(ended):
             return
@@ -45,7 +40,7 @@ class Matches(Frames):
         return self.game[k, SCORE_0 + AGENT] - self.game[k, SCORE_1 - AGENT]
 
     def get_state(self, k: int) -> dict[str, Any]:
-        """Table k as JSON types: the fields of a ``states.FrameState`` except "rng"."""
+        """See ``Tables.get_state``."""
         won = self.game[k, [FRAMES_0, FRAMES_1]].tolist()
         return super().get_state(k) | {
             "frames": won,
@@ -54,13 +49,13 @@ class Matches(Frames):
         }
 
     def set_state(self, k: int, state: FrameState) -> None:
-        """Restore a valid ``states.FrameState`` on table k."""
+        """See ``Tables.set_state``."""
         super().set_state(k, state)
         assert state.frames is not None and state.first_break is not None  # ``checked`` has seen to it
         self.game[k, [FRAMES_0, FRAMES_1, FIRST_BREAK]] = *state.frames, state.first_break
         self.game[k, PAID] = self._worth(k) - state.unpaid
 
     def text(self, k: int) -> str:
-        """One line of text for pictures."""
+        """See ``Tables.text``."""
         won = self.game[k, [FRAMES_0, FRAMES_1]].tolist()
         return f"frames {won[0]} - {won[1]}   {super().text(k)}"

@@ -1,51 +1,36 @@
 """How accurately does a player execute a shot? Gaussian errors of aim, speed, tip offset and elevation.
 
-What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): the aim error
-plus the squirt of a tip that is off to the side. No measurement of a snooker player's errors in these units
-was found. So the levels are set by what players achieve, on the pockets of this package.
-``python -m benchmarks.execution`` prints their pot rates beside the published figures, and with ``--fit`` the
-errors that reproduce them.
+What decides a pot is the total error of the cue ball's direction (``Noise.direction_deg``): aim, and the
+squirt of a tip that is off to the side. No measurement of a snooker player's errors was found, so the levels
+are set by what players achieve, on the pockets of this package; the figures of players are from secondary
+sources. ``python -m benchmarks.execution`` prints pot rates beside them, and with ``--fit`` the errors that
+give them.
 
-=============== ========================= ===========================================================================================
-level           error of direction [deg]  set by
-=============== ========================= ===========================================================================================
-"professional"  0.035                     long pots: professionals are said to pot 50 to 65 %
-"amateur"       0.048                     aim error of 0.05 deg, given for a good amateur
-"club"          0.114                     aim errors of 0.08 to 0.12 deg, given for club players
-"robot"         0.046                     90 % of pots of moderate difficulty, cue ball 0.15 m from where it would stop without errors
-"olympiad"      0.149                     the definition of the Computer Olympiad's billiards
-=============== ========================= ===========================================================================================
-
-* "professional": the mean over three long pots of our choice lies in that range (26, 62 and 84 %). A player
-  who always takes the likeliest pot then makes, in play, about 88 % of the pots that it tries, and 91 % of
-  those with a chance of half or more. Professionals are said to make 88 to 95 % of the pots that they choose.
-* "amateur", "club": the published aim errors were derived as total errors for pockets with an effective half
-  window of 22 mm. These levels give the same mean rate of four pots on these pockets. All figures quoted so
-  far are from secondary sources: no statistics behind them were found.
-* "robot": the robot of Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and left
-  the cue ball 100 to 200 mm from the planned place. The abstract says no more. The pots ("moderate" in the
-  benchmark) are our choice. So is putting the whole error of position into the speed, which therefore
-  includes the error of the robot's own predictions.
-* "olympiad": aim 0.125 deg, elevation 0.1 deg, speed 0.075 m/s, offsets 0.5 mm, as defined there. The squirt
-  of the offset is added to the aim.
+* "professional", 0.035 deg in all: professionals are said to make 50 to 65 % of long pots, this level that
+  mean of three of our choice (26, 62 and 84 %). A player that always takes the likeliest pot then makes about
+  88 % of those that it tries, 91 % of those with a chance of half or more; professionals are said to make 88
+  to 95 %.
+* "amateur", 0.048, and "club", 0.114: aim errors of 0.05 deg are given for a good amateur, 0.08 to 0.12 for
+  club players, derived as total errors for pockets with an effective half window of 22 mm. These levels give
+  the same mean rate of four pots on these pockets.
+* "robot", 0.046: that of Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and
+  left the cue ball 100 to 200 mm from the planned place, here 0.15 m. The pots ("moderate" in the benchmark)
+  are our choice, and so is putting the whole error of position, that of its predictions included, into the
+  speed.
+* "olympiad", 0.149: the definition of the Computer Olympiad's billiards: aim 0.125 deg, elevation 0.1 deg,
+  speed 0.075 m/s, offsets 0.5 mm. The squirt of the offset is added to the aim.
 
 A pot that loses the cue ball counts as missed, also in the fit: 17 % of a professional's strokes at the
-longest straight pot, without spin, end that way. If it counted as made, as in the published derivation, the
-fit would give about 0.040, 0.056 and 0.122 deg. The aim errors published for professionals, 0.02 to 0.03 deg,
-make 83 to 92 % of those four pots; this level makes 76 %. Both figures cannot be met at once, and we chose
-the long pots.
+longest straight pot, without spin. If it counted as made, as in the published derivation, the fit would give
+about 0.040, 0.056 and 0.122 deg. The aim errors published for professionals, 0.02 to 0.03 deg, make 83 to 92
+% of those four pots, this level 76 %: both figures cannot be met at once, and we chose the long pots.
 
-Our choices:
-
-* Aim and squirt have half of the variance each; no measurement separates them.
-* The errors are drawn independently, so the tip error is small. A real cue turns about the bridge. If the
-  bridge is R over the squirt's slope (0.35 m) behind the ball, squirt cancels the turn, and a real tip may
-  well be off by more.
-* The vertical tip error equals the horizontal one.
-* Speed: 1.75 % (professional), 2.5 % (amateur), 4 % (club). Of pool players it is said that a good one rolls
-  a ball the length of a table to within an inch or two, 0.5 to 1 % of the speed, and a beginner to within a
-  diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009).
-* Elevation: 0.1 to 0.3 deg; it hardly matters with a level cue.
+Our choices: aim and squirt have half of the variance each. The errors are independent, so the tip error, as
+large in height, is small: a real cue turns about the bridge, and with the bridge R over the squirt's slope
+(0.35 m) behind the ball squirt cancels the turn. Speed 1.75, 2.5 and 4 %: of pool players it is said that a
+good one rolls a ball a table's length to within an inch or two, 0.5 to 1 % of the speed, a beginner to within
+a diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009). Elevation 0.1 to 0.3 deg, which hardly matters with a
+level cue.
 """
 
 from dataclasses import asdict, dataclass, fields
@@ -61,15 +46,13 @@ from ..game.philox import normals
 from ..physics.cue import MAX_ELEVATION
 from ..physics.parameters import Physics, PhysicsLike
 
-# Columns of the packed deviations: 1 if there is no noise, then speed [m/s], speed (relative), tip offset
-# over R, aim, elevation [rad].
+# Packed deviations: 1 if there are none, speed [m/s], speed (relative), tip offset / R, aim, elevation [rad].
 (N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION) = range(6)
 
 
 @kernel
 def with_errors(speed, side, top, aim, elevation, errors, noise):
-    """The shot under the standard normal ``errors`` (5,): speed, side, top, aim, elevation. The only law of
-    errors; see ``executed``."""
+    """The shot under the standard normal ``errors`` (5,): the only law of errors; see ``executed``."""
     return (
         max(0.0, speed + errors[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
         side + errors[1] * noise[N_TIP],
@@ -98,15 +81,12 @@ def executed(speed, side, top, aim, elevation, noise, stream):
         Intended speed of the cue [m/s].
     side, top : float
         Intended tip offset over R.
-    aim : float
-        Intended direction of the cue [rad].
-    elevation : float
-        Intended elevation of the cue [rad].
+    aim, elevation : float
+        Intended direction and elevation of the cue [rad].
     noise : float64 (k,)
         Standard deviations of the errors, as ``Noise.pack`` returns them.
     stream : uint64 (2,)
-        Stream of random numbers: key and counter. Three blocks are drawn from it, or nothing if ``noise`` has
-        no errors.
+        Stream of random numbers: key and counter. Three blocks are drawn, or nothing without errors.
 
     Returns
     -------
@@ -125,8 +105,7 @@ def _errors(streams, out):
 
 
 def errors_of(streams: Words) -> Floats:
-    """The errors that shots would draw from ``streams`` (n, 2), which stay as they are: standard normal (n,
-    5), as of ``with_errors``."""
+    """The errors (n, 5) of ``with_errors`` that shots would draw from ``streams``, which are not changed."""
     out = np.empty((len(streams), 5))
     _errors(streams.copy(), out)
     return out
@@ -134,25 +113,20 @@ def errors_of(streams: Words) -> Floats:
 
 @dataclass(frozen=True, kw_only=True)
 class Noise:
-    """Execution errors: standard deviations of one shot, all at least 0.
+    """Execution errors: standard deviations of one shot, all at least 0 (the default).
 
     Parameters
     ----------
     aim_deg : float, optional
-        Aim [deg]; default 0.
+        Aim [deg].
     speed_rel : float, optional
-        Speed, as a fraction of the speed; default 0.
+        Speed, as a fraction of the speed.
     speed_abs : float, optional
-        Speed [m/s], combined with the relative part as the root of the sum of squares; default 0.
+        Speed [m/s], combined with the relative part as the root of the sum of squares.
     offset_mm : float, optional
-        Tip offset [mm], for each of side and height; default 0.
+        Tip offset [mm], for each of side and height.
     elevation_deg : float, optional
-        Elevation [deg]; default 0.
-
-    Raises
-    ------
-    ValueError
-        If a number is negative or not finite.
+        Elevation [deg].
 
     Examples
     --------
@@ -173,11 +147,8 @@ class Noise:
 
     @classmethod
     def of(cls, noise: "NoiseLike") -> "Noise":
-        """Convert an argument to a ``Noise``.
-
-        ``noise``: the name of a level (a key of ``LEVELS``), or a dict of fields of ``Noise``; fields left
-        out are 0. Returns the argument itself if it is one already. ValueError for anything else.
-        """
+        """Convert a level's name (a key of ``LEVELS``), a dict of fields (those left out are 0) or a
+        ``Noise``, which is returned itself. ValueError for anything else."""
         if isinstance(noise, cls):
             return noise
         if isinstance(noise, dict):
@@ -201,37 +172,19 @@ class Noise:
         return not (self.aim_deg or self.speed_rel or self.speed_abs or self.offset_mm or self.elevation_deg)
 
     def direction_deg(self, physics: PhysicsLike = None) -> float:
-        """Return the total error of the cue ball's direction: aim and squirt together.
+        """Return the standard deviation [deg] of the cue ball's direction: aim and squirt together.
 
         A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a
-        small offset [TP A.31]. With the usual ratio of 30 that is 0.163 deg for each millimetre. The result
-        holds for strokes without intended side; the swerve of a nearly level cue is neglected.
-
-        Parameters
-        ----------
-        physics : str, dict, Physics or None, optional
-            Physical constants, as ``Physics.of`` takes them; default None: the preset "paper".
-
-        Returns
-        -------
-        float
-            Standard deviation [deg].
-
-        Examples
-        --------
-        >>> from snooker_env.tasks import LEVELS
-        >>> round(LEVELS["professional"].direction_deg(), 4)
-        0.035
+        small offset [TP A.31]: with the usual ratio of 30, 0.163 deg per mm. It holds for strokes without
+        intended side; the swerve of a nearly level cue is neglected. ``physics``: as ``Physics.of`` takes it;
+        default "paper".
         """
         constants = Physics.of(physics)
         tip = self.offset_mm * 1e-3 / constants.R
         return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + constants.end_mass_ratio)))
 
     def pack(self, R: float) -> Floats:
-        """Return the deviations as an array for the kernels.
-
-        ``R``: radius of the ball [m]. Returns float64 (6,), in the columns ``N_*`` of this module.
-        """
+        """Return float64 (6,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]."""
         tip = self.offset_mm * 1e-3 / R
         return np.array(
             [
@@ -257,6 +210,5 @@ LEVELS: dict[str, Noise] = {
     "robot": Noise(aim_deg=0.033, speed_rel=0.08, offset_mm=0.2, elevation_deg=0.1),
     "olympiad": Noise(aim_deg=0.125, speed_abs=0.075, offset_mm=0.5, elevation_deg=0.1),
 }
-"""The named levels of execution noise: "none", "professional", "amateur", "club", "robot" and "olympiad", as
-``Noise``. The module's docstring gives their sources.
-"""
+"""The levels of execution noise: "none", "professional", "amateur", "club", "robot", "olympiad". The module's
+docstring gives their sources."""

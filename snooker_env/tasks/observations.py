@@ -13,12 +13,10 @@ from ..geometry import HALF_LENGTH, HALF_WIDTH
 from .declarations import STROKE_CHOICES
 
 OBSERVATIONS = ("flat", "balls", "masked")
-"""The kinds of observations: "flat", one array; "balls", a dict of two; "masked", a dict of the flat one and
-the available choices."""
+"""The kinds of observations: one array; a dict of two; a dict of the flat one and the available choices."""
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
 """Columns of the table of balls: x / 0.889 m and y / 1.7845 m (0 when off the table), 1 if on the table,
-value / 7, 1 if it may be struck first (a ball on).
-"""
+value / 7, 1 if it may be struck first (a ball on; with a free ball every colour)."""
 STATE_ENTRIES = (
     "reds",
     "any_colour",
@@ -33,8 +31,7 @@ STATE_ENTRIES = (
     "break",
 )
 """Entries of the state of the game: reds left / 15; the ball on as one-hot, from "any_colour" to "black"; 1
-if the cue ball is in hand; points of this break / 155.
-"""
+if the cue ball is in hand; points of this break / 155."""
 
 FRAME_ENTRIES = (
     "score",
@@ -57,24 +54,20 @@ FRAME_ENTRIES = (
     "misses",
     "anywhere",
 )
-"""Entries that a frame adds, from one player's point of view, in [-1, 1] and never clipped. His score s and
-the opponent's, each s / (s + 147); the difference d / (abs(d) + 147); points on the table / 155. Flags: it is
-his turn, the striker has a free ball, the other player has just fouled (a decision is open), the foul was
-called a miss, the black was re-spotted, he broke off in this frame. Failures in succession from one position
-/ 2, and whether the next one loses the frame. Whether the lot is won and its winner decides who begins. Of a
-match, each f / (f + 1): the frames that he has won, those of the opponent, those that win the match (1 in a
-single frame). The share of the frame's time that has been played (0 without a clock); misses m in succession,
-m / (m + 5); whether the cue ball in hand may be placed anywhere. With a free ball, "ball_on" is 1 for every
-colour too.
-"""
+"""Entries that a frame adds, from one player's point of view, in [-1, 1] and never clipped. Scores s, its own
+and the opponent's, as s / (s + 147); their difference d / (abs(d) + 147); points on the table / 155. Flags:
+it is its turn, the striker has a free ball, the other player has just fouled (a decision is open), the foul
+was called a miss, the black was re-spotted, it broke off in this frame. Failures in succession from one
+position / 2, and whether the next one loses the frame. Whether the lot is won and its winner decides who
+begins. Of a match, f / (f + 1): the frames that it has won, the opponent's, those that win it (1 in a single
+frame). The share of the frame's time that has been played (0 without a clock); misses m in succession,
+m / (m + 5); whether the cue ball in hand may be placed anywhere."""
 REPLACED_COLUMNS = ("x", "y", "on_table")
-"""Columns of the layout that "replace" restores, one row a ball as in the table of balls; 0 unless a miss has
-just been called."""
+"""Columns of the layout that "replace" restores, one row a ball; 0 unless a miss has just been called."""
 
 REACH = 1.1
-"""Bound of the spaces that hold places. The noses are at 1, and a ball that rests in the mouth of a pocket
-may lie past them: on snooker's own tables at 1.013, on any table that an environment takes within this bound
-(``table_fit``)."""
+"""Bound of the spaces that hold places. The noses are at 1; a ball in the mouth of a pocket lies up to 1.013
+on snooker's own tables, and within this bound on any that an environment takes (``table_fit``)."""
 
 _COLUMNS = len(BALL_COLUMNS)
 BALLS_SIZE = N_BALLS * _COLUMNS
@@ -95,28 +88,21 @@ def space(
     Parameters
     ----------
     kind : {"flat", "balls", "masked"}
-        "flat": a Box with shape (121,); "balls": a Dict of the boxes "balls" (22, 5) and "state" (11,);
-        "masked": a Dict of the boxes "observations", that of "flat", and "action_mask" (choices,), int8 in
-        {0, 1}.
+        "flat": a Box (121,); "balls": a Dict of the boxes "balls" (22, 5) and "state" (11,); "masked": a Dict
+        of the boxes "observations", that of "flat", and "action_mask" (choices,), int8 in {0, 1}.
     frame : bool, optional
-        Whether the 19 entries of a frame or match follow the eleven of a visit: shapes (140,) and (30,).
-        Default False.
+        Whether the 19 entries of a frame or match follow: shapes (140,) and (30,). Default False.
     replaced : bool, optional
-        Whether the layout that "replace" restores follows, as in a frame with a miss rule: 66 more numbers,
-        (206,) in all, or the box "replaced" (22, 3). Default False.
+        Whether the layout that "replace" restores follows, as with a miss rule: (206,) in all, or the box
+        "replaced" (22, 3). Default False.
     choices : int, optional
-        Number of discrete actions, the length of "action_mask". Default 540, those that only choose a stroke.
+        Length of "action_mask". Default 540, the discrete actions that only choose a stroke.
 
     Returns
     -------
     gymnasium.spaces.Box or gymnasium.spaces.Dict
-        The space of float32 numbers, and of the mask. Places in the mouths of pockets are a little beyond 1,
-        so that the bounds are 1.1 wherever there are balls; all other numbers are in [-1, 1].
-
-    Raises
-    ------
-    ValueError
-        For another kind.
+        float32, and the mask. The bounds are 1.1 wherever there are balls, which may lie in the mouths of
+        pockets; all other numbers are in [-1, 1].
 
     Examples
     --------
@@ -144,8 +130,7 @@ def space(
 
 @kernel
 def observe_into(row, positions, on_table, ball_on, on, in_hand, points):
-    """Write the flat observation (SIZE,) float32. ``ball_on``: a BallOn, ``on``: the mask of the balls on,
-    ``points``: the break so far."""
+    """Write the flat observation (SIZE,). ``on``: mask of the balls on; ``points``: the break so far."""
     for i in range(N_BALLS):
         at, here = i * _COLUMNS, on_table[i]
         row[at] = positions[i, 0] / HALF_WIDTH if here else 0.0
@@ -172,26 +157,22 @@ def shaped(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = N
     rows : numpy.ndarray
         float32 (..., k), with k = 121 in a visit, 140 in a frame, 206 in a frame with a miss rule.
     masks : numpy.ndarray, optional
-        int8 or bool (..., choices): the available choices, for "masked" alone. Default None.
+        int8 or bool (..., choices): the available choices, which "masked" needs. Default None.
 
     Returns
     -------
     numpy.ndarray or dict
-        With "flat": ``rows`` itself. With "balls": a dict of new arrays, "balls" (..., 22, 5), "state" (...,
-        11 or 30) and, with a miss rule, "replaced" (..., 22, 3). With "masked": a dict of ``rows`` itself,
-        "observations", and of "action_mask", int8: ``masks`` itself, or a new array if they are bool.
-
-    Raises
-    ------
-    ValueError
-        With "masked" and no masks.
+        "flat": ``rows`` itself. "balls": new arrays "balls" (..., 22, 5), "state" (..., 11 or 30) and, with a
+        miss rule, "replaced" (..., 22, 3). "masked": ``rows`` as "observations", ``masks`` as int8
+        "action_mask".
 
     Examples
     --------
     >>> import numpy as np
     >>> from snooker_env.tasks import shaped_observations
-    >>> {name: part.shape for name, part in shaped_observations("balls", np.zeros((8, 121), np.float32)).items()}
-    {'balls': (8, 22, 5), 'state': (8, 11)}
+    >>> parts = shaped_observations("balls", np.zeros((8, 121), np.float32))
+    >>> parts["balls"].shape, parts["state"].shape
+    ((8, 22, 5), (8, 11))
     """
     if kind == "flat":
         return rows

@@ -1,5 +1,4 @@
-"""How does one train against several opponents? ``OpponentPool``: one of them is drawn for each frame, from
-the table's own stream."""
+"""How does one train against several opponents? One is drawn for each frame, from the table's own stream."""
 
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
@@ -18,9 +17,9 @@ if TYPE_CHECKING:
 class OpponentPool:
     """Several opponents, one of whom is drawn for each table and frame, by their weights.
 
-    The draw comes from the table's own stream of random numbers and is part of its state: the same seed meets
-    the same opponents, whatever happens on other tables, and a saved state plays on exactly. Members may be
-    added at any time, for instance past selves during training: frames that begin later may draw them.
+    The draw comes from the table's own stream and is part of its state: the same seed meets the same
+    opponents, and a saved state plays on exactly. Members may be added at any time, as past selves during
+    training.
 
     Parameters
     ----------
@@ -29,25 +28,10 @@ class OpponentPool:
     weights : iterable of float, optional
         One weight for each member, at least 0; default 1 for each.
 
-    Attributes
-    ----------
-    members : tuple
-        The members, in the order in which they were added.
-    weights : tuple of float
-        Their weights.
-
-    Raises
-    ------
-    ValueError
-        If ``members`` are given and empty, there is not one weight for each, or a weight is wrong or none is
-        above 0.
-
     Examples
     --------
-    >>> import snooker_env as sn
     >>> from snooker_env.tasks import OpponentPool
     >>> pool = OpponentPool(["random", "ghost_ball"], weights=[1, 3])
-    >>> env = sn.SnookerEnv(task="frame", opponent=pool)
     >>> pool.add("random")
     >>> pool.weights
     (1.0, 3.0, 1.0)
@@ -76,15 +60,12 @@ class OpponentPool:
 
     @property
     def weights(self) -> tuple[float, ...]:
-        """Their weights."""
+        """Their weights, as floats."""
         return tuple(self._weights)
 
     def add(self, member: Any, weight: float = 1.0) -> None:
-        """Add a member, which later frames may draw.
-
-        ``member``: as in ``members``. It is checked when an environment uses it first. ``weight``: its
-        weight, at least 0; default 1. ValueError if the weight is wrong, or the member is a pool.
-        """
+        """Add a member, which later frames may draw; an environment checks it when it uses it first.
+        ValueError if the weight is below 0, or the member is a pool."""
         if (
             isinstance(member, OpponentPool)
             or member is None
@@ -98,11 +79,8 @@ class OpponentPool:
         self._weights.append(weight)
 
     def set_weight(self, index: int, weight: float) -> None:
-        """Change the weight of a member. With 0 it is drawn no more; frames in which it plays go on.
-
-        ``index``: its index in ``members``. ``weight``: the weight, at least 0. ValueError if there is no
-        such member, or the weight is wrong.
-        """
+        """Change the weight of ``members[index]``. With 0 it is drawn no more; frames in which it plays go
+        on. ValueError if there is no such member, or the weight is below 0."""
         self._weights[integer("index", index, 0, len(self._members) - 1)] = number("weight", weight, 0.0)
 
 
@@ -129,7 +107,7 @@ class PoolOpponent(Opponent):
     def turns(
         self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]
     ) -> list[tuple[Opponent, Ints, Any]]:
-        """As ``Opponent.turns``: one entry for each member that plays on some of the tables ``which``."""
+        """See ``Opponent.turns``: one entry for each member that plays."""
         self._complete()
         self._draw(frames, which)
         playing = frames.game[which, OPPONENT]

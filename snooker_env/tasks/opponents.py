@@ -1,9 +1,5 @@
-"""Who plays the other side of a frame? What an opponent is, and a callable as one.
-
-For all tables at which it is the opponent's turn, ``ask(frames, which, generators)`` is called once, in
-Python. ``prepare(frames, which, asked, buffers)`` then carries what it returned out up to the strike, on
-several threads.
-"""
+"""Who plays the other side of a frame? ``ask`` is called once for all tables at which it is the opponent's
+turn, in Python; ``prepare`` then carries what it returned out up to the strike, on several threads."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
@@ -56,19 +52,14 @@ def drawn(which, streams, out):
 
 
 class AskedOpponent(Opponent):
-    """A policy, ``policy(observation, rng) -> action``, in the spaces of the environment's own agent.
-
-    A policy with a method ``many(observations, generators, masks) -> actions`` is called once for all tables
-    that wait: observations with a leading axis, as many generators, and the masks of discrete actions (None
-    for box actions).
-    """
+    """A policy ``policy(observation, rng) -> action``; one with ``many(observations, generators, masks) ->
+    actions`` is called once for all tables that wait (masks None for box actions)."""
 
     def __init__(self, policy: Policy):
         self.policy = policy
 
     def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
-        """Its actions on the tables ``which``: (n, k). Raises ValueError, naming "opponent's action", for an
-        invalid one."""
+        """See ``Opponent.ask``: (n, k). ValueError, naming "opponent's action", for an invalid one."""
         actions, k_of = frames.seats[SIDE].actions, which.tolist()
         seen = frames.observe(which, SIDE)
         wished = self._wishes(frames, which, seen, [generators[k] for k in k_of])
@@ -81,7 +72,7 @@ class AskedOpponent(Opponent):
         return out
 
     def prepare(self, frames: "Frames", which: Ints, asked: Floats, buffers: ShotBuffers) -> Ints:
-        """As ``Opponent.prepare``."""
+        """See ``Opponent.prepare``."""
         return frames.prepare(which, asked, buffers, SIDE)
 
     def _wishes(self, frames, which, seen, generators):

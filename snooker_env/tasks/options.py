@@ -1,9 +1,4 @@
-"""How is the game of an environment configured? All options in one immutable object, validated together when
-it is made.
-
-``SnookerEnv``, ``SnookerVectorEnv``, ``MatchEnv``, ``SnookerVecEnv`` and ``planning.Planner`` take an
-``Options``, or its fields as keywords.
-"""
+"""How is the game of an environment configured? All options in one immutable object, validated together."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import InitVar, dataclass, field, fields, replace
@@ -32,19 +27,17 @@ from .table_fit import fitted, table_of
 
 TASKS = ("visit", "frame", "match")
 MOST_TIME = 15.0
-"""The most time to play [s]: the longest shot clock. With more no stroke would ever be in time, and the
-frame's clock would not start."""
+"""The most time to play [s]: the longest shot clock. With more no stroke would ever be in time."""
 TIME_TO_PLAY = 9.0
-"""Default time [s] from the rest of the balls to the next stroke, in a game with a clock. With the strokes'
+"""Default time [s] from the rest of the balls to the next stroke, in a game with a clock: with the strokes'
 own duration some 14 s a stroke, as in the Shoot Out of professionals."""
 ACTIONS = ("box", "discrete")
 LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 """What layout="default" means in each task."""
 MAX_STROKES = 1000
-"""Default number of strokes of both players after which the referee stops a frame. Uniformly random players
-that aim near a pot needed 284 on average, and never more than 560 in 2,000 frames (``benchmarks.frames``).
-Players that only foul, or only pass the turn, never finish.
-"""
+"""Default number of strokes of both players after which the referee stops a frame. Random players that aim
+near a pot needed 284 on average, never more than 560 in 2,000 frames (``benchmarks.frames``); those that only
+foul, or only pass the turn, never finish."""
 FRAMES = 7
 """Default length of a match: best of 7."""
 OPPONENTS = (
@@ -53,7 +46,8 @@ OPPONENTS = (
 )
 """What may be the opponent, for messages."""
 GROUPS = ("task", "action", "view", "shot", "frame")
-"""Groups of options, see ``Options.group``."""
+"""Groups of options: what is played, how one acts, what one sees, what decides a shot, the rules of
+frames."""
 _UNSAID: Any = object()
 OBJECT = "object"
 """As the option ``opponent``: whoever was passed to the environment as an object."""
@@ -66,7 +60,6 @@ class Rules:
     """The options of a game in the form that the kernels need, as ``Options.rules`` holds them."""
 
     actions: Actions | Choices
-    """``Actions`` or ``Choices``."""
     noise: Noise
     physics: Physics
     table: Table
@@ -79,15 +72,15 @@ class Rules:
     miss: MissRule = "off"
     """In a frame: the rule for a foul and a miss."""
     max_strokes: int = NEVER
-    """In a frame: number of strokes of both players after which it is stopped."""
+    """In a frame: strokes of both players after which it is stopped."""
     one_stroke: bool = False
     """In a visit: whether it ends after its first stroke."""
     frames: int = 0
-    """In a match: of how many frames at most. 0 for a single frame, which is no match."""
+    """In a match: of how many frames at most; 0 for a single frame, which is no match."""
     game: RulesName = "snooker"
     """In a frame: the rule set."""
     time_to_play: int = 0
-    """In a frame with a clock: the time from the rest of the balls to the next stroke [ms]."""
+    """In a frame with a clock: from the rest of the balls to the next stroke [ms]."""
 
     @property
     def rule_set(self) -> RuleSet:
@@ -105,8 +98,7 @@ class Rules:
 
 
 def _about(group: str, values: str, *, only: str | None = None) -> dict[str, Any]:
-    """The metadata of an option: its group, the values that it may have (Markdown), and the only task that
-    has it."""
+    """The metadata of an option: its group, its values (Markdown), and the only task that has it."""
     return {"group": group, "values": values, "only": only}
 
 
@@ -129,23 +121,20 @@ class Options:
     ----------
     task : {"visit", "frame", "match"}, optional
         "visit" (default): build a break until the first miss or foul. "frame": play a whole frame. "match":
-        the best of several frames; what is said below of a frame holds for a match, too.
+        the best of several; what is said below of a frame holds for a match, too.
     layout : str, optional
         How tables are dealt: "opened", "held_out", "break_off", "line_up", "colours", "random:N" (N reds),
-        "snookered", "pots:easy", "pots:medium" or "pots:hard". "default": "opened" in a visit, "break_off" in
-        a frame.
+        "snookered", "pots:easy", "pots:medium" or "pots:hard". "default": "opened", in a frame "break_off".
     action : {"box", "discrete"}, optional
         "box" (default): numbers in [-1, 1]. "discrete": one integer that means a pot, a speed, a side and a
         top, in [0, 540) unless options of frames add more.
     aim : {"absolute", "target"}, optional
-        Reference direction of the aim in a box action: +x (default), or the line of the best pot or, without
-        one, of a fair stroke.
+        Where a box action's aim is measured from: +x (default), or the best pot's line, else a fair stroke's.
     observation : {"flat", "balls", "masked"}, optional
-        "flat" (default): one array. "balls": a dict of two arrays. "masked", with ``action="discrete"``: a
-        dict of the flat array and the available choices.
+        "flat" (default): one array. "balls": a dict of two. "masked", with ``action="discrete"``: a dict of
+        the flat array and the available choices.
     noise : str, dict or Noise, optional
-        Execution errors: the name of a level, or standard deviations, see ``snooker_env.tasks.Noise``.
-        Default "none".
+        Execution errors: the name of a level, or standard deviations, see ``Noise``. Default "none".
     reward : {"points", "points_and_fouls", "pots", "legal", "win", "frames"}, optional
         Default "points". The first four are available in a visit, "points" and "win" in a frame, "frames"
         also in a match.
@@ -154,37 +143,35 @@ class Options:
     placement : bool, optional
         Whether a box action holds the place in the D for a cue ball in hand; default False.
     physics : str, dict, Physics or None, optional
-        Physical constants, as ``Physics.of`` takes them, with snooker's ball radius. Default "paper".
+        As ``Physics.of`` takes them, with snooker's ball radius. Default "paper".
     table : str or Table, optional
         "match" (default), "tight", or a ``Table`` whose noses are where snooker's are.
     fidelity : str, optional
         How impacts are solved: "fast", "standard" (default), "reference" or "euler:N".
     opponent : str or Path, optional
-        In a frame: "none" (default), or what ``snooker_env.player`` takes: the name of a player, a model's
-        ``.zip``, ... Environments also take objects as their keyword ``opponent``
-        (docs/environment/opponents.md); their options then say "object".
+        In a frame: "none" (default), or what ``snooker_env.player`` takes: a player's name, a model's
+        ``.zip``, ... Environments also take objects (docs/environment/opponents.md); their options then say
+        "object".
     miss : {"off", "clear_path", "attempt"}, optional
         In a frame: the rule for a foul and a miss (docs/environment/rules.md). Default "off".
     max_strokes : int or None, optional
-        In a frame: number of strokes of both players after which the referee stops it; default 1000, None for
-        never. A match stops with it.
+        In a frame: strokes of both players after which the referee stops it and its match; default 1000,
+        None: never.
     one_stroke : bool, optional
         In a visit: whether it ends after its first stroke; default False.
     trust : bool, optional
         In a frame: whether code in an opponent's ``.zip`` may run; default False.
     says : sequence of str, optional
         In a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a
-        free ball; else the colour struck first is taken as the one nominated), "decision" (after a foul of
-        the opponent, of box actions only), "concede" (the frame), "claim" (the frame, where the rules allow
-        it) and "lot" (whether the winner of the lot for a re-spotted black lets the other player begin; else
-        it begins). Default: nothing.
+        free ball; else it is the one struck first), "decision" (after a foul of the opponent, of box actions
+        only), "concede", "claim" (the frame, where the rules allow it) and "lot" (whether the winner of the
+        lot for a re-spotted black lets the other player begin; else it begins). Default: nothing.
     nominate, decision, concede, claim, lot : bool, optional
         Whether ``says`` has them: ``decision=True`` adds "decision" to it. To be read as attributes, too.
     game : {"snooker", "six_red", "shoot_out"}, optional
         In a frame: the rules of the game (``snooker_env.game.rule_sets``). Default "snooker".
     time_to_play : float, optional
-        In a frame of the Shoot Out: the time from the rest of the balls to the next stroke [s], at most 15;
-        default 9.
+        In a frame of the Shoot Out: from the rest of the balls to the next stroke [s], at most 15; default 9.
     frames : int, optional
         In a match: the most frames that it can have, an odd number; default 7.
 
@@ -196,7 +183,7 @@ class Options:
     Raises
     ------
     ValueError
-        If an option is unknown, has the wrong type, or conflicts with another. The message names the field.
+        If an option is unknown, of the wrong type, or conflicts with another. The message names the field.
 
     Examples
     --------
@@ -415,13 +402,8 @@ class Options:
 
     @classmethod
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
-        """Return the options of a group, with their defaults.
-
-        ``name``: "task": what is played, how it begins and what it pays. "action", "view": how the agent acts
-        and sees. "shot": what decides the outcome of a shot. "frame": the rules of frames. ``task``: leaves
-        out the options that this task does not have; default None: none of them. Returns name and default of
-        each. ValueError if there is no such group or task.
-        """
+        """Return name and default of each option of a group: "task", "action", "view", "shot" or "frame";
+        with ``task``, of those that this task has. ValueError if there is no such group or task."""
         choice("name", name, GROUPS)
         own = (
             TASKS if task is None else {"match": ("frame", "match")}.get(choice("task", task, TASKS), (task,))
@@ -433,11 +415,7 @@ class Options:
         }
 
     def but(self, **changes: Any) -> "Options":
-        """Return a copy with some options changed.
-
-        ``**changes``: fields and their new values. Returns the new options, validated. ValueError for the
-        same reasons as ``Options``.
-        """
+        """Return a validated copy with some fields changed. ValueError as of ``Options``."""
         # else they are those of this one
         flags = {} if "says" not in changes else dict.fromkeys(SAYS, _UNSAID)
         return replace(self, **flags | changes)
@@ -478,11 +456,7 @@ def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:
 
 
 def options_of(options: Options | None, given: Mapping[str, Any]) -> Options:
-    """The ``Options`` of an environment that was given ``options`` (None or an ``Options``) and the keywords
-    ``given``.
-
-    Raises ValueError for invalid values, TypeError for an unknown keyword.
-    """
+    """The ``Options`` that are ``options`` or of the keywords ``given``; TypeError for an unknown keyword."""
     if options is None:
         for name in given:
             if name not in NAMES:

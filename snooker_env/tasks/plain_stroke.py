@@ -1,10 +1,6 @@
-"""What does a plain player do without a pot? The break-off, a soft stroke at what it sees, else an escape
-over cushions; kernels.
-
-No shot is simulated: what is seen is known from straight lines (``windows``), and escapes from a table of
-rebounds (``escapes``). An escape is struck ``ROLLING`` above the middle of the cue ball, where it rolls at
-once, as that table supposes.
-"""
+"""What does a plain player do without a pot? The break-off, a soft stroke at what it sees (``windows``), else
+an escape (``escapes``), struck ``ROLLING`` above the middle as that table of rebounds supposes. No shot is
+simulated."""
 
 from math import atan2, cos, hypot, sin, sqrt
 
@@ -19,12 +15,11 @@ from .windows import open_part, open_windows
 SLIDE = 1.4
 """Initial speed of a ball struck in its middle, over the speed with which it rolls on."""
 BREAK_X = float(SPOTS[0, 0])
-"""Where the cue ball stands for the break-off: so far from the brown spot along the baulk line, on either
-side [m]."""
+"""Where the cue ball stands for the break-off: its x, either sign, on the baulk line [m]."""
 _BREAK_SPEED, _BREAK_SIDE, _BREAK_TOP = 3.4, 0.42, 0.1
-"""Of the break-off: a third of the end red, with running side, so that the cue ball comes back to baulk over
-three cushions. Chosen, with ``lines.THIN``, among 6,000 random ones: of those that return the cue ball to
-baulk in each of 40 trials of a professional, one that leaves hardly a pot."""
+"""Of the break-off: a third of the end red, with running side, back to baulk over three cushions. Chosen,
+with ``lines.THIN``, among 6,000 random ones: of those that return the cue ball to baulk in each of 40 trials
+of a professional, one that leaves hardly a pot."""
 _NUDGE = 0.3
 """How much faster than needed a cue ball is rolled at a ball [m/s]; its speed varies by a tenth."""
 _STOP = 6.1
@@ -36,19 +31,14 @@ _NEAR_POCKET = 0.09
 
 @kernel
 def break_off(positions, end_red):
-    """The stroke from the place of the cue ball: (speed, side, top, direction of the cue ball), at the end
-    red on its side.
-
-    ``end_red``: that on the right.
-    """
+    """The break-off: (speed, side, top, direction); ``end_red``: the right one, mirrored on the left."""
     sign = -1.0 if positions[0, 0] < 0.0 else 1.0
     return _BREAK_SPEED, sign * _BREAK_SIDE, _BREAK_TOP, thin_at_end(positions, end_red, sign)
 
 
 @kernel
 def _goes_in(positions, ball, ux, uy, v2):
-    """Whether a cue ball that rolls along u with the squared speed v2 [m^2/s^2] into ``ball`` is likely to go
-    on into a pocket."""
+    """Whether a cue ball rolling along u into ``ball``, squared speed v2 [m^2/s^2], may go into a pocket."""
     x, y = positions[0, 0], positions[0, 1]
     bx, by = positions[ball, 0] - x, positions[ball, 1] - y
     along, across = bx * ux + by * uy, bx * uy - by * ux
@@ -70,15 +60,10 @@ def _goes_in(positions, ball, ux, uy, v2):
 
 @kernel
 def soft(positions, on_table, on, touching, drive, found):
-    """The soft stroke at the nearest ball on that is seen well: (speed, top, direction) and half its window
-    [rad]; no window: none is.
-
-    It is aimed at the middle of what is seen; where the cue ball would follow into a pocket, halfway to an
-    edge, or so that it stops at the ball, without spin at the impact. ``touching``: mask of the balls that
-    touch the cue ball, none of them on. ``drive``: how much farther than needed it rolls [m]. found
-    (LINE_ROWS, POT_COLUMNS): work space. A ball on is the nearer the better among those that offer a window
-    that a player cannot miss.
-    """
+    """The soft stroke at the nearest ball on with a window that a player cannot miss: (speed, top, direction)
+    and half the window [rad], 0: none. It is aimed at the middle of what is seen; where the cue ball would
+    follow into a pocket, halfway to an edge, or so that it stops at the ball. ``touching``: mask of balls at
+    the cue ball, none of them on. ``drive``: how much farther than needed it rolls [m]."""
     x, y = positions[0, 0], positions[0, 1]
     best, speed, top, aim, window, windows = -1e9, 0.0, 0.0, 0.0, 0.0, found[POTS:]
     many = open_windows(positions, on_table, on, touching, windows)
@@ -118,11 +103,7 @@ def soft(positions, on_table, on, touching, drive, found):
 
 @kernel
 def _escape(positions, on_table, on, vary, lines, stream):
-    """The escape with the widest window: (speed, direction) and half the window [rad]; no window: none is
-    known.
-
-    ``vary``: the windows are weighted at random, so that another one is tried after a failure.
-    """
+    """The widest escape: (speed, direction, half its window [rad], 0: none). ``vary``: weighted at random."""
     best, speed, aim, window = 0.0, 2.0, 0.0, 0.0
     for k in range(find_escapes(positions, on_table, on, lines, 0)):
         weight = 1.0
@@ -141,19 +122,9 @@ def _escape(positions, on_table, on, vary, lines, stream):
 
 @kernel
 def plain(positions, on_table, on, touching, vary, drive, found, stream):
-    """A stroke without a pot, from where the cue ball lies: (speed, side, top, direction of the cue ball), at
-    the balls in the mask ``on``.
-
-    * Straight away from a ball on that touches the cue ball (in the mask ``touching``), which counts as
-      striking it.
-    * A soft stroke at the nearest ball on of which enough can be struck.
-    * Else an escape over up to three cushions.
-    * Else the direction in which it sees a little of a ball on, else that of the nearest one.
-
-    ``vary``: a stroke from this position has failed, so another one is played. The direction varies within
-    its window in any case. ``drive``: how much farther than needed it is to roll, over no cushion [m]. found
-    (LINE_ROWS, POT_COLUMNS): work space.
-    """
+    """A stroke without a pot: (speed, side, top, direction). Straight away from a touching ball on, which
+    counts as striking it; else soft; else an escape; else at a little of a ball on, or the nearest. ``vary``:
+    one from here has failed, so another is played; ``drive``: how much farther than needed it rolls [m]."""
     u, _ = pair(stream)
     shift = (1.6 if vary else 0.5) * (u - 0.5)
     for ball in range(1, N_BALLS):

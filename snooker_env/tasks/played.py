@@ -19,8 +19,8 @@ class Played:
     shot : Shot
         The simulated shot, with its path if that was recorded.
     cue : dict of str to float
-        The strike, execution errors included: "speed" [m/s], "side", "top" (tip offset over R, right and up),
-        "aim", "elevation" [rad].
+        The strike, errors included: "speed" [m/s], "side", "top" (over R, right and up), "aim", "elevation"
+        [rad].
     player : int
         Who played it: 0, or in a frame 0 or 1.
     ball_on : BallOn
@@ -29,14 +29,12 @@ class Played:
         Whether the player had a free ball.
     first : tuple of int
         Ids of the balls struck first: one, none, or those struck at the same instant.
-    points : int
-        Points scored.
-    penalty : int
-        Penalty points given to the opponent.
+    points, penalty : int
+        Points scored, and penalty points given to the opponent.
     fouls : Foul
         The rules that the stroke broke.
     positions : numpy.ndarray
-        float64 (22, 2). The balls after the stroke [m], with colours respotted and a cue ball in hand placed.
+        float64 (22, 2). The balls after the stroke [m], colours respotted and a cue ball in hand placed.
     on_table : numpy.ndarray
         bool (22,). Which balls are on the table then.
     next_on : BallOn
@@ -47,10 +45,8 @@ class Played:
         Whose turn it is next.
     scores : tuple of int
         In a frame, both scores after the stroke; in a visit, its points so far.
-    break_before : int
-        Points of the break before this stroke.
-    break_points : int
-        Points of the break with this stroke; in a frame 0 if it scored nothing; in a visit its points so far.
+    break_before, break_points : int
+        Points of the break before and with this stroke; the latter in a frame 0 if it scored nothing.
     in_hand : bool
         Whether the cue ball is in hand next.
     choice : bool
@@ -65,11 +61,9 @@ class Played:
     >>> import snooker_env as sn
     >>> env = sn.SnookerEnv(action="discrete")
     >>> env.keep_history = True
-    >>> _ = env.reset(seed=1)
-    >>> _ = env.step(67)
-    >>> played = env.history[0]
-    >>> played.player, played.ball_on.name, played.positions.shape
-    (0, 'RED', (22, 2))
+    >>> _ = env.reset(seed=1), env.step(67)
+    >>> env.history[0].player, env.history[0].ball_on.name
+    (0, 'RED')
     """
 
     shot: Shot

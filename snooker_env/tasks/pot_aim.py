@@ -1,12 +1,7 @@
 """In which direction must the cue ball leave to pot a ball? The line of a pot, corrected for throw, swerve
-and the object ball's own curve.
-
-The geometric line (``game.pots``) sends the cue ball's centre straight to the ghost ball. Side spin under an
-elevated cue, or spin across the path, bends that line. Friction throws the object ball off the line of
-centres, and its spin then bends its path. All of this follows from the models themselves: the two balls alone
-are played on unbounded cloth until the object ball rolls, and secant steps correct the direction by how far
-the ball passes the pocket's aim point. One trial takes a microsecond instead of a whole shot.
-"""
+and the object ball's own curve: the two balls alone are played on unbounded cloth until the object ball
+rolls, and secant steps correct the direction by how far it passes the pocket's aim point. A trial takes a
+microsecond."""
 
 from math import atan2, hypot, pi
 
@@ -24,10 +19,7 @@ _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve
 
 @kernel
 def _passes(aim, stroke, c, b, p, law, work):
-    """Angle [rad] by which the ball at b, hit by a cue ball sent from c, passes p on the left; 9: missed.
-
-    ``stroke``: (speed, side, top, elevation).
-    """
+    """Angle [rad] by which the ball at b, hit by a cue ball sent from c, passes p on the left; 9: missed."""
     (speed, side, top, elevation), (cx, cy), (bx, by), (px, py) = stroke, c, b, p
     phys, m, motion, state = law.phys, law.end_mass_ratio, work.motion, work.state
     R = phys[P_R]
@@ -80,23 +72,18 @@ def _passes(aim, stroke, c, b, p, law, work):
     else:
         qx, qy = qx - gx, qy - gy
     ahead = qx * ux + qy * uy
-    # relative to where the ball lay, even if it begins to roll near the pocket: so the correction's slope
-    # hardly changes
+    # from where the ball lay, even if it begins to roll near the pocket: the slope hardly changes
     return (qx * uy - qy * ux) / (hypot(ux, uy) * away) if ahead > 0.0 else 9.0
 
 
 @kernel(seconds=5, uses=(collide_balls,))
 def solved_aim(positions, ball, target, ghost, stroke, law, work):
-    """Direction [rad] in which the cue ball must leave to send ``ball`` to the point ``target`` (x, y).
-
-    ``ghost``: (x, y) of the straight line's ghost ball; ``stroke``: (speed, side, top, elevation). If no
-    direction succeeds (the stroke is too soft to arrive or the cut too thin), the best one tried is returned.
-    """
+    """Direction [rad] in which the stroke (speed, side, top, elevation) sends ``ball`` to ``target``, sought
+    from the straight line to ``ghost``; the best one tried if none succeeds (too soft, or too thin a cut)."""
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     line = atan2(gy - cy, gx - cx)
-    # an error of the cue ball's direction turns the object ball's the other way, magnified by path / (2 R cos
-    # cut)
+    # an error turns the object ball's direction the other way, magnified by path / (2 R cos cut)
     far = hypot(gx - cx, gy - cy)
     run = hypot(px - bx, py - by)
     cut = ((gx - cx) * (px - bx) + (gy - cy) * (py - by)) / (far * run)

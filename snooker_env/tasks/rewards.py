@@ -3,10 +3,8 @@
 from .._jit import kernel
 
 REWARDS = ("points", "points_and_fouls", "pots", "legal")
-"""Rewards of a visit. ``"points"``: points scored, 0 for a miss or foul, in [0, 15]. ``"points_and_fouls"``:
-minus the penalty, in [-7, 15]. ``"pots"``: 1 for a scoring stroke, else 0. ``"legal"``: 1 for a stroke
-without a foul, else 0, as for escaping from a snooker.
-"""
+"""Rewards of a visit: points scored, 0 for a miss or foul, in [0, 15]; the same minus the penalty, in [-7,
+15]; 1 for a scoring stroke, else 0; 1 for a stroke without a foul, else 0, as for escaping from a snooker."""
 
 
 @kernel
@@ -20,39 +18,31 @@ def reward_of(kind, points, penalty):
 
 
 FRAME_REWARDS = ("points", "win")
-"""Rewards of a frame. ``"points"``: the growth of the player's lead, pots and penalties of both, since he was
-last paid. The rewards of an episode add up to the final difference: the first one includes a first visit of
-the opponent. ``"win"``: +1 or -1 when the frame ends, else 0.
-"""
+"""Rewards of a frame. ``"points"``: the growth of the player's lead, pots and penalties of both, since it was
+last paid, in all the final difference: the first reward includes a first visit of the opponent. ``"win"``: +1
+or -1 when the frame ends, else 0."""
 MATCH_REWARDS = (*FRAME_REWARDS, "frames")
-"""Rewards of a match. ``"points"``: as in a frame, added up over the frames. ``"win"``: +1 or -1 when the
-match ends. ``"frames"``: +1 or -1 when a frame ends.
-"""
+"""Rewards of a match: points added up over the frames; +1 or -1 when the match ends; +1 or -1 when a frame
+ends."""
 (POINTS_PAID, WIN_PAID, FRAMES_PAID) = range(3)
 
 
 @kernel
 def earned(kind, lead, frames_lead):
-    """What the column PAID of a frame counts for the reward ``kind``: a player's lead in frames, or in
-    points."""
+    """What PAID counts for the reward ``kind``: a player's lead in frames, or in points."""
     return frames_lead if kind == FRAMES_PAID else lead
 
 
 @kernel
 def frame_reward_of(kind, gained, winner, player):
-    """The reward of a step of a frame or match.
-
-    ``kind`` is the index into ``MATCH_REWARDS``, ``gained`` what the player has ``earned`` since he was paid,
-    ``winner`` -1 for none.
-    """
+    """A step's reward; ``kind``: of ``MATCH_REWARDS``, ``gained``: ``earned`` unpaid, ``winner``: or -1."""
     if kind != WIN_PAID:
         return float(gained)
     return 0.0 if winner < 0 else 1.0 if winner == player else -1.0
 
 
 def frame_reward(name: str, gained: float, winner: int | None, player: int) -> float:
-    """The same for one player of a match; ``gained`` and ``winner`` (None while there is none) are those of
-    player 0."""
+    """The same for one player of a match; ``gained`` and ``winner`` (or None) are those of player 0."""
     if name != "win":
         return float(gained if player == 0 else -gained)
     return 0.0 if winner is None else 1.0 if winner == player else -1.0

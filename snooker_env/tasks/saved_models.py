@@ -1,11 +1,7 @@
-"""How is a model's file read safely? As plain data first, without running anything; it is unpickled only with
-consent.
-
-A zip of Stable-Baselines3 or sb3-contrib holds weights and ``data``: JSON in which everything but plain
-values is a pickle (of cloudpickle, in base64). Loading it whole, as ``PPO.load`` does, runs the code in these
-pickles, whatever it is. ``SavedModel`` reads only the plain values, which suffices to refuse a model that
-does not fit. ``SavedModel.network`` alone unpickles, and requires consent.
-"""
+"""How is a model's file read safely? As plain data first, without running anything: a zip of
+Stable-Baselines3 or sb3-contrib holds weights and ``data``, JSON in which all but plain values is a pickle
+(of cloudpickle, in base64), whose code runs when loaded. Only ``SavedModel.network`` unpickles, and requires
+consent."""
 
 import json
 import zipfile
@@ -23,11 +19,10 @@ from .._install import missing
 __all__ = ["PLAIN", "SavedModel", "by_train", "entries", "one_thread", "outline", "part"]
 
 MOST = 2**26
-"""Largest number of bytes of JSON that are read (SB3 stores the last observations there). A small zip can
-unpack to more than a machine's memory, and JSON to objects 25 times as large.
-"""
+"""Largest number of bytes of JSON that are read (SB3 stores the last observations there): a small zip can
+unpack to more than a machine's memory, and JSON to objects 25 times as large."""
 PLAIN = "model.json"
-"""Name of the part that replaces ``data`` in zips written by ``agents.publish``, which hold no pickles."""
+"""The part that replaces ``data`` in zips written by ``agents.publish``, which hold no pickles."""
 
 _ALGORITHMS = (
     ("sb3_contrib", "TQC", {"top_quantiles_to_drop_per_net"}),
@@ -40,11 +35,10 @@ _ALGORITHMS = (
     ("stable_baselines3", "A2C", {"gae_lambda", "rollout_buffer_class"}),
 )
 """Library, class, and the names that only its models save, in addition to those of the classes above. A
-recurrent model has no class of rollout buffers.
-"""
+recurrent model has no class of rollout buffers."""
 _PLAYED = ("policy_class", "policy_kwargs", "observation_space", "action_space")
-"""The pickles that playing needs. The others, of schedules, callbacks and buffers, stay text: they may name
-packages that are missing."""
+"""The pickles that playing needs; others (schedules, callbacks, buffers) may name packages that are
+missing."""
 _UNPICKLED = {"learning_rate": 0.0, "clip_range": 0.2, "train_freq": 1, "target_entropy": 0.0}
 """What takes the place of a pickle that is left out; else None. Nothing is learned by these."""
 
@@ -54,8 +48,7 @@ def one_thread() -> Iterator[None]:
     """Let PyTorch compute on the calling thread alone, as a context: where a model that plays decides.
 
     PyTorch shares out even small products among a thread for each core; networks of a few layers are slower
-    so, and each core that another process holds makes them wait. Afterwards the number of threads is what it
-    was.
+    so, and each core that another process holds makes them wait.
 
     Returns
     -------
@@ -101,18 +94,14 @@ def part(path: str | Path, name: str, most: int = MOST) -> bytes:
     ------
     ValueError
         If the part is larger than ``most``.
-    KeyError
-        If there is no such part.
-    zipfile.BadZipFile
-        If the file is no zip.
-    OSError
-        If the file cannot be read.
+    KeyError, zipfile.BadZipFile, OSError
+        If there is no such part, the file is no zip, or it cannot be read.
 
     Examples
     --------
+    >>> from snooker_env.tasks.saved_models import part
     >>> import tempfile, zipfile
     >>> from pathlib import Path
-    >>> from snooker_env.tasks.saved_models import part
     >>> file = Path(tempfile.mkdtemp()) / "model.zip"
     >>> with zipfile.ZipFile(file, "w") as made:
     ...     made.writestr("data", "{}")
@@ -141,9 +130,7 @@ def entries(path: str | Path) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If the part is no JSON object, or too large.
-    KeyError, zipfile.BadZipFile, OSError
-        For the same reasons as ``part``.
+        If the part is no JSON object; the other errors are those of ``part``.
 
     Examples
     --------
@@ -199,7 +186,7 @@ def outline(space: spaces.Space[Any]) -> tuple[str, Any]:
     kind : str
         Name of the space's class.
     size : str or list of int
-        The number of choices of a Discrete space as text, the spaces of a Dict as text, else the shape.
+        The number of choices or the spaces of a Dict, as text, else the shape.
 
     Examples
     --------
@@ -235,36 +222,28 @@ class SavedModel:
         Name of the argument that error messages refer to.
     data : dict
         The JSON of its ``data``, in which pickles are text.
-    observation : (str, str or list of int)
-        ``outline`` of the observation space, as the file describes it.
-    action : (str, str or list of int)
-        ``outline`` of the action space, as the file describes it.
+    observation, action : (str, str or list of int)
+        ``outline`` of its spaces, as the file describes them.
 
     Examples
     --------
     >>> from pathlib import Path
     >>> from snooker_env.tasks.saved_models import SavedModel
-    >>> saved = SavedModel(Path("ppo.zip"), "opponent", {"clip_range": 0.2, "rollout_buffer_class": {}}, ("Box", [121]), ("Box", [4]))
-    >>> saved.algorithm
+    >>> held = {"clip_range": 0.2, "rollout_buffer_class": {}}
+    >>> SavedModel(Path("ppo.zip"), "opponent", held, ("Box", [121]), ("Box", [4])).algorithm
     ('stable_baselines3', 'PPO')
     """
 
     path: Path
     field: str
     data: dict[str, Any]
-    """Its ``data``, in which pickles are text."""
     observation: tuple[str, Any]
     action: tuple[str, Any]
-    """``outline`` of its spaces, by what it says itself."""
 
     @classmethod
     def of(cls, path: str | Path, field: str) -> "SavedModel":
-        """Read a model's file.
-
-        ``path``: the model's ``.zip``. ``field``: name of the argument that error messages refer to. Returns
-        the plain data in the file. ValueError if the file is no model of Stable-Baselines3, or one of
-        ``train.py``, whose agents observe more than the environment shows.
-        """
+        """Read a ``.zip``; ``field``: the argument that errors name. ValueError if it is no model of
+        Stable-Baselines3, or one of ``train.py``, whose agents observe more than the environment shows."""
         try:
             data = entries(path)
             ours = by_train(data)
@@ -281,16 +260,12 @@ class SavedModel:
         return cls(Path(path), field, data, *outlines)
 
     def refused(self, allowed: str) -> ValueError:
-        """Make the error that refuses this file.
-
-        ``allowed``: what the file must be. Returns the error, not raised.
-        """
+        """Return, not raise, the ValueError that refuses this file; ``allowed``: what it must be."""
         return refuse(self.field, str(self.path), allowed)
 
     @property
     def algorithm(self) -> tuple[str, str]:
-        """Library and class that saved the model, (str, str), recognised by the names in ``data``; ValueError
-        for an unknown one."""
+        """Library and class that saved the model, by the names in ``data``; ValueError for an unknown one."""
         held = {name for name, value in self.data.items() if value is not None}
         for library, name, own in _ALGORITHMS:
             if own <= held:
@@ -300,12 +275,9 @@ class SavedModel:
         raise self.refused("must be a model of MaskablePPO, " + ", ".join(name for _, name, _ in _ALGORITHMS))
 
     def network(self, trust: bool, consent: str) -> Any:
-        """Load the model's policy network. This runs the code in its pickles.
-
-        ``trust``: whether that code may run. ``consent``: how a user gives this consent, for the error
-        message, as "trust=True". Returns the policy, on the CPU. ValueError without ``trust``, before
-        anything runs; or if the model cannot be loaded. ImportError without Stable-Baselines3 or sb3-contrib.
-        """
+        """Load the model's policy on the CPU, which runs the code in its pickles: ValueError without
+        ``trust``, before anything runs, or if it cannot be loaded. ImportError without the library.
+        ``consent``: how a user gives it, as "trust=True", for the error."""
         library, name = self.algorithm
         if not trust:
             why = f"holds pickled Python code, which runs when it is loaded: must be a file that you trust, and come with {consent}"

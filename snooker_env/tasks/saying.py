@@ -1,5 +1,4 @@
-"""What do actions of frames say beside the stroke? Nominations, decisions after a foul and declarations, for
-many frames."""
+"""What do actions of frames say beside the stroke? Nominations, decisions, declarations, for many frames."""
 
 import numpy as np
 
@@ -35,8 +34,7 @@ def _said(actions, options, game, rules, nominated, decisions, declared):
 
 
 def said(rules: Rules, actions: Floats, game: Ints) -> tuple[Ints, Ints, Ints]:
-    """Nominations, decisions and declarations (n,), as in ``players.Strokes``, of checked actions (n, k) in n
-    frames."""
+    """Nominations, decisions and declarations (n,), as in ``players.Strokes``, of checked actions (n, k)."""
     nominated, decisions, declared = np.empty((3, len(game)), np.int64)
     _said(actions, rules.actions.pack(), game, rules.rule_set.code, nominated, decisions, declared)
     return nominated, decisions, declared

@@ -1,5 +1,4 @@
-"""Who sits at a frame's table? A seat: how actions are read there, with which errors they are executed, and
-who decides."""
+"""Who sits at a frame's table? A seat: how actions are read, with which errors executed, who decides."""
 
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any

@@ -1,5 +1,4 @@
-"""Is a saved state valid? Checks every part of the result of ``get_state``, for visits and frames, before any
-of it is used."""
+"""Is a saved state valid? Checks every part of the result of ``get_state`` before any of it is used."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -28,11 +27,10 @@ if TYPE_CHECKING:
     from .options import Rules
 
 MOST = 2**53 - 1
-"""Largest score and number of strokes in a saved frame. A float, as in observations and infos, still
-represents every integer up to here.
-"""
+"""Largest score and number of strokes in a saved frame: a float, as in observations and infos, is still
+exact."""
 FAR = 1000.0
-"""Limit of the coordinates of a ball off the table [m]. They have no meaning, but must not overflow."""
+"""Limit of the coordinates of a ball off the table [m]: they mean nothing, but must not overflow."""
 
 
 class State(NamedTuple):
@@ -45,7 +43,7 @@ class State(NamedTuple):
     points: int
     over: bool
     stream: list[int]
-    """Key and counter of the table's stream of random numbers."""
+    """Key and counter of the table's random stream."""
     rng: dict[str, Any]
 
 
@@ -57,17 +55,17 @@ class FrameState(NamedTuple):
     on_table: Bools
     strokes: int
     opponent: int
-    """Which member of a pool of opponents plays, counted from 1; 0: none is drawn."""
+    """Which member of a pool plays, counted from 1; 0: none is drawn."""
     unpaid: int
     """What the agent has earned and no reward has paid: points, or with ``reward="frames"`` frames."""
     due: bool
     """Whether the episode ended before the agent's first stroke, and the next step reports it."""
     stream: list[int]
-    """Key and counter of the table's stream of random numbers."""
+    """Key and counter of the table's random stream."""
     rng: dict[str, Any]
     frames: tuple[int, int] | None = None
     first_break: int | None = None
-    """Of a match: the frames that each player has won, and who broke in the first one."""
+    """Of a match: the frames that each player has won, and who broke first."""
     best_of: int | None = None
     """Of a match: of how many frames at most."""
 
@@ -98,8 +96,7 @@ def check_keys(state: Any, keys: Collection[str]) -> None:
 def checked_layout(
     names: tuple[str, str], positions: Any, on_table: Any, table: Table, R: float
 ) -> tuple[Floats, Bools]:
-    """The arrays positions (22, 2) and on_table (22,); ValueError, with one of the two ``names``, unless they
-    are a valid layout."""
+    """The arrays positions (22, 2), on_table (22,); ValueError, with one of ``names``, if not a layout."""
     field = names[0]
     places, present = array(field, positions, (N_BALLS, 2)), flags(names[1], on_table, (N_BALLS,))
     for i, place in enumerate(positions):
@@ -114,7 +111,7 @@ def checked_layout(
 
 
 def check_in_hand(field: str, in_hand: bool, name: str, positions: Floats) -> None:
-    """Raise ValueError if a cue ball in hand does not lie in the D, where it is shown until it is placed."""
+    """ValueError if a cue ball in hand is not in the D, where it is shown until it is placed."""
     if in_hand and not within_d(*positions[CUE]):
         x, y = positions[CUE].tolist()
         raise refuse(
@@ -125,8 +122,7 @@ def check_in_hand(field: str, in_hand: bool, name: str, positions: Floats) -> No
 
 
 def _check_like(field, value, known):
-    """Raise ValueError unless ``value`` has the structure of ``known``: dicts with the same keys, and values
-    of the same types."""
+    """ValueError unless ``value`` has the structure of ``known``: dicts of the same keys, the same types."""
     if not isinstance(known, dict):
         if type(value) is not type(known):
             raise refuse(field, value, f"must be of type {type(known).__name__}")
@@ -138,8 +134,7 @@ def _check_like(field, value, known):
 
 
 def check_rng(rng: Any, generator: np.random.Generator) -> None:
-    """Raise ValueError unless ``rng`` is a state that the NumPy ``generator`` could take. The generator is
-    not changed."""
+    """ValueError unless ``rng`` is a state that the NumPy ``generator``, which is not changed, could take."""
     trial = type(generator.bit_generator)()
     _check_like("state.rng", rng, trial.state)
     try:
@@ -161,10 +156,7 @@ def checked(
     state: Any, table: Table, R: float, generator: np.random.Generator, *, to_play: bool = False
 ) -> State:
     """The ``State`` that a dict describes; ValueError names the first invalid part, or says that no shot is
-    left with ``to_play``.
-
-    ``generator``: the NumPy generator for the part "rng"; it is not changed.
-    """
+    left with ``to_play``. ``generator``: for the part "rng"; it is not changed."""
     check_keys(state, State._fields)
     positions, on_table = checked_layout(
         ("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R
@@ -210,10 +202,7 @@ def checked(
 
 
 def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) -> FrameState:
-    """The ``FrameState`` that a dict describes, under these rules; ValueError names the first invalid part.
-
-    ``generator``: the NumPy generator for the part "rng"; it is not changed.
-    """
+    """The ``FrameState`` that a dict describes, under these rules; ValueError names the first wrong part."""
     check_keys(state, MATCH_KEYS if rules.frames else FRAME_KEYS)
     miss, table, R = rules.miss, rules.table, rules.physics.R
     positions, on_table = checked_layout(

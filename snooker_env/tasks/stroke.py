@@ -1,11 +1,7 @@
-"""How is one stroke played, on one table or on thousands? From the action to the balls at rest, and the facts
-for the referee.
-
-Visits and frames play their strokes here: ``address`` (placement, action, execution error, strike), then
-``engine.run_batch``; each task has its own referee. Kernels loop over the tables named by ``which``; row j of
-the ``ShotBuffers`` is the shot on table which[j]. Each table draws from its own stream (``game.philox``), so
-that no table's result depends on another, on their number or on the threads.
-"""
+"""How is one stroke played, on one table or on thousands? ``address`` (placement, action, error, strike),
+then ``engine.run_batch``; each task has its own referee. Row j of the ``ShotBuffers`` is the shot on table
+which[j]. Each table draws from its own stream, so that no result depends on other tables, their number or the
+threads."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -36,14 +32,12 @@ if TYPE_CHECKING:
 AT_ONCE = 1e-9
 """Contacts within this time [s] are simultaneous."""
 
-# Columns of a strike: the cue ball's velocity and spin after it, the intended speed, and the strike itself,
-# errors included.
+# Columns of a strike: the cue ball's velocity and spin after it, intended speed, the strike with errors.
 (VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
 STRIKE_COLUMNS = 11
 
-# Columns of the referee's facts of a stroke: masks of balls, then the clear paths before a stroke that failed
-# (where misses are called) and whether it was an attempt (only with miss="attempt"); and of his decision: the
-# player, the ball on (a ``BallOn``), whether he had a free ball, his break with it, points, penalty, fouls.
+# Columns of the referee's facts: masks of balls, clear paths before a stroke that failed (where misses are
+# called), whether it was an attempt (``miss="attempt"``); and of the ruling (``BREAK``: with this stroke).
 (
     FIRST,
     TOUCHING,
@@ -72,12 +66,9 @@ _WHY = {
 
 @kernel
 def _played_into(positions, ball, vx, vy, time):
-    """Whether the cue ball, struck with (vx, vy) [m/s] and in contact with the touching ``ball`` at ``time``
-    [s], was played into it.
-
-    It was if its straight line leads into the ball, however small the gap and however slow the stroke, or if
-    they met at once: the physics lets balls without a gap meet along the tangent, too.
-    """
+    """Whether the cue ball, struck with (vx, vy) [m/s], was played into the touching ``ball`` that it met at
+    ``time`` [s]: its straight line leads into it, however small the gap and slow the stroke, or they met at
+    once (the physics lets balls without a gap meet along the tangent, too)."""
     dx, dy = positions[ball, 0] - positions[CUE, 0], positions[ball, 1] - positions[CUE, 1]
     speed = np.hypot(vx, vy)
     return vx * dx + vy * dy > 0.0 and (
@@ -87,13 +78,9 @@ def _played_into(positions, ball, vx, vy, time):
 
 @kernel
 def first_struck(event_time, event_what, n_events, touching, positions, vx, vy):
-    """From the log of a shot played with (vx, vy) [m/s]: the masks of the balls struck first, and of touching
-    balls moved.
-
-    The second mask holds those of the balls ``touching`` the cue ball before the shot that it was played
-    into: a push stroke. A touching ball that the cue ball is played away from, and that it meets later off a
-    cushion, is struck but not moved in leaving.
-    """
+    """Masks, from a shot's log, of the balls struck first, and of the ``touching`` ones that it was played
+    into: a push stroke. One that it is played away from, and meets later off a cushion, is struck but not
+    moved in leaving."""
     first, moved, start = 0, 0, np.inf
     for e in range(n_events):
         kind, time = event_what[e, 0], event_time[e]
@@ -113,8 +100,7 @@ def first_struck(event_time, event_what, n_events, touching, positions, vx, vy):
 
 @kernel
 def place(positions, on_table, x, y):
-    """Put a cue ball in hand on the free place of the D nearest to (x, y); it stays where it is if there is
-    none."""
+    """Put a cue ball in hand on the free place of the D nearest to (x, y); it stays if there is none."""
     on_table[CUE] = False
     x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS)
     on_table[CUE] = True
@@ -143,8 +129,7 @@ def reached_cushion(event_what, n_events):
 
 @kernel
 def strike(intended, positions, on_table, stream, options, noise, j, shots):
-    """Shot j: the table as it lies, and the cue ball struck as ``intended`` = (speed, side, top, aim,
-    elevation), errors included."""
+    """Shot j: the table as it lies, the cue ball struck as ``intended`` (see ``executed``), with errors."""
     speed, side, top, aim, elevation = executed(*intended, noise, stream)
     side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
     shot, r, v, w, here = shots.shots[j], shots.r, shots.v, shots.w, shots.here
@@ -173,11 +158,7 @@ def _same_table(positions, on_table, other, other_on):
 
 @entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen, shot_of))
 def address(which, actions, tables, shots, packed, fidelity):
-    """Carry the actions (n, k) of the tables ``which`` out up to the strike: shot j is that of table
-    which[j].
-
-    ``tables``, ``shots``: the parts of ``TableArrays`` and ``StruckArrays``; ``packed``: ``Tables.packed``.
-    """
+    """Carry the actions (n, k) of the tables ``which`` out up to the strike; ``packed``: of ``Tables``."""
     positions, on_table, game, streams, nominated = tables
     shots, (options, noise, phys) = StruckArrays(*shots), packed
     law, work = CueLaw(phys, options[A_END_MASS], *fidelity), new_work()
@@ -212,10 +193,7 @@ def address(which, actions, tables, shots, packed, fidelity):
 
 @kernel
 def see(j, shots, positions, on_table):
-    """The referee's facts of shot j, with ``positions`` and ``on_table`` as before it; also in ``seen``.
-
-    Returns (first, touching, moved, potted), as in ``ruling.Facts``.
-    """
+    """The facts (first, touching, moved, potted) of shot j, from the table before it; also in ``seen``."""
     shot, seen = shots.shots[j], shots.seen[j]
     touching = touching_balls(positions, on_table)
     log = shots.event_time[j], shots.event_what[j], shots.n_events[j]
@@ -230,7 +208,7 @@ def see(j, shots, positions, on_table):
 
 @kernel
 def write_ruling(seen, player, ball_on, free_ball, before, result):
-    """Record the referee's ``Ruling`` on a shot in its row of ``seen``; ``before``: the break until then."""
+    """Record a ``Ruling`` in the shot's row of ``seen``; ``before``: the break until then."""
     seen[PLAYER], seen[WAS_ON], seen[FREE], seen[BREAK] = player, ball_on, free_ball, before + result.points
     seen[SCORED], seen[COST], seen[FOULS] = result.points, result.penalty, result.fouls
 
@@ -243,14 +221,14 @@ class ShotBuffers:
     v: Floats
     w: Floats
     here: Bools
-    """(m, 22, 2) [m], (m, 22, 2) [m/s], (m, 22, 3) [rad/s], (m, 22): the balls before the shots, then after
-    them."""
+    """(m, 22, 2) [m], (m, 22, 2) [m/s], (m, 22, 3) [rad/s], (m, 22): the balls before the shots, then
+    after."""
     potted: Ints
     """(m, 22) the pocket of each ball, or -1."""
     shots: Floats
     """(m, STRIKE_COLUMNS) of each strike, columns ``VX`` to ``ELEVATION``."""
     seen: Ints
-    """(m, SEEN_COLUMNS) facts for the referee and his decision, columns ``FIRST`` to ``FOULS``."""
+    """(m, SEEN_COLUMNS) facts for the referee and the ruling, columns ``FIRST`` to ``FOULS``."""
     event_time: Floats
     event_what: NDArray[np.int32]
     """(m, log) [s] and (m, log, 3): time; kind, i, j of each event."""
@@ -289,11 +267,7 @@ class ShotBuffers:
         return len(self.duration)
 
     def again(self, j: int, log: int, *, path: bool = False) -> "ShotBuffers":
-        """Work space for shot j alone with a log of that length: struck as before, ``r`` and ``here`` still
-        to be filled.
-
-        ``path``: record its path in any case.
-        """
+        """Work space for shot j alone, with that log: struck as before, ``r`` and ``here`` to be filled."""
         one = ShotBuffers(1, log, path=path or self.segments.shape[1] > 0)
         one.shots[0], one.seen[0] = shot, _ = self.shots[j], self.seen[j]
         one.v[0, CUE], one.w[0, CUE] = shot[[VX, VY]], shot[[WX, WY, WZ]]
@@ -312,8 +286,7 @@ class ShotBuffers:
 
 
 def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
-    """Play the first m shots of the buffers until all balls are at rest; ``phys``: the packed
-    ``rules.physics``."""
+    """Play the first m shots until all balls are at rest; ``phys``: the packed ``rules.physics``."""
     count(m)
     _simulated(buffers, m, rules, phys)
 
@@ -332,11 +305,7 @@ def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> No
 def run_again(
     buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats
 ) -> ShotBuffers:
-    """Play shot j, on table k, once more with a longer log, from the table as it lies. Returns its own
-    buffers.
-
-    Raises SimulationError if a full log is not why it did not end.
-    """
+    """Play shot j, on table k, with a longer log in its own buffers; SimulationError if it does not help."""
     one, status = buffers, buffers.status[j]
     while status == Status.LOG_FULL:
         one = buffers.again(j, 4 * one.log)
@@ -352,8 +321,7 @@ def run_again(
 def with_path(
     buffers: ShotBuffers, j: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats
 ) -> ShotBuffers:
-    """Play shot j, which came to rest, once more from the same table, with its path. Returns its own buffers;
-    it is not counted."""
+    """Play shot j, which came to rest, once more with its path, uncounted; returns its own buffers."""
     one = buffers.again(j, buffers.log, path=True)
     one.r[0], one.here[0] = positions, on_table
     _simulated(one, 1, rules, phys)

@@ -1,5 +1,4 @@
-"""Do the layouts fit a table? Snooker-v0 deals balls on snooker's bed: a custom table must have that bed,
-with any pockets."""
+"""Do the layouts fit a table? Snooker-v0 needs snooker's bed, with any pockets."""
 
 from functools import lru_cache
 
@@ -18,13 +17,10 @@ ROUNDING = 1e-9
 
 
 def table_of(table: TableLike) -> Table:
-    """The ``Table`` of an environment's argument. Raises ValueError unless every place that a layout may deal
-    is free on it.
-
-    Spots, rack, D, random balls and respotted balls all lie where a ball's centre is between the noses, |x|
-    <= 0.86275 and |y| <= 1.75825. So the noses must be where snooker's are, and no jaw or fall may reach a
-    ball there. Only the opened tables have balls in the mouths of pockets: see ``fitted``.
-    """
+    """The ``Table`` of an environment's argument; ValueError unless every place that a layout may deal is
+    free on it. Spots, rack, D, random and respotted balls lie where |x| <= 0.86275 and |y| <= 1.75825: the
+    noses must be where snooker's are, and no jaw or fall may reach a ball there. Only opened tables have
+    balls in mouths: see ``fitted``."""
     cloth = Table.of(table)
     if cloth is UNBOUNDED:
         raise refuse("table", table, 'must be "match", "tight" or a Table')
@@ -72,8 +68,7 @@ def _check_pockets(cloth: Table) -> None:
 
 
 def fitted(layout: str, cloth: Table) -> Plan:
-    """The ``Plan`` of a layout on a table that passed ``table_of``: without the opened tables that do not fit
-    its pockets."""
+    """The ``Plan`` of a layout on a table, without the opened tables that do not fit its pockets."""
     plan = plan_of(layout)
     return plan_of(layout, _unfit(cloth)) if len(plan.tables) else plan
 

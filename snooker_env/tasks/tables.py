@@ -1,9 +1,5 @@
-"""What do visits and frames share? n tables side by side: reset, step, infos, states. ``visit`` and ``frame``
-hold the differences.
-
-A step of n tables is the same for every caller: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with
-thousands, on threads.
-"""
+"""What do visits and frames share? n tables side by side: reset, step, infos, states. A step is the same for
+every caller: ``SnookerEnv`` with one table, ``SnookerVectorEnv`` with thousands, on threads."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -25,7 +21,7 @@ from .played import Played, judged, struck
 
 REALS = ("points", "break", "seconds")
 COUNTS = ("penalty", "pots", "fouls", "ball_on", "first_ball", "events")
-"""Entries of a step's info: floats and integers. "foul", whether ``fouls`` is not 0, is added to them."""
+"""Entries of a step's info, floats and integers; "foul", whether ``fouls`` is not 0, is added."""
 (I_POINTS, I_BREAK, I_SECONDS) = range(3)
 (I_PENALTY, I_POTS, I_FOULS, I_BALL_ON, I_FIRST, I_EVENTS) = range(6)
 
@@ -73,17 +69,13 @@ def write_empty_info(k, out, ball_on):
 
 Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
 """Work on some tables, called as ``task(which, buffers)``."""
-
-
 Watch: TypeAlias = Callable[[int, stroke.ShotBuffers, int, bool], None]
-"""Called as ``watch(k, buffers, j, own)`` after each stroke on table k, which is shot j of the buffers.
-``own``: it is the agent's; in a match, either player's.
-"""
+"""Called as ``watch(k, buffers, j, own)`` after each stroke on table k, shot j of the buffers. ``own``: it is
+the agent's; in a match, either player's."""
 
 
 class StepOutput:
-    """The results of a step or reset of n tables, in new arrays; ``last`` only if one step both ends and
-    starts episodes."""
+    """The results of a step or reset of n tables; ``last`` only if one step both ends and starts episodes."""
 
     observations: Singles
     """(n, size)"""
@@ -135,12 +127,8 @@ class StepOutput:
 
 
 class Crew:
-    """Runs tasks on tables, possibly on several threads: ``crew(which, task)`` calls ``task(part, buffers)``
-    for parts of ``which``.
-
-    This class runs everything in one call. ``generators``: one for each table, for an opponent in Python.
-    ``watch``: called after each stroke, or None.
-    """
+    """Runs ``task(part, buffers)`` on parts of ``which``; here on all at once. ``generators``: one for each
+    table, for an opponent in Python. ``watch``: called after each stroke, or None."""
 
     buffers: Any
     """``ShotBuffers``, or None for a crew that allocates its own."""
@@ -174,8 +162,7 @@ STROKES_ONLY = Choices(Physics()).pack()
 
 
 class Tables(ABC):
-    """n tables, each in the middle of its own episode, with common ``Rules``; ``limit``: steps after which an
-    episode is truncated."""
+    """n tables, each in the middle of its own episode; ``limit``: steps after which one is truncated."""
 
     REALS: tuple[str, ...] = REALS
     COUNTS: tuple[str, ...] = COUNTS
@@ -198,7 +185,7 @@ class Tables(ABC):
     streams: Words
     """(n, 2) Key and counter of each table's random stream."""
     nominated: Ints = np.empty(0, np.int64)
-    """(n,) Of frames: the colour that each striker has nominated. A visit has none: no rows."""
+    """(n,) Of frames: what each striker has nominated. A visit has no rows."""
     begun: Bools
     """(n,) Which tables have an episode, possibly one that has ended."""
     packed: tuple[Floats, Floats, Floats]
@@ -240,8 +227,7 @@ class Tables(ABC):
         return info | {"foul": info["fouls"] != 0}
 
     def infos(self, reals: Floats, counts: Ints, there: Bools) -> dict[str, Any]:
-        """Infos in the format of Gymnasium's vector environments: one array for each key, and a mask of the
-        tables that it holds for."""
+        """Infos as of Gymnasium's vector environments: arrays, and masks of the tables that they hold for."""
         infos: dict[str, Any] = {
             name: column * there for name, column in zip(self.REALS, reals.T, strict=True)
         }
@@ -287,8 +273,7 @@ class Tables(ABC):
         return out
 
     def show_masks(self, which: Ints, masks: Masks) -> None:
-        """Write the available choices on the tables ``which`` into their rows of ``masks``; nothing if it has
-        no rows."""
+        """Write the available choices of the tables ``which`` into ``masks``; nothing if it has no rows."""
         if len(masks) and len(which):
             masks[which] = self.action_masks(which)
 
@@ -319,8 +304,7 @@ class Tables(ABC):
         return ("positions", "on_table", "game", "streams", "begun")
 
     def interrupted(self) -> None:
-        """A step or reset was cut short: tables at which it is not the agent's turn need a reset. In a visit
-        there are none."""
+        """A step or reset was cut short: tables at which it is not the agent's turn need a reset."""
         return
 
     def address(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers) -> None:
@@ -334,8 +318,7 @@ class Tables(ABC):
         stroke.address(which, actions, self.arrays, buffers.struck, packed, self.rules.fidelity)
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
-        """Play the shots of the tables ``which`` that have been struck; returns the rows of shots that need
-        ``again``."""
+        """Play the shots that have been struck; returns the rows of those that need ``again``."""
         m = len(which)
         stroke.run(buffers, m, self.rules, self.packed[2])
         status = buffers.status[:m]
@@ -355,17 +338,17 @@ class Tables(ABC):
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
     ) -> None:
-        """One step of all tables: checked actions (n, k) float64, results into ``out``."""
+        """One step of all tables: checked actions (n, k) float64, results into ``out``. ``waiting`` (n,)
+        bool: tables that begin a new episode instead; ``same_step``: those that end begin one at once.
+        SimulationError if a shot cannot be computed: its balls are left as they lay."""
 
     @abstractmethod
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
-        """New episodes on the tables ``wanted`` (n,) bool; the results of the reset for all tables into
-        ``out``."""
+        """New episodes on the tables ``wanted`` (n,) bool; the results for all tables into ``out``."""
 
     @abstractmethod
     def observe(self, which: Ints, player: int = 0) -> Singles:
-        """The observations of ``player`` on the tables ``which``: float32 (len(which), SIZE), a new array. A
-        visit has one player."""
+        """What ``player`` observes on the tables ``which``: float32 (len(which), SIZE), a new array."""
 
     @abstractmethod
     def get_state(self, k: int) -> dict[str, Any]:
@@ -373,7 +356,7 @@ class Tables(ABC):
 
     @abstractmethod
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> Any:
-        """The valid state that a dict describes, for ``set_state``; ValueError if it is invalid."""
+        """The valid state that a dict describes; ValueError if it is none, or no shot is left ``to_play``."""
 
     @abstractmethod
     def set_state(self, k: int, state: Any) -> None:
@@ -381,13 +364,11 @@ class Tables(ABC):
 
     @abstractmethod
     def standing(self, k: int) -> dict[str, Any]:
-        """The fields of ``Played`` that the task determines: next_player, next_free_ball, scores,
-        break_points, choice, winner."""
+        """More fields of ``Played``: next_player, next_free_ball, scores, break_points, choice, winner."""
 
     @abstractmethod
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin an episode on table k with a valid position; ``game`` is the row of a visit. The random
-        stream goes on."""
+        """Begin an episode on table k with a valid position; ``game``: a visit's row. The stream goes on."""
 
     @abstractmethod
     def text(self, k: int) -> str:

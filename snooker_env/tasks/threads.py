@@ -1,5 +1,4 @@
-"""How are many tables divided among threads? In chunks, with separate work space for each thread; results do
-not depend on it."""
+"""How are many tables divided among threads? In chunks, each thread with its own work space."""
 
 import os
 import threading
@@ -11,8 +10,7 @@ from .stroke import ShotBuffers
 from .tables import Crew, Task, Watch
 
 CHUNK = 128
-"""Largest number of tables in one call: few enough for the work space to stay in the cache, enough to make
-calls from Python cheap."""
+"""Most tables in one call: few enough for the work space to stay in the cache, enough to make calls cheap."""
 LEAST = 8
 """Smallest number of tables for which another thread or chunk is worth its cost."""
 
@@ -35,8 +33,7 @@ def processors() -> int:
 
 
 class Threads(Crew):
-    """The crew of many tables: chunks divided among threads. Watched strokes keep their paths. Several
-    threads may call it."""
+    """The crew of many tables, in chunks on threads; several may call it. Watched strokes keep a path."""
 
     def __init__(self, threads: int, *, watch: Watch | None = None):
         super().__init__(watch=watch)

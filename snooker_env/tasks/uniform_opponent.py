@@ -1,5 +1,4 @@
-"""How does the built-in opponent "random" play? Uniformly: any action, or one of the available choices.
-Kernels over tables."""
+"""How does the built-in opponent "random" play? Uniformly: any action, or one of the available choices."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -21,8 +20,7 @@ if TYPE_CHECKING:
 
 @entry(what="uniform play", seconds=1)
 def _uniform(which, streams, actions):
-    """Each component of the actions of the tables ``which`` uniform in [-1, 1): the rows of ``actions`` (n,
-    k)."""
+    """Each component of the actions (n, k) of the tables ``which`` uniform in [-1, 1)."""
     size = actions.shape[1]
     for j in range(which.shape[0]):
         k = which[j]
@@ -50,18 +48,14 @@ def _uniform_choice(which, streams, masks, actions):
 
 
 class UniformOpponent(Opponent):
-    """Uniform random play: every component of a box action, the decision included; or one of the available
-    discrete actions.
-
-    It never concedes: its declarations and choices are drawn from the others.
-    """
+    """Uniform random play: every component of a box action, or an available choice, but it never concedes."""
 
     def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
         """Empty actions: ``prepare`` draws them from each table's own stream."""
         return np.empty((frames.n, frames.seats[SIDE].actions.size))
 
     def prepare(self, frames: "Frames", which: Ints, asked: Floats, buffers: ShotBuffers) -> Ints:
-        """Carry the strokes out up to the strike; returns the tables with a stroke."""
+        """See ``Opponent.prepare``."""
         own = frames.seats[SIDE].actions
         if isinstance(own, Choices):
             masks = frames.action_masks(which, SIDE)

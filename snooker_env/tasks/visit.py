@@ -1,9 +1,6 @@
-"""How is a visit played, on one table or on thousands? Strokes until the first miss, foul or clearance, each
-table on its own.
-
-A step is ``stroke.address`` and ``stroke.run``, then ``_conclude`` (the referee, reward, observation, info);
-tables that start anew also go through ``layouts.deal_tables`` and ``_begin``.
-"""
+"""How is a visit played, on one table or on thousands? Strokes until the first miss, foul or clearance: a
+step is ``stroke.address``, ``stroke.run`` and ``_conclude``; new visits go through ``deal_tables`` and
+``_begin``."""
 
 from typing import Any
 
@@ -37,11 +34,7 @@ def _observe(out, positions, on_table, state):
 
 @entry(what="the referee of visits", seconds=4)
 def _conclude(which, positions, on_table, game, shots, rules, output):
-    """Judge the shots that came to rest and update their tables; write all results of the step.
-
-    ``shots``, ``output``: the parts of ``PlayedArrays``, ``OutputArrays``; ``rules``: the code of the reward,
-    the limit of steps, whether a visit ends with its first stroke.
-    """
+    """Judge the shots that came to rest, write all results. ``rules``: reward, limit of steps, one stroke."""
     shots, out, (reward, limit, one_stroke) = PlayedArrays(*shots), OutputArrays(*output), rules
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
@@ -67,11 +60,7 @@ def _conclude(which, positions, on_table, game, shots, rules, output):
 
 @entry(what="the start of a visit", seconds=1)
 def _begin(which, fresh, in_hand, tables, output, last):
-    """Write the results of a reset for the tables ``which``; with ``fresh``, start visits on them (already
-    dealt).
-
-    The arrays ``last`` (``StepOutput.last``) then keep the previous rows of these tables.
-    """
+    """Write the results of a reset; ``fresh``: start visits, already dealt; ``last`` keeps the old rows."""
     (positions, on_table, game, _, _), out = tables, OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
@@ -102,14 +91,7 @@ class Visits(Tables):
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
     ) -> None:
-        """One step of all tables: checked actions (n, k) float64, results into ``out``.
-
-        ``waiting`` (n,) bool: tables that begin a new visit instead of playing. ``same_step``: tables whose
-        visit ends begin a new one at once.
-
-        Raises SimulationError if a shot cannot be computed. Its balls are then left as they lay, except for a
-        cue ball that was placed; other tables may have been played.
-        """
+        """See ``Tables.step``. After SimulationError others may have been played, a cue ball stays placed."""
         anew = bool(waiting.any())
 
         def play(which, buffers):
@@ -147,8 +129,7 @@ class Visits(Tables):
             _begin(which, fresh, plan.in_hand, self.arrays, out.arrays, out.last)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
-        """New visits on the tables ``wanted`` (n,) bool; the results of the reset for all tables into
-        ``out``."""
+        """See ``Tables.reset``."""
 
         def begin(which, buffers):
             self._begin(which[wanted[which]], out)
@@ -159,13 +140,13 @@ class Visits(Tables):
         crew(np.arange(self.n), begin)
 
     def observe(self, which: Ints, player: int = 0) -> Singles:
-        """The observations of the tables ``which``: float32 (len(which), SIZE), a new array."""
+        """See ``Tables.observe``."""
         rows = np.empty((len(which), SIZE), np.float32)
         observe(which, self.positions, self.on_table, self.game, rows)
         return rows
 
     def get_state(self, k: int) -> dict[str, Any]:
-        """Table k as JSON types: the fields of a ``states.State`` except "rng"."""
+        """See ``Tables.get_state``: the fields of a ``states.State`` except "rng"."""
         ball_on, in_hand, points, over, _ = self.game[k].tolist()
         return {
             "positions": self.positions[k].tolist(),
@@ -178,19 +159,18 @@ class Visits(Tables):
         }
 
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> State:
-        """The ``states.State`` that a dict describes; ValueError if it is invalid, or if no shot is left with
-        ``to_play``."""
+        """See ``Tables.checked``."""
         return checked(state, self.rules.table, self.rules.physics.R, generator, to_play=to_play)
 
     def set_state(self, k: int, state: State) -> None:
-        """Restore a valid ``states.State`` on table k; its steps are counted from 0."""
+        """See ``Tables.set_state``; its steps are counted from 0."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         self.game[k] = state.ball_on, state.in_hand, state.points, state.over, 0
         self.streams[k] = np.array(state.stream, np.uint64)
         self.begun[k] = True
 
     def standing(self, k: int) -> dict[str, Any]:
-        """The fields of ``Played`` for table k: there is one player, whose break is his score."""
+        """See ``Tables.standing``: there is one player, whose break is its score."""
         points = int(self.game[k, POINTS])
         return {
             "next_player": 0,
@@ -202,11 +182,11 @@ class Visits(Tables):
         }
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin a visit on table k with a valid position; ``game`` is its row. The random stream goes on."""
+        """See ``Tables.set_position``."""
         self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
         self.begun[k] = True
 
     def text(self, k: int) -> str:
-        """One line of text for pictures."""
+        """See ``Tables.text``."""
         on = BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
         return f"break {self.game[k, POINTS]}   on: {on}   reds: {int(self.on_table[k, 1:16].sum())}"

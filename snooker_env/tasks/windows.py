@@ -1,12 +1,9 @@
 """In which directions does the cue ball meet a ball on first? Windows between tangents, exact for straight
-lines; kernels.
+lines.
 
-What is met first can change only at finitely many directions: the tangents of the balls, and those in which
-the cue ball would meet a ball on and one that is not at the same time. Between two neighbouring ones nothing
-changes, so one direction of each interval tells.
-
-A ball on that touches the cue ball counts as struck, whatever the cue ball strikes when it is played away.
-Then every direction away from the touching balls is open.
+What is met first can change only at the tangents of the balls and where the cue ball would meet a ball on and
+another at once; so one direction of each interval tells. A ball on that touches the cue ball counts as struck
+when it is played away: then every direction away from the touching balls is open.
 """
 
 from math import asin, atan2, cos, floor, hypot, pi, sin, sqrt
@@ -17,7 +14,7 @@ from ..game.lines import met
 from ..geometry import BALL_RADIUS
 
 LOW, HIGH, EDGE = range(3)
-"""Columns of the windows: where each begins and ends [rad], anticlockwise; the last one is work space."""
+"""Columns of the windows: where each begins and ends [rad], anticlockwise; the last is work space."""
 MOST_EDGES = 2 * N_BALLS + 2 * (N_BALLS // 2) ** 2
 """Rows of the windows: one for each direction at which something may change."""
 
@@ -49,8 +46,7 @@ def turned(angle):
 
 @kernel
 def _edges(positions, on_table, on, windows):
-    """Write the directions at which the ball met first may change, ascending in [0, 2 pi), into column
-    ``EDGE``; returns their number."""
+    """Write where the ball met first may change, ascending in [0, 2 pi), to ``EDGE``; returns the number."""
     x, y = positions[0, 0], positions[0, 1]
     n = 0
     for i in range(1, N_BALLS):
@@ -85,10 +81,7 @@ def _edges(positions, on_table, on, windows):
 @kernel
 def open_windows(positions, on_table, on, touching, windows):
     """Write the windows in which the balls in the mask ``on`` are met first, widest first; returns their
-    number.
-
-    ``touching``: mask of the balls that touch the cue ball; windows (MOST_EDGES, 3).
-    """
+    number. ``touching``: mask of the balls that touch the cue ball; windows (MOST_EDGES, 3)."""
     x, y, away = positions[0, 0], positions[0, 1], (touching & on) != 0
     n = _edges(positions, on_table, on, windows)
     wanted = ~touching if away else on & ~touching  # of the ball met first, 0 for none
@@ -130,11 +123,8 @@ def room(windows, count, angle):
 
 @kernel
 def open_part(positions, ball, windows, count):
-    """The widest part of a ball on that can be struck: (direction of its middle, half its width) [rad]; no
-    width: there is none.
-
-    Another ball on in the way may be struck as well.
-    """
+    """The widest part of a ball on that can be struck: (direction, half its width) [rad], 0: none. Another
+    ball on may be struck as well."""
     middle, half = towards(positions, ball), half_width(positions, ball)
     best, widest = middle, 0.0
     for k in range(count):
