@@ -73,7 +73,7 @@ def from_frames(n, seed):
             )
             buffers, out = ShotBuffers(len(which)), tables.output()
             tables.complete(
-                player.prepare(tables, which, None, buffers), out, buffers, Crew(buffers), own=True
+                player.prepare(tables, which, None, buffers), out, buffers, Crew(buffers), reported=True
             )
             which = which[~tables.ended()[which]]
         seed += 1
@@ -86,7 +86,7 @@ def fouls(tables, state, actions):
     which, buffers, out = np.arange(n), ShotBuffers(n), tables.output()
     tables.positions[:n], tables.on_table[:n], tables.game[:n] = state
     tables.address(which, actions, buffers)
-    tables.complete(which, out, buffers, Crew(buffers), own=True)
+    tables.complete(which, out, buffers, Crew(buffers), reported=True)
     return out.counts[:n, I_FOULS].copy()
 
 

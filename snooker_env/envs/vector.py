@@ -196,7 +196,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
                 tables.seed(k, self._generators[k])
             self._keyed[k] = True
         dealt = wanted if starts is None else np.zeros(self.num_envs, np.bool_)
-        written = tables.output(given=arrays)
+        written = tables.output(arrays=arrays)
         with self._playing():
             tables.reset(dealt, written, self._crew, **breakers)
         self._begun |= wanted
@@ -225,7 +225,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
             )
         same_step = mode == AutoresetMode.SAME_STEP
         waiting = self._done if mode == AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, np.bool_)
-        written = self.tables.output(last=same_step, given=arrays)
+        written = self.tables.output(last=same_step, arrays=arrays)
         with self._playing():
             self.tables.step(a, waiting, written, self._crew, same_step=same_step)
         done = written.terminated | written.truncated

@@ -29,7 +29,7 @@ from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
 from ..tasks.observations import shaped
 from ..tasks.options import Options
-from ..tasks.saying import said
+from ..tasks.saying import sayings
 from ..tasks.visit import Visits
 from .player import Strokes
 from .simple import BoundPlayer, placed
@@ -126,7 +126,7 @@ class SeenPlayer(BoundPlayer):
         if not self.frames:
             values, start = decoded(self._rules, shown, rows, actions)
             return Strokes(values, np.where(self._puts(shown), start.positions[:, 0], places))
-        nominate, decision, declare = said(self._rules, actions, shown.game)
+        nominate, decision, declare = sayings(self._rules, actions, shown.game)
         shown = shown.copy()
         shown.game[decision == PLACE_ANYWHERE, IN_HAND] = shown.game[decision == PLACE_ANYWHERE, ANYWHERE] = 1
         values, start = decoded(self._rules, shown, rows, actions, nominate)

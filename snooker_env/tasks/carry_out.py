@@ -44,10 +44,10 @@ if TYPE_CHECKING:
 
 
 @entry(what="the strokes of players in frames", seconds=3)
-def _carry_out(which, said, tables, saved, packed, codes, shots, playing):
-    """Strokes of the tables ``which``: shots 0 to m - 1, on the tables ``playing[:m]``; returns m. ``said``:
+def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
+    """Strokes of the tables ``which``: shots 0 to m - 1, on the tables ``playing[:m]``; returns m. ``asked``:
     values, place, nominate, decision, declare of ``players.Strokes``; ``codes``: rule set, reward."""
-    values, places, nominate, decisions, declared = said
+    values, places, nominate, decisions, declared = asked
     tables, saved, shots = TableArrays(*tables), Layouts(*saved), StruckArrays(*shots)
     (options, noise), (rules, reward), m = packed, codes, 0
     for k in which:
@@ -85,8 +85,8 @@ def _carry_out(which, said, tables, saved, packed, codes, shots, playing):
     return m
 
 
-def carry_out(frames: "Frames", which: Ints, said: tuple[Any, ...], buffers: ShotBuffers, side: int) -> Ints:
-    """Carry out the strokes ``said``, arrays of ``players.Strokes``, up to the strike, with the errors of the
+def carry_out(frames: "Frames", which: Ints, asked: tuple[Any, ...], buffers: ShotBuffers, side: int) -> Ints:
+    """Carry out the strokes ``asked``, arrays of ``players.Strokes``, up to the strike, with the errors of the
     seat ``side``; returns the tables with a stroke."""
     playing, codes = (
         np.empty(len(which), np.int64),
@@ -94,7 +94,7 @@ def carry_out(frames: "Frames", which: Ints, said: tuple[Any, ...], buffers: Sho
     )
     m = _carry_out(
         which,
-        said,
+        asked,
         frames.arrays,
         frames.saved_arrays,
         frames.packs[side][:2],

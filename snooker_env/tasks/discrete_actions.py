@@ -95,16 +95,16 @@ def chosen(index, positions, on_table, on, law, work):
 @entry
 def masks(which, positions, on_table, game, options, out):
     """Available choices on the tables ``which``, of visits or frames: bool, one row of ``out`` each."""
-    found = np.empty((LINE_ROWS, POT_COLUMNS))
+    rows = np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k, parts = which[j], 1 + COLOURS if options[A_NOMINATE] >= 0 else 1
         row, mask = game[k], bits(on_table[k])
         for n in range(parts):
             on = strikeable(row, mask) if parts == 1 else playable(row, mask, nominated_ball(n, row))
-            there = parts == 1 or may_nominate(n, row)
-            many = count_lines(positions[k], on_table[k], on, found) if there and on_table[k, 0] else 1
+            available = parts == 1 or may_nominate(n, row)
+            many = count_lines(positions[k], on_table[k], on, rows) if available and on_table[k, 0] else 1
             for c in range(SIZE):
-                out[j, n * SIZE + c] = there and c < STROKES * many
+                out[j, n * SIZE + c] = available and c < STROKES * many
         at = parts * SIZE
         for what, column in ((CONCEDES, A_CONCEDE), (CLAIMS, A_CLAIM), (OTHER_BEGINS, A_LOT)):
             if options[column]:

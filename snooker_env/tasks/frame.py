@@ -176,8 +176,8 @@ class Frames(Tables):
 
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = AGENT) -> Ints:
         """Decisions and strokes of the seat ``side`` up to the strike; returns the tables with a stroke."""
-        said = self.seats[side].actions
-        if said.nominate or said.declares or self.game[which, PHASE].any():
+        reads = self.seats[side].actions
+        if reads.nominate or reads.declares or self.game[which, PHASE].any():
             which = which[self.decide(which, actions, side)]
         self.strike(which, actions, buffers, self.packs[side])
         self.hold_late(which, buffers)
@@ -204,28 +204,30 @@ class Frames(Tables):
         buffers: ShotBuffers,
         crew: Crew,
         *,
-        own: bool,
+        reported: bool,
         alone: bool = False,
     ) -> None:
-        """Play and judge the shots that have been struck. ``own``: ``out`` reports the strokes; otherwise
+        """Play and judge the shots that have been struck. ``reported``: ``out`` reports the strokes; otherwise
         they are only counted. ``alone``: the table returns to the agent."""
         if not len(which):
             return
         unfinished = self.run(which, buffers)
-        self._conclude(which, buffers, out, own, alone)
+        self._conclude(which, buffers, out, reported, alone)
         for j in unfinished:
-            self._conclude(which[j : j + 1], self.again(which, j, buffers), out, own, alone)
-        crew.saw(which, buffers, own)
+            self._conclude(which[j : j + 1], self.again(which, j, buffers), out, reported, alone)
+        crew.saw(which, buffers, reported)
 
-    def _conclude(self, which, b, out, own, alone):
+    def _conclude(self, which, b, out, reported, alone):
         if self.rules.misses:
             remember(
                 which, self.arrays, self.saved_arrays, b.played, self.rules.table.noses, self.rules.table.jaws
             )
         if self._miss == ATTEMPTS:
             judge_attempts(which, b, self.positions, self.on_table, self.game, self.rules, self.packed[2])
-        played = self._played if own else self._replies
-        frame_kernels.conclude(which, self.arrays, b.played, self._setting, own, alone, played, out.arrays)
+        played = self._played if reported else self._replies
+        frame_kernels.conclude(
+            which, self.arrays, b.played, self._setting, reported, alone, played, out.arrays
+        )
 
     def turn(
         self,
@@ -238,7 +240,7 @@ class Frames(Tables):
         the method. Returns where there was a stroke, (n,) bool. ``out`` gets the infos."""
         playing = np.flatnonzero(~self.ended()) if which is None else which
         self._played[playing] = 0
-        crew(playing, lambda which, b: self.complete(prepare(which, b), out, b, crew, own=True))
+        crew(playing, lambda which, b: self.complete(prepare(which, b), out, b, crew, reported=True))
         self.go_on(playing)
         return self._played > 0
 
@@ -276,7 +278,9 @@ class Frames(Tables):
 
         def play(which, buffers):
             acting = which[~self.due[which]] if self.due.any() else which
-            self.complete(self.prepare(acting, actions, buffers), out, buffers, crew, own=True, alone=alone)
+            self.complete(
+                self.prepare(acting, actions, buffers), out, buffers, crew, reported=True, alone=alone
+            )
             self.go_on(acting)
             if alone:
                 # even if a state of two players left a decision or lot
@@ -308,7 +312,9 @@ class Frames(Tables):
             for player, tables, asked in opponent.turns(self, which, crew.generators):
 
                 def play(part, buffers, player=player, asked=asked):
-                    self.complete(player.prepare(self, part, asked, buffers), out, buffers, crew, own=False)
+                    self.complete(
+                        player.prepare(self, part, asked, buffers), out, buffers, crew, reported=False
+                    )
                     self.go_on(part)
 
                 crew(tables, play)

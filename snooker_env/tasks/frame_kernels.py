@@ -161,15 +161,15 @@ def decide(which, actions, tables, saved, setting, plays):
     for j in range(which.shape[0]):
         k = which[j]
         row, a = tables.game[k], actions[k]
-        said = declaration_of(a, options, row)
-        plays[j] = said == SAYS_NOTHING
-        if said == CONCEDES:
+        declared = declaration_of(a, options, row)
+        plays[j] = declared == SAYS_NOTHING
+        if declared == CONCEDES:
             concede(row)
             give_up(row, setting.reward)
-        elif said == CLAIMS:
+        elif declared == CLAIMS:
             claim(row)
         elif row[PHASE] == LOT:
-            draw(row, 1 - row[STRIKER] if said == OTHER_BEGINS else row[STRIKER])
+            draw(row, 1 - row[STRIKER] if declared == OTHER_BEGINS else row[STRIKER])
         elif row[PHASE] == CHOICE:
             wish = a[int(options[A_DECISION])] if options[A_DECISION] >= 0 else 0.0
             plays[j] = choose_as(k, wish, setting.rules, tables, saved)
@@ -204,8 +204,8 @@ def hold_late(which, game, rules, time_to_play, v, w, shots):
 
 
 @entry(what="the referee of frames", seconds=6)
-def conclude(which, tables, shots, setting, own, alone, played, output):
-    """Judge the shots that came to rest and update tables and frames. ``own``: infos report the strokes;
+def conclude(which, tables, shots, setting, reported, alone, played, output):
+    """Judge the shots that came to rest and update tables and frames. ``reported``: infos report the strokes;
     ``played`` counts them. ``alone``: the table returns to the agent."""
     tables, shots, setting = TableArrays(*tables), PlayedArrays(*shots), Setting(*setting)
     out = OutputArrays(*output)
@@ -252,7 +252,7 @@ def conclude(which, tables, shots, setting, own, alone, played, output):
             else:  # where it came to rest
                 place_anywhere(p, on, p[CUE, 0], p[CUE, 1])
         played[k] += 1
-        if own:
+        if reported:
             write_stroke_info(k, out, j, shots, ball_on, result)
         if alone:
             _hand_back(row)

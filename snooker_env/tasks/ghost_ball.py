@@ -51,7 +51,7 @@ struck full comes half as far."""
 
 
 @kernel
-def _put_on_bed(positions, on_table, mask, found):
+def _put_on_bed(positions, on_table, mask, rows):
     """Place a cue ball behind the ball of the easiest pot, on the line from the pocket, or as near as the bed
     allows; without a pot, where most of a ball on is seen."""
     widest, best_x, best_y = 0.0, positions[0, 0], positions[0, 1]
@@ -70,9 +70,9 @@ def _put_on_bed(positions, on_table, mask, found):
                 )
                 worth = 0.0
                 if tries == 1:
-                    _, _, _, worth = soft(positions, on_table, 1 << ball, 0, DRIVE, found)
-                elif find_pots(positions, on_table, 1 << ball, BALL_RADIUS, found[:1]):
-                    worth = found[0, TOLERANCE]
+                    _, _, _, worth = soft(positions, on_table, 1 << ball, 0, DRIVE, rows)
+                elif find_pots(positions, on_table, 1 << ball, BALL_RADIUS, rows[:1]):
+                    worth = rows[0, TOLERANCE]
                 if worth > widest:
                     widest, best_x, best_y = worth, positions[0, 0], positions[0, 1]
         if widest > 0.0:
@@ -81,11 +81,11 @@ def _put_on_bed(positions, on_table, mask, found):
 
 
 @kernel
-def put(positions, on_table, mask, anywhere, found, stream):
+def put(positions, on_table, mask, anywhere, rows, stream):
     """Place a cue ball in hand for the widest pot, else where most of a ball on is seen; for the break-off to
     the left or right of the brown, as the stream decides. ``anywhere``: not in the D only."""
     if anywhere:
-        _put_on_bed(positions, on_table, mask, found)
+        _put_on_bed(positions, on_table, mask, rows)
         return
     if racked(positions, on_table):
         u, _ = pair(stream)
@@ -94,20 +94,20 @@ def put(positions, on_table, mask, anywhere, found, stream):
     widest, best = 0.0, -1
     for c in range(len(_PLACES)):
         place(positions, on_table, *_PLACES[c])
-        if find_pots(positions, on_table, mask, BALL_RADIUS, found[:1]) and found[0, TOLERANCE] > widest:
-            widest, best = found[0, TOLERANCE], c
+        if find_pots(positions, on_table, mask, BALL_RADIUS, rows[:1]) and rows[0, TOLERANCE] > widest:
+            widest, best = rows[0, TOLERANCE], c
     if best < 0:
         best = 0
         for c in range(len(_PLACES)):
             place(positions, on_table, *_PLACES[c])
-            _, _, _, window = soft(positions, on_table, mask, 0, 0.0, found)
+            _, _, _, window = soft(positions, on_table, mask, 0, 0.0, rows)
             if window > widest:
                 widest, best = window, c
     place(positions, on_table, *_PLACES[best])
 
 
 @kernel
-def stroke_at(positions, on_table, on, in_hand, failed, drive, found, stream):
+def stroke_at(positions, on_table, on, in_hand, failed, drive, rows, stream):
     """The geometric player's shot: (speed, side, top, direction). ``in_hand``: just placed; ``failed``: a
     stroke from here has; ``drive``: how much farther than needed one without a pot is to roll [m]."""
     end_red = racked(positions, on_table) if in_hand else 0
@@ -115,25 +115,25 @@ def stroke_at(positions, on_table, on, in_hand, failed, drive, found, stream):
         return break_off(positions, end_red)
     touching = touching_balls(positions, on_table)
     x, y = positions[0, 0], positions[0, 1]
-    if not failed and find_pots(positions, on_table, on & ~touching, BALL_RADIUS, found[:1]):
+    if not failed and find_pots(positions, on_table, on & ~touching, BALL_RADIUS, rows[:1]):
         ball, pocket, gx, gy = (
-            int(found[0, POT_BALL]),
-            int(found[0, POT_POCKET]),
-            found[0, GHOST_X],
-            found[0, GHOST_Y],
+            int(rows[0, POT_BALL]),
+            int(rows[0, POT_POCKET]),
+            rows[0, GHOST_X],
+            rows[0, GHOST_Y],
         )
         run = hypot(
             POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
         )
         # of the cue ball at the impact
-        needed = SLIDE * sqrt(ROLL * (run + 0.6)) / max(found[0, COS_CUT], 0.2)
+        needed = SLIDE * sqrt(ROLL * (run + 0.6)) / max(rows[0, COS_CUT], 0.2)
         return (
             min(6.0, SLIDE * sqrt(ROLL * hypot(gx - x, gy - y) + needed * needed)),
             0.0,
             0.0,
             atan2(gy - y, gx - x),
         )
-    return plain(positions, on_table, on, touching, failed, drive, found, stream)
+    return plain(positions, on_table, on, touching, failed, drive, rows, stream)
 
 
 @kernel
@@ -149,7 +149,7 @@ def named(positions, on_table, row, aim):
 
 
 @kernel
-def geometric_turn(positions, on_table, row, rules, found, stream):
+def geometric_turn(positions, on_table, row, rules, rows, stream):
     """Its turn: (speed, side, top, aim, what it nominates, what it decides after a foul). ``row``: of a visit
     or frame, after its decision; a cue ball in hand is placed. ``rules``: the code of the rule set."""
     frame, decision = row.shape[0] > ANYWHERE, PLAY
@@ -160,11 +160,11 @@ def geometric_turn(positions, on_table, row, rules, found, stream):
         draw(row, row[STRIKER])
     mask = strikeable(row, bits(on_table) & ~1)
     if row[IN_HAND]:
-        put(positions, on_table, mask, frame and row[ANYWHERE], found, stream)
+        put(positions, on_table, mask, frame and row[ANYWHERE], rows, stream)
     jitter, _ = pair(stream)
     failed = frame and row[SAVED] != 0  # it plays from a position that has been restored
     drive = DRIVE if rules == SHOOT_OUT else 0.0
-    speed, side, top, aim = stroke_at(positions, on_table, mask, row[IN_HAND], failed, drive, found, stream)
+    speed, side, top, aim = stroke_at(positions, on_table, mask, row[IN_HAND], failed, drive, rows, stream)
     speed *= 1.0 + (0.04 if row[IN_HAND] and racked(positions, on_table) else 0.2) * (jitter - 0.5)
     return speed, side, top, aim, named(positions, on_table, row, aim) if frame else AUTO, decision
 
@@ -173,11 +173,11 @@ def geometric_turn(positions, on_table, row, rules, found, stream):
 def _ghost_ball(which, tables, shots, packed, rules):
     """The turns of ``GhostBallOpponent``, up to the strike. ``rules``: the code of the rule set."""
     positions, on_table, game, streams, nominated = tables
-    shots, (options, noise, _), found = StruckArrays(*shots), packed, np.empty((LINE_ROWS, POT_COLUMNS))
+    shots, (options, noise, _), rows = StruckArrays(*shots), packed, np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
         p, on = positions[k], on_table[k]
-        speed, side, top, aim, colour, _ = geometric_turn(p, on, game[k], rules, found, streams[k])
+        speed, side, top, aim, colour, _ = geometric_turn(p, on, game[k], rules, rows, streams[k])
         if options[A_NOMINATE] >= 0:
             nominated[k] = colour
         intended = (speed, side, top, aim - squirt(side, options[A_END_MASS]), 0.0)
@@ -187,10 +187,10 @@ def _ghost_ball(which, tables, shots, packed, rules):
 @entry(what="the geometric player", seconds=3)
 def geometric_strokes(positions, on_table, game, rules, streams, strokes, nominated, decisions):
     """The geometric player's strokes (n, 5), nominations and decisions (n,); places cue balls in hand."""
-    found = np.empty((LINE_ROWS, POT_COLUMNS))
+    rows = np.empty((LINE_ROWS, POT_COLUMNS))
     for k in range(len(game)):
         speed, side, top, aim, colour, decision = geometric_turn(
-            positions[k], on_table[k], game[k], rules, found, streams[k]
+            positions[k], on_table[k], game[k], rules, rows, streams[k]
         )
         nominated[k], decisions[k] = colour, decision
         strokes[k, 0], strokes[k, 1], strokes[k, 2], strokes[k, 3], strokes[k, 4] = speed, side, top, aim, 0.0
@@ -199,7 +199,7 @@ def geometric_strokes(positions, on_table, game, rules, streams, strokes, nomina
 @entry(what="the places of a cue ball in hand", seconds=2)
 def put_in_hand(positions, on_table, game, streams):
     """Place the cue balls in hand of n positions, of visits or frames, in place."""
-    found = np.empty((LINE_ROWS, POT_COLUMNS))
+    rows = np.empty((LINE_ROWS, POT_COLUMNS))
     for k in range(len(game)):
         row = game[k]
         if row[IN_HAND]:
@@ -209,7 +209,7 @@ def put_in_hand(positions, on_table, game, streams):
                 on_table[k],
                 strikeable(row, bits(on_table[k]) & ~1),
                 anywhere,
-                found,
+                rows,
                 streams[k],
             )
 

@@ -113,15 +113,15 @@ def _seen(positions, on_table, lines, windows, many, count):
 
 
 @kernel(uses=(find_escapes,))
-def find_lines(positions, on_table, on, found):
-    """Write up to ``POTS`` lines, best first, into the first rows of ``found`` (LINE_ROWS, POT_COLUMNS), for
+def find_lines(positions, on_table, on, rows):
+    """Write up to ``POTS`` lines, best first, into the first rows of ``rows`` (LINE_ROWS, POT_COLUMNS), for
     a table without a direct pot. Returns their number, at least 1: if need be, at the nearest ball on."""
-    lines, windows = found[:POTS], found[POTS:]
+    lines, windows = rows[:POTS], rows[POTS:]
     touching, end_red, count = touching_balls(positions, on_table), racked(positions, on_table), 0
     many = open_windows(positions, on_table, on, touching, windows)
     if end_red:
-        own = -1.0 if positions[0, 0] < 0.0 else 1.0
-        for sign in (own, -own):
+        outwards = -1.0 if positions[0, 0] < 0.0 else 1.0
+        for sign in (outwards, -outwards):
             aim = thin_at_end(positions, end_red, sign)
             space = room(windows, many, aim)
             count = _add(lines, count, aim, space if space > NARROW else 0.0)
@@ -135,14 +135,14 @@ def find_lines(positions, on_table, on, found):
 
 
 @kernel
-def count_lines(positions, on_table, on, found):
-    """The number of lines to choose from, at least 1: direct pots, else others. ``found``: work space."""
+def count_lines(positions, on_table, on, rows):
+    """The number of lines to choose from, at least 1: direct pots, else others. ``rows``: work space."""
     many = count_pots(positions, on_table, on, BALL_RADIUS, POTS)
-    return many if many else find_lines(positions, on_table, on, found)
+    return many if many else find_lines(positions, on_table, on, rows)
 
 
 @kernel
-def line_of(positions, on_table, on, found):
+def line_of(positions, on_table, on, rows):
     """Direction of the best line of the cue ball. An inner kernel.
 
     Parameters
@@ -162,10 +162,10 @@ def line_of(positions, on_table, on, found):
         Direction [rad] from +x: to the ghost ball of the widest direct pot, else the best line of
         ``action="discrete"``. Over cushions it is that of a rolling ball, which another stroke must correct.
     """
-    if find_pots(positions, on_table, on, BALL_RADIUS, found[:1]):
-        return atan2(found[0, GHOST_Y] - positions[0, 1], found[0, GHOST_X] - positions[0, 0])
-    find_lines(positions, on_table, on, found)
-    return found[0, LINE_AIM]
+    if find_pots(positions, on_table, on, BALL_RADIUS, rows[:1]):
+        return atan2(rows[0, GHOST_Y] - positions[0, 1], rows[0, GHOST_X] - positions[0, 0])
+    find_lines(positions, on_table, on, rows)
+    return rows[0, LINE_AIM]
 
 
 @kernel(uses=(escape_aim,))

@@ -40,17 +40,17 @@ class OpponentPool:
     def __init__(self, members: Iterable[Any] | None = None, weights: Iterable[float] | None = None):
         self._members: list[Any] = []
         self._weights: list[float] = []
-        given = [] if members is None else list(members)
-        if members is not None and not given:
+        listed = [] if members is None else list(members)
+        if members is not None and not listed:
             raise refuse(
-                "members", given, "must hold one member at least; leave them out where add(...) follows"
+                "members", listed, "must hold one member at least; leave them out where add(...) follows"
             )
-        each = [1.0] * len(given) if weights is None else list(weights)
-        if len(each) != len(given):
-            raise refuse("weights", each, f"must be {len(given)} numbers, one for each member")
-        for member, weight in zip(given, each, strict=True):
+        each = [1.0] * len(listed) if weights is None else list(weights)
+        if len(each) != len(listed):
+            raise refuse("weights", each, f"must be {len(listed)} numbers, one for each member")
+        for member, weight in zip(listed, each, strict=True):
             self.add(member, weight)
-        if given and not any(self._weights):
+        if listed and not any(self._weights):
             raise refuse("weights", each, "must hold a number above 0: nobody could be drawn")
 
     @property

@@ -106,11 +106,11 @@ def _said(says: Any, flags: Mapping[str, Any]) -> tuple[str, ...]:
     """The option ``says`` with the flags that are its other spelling, in the order of ``SAYS``."""
     if isinstance(says, str) or not isinstance(says, Collection):
         raise refuse("says", says, f"must be a sequence of some of {', '.join(map(repr, SAYS))}")
-    said = {choice("says", name, SAYS) for name in says}
+    spoken = {choice("says", name, SAYS) for name in says}
     for name, flag in flags.items():
         if flag is not _UNSAID:
-            said = said | {name} if truth(name, flag) else said - {name}
-    return tuple(name for name in SAYS if name in said)
+            spoken = spoken | {name} if truth(name, flag) else spoken - {name}
+    return tuple(name for name in SAYS if name in spoken)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -405,13 +405,13 @@ class Options:
         """Return name and default of each option of a group: "task", "action", "view", "shot" or "frame";
         with ``task``, of those that this task has. ValueError if there is no such group or task."""
         choice("name", name, GROUPS)
-        own = (
+        kinds = (
             TASKS if task is None else {"match": ("frame", "match")}.get(choice("task", task, TASKS), (task,))
         )
         return {
             f.name: f.default
             for f in _FIELDS
-            if f.metadata["group"] == name and f.metadata["only"] in (None, *own)
+            if f.metadata["group"] == name and f.metadata["only"] in (None, *kinds)
         }
 
     def but(self, **changes: Any) -> "Options":
@@ -424,10 +424,10 @@ class Options:
 def _saying(name: str) -> Any:
     """Whether options say this."""
 
-    def said(self: Options) -> bool:
+    def flag_of(self: Options) -> bool:
         return name in self.says
 
-    return said
+    return flag_of
 
 
 _FIELDS = tuple(f for f in fields(Options) if f.init)
@@ -455,21 +455,21 @@ def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:
     )
 
 
-def options_of(options: Options | None, given: Mapping[str, Any]) -> Options:
-    """The ``Options`` that are ``options`` or of the keywords ``given``; TypeError for an unknown keyword."""
+def options_of(options: Options | None, keywords: Mapping[str, Any]) -> Options:
+    """The ``Options`` that are ``options`` or of the ``keywords``; TypeError for an unknown keyword."""
     if options is None:
-        for name in given:
+        for name in keywords:
             if name not in NAMES:
                 raise TypeError(
                     f"got an unexpected keyword argument {name!r}; the options are {', '.join(NAMES)}"
                 )
-        return Options(**given)
+        return Options(**keywords)
     if not isinstance(options, Options):
         raise refuse("options", options, "must be an Options or None")
-    if given:
+    if keywords:
         raise refuse_what(
             "options",
             "an Options",
-            f"must be None with the keywords {sorted(given)}: change them with options.but(...)",
+            f"must be None with the keywords {sorted(keywords)}: change them with options.but(...)",
         )
     return options

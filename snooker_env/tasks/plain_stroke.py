@@ -59,13 +59,13 @@ def _goes_in(positions, ball, ux, uy, v2):
 
 
 @kernel
-def soft(positions, on_table, on, touching, drive, found):
+def soft(positions, on_table, on, touching, drive, rows):
     """The soft stroke at the nearest ball on with a window that a player cannot miss: (speed, top, direction)
     and half the window [rad], 0: none. It is aimed at the middle of what is seen; where the cue ball would
     follow into a pocket, halfway to an edge, or so that it stops at the ball. ``touching``: mask of balls at
     the cue ball, none of them on. ``drive``: how much farther than needed it rolls [m]."""
     x, y = positions[0, 0], positions[0, 1]
-    best, speed, top, aim, window, windows = -1e9, 0.0, 0.0, 0.0, 0.0, found[POTS:]
+    best, speed, top, aim, window, windows = -1e9, 0.0, 0.0, 0.0, 0.0, rows[POTS:]
     many = open_windows(positions, on_table, on, touching, windows)
     for ball in range(1, N_BALLS):
         if not (on_table[ball] and (on >> ball) & 1):
@@ -121,7 +121,7 @@ def _escape(positions, on_table, on, vary, lines, stream):
 
 
 @kernel
-def plain(positions, on_table, on, touching, vary, drive, found, stream):
+def plain(positions, on_table, on, touching, vary, drive, rows, stream):
     """A stroke without a pot: (speed, side, top, direction). Straight away from a touching ball on, which
     counts as striking it; else soft; else an escape; else at a little of a ball on, or the nearest. ``vary``:
     one from here has failed, so another is played; ``drive``: how much farther than needed it rolls [m]."""
@@ -136,9 +136,9 @@ def plain(positions, on_table, on, touching, vary, drive, found, stream):
                 0.0,
                 atan2(positions[0, 1] - positions[ball, 1], positions[0, 0] - positions[ball, 0]) + shift,
             )
-    speed, top, aim, window = soft(positions, on_table, on, touching, drive, found)
+    speed, top, aim, window = soft(positions, on_table, on, touching, drive, rows)
     if window < NARROW:
-        over, other, wide = _escape(positions, on_table, on, vary, found[:POTS], stream)
+        over, other, wide = _escape(positions, on_table, on, vary, rows[:POTS], stream)
         if wide > window:
             speed, aim, window, top = over, other, wide, ROLLING
     if window == 0.0:

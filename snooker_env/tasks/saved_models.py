@@ -145,13 +145,13 @@ def entries(path: str | Path) -> dict[str, Any]:
     """
     with zipfile.ZipFile(path) as file:
         name = PLAIN if PLAIN in file.namelist() else "data"
-    found = json.loads(part(path, name))
-    if not isinstance(found, dict):
+    description = json.loads(part(path, name))
+    if not isinstance(description, dict):
         raise ValueError(f"{name} holds no object")
-    return found
+    return description
 
 
-def by_train(found: dict[str, Any]) -> bool:
+def by_train(description: dict[str, Any]) -> bool:
     """Return whether a model was written by the repository's ``train.py``.
 
     Parameters
@@ -170,7 +170,7 @@ def by_train(found: dict[str, Any]) -> bool:
     >>> by_train({"gamma": 0.99})
     False
     """
-    return "recipe" in found
+    return "recipe" in description
 
 
 def outline(space: spaces.Space[Any]) -> tuple[str, Any]:

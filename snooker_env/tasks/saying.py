@@ -33,7 +33,7 @@ def _said(actions, options, game, rules, nominated, decisions, declared):
         nominated[k] = nomination_of(a, options, row)
 
 
-def said(rules: Rules, actions: Floats, game: Ints) -> tuple[Ints, Ints, Ints]:
+def sayings(rules: Rules, actions: Floats, game: Ints) -> tuple[Ints, Ints, Ints]:
     """Nominations, decisions and declarations (n,), as in ``players.Strokes``, of checked actions (n, k)."""
     nominated, decisions, declared = np.empty((3, len(game)), np.int64)
     _said(actions, rules.actions.pack(), game, rules.rule_set.code, nominated, decisions, declared)

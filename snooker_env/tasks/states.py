@@ -238,11 +238,11 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
     check_rng(state["rng"], generator)
     opponent = integer("state.opponent", state["opponent"], 0, MOST)
     unpaid, due = integer("state.unpaid", state["unpaid"], -MOST, MOST), truth("state.due", state["due"])
-    found = FrameState(frame, positions, on_table, strokes, opponent, unpaid, due, stream, state["rng"])
+    made = FrameState(frame, positions, on_table, strokes, opponent, unpaid, due, stream, state["rng"])
     if not rules.frames:
-        return found
+        return made
     frames, first_break = _checked_match(state, frame, rules.frames)
-    return found._replace(frames=frames, first_break=first_break, best_of=rules.frames)
+    return made._replace(frames=frames, first_break=first_break, best_of=rules.frames)
 
 
 def _checked_match(state, frame, best_of):

@@ -46,8 +46,8 @@ def _check_noses(cloth: Table) -> None:
             levels = cloth.noses[(cloth.noses[:, 0] == axis) & (cloth.noses[:, 1] == side), 2]
             if not len(levels) or np.abs(levels - half).max() > ROUNDING:
                 at = f"{'xy'[axis]} = {side * half:g}"
-                found = ", ".join(f"{side * level:g}" for level in levels) or "none"
-                allowed = f"must have its noses at {at} in Snooker-v0, whose layouts are made for that bed (found {found})"
+                places = ", ".join(f"{side * level:g}" for level in levels) or "none"
+                allowed = f"must have its noses at {at} in Snooker-v0, whose layouts are made for that bed (found {places})"
                 raise refuse("table", cloth.name, allowed)
 
 

@@ -70,7 +70,7 @@ def write_empty_info(k, out, ball_on):
 Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
 """Work on some tables, called as ``task(which, buffers)``."""
 Watch: TypeAlias = Callable[[int, stroke.ShotBuffers, int, bool], None]
-"""Called as ``watch(k, buffers, j, own)`` after each stroke on table k, shot j of the buffers. ``own``: it is
+"""Called as ``watch(k, buffers, j, reported)`` after each stroke on table k, shot j of the buffers. ``reported``: it is
 the agent's; in a match, either player's."""
 
 
@@ -148,12 +148,12 @@ class Crew:
         if len(which):
             task(which, self.buffers)
 
-    def saw(self, which: Ints, buffers: stroke.ShotBuffers, own: bool) -> None:
+    def saw(self, which: Ints, buffers: stroke.ShotBuffers, reported: bool) -> None:
         """Report the strokes just played on the tables ``which``."""
         if self.watch is not None:
             for j, k in enumerate(which.tolist()):
                 alone = buffers.enlarged.get(j)
-                self.watch(k, buffers if alone is None else alone, j if alone is None else 0, own)
+                self.watch(k, buffers if alone is None else alone, j if alone is None else 0, reported)
 
 
 _T = TypeVar("_T", bound="Tables")
@@ -209,12 +209,12 @@ class Tables(ABC):
         """Give table k a new stream with a key drawn from a NumPy generator."""
         self.streams[k] = stream_of(rng)
 
-    def output(self, *, last: bool = False, given: Mapping[str, Any] | None = None) -> StepOutput:
-        """New arrays for the results of a step or reset, except for those ``given`` by name."""
+    def output(self, *, last: bool = False, arrays: Mapping[str, Any] | None = None) -> StepOutput:
+        """New arrays for the results of a step or reset, except for ``arrays`` by name."""
         masked = self.rules.actions if self.rules.observation == "masked" else None
         choices = masked.choices if isinstance(masked, Choices) else 0
         out = StepOutput(self.n, self.SIZE, self.REALS, self.COUNTS, last=last, choices=choices)
-        for name, array in (given or {}).items():
+        for name, array in (arrays or {}).items():
             array[...] = 0
             setattr(out, name, array)
         return out
@@ -226,15 +226,15 @@ class Tables(ABC):
         info |= {name: info[name] != 0 for name in self.FLAGS}
         return info | {"foul": info["fouls"] != 0}
 
-    def infos(self, reals: Floats, counts: Ints, there: Bools) -> dict[str, Any]:
+    def infos(self, reals: Floats, counts: Ints, present: Bools) -> dict[str, Any]:
         """Infos as of Gymnasium's vector environments: arrays, and masks of the tables that they hold for."""
         infos: dict[str, Any] = {
-            name: column * there for name, column in zip(self.REALS, reals.T, strict=True)
+            name: column * present for name, column in zip(self.REALS, reals.T, strict=True)
         }
-        infos |= {name: column * there for name, column in zip(self.COUNTS, counts.T, strict=True)}
+        infos |= {name: column * present for name, column in zip(self.COUNTS, counts.T, strict=True)}
         infos |= {name: infos[name] != 0 for name in self.FLAGS}
         infos["foul"] = infos["fouls"] != 0
-        return infos | {f"_{name}": there.copy() for name in infos}
+        return infos | {f"_{name}": present.copy() for name in infos}
 
     def played(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Played:
         """The stroke just played on table k, shot j of the buffers, and the table after it."""

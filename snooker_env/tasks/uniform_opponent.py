@@ -56,14 +56,14 @@ class UniformOpponent(Opponent):
 
     def prepare(self, frames: "Frames", which: Ints, asked: Floats, buffers: ShotBuffers) -> Ints:
         """See ``Opponent.prepare``."""
-        own = frames.seats[SIDE].actions
-        if isinstance(own, Choices):
+        reads = frames.seats[SIDE].actions
+        if isinstance(reads, Choices):
             masks = frames.action_masks(which, SIDE)
-            if own.concede:
-                masks[:, CHOICES * (1 + COLOURS * own.nominate)] = False
+            if reads.concede:
+                masks[:, CHOICES * (1 + COLOURS * reads.nominate)] = False
             _uniform_choice(which, frames.streams, masks, asked)
         else:
             _uniform(which, frames.streams, asked)
-            if own.concede:
+            if reads.concede:
                 asked[which, -1] = (5.0 * asked[which, -1] + 1.0) / 6.0  # [-1, 1) becomes [-2/3, 1)
         return frames.prepare(which, asked, buffers, SIDE)

@@ -45,7 +45,7 @@ def turn(tables, which=None):
     """One stroke of "ghost_ball" on each of the tables: its fouls (n,) and the buffers."""
     which = np.arange(tables.n) if which is None else which
     buffers, out = ShotBuffers(len(which)), tables.output()
-    tables.complete(PLAYER.prepare(tables, which, None, buffers), out, buffers, Crew(buffers), own=True)
+    tables.complete(PLAYER.prepare(tables, which, None, buffers), out, buffers, Crew(buffers), reported=True)
     return out.counts[which, I_FOULS], buffers
 
 
@@ -196,7 +196,7 @@ def test_anywhere_it_stands_behind_an_easy_pot():
         tables = in_hand_anywhere(100, layout, game="shoot_out", noise="professional")
         buffers, out = ShotBuffers(100), tables.output()
         tables.complete(
-            PLAYER.prepare(tables, np.arange(100), None, buffers), out, buffers, Crew(buffers), own=True
+            PLAYER.prepare(tables, np.arange(100), None, buffers), out, buffers, Crew(buffers), reported=True
         )
         assert (out.counts[:, I_FOULS] != 0).mean() < 0.06 and (out.reals[:, I_POINTS] > 0).mean() > 0.6
 
@@ -230,5 +230,5 @@ def test_the_fouls_that_it_counts_are_fouls():
     tables = dealt(1, layout="snookered")
     buffers, out = ShotBuffers(1), tables.output()
     tables.address(np.zeros(1, np.int64), np.array([[-0.9, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]]), buffers)
-    tables.complete(np.zeros(1, np.int64), out, buffers, Crew(buffers), own=True)
+    tables.complete(np.zeros(1, np.int64), out, buffers, Crew(buffers), reported=True)
     assert out.counts[0, I_FOULS] & (Foul.WRONG_FIRST | Foul.NO_CONTACT)
