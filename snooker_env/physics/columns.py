@@ -1,8 +1,7 @@
-"""Where do the numbers of a table lie? Columns of ``Table.noses``, ``Table.jaws`` and ``Table.falls``;
-``Table`` states their meaning.
+"""Where do the numbers of a table lie? Columns of ``Table.noses``, ``jaws`` and ``falls``, explained there.
 
-They are indices, not tunable constants: freezing them into a kernel is safe. Kernels read single numbers by
-them, and make no row and no tuple of its numbers (``detection.may_meet`` says why).
+Indices may be frozen into kernels, which read single numbers by them and make no rows
+(``detection.may_meet``).
 """
 
 NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL, NOSE_LOW, NOSE_HIGH = range(5)
