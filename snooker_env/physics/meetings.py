@@ -42,7 +42,7 @@ def _scaled(w, k):
 
 @inlined
 def meet(v1, w1, v2, w2, normal, law, series):
-    """Ball-ball impact: ``collide_balls`` or, below ``PART``, a hop; vertical velocity is dropped as in the paper."""
+    """Ball-ball impact: as ``collide_balls`` or, below ``PART``, a hop; in the plane, as in the paper."""
     (nx, ny), phys = normal, law.phys
     closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
     if closing <= PART:
