@@ -185,7 +185,7 @@ def clear_box(boundaries):
 
 @kernel
 def _level_crossing(gap, closing, closing2, held, T):
-    """Earliest x in [0, T] at which gap - closing x - closing2 x^2 falls through 0, or inf; held: touching."""
+    """Earliest x in [0, T] at which gap - closing x - closing2 x^2 falls through 0 or inf; held: touching."""
     if held and gap < TOUCH:
         if closing > CREEP or (gap <= -_DEEP and closing > STILL):
             return 0.0

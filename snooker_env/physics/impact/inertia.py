@@ -54,13 +54,11 @@ from typing import NamedTuple
 from ..._jit import kernel
 
 K_CLOTH = 3.5
-"""Change of the slip at the pressed ball's lowest point per friction impulse on it, 1 + 5/2; the same in
-every impact."""
+"""Change of the slip at the pressed ball's lowest point per friction impulse on it: 1 + 5/2."""
 
 
 class Impulses(NamedTuple):
-    """The impulses so far in an impact, per unit mass, or their rates. They are the whole state: everything
-    else follows linearly."""
+    """The impulses so far, per unit mass, or their rates: the whole state of an impact."""
 
     F1: float
     """Friction at A."""
