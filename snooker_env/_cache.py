@@ -1,4 +1,4 @@
-"""Where is machine code kept, and which of it is loaded? In the user's own folder; none that is foreign, old or damaged.
+"""Where is machine code kept, and which is loaded? In the user's own folder; nothing foreign, old or damaged.
 
 * Files are pickles: who can write there can run code here. So folders are made for the user alone, and one
   that somebody else (but root) owns or can write to is not used.
@@ -216,7 +216,7 @@ class _Files(IndexDataCacheFile):
 
 
 def may_be_kept(py_func: Any) -> bool:
-    """Whether a function is in a file, with whose folder's hash it changes: none has code of a prompt."""
+    """Whether a function is in a file, whose folder's hash changes with it; code of a prompt is in none."""
     return Path(py_func.__code__.co_filename).is_file()
 
 

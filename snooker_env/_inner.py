@@ -1,4 +1,4 @@
-"""How is an inner kernel compiled? To LLVM's intermediate code, which its callers take in; not to machine code.
+"""How is an inner kernel compiled? To LLVM's intermediate code, which its callers take in; no machine code.
 
 numba makes machine code of every function with all that it calls: for inner kernels, never run, a quarter of
 a first shot's time. So their library is complete once optimised, and callers find it under an entry point
@@ -106,6 +106,6 @@ class Inner(CPUDispatcher):
 
 
 OPTIONS: dict[str, Any] = {"_nrt": False, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
-"""Of ``numba.njit``. Without ``_nrt`` a kernel makes no arrays and counts no references, a fifth of a shot."""
+"""Of ``numba.njit``. Without ``_nrt`` a kernel makes no arrays and counts no references (see ``kernel``)."""
 if KNOWN:
     OPTIONS["pipeline_class"] = _Compiler

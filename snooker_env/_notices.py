@@ -1,7 +1,5 @@
-"""What is reported of compiling? A line on stderr before a compile of over a second, and warm-up's progress.
-
-``SNOOKER_ENV_QUIET=1`` silences both. Loading from the cache is not reported.
-"""
+"""What is reported of compiling, unless ``SNOOKER_ENV_QUIET=1``? A line on stderr before a compile of over a
+second, and the progress of a warm-up; nothing of loading from the cache."""
 
 import os
 import sys

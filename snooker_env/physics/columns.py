@@ -1,8 +1,4 @@
-"""Where do the numbers of a table lie? Columns of ``Table.noses``, ``jaws`` and ``falls``, explained there.
-
-Indices may be frozen into kernels, which read single numbers by them and make no rows
-(``detection.may_meet``).
-"""
+"""Where do the numbers of a table lie? Columns (safe to freeze) of its arrays, which ``Table`` explains."""
 
 NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL, NOSE_LOW, NOSE_HIGH = range(5)
 AXIS_X, AXIS_Y = 0.0, 1.0

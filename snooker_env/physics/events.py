@@ -39,11 +39,9 @@ class Status(IntEnum):
     """How a run ended.
 
     ================= ============================================================================
-    OK                All balls came to rest.
-    TOO_MANY_EVENTS   There were more events than allowed.
-    LOG_FULL          The log was too short; run the shot again with more.
-    IMPACT_UNSOLVED   An impact did not end.
-    ASTRAY            A ball on the bed was where none can be: in a cushion, or off the table.
+    OK                All balls came to rest. TOO_MANY_EVENTS   More events than allowed. LOG_FULL
+    The log was too short; run the shot again with more. IMPACT_UNSOLVED   An impact did not end. ASTRAY
+    A ball on the bed was where none can be: in a cushion, or off the table.
     ================= ============================================================================
     """
 

@@ -87,12 +87,12 @@ class Physics:
     e_c : float
         Energetic restitution at a cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s].
     e_c_knee : float
-        Speed into the cushion above which it falls [m/s], >= 0, and >= 0.001 where e_c_power > 0.
+        Speed into the cushion above which e falls [m/s], >= 0, and >= 0.001 where e_c_power > 0.
     e_c_power : float
-        Exponent of that fall, in [0, 0.8]; 0: none. e(v) = e_c up to e_c_knee, e_c (v /
-        e_c_knee)^(-e_c_power) above, so v e(v) rises with v; for mu_c, mu_s and sin_theta up to 0.5 so does
-        the rebound of a rolling or stunned ball. Loss by yielding has 1/4 (Johnson, Contact Mechanics, 1985,
-        11.5); rubber may differ.
+        Exponent of that fall, in [0, 0.8]; 0: none. e(v) = e_c up to e_c_knee, and above it
+        e_c (v / e_c_knee)^(-e_c_power), so v e(v) rises with v; for mu_c, mu_s and sin_theta up to 0.5 so
+        does the rebound of a rolling or stunned ball. An impact that loses energy by yielding has 1/4
+        (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
     e_j : float, optional
         Energetic restitution at a jaw, at every speed, in [0, 1]. None: e_c, without its fall with speed,
         because a jaw's rubber is cut thin over wood. Not measured.

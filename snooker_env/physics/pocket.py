@@ -5,15 +5,15 @@ followed. z is the drop of the centre below its height on the bed [m], u its rat
 cloth.
 
 * Gravity: du/dt = g.
-* The slate's edge is a sharp circle, the fall. A sphere whose centre is d inside touches it at d^2 + (R -
-  z)^2 = R^2; the normal points from edge to centre. Restitution ``EDGE``, no friction; below ``SOFT`` it tips
-  over.
+* The slate's edge is a sharp circle, the fall. A sphere whose centre is d inside touches it where
+  d^2 + (R - z)^2 = R^2, its normal from edge to centre. Restitution ``EDGE``, frictionless; below ``SOFT`` it
+  tips over.
 * A jaw's nose is an arc at height (1 + sin_theta) R: a ball touches it at the angle phi above its equator,
   sin(phi) = sin_theta + z/R. A free sphere and a fixed body, in closed form: p = (1 + e_j) times the closing
   speed, friction min(mu_c p, 2/7 of the slip) against the slip. The nose is above the centre and drives the
   ball down.
-* Lost: no arc ahead and its line leaves the fall on the far side from where it came in; or below the noses, z
-  = (1 - sin_theta) R, where the edge pushes it inwards too; or it touches the throat behind an arc.
+* Lost: no arc ahead and its line leaves the fall on the far side from where it came in; or below the noses,
+  z = (1 - sin_theta) R, where the edge pushes it inwards too; or it touches the throat behind an arc.
 
 Balls meet each other in the plane, whatever their drop. ``SLOW``, ``SOFT`` and ``STEP`` suit snooker balls
 and normal gravity. A ball that clears the edge flies to the first jaw in closed form; one that touches it is

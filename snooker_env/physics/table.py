@@ -198,8 +198,8 @@ class Table:
         return self._reaches[R]
 
     def unfit(self, positions: Floats, R: float) -> list[int]:
-        """Indices, in order, of the layouts in ``positions`` (b, n, 2) [m] of balls of radius ``R`` [m], all
-        on the table, that are not sound: see ``check``."""
+        """The layouts that ``check`` would refuse: their indices, in order. ``positions`` (b, n, 2) [m], all
+        balls on the table; ``R``: their radius [m]."""
         here, unfit, first = np.ones(positions.shape[:2], bool), [], 0
         while True:
             k, _, fault, _ = first_fault(

@@ -146,8 +146,7 @@ def _balls_in_frame(vc, wc, vo, wo, law, e, series):
     scaled = Friction(friction.least, friction.extra, friction.fade * ya)
     x, status = solve(Problem(inertia.BALLS, start, scaled, phys[P_MU_S], e), accuracy, series)
     f1, f2, g1, g2, p = x.F1 * ya, x.F2 * ya, x.G1 * ya, x.G2 * ya, x.p * ya
-    # lifted ball: (f1, -p, f2) and spin q (f2, 0, -f1); pressed: (-f1 + g1, p + g2, 0) and spin q (f2 + g2,
-    # -g1, -f1)
+    # lifted: (f1, -p, f2), spin q (f2, 0, -f1); pressed: (g1 - f1, p + g2, 0), spin q (f2 + g2, -g1, -f1)
     lift_v, lift_w = (sign * f1, -sign * p, f2), (sign * q * f2, 0.0, -q * f1)
     press_v, press_w = (
         (sign * (g1 - f1), sign * (p + g2), 0.0),

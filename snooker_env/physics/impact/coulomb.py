@@ -199,10 +199,7 @@ def _slip_rate(per, contact):
 
 @kernel
 def settled(x, slip, s, near, cloth, problem):
-    """Whether friction at A nearly balances the drive and the slip, of size s, has the drive's direction.
-
-    Then steps in t (dp = |a| dt) make little progress, and ``_creep_rates`` is accurate to the slip.
-    """
+    """Whether friction at A nearly balances the drive and the slip s lies along it: steps in t would stall."""
     per = _creep_rates(x, near, cloth, problem)
     slow = (
         _slip_rate(per, problem.contact)

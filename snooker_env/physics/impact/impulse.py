@@ -146,8 +146,7 @@ def _outlook(problem):
         K_CLOTH * problem.mu_s * (contact.n_p + abs(contact.n_f) * mu)
         >= abs(contact.d_b) - abs(contact.c2) * mu
     )
-    # The load stays positive if the normal impulse exceeds the friction at A, or if only that friction
-    # presses and a2 keeps its sign.
+    # the load stays positive if p exceeds the friction at A, or only that presses and a2 keeps its sign
     pressed = contact.n_p >= abs(contact.n_f) * mu or (
         contact.n_p == 0.0 and contact.n_f * problem.start.a2 <= 0.0
     )
@@ -239,18 +238,14 @@ def _bounded(h, start, s, mode, cloth, outlook, limits, contact):
         )
         along = (slip.b1 * db1 + slip.b2 * db2) / (size + _TINY)
         if along < 0.0 and size < _SMALL * max(limits.tol, limits.delta):
-            # a longer step is unstable on a slip this small or passes over its end, and an error of its size
-            # is not noticed
+            # a longer step is unstable or passes over the slip's end, an error too small to be noticed
             h = min(h, _REACH * size / max(_STABLE * K_CLOTH * hypot(per.G1, per.G2), -along))
     return h
 
 
 @kernel(seconds=8)
 def solve(problem, accuracy, series):
-    """Integrate one impact: the impulses at its end, and OK or TOO_MANY_STEPS; its closing speed is 1.
-
-    ``series``: work space, ``polynomial.WORK`` numbers.
-    """
+    """Integrate one impact, its closing speed 1: the impulses at its end, and OK or TOO_MANY_STEPS."""
     order = accuracy.order
     limits = Tolerances(accuracy.tol, accuracy.delta, _NEAR * accuracy.delta, accuracy.creep)
     outlook = _outlook(problem)

@@ -162,8 +162,7 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
         ee = lane(squares, 2) + lane(squares, 3)
         be1, be2, ne1, ne2 = lane(products, 0), lane(products, 1), lane(products, 2), lane(products, 3)
 
-        # The rates of order k: p' = s, F' = -mu a, W' = closing s, mu_s N, and from b = B e the direction e
-        # for G'.
+        # The rates of order k: p' = s, F' = -mu a, W' = closing s, mu_s N, and from b = B e the e of G'.
         s = ((lane(squares, 0) + lane(squares, 1) - ss) * per_s + h1 * a1) + h2 * a2
         f1, f2 = -mu0 * a1, -mu0 * a2
         if m0 > 0.0:

@@ -1,7 +1,5 @@
-"""What do the contacts do after a step? Their next states; or a step is rejected: the change lies inside it.
-
-Functions return the factor by which a rejected step is shortened, or ``STANDS``.
-"""
+"""What do the contacts do after a step? Their next states; or, as the change lies inside it, the factor by
+which it is shortened and taken again (else ``STANDS``)."""
 
 from typing import NamedTuple
 
