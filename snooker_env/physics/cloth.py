@@ -2,7 +2,7 @@
 
 [MJP14] 2.5, eq. 16 to 21 (misprints corrected). Slip: u = v + R (-w_y, w_x) [m/s]. While the ball slides,
 du/dt = -(7/2) mu_s g u/|u|: the direction of u is constant and the path a parabola, for the time
-T = 2 |u| / (7 mu_s g). Rolling decelerates by mu_r g, spin about the vertical by ``spin_decel`` in every state.
+T = 2 |u| / (7 mu_s g). Rolling decelerates by mu_r g, spin about the vertical, always, by ``spin_decel``.
 
 Nap. The fibres lean towards +y. Of the force on a rolling ball, resistance is the part odd in v/|v|; the
 lowest even part is a constant: dv/dt = -mu_r g v/|v| + nap y, as on a small slope. ``_bent`` is the closed

@@ -30,8 +30,8 @@ _CODES = {"fast": FAST, "standard": STANDARD, "reference": REFERENCE}
 FIDELITIES = (*_CODES, "euler:N")
 MAX_EULER_STEPS = 10_000_000
 
-# Errors against the tests' oracle, over the larger incoming speed: reference below 1e-9; standard below 1e-6 in
-# 99 % of impacts, 1e-5 in all. At a cushion they vary less: a larger tolerance keeps the same promise.
+# Errors against the tests' oracle, over the larger incoming speed: reference below 1e-9; standard below 1e-6
+# in 99 % of impacts, 1e-5 in all. At a cushion they vary less: a larger tolerance keeps the same promise.
 _REFERENCE = Accuracy(tol=1e-13, delta=1e-13, creep=1e-5, order=20)
 _STANDARD = Accuracy(tol=5e-8, delta=1e-7, creep=1e-3, order=12)
 _STANDARD_CUSHION = _STANDARD._replace(tol=1.5e-7)

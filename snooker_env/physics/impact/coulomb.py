@@ -199,7 +199,7 @@ def _slip_rate(per, contact):
 
 @kernel
 def settled(x, slip, s, near, cloth, problem):
-    """Whether friction at A nearly balances the drive and the slip s lies along it: steps in t would stall."""
+    """Whether friction at A nearly balances the drive and slip s lies along it: steps in t would stall."""
     per = _creep_rates(x, near, cloth, problem)
     slow = (
         _slip_rate(per, problem.contact)

@@ -48,10 +48,11 @@ from .transitions import STANDS, Moment, Step, Tolerances, cloth_after, mode_aft
 
 OK, TOO_MANY_STEPS = 0, 1
 
-# "Doubled", "halved", "either" (one or the other): the effect of this number alone on 6,000 impacts, two balls and
-# cushion, half of play, half harsh (friction, restitution and nose height anywhere in their ranges): on the steps
-# (play 2 to 11, harsh 20 to 350), the largest deviation from ``reference``, and failures. What is not named has no
-# effect: below 2 % of the steps, no error. A few harsh ones at ``reference`` change by up to 1e-5 in any case.
+# "Doubled", "halved", "either" (one or the other): the effect of this number alone on 6,000 impacts, two
+# balls and cushion, half of play, half harsh (friction, restitution and nose height anywhere in their
+# ranges): on the steps (play 2 to 11, harsh 20 to 350), the largest deviation from ``reference``, and
+# failures. What is not named has no effect: below 2 % of the steps, no error. A few harsh ones at
+# ``reference`` change by up to 1e-5 in any case.
 
 _MAX_STEPS = 20_000
 """The most steps; then the impact is unsolved."""
