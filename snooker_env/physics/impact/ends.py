@@ -62,8 +62,7 @@ def locate_end(series, degree, span, end, closing, target, e, tol):
     """For such a step: whether the impact ends, when (or when compression does), and the new target."""
     over, t, near = False, 0.0, _CLOSE * tol * span
     if target.compressing:
-        # the work is stationary there: it errs by the time's error squared, _CLOSE tol, the speed by that
-        # over e
+        # the work is stationary there: it errs by the time's error squared, _CLOSE tol; the speed by that / e
         t = _end_of_compression(series, degree, span, closing, near if e < _CLOSE else sqrt(near * span))
         top = value_at(series, degree, WORK_DONE, t)[0]
         target = Target(False, top, (1.0 - e * e) * top)
