@@ -403,8 +403,8 @@ PRESETS = MappingProxyType(
         "tight": Bed(
             length=2 * HALF_LENGTH, width=2 * HALF_WIDTH, corner=_TIGHT, middle=_MIDDLE, ball=_SNOOKER
         ),
-        # WEPF: at most 7 ft x 3 ft 6 in, balls of 2 in and 116 g (not the cue ball's 1 7/8 in: all are equal).
-        # Its templates are not published. Makers say that pockets are to the balls as in snooker: an estimate,
+        # WEPF: at most 7 ft x 3 ft 6 in, balls of 2 in and 116 g (not the cue ball's 1 7/8 in: all equal).
+        # Templates are not published; makers say that pockets are to the balls as in snooker: an estimate,
         # scaled by the balls, with snooker's nose height.
         "uk8": Bed(
             length=84 * _INCH,
@@ -414,8 +414,8 @@ PRESETS = MappingProxyType(
             ball=_ball(R=_INCH, M=0.116, sin_theta=0.4),
         ),
         # WPA: 100 x 50 in, balls of 2 1/4 in and 5.5 to 6 oz, noses at 63.5 % of the ball, corner mouths 4.5
-        # to 4.625 in at 142 degrees, side 5 to 5.125 at 104, shelves 1 to 2.25 and 0 to 0.375 in. Within them:
-        # mouths and shelves of Alciatore's TP 3.6 and 3.5, and his fall radii, which the WPA leaves open.
+        # to 4.625 in at 142 degrees, side 5 to 5.125 at 104, shelves 1 to 2.25 and 0 to 0.375 in. In these are
+        # mouths and shelves of Alciatore's TP 3.6 and 3.5; his are the fall radii, which the WPA leaves open.
         "pool9": Bed(
             length=100 * _INCH,
             width=50 * _INCH,
