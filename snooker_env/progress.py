@@ -48,7 +48,8 @@ class Progress:
     >>> with Progress("self-play", 4, "frames", to=sys.stdout) as progress:
     ...     for frame in range(4):
     ...         progress.at(frame + 1, "lead 3.2")  # doctest: +ELLIPSIS
-    self-play: 0 of 4 frames self-play: 4 of 4 frames, lead 3.2, ... frames/s, 0:00 elapsed
+    self-play: 0 of 4 frames
+    self-play: 4 of 4 frames, lead 3.2, ... frames/s, 0:00 elapsed
     """
 
     done: int
