@@ -22,7 +22,7 @@ from .columns import (
 )
 
 OVERLAP_ALLOWED = 1e-6
-"""Balls may overlap a ball or cushion by this much [m], as in layouts printed to a micrometre."""
+"""Balls may overlap a ball or cushion by this much [m] (printed layouts), and then count as touching."""
 
 SOUND, OFF, IN_NOSE, OVER_POCKET, IN_JAW, IN_BALL = range(6)
 """Kinds of faults: none; off the table; in a cushion; over a pocket; in a jaw; in another ball."""
