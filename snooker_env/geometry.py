@@ -414,7 +414,7 @@ PRESETS = MappingProxyType(
             ball=_ball(R=_INCH, M=0.116, sin_theta=0.4),
         ),
         # WPA: 100 x 50 in, balls of 2 1/4 in and 5.5 to 6 oz, noses at 63.5 % of the ball, corner mouths 4.5
-        # to 4.625 in at 142 degrees, side 5 to 5.125 at 104, shelves 1 to 2.25 and 0 to 0.375 in. Inside them:
+        # to 4.625 in at 142 degrees, side 5 to 5.125 at 104, shelves 1 to 2.25 and 0 to 0.375 in. In them:
         # mouths and shelves of Alciatore's TP 3.6 and 3.5; his fall radii too, which the WPA leaves open.
         "pool9": Bed(
             length=100 * _INCH,
