@@ -1,16 +1,12 @@
-"""Where is machine code kept, and which of it is loaded? In a folder of the user's own; nothing of others,
-nothing old, nothing damaged.
+"""Where is machine code kept, and which is loaded? In the user's own folder; nothing foreign, old or damaged.
 
-* The files are pickles: whoever can write there can run code here. So the folders are made for the user
-  alone, and a folder that belongs to somebody else, or that others can write to, is not used. root is
-  trusted, because it can do anything anyway.
-* numba notices a change only in the file that *defines* a cached function. After a change of a callee or a
-  constant in another file it would silently run old machine code. So the name of the cache folder is a hash
-  of all source in the rooms of the package that kernels are made from. Kernels defined elsewhere (a view,
-  agents, benchmarks) have a folder in it, named by a hash of the whole package that they come from. The place
-  of the source does not matter: equal copies share their machine code.
-* Each file ends with a checksum: unpickling a truncated file would raise, but damaged machine code would
-  crash the process.
+* Files are pickles: who can write there can run code here. So folders are made for the user alone, and one
+  that somebody else (but root) owns or can write to is not used.
+* numba notices changes only in the file that *defines* a cached function, not in callees or constants
+  elsewhere. So the folder is named by a hash of all source in the rooms that kernels are made from; kernels
+  of others (agents, benchmarks) have a folder in it, named by a hash of their whole package. Equal copies
+  share machine code.
+* Files end with a checksum: damaged machine code would crash the process.
 * Whatever goes wrong, the kernel is compiled again, and the process warns once.
 """
 
@@ -43,13 +39,11 @@ KERNEL_ROOMS = (
     "simulation.py",
     "tasks",
 )
-"""Files and folders of the package that hold kernels, and all that their kernels take from
-(tests/repository/test_kernel_rooms.py)."""
+"""What holds kernels, and all that their kernels take from (tests/repository/test_kernel_rooms.py)."""
 
 
 def source_hash(root: Path, rooms: tuple[str, ...] = ()) -> str:
-    """A hash of the Python files of a package and their names (16 hex digits); with ``rooms``, of what is in
-    these files and folders."""
+    """A hash of a package's Python files (or those in ``rooms``) and their names, 16 hex digits."""
     h = hashlib.sha256()
     for path in sorted(root.rglob("*.py")):
         inside = path.relative_to(root)
@@ -65,8 +59,7 @@ def kernel_hash(root: Path = _PACKAGE) -> str:
 
 @cache  # the modules imported from there do not change in this process
 def _hash_of(folder: Path) -> str:
-    """The hash of the whole package that a folder outside the rooms belongs to; of the folder alone if it is
-    in no package."""
+    """The hash of the whole package of a folder outside the rooms; of the folder alone if in none."""
     while (folder / "__init__.py").is_file() and (folder.parent / "__init__.py").is_file():
         folder = folder.parent
     return source_hash(folder)
@@ -80,12 +73,10 @@ class UnsafeFolderError(OSError):
 
 
 def _check_own(folder: Path, *, home: bool = False) -> None:
-    """Raise UnsafeFolderError unless only this user (and root) can change what is in ``folder`` and, for a
-    link, in its target.
+    """UnsafeFolderError unless only this user (and root) can change what is in ``folder`` and its target.
 
-    ``home``: whether this is the folder that the user has chosen. There, others may write if the sticky bit
-    keeps them from replacing the files of others (as in /tmp), and so may its group, which on many systems is
-    the user alone.
+    In ``home``, which the user chose, its group may write (often the user alone), and others with a sticky
+    bit (/tmp).
     """
     if not hasattr(os, "geteuid"):  # Windows: no such numbers, and a user's folders are closed to others
         return
@@ -98,8 +89,7 @@ def _check_own(folder: Path, *, home: bool = False) -> None:
 
 
 def _claim(home: Path, folder: Path) -> None:
-    """Make ``folder``, which is below ``home``, and the folders between for this user alone.
-    UnsafeFolderError if one is there already and others can write to it."""
+    """Make ``folder`` and those up to ``home`` for this user alone; UnsafeFolderError if others can write."""
     for part in (*reversed(folder.parents), folder):
         part.mkdir(0o700, exist_ok=True)
         if part == home or part.is_relative_to(home):
@@ -107,10 +97,9 @@ def _claim(home: Path, folder: Path) -> None:
 
 
 def cache_folder() -> Path | None:
-    """The folder for compiled entry kernels, or None if they can be kept in memory only.
+    """The folder for compiled entry kernels; None: in memory only.
 
-    ``$NUMBA_CACHE_DIR`` if set, else ``$XDG_CACHE_HOME`` or ``~/.cache``; below it
-    ``snooker_env/<kernel hash>``.
+    ``$NUMBA_CACHE_DIR``, else ``$XDG_CACHE_HOME`` or ``~/.cache``; below it ``snooker_env/<kernel hash>``.
     """
     chosen = (
         os.environ.get("NUMBA_CACHE_DIR")
@@ -194,8 +183,7 @@ def _check_whole(path):
 
 
 class _Files(IndexDataCacheFile):
-    """numba's index and data files of one kernel, with checksums: ``pickle.loads`` ignores what follows a
-    pickle."""
+    """numba's index and data files of one kernel, with checksums: ``pickle.loads`` ignores a tail."""
 
     def _load_index(self):
         with suppress(FileNotFoundError):
@@ -228,17 +216,12 @@ class _Files(IndexDataCacheFile):
 
 
 def may_be_kept(py_func: Any) -> bool:
-    """Whether a function is defined in a file, whose folder's hash then changes with it.
-
-    Code from a prompt, ``python -c``, a notebook or a doctest is in no file: another version of it would be
-    given the old machine code.
-    """
+    """Whether a function is in a file, whose folder's hash changes with it; code of a prompt is in none."""
     return Path(py_func.__code__.co_filename).is_file()
 
 
 class Kept(FunctionCache):
-    """The machine code of one entry kernel on disk. What cannot be read is compiled; what cannot be written
-    stays in memory."""
+    """One entry kernel's machine code on disk. Unreadable: compiled anew; not writable: in memory."""
 
     _impl_class = _Implementation
 

@@ -18,7 +18,7 @@ def refuse(field: str, value: Any, allowed: str) -> ValueError:
     field : str
         Name of the argument, as the caller writes it.
     value : any
-        The value that was given; the message shows its ``repr``.
+        The value; the message shows its ``repr``.
     allowed : str
         What is allowed: "must be ...".
 
@@ -39,14 +39,14 @@ def refuse(field: str, value: Any, allowed: str) -> ValueError:
 
 
 def refuse_what(field: str, what: str, allowed: str) -> ValueError:
-    """The same error for a value that is too large to show: a description stands in its place.
+    """The same error for a value that is too large to show.
 
     Parameters
     ----------
     field : str
         Name of the argument, as the caller writes it.
     what : str
-        Description of the value that was given.
+        Description of the value.
     allowed : str
         What is allowed: "must be ...".
 
@@ -67,7 +67,7 @@ def refuse_what(field: str, what: str, allowed: str) -> ValueError:
 def number(
     field: str, value: Any, low: float = -np.inf, high: float = np.inf, *, open_low: bool = False
 ) -> float:
-    """Check that a value is a finite real number in a range.
+    """Check that a value is a finite real number in a range; a bool, a str and an array are none.
 
     Parameters
     ----------
@@ -83,12 +83,7 @@ def number(
     Returns
     -------
     float
-        The value.
-
-    Raises
-    ------
-    ValueError
-        For anything else; also for a bool, a str and an array.
+        The value; ValueError for anything else.
 
     Examples
     --------
@@ -121,8 +116,7 @@ def _wanted(shape):
 
 
 def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, unit: str = "") -> Floats:
-    """A finite float64 array of the given shape (-1: any length), no number beyond ``most`` [unit]; always a
-    new C-ordered copy."""
+    """A new finite C-ordered float64 array of this shape (-1: any length), all within ``most`` [unit]."""
     try:
         raw = np.asarray(value)
     except (TypeError, ValueError):
@@ -163,12 +157,7 @@ def choice(field: str, value: Any, options: Collection[str]) -> str:
     Returns
     -------
     str
-        The value.
-
-    Raises
-    ------
-    ValueError
-        For anything else.
+        The value; ValueError for anything else.
 
     Examples
     --------
@@ -182,7 +171,7 @@ def choice(field: str, value: Any, options: Collection[str]) -> str:
 
 
 def integer(field: str, value: Any, low: float, high: float) -> int:
-    """Check that a value is an integer in a range.
+    """Check that a value is an integer in a range; a bool and a float are none.
 
     Parameters
     ----------
@@ -196,12 +185,7 @@ def integer(field: str, value: Any, low: float, high: float) -> int:
     Returns
     -------
     int
-        The value.
-
-    Raises
-    ------
-    ValueError
-        For anything else; also for a bool and a float.
+        The value; ValueError for anything else.
 
     Examples
     --------
@@ -227,7 +211,7 @@ def flags(field: str, value: Any, shape: tuple[int, ...]) -> Bools:
 
 
 def truth(field: str, value: Any) -> bool:
-    """Check that a value is a bool.
+    """Check that a value is a bool; 0 and 1 are none.
 
     Parameters
     ----------
@@ -239,12 +223,7 @@ def truth(field: str, value: Any) -> bool:
     Returns
     -------
     bool
-        The value.
-
-    Raises
-    ------
-    ValueError
-        For anything else; also for 0 and 1.
+        The value; ValueError for anything else.
 
     Examples
     --------

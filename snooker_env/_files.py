@@ -10,12 +10,10 @@ UNFINISHED = re.compile(r"\..+\.[0-9a-f]{16}\.tmp(\.\w+)?")
 
 
 def write_atomic(path: str | Path, content: bytes | str | Callable[[Path], object]) -> None:
-    """Write a file so that ``path`` holds the old or the new content, complete, whenever process or machine
-    stops.
+    """Write a file so that ``path`` holds the old or the new content, complete, whenever the machine stops.
 
-    ``content`` is bytes, a text, or a function that writes the file whose path it gets, with the suffix of
-    ``path``. On failure nothing is left behind, and the OSError names ``path``. A device or a pipe is written
-    directly.
+    ``content``: bytes, a text, or a function that writes the file at a path with the same suffix. On failure
+    nothing is left, and the OSError names ``path``. A device or a pipe is written directly.
     """
     target, data = Path(os.path.realpath(path)), content.encode() if isinstance(content, str) else content
     write = data if callable(data) else lambda file: file.write_bytes(data)

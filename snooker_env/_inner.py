@@ -1,17 +1,11 @@
-"""How is an inner kernel compiled? To LLVM's intermediate code, which its callers take in: no machine code is
-made of it alone.
+"""How is an inner kernel compiled? To LLVM's intermediate code, which its callers take in; no machine code.
 
-numba makes machine code of every function that it compiles, together with all that the function calls. For
-kernels that only kernels call it is never run, and it takes a quarter of the time of a first shot. So an
-inner kernel has a library that is complete when it has been optimised, and a caller finds it under an entry
-point that is only a name.
+numba makes machine code of every function with all that it calls: for inner kernels, never run, a quarter of
+a first shot's time. So their library is complete once optimised, and callers find it under an entry point
+that is only a name. And numba works out anew what each operator gives for its types, a seventh of the time:
+here the first answer stays.
 
-And numba works out anew, wherever an operator or a function stands, what it gives for the types at hand, out
-of about ten candidates: a seventh of the time. While inner kernels are compiled, the answer for the same
-types is that of the first time.
-
-This uses parts of numba that are not public. With a numba that lacks them, inner kernels are compiled as
-numba does it: the results are the same, later.
+It uses parts of numba that are not public; without them numba compiles as usual: the same results, later.
 """
 
 from contextlib import contextmanager
@@ -51,8 +45,7 @@ _find: Any = getattr(BaseFunction, FIND, None)
 
 
 def _find_once(function, context, args, kws):
-    """What ``function`` gives for these types: found before, if that depends on the types alone, or by
-    ``_find``."""
+    """What ``function`` gives for these types: as before, if they alone decide, or by ``_find``."""
     if type(function) is not Function or kws:
         return _find(function, context, args, kws)
     called, known = getattr(function, "typing_key", None), getattr(function, "_impl_keys", {})
@@ -67,8 +60,7 @@ def _find_once(function, context, args, kws):
 
 @contextmanager
 def _finding_once():
-    """Let numba use ``_find_once``. Whoever compiles holds numba's lock: no other thread compiles
-    meanwhile."""
+    """Let numba use ``_find_once``; whoever compiles holds numba's lock, so no other thread does."""
     before = getattr(BaseFunction, FIND)
     setattr(BaseFunction, FIND, _find_once)
     try:
@@ -114,7 +106,6 @@ class Inner(CPUDispatcher):
 
 
 OPTIONS: dict[str, Any] = {"_nrt": False, "no_cfunc_wrapper": True, "no_cpython_wrapper": True}
-"""Options of ``numba.njit`` for inner kernels. Without ``_nrt`` they must not make arrays, and need not count
-references to the arrays that they are given, which would take a fifth of the time of a shot."""
+"""Of ``numba.njit``. Without ``_nrt`` a kernel makes no arrays and counts no references (see ``kernel``)."""
 if KNOWN:
     OPTIONS["pipeline_class"] = _Compiler

@@ -1,10 +1,7 @@
-"""How are kernels compiled? The one place that sets numba's options; ``_cache.py`` decides where the machine
-code is kept.
+"""How are kernels compiled? The one place of numba's options; where machine code is kept: ``_cache.py``.
 
-* Strict IEEE everywhere: ``fastmath`` would let a freshly compiled and a cached kernel give different
-  trajectories.
-* No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch
-  instead.
+* Strict IEEE: with ``fastmath`` a fresh and a cached kernel could give different trajectories.
+* No ``prange``: GNU OpenMP kills forked workers. Threads run ``nogil`` kernels over slices of a batch.
 * Only entry kernels are cached, under a hash of all the source that they may have been made from.
 """
 
@@ -39,16 +36,15 @@ def kernel(
 ) -> Any:
     """Compile an inner kernel, which other kernels call. Use as a decorator.
 
-    Python cannot call it, and its machine code is not kept by itself. It must not make arrays: so numba need
-    not count references to the arrays that it is given, which would take a fifth of the time of a shot.
+    Python cannot call it. It must not make arrays: so numba need not count references to its arrays, a fifth
+    of a shot.
 
     Parameters
     ----------
     function : callable, optional
         The function to compile; None: the call returns a decorator.
     seconds : int
-        Time to compile it on a quiet machine [s], without the large kernels that it uses; 0 for less than one
-        second.
+        Time to compile it on a quiet machine [s], without large kernels that it uses; 0: less than one.
     uses : tuple of kernels
         The large kernels (``seconds`` above 0) that it calls, for the notice before a long compile.
 
@@ -76,8 +72,7 @@ def kernel(
 
 
 def inlined(function: Callable[..., Any]) -> Any:
-    """Compile an inner kernel as a part of its one caller, a large ``kernel``: otherwise its code would be
-    optimised twice."""
+    """Compile an inner kernel into its one caller, a large ``kernel``, so as to optimise its code once."""
     return _inner(function, _INLINED)
 
 
@@ -90,16 +85,15 @@ def entry(
 ) -> Any:
     """Compile a kernel that Python calls. Use as a decorator.
 
-    Its machine code is kept on disk, under a hash of the source of the package and of the module that defines
-    it. A function that is not defined in a file (at a prompt, in a notebook) is compiled in every process.
+    Its machine code is kept on disk, under a hash of the source of the package and of its module; but a
+    function that is in no file (a prompt, a notebook) is compiled in every process.
 
     Parameters
     ----------
     function : callable, optional
         The function to compile; None: the call returns a decorator.
     what : str
-        What the kernel is, for the line on stderr before a compile of more than a second. Without it there is
-        no line.
+        What it is, for the line on stderr before a compile of more than a second; "": no line.
     seconds : int
         Time to compile it on a quiet machine [s], without the large kernels that it uses.
     uses : tuple of kernels

@@ -1,13 +1,11 @@
-"""How does a kernel compute with four numbers at once? A type for four float64 side by side: one instruction
-where the processor has AVX.
+"""How does a kernel compute with four float64 at once? A type for four: one instruction where there is AVX.
 
-``lanes(a, b, c, d)`` makes it, ``lanes_at(array, i)`` loads it, ``put_lanes(array, i, x)`` stores it and
-``lane(x, k)`` takes one number, with k a constant; ``+`` and ``*`` work on each of the four. Every operation
-is the IEEE one of its lane, so the results are those of four separate numbers, on any processor. (The
-compiler finds such sums itself if asked, ``NUMBA_SLP_VECTORIZE``, but it stores the numbers one by one, and a
-load of four waits for that: nothing is gained.)
+``lanes(a, b, c, d)``, ``lanes_at(array, i)``, ``put_lanes(array, i, x)``, ``lane(x, k)`` (k a constant),
+``+`` and ``*``. Each lane's operation is the IEEE one: the results of four separate numbers.
+(``NUMBA_SLP_VECTORIZE`` finds such sums, but stores the numbers one by one, and a load of four waits: nothing
+is gained.)
 
-Without numba (``NUMBA_DISABLE_JIT``) the same source works on small numpy arrays.
+With ``NUMBA_DISABLE_JIT`` the same source works on small numpy arrays.
 """
 
 import operator
@@ -99,9 +97,9 @@ lower_builtin(operator.mul, _Lanes, _Lanes)(
 lanes: Any = intrinsic(_make)
 """Four numbers side by side."""
 lanes_at: Any = intrinsic(_load)
-"""The numbers i to i + 3 of a float64 array in one piece. Neither end of the array is checked."""
+"""The numbers i to i + 3 of a float64 array in one piece; ends are not checked."""
 put_lanes: Any = intrinsic(_store)
-"""Writes x to the places i to i + 3 of such an array. Neither end of the array is checked."""
+"""Writes x to the places i to i + 3 of such an array; ends are not checked."""
 lane: Any = intrinsic(prefer_literal=True)(_take)
 """Number k of the four; k is a constant."""
 

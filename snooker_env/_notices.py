@@ -1,8 +1,5 @@
-"""What is reported of compiling? One line on stderr before each compile that takes over a second, and the
-progress of a warm-up.
-
-``SNOOKER_ENV_QUIET=1`` silences both. Machine code that is loaded from the cache is not reported.
-"""
+"""What is reported of compiling, unless ``SNOOKER_ENV_QUIET=1``? A line on stderr before a compile of over a
+second, and the progress of a warm-up; nothing of loading from the cache."""
 
 import os
 import sys
@@ -31,8 +28,7 @@ class Cost(NamedTuple):
     uses: tuple[Any, ...]
 
     def total(self) -> int:
-        """Time that it will take [s], with the large kernels that it uses and that this process has not
-        compiled yet."""
+        """Time [s], with the large kernels that it uses and that are not compiled yet."""
         return self.seconds + sum(kernel.cost.seconds for kernel in self._missing())
 
     def _missing(self):

@@ -1,14 +1,11 @@
-"""Where is everything on a table, and how large is it? Beds, pockets, spots and balls as data: the one source
-for every layer.
+"""Where is everything on a table, and how large is it? Beds, pockets, spots, balls as data, for every layer.
 
-Table frame: origin at the table's centre, +x to the yellow side, +y to the black end; metres. A preset is a
-``Bed``; ``parts`` makes the arrays from it that the kernels read (``physics.table``). Pockets are numbered in
-one order everywhere: ``POCKETS``.
+Table frame: origin at the centre, +x to the yellow side, +y to the black end; metres. ``parts`` makes the
+kernels' arrays of a ``Bed``. Pockets are numbered as in ``POCKETS``.
 
-Sources. Snooker: WPBSA, playing area 3569 x 1778 mm, spots and D as in the rules; the official pocket
-templates are secret, and this set agrees with the quoted openings (3.5 in corner, 4 in middle at the fall of
-the slate: ``python -m benchmarks.pockets`` prints ours). Pool: WPA equipment specifications; Alciatore, TP
-3.5 and TP 3.6. UK 8-ball: WEPF specifications. Carom: UMB regulations.
+Sources. Snooker: WPBSA, playing area 3569 x 1778 mm, spots and D as in the rules; the official templates are
+secret, ours agree with the quoted openings (3.5 in corner, 4 in middle at the fall: ``python -m
+benchmarks.pockets``). Pool: WPA; Alciatore, TP 3.5 and 3.6. UK 8-ball: WEPF. Carom: UMB.
 """
 
 from collections.abc import Mapping
@@ -43,18 +40,15 @@ __all__ = [
 ]
 
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
-"""Names of the pockets by index, 0 to 5, anticlockwise from (-x, -y): bottom is the baulk end, right is the
-yellow side."""
+"""Names of the pockets by index, anticlockwise from (-x, -y): bottom is baulk, right the yellow side."""
 SIDES = ((-1, -1), (1, -1), (1, 0), (1, 1), (-1, 1), (-1, 0))
-"""The side of the table on which each pocket of ``POCKETS`` lies: the signs of its x and y, 0 for y at a
-middle pocket."""
+"""The signs of each pocket's x and y; 0 for y at a middle pocket."""
 
 # Snooker's table: the rules, the layouts and the observations use these.
 BALL_RADIUS = 0.02625
 """Radius of a snooker ball [m]."""
 HALF_WIDTH, HALF_LENGTH = 0.889, 1.7845
-"""Half the playing area of a snooker table [m]: the noses lie at x = -+``HALF_WIDTH`` and y =
--+``HALF_LENGTH``."""
+"""Half of snooker's playing area [m]: noses at x = -+``HALF_WIDTH``, y = -+``HALF_LENGTH``."""
 BAULK_Y = -1.0475
 """The y of the baulk line [m]."""
 D_RADIUS = 0.292
@@ -72,13 +66,11 @@ COLOUR_SPOTS = np.array(
 """The spots of yellow, green, brown, blue, pink and black: float64 (6, 2) [m], read-only."""
 
 POCKET_PLACES = np.array([(sx * HALF_WIDTH, sy * HALF_LENGTH) for sx, sy in SIDES])
-"""Nominal places of the pockets: float64 (6, 2) [m], read-only. A corner pocket's is where two nose lines
-meet, a middle pocket's is the middle of its nose line. Layouts use them to keep balls away from the
-pockets."""
+"""Nominal places of the pockets: float64 (6, 2) [m], read-only: where two nose lines meet, or the middle of
+one. Layouts keep balls away from them."""
 
 AIM_X, AIM_Y, AXIS_X, AXIS_Y, IS_MIDDLE = range(5)
-"""Columns of ``POCKET_AIMS``: the aim point [m], the pocket's axis as an outward unit vector, 1 for a middle
-pocket."""
+"""Columns of ``POCKET_AIMS``: aim point [m], the axis as outward unit vector, 1 for a middle pocket."""
 # distance from each nose line to the point where the fall meets the pocket's axis [m]
 _CORNER_AIM, _MIDDLE_AIM = 0.01524, 0.0016
 
@@ -96,42 +88,38 @@ def _aim(sx, sy):
 
 
 POCKET_AIMS = np.array([_aim(sx, sy) for sx, sy in SIDES])
-"""The point to aim a ball at, for each of snooker's pockets: float64 (6, 5), read-only; columns ``AIM_X`` to
-``IS_MIDDLE``."""
+"""The points to aim at, for snooker's pockets: float64 (6, 5), read-only; ``AIM_X`` to ``IS_MIDDLE``."""
 
 for _constant in (COLOUR_SPOTS, POCKET_PLACES, POCKET_AIMS):
     _constant.setflags(write=False)
 
 FLAT = 100.0
-"""A straight facing is an arc of this radius [m]: over the 0.1 m of a facing it is 0.013 mm off a straight
-line."""
+"""A straight facing is an arc of this radius [m]: 0.013 mm off a line over its 0.1 m."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pocket:
     """The shape of one kind of pocket, the same at all four corners or at both middles.
 
-    ``Pocket.corner`` and ``Pocket.middle`` make one from published sizes. A jaw leaves the straight nose at
-    its ``start``, turns away from it on an arc, and then goes on straight (its facing). There is no facing
-    where the arc ends over the fall, because a ball that reaches that point is lost.
+    ``Pocket.corner`` and ``Pocket.middle`` make one from published sizes. A jaw leaves the nose at its
+    ``start``, turns away on an arc and goes on straight (its facing), if the arc does not end over the fall.
 
     Parameters
     ----------
     is_middle : bool
         True for the middles of the long sides, False for the corners.
     start : float
-        Where the jaws leave the nose [m], in (0, 1]: the distance along the rail from the corner (where the
-        nose lines meet), or from the middle.
+        Where the jaws leave the nose [m], in (0, 1]: along the rail from the corner, where the nose lines
+        meet, or from the middle.
     jaw_radius : float
         Radius of the arc [m], in [0, 1]; 0 is a sharp point, as in pool.
     turn : float
-        Angle by which a jaw turns from the nose [degrees], in (0, 45] at a corner and (0, 90] in the middle.
-        The largest value makes the two facings parallel.
+        Angle by which a jaw turns from the nose [degrees], in (0, 45] at a corner and (0, 90] in the middle;
+        the largest makes the two facings parallel.
     fall_depth : float
-        Distance from the nose line to the centre of the slate's circle [m], in [-1, 1]; at a corner, from
-        each of the two nose lines.
+        From the nose line (at a corner, from each) to the centre of the slate's circle [m], in [-1, 1].
     fall_radius : float
-        Radius of that circle [m], in (0, 1]. A ball begins to drop where its centre crosses the circle.
+        Radius of that circle [m], in (0, 1]. A ball begins to drop where its centre crosses it.
 
     Raises
     ------
@@ -194,39 +182,13 @@ class Pocket:
     def corner(
         cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 135.0, jaw_radius: float = 0.0
     ) -> "Pocket":
-        """Make a corner pocket from its published sizes.
+        """Make a corner pocket from its published sizes; ValueError as for ``Pocket``.
 
-        Parameters
-        ----------
-        mouth : float
-            Distance from jaw to jaw where they leave the noses [m], in (0, 1].
-        shelf : float
-            Distance from the middle of the mouth to the slate's edge [m], in [-1, 1]; negative where the hole
-            begins before the mouth.
-        fall_radius : float
-            Radius of the slate's circle [m], in (0, 1].
-        cut : float
-            Angle between nose and facing [degrees], in [135, 180). 135 makes the facings parallel; the WPA's
-            value is 142.
-        jaw_radius : float
-            Radius of the arc on which a jaw leaves the nose [m], in [0, 1]; 0 is a sharp point.
-
-        Returns
-        -------
-        Pocket
-            With ``is_middle`` False.
-
-        Raises
-        ------
-        ValueError
-            If a size is out of range, if the jaws leave no opening, or if a ball could pass beside the fall.
-
-        Examples
-        --------
-        >>> from snooker_env import Pocket
-        >>> pocket = Pocket.corner(mouth=0.115, shelf=0.03, fall_radius=0.07)
-        >>> pocket.is_middle, round(pocket.start, 4)
-        (False, 0.0813)
+        ``mouth``: from jaw to jaw where they leave the noses [m], in (0, 1]. ``shelf``: from the middle of
+        the mouth to the slate's edge [m], in [-1, 1]; negative where the hole begins before the mouth.
+        ``fall_radius``: of the slate's circle [m], in (0, 1]. ``cut``: angle between nose and facing
+        [degrees], in [135, 180): 135 makes the facings parallel, the WPA's is 142. ``jaw_radius``: of the arc
+        on which a jaw leaves the nose [m], in [0, 1]; 0 is a sharp point.
         """
         mouth, shelf, fall_radius = _sizes("pocket.corner", mouth, shelf, fall_radius)
         depth = (fall_radius + shelf) / sqrt(2.0) - mouth / (2.0 * sqrt(2.0))
@@ -244,39 +206,9 @@ class Pocket:
     def middle(
         cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 90.0, jaw_radius: float = 0.0
     ) -> "Pocket":
-        """Make a middle (side) pocket from its published sizes.
+        """Make a middle (side) pocket from its published sizes; ValueError as for ``Pocket``.
 
-        Parameters
-        ----------
-        mouth : float
-            Distance from jaw to jaw where they leave the noses [m], in (0, 1].
-        shelf : float
-            Distance from the middle of the mouth to the slate's edge [m], in [-1, 1]; negative where the hole
-            begins before the mouth.
-        fall_radius : float
-            Radius of the slate's circle [m], in (0, 1].
-        cut : float
-            Angle between nose and facing [degrees], in [90, 180). 90 makes the facings parallel; the WPA's
-            value is 104.
-        jaw_radius : float
-            Radius of the arc on which a jaw leaves the nose [m], in [0, 1]; 0 is a sharp point.
-
-        Returns
-        -------
-        Pocket
-            With ``is_middle`` True.
-
-        Raises
-        ------
-        ValueError
-            If a size is out of range, if the jaws leave no opening, or if a ball could pass beside the fall.
-
-        Examples
-        --------
-        >>> from snooker_env import Pocket
-        >>> pocket = Pocket.middle(mouth=0.13, shelf=0.005, fall_radius=0.076, cut=104.0)
-        >>> pocket.is_middle, round(pocket.throat, 4)
-        (True, 0.0896)
+        As ``Pocket.corner``, but ``cut`` is in [90, 180): 90 makes the facings parallel, the WPA's is 104.
         """
         mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
         turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
@@ -289,8 +221,7 @@ class Pocket:
             fall_radius=fall_radius,
         )
 
-    # Coordinates from the pocket's origin (the corner, or the middle on the nose line): depth outwards along
-    # the axis, offset across it.
+    # from the corner, or the middle on the nose line: depth outwards along the axis, offset across it
 
     @property
     def mouth(self) -> float:
@@ -299,14 +230,12 @@ class Pocket:
 
     @property
     def mouth_depth(self) -> float:
-        """Depth of the line of the mouth [m]: 0 in the middle, negative at a corner (in front of the point
-        where the nose lines meet)."""
+        """Depth of the line of the mouth [m]: 0 in the middle, negative (before the corner) at a corner."""
         return 0.0 if self.is_middle else -self.start / sqrt(2.0)
 
     @property
     def shelf(self) -> float:
-        """Distance from the middle of the mouth to the slate's edge [m]; negative where the hole begins
-        before the mouth."""
+        """From the middle of the mouth to the slate's edge [m]; negative: the hole begins before it."""
         depth = self.fall_depth if self.is_middle else sqrt(2.0) * self.fall_depth
         return depth - self.fall_radius - self.mouth_depth
 
@@ -334,8 +263,7 @@ class Pocket:
 
     @property
     def facing(self) -> float:
-        """Length of a facing [m], down to the depth of the fall's centre; 0 where the arc already ends over
-        the fall."""
+        """Length of a facing [m], down to the fall's centre; 0 where the arc ends over the fall."""
         if self._ends_over_the_fall:
             return 0.0
         return (self.mouth_depth + self.shelf + self.fall_radius - self._arc_end[1]) / cos(self.taper)
@@ -363,11 +291,9 @@ class Bed:
     length, width : float
         Distance between facing noses [m], along y and along x.
     corner, middle : Pocket or None
-        Shape of the pockets in the corners, and of those in the middles of the sides along y. None: there are
-        none.
+        Shapes in the corners and in the middles of the sides along y. None: there are none.
     ball : mapping of str to float
-        Fields of ``Physics`` that belong to the balls and noses of this game: R [m], M [kg], sin_theta.
-        Empty: any ball.
+        Fields of ``Physics`` of the game's balls and noses: R [m], M [kg], sin_theta. Empty: any ball.
 
     Examples
     --------
@@ -392,8 +318,7 @@ class Bed:
 
 
 def parts(bed: Bed) -> tuple[Floats, Floats, Floats]:
-    """Noses (k, 5), jaws (m, 6) and falls (p, 3) of a ``Bed``; columns as in ``physics.table.Table``. The
-    index of a fall is its pocket."""
+    """Noses (k, 5), jaws (m, 6), falls (p, 3) of a ``Bed``, as in ``Table``; a fall's index is its pocket."""
     X, Y = bed.width / 2, bed.length / 2
     end = bed.corner.start if bed.corner else 0.0
     noses = []
@@ -426,8 +351,7 @@ def parts(bed: Bed) -> tuple[Floats, Floats, Floats]:
 
 
 def _jaw(pocket, start, onward, outward):
-    """The arcs of one jaw. It leaves the nose at ``start``; ``onward`` (along the nose, to the pocket) and
-    ``outward`` are unit vectors."""
+    """The arcs of one jaw from ``start``; unit vectors ``onward`` (along the nose) and ``outward``."""
     (x, y), (tx, ty), (ox, oy), radius = start, onward, outward, pocket.jaw_radius
     turn = radians(pocket.turn)
     # at 45 degrees sine and cosine are equal, but rounding would make them differ
@@ -479,10 +403,9 @@ PRESETS = MappingProxyType(
         "tight": Bed(
             length=2 * HALF_LENGTH, width=2 * HALF_WIDTH, corner=_TIGHT, middle=_MIDDLE, ball=_SNOOKER
         ),
-        # WEPF: playing area 7 ft x 3 ft 6 in at most, balls of 2 in and 116 g (the cue ball's 1 7/8 in is
-        # left out: all balls are equal). Its pocket templates are not published. Makers say that pockets are
-        # to the balls as in snooker, so ours, an estimate, are snooker's, scaled by the balls; the nose
-        # height is snooker's, too.
+        # WEPF: at most 7 ft x 3 ft 6 in, balls of 2 in and 116 g (not the cue ball's 1 7/8 in: all equal).
+        # Templates are not published; makers say that pockets are to the balls as in snooker: an estimate,
+        # scaled by the balls, with snooker's nose height.
         "uk8": Bed(
             length=84 * _INCH,
             width=42 * _INCH,
@@ -491,9 +414,8 @@ PRESETS = MappingProxyType(
             ball=_ball(R=_INCH, M=0.116, sin_theta=0.4),
         ),
         # WPA: 100 x 50 in, balls of 2 1/4 in and 5.5 to 6 oz, noses at 63.5 % of the ball, corner mouths 4.5
-        # to 4.625 in cut at 142 degrees, side mouths 5 to 5.125 in at 104, shelves 1 to 2.25 and 0 to 0.375
-        # in. In these ranges: the mouths and shelves of Alciatore's TP 3.6 and 3.5, and his radii of the
-        # falls, which the WPA leaves open.
+        # to 4.625 in at 142 degrees, side 5 to 5.125 at 104, shelves 1 to 2.25 and 0 to 0.375 in. In them:
+        # mouths and shelves of Alciatore's TP 3.6 and 3.5; his fall radii too, which the WPA leaves open.
         "pool9": Bed(
             length=100 * _INCH,
             width=50 * _INCH,

@@ -1,5 +1,4 @@
-"""How does one compute a single impact, or one strike of the cue? Two balls, or ball and cushion: checked
-input in, plain arrays out."""
+"""How does one compute a single impact, or a strike? Checked input in, plain arrays out."""
 
 import numpy as np
 
@@ -62,27 +61,25 @@ def collide_balls(
     Parameters
     ----------
     v1, w1, v2, w2 : array_like, float (3,)
-        Velocities [m/s] and spins [rad/s] of ball 1 and ball 2, components within 1e6 m/s and 1e9 rad/s of
-        zero.
+        Velocities [m/s] and spins [rad/s] of the balls, components within 1e6 m/s and 1e9 rad/s of zero.
     normal : array_like, float (3,)
         Horizontal unit vector from ball 1 to ball 2.
     physics : None, str, dict or Physics
         The constants, as ``Physics.of`` takes them; None is "paper".
     fidelity : str
-        How the impact is solved: "fast" (closed form for free spheres), "standard" (default), "reference"
-        (tightest tolerance), or "euler:N" (the paper's own scheme with N of eq. 14).
+        How it is solved: "fast" (closed form for free spheres), "standard", "reference" (tightest tolerance),
+        or "euler:N" (the paper's own scheme with N of eq. 14).
 
     Returns
     -------
     v1, w1, v2, w2 : float64 (3,)
-        Velocities [m/s] and spins [rad/s] after the impact, including the vertical velocity of a ball that is
-        lifted. Balls that do not approach each other come back unchanged.
+        Velocities [m/s], with the vertical one of a lifted ball, and spins [rad/s] after it; unchanged if the
+        balls do not approach each other.
 
     Raises
     ------
     ValueError
-        For wrong shapes, numbers that are not finite or out of range, a normal that is not a horizontal unit
-        vector, and an unknown fidelity or physics.
+        For bad input.
     SimulationError
         If the computation of the impact does not end.
 
@@ -119,20 +116,18 @@ def collide_cushion(
     physics : None, str, dict or Physics
         The constants, as ``Physics.of`` takes them; None is "paper".
     fidelity : str
-        As in ``collide_balls``, except that "fast" integrates with a loose tolerance: no closed form includes
-        the cloth's reaction, which is worth 7 % of the rebound.
+        As in ``collide_balls``, but "fast" integrates with a loose tolerance: no closed form has the cloth's
+        reaction, worth 7 % of the rebound.
 
     Returns
     -------
     v, w : float64 (3,)
-        Velocity [m/s] and spin [rad/s] after the impact. A ball that does not move into the cushion comes
-        back unchanged.
+        Velocity [m/s] and spin [rad/s] after it; unchanged if the ball does not move into the cushion.
 
     Raises
     ------
     ValueError
-        For wrong shapes, numbers that are not finite or out of range, a normal that is not a horizontal unit
-        vector, and an unknown fidelity or physics.
+        For bad input.
     SimulationError
         If the computation of the impact does not end.
 
@@ -163,9 +158,8 @@ def strike(
 ) -> tuple[Floats, Floats]:
     """The cue ball's velocity and spin just after the strike of the cue.
 
-    Side spin deflects the ball from the aim (squirt: to the left for right side). An elevated cue with side
-    gives the spin of a swerve or masse shot. The cloth takes the downward part of the speed: the ball leaves
-    along the cloth at speed cos(elevation).
+    Side spin deflects it from the aim (squirt: to the left for right side), with an elevated cue it swerves.
+    The cloth takes the downward part of the speed: the ball leaves at speed cos(elevation).
 
     Parameters
     ----------
@@ -174,7 +168,7 @@ def strike(
     aim : float
         Direction of the cue [rad], anticlockwise from +x, in [-2 pi, 2 pi].
     side, top : float
-        Offset of the tip over R, + right and + up as the player sees the ball; the two together at most
+        Offset of the tip over R, + right and + up as the player sees the ball; together at most
         ``Physics.max_offset``.
     elevation : float
         Angle between the cue and the cloth, butt raised [rad], in [0, 1.5].
@@ -191,8 +185,7 @@ def strike(
     Raises
     ------
     ValueError
-        For a miscue (an offset beyond ``Physics.max_offset``, 0.5 by default), a speed, aim or elevation out
-        of range, and numbers that are not finite.
+        For a miscue (an offset beyond ``Physics.max_offset``, 0.5 by default), or a number out of range.
 
     Examples
     --------

@@ -1,5 +1,4 @@
-"""How far is a long command? ``Progress`` says it every few seconds: in lines of a file or pipe, in one
-rewritten line on a terminal."""
+"""How far is a long command? Said every few seconds: in lines, or on a terminal in one rewritten line."""
 
 import shutil
 import sys
@@ -25,7 +24,7 @@ class Progress:
     """What a part of a long command does, how far it is, how fast, and how long it still takes.
 
     A thread speaks at the start, every ten seconds (on a terminal twice a second) and at the end, also while
-    one step of the work takes long. The time left follows from the rate in the later half of the time so far.
+    one step takes long. The time left follows from the rate in the later half of the time so far.
 
     Parameters
     ----------
@@ -98,11 +97,8 @@ class Progress:
             raise self._error
 
     def at(self, done: int, figures: str = "") -> None:
-        """Note how much is done.
-
-        ``done``: how much, of ``total``. ``figures``: what else is to be said: round, loss, points. OSError
-        if the output was closed or its disk is full.
-        """
+        """Note how much of ``total`` is done, and ``figures`` to be said with it: round, loss, points.
+        OSError if the output takes no more (closed, disk full)."""
         if self._error is not None:
             raise self._error
         now, measured = time.perf_counter(), self._measured
@@ -136,8 +132,7 @@ class Progress:
             )
 
     def _state(self, *times):
-        """The line: how much is done, the figures, and what is known of the time; that first on a terminal,
-        which may cut the line."""
+        """The line: work, figures, and on a terminal first the times: it may be cut."""
         work = f"{self._what}: {self.done:,} of {self.total:,} {self._unit}"
         parts = (work, self._figures, *times)
         if self._terminal and not self._ended.is_set() and times:

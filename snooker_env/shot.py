@@ -1,5 +1,4 @@
-"""What is the result of a simulated shot? ``Shot`` and ``ShotBatch``: final positions, the log of events, and
-the state at any time."""
+"""What is the result of a simulated shot? ``Shot``, ``ShotBatch``: where balls end, events, any moment."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -14,38 +13,29 @@ from .physics.parameters import Physics
 from .physics.table import Table
 
 EVENT = np.dtype([("time", np.float64), ("kind", np.int32), ("i", np.int32), ("j", np.int32)])
-"""Data type of one logged event: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (explained
-there)."""
+"""Data type of a logged event: ``time`` [s], ``kind`` (an ``EventKind``, which explains ``i``, ``j``)."""
 
 
 class SimulationError(RuntimeError):
-    """A shot or an impact that could not be computed.
-
-    The message names the shot or the impact, its last event, and what to try.
-    """
+    """A shot or an impact that could not be computed; the message says which, and what to try."""
 
 
 @dataclass(frozen=True, eq=False)
 class Shot:
-    """One simulated shot, as ``simulate`` returns it.
-
-    The arrays are new ones; changing them changes nothing else.
+    """One simulated shot, as ``simulate`` returns it; its arrays are new ones.
 
     Attributes
     ----------
     positions : float64 (n, 2)
-        Centres of the balls at rest [m]. For a potted ball: where its centre crossed the fall, or where its
-        flight over the pocket ended.
+        Centres of the balls at rest [m]; of a potted ball where it crossed the fall, or its flight ended.
     potted : int64 (n,)
         Pocket of each ball, an index of ``snooker_env.POCKETS``; -1 if it was not potted in this shot.
     on_table : bool (n,)
         True for the balls that are still in play.
     duration : float
-        Time until everything is at rest, spin included [s]. With ``Physics.spin_decel`` 0, spin never ends:
-        then the time until no ball moves across the table.
+        Time until everything is at rest, spin included [s]; with ``Physics.spin_decel`` 0, without spin.
     events : structured array (k,)
-        Log of the events in order of time: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j``
-        (explained there).
+        Events in order: ``time`` [s], ``kind`` (an ``EventKind``), ``i`` and ``j`` (explained there).
     segments : float64 (s, columns)
         The paths in pieces, which ``at`` evaluates.
     physics : Physics
@@ -73,39 +63,13 @@ class Shot:
     table: Table | None = field(default=None, repr=False)
 
     def at(self, t: Real | Vector) -> tuple[Floats, Floats, Floats]:
-        """Positions, velocities and spins of all balls at one time, or at many.
+        """Positions, velocities and spins of all balls at one time [s], or at m times.
 
-        At the time of an impact, the state is that just after it. From ``duration`` on everything is at rest:
-        the positions are ``positions``, velocities and spins are zero (with ``spin_decel`` 0 a spin about the
-        vertical stays as it is). A potted ball lies still in its place of ``positions`` from its pot on; a
-        ball that was not on the table stays where it was given. A ball in the air over a pocket has its mean
-        velocity from event to event.
-
-        Parameters
-        ----------
-        t : float or array_like, float (m,)
-            Times from the start of the shot [s], finite and not negative.
-
-        Returns
-        -------
-        positions : float64 (n, 2) or (m, n, 2)
-            Centres of the balls [m].
-        velocities : float64 (n, 2) or (m, n, 2)
-            Velocities [m/s].
-        spins : float64 (n, 3) or (m, n, 3)
-            Angular velocities [rad/s].
-
-        Raises
-        ------
-        ValueError
-            If a time is negative or not finite, or if the shot has no path.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> shot = sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)])
-        >>> shot.at(0.1)[0].shape, shot.at([0.1, 0.2])[0].shape
-        ((1, 2), (2, 1, 2))
+        Returns float64 (n, 2) [m], (n, 2) [m/s] and (n, 3) [rad/s], or (m, n, ...). An impact counts as over
+        at its time. From ``duration`` on all is at rest (with ``spin_decel`` 0 a spin about the vertical
+        stays). A potted ball lies in its place of ``positions`` from its pot on, a ball off the table where
+        it was put; one in the air has its mean velocity from event to event. ValueError if a time is negative
+        or not finite, or the shot has no path.
         """
         single = np.ndim(np.asarray(t)) == 0
         times = array("t", [t] if single else t, (-1,))
@@ -122,12 +86,10 @@ class Shot:
         return (out[0][0], out[1][0], out[2][0]) if single else out
 
     def plot(self, ax: Any = None, **options: Any) -> Any:
-        """Draw the shot with matplotlib.
+        """Draw the shot with matplotlib, on the axes ``ax`` or a new figure; returns the axes.
 
-        ``ax``: axes to draw on; None makes a new figure. ``**options``: options of
-        ``snooker_env.render.diagrams.plot``, where the diagram is explained. Returns the axes with the
-        diagram. ValueError if the shot has no path, or an option is wrong. ImportError if matplotlib is not
-        installed.
+        ``options``: see ``snooker_env.render.diagrams.plot``. ValueError for a wrong option or a shot without
+        a path, ImportError without matplotlib.
         """
         from .render.diagrams import plot
 
@@ -151,9 +113,9 @@ class ShotBatch:
     Attributes
     ----------
     positions : float64 (b, n, 2)
-        Centres of the balls at rest [m], as in ``Shot``.
+        Centres of the balls at rest [m].
     potted : int64 (b, n)
-        Pocket of each ball, an index of ``snooker_env.POCKETS``; -1 if it was not potted.
+        Pocket of each ball, or -1.
     on_table : bool (b, n)
         True for the balls that are still in play.
     duration : float64 (b,)

@@ -1,5 +1,4 @@
-"""How does one simulate shots? One shot or many: checked input in, ``Shot`` and ``ShotBatch`` out. Single
-impacts are in ``impacts``."""
+"""How does one simulate shots, one or many? Checked input in, ``Shot`` and ``ShotBatch`` out."""
 
 import os
 import threading
@@ -22,7 +21,7 @@ from .shot import check_path as check_path  # for the layers above
 
 MAX_EVENTS = 100_000
 MAX_BALLS = 4096
-"""The most balls of one shot. The times of all pairs are stored: 134 MB for this many."""
+"""The most balls of one shot: the times of all pairs are stored (134 MB)."""
 FARTHEST = 1e6
 """The largest coordinate of a ball [m]: up to there float64 resolves 1e-10 m."""
 _FIRST_LOG = 512
@@ -60,17 +59,16 @@ def simulate(
     Parameters
     ----------
     positions : array_like, float (n, 2)
-        Centres of the balls [m] in the table frame: origin at the table's centre, +x to the yellow side, +y
-        to the black end. Balls may touch each other and the cushions, and overlap by at most 1e-6 m. All
-        balls are equal; n is 1 to 4096.
+        Centres of the balls [m]: origin at the table's centre, +x to the yellow side, +y to the black end.
+        Balls may touch balls and cushions, and overlap by at most 1e-6 m. All balls are equal; n is 1 to
+        4096.
     velocities : array_like, float (n, 2)
         Velocities [m/s], each component within 1,000 of zero.
     spins : array_like, float (n, 3)
         Angular velocities [rad/s], each component within 100,000 of zero.
     table : str, Table or None
-        Name of a preset ("match", "tight", "uk8", "pool9", "carom"), a ``Table``, or None for unbounded
-        cloth. A preset is made for the balls of its game: ``physics.R`` must be
-        ``Table.preset(name).ball_radius``.
+        A preset ("match", "tight", "uk8", "pool9", "carom"), a ``Table``, or None for unbounded cloth.
+        ``physics.R`` must be the ``ball_radius`` of a preset.
     physics : None, str, dict or Physics
         The constants, as ``Physics.of`` takes them; None is "paper".
     fidelity : str
@@ -88,7 +86,7 @@ def simulate(
     Raises
     ------
     ValueError
-        For bad input; the message names the field, its value and what is allowed.
+        For bad input.
     SimulationError
         If the shot does not come to rest within ``max_events`` events, or an impact of it does not end.
 
@@ -118,10 +116,9 @@ def play(
     *,
     path: bool = True,
 ) -> Shot:
-    """``simulate`` without its checks, for layouts that have been checked before; the shot is not counted.
+    """``simulate`` of a checked layout, not counted; ``balls``, the four arrays, are not changed.
 
-    ``balls``: positions, velocities, spins and on_table, which are not changed. ``fidelity``: as
-    ``parse_fidelity`` returns it. ``path`` False leaves out the paths that ``Shot.at`` needs.
+    ``fidelity``: as of ``parse_fidelity``. ``path`` False leaves out the paths that ``Shot.at`` needs.
     """
     capacity = min(_FIRST_LOG, max_events)
     while True:
@@ -159,17 +156,17 @@ def simulate_batch(
     Parameters
     ----------
     positions : array_like, float (b, n, 2)
-        Centres of the balls [m], as in ``simulate``.
+        Centres of the balls [m]; these and the following as in ``simulate``.
     velocities : array_like, float (b, n, 2)
         Velocities [m/s].
     spins : array_like, float (b, n, 3)
         Angular velocities [rad/s].
     table : str, Table or None
-        As in ``simulate``; the same for all shots.
+        The same for all shots.
     physics : None, str, dict or Physics
-        As in ``simulate``; the same for all shots.
+        The same for all shots.
     fidelity : str
-        As in ``simulate``; the same for all shots.
+        The same for all shots.
     on_table : array_like, bool (b, n), optional
         False for the balls to leave out; None: all are on the table.
     threads : int, optional
@@ -187,10 +184,9 @@ def simulate_batch(
     Raises
     ------
     ValueError
-        For bad input; the message names the shot, the field, its value and what is allowed.
+        For bad input; the message names the shot.
     SimulationError
-        If a shot does not come to rest within ``max_events`` events, or an impact of it does not end; the
-        message names the shot.
+        As ``simulate``; the message names the shot.
 
     Examples
     --------
@@ -271,9 +267,9 @@ _KEPT = threading.local()
 
 
 def _take_log(log_size, path_size):
-    """``log_space`` of one shot: that of the last one in this thread if the sizes are the same, because
-    making it takes longer than most shots. It is taken out until the results are copied: a shot inside a shot
-    (a signal, a trace function) makes its own."""
+    """``log_space`` of one shot: this thread's last one if the size fits, as making it takes longer than most
+    shots. It is taken out until results are copied: a shot inside a shot (a signal, a trace function) makes
+    its own."""
     log = _KEPT.__dict__.pop("log", None)
     if log is None or (log.time.shape[1], log.segments.shape[1]) != (log_size, path_size):
         return log_space(1, log_size, path_size)
@@ -281,8 +277,7 @@ def _take_log(log_size, path_size):
 
 
 def _run(state, physics, table, fidelity, max_events, log=None, threads=1):
-    """Run the engine on ``state`` = positions, velocities, spins, on_table (batched, changed in place), with
-    a ``Log`` or without."""
+    """Run the engine on positions, velocities, spins, on_table: batched, in place, maybe with a ``Log``."""
     b, n = state[0].shape[:2]
     log = log or log_space(b, 0, 0)
     ends = Ends(np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b))

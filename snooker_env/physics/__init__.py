@@ -1,5 +1,1 @@
-"""The motion and the impacts of balls on a table: pure kernels on float64 arrays; no Gymnasium, no rules, no
-objects inside kernels.
-
-Symbols: ``docs/develop/symbols.md`` in the repository.
-"""
+"""The motion and impacts of balls, in pure kernels on float64 arrays. Symbols: docs/develop/symbols.md."""

@@ -1,7 +1,4 @@
-"""Which arrays does a shot work on? Named and grouped, as the kernels take them.
-
-Each group holds what its kernels read and no more: all numbers of a group are handed on at every call.
-"""
+"""Which arrays does a shot work on? In groups of what its kernels read, handed on whole at every call."""
 
 from typing import NamedTuple
 

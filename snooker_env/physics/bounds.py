@@ -1,5 +1,4 @@
-"""How far can a ball go on a table, and how narrow is the table? Computed from noses, jaws and falls, as
-``table.Table`` holds them."""
+"""How far can a ball go on a table, and how narrow is it? From the arrays of a ``table.Table``."""
 
 from math import hypot, inf, sqrt
 
@@ -20,8 +19,7 @@ def bounds_of(noses: Floats) -> Floats:
 
 
 def deepest(jaws: Floats, falls: Floats, bounds: Floats, R: float) -> float:
-    """How far past the line of the noses a ball of radius R can lie between a jaw and the fall, plus 0.5 mm
-    [m]."""
+    """How far past the noses a ball of radius R can lie between a jaw and the fall, plus 0.5 mm [m]."""
     deepest = 0.0
     for x, y, edge in falls:
         for jx, jy, radius, ux, uy, cos_half in jaws:
@@ -50,8 +48,7 @@ def _in_a_jaw(x, y, jaws, R):
 
 
 def narrowest(noses: Floats) -> tuple[float, int, int]:
-    """The least distance between two facing noses that a ball can touch at the same time [m], and their
-    indices."""
+    """The least distance of two facing noses that a ball can touch together [m], and their indices."""
     least = (np.inf, -1, -1)
     for a, (axis, side, level, low, high) in enumerate(noses):
         for b, (other_axis, other_side, other_level, other_low, other_high) in enumerate(noses):

@@ -1,23 +1,16 @@
-"""How does a ball move on the cloth? It slides on a parabola, rolls, spins down: closed forms, and when each
-phase ends.
+"""How does a ball move on the cloth, and when does each phase end? Closed forms, in SI units.
 
-[MJP14] 2.5, eq. 16 to 21 (with the errors in the printed equations corrected). Slip: u = v + R (-w_y, w_x)
-[m/s]. While the ball slides, du/dt = -(7/2) mu_s g u/|u|, so the direction of u is constant and the path is a
-parabola (curved if the spin is not about the axis of rolling: the masse curve). Sliding ends after T = 2 |u|
-/ (7 mu_s g); a rolling ball decelerates by mu_r g; spin about the vertical decelerates by ``spin_decel`` in
-every state. Table frame, SI units.
+[MJP14] 2.5, eq. 16 to 21 (misprints corrected). Slip: u = v + R (-w_y, w_x) [m/s]. While the ball slides,
+du/dt = -(7/2) mu_s g u/|u|: the direction of u is constant and the path a parabola, for the time
+T = 2 |u| / (7 mu_s g). Rolling decelerates by mu_r g, spin about the vertical, always, by ``spin_decel``.
 
-Nap. The fibres of the cloth lean towards +y, so the force on a rolling ball depends on the direction v/|v|.
-Rolling resistance is the part of that force that is odd in the direction; the lowest even part is a constant:
-dv/dt = -mu_r g v/|v| + nap y, as on a bed with a small slope. A ball that rolls across the nap turns slowly
-towards it. ``_bent`` is its motion in closed form; the engine follows it in pieces of constant acceleration
-whose ends are exact. The nap is neglected for a sliding ball, whose friction is a thousand times as strong.
+Nap. The fibres lean towards +y. Of the force on a rolling ball, resistance is the part odd in v/|v|; the
+lowest even part is a constant: dv/dt = -mu_r g v/|v| + nap y, as on a small slope. ``_bent`` is the closed
+form; the engine follows it in pieces of constant acceleration with exact ends. A sliding ball's friction is a
+thousand times as strong: the nap is neglected there.
 
-A ball over a pocket (``FALLING``) moves at constant velocity, see ``pocket.py``.
-
-A ball's motion is one row of ``motion`` (float64, columns below), valid from its time T0 to T_END, and one
-code in ``state``. LO_X to HI_Y bound its whole path in that time: the ball meets nothing that lies outside
-them.
+A row of ``motion`` (columns below) with a ``state`` holds from T0 to T_END; LO_X to HI_Y bound the path. A
+ball over a pocket (``FALLING``) moves at constant velocity (``pocket.py``).
 """
 
 from math import copysign, exp, expm1, inf, log1p, sqrt
@@ -26,14 +19,12 @@ from .._jit import kernel
 from .parameters import P_G, P_MU_R, P_MU_S, P_NAP, P_R, P_SPIN
 
 GONE, REST, ROLL, SLIDE, FALLING, BEND = range(6)
-# ROLL: straight, to rest; BEND: a piece of a path that the nap bends, after which the ball rolls on; FALLING:
-# over a pocket
+# ROLL: straight, to rest; BEND: a piece of a path that the nap bends; FALLING: over a pocket
 X, Y, VX, VY, AX, AY, WX, WY, WZ, T0, T_END, LO_X, HI_X, LO_Y, HI_Y = range(15)
 COLUMNS = 15
 SEGMENT_BALL, SEGMENT_STATE = COLUMNS, COLUMNS + 1
 SEGMENT = COLUMNS + 2
-"""Columns of a segment, a row of a shot's path log: the columns of ``motion``, then the ball and its
-state."""
+"""Columns of a segment, a row of the path log: those of ``motion``, then the ball and its state."""
 
 _STILL = 1e-12  # m/s: a slower ball is at rest (it would roll 4e-24 m)
 _STRAY = 2e-6  # m; the largest distance of a piece from the bent path that it replaces
@@ -58,13 +49,11 @@ def _faded(rate, s):
 
 @kernel
 def _bent(vx, vy, s, decel, nap):
-    """A ball rolls at (vx, vy) [m/s] across the nap until the integral of dt/|v| is s [s^2/m]; s = inf: to
-    rest.
+    """Motion of a ball that rolls at (vx, vy) [m/s] until the integral of dt/|v| is s [s^2/m]; inf: to rest.
 
-    Returns the time t [s], the displacement x, y [m] and the velocity vx, vy [m/s] at that point. As a
-    function of s the motion is linear: v_x falls as exp(-decel s), p = (|v| + v_y)/2 as exp(-(decel - nap) s)
-    and m = (|v| - v_y)/2 as exp(-(decel + nap) s). Time is the integral of |v| = p + m, x that of v_x (p +
-    m), y that of v_y (p + m) = p^2 - m^2. ``decel`` = mu_r g and ``nap`` [m/s^2].
+    Returns t [s], the displacement x, y [m] and the velocity there. ``decel`` = mu_r g, ``nap`` [m/s^2]. In s
+    it is linear: v_x falls as exp(-decel s), p = (|v| + v_y)/2 as exp(-(decel - nap) s), m = (|v| - v_y)/2 as
+    exp(-(decel + nap) s); t integrates |v| = p + m, x v_x (p + m), and y v_y (p + m) = p^2 - m^2.
     """
     v = sqrt(vx * vx + vy * vy)
     p, m = 0.5 * (v + vy), 0.5 * (v - vy)
@@ -76,12 +65,10 @@ def _bent(vx, vy, s, decel, nap):
 
 @kernel
 def _piece(vx, vy, decel, nap):
-    """The length, as s of ``_bent``, of a piece that starts at velocity (vx, vy) [m/s]; inf if it is
-    straight, to rest.
+    """The length, as s of ``_bent``, of a piece that starts at (vx, vy) [m/s]; inf: straight, to rest.
 
-    Let a piece take the share b c of the speed, b = decel - |nap|. Its distance from the true path is decel
-    |nap v_x| |v| c^3 / 40 for a short piece, and at most decel |nap v_x| |v| c^3 / 10 for any (computed:
-    tests/physics/test_nap.py).
+    With the share b c of the speed, b = decel - |nap|, it strays from the true path by decel |nap v_x| |v|
+    c^3 / 40 if short, and by at most c^3 / 10 of the same (tests/physics/test_nap.py).
     """
     b = decel - abs(nap)
     cube = 10.0 * _STRAY * b * b * b
@@ -105,11 +92,7 @@ def _roll_on_nap(motion, state, i, vx, vy, decel, nap):
 
 @kernel
 def begin(motion, state, i, t, r, v, w, phys):
-    """Write the next phase of motion of ball i into its row: at time t [s] it is at r [m] with velocity v
-    [m/s] and spin w [rad/s].
-
-    r = (x, y), v = (vx, vy) and w = (wx, wy, wz).
-    """
+    """Write ball i's next phase: at t [s] at r = (x, y) [m] with v = (vx, vy) [m/s] and spin w [rad/s]."""
     R, g = phys[P_R], phys[P_G]
     (x, y), (vx, vy), (wx, wy, wz) = r, v, w
     ux, uy = vx - R * wy, vy + R * wx
@@ -172,10 +155,7 @@ def evaluate(motion, state, i, t, phys):
 
 @kernel
 def next_phase(motion, state, i, phys):
-    """Ball i is at the end of its phase (T_END): slide -> roll or rest, bend -> bend or roll, roll -> rest.
-
-    In the new phase the ball rolls exactly, without a remaining slip.
-    """
+    """Ball i is at T_END: slide -> roll or rest, bend -> bend or roll, roll -> rest; it rolls exactly."""
     t = motion[i, T_END]
     r, (vx, vy), (_wx, _wy, wz) = evaluate(motion, state, i, t, phys)
     if state[i] == SLIDE:

@@ -1,9 +1,4 @@
-"""Where do the numbers of a table lie? Columns of ``Table.noses``, ``Table.jaws`` and ``Table.falls``;
-``Table`` states their meaning.
-
-They are indices, not tunable constants: freezing them into a kernel is safe. Kernels read single numbers by
-them, and make no row and no tuple of its numbers (``detection.may_meet`` says why).
-"""
+"""Where do the numbers of a table lie? Columns (safe to freeze) of its arrays, which ``Table`` explains."""
 
 NOSE_AXIS, NOSE_SIDE, NOSE_LEVEL, NOSE_LOW, NOSE_HIGH = range(5)
 AXIS_X, AXIS_Y = 0.0, 1.0

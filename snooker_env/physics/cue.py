@@ -1,5 +1,4 @@
-"""How does the cue move the ball? Speed, aim, tip offset and elevation -> velocity and spin; squirt and
-miscue."""
+"""How does the cue move the ball? Speed, aim, offset, elevation -> velocity and spin; squirt, miscue."""
 
 from math import atan, cos, hypot, pi, sin, sqrt
 
@@ -14,29 +13,25 @@ MAX_ELEVATION = 1.5
 
 @kernel
 def squirt(side, end_mass_ratio):
-    """Angle a by which the ball leaves the line of aim [rad], anticlockwise for right side [Alciatore, TP
-    A.31].
+    """Angle a between aim and path [rad], anticlockwise for right side [Alciatore, TP A.31].
 
-    tan a = (5/2) b sqrt(1 - b^2) / (1 + m_r + (5/2) (1 - b^2)), b: side offset over R, m_r: ball mass over
-    the cue's end mass.
+    tan a = (5/2) b sqrt(1 - b^2) / (1 + m_r + (5/2) (1 - b^2)); b: side offset / R, m_r: ball mass / end
+    mass.
     """
     return atan(2.5 * side * sqrt(1.0 - side * side) / (1.0 + end_mass_ratio + 2.5 * (1.0 - side * side)))
 
 
 @kernel
 def struck(speed, aim, side, top, elevation, R, end_mass_ratio):
-    """Cue ball's (vx, vy, vz) [m/s] and (wx, wy, wz) [rad/s] just after the strike, in the table frame. The
-    offset is no miscue.
+    """The cue ball's (vx, vy, vz) [m/s] and (wx, wy, wz) [rad/s] after a strike that is no miscue.
 
-    Spin [TP A.30]: w = (5/2) (speed / R) b x d, with b the offset of the tip over R and d the unit vector
-    along the cue. For a level cue its size is (5/2) v |b| / R. The cloth takes the downward part of an
-    elevated strike: the ball leaves along the cloth.
+    Spin [TP A.30]: w = (5/2) (speed / R) b x d; b: tip offset over R, d: unit vector along the cue; (5/2) v
+    |b| / R if level. The cloth takes the downward part of the speed.
     """
     aim += squirt(side, end_mass_ratio)
     c, s, ce, se = cos(aim), sin(aim), cos(elevation), sin(elevation)
     q = 2.5 * speed / R
-    # offset = side * right + top * up, with right = (s, -c, 0), up = (se c, se s, ce), and the cue along (ce
-    # c, ce s, -se)
+    # offset = side right + top up: right (s, -c, 0), up (se c, se s, ce), the cue along (ce c, ce s, -se)
     w = (q * (side * se * c - top * s), q * (side * se * s + top * c), q * side * ce)
     return (speed * ce * c, speed * ce * s, 0.0), w
 

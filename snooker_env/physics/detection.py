@@ -1,21 +1,15 @@
-"""What happens next to a ball? Times of its next contact with a ball, nose, jaw or fall: reject cheaply, then
-solve exactly.
+"""When does a ball next meet a ball, nose, jaw or fall? A quick rejection, then the exact time.
 
-The relative position in a phase is c(x) = c0 + c1 x + c2 x^2 [m], with x the time from now [s]. A contact is
-the first time at which |c| falls through a distance d.
+A contact is the first time x from now [s] at which |c| falls through d, c(x) = c0 + c1 x + c2 x^2 [m].
 
-Bodies in touch. Two bodies whose gap is below TOUCH and which approach faster than CREEP meet at once. If
-they approach more slowly, are at rest or separate, their next contact is where the gap falls through -SKIN
-(at once if it is there already). So bodies that friction presses together from rest gain a closing speed
-before they meet, and do not meet infinitely often at speed zero. And bodies that separate do not meet again
-because of rounding.
+Bodies in touch (gap below TOUCH) that approach faster than CREEP meet at once. Otherwise their contact is
+where the gap falls through -SKIN (at once if it is there). So what friction presses together gains a closing
+speed first, does not meet infinitely often at speed zero, and bodies that separate do not meet by rounding.
 
-Noses and arcs. The places that a ball's centre cannot pass are made of pieces: a line beside each nose, and a
-circle about each arc in the sector of that arc. (A facing is an arc, too.) Neighbours join with a common
-tangent, so a ball at the end of one is at the same depth in the next. A path is judged by each piece from
-where it comes into that piece's range: there the rule for bodies in touch holds again, so a ball pressed SKIN
-deep into a nose is handed on to the arc. Each range is longer by SEAM at its ends, so that there is no crack
-between two. A place deeper than HELD behind a piece is another part of the table.
+A ball's centre is kept out by lines beside noses and by circles about arcs (facings too) in their sectors,
+with common tangents. Each judges a path from where it comes into its range, by the rule above: so a ball SKIN
+deep in a nose is handed on to the arc. Ranges are longer by SEAM, so that no crack is left. Deeper than HELD
+behind a piece is another part of the table.
 """
 
 from math import inf, sqrt
@@ -56,8 +50,7 @@ CREEP = 5e-5  # m/s; the speed gained over SKIN at the largest relative accelera
 
 @kernel
 def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
-    """Earliest time in [0, T] at which |c| falls through d [s], or inf. c = (x0 + x1 t + x2 t^2, y0 + y1 t +
-    y2 t^2) [m]."""
+    """Earliest time in [0, T] at which |c| falls through d [s], or inf; c_i = (x_i, y_i)."""
     far2 = x0 * x0 + y0 * y0
     dot1 = x0 * x1 + y0 * y1
     dot2 = x0 * x2 + y0 * y2
@@ -76,8 +69,7 @@ def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
             reach = -0.25 * dot1 * dot1 / dot2
         if far2 + min(0.0, reach) > d * far:
             return inf
-        # across the first direction of motion: the offset, less the most that the curvature can change it,
-        # must be d or less
+        # across the first direction of motion: the offset, less the most by curvature, must be d or less
         speed2 = x1 * x1 + y1 * y1
         side = abs(x1 * y0 - y1 * x0) - abs(x1 * y2 - y1 * x2) * T * T
         if side > 0.0 and side * side > d * d * speed2 * (1.0 + 1e-12):
@@ -94,8 +86,7 @@ def distance_crossing(x0, y0, x1, y1, x2, y2, d, T):
 
 @kernel
 def _rolls_onto(dx, dy, vx, vy, ax, ay, d):
-    """Time until a ball that rolls at v, with deceleration a along its path, meets a ball at rest at (dx, dy)
-    from it [s]; inf if never."""
+    """Time until a ball rolling at v, deceleration a, meets one at rest at (dx, dy) from it [s], or inf."""
     speed2 = vx * vx + vy * vy
     along, across = dx * vx + dy * vy, dx * vy - dy * vx  # times the speed
     half = d * d * speed2 - across * across
@@ -110,11 +101,10 @@ def _rolls_onto(dx, dy, vx, vy, ax, ay, d):
 
 @kernel
 def may_meet(lo_x, hi_x, lo_y, hi_y, motion, j):
-    """Whether the path of ball j in its present phase has a place in the rectangle [m]: a quick test of its
-    bounds.
+    """Whether ball j's path has a place in the rectangle [m], by its bounds.
 
-    (Here and below: indices, no rows. numba counts the references to a row, which takes longer than the
-    arithmetic. And ``&`` instead of ``and``: one branch instead of four.)
+    Indices, no rows: numba counts references to rows, slower than the arithmetic. ``&``: one branch, not
+    four.
     """
     beside = (lo_x <= motion[j, HI_X]) & (motion[j, LO_X] <= hi_x)
     return beside & (lo_y <= motion[j, HI_Y]) & (motion[j, LO_Y] <= hi_y)
@@ -122,8 +112,7 @@ def may_meet(lo_x, hi_x, lo_y, hi_y, motion, j):
 
 @kernel
 def pair_time(motion, state, i, j, t, d):
-    """Absolute time of the next contact of balls i and j within their present phases [s]; t: now; d: distance
-    of the centres in contact."""
+    """Absolute time of the next contact of i and j in their phases [s]; t: now; d: distance then."""
     ti, tj = t - motion[i, T0], t - motion[j, T0]
     axi, ayi, axj, ayj = motion[i, AX], motion[i, AY], motion[j, AX], motion[j, AY]
     vxi, vyi, vxj, vyj = motion[i, VX], motion[i, VY], motion[j, VX], motion[j, VY]
@@ -139,16 +128,14 @@ def pair_time(motion, state, i, j, t, d):
 
 @kernel
 def _apart(lo_x, hi_x, lo_y, hi_y, x, y, r2):
-    """Whether the circle about (x, y) whose radius has the square r2 and the rectangle have no common
-    point."""
+    """Whether a circle about (x, y), radius^2 r2, and the rectangle have no common point."""
     dx, dy = max(lo_x - x, x - hi_x, 0.0), max(lo_y - y, y - hi_y, 0.0)
     return dx * dx + dy * dy > r2
 
 
 @kernel
 def _arc_outside(lo_x, hi_x, lo_y, hi_y, jaws, k, d):
-    """Whether the part of the circle of radius d about jaw k that lies in its sector is outside the
-    rectangle, by its bounds."""
+    """Whether the arc of radius d about jaw k, in its sector, is outside the rectangle, by its bounds."""
     x, y, ux, uy, cos_half = (
         jaws[k, JAW_X],
         jaws[k, JAW_Y],
@@ -171,8 +158,7 @@ def _arc_outside(lo_x, hi_x, lo_y, hi_y, jaws, k, d):
 
 @kernel
 def clear_box(boundaries):
-    """A rectangle (lo_x, hi_x, lo_y, hi_y) [m] in which a ball's centre meets no nose, jaw or fall; empty if
-    there is none."""
+    """A rectangle (lo_x, hi_x, lo_y, hi_y) [m] where centres meet no nose, jaw or fall; may be empty."""
     noses, jaws, falls, R = boundaries
     lo_x, hi_x, lo_y, hi_y = -inf, inf, -inf, inf
     for k in range(noses.shape[0]):
@@ -199,8 +185,7 @@ def clear_box(boundaries):
 
 @kernel
 def _level_crossing(gap, closing, closing2, held, T):
-    """Earliest time x in [0, T] at which gap - closing x - closing2 x^2 falls through 0 [s], or inf;
-    ``held``: they may touch."""
+    """Earliest x in [0, T] at which gap - closing x - closing2 x^2 falls through 0 or inf; held: touching."""
     if held and gap < TOUCH:
         if closing > CREEP or (gap <= -_DEEP and closing > STILL):
             return 0.0
@@ -212,8 +197,8 @@ def _level_crossing(gap, closing, closing2, held, T):
 def _beside_later(approach, along, low, high, T):
     """Earliest contact in [0, T] with a nose of a ball that comes in touch from the next arc [s], or inf.
 
-    The gap to its line is gap - closing t - closing2 t^2 (``approach``), the place along it q + q1 t + q2 t^2
-    (``along``). The ball is not beside the nose, which is from ``low`` to ``high``, when it passes the line.
+    ``approach``: its gap is gap - closing t - closing2 t^2; ``along``: its place is q + q1 t + q2 t^2, not
+    beside the nose (``low`` to ``high``) when it passes the line.
     """
     (gap, closing, closing2), (q, q1, q2) = approach, along
     first = inf
@@ -229,16 +214,14 @@ def _beside_later(approach, along, low, high, T):
 
 @kernel
 def _past_end(x, y, ux, uy, cos_half, sin_half):
-    """How far outside the arc's sector the place (x, y) from the arc's centre is, along the arc [m]; 0 or
-    less inside. Near its ends."""
+    """How far outside the arc's sector (x, y) from its centre is, near its ends [m]; inside <= 0."""
     past = cos_half * sqrt(x * x + y * y) - (x * ux + y * uy)
     return past / sin_half if past > 0.0 and sin_half > 0.0 else past
 
 
 @kernel
 def _jaw_time(path, d, sector, T):
-    """Earliest contact in [0, T] with a jaw's arc [s], or inf: |c| (of ``path``) falls through d while c lies
-    in the arc's sector."""
+    """Earliest time in [0, T] at which |c| (``path``) falls through d within the arc's sector [s], or inf."""
     (x0, y0, x1, y1, x2, y2), (ux, uy, cos_half) = path, sector
     s = distance_crossing(x0, y0, x1, y1, x2, y2, d, T)
     far2, sin_half = x0 * x0 + y0 * y0, sqrt(1.0 - cos_half * cos_half)
@@ -252,8 +235,7 @@ def _jaw_time(path, d, sector, T):
         # (a ball that glides along the nose only grazes the circle)
         if past <= 0.0 or (past <= SEAM and closing > CREEP * d):
             return s
-    # not in the sector when it meets the circle: it may come into it in touch, from the nose or the next arc,
-    # over either end
+    # it meets the circle outside the sector, but may come into it in touch, over either end
     first = inf
     for side in (-1.0, 1.0):
         # from the centre to the end of the arc
@@ -277,11 +259,7 @@ def _jaw_time(path, d, sector, T):
 
 @kernel
 def boundary_event(motion, state, i, boundaries, clear):
-    """The next nose (CUSHION), jaw (JAW) or fall (POT) that ball i meets after T0 within its phase: time [s],
-    kind, index; inf if none.
-
-    clear: as ``clear_box`` returns it.
-    """
+    """The next nose, jaw or fall that ball i meets in its phase: time [s] or inf, kind, index."""
     noses, jaws, falls, R = boundaries
     best, kind, index = inf, events.NONE, -1
     lo_x, hi_x, lo_y, hi_y = (

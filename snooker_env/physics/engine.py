@@ -1,8 +1,7 @@
-"""How does a whole shot run? The event loop: predict, take the earliest event, resolve it, predict again for
-the balls that it changed.
+"""How does a whole shot run? Predict, take the earliest event, resolve it, predict its balls anew.
 
-Predictions are stored: those of a ball hold as long as no event changes its motion. Ties are decided by
-(time, kind, ball, partner), kinds in the order of ``EventKind``. The loop allocates nothing.
+A ball's predictions hold while no event changes its motion. Ties: by (time, kind, ball, partner). The loop
+allocates nothing.
 """
 
 from math import inf, sqrt
@@ -26,8 +25,7 @@ from .placement import SOUND, place_fault
 
 @kernel
 def _begin_again(paths, i, t, r, v, w, boundaries, phys):
-    """Ball i has new velocities at time t, after a meeting with another ball: write its next phase, on the
-    bed or in the air."""
+    """Ball i met a ball at time t: write its next phase, on the bed or in the air."""
     motion, state, flight = paths
     if state[i] == FALLING:
         pocket.next_leg(
@@ -46,8 +44,7 @@ def _begin_again(paths, i, t, r, v, w, boundaries, phys):
 
 @kernel
 def _rescan(pair, best_time, best_ball, i):
-    """Find the earliest partner of ball i from the stored pair times; in a tie the ball with the lower
-    index."""
+    """Ball i's earliest partner from the stored pair times; in a tie the lower index."""
     n = pair.shape[0]
     time, ball = inf, -1
     for j in range(n):
@@ -58,7 +55,7 @@ def _rescan(pair, best_time, best_ball, i):
 
 @kernel
 def _predict(paths, i, t, boundaries, clear, forecast):
-    """Ball i has a new motion at time t: predict all its events, and correct the rows of its partners."""
+    """Ball i has a new motion at time t: predict all its events, and correct its partners' rows."""
     motion, state, flight = paths
     pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
     n = pair.shape[0]
@@ -113,8 +110,7 @@ def _predict(paths, i, t, boundaries, clear, forecast):
 
 @kernel
 def _is_clear(motion, i, clear):
-    """Whether ball i is in the rectangle that noses, jaws and falls leave free, or at most ``HELD`` outside:
-    it is in none of them."""
+    """Whether ball i is in the rectangle free of noses, jaws and falls, or at most ``HELD`` outside."""
     x, y = motion[i, X], motion[i, Y]
     lo_x, hi_x, lo_y, hi_y = clear
     return (lo_x - HELD <= x) & (x <= hi_x + HELD) & (lo_y - HELD <= y) & (y <= hi_y + HELD)
@@ -122,8 +118,7 @@ def _is_clear(motion, i, clear):
 
 @kernel
 def _is_astray(motion, state, i, reach, boundaries):
-    """Whether ball i lies or moves on the bed where no ball can be: deeper than ``HELD`` in a cushion, over a
-    pocket, or off the table."""
+    """Whether ball i is on the bed deeper than ``HELD`` in a cushion, over a pocket, or off the table."""
     return (
         state[i] != FALLING
         and place_fault(motion[i, X], motion[i, Y], reach, boundaries, HELD, HELD)[0] != SOUND
@@ -146,7 +141,7 @@ def _leave(state, i, forecast):
 
 @kernel
 def _lie(motion, i, x, y):
-    """Ball i is out of play: write a row that leaves it at (x, y) [m]."""
+    """Ball i is out of play: it lies at (x, y) [m]."""
     for c in range(cloth.COLUMNS):
         motion[i, c] = 0.0
     motion[i, X], motion[i, Y] = x, y
@@ -165,8 +160,7 @@ def _record(segments, n_segments, motion, state, i):
 
 @inlined
 def _next_event(best_time, best_ball, alone_time, alone_kind, alone_index):
-    """The earliest event: time [s], kind, ball and partner; of simultaneous ones the lowest kind, then the
-    lowest ball."""
+    """The earliest event: time [s], kind, ball, partner; ties: the lowest kind, then the lowest ball."""
     t, kind, i, j = inf, np.int64(events.NONE), np.int64(-1), np.int64(-1)
     for k in range(best_time.shape[0]):
         s = best_time[k]
@@ -180,13 +174,10 @@ def _next_event(best_time, best_ball, alone_time, alone_kind, alone_index):
 
 @kernel
 def run(balls, setup, max_events, log, paths, forecast, series):
-    """Simulate one shot to rest, in place. ``paths``, ``forecast`` and ``series`` are work space.
+    """Simulate one shot to rest, in place -> status, number of events and of segments, duration [s].
 
-    Returns status, number of events, number of segments, duration [s].
-
-    A ``kernel``, because there tuples are free. Inlined into ``run_batch``, which makes arrays, numba would
-    count the references to the arrays of a tuple whenever one is made or read: shots of two balls would take
-    4 % longer.
+    ``paths``, ``forecast`` and ``series``: work space. Not inlined into ``run_batch``, which makes arrays:
+    numba would count references to the arrays of a tuple at every use (4 % of a shot of two balls).
     """
     positions, velocities, spins, on_table, potted = balls
     law, boundaries, reach = setup
@@ -321,12 +312,10 @@ def run(balls, setup, max_events, log, paths, forecast, series):
 
 @entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion))
 def run_batch(balls, setup, max_events, log, ends, start, stop):
-    """Simulate shots ``start`` to ``stop`` of a batch. All arrays of the balls, the log and the outcome have
-    a leading batch axis.
+    """Simulate shots ``start`` to ``stop`` of a batch; arrays of balls, log and ends have a batch axis.
 
-    Python passes plain tuples: of the fields of ``Balls``, ``Log`` and ``Ends``, and as ``setup`` phys,
-    noses, jaws, falls, reach, fidelity and n_steps. So a call takes 0.3 us longer than with the arrays one by
-    one; with named tuples it would be 3 us (a shot of two balls takes 6 us). The work space is made once.
+    Takes plain tuples: the fields of ``Balls``, ``Log`` and ``Ends``, and (phys, noses, jaws, falls, reach,
+    fidelity, n_steps). That costs 0.3 us a call, named tuples 3 us (a shot of two balls: 6 us).
     """
     positions, velocities, spins, on_table, potted = balls
     time, what, segments = log

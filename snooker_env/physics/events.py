@@ -1,26 +1,20 @@
-"""What can happen in a shot, and how can it end? Kinds of events, in the order in which simultaneous ones are
-handled, and status codes."""
+"""What can happen in a shot, in the order in which simultaneous events are handled, and how can it end?"""
 
 from enum import IntEnum
 
 
 class EventKind(IntEnum):
-    """The kind of an event in the log of a shot.
+    """The kind of an event in the log of a shot; simultaneous ones are handled in the order of their numbers.
 
-    In a logged event, ``i`` is the ball; ``j`` is the other ball (i < j), the nose, the jaw or the pocket, or
-    -1. Simultaneous events are handled in the order of their numbers.
+    ``i`` is the ball; ``j`` is the other ball (i < j), the nose, the jaw or the pocket, or -1.
 
     ========= ====== =============================================================================================
-    BALL_BALL 0      Balls i and j struck each other.
-    CUSHION   1      Ball i struck nose j.
-    JAW       2      Ball i struck jaw j.
-    POT       3      Ball i was potted in pocket j.
-    ROLL      4      Ball i stopped sliding; it rolls from now on.
-    STOP      5      Ball i stopped; it may still spin on the spot.
-    DROP      6      Ball i flies over the edge of pocket j towards a jaw: a POT or a RETURN follows. A ball with no jaw
-                     in its way is potted at once.
-    RETURN    7      Ball i came back on to the bed, over the edge of pocket j.
-    BEND      8      The nap turned rolling ball i: the next piece of its path begins. Only with ``Physics.nap``.
+    BALL_BALL 0      Balls i and j struck each other. CUSHION   1      Ball i struck nose j. JAW       2
+    Ball i struck jaw j. POT       3      Ball i was potted in pocket j. ROLL      4      Ball i stopped
+    sliding; it rolls from now on. STOP      5      Ball i stopped; it may still spin on the spot. DROP      6
+    Ball i flies over the edge of pocket j towards a jaw (else POT); a POT or RETURN follows. RETURN    7
+    Ball i came back on to the bed, over the edge of pocket j. BEND      8      The nap turned rolling ball i:
+    its next piece begins. Only with ``Physics.nap``.
     ========= ====== =============================================================================================
 
     Examples
@@ -45,11 +39,9 @@ class Status(IntEnum):
     """How a run ended.
 
     ================= ============================================================================
-    OK                All balls came to rest.
-    TOO_MANY_EVENTS   There were more events than allowed.
-    LOG_FULL          The log was too short; run the shot again with more.
-    IMPACT_UNSOLVED   An impact did not end.
-    ASTRAY            A ball on the bed was where none can be: in a cushion, or off the table.
+    OK                All balls came to rest. TOO_MANY_EVENTS   More events than allowed. LOG_FULL
+    The log was too short; run the shot again with more. IMPACT_UNSOLVED   An impact did not end. ASTRAY
+    A ball on the bed was where none can be: in a cushion, or off the table.
     ================= ============================================================================
     """
 

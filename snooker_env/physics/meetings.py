@@ -1,12 +1,9 @@
-"""How do bodies separate after a meeting inside a shot? As the impact model says; if they approach very
-slowly, by a small hop.
+"""How do bodies separate after a meeting in a shot? As the impact model says; slow ones by a small hop.
 
-Lasting contact. A spin can press a ball against another ball or against a cushion. The cloth damps each
-bounce, so the ball would bounce more and more often, without end. Therefore no impact leaves a pair
-separating at less than ``PART``. If the pair approaches faster than that, its restitution is raised as far as
-needed. If it approaches more slowly, the impact has no friction and takes the missing energy from the spin of
-the balls, as the rubbing that it replaces would. A lasting contact is then a series of hops of about a
-micrometre and a millisecond each. Energy never rises.
+Spin can press a ball against a body, and the cloth damps each bounce: it would bounce more and more often
+without end. So no pair separates at less than ``PART``: a faster one's restitution is raised as needed; a
+slower one has no friction and takes the missing energy from the spins, as rubbing would. A lasting contact is
+then a series of hops of about a micrometre and a millisecond. Energy never rises.
 """
 
 from math import sqrt
@@ -20,11 +17,10 @@ PART = 2e-3  # m/s; too slow to matter in a shot: a ball at this speed rolls 16 
 
 @kernel
 def _hop(closing, spin_energy):
-    """A slow contact: the speed at which the bodies separate [m/s], and the factor on the spins, whose energy
-    is used for it.
+    """A slow contact: the speed of separation [m/s], and the factor on the spins, which give the energy.
 
-    Energies are per unit of the contact's reduced mass: closing^2 / 2 before, parting^2 / 2 after.
-    ``spin_energy``: energy that the spins can give, in the same unit [m^2/s^2].
+    Per unit of reduced mass: closing^2 / 2 before, parting^2 / 2 after; ``spin_energy`` in the same unit
+    [m^2/s^2].
     """
     closing = max(closing, 0.0)
     missing = min(0.5 * (PART * PART - closing * closing), 0.5 * spin_energy)
@@ -46,8 +42,7 @@ def _scaled(w, k):
 
 @inlined
 def meet(v1, w1, v2, w2, normal, law, series):
-    """Ball-ball impact inside a shot: ``collide_balls`` or, below ``PART``, a hop. The vertical velocity is
-    dropped, as in the paper."""
+    """Ball-ball impact: as ``collide_balls`` or, below ``PART``, a hop; in the plane, as in the paper."""
     (nx, ny), phys = normal, law.phys
     closing = (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny
     if closing <= PART:

@@ -1,9 +1,7 @@
-"""Which constants does a simulation use? ``Physics``: each with its source, validated, and packed to one
-float64 vector for the kernels.
+"""Which constants does a simulation use? ``Physics``: each with its source, checked, packed for the kernels.
 
-Sources: [MJP14] Mathavan, Jackson & Parkin, Sports Eng. (2014); [MJP10] the same authors, Proc. IMechE C 224
-(2010); [Marlow] The Physics of Pocket Billiards (1994), as fitted by Alciatore (TP A.14); [TP A.30, A.31]
-Alciatore, technical proofs.
+[MJP14] Mathavan, Jackson & Parkin, Sports Eng. (2014); [MJP10] the same, Proc. IMechE C 224 (2010); [Marlow]
+The Physics of Pocket Billiards (1994), as fitted by Alciatore (TP A.14); [TP A.30, A.31] Alciatore.
 """
 
 import dataclasses
@@ -21,20 +19,18 @@ MARLOW = (9.951e-3, 0.108, 1.088)
 """Marlow's law of ball-ball friction, mu(s) = a + b exp(-c s), s the slip speed in m/s."""
 
 FASTEST = 1000.0
-"""The largest component of a ball's velocity, and the largest speed of a cue, that a shot accepts [m/s]; the
-hardest strokes reach about 15 m/s. Measured: all invariants of a shot hold to 10,000 m/s. At 100,000 m/s the
-rounding (1e-16 of the speed) exceeds the speed that counts as rest, and shots do not end."""
+"""Largest velocity component and cue speed of a shot [m/s]; the hardest strokes reach about 15. Measured: all
+invariants hold to 10,000; at 100,000 rounding (1e-16) exceeds the speed that counts as rest: shots do not
+end."""
 MOST_SPIN = 1e5
-"""The largest component of a ball's spin that a shot accepts [rad/s]: what a strike at ``FASTEST`` can give a
-snooker ball. Measured: shots are right to 1e6 rad/s and do not end at 1e7."""
+"""Largest spin component of a shot [rad/s], what a strike at ``FASTEST`` can give. Measured: shots are right
+to 1e6 and do not end at 1e7."""
 FASTEST_IMPACT, MOST_SPIN_IMPACT = 1e6, 1e9
-"""The same limits for one impact alone. Its outcome scales with its speeds (except for the laws that contain
-a speed), so it is right far beyond those of a shot."""
+"""The same for one impact alone: its outcome scales with its speeds (but for laws that contain one)."""
 _LEAST_DECELERATION, _MOST_DECELERATION = 1e-6, 1e6
 _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
-"""Bounds of ``e_c_knee`` (from below) and ``e_c_power`` (from above). The rebound varies with at most the
-power 1.25 of e (tests/physics/test_cushion_law.py), so with a power up to 0.8 it never falls with the
-speed."""
+"""Bounds of ``e_c_knee`` and ``e_c_power``. The rebound varies with at most the power 1.25 of e
+(tests/physics/test_cushion_law.py): with a power up to 0.8 it never falls with the speed."""
 
 # Places in the packed vector. They are indices, not tunable constants: freezing them into a kernel is safe.
 (
@@ -62,64 +58,57 @@ speed."""
 class Physics:
     """The physical constants and laws of a simulation, in SI units.
 
-    ``Physics()`` is the preset "paper"; see ``preset``. An instance cannot be changed;
-    ``dataclasses.replace`` makes a changed copy.
+    ``Physics()`` is the preset "paper" (see ``preset``); ``dataclasses.replace`` makes a changed copy.
 
     Parameters
     ----------
     R : float
         Radius of all balls [m], in [0.001, 1]. Snooker: 52.5 mm diameter [MJP14 2.4.3].
     M : float
-        Mass of all balls [kg], > 0 [MJP14 2.4.3]. No velocity depends on it, because the balls are equal.
+        Mass of all balls [kg], > 0 [MJP14 2.4.3]. No velocity depends on it: the balls are equal.
     g : float
         Acceleration of gravity [m/s^2], > 0.
     mu_s : float
-        Coefficient of sliding friction between ball and cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to
-        0.245].
+        Sliding friction between ball and cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
     mu_r : float
-        Rolling resistance: deceleration over g, in [0, 1]. Measured: 0.124 to 0.126 m/s^2, that is 0.0127 g.
+        Rolling resistance: deceleration over g, in [0, 1]. Measured: 0.124 to 0.126 m/s^2, 0.0127 g.
     spin_decel : float
-        Angular deceleration of the spin about the vertical [rad/s^2], in every state of motion, >= 0 [MJP14
-        eq. 21]. With 0 nothing ends such a spin: a shot ends when no ball moves across the table, and the
-        remaining spin stays.
+        Deceleration of the spin about the vertical [rad/s^2], in every state, >= 0 [MJP14 eq. 21]. With 0
+        such a spin stays: a shot ends when no ball moves across the table.
     nap : float
-        Acceleration of a rolling ball along +y by the cloth's nap, which runs from baulk to the black end
-        [m/s^2]. 0: no nap; else its size must be below mu_r g, so that a ball at rest stays there. Not
-        measured; 0.001 is the most that the range of mu_r allows (``python -m benchmarks.nap``).
+        Acceleration of a rolling ball along +y by the nap, which runs from baulk to the black end [m/s^2]. 0:
+        none; else below mu_r g in size, so that a ball at rest stays. Not measured; 0.001 is the most that
+        the range of mu_r allows (``python -m benchmarks.nap``).
     e_b : float
-        Energetic coefficient of restitution between balls, in [0, 1] [MJP14 2.4.2].
+        Energetic restitution between balls, in [0, 1] [MJP14 2.4.2].
     mu_bb : float, "marlow" or (float, float, float)
-        Coefficient of friction between balls: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c)
-        of the law mu(s) = a + b exp(-c s), with the slip speed s in m/s.
+        Friction between balls: a constant in [0, 1] [MJP14 2.4.2], ``"marlow"``, or (a, b, c) of the law
+        mu(s) = a + b exp(-c s), with the slip speed s in m/s.
     e_c : float
-        Energetic coefficient of restitution between ball and cushion at low speed, in [0, 1] [MJP10, fitted
-        below 1.5 m/s].
+        Energetic restitution at a cushion at low speed, in [0, 1] [MJP10, fitted below 1.5 m/s].
     e_c_knee : float
-        Speed straight into the cushion above which its restitution falls [m/s], >= 0, and >= 0.001 where
-        e_c_power > 0.
+        Speed into the cushion above which e falls [m/s], >= 0, and >= 0.001 where e_c_power > 0.
     e_c_power : float
-        Exponent of that fall, in [0, 0.8]; 0: none. e(v) = e_c for v <= e_c_knee, and e_c (v /
-        e_c_knee)^(-e_c_power) above. So v e(v) always rises with v; for mu_c, mu_s and sin_theta up to 0.5
-        the rebound of a rolling or a stunned ball rises too. An impact that loses its energy by yielding has
-        the power 1/4 (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
+        Exponent of that fall, in [0, 0.8]; 0: none. e(v) = e_c up to e_c_knee, and above it
+        e_c (v / e_c_knee)^(-e_c_power), so v e(v) rises with v; for mu_c, mu_s and sin_theta up to 0.5 so
+        does the rebound of a rolling or stunned ball. An impact that loses energy by yielding has 1/4
+        (Johnson, Contact Mechanics, 1985, 11.5); rubber may differ.
     e_j : float, optional
-        Energetic coefficient of restitution between ball and jaw, the same at every speed, in [0, 1]. None:
-        e_c, without the fall with speed that a rail has. Not measured. A rail loses energy because its rubber
-        deforms; at a jaw the rubber is cut thin over wood.
+        Energetic restitution at a jaw, at every speed, in [0, 1]. None: e_c, without its fall with speed,
+        because a jaw's rubber is cut thin over wood. Not measured.
     mu_c : float
-        Coefficient of sliding friction between ball and cushion, in [0, 1] [MJP10].
+        Sliding friction between ball and cushion, in [0, 1] [MJP10].
     sin_theta : float
-        Height of the nose above the ball's centre over R, in [0, 0.95]; a nose height of 7R/5 gives 0.4
-        [MJP10].
+        Height of the nose above the ball's centre over R, in [0, 0.95]; a nose at 7R/5 gives 0.4 [MJP10].
     end_mass_ratio : float
-        Ball mass over the effective end mass of the cue, >= 0; it determines the squirt [TP A.31].
+        Ball mass over the cue's effective end mass, >= 0; it determines the squirt [TP A.31].
     max_offset : float
         Tip offset over R beyond which the tip slips (miscue), in (0, 0.999] [TP A.30].
 
     Raises
     ------
     ValueError
-        For a value outside these ranges; the message names the field, its value and what is allowed.
+        For a value outside these ranges.
 
     Examples
     --------
@@ -190,38 +179,13 @@ class Physics:
 
     @classmethod
     def preset(cls, name: PhysicsName = "paper", **fields: Any) -> "Physics":
-        """The constants of a preset, with any field replaced.
+        """The constants of a preset, with any ``fields`` replaced; ValueError if a name or value is wrong.
 
-        ``"paper"``: the constants of [MJP14] and [MJP10].
-
-        ``"match"``: measured snooker, that is e_b 0.94, Marlow's mu_bb(s), and a cushion whose restitution
-        falls as v^-0.31 above 2.17 m/s. That law is fitted to the rebounds of Fig. 7a of [MJP10], 19 speeds
-        from 0.26 to 3.40 m/s (``python -m benchmarks.fit_cushion``); the 95 % interval of the power is 0.21
-        to 0.46. Beyond 3.4 m/s it is extrapolated. If the power law holds there, the 95 % intervals of e are
-        0.70 to 0.80 at 5 m/s, 0.60 to 0.75 at 7 m/s and 0.51 to 0.69 at 10 m/s.
-
-        Parameters
-        ----------
-        name : {"paper", "match"}
-            The preset.
-        **fields
-            Fields of ``Physics`` to replace.
-
-        Returns
-        -------
-        Physics
-            The constants.
-
-        Raises
-        ------
-        ValueError
-            For an unknown name or field, or a value out of range.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> sn.Physics.preset("match", e_c=0.9).e_c
-        0.9
+        "paper": [MJP14] and [MJP10]. "match": measured snooker, that is e_b 0.94, Marlow's mu_bb(s), and a
+        cushion whose restitution falls as v^-0.31 above 2.17 m/s, fitted to Fig. 7a of [MJP10]: 19 speeds
+        from 0.26 to 3.40 m/s (``python -m benchmarks.fit_cushion``; 95 % interval of the power 0.21 to 0.46).
+        Beyond it is extrapolated: e is 0.70 to 0.80 at 5 m/s, 0.60 to 0.75 at 7 and 0.51 to 0.69 at 10 (95 %,
+        if the law holds there).
         """
         choice("physics", name, PRESETS)
         return cls._replaced(PRESETS[name], fields) if fields else cls._whole(name)
@@ -233,12 +197,9 @@ class Physics:
 
     @classmethod
     def of(cls, physics: "PhysicsLike" = None) -> "Physics":
-        """The constants that an argument ``physics`` stands for.
-
-        ``physics``: None is "paper"; a str is the name of a preset; a dict replaces fields of the preset that
-        its key "preset" names, or of "paper". Returns the constants; a ``Physics`` is returned as it is.
-        ValueError for anything else.
-        """
+        """The constants that an argument ``physics`` stands for: None is "paper", a str names a preset, a
+        dict replaces fields of the preset under its key "preset" (or "paper"), a ``Physics`` is itself.
+        ValueError for anything else."""
         if isinstance(physics, cls):
             return physics
         if physics is None or isinstance(physics, str):
@@ -256,10 +217,7 @@ class Physics:
         return cls(**{**base, **fields})
 
     def check_stopping(self) -> None:
-        """Check that balls with these constants come to rest after a finite time that is not zero.
-
-        ValueError if friction is too small or too large; the message names the constant.
-        """
+        """ValueError unless friction brings balls to rest in a finite time that is not zero."""
         for name in ("mu_s", "mu_r"):
             if not _LEAST_DECELERATION <= getattr(self, name) * self.g <= _MOST_DECELERATION:
                 bounds = f"times g = {self.g:g} in [{_LEAST_DECELERATION:g}, {_MOST_DECELERATION:g}] m/s^2"
@@ -280,15 +238,12 @@ class Physics:
         return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
 
     def pack(self) -> Floats:
-        """The constants as the kernels read them.
-
-        Returns float64 (17,): the constants at the places ``P_*`` of this module, in SI units.
-        """
+        """The constants for the kernels: float64 (17,), at the places ``P_*`` of this module, SI units."""
         return self._packed.copy()
 
     @cached_property
     def _packed(self) -> Floats:
-        """The same array at every access, for kernels, which only read it."""
+        """One array for all kernels, which only read it."""
         return np.array(
             [
                 self.R,

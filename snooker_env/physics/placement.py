@@ -1,5 +1,4 @@
-"""Is a layout sound? The first ball that is off the table, in a cushion, a jaw or another ball, or over a
-pocket: a kernel."""
+"""Is a layout sound? The first ball off the table, in a cushion, jaw or ball, or over a pocket: a kernel."""
 
 from math import sqrt
 
@@ -23,8 +22,7 @@ from .columns import (
 )
 
 OVERLAP_ALLOWED = 1e-6
-"""Balls may overlap another ball or a cushion by this much [m], as in layouts printed to a micrometre. They
-count as touching."""
+"""Balls may overlap a ball or cushion by this much [m] (printed layouts), and then count as touching."""
 
 SOUND, OFF, IN_NOSE, OVER_POCKET, IN_JAW, IN_BALL = range(6)
 """Kinds of faults: none; off the table; in a cushion; over a pocket; in a jaw; in another ball."""
@@ -34,8 +32,7 @@ SOUND, OFF, IN_NOSE, OVER_POCKET, IN_JAW, IN_BALL = range(6)
 def in_jaw(x, y, jaws, k, R, allowed):
     """Whether a ball at (x, y) is deeper than ``allowed`` [m] in jaw k.
 
-    A jaw is as deep as it is wide: far behind a straight facing, an arc of a very large circle, lies another
-    part of the table.
+    A jaw is as deep as wide: far behind a straight facing (a very large arc) lies another part of the table.
     """
     dx, dy, radius, cos_half = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_RADIUS], jaws[k, JAW_COS]
     d2, least = dx * dx + dy * dy, radius + R - allowed
@@ -47,11 +44,9 @@ def in_jaw(x, y, jaws, k, R, allowed):
 
 @kernel
 def place_fault(x, y, reach, boundaries, allowed, edge):
-    """What is wrong with a ball on the bed at (x, y) [m]: kind of fault, and index of the nose, fall or jaw;
-    (SOUND, -1) if nothing.
+    """What is wrong with a ball on the bed at (x, y) [m]: kind, index of nose, fall or jaw; or (SOUND, -1).
 
-    ``allowed``: how deep it may be in a cushion; ``edge``: how far over a pocket [m]. Else as in
-    ``first_fault``.
+    It may be ``allowed`` [m] deep in a cushion and ``edge`` [m] over a pocket.
     """
     noses, jaws, falls, R = boundaries
     if not (reach[0, 0] < x < reach[0, 1] and reach[1, 0] < y < reach[1, 1]):
@@ -75,11 +70,9 @@ def place_fault(x, y, reach, boundaries, allowed, edge):
 
 @entry
 def first_fault(positions, on_table, reach, noses, jaws, falls, R):
-    """The first unsound place in positions (b, n, 2) [m]: table, ball, kind of fault, and index of the nose,
-    fall, jaw or ball.
+    """The first unsound place in positions (b, n, 2) [m]: table, ball, kind, index of what it is in.
 
-    ``reach`` (2, 2): the lowest and highest x and y [m] that a ball's centre may have; ``R``: radius of the
-    balls [m]. (-1, -1, SOUND, -1) if all places are sound.
+    ``reach`` (2, 2): lowest and highest x and y of centres [m]. (-1, -1, SOUND, -1) if all are sound.
     """
     boundaries = Boundaries(noses, jaws, falls, R)
     for k in range(positions.shape[0]):

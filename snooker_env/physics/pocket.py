@@ -1,32 +1,24 @@
-"""What becomes of a ball that crosses the edge of a pocket? It flies, falls, may strike a jaw or the edge,
-and is lost or comes back.
+"""What becomes of a ball over the edge of a pocket? It flies, strikes jaw or edge, is lost or comes back.
 
-A slow ball is lost where its centre crosses the edge. A fast one flies on, may meet the jaw beyond before it
-has fallen, and may bounce back on to the bed. Most balls have no jaw in their way and are lost at the edge at
-once; the others are followed here.
-
-Table frame; z is the drop of the centre below its height on the bed [m], u its rate [m/s]. In flight there is
-no friction with the cloth.
+Most balls have no jaw in their way and are lost at the edge at once, and so are slow ones; the others are
+followed. z is the drop of the centre below its height on the bed [m], u its rate [m/s]; no friction with the
+cloth.
 
 * Gravity: du/dt = g.
-* The slate's edge is a sharp circle, the pocket's fall. A sphere whose centre is d inside it touches it where
-  d^2 + (R - z)^2 = R^2; the normal points from the edge to the centre. Restitution ``EDGE``, no friction.
-  Below ``SOFT`` the ball stays on the edge and tips over it.
-* A jaw's nose is an arc at the height (1 + sin_theta) R. A ball that has dropped by z touches it at the angle
-  phi above its equator, sin(phi) = sin_theta + z/R. Nothing supports the ball from below, so this is the
-  impact of a free sphere with a fixed body, in closed form: p = (1 + e_j) times the closing speed; friction
-  min(mu_c p, 2/7 of the slip), opposite to the slip at the contact. The nose is above the centre and drives
-  the ball down.
-* The ball is lost in three cases. No jaw's arc is ahead, and its line leaves the fall on the far side, seen
-  from where it came in. Or it is below the noses, at z = (1 - sin_theta) R, where the edge pushes it inwards
-  too. Or it touches the throat behind a jaw's arc.
+* The slate's edge is a sharp circle, the fall. A sphere whose centre is d inside touches it where
+  d^2 + (R - z)^2 = R^2, its normal from edge to centre. Restitution ``EDGE``, frictionless; below ``SOFT`` it
+  tips over.
+* A jaw's nose is an arc at height (1 + sin_theta) R: a ball touches it at the angle phi above its equator,
+  sin(phi) = sin_theta + z/R. A free sphere and a fixed body, in closed form: p = (1 + e_j) times the closing
+  speed, friction min(mu_c p, 2/7 of the slip) against the slip. The nose is above the centre and drives the
+  ball down.
+* Lost: no arc ahead and its line leaves the fall on the far side from where it came in; or below the noses,
+  z = (1 - sin_theta) R, where the edge pushes it inwards too; or it touches the throat behind an arc.
 
-Balls meet each other in the plane, whatever their drop. ``SLOW``, ``SOFT`` and ``STEP`` are chosen for
-snooker balls and normal gravity.
-
-A ball that clears the edge flies to the first jaw in closed form. For one that touches the edge there is no
-closed form: it is followed in steps of ``STEP``, each a parabola, with the impacts on the edge at its end.
-Oracle: a compliant ball in three dimensions (``tests/oracles/pocket_3d.py``).
+Balls meet each other in the plane, whatever their drop. ``SLOW``, ``SOFT`` and ``STEP`` suit snooker balls
+and normal gravity. A ball that clears the edge flies to the first jaw in closed form; one that touches it is
+followed in steps of ``STEP``, parabolas with the impacts at their ends. Oracle: a compliant ball in 3D
+(``tests/oracles/pocket_3d.py``).
 """
 
 from math import inf, sqrt
@@ -40,33 +32,29 @@ from .parameters import P_E_J, P_G, P_MU_C, P_R, P_SIN
 JAW, LOST, BACK = range(3)
 """How a leg of the flight ends."""
 EDGE = 0.5
-"""Restitution of a ball on the slate's edge (a billiard ball dropped on a covered slate rises to about a
-quarter of its height)."""
+"""Restitution on the slate's edge (a ball dropped on covered slate rises to about a quarter)."""
 SLOW = 0.4
 """A ball slower than this is lost at the edge [m/s]: it tips in before it could come back."""
 SOFT = 0.05
-"""Closing speed below which the ball does not bounce on the edge or on a jaw, but stays in contact [m/s]."""
+"""Closing speed below which the ball does not bounce on edge or jaw, but stays in contact [m/s]."""
 STRIDE, STEP = 4e-4, 4e-4
-"""Distance that the ball moves in a step [m], and the longest step [s]. Measured: with a quarter of both no
-window of a pocket (``benchmarks.pockets``) changes by more than 1.1 mm of its width, and most change by at
-most 0.3 mm."""
+"""Distance in a step [m], and the longest step [s]. With a quarter of both no window of a pocket
+(``benchmarks.pockets``) changes by more than 1.1 mm of its width, most by at most 0.3 mm."""
 SHORTEST = 1e-9
 """The shortest leg [s]; the ball can meet a jaw right at the edge."""
 _MOST_STEPS = 10_000
-"""A ball that stays in the mouth for so many steps, a few seconds, is lost: it is wedged in a throat narrower
-than a ball."""
+"""After so many steps (seconds) in the mouth a ball is lost: wedged in a throat narrower than it."""
 IN_X, IN_Y, POCKET, HAD, Z0, U0, Z1, U1, END_VX, END_VY, KIND, INDEX = range(12)
 FLIGHT = 12
-"""Columns of ``flight``. IN_X, IN_Y: where the ball came in, relative to the pocket's centre [m]; POCKET: the
-pocket. HAD: its energy of translation and height at the start of this leg, per unit mass [m^2/s^2]. Z0, U0
-and Z1, U1: drop of the centre [m] and its rate [m/s] at the start and at the end of this leg. END_VX, END_VY,
-KIND, INDEX: velocity [m/s], kind of event and its index at the end."""
+"""Columns of ``flight``. IN_X, IN_Y: where the ball came in, from the pocket's centre [m]; POCKET. HAD: its
+energy of translation and height at the leg's start, per unit mass [m^2/s^2]. Z0, U0, Z1, U1: drop [m] and
+rate [m/s] at start and end. END_VX, END_VY, KIND, INDEX: velocity [m/s], kind of event and its index at the
+end."""
 
 
 @kernel
 def _first_arc(x, y, vx, vy, jaws, R):
-    """The first jaw arc on a straight line ahead: time until the ball meets it [s], and its index; (inf, -1)
-    if there is none."""
+    """The first jaw arc ahead on a line: time until the ball meets it [s], and its index; or (inf, -1)."""
     speed2 = vx * vx + vy * vy
     best, jaw = inf, -1
     for k in range(jaws.shape[0]):
@@ -85,12 +73,11 @@ def _first_arc(x, y, vx, vy, jaws, R):
 
 @kernel
 def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
-    """A ball crosses the edge at (x, y) [m]: time until it flies into a jaw [s], and the jaw. inf: never. -1:
-    it may, but touches the edge.
+    """A ball crosses the edge at (x, y) [m]: time until it hits a jaw [s] (inf: never, -1: maybe), the jaw.
 
-    Whether the sphere clears the edge is tested at the end of the path. Over a circle the depth grows more
-    and more slowly, while a falling sphere needs it to grow almost linearly (at sqrt(g R)). So a ball that
-    clears the edge at the end has cleared it before, except for a graze near that speed.
+    -1 means that it touches the edge, as tested at the end of the path: over a circle depth grows ever more
+    slowly, but clearing it needs almost linear growth (sqrt(g R)). So who clears it there did before, but for
+    a graze.
     """
     R, g = phys[P_R], phys[P_G]
     if vx * vx + vy * vy < SLOW * SLOW:
@@ -109,8 +96,7 @@ def ahead(x, y, vx, vy, falls, pocket, jaws, phys):
 
 @kernel
 def _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket):
-    """Whether a straight line from (x, y) leaves the fall on the side away from where the ball came in, seen
-    from the centre."""
+    """Whether a line from (x, y) leaves the fall on the far side from where the ball came in."""
     dx, dy = x - falls[pocket, FALL_X], y - falls[pocket, FALL_Y]
     speed2, along = vx * vx + vy * vy, dx * vx + dy * vy
     inside = falls[pocket, FALL_RADIUS] * falls[pocket, FALL_RADIUS] - dx * dx - dy * dy
@@ -122,12 +108,10 @@ def _goes_through(x, y, vx, vy, in_x, in_y, falls, pocket):
 
 @kernel
 def jaw_gap(r, jaws, k, R, sin_theta):
-    """A sphere at r = (x, y, z): its distance from the nose of jaw k in the plane [m], the unit vector to it,
-    sin(phi), and the part.
+    """Of a sphere at r = (x, y, z): distance from jaw k in the plane [m], unit vector to it, sin(phi), part.
 
-    Past its ends (part 1, else 0) the arc is continued straight along its tangents: on one side into the
-    throat, on the other as the nose. For a ball above the nose's height the nose is a wall: no ball flies
-    over a cushion.
+    Past its ends (part 1, else 0) the arc goes on along its tangents, as throat or nose. Above the nose's
+    height it is a wall: no ball flies over a cushion.
     """
     x, y, z = r
     dx, dy, ux, uy = x - jaws[k, JAW_X], y - jaws[k, JAW_Y], jaws[k, JAW_UX], jaws[k, JAW_UY]
@@ -145,8 +129,7 @@ def jaw_gap(r, jaws, k, R, sin_theta):
             return 1.0, 0.0, 0.0, 0.0, 0
         s = sin_half if aside > 0.0 else -sin_half
         nx, ny = cos_half * ux - s * uy, cos_half * uy + s * ux
-    # A ball on the bed touches the nose at the distance R from the table's arc. A dropped ball has the same
-    # distance, so that it comes back without an overlap.
+    # on the bed a ball touches at R from the table's arc; dropped too, so it comes back without an overlap
     sin_phi = min(1.0, max(0.0, sin_theta + z / R))
     high = min(sin_phi, sin_theta)
     return (
@@ -160,11 +143,9 @@ def jaw_gap(r, jaws, k, R, sin_theta):
 
 @kernel
 def strike_jaw(v, w, nx, ny, sin_phi, phys):
-    """Impact of a free ball with a nose; (nx, ny) is the unit vector to it in the plane -> v = (vx, vy, u)
-    [m/s], w [rad/s].
+    """Impact of a free ball with a nose, (nx, ny) the unit vector to it -> v = (vx, vy, u) [m/s], w [rad/s].
 
-    A ball that falls away from the nose faster than it moves towards it keeps its velocity: the nose does not
-    pull.
+    Unchanged if it falls away faster than it moves towards the nose, which does not pull.
     """
     cos_phi, R = sqrt(1.0 - sin_phi * sin_phi), phys[P_R]
     vx, vy, u = v
@@ -186,8 +167,7 @@ def strike_jaw(v, w, nx, ny, sin_phi, phys):
 
 @kernel
 def _deepest_jaw(r, v, jaws, first, last, R, sin_theta):
-    """Of the jaws that the ball touches and moves into, the deepest: its index (-1: none), gap [m], closing
-    speed [m/s] and normal.
+    """Of the jaws that a ball moves into, the deepest: index (or -1), gap [m], closing [m/s], normal.
 
     Also: whether the ball touches any jaw, and whether one behind its arc.
     """
@@ -209,12 +189,10 @@ def _deepest_jaw(r, v, jaws, first, last, R, sin_theta):
 
 @kernel
 def fly(r, v, entered, falls, pocket, jaws, phys):
-    """One leg of a flight over the fall of ``pocket`` from r = (x, y, z) [m] with v = (vx, vy, u) [m/s], up
-    to the next event.
+    """One leg of a flight over ``pocket`` from r = (x, y, z) [m] with v = (vx, vy, u) [m/s].
 
-    entered: where the ball came in, relative to the pocket's centre [m]. Returns how the leg ends (``JAW``,
-    ``LOST``, ``BACK``), the jaw, the duration [s], and r and v at its end (before the impact with the jaw; on
-    the bed for ``BACK``).
+    entered: where it came in, from the pocket's centre [m]. Returns ``JAW``, ``LOST`` or ``BACK``, the jaw,
+    the duration [s], and r and v at the end (before the jaw's impact; on the bed for ``BACK``).
     """
     R, sin_theta, g = phys[P_R], phys[P_SIN], phys[P_G]
     (x, y, z), (vx, vy, u), (in_x, in_y) = r, v, entered
@@ -229,8 +207,7 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
         return LOST, -1, STEP, (x + vx * STEP, y + vy * STEP, z), v
     first, last = jaws.shape[0], 0  # the jaws of this pocket
     for k in range(jaws.shape[0]):
-        # measured from the middle of the arc (a straight facing is an arc of a very large circle, whose
-        # centre is far away)
+        # from the middle of the arc (the centre of a straight facing's very large circle is far away)
         dx = jaws[k, JAW_X] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UX] - falls[pocket, FALL_X]
         dy = jaws[k, JAW_Y] + jaws[k, JAW_RADIUS] * jaws[k, JAW_UY] - falls[pocket, FALL_Y]
         reach = (
@@ -284,8 +261,7 @@ def fly(r, v, entered, falls, pocket, jaws, phys):
 
 @kernel
 def next_leg(paths, i, t, r, v, w, boundaries, phys):
-    """Ball i is over a pocket, in the air at r = (x, y, z) with v = (vx, vy, u): write its next leg, a line
-    to its next event."""
+    """Ball i is in the air at r = (x, y, z) with v = (vx, vy, u): write its leg, a line to its next event."""
     (motion, state, flight), (x, y, z), (vx, vy, u) = paths, r, v
     into = int(flight[i, POCKET])
     entered = flight[i, IN_X], flight[i, IN_Y]
@@ -319,12 +295,10 @@ def next_leg(paths, i, t, r, v, w, boundaries, phys):
 
 @kernel
 def aloft(motion, flight, i, t, v, phys):
-    """Ball i in the air meets another ball at time t, when its leg has the velocity v: its velocity. The leg
-    starts anew there.
+    """Ball i in the air meets a ball at t with its leg's velocity v: its velocity; its leg starts anew.
 
-    A leg with the edge or a soft jaw on its way is not straight, and its mean speed in the plane is not that
-    of any moment. Together with the drop it may come to more energy than the ball had at the start of the
-    leg: then the ball is slower.
+    A leg by the edge or a soft jaw is not straight: its mean speed and the drop may have more energy than the
+    ball had. Then it is slower.
     """
     s = (t - motion[i, T0]) / (motion[i, T_END] - motion[i, T0])
     z, u = (

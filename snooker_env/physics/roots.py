@@ -1,10 +1,8 @@
-"""When does a polynomial first fall through zero? The earliest downward crossing of a quadratic or quartic in
-[0, T], none missed.
+"""When does a quadratic or quartic first fall through zero in [0, T]? None is missed.
 
-The interval is cut at the roots of the quartic's derivative, which are found between the roots of its second
-derivative (a quadratic). On each piece the quartic is monotone, so the first piece that starts above zero and
-ends at or below it holds exactly the first crossing. Newton's method, kept inside the bracket, finds it. A
-root of even order, where the polynomial only touches zero from above, is no crossing.
+The quartic is cut at the roots of its derivative, found between those of the second derivative. On each piece
+it is monotone: the first that goes from above zero to zero or below holds the crossing, found by bracketed
+Newton iteration. A root of even order (touched from above) is no crossing.
 """
 
 from math import inf, sqrt
@@ -14,8 +12,7 @@ from .._jit import kernel
 
 @kernel
 def _quadratic_roots(a, b, c):
-    """Real roots of a x^2 + b x + c in rising order, without cancellation; (inf, inf) where there are
-    none."""
+    """Real roots of a x^2 + b x + c in rising order, without cancellation; (inf, inf) if none."""
     if a == 0.0:
         return (-c / b, inf) if b != 0.0 else (inf, inf)
     disc = b * b - 4.0 * a * c
@@ -43,8 +40,7 @@ def quadratic_crossing(c0, c1, c2, T):
 
 @kernel
 def _bracketed_cubic(a, b, c, d, low, high, f_low):
-    """The root of a x^3 + b x^2 + c x + d in [low, high], where it is monotone and changes sign (f_low: its
-    value at low)."""
+    """The root of a cubic in [low, high], where it is monotone and changes sign; f_low: its value at low."""
     x = 0.5 * (low + high)
     for _ in range(100):
         f = ((a * x + b) * x + c) * x + d

@@ -1,5 +1,4 @@
-"""Can a table have these shapes? Checks of noses, jaws and falls, and of pockets that must fit the sides and
-let the ball through."""
+"""Can a table have these shapes? Noses, jaws, falls; pockets must fit the sides and let the ball through."""
 
 from math import hypot
 

@@ -1,8 +1,7 @@
-"""What bounds the balls? A ``Table``: straight noses, jaw arcs and the falls of the pockets, checked, as
-arrays for the kernels.
+"""What bounds the balls? A ``Table``: straight noses, jaw arcs and falls, checked, as arrays for the kernels.
 
-Table frame as in ``geometry``, where the places and sizes are. Behind the arcs no shape is needed: the throat
-goes on straight, and a ball that touches it there is lost (``pocket.py``).
+Frame, places and sizes: ``geometry``. Behind the arcs the throat goes on straight; a ball that touches it
+there is lost (``pocket.py``).
 """
 
 from dataclasses import dataclass, field
@@ -20,8 +19,8 @@ from .placement import IN_JAW, IN_NOSE, OFF, OVER_POCKET, OVERLAP_ALLOWED, SOUND
 from .shapes import check_fit, check_shapes
 
 MOUTH = 0.012
-"""How far past the line of the noses a ball can lie at rest [m], unless the pockets of a table let it lie
-deeper. This is the depth between the jaw and the fall of a middle pocket of snooker."""
+"""How far past the noses a ball can lie at rest [m], unless the pockets let it lie deeper: the depth between
+jaw and fall of snooker's middle pocket."""
 PLAY = 1e-3
 """Facing noses must be at least this much further apart than a ball is wide [m]."""
 SAME_BALL = 1e-9
@@ -32,34 +31,32 @@ SAME_BALL = 1e-9
 class Table:
     """The shape of a table: straight noses, jaw arcs and falls.
 
-    ``Table.preset("match")`` is a table with a name, ``Table.rectangular`` makes a rectangular one, and the
-    constructor makes any table from arrays. There is one object for each preset, also after pickling and
-    copying. Arrays are copied and read-only.
+    ``Table.preset("match")`` is a table with a name, ``Table.rectangular`` makes a rectangular one, the
+    constructor any from arrays, which are copied and read-only. A preset is one object, also after pickling
+    and copying.
 
     Parameters
     ----------
     name : str
         Name of the table in messages.
     noses : array_like, float (k, 5)
-        Straight noses: axis (0: x, 1: y), side (-1 or 1), level [m], and the range lo, hi [m] along the other
-        axis. A ball touches the nose where side * coordinate = level - R.
+        Axis (0: x, 1: y), side (-1 or 1), level [m], and range lo, hi [m] along the other axis. A ball
+        touches the nose where side * coordinate = level - R.
     jaws : array_like, float (m, 6)
-        Jaw arcs: x and y of the centre [m], radius [m], unit vector from the centre to the middle of the arc,
-        cosine of half its angle.
+        Arcs: x, y of the centre [m], radius [m], unit vector from the centre to the arc's middle, cosine of
+        half its angle.
     falls : array_like, float (p, 3)
-        Falls: x and y of the centre and radius of the slate's edge [m]. A ball whose centre crosses the edge
-        begins to drop. The index of a fall is its pocket.
+        Slate's edges: x, y of the centre, radius [m]. A ball whose centre crosses one begins to drop. The
+        index is the pocket.
     ball_radius : float, optional
-        Radius of the balls that the table is made for [m], in [0.001, 1]; ``physics.R`` must equal it. None:
-        any ball.
+        Radius of the balls it is made for [m], in [0.001, 1]; ``physics.R`` must equal it. None: any.
     pockets : tuple of str
         Names of the pockets, one for each fall, or ().
 
     Attributes
     ----------
     bounds : float64 (2, 2)
-        Lowest and highest x, lowest and highest y of the outermost noses [m]; infinite where there is no
-        nose.
+        Lowest and highest x, lowest and highest y of the outermost noses [m]; infinite without one.
 
     Raises
     ------
@@ -127,42 +124,13 @@ class Table:
         ball_radius: float | None = None,
         name: str = "rectangular",
     ) -> "Table":
-        """A rectangular table of your own with straight noses on its four sides.
+        """A table of your own with straight noses on its four sides, its origin in the middle.
 
-        Parameters
-        ----------
-        length, width : float
-            Distance between facing noses [m], in (0, 100]: ``length`` along y, ``width`` along x. The origin
-            is in the middle.
-        pockets : {6, 4, 0}
-            6: four corners and the middles of the sides along y; 4: the corners; 0: none. They are numbered
-            anticlockwise from (-x, -y); ``Table.pockets`` has their names.
-        corner, middle : Pocket, optional
-            Shapes of the pockets: ``Pocket.corner(...)``, ``Pocket.middle(...)``. None: those of snooker's
-            match table.
-        ball_radius : float, optional
-            Radius of the balls that the table is made for [m], in [0.001, 1]; a shot with another
-            ``physics.R`` raises ValueError. None: any ball.
-        name : str
-            Name of the table in messages.
-
-        Returns
-        -------
-        Table
-            A new table.
-
-        Raises
-        ------
-        ValueError
-            If a size is out of range, or the sizes do not fit together: jaws that overlap along a rail, a
-            pocket narrower than the ball.
-
-        Examples
-        --------
-        >>> import snooker_env as sn
-        >>> table = sn.Table.rectangular(2.0, 1.0, pockets=4, ball_radius=0.025)
-        >>> sn.simulate([(0.0, 0.0)], [(1.0, 0.5)], [(0.0, 0.0, 0.0)], table, {"R": 0.025}).potted
-        array([-1])
+        ``length`` (along y) and ``width`` (along x): between facing noses [m], in (0, 100]. ``pockets``: 6;
+        4: the corners; 0: none; anticlockwise from (-x, -y), names in ``Table.pockets``. ``corner``,
+        ``middle``: ``Pocket.corner(...)``, ``Pocket.middle(...)``; None: those of snooker's match table.
+        ``ball_radius``: of the balls it is made for [m], in [0.001, 1]; None: any. ValueError if a size is
+        out of range or sizes do not fit: jaws that overlap along a rail, a pocket narrower than the ball.
         """
         length = number("table.length", length, 0, 100, open_low=True)
         width = number("table.width", width, 0, 100, open_low=True)
@@ -188,11 +156,7 @@ class Table:
 
     @classmethod
     def of(cls, table: "TableLike") -> "Table":
-        """The table that an argument ``table`` stands for.
-
-        ``table``: name of a preset, a table, or None for unbounded cloth. Returns the table; a ``Table`` is
-        returned as it is. ValueError for anything else.
-        """
+        """The table of an argument: a preset's name, a ``Table``, None for unbounded cloth; or ValueError."""
         if table is None:
             return UNBOUNDED
         if isinstance(table, cls):
@@ -212,12 +176,9 @@ class Table:
 
     @property
     def ball(self) -> dict[str, float]:
-        """Fields of ``Physics`` for the balls that the table is made for, for
-        ``Physics.preset("match", **table.ball)``.
-
-        A preset has R [m], M [kg] and sin_theta (the height of its noses), a table of your own has R, and a
-        table for any ball nothing.
-        """
+        """Fields for ``Physics.preset("match", **table.ball)`` of the balls that the table is made for: R
+        [m], M [kg] and sin_theta (nose height) of a preset, R of a table of your own, nothing of a table for
+        any ball."""
         if self.is_preset:
             return dict(PRESETS[self.name].ball)
         return {} if self.ball_radius is None else {"R": self.ball_radius}
@@ -230,20 +191,15 @@ class Table:
         return _again, (self.name, self.noses, self.jaws, self.falls, self.ball_radius, self.pockets)
 
     def _reach(self, R):
-        """The bounds (2, 2), widened by how far a ball of radius R can lie past them in the mouth of a
-        pocket. Kept for each radius."""
+        """The bounds (2, 2), widened by how far a ball can lie past them in a pocket's mouth; kept per R."""
         if R not in self._reaches:
             past = max(MOUTH, deepest(self.jaws, self.falls, self.bounds, R))
             self._reaches[R] = self.bounds + np.array([-past, past])
         return self._reaches[R]
 
     def unfit(self, positions: Floats, R: float) -> list[int]:
-        """The layouts that are not sound on this table.
-
-        ``positions``: float64 (b, n, 2), centres of the balls [m]; all balls are on the table. ``R``: radius
-        of the balls [m]. Returns indices of the layouts in which a ball is off the table, in a cushion, jaw
-        or other ball, or over a pocket; in order.
-        """
+        """The layouts that ``check`` would refuse: their indices, in order. ``positions`` (b, n, 2) [m], all
+        balls on the table; ``R``: their radius [m]."""
         here, unfit, first = np.ones(positions.shape[:2], bool), [], 0
         while True:
             k, _, fault, _ = first_fault(
@@ -261,15 +217,10 @@ class Table:
         field: str = "positions",
         on_table: FlagRows | Flags | None = None,
     ) -> None:
-        """Check that layouts are sound: no ball off the table, in a cushion, jaw or other ball, or over a
-        pocket.
-
-        ``positions``: float (n, 2), centres of the balls of one layout, or of b layouts [m]. ``R``: radius of
-        the balls [m]. ``field``: name of the positions in messages. ``on_table``: bool (n,), False for the
-        balls to leave out, one for each place; None: all are on the table. ValueError if a layout is not
-        sound, or the table is made for other balls; the message names the layout, the ball and the reason.
-        Also if an array has another shape.
-        """
+        """ValueError if a ball is off the table, in a cushion, jaw or other ball, or over a pocket, or the
+        table is made for other balls than ``R`` [m]. ``positions``: float (n, 2) or (b, n, 2), centres [m];
+        ``field``: their name in messages; ``on_table``: bool for each place, False for balls to leave out;
+        None: all."""
         radius = self.ball_radius
         if radius is not None and abs(R - radius) > SAME_BALL:
             made = f'must be {radius} on table "{self.name}", which is made for it'

@@ -1,5 +1,4 @@
-"""Where is every ball at a given time? Evaluated from the path log of a shot, with the engine's own
-formulas."""
+"""Where is every ball at a given time? From the path log of a shot, by the engine's own formulas."""
 
 import numpy as np
 
@@ -9,11 +8,10 @@ from . import cloth
 
 @entry
 def states_at(segments, n_balls, times, phys, positions, velocities, spins):
-    """Fill positions (m, n, 2) [m], velocities (m, n, 2) [m/s] and spins (m, n, 3) [rad/s] at ``times`` (m,)
-    [s].
+    """Fill positions (m, n, 2) [m], velocities [m/s] and spins (m, n, 3) [rad/s] at ``times`` (m,) [s].
 
-    ``segments`` (k, cloth.SEGMENT), in order of time. A segment is valid from its T0 until the next one of
-    the same ball; of several at one time the last one counts (after the impact).
+    ``segments`` (k, cloth.SEGMENT) in order of time: one holds until the ball's next; of several at one time
+    the last counts (after the impact).
     """
     k = segments.shape[0]
     state = np.empty(k, np.int64)

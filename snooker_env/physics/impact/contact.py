@@ -1,8 +1,6 @@
-"""How does one impact change the balls? Ball against ball and ball against cushion, in the table frame, at
-any fidelity.
+"""How does one impact change the balls? Ball on ball, ball on cushion, in the table frame, at any fidelity.
 
-Table frame: z up, metres, seconds; v = (vx, vy, vz) and w = (wx, wy, wz) are tuples. Bodies that do not
-approach each other are returned unchanged.
+Tuples v = (vx, vy, vz) [m/s] and w = (wx, wy, wz) [rad/s], z up. Bodies that do not approach are unchanged.
 """
 
 from math import hypot, sqrt
@@ -32,19 +30,16 @@ _CODES = {"fast": FAST, "standard": STANDARD, "reference": REFERENCE}
 FIDELITIES = (*_CODES, "euler:N")
 MAX_EULER_STEPS = 10_000_000
 
-# Errors measured against the oracle of the tests, over the larger incoming speed: reference below 1e-9;
-# standard below 1e-6 in 99 % of impacts and below 1e-5 in all. At a cushion the errors differ less from
-# impact to impact: with the constants of play a larger tolerance keeps the same promise.
+# Errors against the tests' oracle, over the larger incoming speed: reference below 1e-9; standard below 1e-6
+# in 99 % of impacts, 1e-5 in all. At a cushion they vary less: a larger tolerance keeps the same promise.
 _REFERENCE = Accuracy(tol=1e-13, delta=1e-13, creep=1e-5, order=20)
 _STANDARD = Accuracy(tol=5e-8, delta=1e-7, creep=1e-3, order=12)
 _STANDARD_CUSHION = _STANDARD._replace(tol=1.5e-7)
-# Without the cloth's reaction the error at a cushion would be 7 % of the speed, so "fast" includes it, and
-# solves to a few per mille.
+# "fast" has the cloth's reaction at a cushion (worth 7 % of the speed), and solves to a few per mille.
 _LOOSE = Accuracy(tol=1e-4, delta=1e-5, creep=1e-2, order=8)
 
 _NO_CLOSING = 1e-60
-"""A closing speed below this counts as zero [m/s], because the scaled slips would overflow. It has no
-physical effect."""
+"""A smaller closing speed is zero [m/s]: the scaled slips would overflow. No physical effect."""
 
 
 def parse_fidelity(fidelity: Fidelity) -> Solver:
@@ -58,7 +53,7 @@ def parse_fidelity(fidelity: Fidelity) -> Solver:
     Returns
     -------
     code : int
-        0 to 3, in the order above.
+        0 to 3, in this order.
     n_steps : int
         N of "euler:N", else 0.
 
@@ -85,12 +80,10 @@ def parse_fidelity(fidelity: Fidelity) -> Solver:
 
 @kernel
 def cushion_restitution(speed, phys):
-    """Restitution at a cushion: e(v) = e_c up to the knee, e_c (v / knee)^(-power) above. v: horizontal speed
-    into the cushion [m/s].
+    """e(v) = e_c up to the knee, e_c (v / knee)^(-power) above; v: horizontal speed into the cushion [m/s].
 
-    With power < 1, v e(v) rises. Source of the form: an impact that loses energy by yielding has e ~ v^(-1/4)
-    (Johnson, Contact Mechanics, 1985, 11.5); power and knee are fitted (``Physics.preset``). The law depends
-    on the normal speed alone, not on the spin.
+    v e(v) rises (power < 1). The form is that of loss by yielding, v^(-1/4) (Johnson, Contact Mechanics,
+    1985, 11.5); power and knee are fitted (``Physics.preset``). It depends on the normal speed alone.
     """
     if phys[P_E_POWER] > 0.0 and speed > phys[P_E_KNEE]:
         return phys[P_E_C] * (speed / phys[P_E_KNEE]) ** -phys[P_E_POWER]
@@ -99,8 +92,7 @@ def cushion_restitution(speed, phys):
 
 @kernel
 def _to_frame(a, nx, ny):
-    """A vector of the table frame in the frame of the contact, (tangent, normal, up): X = Y x Z = (ny,
-    -nx)."""
+    """A vector of the table in the contact's frame (tangent, normal, up): X = Y x Z = (ny, -nx)."""
     return a[0] * ny - a[1] * nx, a[0] * nx + a[1] * ny, a[2]
 
 
@@ -112,8 +104,7 @@ def _to_table(a, nx, ny):
 
 @kernel
 def _friction_impulse_free(xa, za, ya, friction, e):
-    """Impulses between two free spheres, per unit mass [m/s]: friction (opposite to the first slip, at most
-    what ends it), and normal."""
+    """Two free spheres: friction impulse (at most what ends the slip) and normal, per unit mass [m/s]."""
     pn = 0.5 * (1.0 + e) * ya
     s = hypot(xa, za)
     if s == 0.0:
@@ -145,9 +136,8 @@ def _balls_in_frame(vc, wc, vo, wo, law, e, series):
     if hypot(xa, za) <= accuracy.delta * ya:
         p = 0.5 * (1.0 + e) * ya
         return (vc[0], vc[1] - p, vc[2]), wc, (vo[0], vo[1] + p, vo[2]), wo, True
-    # za < 0: friction presses O into the cloth. za > 0: it presses C. This is the same problem seen from the
-    # other side (half a turn about Z, names swapped): x and y of all vectors change sign and so does za,
-    # while xa stays.
+    # za < 0: friction presses O into the cloth; za > 0: C, the same problem from the other side (half a turn
+    # about Z, names swapped): x and y of all vectors and za change sign, xa stays.
     swapped = za > 0.0
     sign = -1.0 if swapped else 1.0
     vp, wp = (vc, wc) if swapped else (vo, wo)  # the pressed ball
@@ -156,8 +146,7 @@ def _balls_in_frame(vc, wc, vo, wo, law, e, series):
     scaled = Friction(friction.least, friction.extra, friction.fade * ya)
     x, status = solve(Problem(inertia.BALLS, start, scaled, phys[P_MU_S], e), accuracy, series)
     f1, f2, g1, g2, p = x.F1 * ya, x.F2 * ya, x.G1 * ya, x.G2 * ya, x.p * ya
-    # lifted ball: (f1, -p, f2) and spin q (f2, 0, -f1); pressed: (-f1 + g1, p + g2, 0) and spin q (f2 + g2,
-    # -g1, -f1)
+    # lifted: (f1, -p, f2), spin q (f2, 0, -f1); pressed: (g1 - f1, p + g2, 0), spin q (f2 + g2, -g1, -f1)
     lift_v, lift_w = (sign * f1, -sign * p, f2), (sign * q * f2, 0.0, -q * f1)
     press_v, press_w = (
         (sign * (g1 - f1), sign * (p + g2), 0.0),
@@ -177,9 +166,8 @@ def _add(a, b):
 def collide_balls(v1, w1, v2, w2, normal, law, e, series):
     """Impact of two equal balls -> v1, w1, v2, w2 [m/s, rad/s] and whether it was solved. [MJP14] 2.1 to 2.4.
 
-    normal: unit vector (nx, ny) from ball 1 to ball 2; ``law``: a ``Law``; ``e``: the restitution;
-    ``series``: work space, ``polynomial.WORK`` numbers. The vertical velocity of the lifted ball is part of
-    the result.
+    normal: unit vector (nx, ny) from ball 1 to ball 2; ``e``: restitution; ``series``: ``polynomial.WORK``
+    numbers. The lifted ball's vertical velocity is in the result.
     """
     nx, ny = normal
     if not (v1[0] - v2[0]) * nx + (v1[1] - v2[1]) * ny > _NO_CLOSING:
@@ -198,11 +186,10 @@ def collide_balls(v1, w1, v2, w2, normal, law, e, series):
 
 @kernel(seconds=1, uses=(solve,))
 def collide_cushion(v, w, normal, law, e, series):
-    """Impact of a ball with a nose -> v [m/s], w [rad/s] and whether it was solved. [MJP10], with Coulomb's
-    law at zero slip.
+    """Impact of a ball with a nose -> v [m/s], w [rad/s], solved. [MJP10], with Coulomb's law at zero slip.
 
-    normal: unit vector (nx, ny) INTO the cushion; the others as in ``collide_balls``. "fast" integrates with
-    a loose tolerance: no closed form includes the cloth's reaction, which matters here.
+    normal: unit vector (nx, ny) INTO the cushion. "fast" integrates loosely: no closed form has the cloth's
+    reaction.
     """
     (nx, ny), phys, fidelity = normal, law.phys, law.fidelity
     sin_t = phys[P_SIN]

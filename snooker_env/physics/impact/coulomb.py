@@ -1,8 +1,7 @@
-"""How does Coulomb's law at the two contacts drive an impact? The rates of its impulses, for each state of
-the contacts.
+"""How does Coulomb's law at the two contacts drive an impact? Rates of its impulses in each state.
 
-Symbols as in ``inertia.py`` and ``impulse.py``. Contact A slips, sticks, or creeps; the cloth contact slides,
-starts, or grips.
+Symbols as in ``inertia.py`` and ``impulse.py``. A slips, sticks, or creeps; the cloth slides, starts, or
+grips.
 """
 
 from math import exp, hypot, sqrt
@@ -15,31 +14,25 @@ from .inertia import K_CLOTH, Contact, Impulses, Slips, slips_after
 
 # typed: with literals numba would compile every callee once for each
 SLIP, STICK, CREEP = (np.int64(k) for k in range(3))
-"""States of contact A. SLIP: friction is opposite to the slip. STICK: friction holds the slip at zero. CREEP:
-friction cannot hold it, but the slip is too small to be integrated; it has the direction of the driving
-forces."""
+"""Of contact A. SLIP: friction is opposite to the slip. STICK: friction holds it at zero. CREEP: friction
+cannot, but the slip is too small to integrate; it has the direction of the driving forces."""
 SLIDES, STARTS, GRIPS = (np.int64(k) for k in range(3))
-"""States of the cloth contact. SLIDES: friction is opposite to the slip. STARTS: the slip is zero and about
-to start; friction is opposite to the driving force. GRIPS: friction holds the slip at zero."""
+"""Of the cloth. SLIDES: friction is opposite to the slip. STARTS: the slip is zero and about to start;
+friction is opposite to the driving force. GRIPS: friction holds it at zero."""
 
 _NEARLY_BALANCED = 0.1
-"""A slip creeps only while the sum of friction and driving force is at most this part of the effect of
-friction. Doubled or halved: a change of less than 2 % in the number of steps (measured as in ``impulse.py``,
-here and below)."""
+"""A slip creeps only while friction and drive sum to at most this part of friction's effect. Doubled or
+halved: less than 2 % of the steps (measured as in ``impulse.py``, here and below)."""
 _ALIGNED = 1e-3
-"""A slip creeps only if its direction is within this angle of that of the driving force [rad]. Doubled or
-halved: no change above 2e-8."""
+"""And only within this angle of the driving force [rad]. Doubled or halved: no change above 2e-8."""
 _DIRECTION_TRIALS, _SETTLED = 30, 1e-15
-"""The direction of creep is iterated until it changes by no more than rounding. Each iteration gains a factor
-of about mu, so 30 are more than enough. Halved: no change above 5e-13."""
+"""Each iteration of the direction of creep gains about mu. Halved: no change above 5e-13."""
 _TRIALS = 60
-"""Newton's method takes 3 to 6 of them; bisection alone, as where q1 is nearly zero, would take no more to
-end at rounding."""
+"""Newton's method takes 3 to 6; bisection alone, as for q1 near zero, no more to end at rounding."""
 
 
 class Friction(NamedTuple):
-    """The coefficient of friction at A as a function of the slip s: mu(s) = least + extra exp(-fade s).
-    ``fade`` in 1 / (unit of s)."""
+    """Friction at A against the slip s: mu(s) = least + extra exp(-fade s), ``fade`` in 1 / (unit of s)."""
 
     least: float
     extra: float
@@ -47,8 +40,7 @@ class Friction(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """One impact to solve: its constants, the slips before it, the friction at A and at the cloth, and the
-    energetic restitution."""
+    """One impact: its constants, the slips before it, friction at A and the cloth, energetic restitution."""
 
     contact: Contact
     start: Slips
@@ -67,8 +59,7 @@ def friction_coefficient(s, friction):
 
 @kernel
 def _cloth_friction(slip, drive1, drive2, most, near, cloth):
-    """Friction at the cloth: ``most`` against the slip b, or against the drive where b starts from zero; or
-    what holds b at zero."""
+    """The cloth's friction: ``most`` against slip b, or the drive at zero; or what holds b at zero."""
     if cloth == GRIPS:
         return -drive1 / K_CLOTH, -drive2 / K_CLOTH
     size = sqrt(slip.b1 * slip.b1 + slip.b2 * slip.b2)
@@ -101,8 +92,7 @@ def _slip_rates(x, near, cloth, problem):
 
 @kernel
 def _stick_forces(b1, b2, z, near, cloth, problem):
-    """The friction that holds a = 0, the cloth's friction and the lift that result, per unit of p: f1, f2,
-    g1, g2, lift."""
+    """The friction that holds a = 0, the cloth's and the lift, per unit of p: f1, f2, g1, g2, lift."""
     k1, k2, c1, c2, d_a, d_b, _d_n, n_p, n_f, l_a, _l_n = problem.contact
     mu_s = problem.mu_s
     if cloth == GRIPS:  # a' = 0 and b' = 0; only their second components are driven
@@ -134,13 +124,11 @@ def _stick_rates(x, near, cloth, problem):
 
 @kernel
 def _creep_rates(x, near, cloth, problem):
-    """dx/dp while A creeps: friction and driving force nearly balance, just after A began to slip or while
-    its slip decays to zero.
+    """dx/dp while A creeps: friction and drive nearly balance, as A begins to slip or its slip decays.
 
-    The slip has the direction e of the driving force: a' = kappa e with kappa >= 0, and F' = -mu e. So (kappa
-    + mu k_i) e_i = q_i. Here q is the driving force without A's own friction. It contains the cloth's
-    friction, which depends on e through the load. So e is found by iteration, and kappa in each iteration
-    from |e| = 1.
+    The slip has the drive's direction e: a' = kappa e, kappa >= 0, F' = -mu e, so (kappa + mu k_i) e_i = q_i.
+    The drive q, without A's friction, has the cloth's, which depends on e by the load: e is iterated, kappa
+    is from |e| = 1.
     """
     contact, mu_s = problem.contact, problem.mu_s
     slip = slips_after(x, problem.start, contact)
@@ -192,8 +180,7 @@ def _direction(q1, q2, m1, m2):
 
 @kernel
 def rates(x, mode, near, cloth, problem):
-    """The rates of the impulses in this state of both contacts: per unit of t, dp = |a| dt, while A slips,
-    else per unit of p."""
+    """The rates of the impulses in this state: per unit of t (dp = |a| dt) while A slips, else of p."""
     if mode == SLIP:
         return _slip_rates(x, near, cloth, problem)
     if mode == STICK:
@@ -212,12 +199,7 @@ def _slip_rate(per, contact):
 
 @kernel
 def settled(x, slip, s, near, cloth, problem):
-    """Whether friction at A nearly balances the driving force and the slip, of size s, has the direction of
-    that force.
-
-    Then steps in t (dp = |a| dt) would make little progress, and ``_creep_rates`` is accurate to within the
-    slip.
-    """
+    """Whether friction at A nearly balances the drive and slip s lies along it: steps in t would stall."""
     per = _creep_rates(x, near, cloth, problem)
     slow = (
         _slip_rate(per, problem.contact)
@@ -239,10 +221,7 @@ def held(x, near, cloth, problem):
 
 @kernel
 def wedged(problem):
-    """Whether both contacts hold a ball between nose and cloth whose slips are both zero.
-
-    Then nothing moves across the nose, and no impulse frees the ball. This needs friction at both contacts.
-    """
+    """Whether both contacts hold a ball between nose and cloth whose slips are zero: no impulse frees it."""
     _f1, f2, _g1, g2, _lift = _stick_forces(0.0, 0.0, 0.0, 0.0, GRIPS, problem)
     load = problem.contact.n_p + problem.contact.n_f * f2
     return abs(f2) <= friction_coefficient(0.0, problem.friction) and abs(g2) <= problem.mu_s * load
@@ -250,7 +229,6 @@ def wedged(problem):
 
 @kernel
 def grip_holds(per, x, problem):
-    """Whether the cloth's friction in the rates ``per`` of a grip obeys Coulomb's law, and the ball is on the
-    cloth."""
+    """Whether the cloth's friction in the rates ``per`` of a grip obeys Coulomb, and the ball is down."""
     most = problem.mu_s * (problem.contact.n_p * per.p + problem.contact.n_f * per.F2)
     return x.Z <= 0.0 and most * most >= per.G1 * per.G1 + per.G2 * per.G2 and most > 0.0

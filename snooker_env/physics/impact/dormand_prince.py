@@ -1,8 +1,7 @@
-"""How is a step taken when the contacts do not both slip? By the explicit Runge-Kutta pair 5(4) of Dormand &
-Prince, on all seven impulses.
+"""How is a step taken when the contacts do not both slip? By the Runge-Kutta pair 5(4) of Dormand & Prince.
 
-Coefficients: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.5 and II.6. The stages
-are in one loop, so that the function of the rates is compiled once.
+Coefficients: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.5 and II.6. All seven
+impulses; the stages are in a loop, so that the rates are compiled once.
 """
 
 import numpy as np
@@ -43,8 +42,7 @@ _EXTENSION = np.array(
 
 @kernel
 def step(series, x, h, per, mode, near, cloth, problem):
-    """One step of length h from x, where the rates are ``per`` -> the state after it, the rates there, and
-    the step's error at equal p."""
+    """One step of length h from x with rates ``per`` -> its end, the rates there, the error at equal p."""
     _store(series, 0, per)
     end, per_end = x, per
     for i in range(6):
@@ -93,8 +91,7 @@ def _add(x, h, per):
 
 @kernel
 def leave_polynomial(series, x, end, h, contact):
-    """Write the continuous extension of the last step, of order 4, as a polynomial in the fraction of the
-    step (ibid., II.6)."""
+    """Write the step's continuous extension, order 4, as polynomial in its fraction (ibid., II.6)."""
     for q in range(7):
         r1 = end[q] - x[q]
         r2 = h * series[_STAGES + q] - r1

@@ -1,9 +1,7 @@
-"""When does an impact end? After the closing speed has fallen to zero and the work has then fallen to its
-target, inside the last step.
+"""When does an impact end? In the last step, after closing speed zero, where the work falls to its target.
 
-The step is a polynomial (``polynomial.py``) of its own time, from 0 to ``span``. Compression ends at closing
-speed 0, with work W_c; the impact ends at W = (1 - e^2) W_c: energetic restitution [Stronge 1990; MJP14 eq.
-10].
+A step is a polynomial (``polynomial.py``) in its time, 0 to ``span``. Compression ends at closing speed 0
+with work W_c, the impact at W = (1 - e^2) W_c: energetic restitution [Stronge 1990; MJP14 eq. 10].
 """
 
 from math import sqrt
@@ -17,16 +15,15 @@ from .polynomial import CLOSING, ROW, WORK_DONE, state_at, time_of, value_at
 from .taylor import turned
 
 _CLOSE = 0.01
-"""How exactly the ends are located, over tol and the step's length. Doubled or halved: no change above
-rounding, because one more step of Halley's method is more exact than either."""
+"""Exactness of the ends over tol and the step. Doubled or halved: no change above rounding, as Halley's next
+step is more exact than either."""
 _TURN_HALVINGS, _LOOSE_HALVINGS = 50, 40
-"""Bisections down to rounding; and to 1e-12 of a step, where a slip that begins is still zero. Doubled or
-halved: no change above 1e-15 in impacts of play."""
+"""Bisections to rounding; and to 1e-12 of a step, where a beginning slip is still zero. Doubled or halved: no
+change above 1e-15 in impacts of play."""
 
 
 class Target(NamedTuple):
-    """The work at which the impact ends. ``top`` and ``work`` are known once compression has ended and
-    ``compressing`` is False."""
+    """The work at which the impact ends; ``top`` and ``work`` are known once ``compressing`` is False."""
 
     compressing: bool
     top: float
@@ -37,8 +34,7 @@ class Target(NamedTuple):
 
 @kernel
 def _end_of_compression(series, degree, span, closing, near):
-    """The time at which the closing speed falls to zero, in a step that ends with closing speed ``closing``
-    <= 0."""
+    """The time at which the closing speed falls to zero, in a step that ends with ``closing`` <= 0."""
     first, slope = series[CLOSING], series[ROW + CLOSING]
     bend = (closing - first - slope * span) / (span * span)
     root = slope * slope - 4.0 * bend * first
@@ -48,8 +44,7 @@ def _end_of_compression(series, degree, span, closing, near):
 
 @kernel
 def _end_of_restitution(series, degree, low, span, work, target, near):
-    """The time at which the work falls to its target: at ``low`` it is above, at ``span``, where it is
-    ``work``, it is not."""
+    """The time at which the work falls to its target: above at ``low``, not at ``span``, with ``work``."""
     # the root of the work returned grows almost linearly
     now = sqrt(max(target.top - value_at(series, degree, WORK_DONE, low)[0], 0.0))
     guess = low + (span - low) * (sqrt(target.top - target.work) - now) / (sqrt(target.top - work) - now)
@@ -58,19 +53,16 @@ def _end_of_restitution(series, degree, low, span, work, target, near):
 
 @kernel
 def ends_inside(end, closing, target):
-    """Whether compression or the impact ends inside the step that ends at the state ``end`` with closing
-    speed ``closing``."""
+    """Whether compression or the impact ends in the step that ends at ``end`` with speed ``closing``."""
     return closing <= 0.0 if target.compressing else target.work >= end.W
 
 
 @kernel
 def locate_end(series, degree, span, end, closing, target, e, tol):
-    """For such a step: whether the impact ends in it, the time of that (or of the end of compression), and
-    the target from now on."""
+    """For such a step: whether the impact ends, when (or when compression does), and the new target."""
     over, t, near = False, 0.0, _CLOSE * tol * span
     if target.compressing:
-        # The work is stationary there: its error is that of the time squared, about _CLOSE tol. The speed
-        # after the impact then errs by that over e.
+        # the work is stationary there: it errs by the time's error squared, _CLOSE tol; the speed by that / e
         t = _end_of_compression(series, degree, span, closing, near if e < _CLOSE else sqrt(near * span))
         top = value_at(series, degree, WORK_DONE, t)[0]
         target = Target(False, top, (1.0 - e * e) * top)
@@ -83,8 +75,7 @@ def locate_end(series, degree, span, end, closing, target, e, tol):
 
 @kernel
 def turns_at(series, degree, span, o1, o2, problem):
-    """Time at which the cloth's slip, less (o1, o2), is at right angles to its first direction, in a step
-    that ends with it reversed."""
+    """When the cloth's slip, less (o1, o2), is normal to its first direction, in a step that reverses it."""
     low, high = 0.0, span
     for _ in range(_TURN_HALVINGS):
         t = 0.5 * (low + high)
@@ -95,7 +86,7 @@ def turns_at(series, degree, span, o1, o2, problem):
 
 @kernel
 def breaks_loose_at(series, near, cloth, problem):
-    """The fraction of a Runge-Kutta step after which friction no longer holds the slip at A at zero."""
+    """The fraction of a Runge-Kutta step after which friction no longer holds A's slip at zero."""
     low, high = 0.0, 1.0
     for _ in range(_LOOSE_HALVINGS):
         t = 0.5 * (low + high)

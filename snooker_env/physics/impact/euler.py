@@ -1,10 +1,8 @@
-"""Which result has the paper's own numerical scheme? Explicit Euler over the normal impulse with the step of
-eq. 14, exactly as printed.
+"""Which result has the paper's own scheme? Explicit Euler over the normal impulse, eq. 14, as printed.
 
-[MJP14] sections 2.2 to 2.4.3 for two balls; [MJP10] by the same scheme for the cushion. All impulses are per
-unit mass. The ends are not located inside a step: compression ends with the first step after which the
-closing speed is not positive, the impact with the first step after which the work has fallen to its target.
-This keeps the discretisation error of the paper; ``impulse.py`` is the accurate method.
+[MJP14] 2.2 to 2.4.3, and the same for the cushion of [MJP10]; impulses per unit mass. Ends are not located in
+a step: compression ends with the first step to closing speed <= 0, the impact with the first to its work. So
+the paper's discretisation error is kept; ``impulse.py`` is the accurate method.
 """
 
 from math import hypot, sqrt
@@ -14,17 +12,12 @@ from ..parameters import P_MU_C, P_MU_S, P_R, P_SIN
 from .coulomb import friction_coefficient
 
 _MAX_OVERRUN = 100
-"""The most steps, in units of N, before the scheme is stopped as unsolved. One that ends takes about N
-steps."""
+"""Steps over N after which the scheme is unsolved; one that ends takes about N."""
 
 
 @kernel
 def balls(vc, wc, vo, wo, friction, phys, e, n_steps):
-    """Balls C and O in the contact frame (X tangent, Y from C to O, Z up); (vx, vy, vz) in m/s and (wx, wy,
-    wz) in rad/s.
-
-    Returns the four vectors after the impact and whether the scheme ended.
-    """
+    """Balls C, O (X tangent, Y from C to O, Z up), v [m/s], w [rad/s] -> after the impact, and solved."""
     vcx, vcy, vcz = vc
     wcx, wcy, wcz = wc
     vox, voy, voz = vo
@@ -79,11 +72,7 @@ def balls(vc, wc, vo, wo, friction, phys, e, n_steps):
 
 @kernel
 def cushion(v, w, phys, e, n_steps):
-    """Ball against a nose in the contact frame (X along the cushion, Y into it, Z up).
-
-    Returns v [m/s], w [rad/s] and whether the scheme ended. mu_c, the coefficient of friction at the nose, is
-    mu_w in [MJP10].
-    """
+    """Ball and nose (X along it, Y into it, Z up) -> v [m/s], w [rad/s], solved. mu_c: [MJP10]'s mu_w."""
     R, mu_s, mu_c, sin_t = phys[P_R], phys[P_MU_S], phys[P_MU_C], phys[P_SIN]
     vx, vy, vz = v
     wx, wy, wz = w

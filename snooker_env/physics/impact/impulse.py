@@ -1,10 +1,9 @@
-"""How is an impact with friction solved? Coulomb's law at two coupled contacts, integrated over the normal
-impulse; changes are located.
+"""How is an impact with friction solved? Coulomb's law at two contacts, integrated over the normal impulse.
 
-Ball against ball [MJP14] and ball against cushion [MJP10] are the same problem with other constants. At A the
-bodies touch, with slip a = (a1, a2) and friction impulse F = (F1, F2). Under the ball that is pressed into
-the cloth the slip is b = (b1, b2) and the friction impulse G = (G1, G2). With p the normal impulse per unit
-mass, W its work and Z the vertical velocity of a ball that has left the cloth::
+Ball on ball [MJP14] and ball on cushion [MJP10] differ in constants only. At A, where the bodies touch: slip
+a = (a1, a2), friction impulse F = (F1, F2). Under the ball pressed into the cloth: slip b, friction impulse
+G. p is the normal impulse per unit mass, W its work, Z the vertical velocity of a ball that has left the
+cloth::
 
     a1      = a1_0              + k1 F1 + c1 G1                 All slips are linear in F, G, p and Z (``inertia.py``, where
     a2      = a2_0      + d_a p + k2 F2 + c2 G2 + l_a Z         the constants are derived), so F, G, p, W and Z are the
@@ -13,17 +12,15 @@ mass, W its work and Z the vertical velocity of a ball that has left the cloth::
     closing = closing_0 + d_n p - d_a F2 - d_b G2 + l_n Z       W' = closing
     N'      = n_p + n_f F2'  while that is positive and the ball is down (Z = 0); else N' = 0 and Z' = -(n_p + n_f F2'): it lifts
 
-Coulomb: F' = -mu(|a|) a/|a| and G' = -mu_s N' b/|b|, where a prime is d/dp. Where a slip is zero, friction
-holds it at zero if it can; if not, the slip starts in the direction of the driving forces (``coulomb.py``).
-Compression ends at closing speed 0 with W = W_c, the impact at W = (1 - e^2) W_c (``ends.py``).
+Coulomb: F' = -mu(|a|) a/|a| and G' = -mu_s N' b/|b|, prime: d/dp. Friction holds a zero slip if it can; if
+not, the slip starts in the direction of the driving forces (``coulomb.py``). Ends: ``ends.py``.
 
-Method. While A slips, the variable is t with dp = |a| dt. Then F' = -mu a is regular, and the end of a slip,
-where its direction turns like a power of |a|, is approached exponentially and is no singularity. While both
-contacts slip, the solution is analytic in t, and a Taylor series covers most of an impact or all of it
-(``taylor.py``). The other cases are rare in play: a contact that sticks or creeps, a ball that lifts, a cloth
-that may hold the ball. They are integrated by Runge-Kutta steps (``dormand_prince.py``). Either method writes
-a polynomial of its step, in which the ends are located. ``transitions.py`` has the next states of the
-contacts. All speeds are divided by the closing speed before the impact, so tolerances are relative.
+While A slips, the variable is t with dp = |a| dt: F' = -mu a is regular, and the end of a slip, where its
+direction turns like a power of |a|, is approached exponentially. While both contacts slip, the solution is
+analytic in t and a Taylor series covers most of an impact or all (``taylor.py``). The rest is rare in play (a
+contact that sticks or creeps, a lifted ball, a cloth that may hold): Runge-Kutta steps
+(``dormand_prince.py``). Both write a polynomial, in which ends are located; ``transitions.py`` has the
+contacts' next states. Speeds are over the closing speed before.
 """
 
 from math import hypot, sqrt
@@ -51,72 +48,60 @@ from .transitions import STANDS, Moment, Step, Tolerances, cloth_after, mode_aft
 
 OK, TOO_MANY_STEPS = 0, 1
 
-# "Doubled" and "halved" below: the effect of doubling or halving this number alone on 6,000 impacts, two
-# balls and cushion. Half of them are impacts of play, half are harsh (friction, restitution and the nose's
-# height anywhere in their ranges). Measured: the number of steps (play: 2 to 11 an impact; harsh: 20 to 350),
-# the largest deviation from ``reference``, and the impacts that fail. A few harsh ones at ``reference`` are
-# ill-conditioned: they change by up to 1e-5 whatever is changed. "No effect": less than 2 % of the steps and
-# no error.
+# "Doubled", "halved", "either" (one or the other): the effect of this number alone on 6,000 impacts, two
+# balls and cushion, half of play, half harsh (friction, restitution and nose height anywhere in their
+# ranges): on the steps (play 2 to 11, harsh 20 to 350), the largest deviation from ``reference``, and
+# failures. What is not named has no effect: below 2 % of the steps, no error. A few harsh ones at
+# ``reference`` change by up to 1e-5 in any case.
 
 _MAX_STEPS = 20_000
-"""The most steps; then the impact is unsolved. No effect: none of them came near it."""
+"""The most steps; then the impact is unsolved."""
 _KNIFE_EDGE = 1_000
-"""After so many steps friction and driving force are taken to balance almost exactly: the slip stays small
-and stiff, and is integrated in its limiting direction. Doubled: 15 % more steps in harsh cushion impacts.
-Halved: one of them fails at ``reference``."""
+"""After so many steps friction and drive almost balance: the small, stiff slip takes its limiting direction.
+Doubled: 15 % more steps in harsh cushion impacts. Halved: one of them fails at ``reference``."""
 _STIFF, _STIFF_CREEP = 1e-4, 10.0
-"""The cloth slip that then is zero, and the limit of creep over that. Doubled or halved: some harsh cushion
-impacts change by 4e-5."""
+"""The cloth slip that then is zero, creep's limit over it. Either: harsh cushion impacts change 4e-5."""
 _JAMMED, _STOPPED = 5_000, 1e-2
-"""After so many steps an impact with a closing speed below this is at its end: friction balances the elastic
-force almost exactly, and the slow motion across the nose has no end. Half the steps: one harsh cushion impact
-ends 8e-3 off. Otherwise no effect."""
+"""After so many steps an impact slower than this has ended: friction balances the elastic force, and the slow
+motion across the nose has no end. Half the steps: one harsh cushion impact ends 8e-3 off."""
 _NEAR = 10.0
-"""A cloth slip below this many delta is zero. This is more than the shortest step covers, so that a slip that
-friction stops is detected. Halved: 5 % more steps at ``fast`` in harsh cushion impacts. Doubled: no
-effect."""
+"""A cloth slip below this many delta is zero: more than the shortest step covers, so that a stop is detected.
+Halved: 5 % more steps at ``fast`` in harsh cushion impacts."""
 _SERIES = 40.0
-"""Limit of a series' last terms, over tol; their sum is far above the error of the step. Doubled: 3 % fewer
-steps, twice the error (8e-7 for two balls at ``standard``). Halved: 3 % more steps, half the error."""
+"""Limit of a series' last terms, over tol; their sum is far above the step's error. Doubled: 3 % fewer steps,
+twice the error (8e-7 for two balls at ``standard``). Halved: the reverse."""
 _OVERSHOOT = 1.05
-"""The estimate of the impact's normal impulse, over that of an impact without friction. Halved: two to five
-times the steps, because the first step cannot reach the end. Doubled: no effect."""
+"""The estimated normal impulse over one without friction. Halved: 2 to 5 times the steps to the end."""
 _LEAST_LEFT = 0.1
-"""The remaining impulse is taken to be at least this part of that estimate. No effect."""
+"""The remaining impulse is taken to be at least this part of that estimate."""
 _FIRST = 0.4
-"""The first Runge-Kutta step of a slip over the longest stable one. No effect: the error control corrects
-it."""
+"""The first Runge-Kutta step of a slip over the longest stable one; the error control corrects it."""
 _NO_FRICTION = 1e-9
-"""Keeps the longest step finite where there is no friction at A. No effect."""
+"""Keeps the longest step finite without friction at A."""
 _SAFETY, _ERROR_POWER = 0.9, 0.2
-"""The next step over the step whose error would be exactly tol, and the power 1/5 of a method of order 5.
-Doubled: every step is rejected, and impacts fail. Halved: up to 1.9 times the steps."""
+"""The next step over that with error tol, and the power 1/5 of order 5. Doubled: every step is rejected,
+impacts fail. Halved: up to 1.9 times the steps."""
 _LEAST_FACTOR, _MOST_FACTOR = 0.2, 3.0
-"""Limits on the change of a step's length. Most, doubled: the error of cushion impacts of play at
-``standard`` is 5e-5 instead of 3e-7, because a step passes over a change of state; halved: up to 4 % more
-steps. Least: no effect."""
+"""Limits on the change of a step. Most, doubled: 5e-5 error instead of 3e-7 at cushions in play at
+``standard``, as a step passes over a change of state; halved: up to 4 % more steps."""
 _EXACT = 1e-3
-"""With an error below this part of tol the step grows by the largest factor. No effect."""
+"""With an error below this part of tol the step grows by the largest factor."""
 _SHORTEST = 1e-13
-"""A step as short as this is not shortened further. No effect."""
+"""A step as short as this is not shortened further."""
 _LEAPT, _LEAPT_FACTOR = 2.0, 0.5
-"""The largest impulse of a step over the remaining one (a slip may grow fast), and the factor on a longer
-step. No effect."""
+"""The largest impulse of a step over the remaining one (a slip may grow fast); factor on a longer step."""
 _TURNED_FACTOR = 0.25
-"""Factor on a step in which the cloth slip reversed its direction. Doubled or halved: up to 3 % more steps in
-harsh cushion impacts."""
+"""Factor on a step that reversed the cloth slip. Either: up to 3 % more steps in harsh cushion impacts."""
 _BELOW, _LANDED_FACTOR = 10.0, 0.5
-"""How far below the cloth a lifted ball may end a step, over tol, and the factor on the step if it is lower.
-``_BELOW``: no effect. The factor doubled: the step is never shortened, and 6 % of harsh cushion impacts
-fail."""
+"""How far below the cloth a lifted ball may end a step, over tol; the factor if lower. Factor doubled: never
+shortened, 6 % of harsh cushion impacts fail."""
 _PAST_END = 1.01
-"""How far a step may go past the estimated end. Halved: it never gets there, and 8 % of harsh impacts of two
-balls fail. Doubled: no effect."""
+"""How far a step may pass the estimated end. Halved: never there, 8 % of harsh two-ball impacts fail."""
 _SMALL, _REACH, _STABLE = 1000.0, 0.4, 0.2
-"""For a cloth slip that may end and then be held, and is below the first number (over the larger of tol and
-delta): the next step cuts it by at most the second number, and is within the stability limit of the method,
-the third number. ``_REACH`` doubled: 2.1 times the steps at ``fast`` in harsh cushion impacts; halved: 12 %
-more. ``_STABLE`` halved: 1.6 times; doubled: 3 % more. ``_SMALL``: no effect."""
+"""A cloth slip that may end and be held, below the first (over the larger of tol and delta): the next step
+cuts it by at most the second and is within the stability limit, the third. At ``fast`` in harsh cushion
+impacts: ``_REACH`` doubled 2.1 times the steps, halved 12 % more; ``_STABLE`` halved 1.6 times, doubled 3 %
+more."""
 _TINY = 1e-300
 """Keeps a quotient of zeros finite."""
 _NONE = Impulses(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -141,15 +126,14 @@ class Outlook(NamedTuple):
     p_full: float
     """Estimate of its normal impulse, slightly too large."""
     h_slip: float
-    """The longest Runge-Kutta step while A slips. Beyond three times this the method is unstable on a' = -k1
-    mu a, and a slip that should decay to zero would stay at the size of the tolerance."""
+    """The longest Runge-Kutta step while A slips; beyond three times this the method is unstable on a' = -k1
+    mu a, and a slip that should decay stays at the size of the tolerance."""
     mu: float
     """The largest coefficient of friction at A."""
     may_grip: bool
-    """Whether the cloth's friction can hold the ball in some state. If not, no cloth slip is ever held."""
+    """Whether the cloth's friction can hold the ball in some state."""
     analytic: bool
-    """Whether the Taylor series is valid while A slips: the cloth never holds, and the load on it stays
-    positive."""
+    """Whether the Taylor series is valid while A slips: the cloth never holds, its load is positive."""
 
 
 @inlined
@@ -163,8 +147,7 @@ def _outlook(problem):
         K_CLOTH * problem.mu_s * (contact.n_p + abs(contact.n_f) * mu)
         >= abs(contact.d_b) - abs(contact.c2) * mu
     )
-    # The load stays positive if the normal impulse exceeds the friction at A, or if only that friction
-    # presses and a2 keeps its sign.
+    # the load stays positive if p exceeds the friction at A, or only that presses and a2 keeps its sign
     pressed = contact.n_p >= abs(contact.n_f) * mu or (
         contact.n_p == 0.0 and contact.n_f * problem.start.a2 <= 0.0
     )
@@ -179,8 +162,7 @@ def _stick_or_creep(x, near, cloth, problem):
 
 @inlined
 def _first_state(s, outlook, limits, problem):
-    """At the beginning, with slip s at A: the states of A and of the cloth, the rates if they are needed, and
-    the length of the step."""
+    """At first, slip s at A: states of A and cloth, the rates if needed, and the step's length."""
     start, near = problem.start, limits.near
     calm = start.b1 * start.b1 + start.b2 * start.b2 <= near * near
     cloth = GRIPS if outlook.may_grip and calm else STARTS if calm else SLIDES
@@ -207,8 +189,7 @@ def _left(x, outlook):
 
 @inlined
 def _series_step(series, x, slip, starts, left, problem, tol, order):
-    """A step by the Taylor series, up to its range of accuracy or a reversal of the cloth's slip: its end,
-    the slips, degree and length."""
+    """A Taylor step, up to its accuracy or a reversal of the cloth's slip: end, slips, degree and length."""
     degree, span = taylor.expand(series, x, slip, starts, left, problem, _SERIES * tol, order)
     # a slip that counts as zero has no definite direction
     o1, o2 = (slip.b1, slip.b2) if starts else (0.0, 0.0)
@@ -223,8 +204,7 @@ def _series_step(series, x, slip, starts, left, problem, tol, order):
 
 @inlined
 def _runge_kutta_step(series, start, h, mode, cloth, outlook, limits, problem):
-    """A Runge-Kutta step: the ``Moment`` at its end, its error, and the factor for a shorter step, or
-    ``STANDS``."""
+    """A Runge-Kutta step: its end, a ``Moment``, its error, the factor to shorten it or ``STANDS``."""
     x, slip, per = start
     contact, shrink, slip_end = problem.contact, STANDS, slip
     end, per_end, error = dormand_prince.step(series, x, h, per, mode, limits.near, cloth, problem)
@@ -245,8 +225,7 @@ def _runge_kutta_step(series, start, h, mode, cloth, outlook, limits, problem):
 
 @inlined
 def _bounded(h, start, s, mode, cloth, outlook, limits, contact):
-    """The length of the next Runge-Kutta step, with slip s at A, limited by stability and by the rest of the
-    impact."""
+    """The next Runge-Kutta step, with slip s at A, within stability and the rest of the impact."""
     x, slip, per = start
     if mode == SLIP:
         h = min(h, outlook.h_slip, _left(x, outlook) / s)
@@ -260,20 +239,14 @@ def _bounded(h, start, s, mode, cloth, outlook, limits, contact):
         )
         along = (slip.b1 * db1 + slip.b2 * db2) / (size + _TINY)
         if along < 0.0 and size < _SMALL * max(limits.tol, limits.delta):
-            # a longer step is unstable on a slip this small or passes over its end, and an error of its size
-            # is not noticed
+            # a longer step is unstable or passes over the slip's end, an error too small to be noticed
             h = min(h, _REACH * size / max(_STABLE * K_CLOTH * hypot(per.G1, per.G2), -along))
     return h
 
 
 @kernel(seconds=8)
 def solve(problem, accuracy, series):
-    """Integrate one impact: the impulses at its end, in units of the closing speed before it, and OK or
-    TOO_MANY_STEPS.
-
-    The speeds in ``problem`` are in units of the closing speed, which is therefore 1. ``series``: work space,
-    ``polynomial.WORK`` numbers.
-    """
+    """Integrate one impact, its closing speed 1: the impulses at its end, and OK or TOO_MANY_STEPS."""
     order = accuracy.order
     limits = Tolerances(accuracy.tol, accuracy.delta, _NEAR * accuracy.delta, accuracy.creep)
     outlook = _outlook(problem)

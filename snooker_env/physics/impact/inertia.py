@@ -54,13 +54,11 @@ from typing import NamedTuple
 from ..._jit import kernel
 
 K_CLOTH = 3.5
-"""Change of the slip at the pressed ball's lowest point per friction impulse on it, 1 + 5/2; the same in
-every impact."""
+"""Change of the slip at the pressed ball's lowest point per friction impulse on it: 1 + 5/2."""
 
 
 class Impulses(NamedTuple):
-    """The impulses so far in an impact, per unit mass, or their rates. They are the whole state: everything
-    else follows linearly."""
+    """The impulses so far, per unit mass, or their rates: the whole state of an impact."""
 
     F1: float
     """Friction at A."""
@@ -90,15 +88,7 @@ class Slips(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """The constants of one kind of impact::
-
-    a1      = a1_0              + k1 F1 + c1 G1
-    a2      = a2_0      + d_a p + k2 F2 + c2 G2 + l_a Z
-    b1      = b1_0              + c1 F1 + K_CLOTH G1
-    b2      = b2_0      + d_b p + c2 F2 + K_CLOTH G2
-    closing = closing_0 + d_n p - d_a F2 - d_b G2 + l_n Z
-    N       =             n_p p + n_f F2                   while the ball is on the cloth
-    """
+    """The constants of one kind of impact: the factors in the equations of ``impulse.py``."""
 
     k1: float
     """Effect of the friction at A on the slip at A, along X; k2: across it."""

@@ -1,9 +1,7 @@
-"""What happens inside a step of an impact? The step as a polynomial: its state at any time, and the time at
-which a quantity has a value.
+"""What happens inside a step of an impact? Its state at any time, and when a quantity has a value.
 
-Both methods of integration write their step in this form into the array ``series``: the coefficient of order
-k of a quantity is ``series[ROW * k + column]``. The first seven columns are the state, the eighth is the
-closing speed, the others are work space.
+Both methods of integration write a step as polynomials: ``series[ROW * k + column]`` is a quantity's
+coefficient of order k. Columns 0 to 6 are the state, 7 the closing speed, the others work space.
 """
 
 import numpy as np
@@ -18,8 +16,7 @@ F1, F2, G1, G2, P, WORK_DONE, LIFT, CLOSING = (np.int64(k) for k in range(8))  #
 """Columns: the fields of ``Impulses`` in their order, and the closing speed."""
 
 _MOST_TRIALS = 60
-"""The most iterations. Halley's method takes 2 or 3; bisection alone would end after so many. Doubled or
-halved: no change."""
+"""Halley's method takes 2 or 3, bisection alone ends after so many. Doubled or halved: no change."""
 
 
 @kernel
@@ -55,12 +52,10 @@ def value_at(series, degree, column, t):
 
 @kernel
 def time_of(series, degree, column, value, low, high, guess, near):
-    """The time at which a quantity falls to the value: between ``low``, where it is above, and ``high``,
-    where it is not.
+    """When a quantity falls to the value: between ``low``, where it is above, and ``high``, where it is not.
 
-    Halley's method, kept between low and high. It ends after a correction so small that the next one would be
-    below ``near``. The next one is about the cube of this one over the square of the time since the first
-    ``low``, where the derivative may be zero.
+    Bracketed Halley iteration, until the next correction, about this one's cube over the square of the time
+    since the first ``low`` (the derivative may be zero there), is below ``near``.
     """
     first, t = low, guess
     for _ in range(_MOST_TRIALS):

@@ -1,15 +1,12 @@
-"""How is a step taken while both contacts slip? By the Taylor series of the solution, which covers most of an
-impact or all of it.
+"""How is a step taken while both contacts slip? By the Taylor series, which covers most of an impact or all.
 
-The variable is t, with dp = |a| dt. Between the ends of slips the solution is analytic in t. Write s = |a|, b
-= B e with |e| = 1 for the cloth slip, and N for the load on the cloth. Then the equations of ``impulse.py``
-contain only products::
+In t, dp = |a| dt, the solution is analytic between ends of slips. With s = |a|, the cloth slip b = B e, |e| =
+1, and the load N (per unit of t), the equations of ``impulse.py`` have only products::
 
     s s = a . a      b = B e, e . e = 1      N = n_p s + n_f F2'      F' = -mu a      G' = -mu_s N e      p' = s      W' = closing s
 
-(N is the load per unit of t). So each coefficient follows from those of lower order by sums of products:
-automatic differentiation, as in Moore, Interval Analysis (1966), and Jorba & Zou, Experimental Mathematics 14
-(2005). With X = sum of X_k t^k::
+So each coefficient follows from lower ones by sums of products: automatic differentiation (Moore, Interval
+Analysis, 1966; Jorba & Zou, Experimental Mathematics 14, 2005). With X = sum of X_k t^k::
 
     (X Y)_k = X_0 Y_k + X_k Y_0 + [X_1 Y_(k-1) + ... + X_(k-1) Y_1]                     known part in brackets
     X_k = (X')_(k-1) / k                                                               F, G, p, W; a, b and the closing speed from these
@@ -18,10 +15,9 @@ automatic differentiation, as in Moore, Interval Analysis (1966), and Jorba & Zo
     B_0 e_k + B_k e_0 = b_k - [B e]_k                                                   from b = B e: its parts along and across e_0
     mu = least + m, m = extra exp(-fade s):  k m_k = -fade (1 s_1 m_(k-1) + ... + k s_k m_0)      from m' = -fade s' m
 
-A cloth slip that starts from zero is no singularity either: b = t B e, with e_0 the direction of the driving
-force, and B_0 > 0. Then b_(k+1) replaces b_k. It contains e_k through the friction, G'_k = -mu_s (N_0 e_k +
-[N e]_k + N_k e_0). That term goes to the other side, so that the factor of e_k becomes B_0 + K_CLOTH mu_s N_0
-/ (k + 1).
+A cloth slip that starts from zero: b = t B e, e_0 along the driving force, B_0 > 0, and b_(k+1) replaces b_k.
+It has e_k in the friction, G'_k = -mu_s (N_0 e_k + [N e]_k + N_k e_0): the factor of e_k becomes B_0 +
+K_CLOTH mu_s N_0 / (k + 1).
 """
 
 from math import exp, log, sqrt
@@ -35,40 +31,34 @@ from .inertia import K_CLOTH
 from .polynomial import CLOSING, F1, F2, G1, G2, LIFT, ROW, WORK_DONE, P
 
 A1, A2, E1, E2, _E, _BN, S, M = 8, 9, 10, 11, 12, 16, 20, 21
-"""Columns of ``series`` behind those of ``polynomial.py``: a and e, (e, e), (B, B, mu_s N, mu_s N), s, and
-the part m of mu that varies."""
+"""Columns behind ``polynomial.py``'s: a, e, (e, e), (B, B, mu_s N, mu_s N), s, mu's varying part m."""
 
 _LEAST_ORDER = 4
-"""The lowest order at which the series may end: below it two terms may be small by chance. Doubled or halved:
-no change above rounding in the impacts of ``impulse.py``."""
+"""The lowest last order: below, two terms may be small by chance. Doubled or halved: no change."""
 _HOVER = 0.03
-"""The largest error in a slip over that slip: with a larger one a slip that should decay to zero would stay
-at the size of the tolerance. Doubled or halved: a change of less than 3 % in the number of steps."""
+"""Largest error in a slip over it: with more, a slip that should decay stays at the tolerance. Doubled or
+halved: less than 3 % of the steps."""
 _HUGE = 1e100
-"""A larger term ends the series, because the next coefficients might overflow."""
+"""A larger term ends the series, as the next might overflow."""
 _STEEP = 0.9
-"""The largest ratio of successive terms that is used; a larger one is chance. Doubled: steps beyond the
-radius of convergence, with errors without bound. Halved: 4 % fewer steps, and up to 5 times the error of two
-balls at ``standard``."""
+"""Largest ratio of successive terms that is used; above is chance. Doubled: steps beyond convergence, errors
+without bound. Halved: 4 % fewer steps, up to 5 times the error of two balls at ``standard``."""
 _SLOWEST = 0.2
-"""In the estimate of the impact's duration the slip falls to no less than this part of its first size.
-Doubled or halved: no change."""
+"""In the estimated duration the slip falls to no less than this part. Doubled or halved: no change."""
 _TINY = 1e-300
 """Keeps a quotient of two zeros finite."""
 _PART_OF_ONE = 1.0 / np.maximum(np.arange(32.0), 1.0)
 """1/k, because a division takes longer than a load."""
 _POSITIVE = 0xFFFF
-"""A mask that makes the compiler omit its test for negative indices, a third of the time."""
+"""A mask by which the compiler omits its test for negative indices, a third of the time."""
 
 
 @kernel
 def expand(series, x, slip, starts, p_left, problem, tol, order):
-    """Write the series at state x with these slips; returns its order, and the time up to which its error is
-    within tol.
+    """Write the series at state x; returns its order, and the time up to which its error is within tol.
 
-    starts: whether the cloth slip is zero and about to start. p_left: estimate of the remaining impulse,
-    which limits the order. In the code, names without a number are terms of order k, names that end in 0 are
-    values at t = 0, and ``r`` is 1/k.
+    starts: the cloth slip is zero and about to start. p_left: estimated remaining impulse, which limits the
+    order. Names without a number are terms of order k, those in 0 values at t = 0; ``r`` is 1/k.
     """
     k1, k2, c1, c2, d_a, d_b, d_n, n_p, n_f, _l_a, _l_n = problem.contact
     friction, mu_s = problem.friction, problem.mu_s
@@ -172,8 +162,7 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
         ee = lane(squares, 2) + lane(squares, 3)
         be1, be2, ne1, ne2 = lane(products, 0), lane(products, 1), lane(products, 2), lane(products, 3)
 
-        # The rates of order k: p' = s, F' = -mu a, W' = closing s, mu_s N, and from b = B e the direction e
-        # for G'.
+        # The rates of order k: p' = s, F' = -mu a, W' = closing s, mu_s N, and from b = B e the e of G'.
         s = ((lane(squares, 0) + lane(squares, 1) - ss) * per_s + h1 * a1) + h2 * a2
         f1, f2 = -mu0 * a1, -mu0 * a2
         if m0 > 0.0:
@@ -216,8 +205,7 @@ def expand(series, x, slip, starts, p_left, problem, tol, order):
     ratio = size * h / (last + _TINY)
     if ratio > 1.0:  # then the last one is the larger
         h = exp(log(tol / size) / k)
-    # The remainder is the last term over 1 - ratio: so the step is shortened by the k-th root of that, or a
-    # little more (Bernoulli).
+    # the remainder is the last term over 1 - ratio: shorten by at least the k-th root of that (Bernoulli)
     ratio = min(ratio, _STEEP)
     return k, h / (1.0 + ratio / ((1.0 - ratio) * k))
 

@@ -1,9 +1,5 @@
-"""What do the contacts do after a step? The next state of each; or the step is rejected, because the change
-lies inside it.
-
-A rejected step is taken again, shortened by a factor. The functions below return that factor, or ``STANDS``
-for a step that is accepted.
-"""
+"""What do the contacts do after a step? Their next states; or, as the change lies inside it, the factor by
+which it is shortened and taken again (else ``STANDS``)."""
 
 from typing import NamedTuple
 
@@ -16,11 +12,11 @@ from .inertia import Impulses, Slips
 STANDS = 0.0
 """The step is accepted."""
 _HALF = 0.5
-"""Factor on a step inside which a contact changed its state. Doubled: the step is never shortened, and 3 % of
-the cushion impacts of play fail (measured as in ``impulse.py``, here and below). Halved: no effect."""
+"""Factor on a step inside which a contact changed state. Doubled: 3 % of the cushion impacts of play fail
+(measured as in ``impulse.py``, here and below). Halved: no effect."""
 _INTO_CREEP, _OUT_OF_CREEP = 0.5, 2.0
-"""Over ``creep``: the slip below which A may begin to creep, and the largest slip at the end of a step that
-ends creeping. The second halved: 30 % more steps in cushion impacts of play. Otherwise no effect."""
+"""Over ``creep``: the slip below which A may begin to creep, and the largest at the end of a step that ends
+creeping. The second halved: 30 % more steps in cushion impacts of play. Otherwise no effect."""
 
 
 class Tolerances(NamedTuple):
@@ -75,11 +71,7 @@ def cloth_after(step, mode, cloth, may_grip, limits, problem):
 
 @inlined
 def mode_after(series, step, s, mode, cloth, located, limits, problem):
-    """The next state of contact A, where the slip is now s; the factor on the step; and whether the factor
-    leads to where A begins to slip.
-
-    located: whether the last attempt at this step found that place.
-    """
+    """A's next state, with slip s; the step's factor; and whether it leads to where A begins to slip."""
     after, shrink = mode, STANDS
     start, (end, slip, per_end) = step.start, step.end
     if mode == SLIP:
