@@ -153,7 +153,7 @@ def line_of(positions, on_table, on, rows):
         Which balls are on the table.
     on : int
         Mask of the balls that may be struck first, bit i for ball i.
-    found : float64 (LINE_ROWS, POT_COLUMNS)
+    rows : float64 (LINE_ROWS, POT_COLUMNS)
         Work space.
 
     Returns

@@ -156,7 +156,7 @@ def by_train(description: dict[str, Any]) -> bool:
 
     Parameters
     ----------
-    found : dict
+    description : dict
         The result of ``entries``.
 
     Returns
