@@ -1,5 +1,4 @@
-"""How is the benchmark run? By ``python -m snooker_env.benchmark`` tasks, run, check, table or profile; the
-rules: docs/benchmark.md."""
+"""How is the benchmark run? The commands tasks, run, check, table and profile; rules: docs/benchmark.md."""
 
 import argparse
 import os
@@ -88,8 +87,7 @@ def _agent(p: argparse.ArgumentParser, required: bool) -> None:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command. Exit code 0; 1 for a wrong file or a failed agent; 2 for wrong arguments; 130 after
-    Ctrl-C."""
+    """Run a command. Exit code 0; 1: wrong file or failed agent; 2: wrong arguments; 130: Ctrl-C."""
     words = list(sys.argv[1:] if argv is None else argv)
     args = parser().parse_args(words)
     args.line = f"{NAME} {shlex.join(words)}"

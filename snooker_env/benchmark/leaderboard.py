@@ -1,5 +1,4 @@
-"""How are results compared? A leaderboard table for each task, and performance profiles, none wider than 100
-columns."""
+"""How are results compared? A table for each task, and performance profiles, at most 100 columns wide."""
 
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
@@ -95,8 +94,7 @@ def _ms(value: float) -> str:
 
 
 def profile(results: Iterable[dict[str, Any]], task: Task) -> Table:
-    """The performance profile of a task: the share of episodes [%] with at least so many points, a row for
-    each agent."""
+    """The performance profile: share of episodes [%] with at least so many points, a row for each agent."""
     mine = sorted(
         _of(results, task), key=lambda one: (-one["figures"]["score"]["value"], one["agent"]["label"])
     )
@@ -115,8 +113,7 @@ def _share(figure: dict[str, Any]) -> str:
 
 
 def lines(results: Sequence[Any], *, markdown: bool = False, awaited: Sequence[str] = ()) -> list[str]:
-    """Leaderboard and profiles of all tasks with results; labels ``awaited`` are named where their result is
-    missing."""
+    """Leaderboard and profiles of all tasks; labels ``awaited`` are named where their result is missing."""
 
     def table(head: list[str], rows: list[list[str]], label: int, left: int = 1) -> list[str]:
         """A table whose column ``label`` holds labels: of a page as plain text."""

@@ -1,10 +1,5 @@
-"""How are episodes played? Tables side by side: a player decides by positions and seeds, and what it decides
-is kept as it is played.
-
-The environment reads all of a stroke (``players.VISITS``, ``players.FRAMES``). An action is rounded to
-float32, the type of the action space, before it is played: what is kept is what was played. The seed of a
-decision depends on the training seed, the table's seed and the number of the stroke alone, so a player gives
-the same strokes in any batch.
+"""How are episodes played? Side by side. Actions are rounded to float32 before they are played and kept; seeds
+of decisions depend on training seed, table and stroke alone, so a player plays alike in any batch.
 """
 
 import time
@@ -36,8 +31,7 @@ COLUMNS = (
     "opponent_points",
     "ended",
 )
-"""Columns of a row: index of the training seed, seed of the table, then integers that docs/benchmark.md
-explains."""
+"""Columns of a row: index of the training seed, seed of the table, then integers (docs/benchmark.md)."""
 Kept = list[NDArray[np.float32]]
 """The strokes of each episode: its actions, one row each."""
 
@@ -51,8 +45,7 @@ class PlayedEpisodes:
     rows : list of list of int
         One row for each episode, columns ``COLUMNS``.
     strokes : list of numpy.ndarray
-        The strokes of each episode, float32, one row each: actions of an environment that reads all of a
-        stroke.
+        Those of each episode: float32 (strokes, size), actions that hold all of a stroke.
     decisions : int
         Number of decisions of the player.
     seconds : float
@@ -83,8 +76,7 @@ class PlayedEpisodes:
 
 
 class Decider:
-    """A player at the tables of an environment: what it decides is rounded, kept and timed, and its shots are
-    counted."""
+    """A player at tables: what it decides is rounded, kept and timed, and its simulated shots are counted."""
 
     def __init__(self, player: Any, tables: SnookerVectorEnv, seeds: Any, seed: int):
         self.player = player_named(player).at(tables)
@@ -129,8 +121,7 @@ class Repeater:
 
 
 class Round(NamedTuple):
-    """What one stroke of each player was: the tables where it was ``asked``, and what the environment said
-    after it."""
+    """A stroke on each table: where the player was ``asked``, and what the environment returned."""
 
     asked: Bools
     info: dict[str, Any]
@@ -139,10 +130,7 @@ class Round(NamedTuple):
 
 
 def rounds(tables: SnookerVectorEnv, seeds: Any, decide: Any, rekey: int | None = None) -> Iterator[Round]:
-    """Play every table to its end; a round is a stroke on each table that goes on.
-
-    ``rekey``: the tables get new execution errors by this seed after each decision.
-    """
+    """Play every table to its end; seed ``rekey`` draws new execution errors after each decision."""
     tables.reset(seed=seeds)
     going, number = np.ones(tables.num_envs, np.bool_), 0
     while going.any():
@@ -164,11 +152,7 @@ def tables_for(task: Task, n: int, threads: int | None = None) -> SnookerVectorE
 
 
 def play_episodes(
-    task: Task,
-    player: Any,
-    seeds: list[int],
-    run: int = 0,
-    threads: int | None = None,
+    task: Task, player: Any, seeds: list[int], run: int = 0, threads: int | None = None
 ) -> PlayedEpisodes:
     """Play one episode on each of the judged tables with these seeds, side by side.
 
@@ -181,7 +165,7 @@ def play_episodes(
     seeds : list of int
         Seeds of the tables.
     run : int
-        Index of the player's training seed, the first number of each row, and the seed of what it draws.
+        Index of the training seed: first number of each row, and the seed of what the player draws.
     threads : int, optional
         As in ``SnookerVectorEnv``.
 

@@ -1,5 +1,4 @@
-"""Where do figures come from? The commit of the checkout, the machine, its load and its last bits, and the
-versions of what was running."""
+"""Where do figures come from? The commit, the machine, its load and last bits, and versions."""
 
 import hashlib
 import os
@@ -92,8 +91,7 @@ def software() -> dict[str, str | None]:
 def arithmetic() -> str:
     """How the last bits fall here: where this is the same, the same strokes end alike, bit for bit.
 
-    The kernels call the system's mathematical library, whose functions may differ in the last bit between
-    systems, versions and processors; a stroke with many impacts amplifies that.
+    Functions of the system's mathematical library differ in the last bit; many impacts amplify that.
 
     Returns
     -------

@@ -1,5 +1,4 @@
-"""What stands in a result file, and how is it written and read? One JSON object; ``schema`` documents every
-field."""
+"""What stands in a result file, and how is it written and read? ``schema`` documents every field."""
 
 import json
 from datetime import datetime, timezone
@@ -7,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from .._files import write_atomic
+from ..players.resolver import PROGRAM
 from .agents import Agent
 from .figures import figures_of
 from .playing import COLUMNS, PlayedEpisodes
@@ -46,10 +46,9 @@ def budget_of(shots: int | None) -> str:
 
 
 def of_decisions(program: bool, declared: int | None, shots: int, decisions: int) -> dict[str, Any]:
-    """Class and simulated shots a decision: counted, or declared where they cannot be counted or the number
-    is higher."""
-    counted = None if program else shots / max(1, decisions)
-    by_word = program or (declared is not None and declared > shots / max(1, decisions))
+    """Class and shots a decision: declared if they cannot be counted or the number is higher, else counted."""
+    counted = shots / max(1, decisions)
+    by_word = program or (declared is not None and declared > counted)
     mean = counted if not by_word else None if declared is None else float(declared)
     name = "undeclared" if mean is None else "planning" if mean > 0 else "model_free"
     return {"class": name, "simulated_shots": mean, "declared": by_word}
@@ -67,6 +66,25 @@ def missing(result: dict[str, Any], task: Task) -> list[str]:
     return [reason for reason, so in reasons.items() if so]
 
 
+def completed(record: dict[str, Any], task: Task) -> dict[str, Any]:
+    """The record with all that follows from its other fields, computed anew; ``check`` compares."""
+    agent, rows = record["agent"], record["rows"]
+    decisions = sum(row[COLUMNS.index("strokes")] for row in rows)
+    declared = agent["simulated_shots"] if agent["declared"] else None
+    program, shots = agent["sources"][0].startswith(PROGRAM), record["timing"]["simulated_shots"]
+    record = record | {
+        "schema": {"name": NAME, "version": VERSION},
+        "protocol": record["protocol"] | {"version": PROTOCOL},
+        "agent": agent
+        | {"budget": budget_of(agent["training_shots"])}
+        | of_decisions(program, declared, shots, decisions),
+        "columns": list(COLUMNS),
+        "figures": figures_of(task, agent["label"], rows) if rows else None,
+    }
+    record["protocol"]["official"] = not missing(record, task)
+    return record
+
+
 def result_of(
     task: Task,
     agent: Agent,
@@ -76,21 +94,19 @@ def result_of(
     why: str | None,
     about: Any,
 ) -> dict[str, Any]:
-    """The object of a result file.
-
-    ``alone``: decisions on one table; ``why`` episodes are missing; ``about``: "command", and "load" as the
-    machine was before.
-    """
-    result: dict[str, Any] = {
-        "schema": {"name": NAME, "version": VERSION},
+    """The record of a run. ``alone``: played on one table; ``about``: "command", and "load" before it began."""
+    record = {
+        "schema": {},
         "protocol": {"version": PROTOCOL, "episodes": episodes, "official": False},
         "task": task.id,
         "agent": {
             "label": agent.label,
             "sources": agent.texts,
-            "budget": budget_of(agent.training_shots),
+            "budget": None,
             "training_shots": agent.training_shots,
-            **of_decisions(agent.program, agent.shots_declared, played.simulated, played.decisions),
+            "class": None,
+            "simulated_shots": agent.shots_declared,
+            "declared": agent.shots_declared is not None,
         },
         "software": software(),
         "machine": about["load"] | {"load_at_end": machine()["load"], "arithmetic": arithmetic()},
@@ -102,14 +118,13 @@ def result_of(
         "command": line(about["command"]),
         "commit": commit(),
         "date": datetime.now(timezone.utc).strftime(DATE),
-        "columns": list(COLUMNS),
+        "columns": [],
         "rows": played.rows,
-        "figures": figures_of(task, agent.label, played.rows) if played.rows else None,
+        "figures": None,
         "incomplete": why and line(why),
         "strokes": packed(played.strokes),
     }
-    result["protocol"]["official"] = not missing(result, task)
-    return result
+    return completed(record, task)
 
 
 def write_result(path: str | Path, result: dict[str, Any]) -> None:
@@ -169,15 +184,12 @@ def read_result(path: str | Path) -> Any:
         raise ValueError(f"{name} is no number of JSON")
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        names = [name for name, _ in pairs]
-        twice = (
-            next((name for name in names if names.count(name) > 1), None)
-            if len(set(names)) < len(names)
-            else None
-        )
-        if twice is not None:
-            raise ValueError(f"the key {twice!r} stands there twice")
-        return dict(pairs)
+        made: dict[str, Any] = {}
+        for name, value in pairs:
+            if name in made:
+                raise ValueError(f"the key {name!r} stands there twice")
+            made[name] = value
+        return made
 
     try:
         text = Path(path).read_text(encoding="utf-8")

@@ -1,5 +1,4 @@
-"""What happens in the visits that a player plays? Every stroke of them on tables that are the same for all
-players, and what is counted."""
+"""What happens in the visits that a player plays? Every stroke on the same tables for all, and counts."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -101,8 +100,7 @@ class Strokes:
 
     @property
     def clears(self) -> Bools:
-        """Whether each stroke scored and left no object ball: bool (n,). A foul that pots the last ball
-        clears no table."""
+        """Whether each stroke scored and left no object ball: bool (n,). A foul clears no table."""
         return self.made & self.cleared
 
     @property
@@ -120,10 +118,7 @@ class Strokes:
         return following
 
     def a_visit(self, values: Any) -> Floats:
-        """Sum values over each visit.
-
-        ``values``: float (n,), one value for each stroke. Returns float64 (visits,): the sums.
-        """
+        """Sums over each visit, float64 (visits,), of values of each stroke, float (n,)."""
         return np.asarray(np.bincount(self.visit, values, self.visits), np.float64)
 
     @property
@@ -162,8 +157,7 @@ def play_visits(
     seed : int
         Of what the player draws. Its strokes on a table do not depend on the other tables.
     rekey : int, optional
-        Seed of new execution errors after every decision: a control that the player has not seen them
-        beforehand.
+        Seed of new execution errors after every decision: a control that nobody saw them beforehand.
     threads : int, optional
         As in ``SnookerVectorEnv``.
     each : callable, optional

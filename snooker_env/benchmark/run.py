@@ -1,5 +1,4 @@
-"""How is an agent judged on a task? Batch after batch of the protocol's episodes; what was played is kept,
-whatever stops it."""
+"""How is an agent judged? Batch after batch of episodes; what was played is kept, whatever stops it."""
 
 import time
 from collections.abc import Callable

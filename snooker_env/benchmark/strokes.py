@@ -1,5 +1,4 @@
-"""How do the strokes of episodes stand in a result's file? The first bytes of all numbers, then all second
-bytes and so on, packed."""
+"""How do strokes stand in a file? The first bytes of all numbers, then all second bytes and so on, packed."""
 
 import base64
 import hashlib
@@ -12,8 +11,7 @@ from .playing import Kept
 
 
 def packed(strokes: Kept) -> dict[str, str]:
-    """The field ``strokes`` of a file: float32, little-endian, compressed by zlib, in base64, with a
-    digest."""
+    """The field ``strokes`` of a file: little-endian float32, by zlib, in base64, with a digest."""
     rows = [np.ascontiguousarray(one, "<f4") for one in strokes if len(one)]
     raw = np.concatenate(rows).view(np.uint8).T.tobytes() if rows else b""
     return {
@@ -23,8 +21,7 @@ def packed(strokes: Kept) -> dict[str, str]:
 
 
 def unpacked(field: dict[str, str], lengths: list[int], size: int) -> Kept:
-    """The strokes of episodes with so many each, actions (n, ``size``); ValueError if they are damaged or no
-    actions."""
+    """Actions (n, ``size``) of each episode; ValueError if they are damaged or no actions."""
     n, width = sum(lengths), 4 * size
     try:
         packing = zlib.decompressobj()
