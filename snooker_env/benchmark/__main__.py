@@ -42,17 +42,10 @@ def parser() -> argparse.ArgumentParser:
     add("--episodes", type=int, help="fewer episodes, for a first try; such a result is not official")
     add("--training-shots", type=int, metavar="N", help="all simulated shots of its training; 0: not trained")
     add(
-        "--simulated-shots",
-        type=int,
-        metavar="N",
-        help="declare simulated shots a decision that are not counted here",
+        "--simulated-shots", type=int, metavar="N", help="declare simulated shots a decision not counted here"
     )
     add("--out", metavar="PATH", help="result file, or folder for several tasks (default: TASK.LABEL.json)")
-    add(
-        "--resume",
-        action="store_true",
-        help="go on with an incomplete result file; leave a complete one as it is",
-    )
+    add("--resume", action="store_true", help="go on with an incomplete result file, keep a complete one")
     add("--force", action="store_true", help="replace result files that are there")
     check = commands.add_parser("check", help="verify result files; exit code 1 if one is wrong")
     check.add_argument("files", nargs="+", metavar="FILE")

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse
-from ..players import FRAMES, VISITS
 from ..simulation import SimulationError
 from ..tasks.options import MAX_STROKES
 from . import schema
@@ -13,6 +12,7 @@ from .agents import Agent, is_known, is_reserved, seated
 from .playing import (
     BATCH,
     COLUMNS,
+    STROKES,
     Decider,
     Kept,
     PlayedEpisodes,
@@ -22,16 +22,14 @@ from .playing import (
     tables_for,
 )
 from .provenance import arithmetic
-from .results import completed
+from .results import completed, strokes_of
 from .schema import LONG_LINE, MOST_WHOLE, faults_of_fields, shortened
-from .strokes import unpacked
 from .tasks import TASKS, Task
 
 MOST = 12
 """Faults of rows that are named."""
 SURE = 3.29
 """Standard errors that a fresh mean may be away: 99.9 %."""
-STROKES = COLUMNS.index("strokes")
 
 
 def faults(record: Any, threads: int | None = None) -> list[str]:
@@ -71,13 +69,6 @@ def faults(record: Any, threads: int | None = None) -> list[str]:
         return wrong or _of_decisions(record, task, strokes, threads)
     except (ValueError, SimulationError) as error:  # damaged, no actions, or no shot that can be computed
         return [str(error)]
-
-
-def strokes_of(result: dict[str, Any]) -> Kept:
-    """The strokes of each row of a result whose rows have their form; ValueError if they are damaged."""
-    task = TASKS[result["task"]]
-    actions = task.judged(**(FRAMES if task.frame else VISITS)).rules.actions
-    return unpacked(result["strokes"], [row[STROKES] for row in result["rows"]], actions.size)
 
 
 def _of_names(record: dict[str, Any]) -> list[str]:
@@ -214,11 +205,7 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
                     f"strokes: run {run}, table {seeds[k]}: {source} begins with another stroke than the file"
                 )
                 break
-        if decide.simulated and agent["class"] == "model_free":
-            shots = f"{decide.simulated:,} shots for {decide.decisions:,} strokes"
-            wrong.append(
-                f"agent.class = 'model_free': must be 'planning': {shortened(source)} simulated {shots}"
-            )
+        wrong += _of_class(result, shortened(source), decide)
     return _elsewhere(result, wrong)
 
 
@@ -301,27 +288,27 @@ def afresh(
     """
     if record["figures"] is None:
         raise refuse("incomplete", record["incomplete"], "must be null to compare means")
-    played, runs, column = (
-        _by(agent, record, range(seed, seed + episodes), threads),
-        len(agent.sources),
-        COLUMNS.index("score"),
-    )
-    each = [
+    played = _by(agent, record, range(seed, seed + episodes), threads)
+    runs, column = len(agent.sources), COLUMNS.index("score")
+    of_file, fresh = (
         np.reshape([row[column] for row in rows], (runs, -1)).mean(0)
         for rows in (record["rows"], played.rows)
-    ]
-    (old, mean), error = (
-        (one.mean() for one in each),
-        float(np.sqrt(sum(one.var(ddof=1) / len(one) for one in each))),
     )
+    old, mean = of_file.mean(), fresh.mean()
+    error = float(np.sqrt(of_file.var(ddof=1) / len(of_file) + fresh.var(ddof=1) / len(fresh)))
     wrong = []
     if abs(mean - old) > SURE * error:
         near = f"must be within {SURE * error:.2g} of {mean:g}, as on fresh seeds"
         wrong.append(f"figures.score.value = {old:g}: {near}")
-    if record["agent"]["class"] == "model_free" and played.simulated:
-        shots = f"{played.simulated:,} shots for {played.decisions:,} strokes"
-        wrong.append(f"agent.class = 'model_free': must be 'planning': it simulated {shots}")
-    return float(mean), error, wrong
+    return float(mean), error, wrong + _of_class(record, "it", played)
+
+
+def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes | Decider) -> list[str]:
+    """Is it called model-free, and simulates shots?"""
+    if record["agent"]["class"] != "model_free" or not played.simulated:
+        return []
+    shots = f"{played.simulated:,} shots for {played.decisions:,} strokes"
+    return [f"agent.class = 'model_free': must be 'planning': {who} simulated {shots}"]
 
 
 def _by(agent: Agent, result: dict[str, Any], seeds: Any, threads: int | None) -> PlayedEpisodes:

@@ -7,7 +7,7 @@ import numpy as np
 
 from .._types import Floats
 from .playing import COLUMNS
-from .statistics import RESAMPLES, Resamples, interval, iqm, unseen
+from .statistics import RESAMPLES, Resamples, figure, iqm, unseen
 from .tasks import Task
 
 
@@ -72,11 +72,9 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
 
 def _figure(value: float, samples: Floats, trials: int) -> dict[str, Any]:
     """A figure; of a share never or always seen in so many ``trials`` with the exact one-sided bound."""
-    low, high = interval(samples)
-    if np.isfinite(low):
-        return {"value": value, "low": low, "high": high, "exact": False}
-    if trials and value in (0.0, 1.0):
+    made = figure(value, samples) | {"exact": False}
+    if made["low"] is None and trials and value in (0.0, 1.0):
         most = unseen(trials)
         low, high = (0.0, most) if value == 0.0 else (1.0 - most, 1.0)
-        return {"value": value, "low": low, "high": high, "exact": True}
-    return {"value": value, "low": None, "high": None, "exact": False}
+        made |= {"low": low, "high": high, "exact": True}
+    return made

@@ -6,7 +6,7 @@ from typing import Any
 
 from .._tables import markdown_table, shown, text_table
 from .agents import present
-from .playing import COLUMNS
+from .playing import STROKES
 from .tasks import TASKS, Task
 
 WIDTH = 100
@@ -75,7 +75,7 @@ def _row(result: dict[str, Any], task: Task) -> list[str]:
     """The row of a result."""
     agent, timing, figures = result["agent"], result["timing"], result["figures"]
     shots, alone, middle = agent["simulated_shots"], timing["one_table_ms"], figures["iqm"]
-    strokes = sum(row[COLUMNS.index("strokes")] for row in result["rows"])
+    strokes = sum(row[STROKES] for row in result["rows"])
     return [
         f"{CLASSES[agent['class']]}, {TRAINED[agent['budget']]}",
         agent["label"] + ("" if result["protocol"]["official"] else " *"),

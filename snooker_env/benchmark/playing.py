@@ -32,6 +32,7 @@ COLUMNS = (
     "ended",
 )
 """Columns of a row: index of the training seed, seed of the table, then integers (docs/benchmark.md)."""
+STROKES = COLUMNS.index("strokes")
 Kept = list[NDArray[np.float32]]
 """The strokes of each episode: its actions, one row each."""
 

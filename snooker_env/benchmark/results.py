@@ -1,19 +1,25 @@
 """What stands in a result file, and how is it written and read? ``schema`` documents every field."""
 
+import base64
+import hashlib
 import json
+import zlib
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from .._check import refuse, refuse_what
 from .._files import write_atomic
+from ..players import FRAMES, VISITS
 from ..players.resolver import PROGRAM
 from .agents import Agent
 from .figures import figures_of
-from .playing import COLUMNS, PlayedEpisodes
+from .playing import COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic, commit, machine, software
 from .schema import DATE, NAME, PROTOCOL, VERSION, line
-from .strokes import packed
-from .tasks import Task
+from .tasks import TASKS, Task
 
 BUDGETS = {"50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}
 """Training budgets [simulated shots]."""
@@ -69,7 +75,7 @@ def missing(result: dict[str, Any], task: Task) -> list[str]:
 def completed(record: dict[str, Any], task: Task) -> dict[str, Any]:
     """The record with all that follows from its other fields, computed anew; ``check`` compares."""
     agent, rows = record["agent"], record["rows"]
-    decisions = sum(row[COLUMNS.index("strokes")] for row in rows)
+    decisions = sum(row[STROKES] for row in rows)
     declared = agent["simulated_shots"] if agent["declared"] else None
     program, shots = agent["sources"][0].startswith(PROGRAM), record["timing"]["simulated_shots"]
     record = record | {
@@ -196,3 +202,45 @@ def read_result(path: str | Path) -> Any:
         return json.loads(text, parse_constant=no_number, object_pairs_hook=once)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: must be JSON ({error})") from None
+
+
+def packed(strokes: Kept) -> dict[str, str]:
+    """The field ``strokes`` of a file: little-endian float32, by zlib, in base64, with a digest."""
+    rows = [np.ascontiguousarray(one, "<f4") for one in strokes if len(one)]
+    raw = np.concatenate(rows).view(np.uint8).T.tobytes() if rows else b""
+    return {
+        "sha256": hashlib.sha256(raw).hexdigest(),
+        "data": base64.b64encode(zlib.compress(raw, 9)).decode(),
+    }
+
+
+def unpacked(field: dict[str, str], lengths: list[int], size: int) -> Kept:
+    """Actions (n, ``size``) of each episode; ValueError if they are damaged or no actions."""
+    n, width = sum(lengths), 4 * size
+    try:
+        packing = zlib.decompressobj()
+        raw = packing.decompress(base64.b64decode(field["data"], validate=True), n * width + 1)
+    except (zlib.error, ValueError) as error:
+        much = f"{len(field['data']):,} characters"
+        raise refuse_what("strokes.data", much, f"must be zlib in base64 ({error})") from None
+    if len(raw) != n * width or not packing.eof or packing.unused_data:
+        much = f"{len(raw):,} bytes" if packing.eof else f"more than {len(raw) - 1:,} bytes, or cut off"
+        raise refuse_what(
+            "strokes.data", much, f"must be {n * width:,} bytes, {width} for each of {n:,} strokes"
+        )
+    digest = hashlib.sha256(raw).hexdigest()
+    if digest != field["sha256"]:
+        raise refuse("strokes.sha256", field["sha256"], f"must be {digest}, the digest of the strokes")
+    actions = np.frombuffer(raw, np.uint8).reshape(width, n).T.copy().view("<f4").reshape(n, size)
+    sound = np.abs(actions) <= 1.0  # False for NaN
+    if not sound.all():
+        k, c = np.argwhere(~sound)[0].tolist()
+        raise refuse(f"strokes.data[{k}, {c}]", float(actions[k, c]), "must be finite and within [-1, 1]")
+    return np.split(actions, np.cumsum(lengths)[:-1]) if lengths else []
+
+
+def strokes_of(result: dict[str, Any]) -> Kept:
+    """The strokes of each row of a result whose rows have their form; ValueError if they are damaged."""
+    task = TASKS[result["task"]]
+    actions = task.judged(**(FRAMES if task.frame else VISITS)).rules.actions
+    return unpacked(result["strokes"], [row[STROKES] for row in result["rows"]], actions.size)

@@ -21,8 +21,8 @@ from snooker_env.benchmark import (
     write_result,
 )
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.checking import strokes_of
 from snooker_env.benchmark.playing import BATCH
+from snooker_env.benchmark.results import strokes_of
 from snooker_env.players import VISITS, Strokes, decided
 
 ROOT = Path(__file__).parents[2]

@@ -8,10 +8,9 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, figures_of, judge, page, replayed
-from snooker_env.benchmark.checking import strokes_of
 from snooker_env.benchmark.leaderboard import markdown_table, plain, profile
+from snooker_env.benchmark.results import packed, strokes_of
 from snooker_env.benchmark.schema import RANGES
-from snooker_env.benchmark.strokes import packed
 
 HUGE = 10**400
 
@@ -82,11 +81,7 @@ WRONG = [
     ("agent__simulated_shots", None, "agent.simulated_shots = None: must be 0.0"),
     ("agent__simulated_shots", 7, "agent.simulated_shots = 7: must be 0.0"),
     ("timing__simulated_shots", 7, "agent.simulated_shots = 0.0: must be 0.00"),
-    (
-        "agent__sources",
-        ["program:a"],
-        "agent.class = 'model_free': must be 'undeclared'",
-    ),
+    ("agent__sources", ["program:a"], "agent.class = 'model_free': must be 'undeclared'"),
     (
         "agent__sources",
         ["search_60"],

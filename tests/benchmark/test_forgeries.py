@@ -29,9 +29,8 @@ from snooker_env.benchmark import (
     write_result,
 )
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.checking import strokes_of
+from snooker_env.benchmark.results import packed, strokes_of
 from snooker_env.benchmark.schema import DATE, FIELDS, PACKAGES, UNPROVED
-from snooker_env.benchmark.strokes import packed
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import pot_aim, pots
 from snooker_env.players import VISITS, Strokes

@@ -156,11 +156,7 @@ TAMPERED = [
     (("protocol", "version"), 7, "protocol.version = 7: must be 1"),
     (("protocol", "official"), True, "protocol.official = True: must be False by the other fields"),
     (("task",), "SnookerBreak-v1", "task = 'SnookerBreak-v1': must be one of SnookerBreak-v0"),
-    (
-        ("agent", "class"),
-        "planning",
-        "agent.class = 'planning': must be 'model_free'",
-    ),
+    (("agent", "class"), "planning", "agent.class = 'planning': must be 'model_free'"),
     (("agent", "budget"), "1M", "agent.budget = '1M': must be 'none'"),
     (("timing", "simulated_shots"), 10**6, "agent.simulated_shots = 0.0: must be "),
     (("software", "numpy"), 2, "software.numpy = 2: must be a text or null"),
