@@ -65,9 +65,10 @@ def test_the_same_source_five_times_makes_nothing_surer():
 
 
 WRONG = [
+    ("timing__seconds", float("nan"), "timing.seconds = nan: must be between 0"),
+    ("machine__cores", 0, "machine.cores = 0: must be between 1"),
     ("agent__label", "x | y |\n\n# h <script>", "agent.label = 'x | y"),
     ("agent__label", "", "agent.label = '': must be 1 to 20 letters"),
-    ("agent__label", "a" * 200, "agent.label = 'aaaa"),
     ("agent__label", "random\n", "agent.label = 'random"),
     ("machine__cpu", "evil\n\n## injected", "machine.cpu = 'evil"),
     ("machine__platform", "", "machine.platform = ''"),
@@ -76,8 +77,6 @@ WRONG = [
     ("commit", "a commit", "commit = 'a commit': must be a commit's hash"),
     ("date", "whenever", "date = 'whenever': must be a time in UTC"),
     ("date", "2026-13-01T00:00:00Z", "date = "),
-    ("agent__training_shots", -5, "agent.training_shots = -5: must be between 0"),
-    ("agent__simulated_shots", -1, "agent.simulated_shots = -1: must be between 0"),
     ("agent__simulated_shots", None, "agent.simulated_shots = None: must be 0.0"),
     ("agent__simulated_shots", 7, "agent.simulated_shots = 7: must be 0.0"),
     ("timing__simulated_shots", 7, "agent.simulated_shots = 0.0: must be 0.00"),
@@ -93,16 +92,6 @@ WRONG = [
         "lookahead_120",
         "agent.label = 'lookahead_120': must not be the name of another player",
     ),
-    ("machine__cores", 0, "machine.cores = 0: must be between 1"),
-    ("machine__load", -1.0, "machine.load = -1.0: must be between 0"),
-    ("timing__seconds", float("inf"), "timing.seconds = inf: must be between 0"),
-    ("timing__seconds", float("nan"), "timing.seconds = nan: must be between 0"),
-    ("timing__seconds", -1, "timing.seconds = -1: must be between 0"),
-    ("timing__simulated_shots", -1, "timing.simulated_shots = -1: must be between 0"),
-    ("timing__one_table_ms", -1.0, "timing.one_table_ms = -1.0: must be between 0"),
-    ("protocol__episodes", 0, "protocol.episodes = 0: must be between 1"),
-    ("protocol__episodes", -1, "protocol.episodes = -1: must be between 1"),
-    ("protocol__episodes", 2**21, "protocol.episodes = 2097152: must be between 1"),
     ("protocol__episodes", 200_000, "protocol.episodes = 200000: must be at most 500 on SnookerColours-v0"),
 ]
 
@@ -117,7 +106,9 @@ def test_a_wrong_value_is_one_line_that_names_its_field(name, value, line):
 
 
 @pytest.mark.parametrize("name", [*RANGES, "figures.score.value", "figures.best", "figures.profile"])
-@pytest.mark.parametrize("value", [HUGE, -HUGE, 1e999, 10**5000], ids=["huge", "-huge", "inf", "too long"])
+@pytest.mark.parametrize(
+    "value", [-1, HUGE, -HUGE, 1e999, 10**5000], ids=["-1", "huge", "-huge", "inf", "long"]
+)
 def test_numbers_without_measure_are_lines_too(name, value):
     refused = faults(changed(**{name.replace(".", "__"): value}))
     assert any(line.startswith(name) for line in refused), refused

@@ -308,20 +308,12 @@ def leaves(value, path=()):
 
 def others(value):
     """Other values: of the same type, and of another."""
-    near = (
-        [value + 1, value - 1, 0, 10**400]
-        if type(value) is int
-        else [value * (1 + 2**-52) + 5e-324]
-        if type(value) is float
-        else []
-    )
-    near += (
-        [value + "x", value[1:], value.upper()]
-        if type(value) is str
-        else [not value]
-        if type(value) is bool
-        else []
-    )
+    near = {
+        int: lambda: [value + 1, value - 1, 0, 10**400],
+        float: lambda: [value * (1 + 2**-52) + 5e-324],
+        str: lambda: [value + "x", value[1:], value.upper()],
+        bool: lambda: [not value],
+    }.get(type(value), list)()
     wrong = [None, True, "other", 7, -1, 0.5, [], {}, ["a"]]
     return [one for one in near + wrong if type(one) is not type(value) or one != value]
 
@@ -343,10 +335,16 @@ def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves(bo
         "agent.sources",
         "machine.cpu",
         "timing.seconds",
-        "command",
         "commit",
         "software.numpy",
     }
+
+
+@pytest.mark.parametrize("change", [{"more": None}, {"iqm": ...}])
+def test_figures_have_their_fields_and_no_others(boxes, change):
+    """Also where the value of a field more, or of a field less, is null."""
+    figures = {name: value for name, value in (boxes["figures"] | change).items() if value is not ...}
+    assert faults(boxes | {"figures": figures})[0].startswith("figures: must have the fields score, iqm, ")
 
 
 def at(record, path):
@@ -364,24 +362,11 @@ def put(record, path, value):
 def test_what_is_called_unproved_can_be_changed_unseen(boxes):
     """All of it at once, as long as the fields fit each other."""
     record = copy.deepcopy(boxes)
-    record["agent"] |= {
-        "label": "other",
-        "sources": ["there"],
-        "training_shots": 60_000,
-        "budget": "1M",
-        "simulated_shots": 9.0,
-        "class": "planning",
-        "declared": True,
-    }
+    record["agent"] |= {"label": "other", "sources": ["there"], "training_shots": 60_000, "budget": "1M"}
+    record["agent"] |= {"simulated_shots": 9.0, "class": "planning", "declared": True}
     record["software"] |= {name: "1.0" for name in record["software"] if name != "snooker_env"}
-    record["machine"] = {
-        "platform": "one",
-        "cpu": "two",
-        "cores": 3,
-        "load": 4.0,
-        "load_at_end": 5.0,
-        "arithmetic": "0" * 16,
-    }
+    record["machine"] = {"platform": "one", "cpu": "two", "cores": 3, "load": 4.0, "load_at_end": 5.0}
+    record["machine"]["arithmetic"] = "0" * 16
     record["timing"] = {"seconds": 1.0, "simulated_shots": 6, "one_table_ms": 2.0}
     record |= {"command": "none", "commit": "0" * 40, "date": "2026-11-22T00:00:00Z", "incomplete": "stopped"}
     assert faults(record) == []
