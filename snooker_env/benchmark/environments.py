@@ -7,7 +7,7 @@ from ..envs.snooker import SnookerEnv
 from ..envs.vector import SnookerVectorEnv
 from .tasks import FREE, TASKS
 
-OWN = ("max_episode_steps", "render_mode", "autoreset_mode", "threads", "render_size")
+KEYWORDS = ("max_episode_steps", "render_mode", "autoreset_mode", "threads", "render_size")
 """Keywords of ``SnookerVectorEnv`` that are no options of the game."""
 
 
@@ -26,7 +26,7 @@ class TaskVectorEnv(SnookerVectorEnv):
     TASK: ClassVar[str]
 
     def __init__(self, num_envs: int = 1, **keywords: Any):
-        more = {name: keywords.pop(name) for name in OWN if name in keywords}
+        more = {name: keywords.pop(name) for name in KEYWORDS if name in keywords}
         super().__init__(num_envs, TASKS[self.TASK].options(**keywords), **more)
 
 

@@ -42,33 +42,21 @@ def plain(text: str) -> str:
 def board(results: Iterable[dict[str, Any]], task: Task) -> Table:
     """A task's table: classes and budgets apart, the best first."""
 
-    def order(result: dict[str, Any]) -> tuple[Any, ...]:
-        agent, score = result["agent"], result["figures"]["score"]["value"]
-        return (
-            list(CLASSES).index(agent["class"]),
-            list(TRAINED).index(agent["budget"]),
-            -score,
-            agent["label"],
-        )
+    def order(result: dict[str, Any]) -> tuple[int, int]:
+        agent = result["agent"]
+        return list(CLASSES).index(agent["class"]), list(TRAINED).index(agent["budget"])
 
-    head = [
-        "class, training",
-        "agent",
-        "score" if task.counts else "share %",
-        "IQM",
-        "seeds",
-        "shots",
-        "ms",
-        "ms 1",
-    ]
+    score = "score" if task.counts else "share %"
+    head = ["class, training", "agent", score, "IQM", "seeds", "shots", "ms", "ms 1"]
     rows = [_row(result, task) for result in sorted(_of(results, task), key=order)]
     keep = [c for c, name in enumerate(head) if task.counts or name != "IQM"]
     return [head[c] for c in keep], [[row[c] for c in keep] for row in rows]
 
 
 def _of(results: Iterable[dict[str, Any]], task: Task) -> list[dict[str, Any]]:
-    """The results of a task that have figures."""
-    return [one for one in results if one["task"] == task.id and one["figures"] is not None]
+    """The results of a task that have figures, the best first."""
+    mine = [one for one in results if one["task"] == task.id and one["figures"] is not None]
+    return sorted(mine, key=lambda one: (-one["figures"]["score"]["value"], one["agent"]["label"]))
 
 
 def _row(result: dict[str, Any], task: Task) -> list[str]:
@@ -95,11 +83,8 @@ def _ms(value: float) -> str:
 
 def profile(results: Iterable[dict[str, Any]], task: Task) -> Table:
     """The performance profile: share of episodes [%] with at least so many points, a row for each agent."""
-    mine = sorted(
-        _of(results, task), key=lambda one: (-one["figures"]["score"]["value"], one["agent"]["label"])
-    )
     rows = []
-    for one in mine:
+    for one in _of(results, task):
         shares = [_share(figure) for figure in one["figures"]["profile"]]
         rows.append([one["agent"]["label"], *shares, str(one["figures"]["best"])])
     return ["agent", *(f">= {t}" for t in task.thresholds if t <= task.most), "best"], rows

@@ -5,7 +5,7 @@ of decisions depend on training seed, table and stroke alone, so a player plays 
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -121,13 +121,8 @@ class Repeater:
         return actions
 
 
-class Round(NamedTuple):
-    """A stroke on each table: where the player was ``asked``, and what the environment returned."""
-
-    asked: Bools
-    info: dict[str, Any]
-    done: Bools
-    terminated: Bools
+Round = tuple[Bools, dict[str, Any], Bools, Bools]
+"""Where the player was asked for a stroke; the environment's info after it; done; terminated."""
 
 
 def rounds(tables: SnookerVectorEnv, seeds: Any, decide: Any, rekey: int | None = None) -> Iterator[Round]:
@@ -142,7 +137,7 @@ def rounds(tables: SnookerVectorEnv, seeds: Any, decide: Any, rekey: int | None 
             tables.tables.streams[:, 0] = decision_seeds(~rekey, np.asarray(seeds), number)
         _, _, terminated, truncated, info = tables.step(actions)
         done = going & (terminated | truncated)
-        yield Round(asked, info, done, terminated)
+        yield asked, info, done, terminated
         going &= ~done
         number += 1
 

@@ -104,10 +104,8 @@ def arithmetic() -> str:
     >>> len(arithmetic())
     16
     """
-    tables, seen = (
-        SnookerVectorEnv(32, aim="target", layout="break_off", noise="professional"),
-        hashlib.sha256(),
-    )
+    tables = SnookerVectorEnv(32, aim="target", layout="break_off", noise="professional")
+    seen = hashlib.sha256()
     tables.reset(seed=0)
     for _ in range(4):
         tables.step(np.column_stack([np.linspace(-0.2, 0.2, 32), np.zeros((32, 2)), np.ones(32)]))

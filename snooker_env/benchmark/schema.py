@@ -42,11 +42,7 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "machine.arithmetic": (str, False, f"digest of 128 strokes: {_ALIKE}"),
     "timing.seconds": (NUMBER, False, "what all decisions took together"),
     "timing.simulated_shots": (int, False, "shots that this process simulated for them"),
-    "timing.one_table_ms": (
-        NUMBER,
-        True,
-        "milliseconds a decision on one table, measured alone; null: not measured",
-    ),
+    "timing.one_table_ms": (NUMBER, True, "ms a decision on one table, alone; null: not measured"),
     "command": (str, False, "how this file was made"),
     "commit": (str, True, "of the checkout, with -dirty if files were changed; null outside one"),
     "date": (str, False, "when, in UTC: 2026-11-22T19:00:00Z"),
@@ -173,13 +169,12 @@ def _allowed(name: str, value: Any, ranges: Mapping[str, tuple[float, float]]) -
         return f"between {ranges[name][0]:g} and {ranges[name][1]:g}"
     if name in PATTERNS and not PATTERNS[name][0].fullmatch(value):
         return PATTERNS[name][1]
-    if name == "date" and not _is_date(value):
+    if name != "date":
+        return None
+    if not _is_date(value):
         return "a time in UTC, as 2026-11-22T19:00:00Z"
-    if name == "date" and not BEGUN <= value <= (datetime.now(timezone.utc) + timedelta(hours=1)).strftime(
-        DATE
-    ):
-        return f"between {BEGUN} and now"
-    return None
+    latest = (datetime.now(timezone.utc) + timedelta(hours=1)).strftime(DATE)
+    return None if BEGUN <= value <= latest else f"between {BEGUN} and now"
 
 
 def _is_date(text: str) -> bool:

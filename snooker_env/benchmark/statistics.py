@@ -1,16 +1,11 @@
-"""How sure is a figure of many visits by several training runs? Means, ratios and inter-quartile means with
-bootstrap intervals.
+"""How sure is a figure of many visits by several training runs? Bootstrap intervals of means, ratios and IQMs.
 
-Scores come as a matrix (runs, visits): every run has played the same visits. Two things are a sample and both
-are drawn again, with replacement: the runs (other training seeds) and the visits (other tables and other
-luck), the visits the same for every run, which is the bootstrap of crossed factors [Owen, The pigeonhole
-bootstrap, 2007]. Of R > 1 runs R - 1 are drawn, since R would make their variance (R - 1) / R of what it is
-[Rao & Wu 1988]. With one run only the visits are drawn: such an interval says nothing about other seeds.
-
-Intervals are percentiles. Where luck within a visit matters most they are too wide (of 5 runs up to 1.5
-times, never too narrow by it); where nothing but the seeds differs, 5 of them are few and the 95 % interval
-covers 85 % (``test_statistics`` measures both). A bootstrap cannot say how rare a thing is that was never
-seen, or always: that bound is ``unseen``.
+Scores are a matrix (runs, visits). Runs (training seeds) and visits (tables and luck) are both drawn with
+replacement, the visits the same for every run: the bootstrap of crossed factors [Owen, The pigeonhole bootstrap,
+2007]. Of R > 1 runs R - 1 are drawn, since R would make their variance (R - 1) / R of what it is [Rao & Wu 1988].
+With one run only the visits are drawn: that says nothing about other seeds. Percentile intervals are too wide
+where luck within a visit matters most (5 runs: up to 1.5 times), and the 95 % interval covers 85 % where only 5
+seeds differ (``test_statistics`` measures both). How rare the never seen is, a bootstrap cannot say: ``unseen``.
 """
 
 from functools import lru_cache
@@ -86,10 +81,8 @@ class Resamples:
     """
 
     def __init__(self, runs: int, visits: int, n: int = RESAMPLES, seed: int = 0):
-        self._runs, self._visits = (
-            _drawn(runs, max(1, runs - 1), n, (1, seed)),
-            _drawn(visits, visits, n, (0, 0)),
-        )
+        self._runs = _drawn(runs, max(1, runs - 1), n, (1, seed))
+        self._visits = _drawn(visits, visits, n, (0, 0))
 
     def sums(self, scores: Any) -> Floats:
         """The sum of a matrix, float (runs, visits), in each sample: float64 (n,)."""
