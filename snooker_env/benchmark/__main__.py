@@ -1,5 +1,4 @@
-"""How is the benchmark run? By ``python -m snooker_env.benchmark`` tasks, run, check, table or profile; the
-rules: docs/benchmark.md."""
+"""How is the benchmark run? The commands tasks, run, check, table and profile; rules: docs/benchmark.md."""
 
 import argparse
 import os
@@ -43,17 +42,10 @@ def parser() -> argparse.ArgumentParser:
     add("--episodes", type=int, help="fewer episodes, for a first try; such a result is not official")
     add("--training-shots", type=int, metavar="N", help="all simulated shots of its training; 0: not trained")
     add(
-        "--simulated-shots",
-        type=int,
-        metavar="N",
-        help="declare simulated shots a decision that are not counted here",
+        "--simulated-shots", type=int, metavar="N", help="declare simulated shots a decision not counted here"
     )
     add("--out", metavar="PATH", help="result file, or folder for several tasks (default: TASK.LABEL.json)")
-    add(
-        "--resume",
-        action="store_true",
-        help="go on with an incomplete result file; leave a complete one as it is",
-    )
+    add("--resume", action="store_true", help="go on with an incomplete result file, keep a complete one")
     add("--force", action="store_true", help="replace result files that are there")
     check = commands.add_parser("check", help="verify result files; exit code 1 if one is wrong")
     check.add_argument("files", nargs="+", metavar="FILE")
@@ -88,8 +80,7 @@ def _agent(p: argparse.ArgumentParser, required: bool) -> None:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command. Exit code 0; 1 for a wrong file or a failed agent; 2 for wrong arguments; 130 after
-    Ctrl-C."""
+    """Run a command. Exit code 0; 1: wrong file or failed agent; 2: wrong arguments; 130: Ctrl-C."""
     words = list(sys.argv[1:] if argv is None else argv)
     args = parser().parse_args(words)
     args.line = f"{NAME} {shlex.join(words)}"

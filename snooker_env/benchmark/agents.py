@@ -1,5 +1,4 @@
-"""Which agent is judged? A player for each training seed, by name, file, class, command or object, and what
-is declared of it."""
+"""Which agent is judged? A player for each training seed, and what is declared of it."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -60,13 +59,10 @@ class Agent:
     def of(
         cls, agent: Any, *, label: str | None = None, training_shots: int | None = None, **more: Any
     ) -> "Agent":
-        """The agent that a text names, or that a player is.
+        """The agent of a text of ``sn.player``, of LABEL=SOURCE,SOURCE,... (training seeds) or of a player.
 
-        ``agent``: a text that ``sn.player`` accepts, LABEL=SOURCE,SOURCE,... with one source for each
-        training seed, or a player. ``label``: as in ``Agent``; None: made from the text or the class.
-        ``training_shots``: as in ``Agent``; None: what a player says that is known by name. ``**more``: other
-        attributes. Returns the agent. No code of a class or a file has run. ValueError if nothing has that
-        name, or an argument is wrong.
+        Label and training shots that are None come from the text or class, and from a player known by name;
+        ``**more``: other attributes. No code of a class or a file runs. ValueError if nothing has that name.
         """
         agent = str(agent) if isinstance(agent, Path) else agent
         sources: list[Any] = [agent]
@@ -114,11 +110,7 @@ class Agent:
         return all(map(is_known, self.texts))
 
     def player(self, task: Task, run: int = 0) -> Player:
-        """The player of one training seed, not yet bound. Code of the agent runs.
-
-        ``task``: the task. ``run``: index of the training seed in ``sources``. Returns the player. ValueError
-        if it is no player, or cannot play the task.
-        """
+        """The player of training seed ``run``, not yet bound; its code runs. ValueError if it cannot play."""
         source = self.sources[run]
         if self.program and isinstance(source, str):
             return ProgramPlayer(source.removeprefix(PROGRAM), timeout=self.timeout)

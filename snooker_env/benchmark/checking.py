@@ -1,20 +1,18 @@
-"""Is a submitted result what it says? Its strokes are played again, without the agent; rows and figures must
-be theirs, to the last bit."""
+"""Is a submitted result what it says? Its strokes are played again; all that follows must be equal to the bit."""
 
 from typing import Any
 
 import numpy as np
 
 from .._check import refuse
-from ..players import FRAMES, VISITS
 from ..simulation import SimulationError
 from ..tasks.options import MAX_STROKES
 from . import schema
 from .agents import Agent, is_known, is_reserved, seated
-from .figures import figures_of
 from .playing import (
     BATCH,
     COLUMNS,
+    STROKES,
     Decider,
     Kept,
     PlayedEpisodes,
@@ -24,28 +22,24 @@ from .playing import (
     tables_for,
 )
 from .provenance import arithmetic
-from .results import budget_of, missing, of_decisions
+from .results import completed, strokes_of
 from .schema import LONG_LINE, MOST_WHOLE, faults_of_fields, shortened
-from .strokes import unpacked
 from .tasks import TASKS, Task
 
 MOST = 12
 """Faults of rows that are named."""
 SURE = 3.29
 """Standard errors that a fresh mean may be away: 99.9 %."""
-STROKES = COLUMNS.index("strokes")
 
 
-def faults(found: Any, threads: int | None = None) -> list[str]:
+def faults(record: Any, threads: int | None = None) -> list[str]:
     """Check a result: its fields, and all rows and figures by a replay of its strokes.
 
-    Players that are known by name, of the package or of one that is installed, are asked again for the first
-    stroke of the first tables of every training seed: they must be those of the file, and whoever simulates
-    shots is planning.
+    Players known by name are asked again for the first stroke of the first tables of each training seed.
 
     Parameters
     ----------
-    found : object
+    record : object
         The content of a result file, as ``read_result`` returns it.
     threads : int, optional
         As in ``SnookerVectorEnv``.
@@ -55,89 +49,55 @@ def faults(found: Any, threads: int | None = None) -> list[str]:
     list of str
         One line for each fault; empty if there is none.
 
-    Raises
-    ------
-    ImportError
-        If a known player needs a library that is not installed.
-
     Examples
     --------
     >>> from snooker_env.benchmark import faults
     >>> len(faults({})) > 0
     True
     """
-    wrong = faults_of_fields(found) or _of_versions(found)
+    wrong = faults_of_fields(record) or _of_names(record)
     if wrong:
         return wrong
-    task = TASKS[found["task"]]
-    wrong = _of_agent(found) + _of_rows(found, task)
+    task = TASKS[record["task"]]
+    wrong = _of_sources(record["agent"]) + _of_rows(record, task)
     if wrong:
         return wrong
     try:
-        strokes = strokes_of(found)
-        wrong = _of_runs(found, strokes) or _of_play(found, task, strokes, threads)
-        if wrong:
-            return wrong
-        rows = found["rows"]
-        wrong = _of_figures(
-            found["figures"], figures_of(task, found["agent"]["label"], rows) if rows else None
-        )
-        official = not missing(found, task)
-        if found["protocol"]["official"] != official:
-            wrong.append(f"protocol.official = {not official}: must be {official} by the rules")
-        return wrong or _of_decisions(found, task, strokes, threads)
+        strokes = strokes_of(record)
+        wrong = _of_runs(record, strokes) or _of_play(record, task, strokes, threads)
+        wrong = wrong or _differences(record, completed(record, task))
+        return wrong or _of_decisions(record, task, strokes, threads)
     except (ValueError, SimulationError) as error:  # damaged, no actions, or no shot that can be computed
         return [str(error)]
 
 
-def strokes_of(result: dict[str, Any]) -> Kept:
-    """The strokes of each row of a result whose rows have their form; ValueError if they are damaged."""
-    task = TASKS[result["task"]]
-    actions = task.judged(**(FRAMES if task.frame else VISITS)).rules.actions
-    return unpacked(result["strokes"], [row[STROKES] for row in result["rows"]], actions.size)
+def _of_names(record: dict[str, Any]) -> list[str]:
+    """What must be one of a few: without them nothing can be played again."""
+    here = (
+        ("schema.version", record["schema"]["version"], (schema.VERSION,)),
+        ("task", record["task"], tuple(TASKS)),
+        ("software.snooker_env", record["software"]["snooker_env"], schema.PACKAGES),
+    )
+    return [
+        f"{name} = {shortened(value)}: must be {'one of ' * (len(allowed) > 1)}{', '.join(map(str, allowed))}"
+        for name, value, allowed in here
+        if value not in allowed
+    ]
 
 
-def _of_versions(result: dict[str, Any]) -> list[str]:
-    """Names and versions by which results compare."""
-    wrong = []
-    for name, value, allowed in (
-        ("schema.name", result["schema"]["name"], (schema.NAME,)),
-        ("schema.version", result["schema"]["version"], (schema.VERSION,)),
-        ("protocol.version", result["protocol"]["version"], (schema.PROTOCOL,)),
-        ("task", result["task"], tuple(TASKS)),
-        ("software.snooker_env", result["software"]["snooker_env"], schema.PACKAGES),
-        ("columns", result["columns"], (list(COLUMNS),)),
-    ):
-        if value not in allowed:
-            one = "one of " * (len(allowed) > 1) + ", ".join(map(str, allowed))
-            wrong.append(f"{name} = {shortened(value)}: must be {one}")
-    return wrong
-
-
-def _of_agent(result: dict[str, Any]) -> list[str]:
-    """Do the fields of the agent fit each other?"""
-    agent, sources, wrong = result["agent"], result["agent"]["sources"], []
+def _of_sources(agent: dict[str, Any]) -> list[str]:
+    """Are the sources different texts, and does the label not claim another player?"""
+    sources = agent["sources"]
     texts = all(isinstance(one, str) and one and LONG_LINE[0].fullmatch(one) for one in sources)
     if not 0 < len(sources) <= schema.MOST_SOURCES or not texts:
         return ["agent.sources: must be texts, one for each training seed"]
     if len(set(sources)) < len(sources):
         return ["agent.sources: must be different: the same one twice makes nothing surer"]
     if is_reserved(agent["label"], sources):
-        wrong.append(
+        return [
             f"agent.label = {agent['label']!r}: must not be the name of another player than agent.sources"
-        )
-    if agent["budget"] != (budget := budget_of(agent["training_shots"])):
-        wrong.append(
-            f"agent.budget = {shortened(agent['budget'])}: must be {budget!r} by agent.training_shots"
-        )
-    decisions = sum(row[STROKES] for row in result["rows"] if _is_row(row))
-    by_word = agent["simulated_shots"] if agent["declared"] else None
-    shots, program = result["timing"]["simulated_shots"], sources[0].startswith("program:")
-    for name, want in of_decisions(program, by_word, shots, decisions).items():
-        if agent[name] != want:
-            by = "agent.sources and timing.simulated_shots" if name != "class" else "agent.simulated_shots"
-            wrong.append(f"agent.{name} = {shortened(agent[name])}: must be {want!r} by {by}")
-    return wrong
+        ]
+    return []
 
 
 def _is_row(row: Any) -> bool:
@@ -147,7 +107,7 @@ def _is_row(row: Any) -> bool:
 
 
 def _of_rows(result: dict[str, Any], task: Task) -> list[str]:
-    """Are the rows, run by run, those of the protocol's episodes, or if it was stopped the first of them?"""
+    """Are the rows those of the protocol's episodes, run by run, or the first of them if it was stopped?"""
     rows, many, runs = result["rows"], result["protocol"]["episodes"], len(result["agent"]["sources"])
     if many > task.episodes:
         return [f"protocol.episodes = {many}: must be at most {task.episodes} on {task.id}"]
@@ -169,8 +129,7 @@ def _of_rows(result: dict[str, Any], task: Task) -> list[str]:
 
 
 def _of_runs(result: dict[str, Any], strokes: Kept) -> list[str]:
-    """Two training seeds do not play whole results of a hundred episodes and more alike: they would be
-    one."""
+    """Two training seeds that play a hundred episodes or more alike are one."""
     many, known = result["protocol"]["episodes"], {}
     for run in range(len(strokes) // many if many >= 100 else 0):
         whole = b"".join(one.tobytes() for one in strokes[run * many : (run + 1) * many])
@@ -203,7 +162,7 @@ def _of_play(result: dict[str, Any], task: Task, strokes: Kept, threads: int | N
 
 
 def _elsewhere(result: dict[str, Any], wrong: list[str]) -> list[str]:
-    """The faults, after a line that says so if the last bits fall otherwise where the file was made."""
+    """The faults, after a line that says so if the file's machine computes other last bits."""
     made, here = result["machine"]["arithmetic"], arithmetic()
     if not wrong or made == here:
         return wrong
@@ -211,24 +170,23 @@ def _elsewhere(result: dict[str, Any], wrong: list[str]) -> list[str]:
     return [f"machine.arithmetic = {made!r}: must be {here!r} to check it here, {where}", *wrong]
 
 
-def _of_figures(value: Any, want: Any, name: str = "figures") -> list[str]:
-    """Where do figures differ from those that follow from the rows?"""
+def _differences(value: Any, want: Any, name: str = "") -> list[str]:
+    """Where does a record differ from what is computed anew?"""
     if isinstance(want, dict) and isinstance(value, dict):
-        other = [f"{name}.{key}: is no figure" for key in value if key not in want]
-        return other + [
-            line for key in want for line in _of_figures(value.get(key), want[key], f"{name}.{key}")
-        ]
+        if set(value) != set(want):
+            return [f"{name}: must have the fields {', '.join(want)}"]
+        inner = [(f"{name}.{key}".lstrip("."), value[key], want[key]) for key in want]
+        return [line for key, one, other in inner for line in _differences(one, other, key)]
     if isinstance(want, list) and isinstance(value, list) and len(want) == len(value):
-        return [line for k in range(len(want)) for line in _of_figures(value[k], want[k], f"{name}[{k}]")]
+        return [line for k in range(len(want)) for line in _differences(value[k], want[k], f"{name}[{k}]")]
     if type(value) is type(want) and value == want and str(value) == str(want):  # as texts: 0.0 is not -0.0
         return []
-    right = want if isinstance(want, int | float | type(None)) else "what follows from the rows"
-    return [f"{name} = {shortened(value)}: must be {right}"]
+    right = f"{want!r} by" if isinstance(want, str | int | float | None) else "what follows from"
+    return [f"{name} = {shortened(value)}: must be {right} the other fields"]
 
 
 def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
-    """Do known players begin on the first tables of each training seed as the file says, and plan if they
-    simulate shots?"""
+    """Do known players begin as in the file, and is it called planning if they simulate shots?"""
     agent, many, wrong = result["agent"], result["protocol"]["episodes"], []
     for run, source in enumerate(agent["sources"]):
         first = min(BATCH, len(strokes) - run * many, many)
@@ -247,37 +205,28 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
                     f"strokes: run {run}, table {seeds[k]}: {source} begins with another stroke than the file"
                 )
                 break
-        if decide.simulated and agent["class"] == "model_free":
-            shots = f"{decide.simulated:,} shots for {decide.decisions:,} strokes"
-            wrong.append(
-                f"agent.class = 'model_free': must be 'planning': {shortened(source)} simulated {shots}"
-            )
+        wrong += _of_class(result, shortened(source), decide)
     return _elsewhere(result, wrong)
 
 
-def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None) -> list[str]:
+def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None) -> list[str]:
     """Have the agent play the first episodes of a result again, and compare strokes and rows.
 
     Parameters
     ----------
-    found : dict
+    record : dict
         A result without faults.
     agent : Agent
         The agent of the result.
     episodes : int
-        Number of episodes of each training seed.
+        Episodes of each training seed.
     threads : int, optional
         As in ``SnookerVectorEnv``.
 
     Returns
     -------
     list of str
-        One line for each episode that differs, and one if other shots were simulated for the same strokes.
-
-    Raises
-    ------
-    ValueError
-        If the agent has another number of training seeds.
+        A line for each episode that differs, or for another number of simulated shots.
 
     Examples
     --------
@@ -286,19 +235,19 @@ def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | 
     >>> replayed(judge(TASKS["SnookerPotHard-v0"], agent, episodes=2), agent, 2)
     []
     """
-    seeds = TASKS[found["task"]].seeds(found["protocol"]["episodes"])[:episodes]
-    again, wrong = _by(agent, found, seeds, threads), []
+    seeds = TASKS[record["task"]].seeds(record["protocol"]["episodes"])[:episodes]
+    again, wrong = _by(agent, record, seeds, threads), []
     kept = {
         tuple(row[:2]): (row, one.tobytes())
-        for row, one in zip(found["rows"], strokes_of(found), strict=True)
+        for row, one in zip(record["rows"], strokes_of(record), strict=True)
     }
     for row, one in zip(again.rows, again.strokes, strict=True):
         old = kept.get((row[0], row[1]))
         if old is not None and old != (row, one.tobytes()):
             what = "other strokes" if old[0] == row else str(dict(zip(COLUMNS[2:], row[2:], strict=True)))
             wrong.append(f"run {row[0]}, table {row[1]}: played again {what}, the file has {old[0][2:]}")
-    shots = found["timing"]["simulated_shots"]
-    if not wrong and len(again.rows) == len(found["rows"]) and again.simulated != shots:
+    shots = record["timing"]["simulated_shots"]
+    if not wrong and len(again.rows) == len(record["rows"]) and again.simulated != shots:
         wrong.append(
             f"timing.simulated_shots = {shots}: must be {again.simulated}, as the agent played again"
         )
@@ -306,22 +255,18 @@ def replayed(found: dict[str, Any], agent: Agent, episodes: int, threads: int | 
 
 
 def afresh(
-    found: dict[str, Any],
-    agent: Agent,
-    episodes: int,
-    seed: int,
-    threads: int | None = None,
+    record: dict[str, Any], agent: Agent, episodes: int, seed: int, threads: int | None = None
 ) -> tuple[float, float, list[str]]:
     """Have the agent play a task on seeds that it cannot know, and compare the mean score.
 
     Parameters
     ----------
-    found : dict
+    record : dict
         A complete result without faults.
     agent : Agent
         The agent of the result.
     episodes : int
-        Number of fresh episodes of each training seed, at least 2.
+        Fresh episodes of each training seed, at least 2.
     seed : int
         The first of their seeds, drawn now: none that is public.
     threads : int, optional
@@ -332,13 +277,7 @@ def afresh(
     mean, error : float
         The mean score of the fresh episodes, and the standard error of its difference to the result.
     faults : list of str
-        One line if they differ by more than 3.29 standard errors, which one honest result in 1,000 does; one
-        if a model-free agent simulates shots.
-
-    Raises
-    ------
-    ValueError
-        As ``replayed``, or if the result is not complete.
+        A line if they differ by more than 3.29 standard errors, or a model-free agent simulates shots.
 
     Examples
     --------
@@ -347,28 +286,29 @@ def afresh(
     >>> afresh(judge(TASKS["SnookerPotHard-v0"], agent, episodes=60), agent, 60, 2_000_000)[2]
     []
     """
-    if found["figures"] is None:
-        raise refuse("incomplete", found["incomplete"], "must be null to compare means")
-    played, runs, column = (
-        _by(agent, found, range(seed, seed + episodes), threads),
-        len(agent.sources),
-        COLUMNS.index("score"),
+    if record["figures"] is None:
+        raise refuse("incomplete", record["incomplete"], "must be null to compare means")
+    played = _by(agent, record, range(seed, seed + episodes), threads)
+    runs, column = len(agent.sources), COLUMNS.index("score")
+    of_file, fresh = (
+        np.reshape([row[column] for row in rows], (runs, -1)).mean(0)
+        for rows in (record["rows"], played.rows)
     )
-    each = [
-        np.reshape([row[column] for row in rows], (runs, -1)).mean(0) for rows in (found["rows"], played.rows)
-    ]
-    (old, mean), error = (
-        (one.mean() for one in each),
-        float(np.sqrt(sum(one.var(ddof=1) / len(one) for one in each))),
-    )
+    old, mean = of_file.mean(), fresh.mean()
+    error = float(np.sqrt(of_file.var(ddof=1) / len(of_file) + fresh.var(ddof=1) / len(fresh)))
     wrong = []
     if abs(mean - old) > SURE * error:
         near = f"must be within {SURE * error:.2g} of {mean:g}, as on fresh seeds"
         wrong.append(f"figures.score.value = {old:g}: {near}")
-    if found["agent"]["class"] == "model_free" and played.simulated:
-        shots = f"{played.simulated:,} shots for {played.decisions:,} strokes"
-        wrong.append(f"agent.class = 'model_free': must be 'planning': it simulated {shots}")
-    return float(mean), error, wrong
+    return float(mean), error, wrong + _of_class(record, "it", played)
+
+
+def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes | Decider) -> list[str]:
+    """Is it called model-free, and simulates shots?"""
+    if record["agent"]["class"] != "model_free" or not played.simulated:
+        return []
+    shots = f"{played.simulated:,} shots for {played.decisions:,} strokes"
+    return [f"agent.class = 'model_free': must be 'planning': {who} simulated {shots}"]
 
 
 def _by(agent: Agent, result: dict[str, Any], seeds: Any, threads: int | None) -> PlayedEpisodes:

@@ -1,10 +1,4 @@
-"""Which environments play the tasks of the benchmark? One class for each id and one for many tables:
-``Snooker-v0`` with frozen options.
-
-They are what ``gymnasium.make("SnookerBreak-v0")`` and ``gymnasium.make_vec("SnookerBreak-v0",
-vectorization_mode="vector_entry_point")`` make. Everything that is not an option of the game works as in
-``SnookerEnv`` and ``SnookerVectorEnv``.
-"""
+"""Which environments do ``gymnasium.make`` and ``make_vec`` make for a task? ``Snooker-v0``, options frozen."""
 
 from typing import Any, ClassVar
 
@@ -13,15 +7,12 @@ from ..envs.snooker import SnookerEnv
 from ..envs.vector import SnookerVectorEnv
 from .tasks import FREE, TASKS
 
-OWN = ("max_episode_steps", "render_mode", "autoreset_mode", "threads", "render_size")
+KEYWORDS = ("max_episode_steps", "render_mode", "autoreset_mode", "threads", "render_size")
 """Keywords of ``SnookerVectorEnv`` that are no options of the game."""
 
 
 class TaskEnv(SnookerEnv):
-    """One table of a task: keywords of ``SnookerEnv``, and the options that the task leaves free.
-
-    ValueError for an option that the task freezes, TypeError for an unknown one.
-    """
+    """One table: keywords of ``SnookerEnv`` and free options; ValueError for a frozen one."""
 
     TASK: ClassVar[str]
 
@@ -30,14 +21,13 @@ class TaskEnv(SnookerEnv):
 
 
 class TaskVectorEnv(SnookerVectorEnv):
-    """Many tables of a task: keywords of ``SnookerVectorEnv``, and the options that the task leaves free, as
-    ``TaskEnv``."""
+    """Many tables: keywords of ``SnookerVectorEnv`` and free options, as ``TaskEnv``."""
 
     TASK: ClassVar[str]
 
     def __init__(self, num_envs: int = 1, **keywords: Any):
-        own = {name: keywords.pop(name) for name in OWN if name in keywords}
-        super().__init__(num_envs, TASKS[self.TASK].options(**keywords), **own)
+        more = {name: keywords.pop(name) for name in KEYWORDS if name in keywords}
+        super().__init__(num_envs, TASKS[self.TASK].options(**keywords), **more)
 
 
 def _classes(name: str) -> tuple[type[TaskEnv], type[TaskVectorEnv]]:

@@ -1,9 +1,4 @@
-"""Which figures follow from the rows of a result? Mean score, inter-quartile mean and performance profile,
-each with its interval.
-
-Everything is computed again from the rows alone, with the same bootstrap samples for the same label:
-``check`` compares.
-"""
+"""Which figures follow from the rows alone? The same label draws the same bootstrap samples: ``check`` compares."""
 
 import zlib
 from typing import Any
@@ -12,13 +7,12 @@ import numpy as np
 
 from .._types import Floats
 from .playing import COLUMNS
-from .statistics import RESAMPLES, Resamples, interval, iqm, unseen
+from .statistics import RESAMPLES, Resamples, figure, iqm, unseen
 from .tasks import Task
 
 
 def matrix(rows: list[list[int]]) -> dict[str, Floats] | None:
-    """The columns of the rows, (runs, episodes); None unless every run has played the same tables in the same
-    order."""
+    """The columns, (runs, episodes); None unless every run has played the same tables in order."""
     table = np.array(rows, np.float64).reshape(-1, len(COLUMNS))
     runs = [table[table[:, 0] == run] for run in np.unique(table[:, 0])]
     if not runs or any(not np.array_equal(one[:, 1], runs[0][:, 1]) for one in runs):
@@ -77,13 +71,10 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
 
 
 def _figure(value: float, samples: Floats, trials: int) -> dict[str, Any]:
-    """A figure with its 95 % interval; of a share never or always seen in so many ``trials`` the exact
-    one-sided bound."""
-    low, high = interval(samples)
-    if np.isfinite(low):
-        return {"value": value, "low": low, "high": high, "exact": False}
-    if trials and value in (0.0, 1.0):
+    """A figure; of a share never or always seen in so many ``trials`` with the exact one-sided bound."""
+    made = figure(value, samples) | {"exact": False}
+    if made["low"] is None and trials and value in (0.0, 1.0):
         most = unseen(trials)
         low, high = (0.0, most) if value == 0.0 else (1.0 - most, 1.0)
-        return {"value": value, "low": low, "high": high, "exact": True}
-    return {"value": value, "low": None, "high": None, "exact": False}
+        made |= {"low": low, "high": high, "exact": True}
+    return made

@@ -1,5 +1,4 @@
-"""How are results compared? A leaderboard table for each task, and performance profiles, none wider than 100
-columns."""
+"""How are results compared? A table for each task, and performance profiles, at most 100 columns wide."""
 
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
@@ -7,7 +6,7 @@ from typing import Any
 
 from .._tables import markdown_table, shown, text_table
 from .agents import present
-from .playing import COLUMNS
+from .playing import STROKES
 from .tasks import TASKS, Task
 
 WIDTH = 100
@@ -43,40 +42,28 @@ def plain(text: str) -> str:
 def board(results: Iterable[dict[str, Any]], task: Task) -> Table:
     """A task's table: classes and budgets apart, the best first."""
 
-    def order(result: dict[str, Any]) -> tuple[Any, ...]:
-        agent, score = result["agent"], result["figures"]["score"]["value"]
-        return (
-            list(CLASSES).index(agent["class"]),
-            list(TRAINED).index(agent["budget"]),
-            -score,
-            agent["label"],
-        )
+    def order(result: dict[str, Any]) -> tuple[int, int]:
+        agent = result["agent"]
+        return list(CLASSES).index(agent["class"]), list(TRAINED).index(agent["budget"])
 
-    head = [
-        "class, training",
-        "agent",
-        "score" if task.counts else "share %",
-        "IQM",
-        "seeds",
-        "shots",
-        "ms",
-        "ms 1",
-    ]
+    score = "score" if task.counts else "share %"
+    head = ["class, training", "agent", score, "IQM", "seeds", "shots", "ms", "ms 1"]
     rows = [_row(result, task) for result in sorted(_of(results, task), key=order)]
     keep = [c for c, name in enumerate(head) if task.counts or name != "IQM"]
     return [head[c] for c in keep], [[row[c] for c in keep] for row in rows]
 
 
 def _of(results: Iterable[dict[str, Any]], task: Task) -> list[dict[str, Any]]:
-    """The results of a task that have figures."""
-    return [one for one in results if one["task"] == task.id and one["figures"] is not None]
+    """The results of a task that have figures, the best first."""
+    mine = [one for one in results if one["task"] == task.id and one["figures"] is not None]
+    return sorted(mine, key=lambda one: (-one["figures"]["score"]["value"], one["agent"]["label"]))
 
 
 def _row(result: dict[str, Any], task: Task) -> list[str]:
     """The row of a result."""
     agent, timing, figures = result["agent"], result["timing"], result["figures"]
     shots, alone, middle = agent["simulated_shots"], timing["one_table_ms"], figures["iqm"]
-    strokes = sum(row[COLUMNS.index("strokes")] for row in result["rows"])
+    strokes = sum(row[STROKES] for row in result["rows"])
     return [
         f"{CLASSES[agent['class']]}, {TRAINED[agent['budget']]}",
         agent["label"] + ("" if result["protocol"]["official"] else " *"),
@@ -95,13 +82,9 @@ def _ms(value: float) -> str:
 
 
 def profile(results: Iterable[dict[str, Any]], task: Task) -> Table:
-    """The performance profile of a task: the share of episodes [%] with at least so many points, a row for
-    each agent."""
-    mine = sorted(
-        _of(results, task), key=lambda one: (-one["figures"]["score"]["value"], one["agent"]["label"])
-    )
+    """The performance profile: share of episodes [%] with at least so many points, a row for each agent."""
     rows = []
-    for one in mine:
+    for one in _of(results, task):
         shares = [_share(figure) for figure in one["figures"]["profile"]]
         rows.append([one["agent"]["label"], *shares, str(one["figures"]["best"])])
     return ["agent", *(f">= {t}" for t in task.thresholds if t <= task.most), "best"], rows
@@ -115,8 +98,7 @@ def _share(figure: dict[str, Any]) -> str:
 
 
 def lines(results: Sequence[Any], *, markdown: bool = False, awaited: Sequence[str] = ()) -> list[str]:
-    """Leaderboard and profiles of all tasks with results; labels ``awaited`` are named where their result is
-    missing."""
+    """Leaderboard and profiles of all tasks; labels ``awaited`` are named where their result is missing."""
 
     def table(head: list[str], rows: list[list[str]], label: int, left: int = 1) -> list[str]:
         """A table whose column ``label`` holds labels: of a page as plain text."""

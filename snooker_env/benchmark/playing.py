@@ -1,16 +1,11 @@
-"""How are episodes played? Tables side by side: a player decides by positions and seeds, and what it decides
-is kept as it is played.
-
-The environment reads all of a stroke (``players.VISITS``, ``players.FRAMES``). An action is rounded to
-float32, the type of the action space, before it is played: what is kept is what was played. The seed of a
-decision depends on the training seed, the table's seed and the number of the stroke alone, so a player gives
-the same strokes in any batch.
+"""How are episodes played? Side by side. Actions are rounded to float32 before they are played and kept; seeds
+of decisions depend on training seed, table and stroke alone, so a player plays alike in any batch.
 """
 
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,8 +31,8 @@ COLUMNS = (
     "opponent_points",
     "ended",
 )
-"""Columns of a row: index of the training seed, seed of the table, then integers that docs/benchmark.md
-explains."""
+"""Columns of a row: index of the training seed, seed of the table, then integers (docs/benchmark.md)."""
+STROKES = COLUMNS.index("strokes")
 Kept = list[NDArray[np.float32]]
 """The strokes of each episode: its actions, one row each."""
 
@@ -51,8 +46,7 @@ class PlayedEpisodes:
     rows : list of list of int
         One row for each episode, columns ``COLUMNS``.
     strokes : list of numpy.ndarray
-        The strokes of each episode, float32, one row each: actions of an environment that reads all of a
-        stroke.
+        Those of each episode: float32 (strokes, size), actions that hold all of a stroke.
     decisions : int
         Number of decisions of the player.
     seconds : float
@@ -83,8 +77,7 @@ class PlayedEpisodes:
 
 
 class Decider:
-    """A player at the tables of an environment: what it decides is rounded, kept and timed, and its shots are
-    counted."""
+    """A player at tables: what it decides is rounded, kept and timed, and its simulated shots are counted."""
 
     def __init__(self, player: Any, tables: SnookerVectorEnv, seeds: Any, seed: int):
         self.player = player_named(player).at(tables)
@@ -128,21 +121,12 @@ class Repeater:
         return actions
 
 
-class Round(NamedTuple):
-    """What one stroke of each player was: the tables where it was ``asked``, and what the environment said
-    after it."""
-
-    asked: Bools
-    info: dict[str, Any]
-    done: Bools
-    terminated: Bools
+Round = tuple[Bools, dict[str, Any], Bools, Bools]
+"""Where the player was asked for a stroke; the environment's info after it; done; terminated."""
 
 
 def rounds(tables: SnookerVectorEnv, seeds: Any, decide: Any, rekey: int | None = None) -> Iterator[Round]:
-    """Play every table to its end; a round is a stroke on each table that goes on.
-
-    ``rekey``: the tables get new execution errors by this seed after each decision.
-    """
+    """Play every table to its end; seed ``rekey`` draws new execution errors after each decision."""
     tables.reset(seed=seeds)
     going, number = np.ones(tables.num_envs, np.bool_), 0
     while going.any():
@@ -153,7 +137,7 @@ def rounds(tables: SnookerVectorEnv, seeds: Any, decide: Any, rekey: int | None 
             tables.tables.streams[:, 0] = decision_seeds(~rekey, np.asarray(seeds), number)
         _, _, terminated, truncated, info = tables.step(actions)
         done = going & (terminated | truncated)
-        yield Round(asked, info, done, terminated)
+        yield asked, info, done, terminated
         going &= ~done
         number += 1
 
@@ -164,11 +148,7 @@ def tables_for(task: Task, n: int, threads: int | None = None) -> SnookerVectorE
 
 
 def play_episodes(
-    task: Task,
-    player: Any,
-    seeds: list[int],
-    run: int = 0,
-    threads: int | None = None,
+    task: Task, player: Any, seeds: list[int], run: int = 0, threads: int | None = None
 ) -> PlayedEpisodes:
     """Play one episode on each of the judged tables with these seeds, side by side.
 
@@ -181,7 +161,7 @@ def play_episodes(
     seeds : list of int
         Seeds of the tables.
     run : int
-        Index of the player's training seed, the first number of each row, and the seed of what it draws.
+        Index of the training seed: first number of each row, and the seed of what the player draws.
     threads : int, optional
         As in ``SnookerVectorEnv``.
 

@@ -1,5 +1,4 @@
-"""Where do figures come from? The commit of the checkout, the machine, its load and its last bits, and the
-versions of what was running."""
+"""Where do figures come from? The commit, the machine, its load and last bits, and versions."""
 
 import hashlib
 import os
@@ -92,8 +91,7 @@ def software() -> dict[str, str | None]:
 def arithmetic() -> str:
     """How the last bits fall here: where this is the same, the same strokes end alike, bit for bit.
 
-    The kernels call the system's mathematical library, whose functions may differ in the last bit between
-    systems, versions and processors; a stroke with many impacts amplifies that.
+    Functions of the system's mathematical library differ in the last bit; many impacts amplify that.
 
     Returns
     -------
@@ -106,10 +104,8 @@ def arithmetic() -> str:
     >>> len(arithmetic())
     16
     """
-    tables, seen = (
-        SnookerVectorEnv(32, aim="target", layout="break_off", noise="professional"),
-        hashlib.sha256(),
-    )
+    tables = SnookerVectorEnv(32, aim="target", layout="break_off", noise="professional")
+    seen = hashlib.sha256()
     tables.reset(seed=0)
     for _ in range(4):
         tables.step(np.column_stack([np.linspace(-0.2, 0.2, 32), np.zeros((32, 2)), np.ones(32)]))

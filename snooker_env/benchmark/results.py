@@ -1,19 +1,25 @@
-"""What stands in a result file, and how is it written and read? One JSON object; ``schema`` documents every
-field."""
+"""What stands in a result file, and how is it written and read? ``schema`` documents every field."""
 
+import base64
+import hashlib
 import json
+import zlib
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from .._check import refuse, refuse_what
 from .._files import write_atomic
+from ..players import FRAMES, VISITS
+from ..players.resolver import PROGRAM
 from .agents import Agent
 from .figures import figures_of
-from .playing import COLUMNS, PlayedEpisodes
+from .playing import COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic, commit, machine, software
 from .schema import DATE, NAME, PROTOCOL, VERSION, line
-from .strokes import packed
-from .tasks import Task
+from .tasks import TASKS, Task
 
 BUDGETS = {"50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}
 """Training budgets [simulated shots]."""
@@ -46,10 +52,9 @@ def budget_of(shots: int | None) -> str:
 
 
 def of_decisions(program: bool, declared: int | None, shots: int, decisions: int) -> dict[str, Any]:
-    """Class and simulated shots a decision: counted, or declared where they cannot be counted or the number
-    is higher."""
-    counted = None if program else shots / max(1, decisions)
-    by_word = program or (declared is not None and declared > shots / max(1, decisions))
+    """Class and shots a decision: declared if they cannot be counted or the number is higher, else counted."""
+    counted = shots / max(1, decisions)
+    by_word = program or (declared is not None and declared > counted)
     mean = counted if not by_word else None if declared is None else float(declared)
     name = "undeclared" if mean is None else "planning" if mean > 0 else "model_free"
     return {"class": name, "simulated_shots": mean, "declared": by_word}
@@ -67,6 +72,25 @@ def missing(result: dict[str, Any], task: Task) -> list[str]:
     return [reason for reason, so in reasons.items() if so]
 
 
+def completed(record: dict[str, Any], task: Task) -> dict[str, Any]:
+    """The record with all that follows from its other fields, computed anew; ``check`` compares."""
+    agent, rows = record["agent"], record["rows"]
+    decisions = sum(row[STROKES] for row in rows)
+    declared = agent["simulated_shots"] if agent["declared"] else None
+    program, shots = agent["sources"][0].startswith(PROGRAM), record["timing"]["simulated_shots"]
+    record = record | {
+        "schema": {"name": NAME, "version": VERSION},
+        "protocol": record["protocol"] | {"version": PROTOCOL},
+        "agent": agent
+        | {"budget": budget_of(agent["training_shots"])}
+        | of_decisions(program, declared, shots, decisions),
+        "columns": list(COLUMNS),
+        "figures": figures_of(task, agent["label"], rows) if rows else None,
+    }
+    record["protocol"]["official"] = not missing(record, task)
+    return record
+
+
 def result_of(
     task: Task,
     agent: Agent,
@@ -76,21 +100,19 @@ def result_of(
     why: str | None,
     about: Any,
 ) -> dict[str, Any]:
-    """The object of a result file.
-
-    ``alone``: decisions on one table; ``why`` episodes are missing; ``about``: "command", and "load" as the
-    machine was before.
-    """
-    result: dict[str, Any] = {
-        "schema": {"name": NAME, "version": VERSION},
+    """The record of a run. ``alone``: played on one table; ``about``: "command", and "load" before it began."""
+    record = {
+        "schema": {},
         "protocol": {"version": PROTOCOL, "episodes": episodes, "official": False},
         "task": task.id,
         "agent": {
             "label": agent.label,
             "sources": agent.texts,
-            "budget": budget_of(agent.training_shots),
+            "budget": None,
             "training_shots": agent.training_shots,
-            **of_decisions(agent.program, agent.shots_declared, played.simulated, played.decisions),
+            "class": None,
+            "simulated_shots": agent.shots_declared,
+            "declared": agent.shots_declared is not None,
         },
         "software": software(),
         "machine": about["load"] | {"load_at_end": machine()["load"], "arithmetic": arithmetic()},
@@ -102,14 +124,13 @@ def result_of(
         "command": line(about["command"]),
         "commit": commit(),
         "date": datetime.now(timezone.utc).strftime(DATE),
-        "columns": list(COLUMNS),
+        "columns": [],
         "rows": played.rows,
-        "figures": figures_of(task, agent.label, played.rows) if played.rows else None,
+        "figures": None,
         "incomplete": why and line(why),
         "strokes": packed(played.strokes),
     }
-    result["protocol"]["official"] = not missing(result, task)
-    return result
+    return completed(record, task)
 
 
 def write_result(path: str | Path, result: dict[str, Any]) -> None:
@@ -169,18 +190,57 @@ def read_result(path: str | Path) -> Any:
         raise ValueError(f"{name} is no number of JSON")
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        names = [name for name, _ in pairs]
-        twice = (
-            next((name for name in names if names.count(name) > 1), None)
-            if len(set(names)) < len(names)
-            else None
-        )
-        if twice is not None:
-            raise ValueError(f"the key {twice!r} stands there twice")
-        return dict(pairs)
+        made: dict[str, Any] = {}
+        for name, value in pairs:
+            if name in made:
+                raise ValueError(f"the key {name!r} stands there twice")
+            made[name] = value
+        return made
 
     try:
         text = Path(path).read_text(encoding="utf-8")
         return json.loads(text, parse_constant=no_number, object_pairs_hook=once)
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: must be JSON ({error})") from None
+
+
+def packed(strokes: Kept) -> dict[str, str]:
+    """The field ``strokes`` of a file: little-endian float32, by zlib, in base64, with a digest."""
+    rows = [np.ascontiguousarray(one, "<f4") for one in strokes if len(one)]
+    raw = np.concatenate(rows).view(np.uint8).T.tobytes() if rows else b""
+    return {
+        "sha256": hashlib.sha256(raw).hexdigest(),
+        "data": base64.b64encode(zlib.compress(raw, 9)).decode(),
+    }
+
+
+def unpacked(field: dict[str, str], lengths: list[int], size: int) -> Kept:
+    """Actions (n, ``size``) of each episode; ValueError if they are damaged or no actions."""
+    n, width = sum(lengths), 4 * size
+    try:
+        packing = zlib.decompressobj()
+        raw = packing.decompress(base64.b64decode(field["data"], validate=True), n * width + 1)
+    except (zlib.error, ValueError) as error:
+        much = f"{len(field['data']):,} characters"
+        raise refuse_what("strokes.data", much, f"must be zlib in base64 ({error})") from None
+    if len(raw) != n * width or not packing.eof or packing.unused_data:
+        much = f"{len(raw):,} bytes" if packing.eof else f"more than {len(raw) - 1:,} bytes, or cut off"
+        raise refuse_what(
+            "strokes.data", much, f"must be {n * width:,} bytes, {width} for each of {n:,} strokes"
+        )
+    digest = hashlib.sha256(raw).hexdigest()
+    if digest != field["sha256"]:
+        raise refuse("strokes.sha256", field["sha256"], f"must be {digest}, the digest of the strokes")
+    actions = np.frombuffer(raw, np.uint8).reshape(width, n).T.copy().view("<f4").reshape(n, size)
+    sound = np.abs(actions) <= 1.0  # False for NaN
+    if not sound.all():
+        k, c = np.argwhere(~sound)[0].tolist()
+        raise refuse(f"strokes.data[{k}, {c}]", float(actions[k, c]), "must be finite and within [-1, 1]")
+    return np.split(actions, np.cumsum(lengths)[:-1]) if lengths else []
+
+
+def strokes_of(result: dict[str, Any]) -> Kept:
+    """The strokes of each row of a result whose rows have their form; ValueError if they are damaged."""
+    task = TASKS[result["task"]]
+    actions = task.judged(**(FRAMES if task.frame else VISITS)).rules.actions
+    return unpacked(result["strokes"], [row[STROKES] for row in result["rows"]], actions.size)

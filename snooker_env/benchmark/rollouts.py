@@ -1,5 +1,4 @@
-"""What happens in the visits that a player plays? Every stroke of them on tables that are the same for all
-players, and what is counted."""
+"""What happens in the visits that a player plays? Every stroke on the same tables for all, and counts."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -100,17 +99,6 @@ class Strokes:
         return self.made & ~self.cleared
 
     @property
-    def clears(self) -> Bools:
-        """Whether each stroke scored and left no object ball: bool (n,). A foul that pots the last ball
-        clears no table."""
-        return self.made & self.cleared
-
-    @property
-    def colour(self) -> Bools:
-        """Whether any colour was on, for each stroke: bool (n,)."""
-        return self.ball_on == BallOn.ANY_COLOUR
-
-    @property
     def following(self) -> Ints:
         """Index of the next stroke of the same visit; -1 after its last: int64 (n,)."""
         order = np.lexsort((self.number, self.visit))
@@ -120,16 +108,8 @@ class Strokes:
         return following
 
     def a_visit(self, values: Any) -> Floats:
-        """Sum values over each visit.
-
-        ``values``: float (n,), one value for each stroke. Returns float64 (visits,): the sums.
-        """
+        """Sums over each visit, float64 (visits,), of values of each stroke, float (n,)."""
         return np.asarray(np.bincount(self.visit, values, self.visits), np.float64)
-
-    @property
-    def followed(self) -> Bools:
-        """For each pot that left an object ball: whether the next stroke scores too, bool (k,)."""
-        return self.made[self.following[self.goes_on]]
 
 
 def play_visits(
@@ -162,8 +142,7 @@ def play_visits(
     seed : int
         Of what the player draws. Its strokes on a table do not depend on the other tables.
     rekey : int, optional
-        Seed of new execution errors after every decision: a control that the player has not seen them
-        beforehand.
+        Seed of new execution errors after every decision: a control that nobody saw them beforehand.
     threads : int, optional
         As in ``SnookerVectorEnv``.
     each : callable, optional
@@ -225,7 +204,7 @@ def counts(s: Strokes) -> dict[str, Floats]:
     [1.0, 1.0]
     """
     next_points = np.append(s.points, 0.0)[s.following]  # of the stroke after; 0 after the last
-    red, colour = s.made & (s.ball_on == BallOn.RED), s.made & s.colour
+    red, colour = s.made & (s.ball_on == BallOn.RED), s.made & (s.ball_on == BallOn.ANY_COLOUR)
     entries = {
         "points": s.points,
         "pots": s.made,
@@ -239,7 +218,7 @@ def counts(s: Strokes) -> dict[str, Floats]:
         "high": colour & (s.points >= HIGH),
         "reds": red,
         "high_after_red": red & (next_points >= HIGH),
-        "clearances": s.clears,
+        "clearances": s.made & s.cleared,  # a foul clears no table
     }
     sums = {name: s.a_visit(values) for name, values in entries.items()}
     breaks = {"centuries": sums["points"] >= CENTURY, "maximums": sums["points"] >= MAXIMUM}

@@ -1,5 +1,4 @@
-"""How is an agent judged on a task? Batch after batch of the protocol's episodes; what was played is kept,
-whatever stops it."""
+"""How is an agent judged? Batch after batch of episodes; what was played is kept, whatever stops it."""
 
 import time
 from collections.abc import Callable
@@ -9,10 +8,10 @@ from typing import Any
 from .._check import refuse
 from ..play.program import AgentError
 from .agents import Agent, seated
-from .checking import faults, strokes_of
+from .checking import faults
 from .playing import BATCH, PlayedEpisodes, play_episodes
 from .provenance import machine
-from .results import read_result, result_of, write_result
+from .results import read_result, result_of, strokes_of, write_result
 from .tasks import Task
 
 ONE_TABLE = 20

@@ -1,5 +1,4 @@
-"""What is a result file? Its fields with their types and meanings, version by version; ``docs/benchmark.md``
-prints this table."""
+"""What is a result file? Its fields with types and meanings; ``docs/benchmark.md`` prints this table."""
 
 import re
 from collections.abc import Mapping
@@ -10,8 +9,7 @@ from .provenance import LIBRARIES
 
 NAME, VERSION = "snooker_env.benchmark.result", 3
 PROTOCOL = 1
-"""Version of the rules: tables, episodes, figures. Results of different versions are never put into one
-table."""
+"""Version of the rules: tables, episodes, figures. Only results of one version compare."""
 PACKAGES = ("0.3.0.dev0",)
 """Versions of the package whose results compare by these rules, the present one last."""
 BEGUN = "2026-11-21T00:00:00Z"
@@ -44,11 +42,7 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "machine.arithmetic": (str, False, f"digest of 128 strokes: {_ALIKE}"),
     "timing.seconds": (NUMBER, False, "what all decisions took together"),
     "timing.simulated_shots": (int, False, "shots that this process simulated for them"),
-    "timing.one_table_ms": (
-        NUMBER,
-        True,
-        "milliseconds a decision on one table, measured alone; null: not measured",
-    ),
+    "timing.one_table_ms": (NUMBER, True, "ms a decision on one table, alone; null: not measured"),
     "command": (str, False, "how this file was made"),
     "commit": (str, True, "of the checkout, with -dirty if files were changed; null outside one"),
     "date": (str, False, "when, in UTC: 2026-11-22T19:00:00Z"),
@@ -72,8 +66,7 @@ _PROVED = (
     "strokes",
 )
 UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED) and name != "software.snooker_env")
-"""Fields that a replay cannot prove: their form is checked, and that they fit the others. Class and budget
-follow from them."""
+"""Fields that a replay cannot prove; class and budget follow from them."""
 
 LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,20}")
 MOST_WHOLE = 2**53
@@ -108,7 +101,7 @@ PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
 
 
 def faults_of_fields(
-    found: Any,
+    record: Any,
     fields: dict[str, tuple[Any, bool, str]] | None = None,
     ranges: Mapping[str, tuple[float, float]] | None = None,
     version: int = VERSION,
@@ -117,7 +110,7 @@ def faults_of_fields(
 
     Parameters
     ----------
-    found : object
+    record : object
         As ``json`` reads it.
     fields : dict, optional
         Dotted name -> type, whether it may be null, meaning; default: those of a result of this benchmark.
@@ -138,11 +131,11 @@ def faults_of_fields(
     ["date = 'today': must be a time in UTC, as 2026-11-22T19:00:00Z"]
     """
     fields, ranges = FIELDS if fields is None else fields, {**RANGES, **(ranges or {})}
-    if not isinstance(found, dict):
+    if not isinstance(record, dict):
         return ["the file must hold one JSON object"]
     wrong = []
     for name, (kind, empty, _) in fields.items():
-        value: Any = found
+        value: Any = record
         for part in name.split("."):
             value = value.get(part, _MISSING) if isinstance(value, dict) else _MISSING
         if value is _MISSING:
@@ -153,7 +146,7 @@ def faults_of_fields(
             )
         elif value is not None and (allowed := _allowed(name, value, ranges)):
             wrong.append(f"{name} = {shortened(value)}: must be {allowed}")
-    for name, value in found.items():
+    for name, value in record.items():
         inner = (
             [f"{name}.{key}" for key in value] if isinstance(value, dict) and name not in fields else [name]
         )
@@ -176,13 +169,12 @@ def _allowed(name: str, value: Any, ranges: Mapping[str, tuple[float, float]]) -
         return f"between {ranges[name][0]:g} and {ranges[name][1]:g}"
     if name in PATTERNS and not PATTERNS[name][0].fullmatch(value):
         return PATTERNS[name][1]
-    if name == "date" and not _is_date(value):
+    if name != "date":
+        return None
+    if not _is_date(value):
         return "a time in UTC, as 2026-11-22T19:00:00Z"
-    if name == "date" and not BEGUN <= value <= (datetime.now(timezone.utc) + timedelta(hours=1)).strftime(
-        DATE
-    ):
-        return f"between {BEGUN} and now"
-    return None
+    latest = (datetime.now(timezone.utc) + timedelta(hours=1)).strftime(DATE)
+    return None if BEGUN <= value <= latest else f"between {BEGUN} and now"
 
 
 def _is_date(text: str) -> bool:

@@ -1,16 +1,11 @@
-"""How sure is a figure of many visits by several training runs? Means, ratios and inter-quartile means with
-bootstrap intervals.
+"""How sure is a figure of many visits by several training runs? Bootstrap intervals of means, ratios and IQMs.
 
-Scores come as a matrix (runs, visits): every run has played the same visits. Two things are a sample and both
-are drawn again, with replacement: the runs (other training seeds) and the visits (other tables and other
-luck), the visits the same for every run, which is the bootstrap of crossed factors [Owen, The pigeonhole
-bootstrap, 2007]. Of R > 1 runs R - 1 are drawn, since R would make their variance (R - 1) / R of what it is
-[Rao & Wu 1988]. With one run only the visits are drawn: such an interval says nothing about other seeds.
-
-Intervals are percentiles. Where luck within a visit matters most they are too wide (of 5 runs up to 1.5
-times, never too narrow by it); where nothing but the seeds differs, 5 of them are few and the 95 % interval
-covers 85 % (``test_statistics`` measures both). A bootstrap cannot say how rare a thing is that was never
-seen, or always: that bound is ``unseen``.
+Scores are a matrix (runs, visits). Runs (training seeds) and visits (tables and luck) are both drawn with
+replacement, the visits the same for every run: the bootstrap of crossed factors [Owen, The pigeonhole bootstrap,
+2007]. Of R > 1 runs R - 1 are drawn, since R would make their variance (R - 1) / R of what it is [Rao & Wu 1988].
+With one run only the visits are drawn: that says nothing about other seeds. Percentile intervals are too wide
+where luck within a visit matters most (5 runs: up to 1.5 times), and the 95 % interval covers 85 % where only 5
+seeds differ (``test_statistics`` measures both). How rare the never seen is, a bootstrap cannot say: ``unseen``.
 """
 
 from functools import lru_cache
@@ -57,8 +52,7 @@ def _middle_mean(values, weights):
 
 @lru_cache(maxsize=16)
 def _drawn(size, draws, n, seed):
-    """How often each of ``size`` things comes when ``draws`` are drawn with replacement: (n, size), n times
-    over."""
+    """How often each of ``size`` things comes in ``draws`` with replacement, n times: (n, size)."""
     picks = np.random.default_rng(seed).integers(size, size=(n, draws)) + size * np.arange(n)[:, None]
     return np.bincount(picks.ravel(), minlength=n * size).reshape(n, size).astype(np.float64)
 
@@ -66,8 +60,7 @@ def _drawn(size, draws, n, seed):
 class Resamples:
     """Bootstrap samples of matrices (runs, visits).
 
-    Two agents with the same number of visits have the same visits in each sample, so that their figures can
-    be paired. With different seeds their runs are drawn independently.
+    Equal numbers of visits give the same visits in each sample (pairs); other seeds give other runs.
 
     Parameters
     ----------
@@ -88,32 +81,20 @@ class Resamples:
     """
 
     def __init__(self, runs: int, visits: int, n: int = RESAMPLES, seed: int = 0):
-        self._runs, self._visits = (
-            _drawn(runs, max(1, runs - 1), n, (1, seed)),
-            _drawn(visits, visits, n, (0, 0)),
-        )
+        self._runs = _drawn(runs, max(1, runs - 1), n, (1, seed))
+        self._visits = _drawn(visits, visits, n, (0, 0))
 
     def sums(self, scores: Any) -> Floats:
-        """The sum of a matrix in each sample.
-
-        ``scores``: float (runs, visits), the matrix. Returns float64 (n,): the sums.
-        """
+        """The sum of a matrix, float (runs, visits), in each sample: float64 (n,)."""
         return ((self._visits @ scores.T) * self._runs).sum(axis=1)
 
     def ratios(self, above: Any, below: Any) -> Floats:
-        """The ratio of two sums in each sample.
-
-        ``above``, ``below``: float (runs, visits), the matrices of the numerator and of the denominator.
-        Returns float64 (n,): the ratios; NaN where the denominator is 0.
-        """
+        """The ratio of the sums of two matrices in each sample: float64 (n,), NaN where it divides by 0."""
         over = self.sums(below)
         return np.divide(self.sums(above), over, out=np.full(len(over), np.nan), where=over != 0)
 
     def iqms(self, scores: Any) -> Floats:
-        """The inter-quartile mean over all runs and visits in each sample.
-
-        ``scores``: float (runs, visits), the matrix. Returns float64 (n,): the inter-quartile means.
-        """
+        """The inter-quartile mean of a matrix, float (runs, visits), in each sample: float64 (n,)."""
         values, which = np.unique(scores, return_inverse=True)
         which = which.reshape(scores.shape)
         weights = sum(
@@ -153,9 +134,8 @@ def interval(samples: Any, level: float = 0.95) -> tuple[float, float]:
 def unseen(n: float, level: float = 0.95) -> float:
     """Upper bound of a share of which ``n`` independent trials showed no case.
 
-    The bound is exact and one-sided, about 3 / n at 95 % [Clopper & Pearson 1934]. Runs on the same tables
-    with the same noise samples count once. The bound then holds for other tables and noise samples, not for
-    other training seeds.
+    Exact and one-sided, about 3 / n at 95 % [Clopper & Pearson 1934]. Runs on the same tables count once: it
+    then holds for other tables and noise samples, not for other training seeds.
 
     Parameters
     ----------

@@ -1,9 +1,5 @@
-"""What are the tasks of the benchmark? Ids with a version, the options that are frozen, and how an agent is
-judged on each.
-
-A task freezes what decides its results: how tables are dealt, execution noise, physics, table, fidelity,
-reward, rules and opponent. What only says how an agent sees and acts stays free: ``FREE``. docs/benchmark.md
-holds the rules.
+"""What are the tasks? Ids with a version, the options that they freeze, and how an agent is judged on each.
+Only how an agent sees and acts stays free. docs/benchmark.md holds the rules.
 """
 
 from collections.abc import Mapping
@@ -70,11 +66,9 @@ class Task:
     note: str = ""
 
     def options(self, **free: Any) -> Options:
-        """The options of the task as it is trained.
+        """The options of the task as it is trained: frozen ones and these of ``FREE``.
 
-        ``**free``: options of ``FREE``. Returns the frozen options and these. ValueError for an option that
-        the task freezes, and for values that ``Options`` does not accept. TypeError for a keyword that is no
-        option.
+        ValueError for a frozen option or a wrong value, TypeError for a keyword that is no option.
         """
         frees = ", ".join(FREE)
         for name in (name for name in free if name not in FREE):
@@ -92,10 +86,7 @@ class Task:
         return Options(**{**self.changes, **free})
 
     def judged(self, **free: Any) -> Options:
-        """The options that the task is judged with: those of training, on the judged layout.
-
-        ``**free``: as in ``options``. Returns the options of training with ``judged_layout``.
-        """
+        """The options that the task is judged with: ``options(**free)`` on the judged layout."""
         return self.options(**free).but(layout=self.judged_layout)
 
     @property
@@ -105,8 +96,7 @@ class Task:
 
     @property
     def counts(self) -> bool:
-        """Whether the score of an episode is a number of points; else it is 0 or 1, and the mean is a
-        share."""
+        """Whether the score of an episode is a number of points; else it is 0 or 1, the mean a share."""
         return self.score == "points"
 
     @property
@@ -115,10 +105,9 @@ class Task:
         return self.changes.get("task") == "frame"
 
     def seeds(self, n: int) -> list[int]:
-        """The seeds of the first judged tables; of frames, which share their rack, those of the errors.
+        """The seeds of the first n judged tables; of frames, which share their rack, those of the errors.
 
-        ``n``: number of tables, in [1, 2**20]. Returns the seeds. ValueError if ``n`` is out of range, or the
-        layout has fewer tables.
+        ValueError if n is not in [1, 2**20], or the layout has fewer tables.
         """
         integer("episodes", n, 1, 2**20)
         return (
@@ -194,11 +183,6 @@ def task_of(name: Any) -> Task:
     Task
         The task.
 
-    Raises
-    ------
-    ValueError
-        If there is none with this id.
-
     Examples
     --------
     >>> from snooker_env.benchmark import task_of
@@ -236,11 +220,6 @@ def tables_of(layout: str, visits: int) -> list[int]:
     -------
     list of int
         The seeds.
-
-    Raises
-    ------
-    ValueError
-        If the layout has too few tables.
 
     Examples
     --------

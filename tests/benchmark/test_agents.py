@@ -21,8 +21,8 @@ from snooker_env.benchmark import (
     write_result,
 )
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.checking import strokes_of
 from snooker_env.benchmark.playing import BATCH
+from snooker_env.benchmark.results import strokes_of
 from snooker_env.players import VISITS, Strokes, decided
 
 ROOT = Path(__file__).parents[2]
@@ -95,17 +95,8 @@ BROKEN = {
 @pytest.mark.parametrize("how", BROKEN)
 def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tmp_path, capsys, how):
     body, why = BROKEN[how]
-    out = tmp_path / "one.json"
-    arguments = [
-        "run",
-        "SnookerEscape-v0",
-        "--agent",
-        program(tmp_path, body),
-        "--episodes",
-        "6",
-        "--out",
-        str(out),
-    ]
+    agent, out = program(tmp_path, body), tmp_path / "one.json"
+    arguments = ["run", "SnookerEscape-v0", "--agent", agent, "--episodes", "6", "--out", str(out)]
     assert main([*arguments, "--timeout", "3", "--training-shots", "0", "--simulated-shots", "0"]) == 1
     *before, error = capsys.readouterr().err.splitlines()
     assert why in error and error.endswith("(after 3 of 6 episodes)")
@@ -311,18 +302,7 @@ def test_a_model_of_stable_baselines_plays_with_consent(model, tmp_path, capsys)
     """Only with --trust, only where its actions fit, and a model of frames plays frames."""
     visit, frame = (str(model[name]) for name in ("SnookerPotHard-v0", "SnookerFrame-v0"))
     one, two = tmp_path / "one.json", tmp_path / "two.json"
-    run = [
-        "run",
-        "SnookerPotHard-v0",
-        "--agent",
-        visit,
-        "--episodes",
-        "8",
-        "--out",
-        str(one),
-        "--label",
-        "ppo",
-    ]
+    run = f"run SnookerPotHard-v0 --agent {visit} --episodes 8 --out {one} --label ppo".split()
     assert main([*run, "--options", "aim=target"]) == 2 and "trust" in capsys.readouterr().err
     assert main([*run, "--trust", "--options", "aim=target", "placement=True"]) == 2
     assert "options of its training" in capsys.readouterr().err
@@ -335,17 +315,7 @@ def test_a_model_of_stable_baselines_plays_with_consent(model, tmp_path, capsys)
     result = read_result(two)
     assert faults(result) == [] and len(result["rows"]) == 4
     assert [row[1:] for row in result["rows"][:2]] == [row[1:] for row in result["rows"][2:]]
-    run = [
-        "run",
-        "SnookerPotHard-v0",
-        "--agent",
-        frame,
-        "--episodes",
-        "2",
-        "--trust",
-        "--options",
-        "aim=target",
-    ]
+    run = f"run SnookerPotHard-v0 --agent {frame} --episodes 2 --trust --options aim=target".split()
     assert main(run) == 2 and "must see visits to play them" in capsys.readouterr().err
 
 

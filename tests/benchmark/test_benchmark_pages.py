@@ -57,11 +57,11 @@ def test_the_list_of_what_nothing_proves():
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_what_stands_on_the_leaderboard_is_sound_and_official(file):
-    found = read_result(file)
-    if found["machine"]["arithmetic"] != arithmetic():
+    record = read_result(file)
+    if record["machine"]["arithmetic"] != arithmetic():
         pytest.skip("this machine rounds otherwise than the one that made the file")
-    assert faults(found) == [] and found["protocol"]["official"]
-    assert file.name == f"{found['task']}.{found['agent']['label']}.json"
+    assert faults(record) == [] and record["protocol"]["official"]
+    assert file.name == f"{record['task']}.{record['agent']['label']}.json"
 
 
 def test_the_leaderboard_is_the_page_of_its_files():

@@ -29,9 +29,8 @@ from snooker_env.benchmark import (
     write_result,
 )
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.checking import strokes_of
+from snooker_env.benchmark.results import packed, strokes_of
 from snooker_env.benchmark.schema import DATE, FIELDS, PACKAGES, UNPROVED
-from snooker_env.benchmark.strokes import packed
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import pot_aim, pots
 from snooker_env.players import VISITS, Strokes
@@ -66,39 +65,39 @@ def official():
 @pytest.fixture(scope="module")
 def boxes():
     """24 episodes of box actions."""
-    found = judge(HARD, agent(), episodes=24)
-    assert faults(found) == [] and 0 < found["figures"]["score"]["value"] < 1
-    return found
+    record = judge(HARD, agent(), episodes=24)
+    assert faults(record) == [] and 0 < record["figures"]["score"]["value"] < 1
+    return record
 
 
-def consistent(task, found):
+def consistent(task, record):
     """With the figures that follow from its rows."""
-    found["figures"] = figures_of(task, found["agent"]["label"], found["rows"])
-    return found
+    record["figures"] = figures_of(task, record["agent"]["label"], record["rows"])
+    return record
 
 
 @pytest.mark.parametrize("label", ["random", "genius"])
 def test_a_maximum_in_every_visit(label):
     """Rows that the rules of snooker allow, figures that follow from them."""
-    found = judge(BREAK, Agent(label=label, sources=(sn.player("random"),)), episodes=100)
-    found["rows"] = [[0, seed, 147, 36, 147, 36, 0, 1, 0, 1] for seed in BREAK.seeds(100)]
-    found["agent"]["sources"] = [label if label == "random" else "mine:Genius"]
-    consistent(BREAK, found)
-    assert faults(found)[0].startswith("strokes.data = ")
-    found["strokes"] = packed([np.zeros((36, 7), "<f4")] * 100)
-    assert faults(found)[0].startswith("rows[0].") and faults(found)[-1].endswith(" more faults")
+    record = judge(BREAK, Agent(label=label, sources=(sn.player("random"),)), episodes=100)
+    record["rows"] = [[0, seed, 147, 36, 147, 36, 0, 1, 0, 1] for seed in BREAK.seeds(100)]
+    record["agent"]["sources"] = [label if label == "random" else "mine:Genius"]
+    consistent(BREAK, record)
+    assert faults(record)[0].startswith("strokes.data = ")
+    record["strokes"] = packed([np.zeros((36, 7), "<f4")] * 100)
+    assert faults(record)[0].startswith("rows[0].") and faults(record)[-1].endswith(" more faults")
 
 
 def test_rows_101_to_500(official):
     """With the strokes as they were, and with strokes for every row."""
-    found = copy.deepcopy(official)
-    for row in found["rows"][100:]:
+    record = copy.deepcopy(official)
+    for row in record["rows"][100:]:
         row[2:] = [27, 6, 27, 6, 0, 1, 0, 1]
-    assert faults(consistent(COLOURS, found))[0].startswith("strokes.data = ")
+    assert faults(consistent(COLOURS, record))[0].startswith("strokes.data = ")
     strokes = strokes_of(official)
-    found["strokes"] = packed(strokes[:100] + [np.resize(one, (6, one.shape[1])) for one in strokes[100:]])
-    said = faults(found)
-    assert all(line.startswith(("rows[10", "rows[11")) for line in said[:-1]) and said[-1].endswith(
+    record["strokes"] = packed(strokes[:100] + [np.resize(one, (6, one.shape[1])) for one in strokes[100:]])
+    refused = faults(record)
+    assert all(line.startswith(("rows[10", "rows[11")) for line in refused[:-1]) and refused[-1].endswith(
         " more faults"
     )
 
@@ -106,19 +105,19 @@ def test_rows_101_to_500(official):
 @pytest.mark.parametrize("name", ["random", "ghost_ball", "search_30", "ppo_mask"])
 def test_the_name_of_a_known_player_for_other_strokes(name):
     """Sound in all that a replay can see; but this player does not play so."""
-    found = judge(HARD, agent(), episodes=30)
-    assert faults(found) == []
-    found["agent"] |= {"label": name, "sources": [name]}
+    record = judge(HARD, agent(), episodes=30)
+    assert faults(record) == []
+    record["agent"] |= {"label": name, "sources": [name]}
     assert (
-        faults(found)[0] == f"strokes: run 0, table 1000000: {name} begins with another stroke than the file"
+        faults(record)[0] == f"strokes: run 0, table 1000000: {name} begins with another stroke than the file"
     )
 
 
 def test_other_strokes_of_a_later_training_seed():
-    found = judge(HARD, Agent(label="two", sources=("random", "search_30"), training_shots=0), episodes=4)
-    assert faults(found) == []
-    found["agent"]["sources"] = ["random", "ghost_ball"]
-    assert faults(found) == [
+    record = judge(HARD, Agent(label="two", sources=("random", "search_30"), training_shots=0), episodes=4)
+    assert faults(record) == []
+    record["agent"]["sources"] = ["random", "ghost_ball"]
+    assert faults(record) == [
         "strokes: run 1, table 1000000: ghost_ball begins with another stroke than the file"
     ]
 
@@ -126,43 +125,43 @@ def test_other_strokes_of_a_later_training_seed():
 def test_simulated_shots_that_the_agent_does_not_need():
     """The strokes of random, as if it planned: found when it plays again."""
     random = Agent.of("random")
-    found = judge(HARD, random, episodes=4)
-    found["timing"]["simulated_shots"] = 8
-    found["agent"] |= {"simulated_shots": 2.0, "class": "planning"}
-    assert replayed(found, random, 4) == ["timing.simulated_shots = 8: must be 0, as the agent played again"]
+    record = judge(HARD, random, episodes=4)
+    record["timing"]["simulated_shots"] = 8
+    record["agent"] |= {"simulated_shots": 2.0, "class": "planning"}
+    assert replayed(record, random, 4) == ["timing.simulated_shots = 8: must be 0, as the agent played again"]
 
 
 @pytest.mark.parametrize("name", ["search_30", "planner_30", "foresight_rule"])
 def test_a_known_planner_is_not_model_free(name):
     """Its own strokes, as if no shot had been simulated for them."""
-    found = judge(HARD, Agent.of(name, training_shots=0), episodes=4)
-    assert faults(found) == [] and found["agent"]["class"] == "planning"
-    found["timing"]["simulated_shots"] = 0
-    found["agent"] |= {"simulated_shots": 0.0, "class": "model_free"}
-    (line,) = faults(found)
+    record = judge(HARD, Agent.of(name, training_shots=0), episodes=4)
+    assert faults(record) == [] and record["agent"]["class"] == "planning"
+    record["timing"]["simulated_shots"] = 0
+    record["agent"] |= {"simulated_shots": 0.0, "class": "model_free"}
+    (line,) = faults(record)
     assert line.startswith(f"agent.class = 'model_free': must be 'planning': '{name}' simulated ")
 
 
 @pytest.mark.parametrize("label", ["r\u0430ndom", "RANDOM", "Random", "random.", "ghost-ball"])
 def test_a_label_that_a_reader_would_take_for_a_built_in_player(official, label):
-    found = copy.deepcopy(official)
-    found["agent"] |= {"sources": ["mine:Player"], "label": label}
-    assert [line for line in faults(found) if line.startswith("agent.label = ")]
+    record = copy.deepcopy(official)
+    record["agent"] |= {"sources": ["mine:Player"], "label": label}
+    assert [line for line in faults(record) if line.startswith("agent.label = ")]
 
 
 @pytest.mark.parametrize("text", ["two\nlines", "\x1b[2J", "\ud800", "x" * 2001])
 def test_texts_are_one_line(official, text):
     assert [line for line in faults(official | {"command": text}) if line.startswith("command = ")]
-    found = copy.deepcopy(official)
-    found["agent"] |= {"sources": [text]}
-    assert [line for line in faults(found) if line.startswith("agent.sources: must be texts, one for each")]
+    record = copy.deepcopy(official)
+    record["agent"] |= {"sources": [text]}
+    assert [line for line in faults(record) if line.startswith("agent.sources: must be texts, one for each")]
     assert schema.LONG_LINE[0].fullmatch(schema.line(text))
 
 
 def test_another_version(official):
-    found = copy.deepcopy(official)
-    found["software"]["snooker_env"] = "9.9.9"
-    assert faults(found) == [f"software.snooker_env = '9.9.9': must be {PACKAGES[-1]}"]
+    record = copy.deepcopy(official)
+    record["software"]["snooker_env"] = "9.9.9"
+    assert faults(record) == [f"software.snooker_env = '9.9.9': must be {PACKAGES[-1]}"]
     assert PACKAGES[-1] == sn.__version__
 
 
@@ -211,35 +210,35 @@ def test_a_truncated_file(official, tmp_path):
 
 def test_one_flipped_bit_of_a_stroke(boxes):
     """Each bit of the first stroke, each bit that the file gives, and the digest."""
-    found, strokes = copy.deepcopy(boxes), strokes_of(boxes)
+    record, strokes = copy.deepcopy(boxes), strokes_of(boxes)
     for bit in range(8 * strokes[0][0].nbytes):
         raw = bytearray(strokes[0].tobytes())
         raw[bit // 8] ^= 1 << bit % 8
         flipped = np.frombuffer(bytes(raw), "<f4").reshape(strokes[0].shape)
-        found["strokes"] = packed([flipped, *strokes[1:]]) | {"sha256": boxes["strokes"]["sha256"]}
-        assert faults(found)[0].startswith("strokes.sha256 = ")
+        record["strokes"] = packed([flipped, *strokes[1:]]) | {"sha256": boxes["strokes"]["sha256"]}
+        assert faults(record)[0].startswith("strokes.sha256 = ")
     raw = base64.b64decode(boxes["strokes"]["data"])
     for bit in np.random.default_rng(0).integers(0, 8 * len(raw), 60).tolist():
         other = bytearray(raw)
         other[bit // 8] ^= 1 << bit % 8
-        found["strokes"] = boxes["strokes"] | {"data": base64.b64encode(bytes(other)).decode()}
-        wrong = faults(found)
+        record["strokes"] = boxes["strokes"] | {"data": base64.b64encode(bytes(other)).decode()}
+        wrong = faults(record)
         assert wrong[0].startswith("strokes.") if wrong else zlib.decompress(other) == zlib.decompress(raw), (
             bit
         )
-    found["strokes"] = boxes["strokes"] | {"sha256": "0" * 64}
-    assert faults(found)[0].startswith("strokes.sha256 = ")
+    record["strokes"] = boxes["strokes"] | {"sha256": "0" * 64}
+    assert faults(record)[0].startswith("strokes.sha256 = ")
 
 
 def test_other_strokes_are_found_by_what_they_score(boxes):
     """With a digest of their own: a stroke away from the ball in each episode that potted one."""
-    found, strokes = copy.deepcopy(boxes), [one.copy() for one in strokes_of(boxes)]
-    potted = [k for k, row in enumerate(found["rows"]) if row[5]]
+    record, strokes = copy.deepcopy(boxes), [one.copy() for one in strokes_of(boxes)]
+    potted = [k for k, row in enumerate(record["rows"]) if row[5]]
     for k in potted:
         strokes[k][0, 3] = 1.0
-    found["strokes"] = packed(strokes)
-    assert {line.split(".")[0] for line in faults(found)[:-1]} <= {f"rows[{k}]" for k in potted}
-    assert faults(found)[0].startswith(f"rows[{potted[0]}].score = 1: must be 0, as its strokes play")
+    record["strokes"] = packed(strokes)
+    assert {line.split(".")[0] for line in faults(record)[:-1]} <= {f"rows[{k}]" for k in potted}
+    assert faults(record)[0].startswith(f"rows[{potted[0]}].score = 1: must be 0, as its strokes play")
 
 
 def test_strokes_too_few_and_too_many(boxes):
@@ -247,36 +246,36 @@ def test_strokes_too_few_and_too_many(boxes):
         (1, "rows[3].strokes = 2: must be 1, as its strokes play"),
         (-1, "rows[3].strokes = 0: must be more: the episode"),
     ):
-        found, strokes = copy.deepcopy(boxes), strokes_of(boxes)
-        found["rows"][3][COLUMNS.index("strokes")] += more
+        record, strokes = copy.deepcopy(boxes), strokes_of(boxes)
+        record["rows"][3][COLUMNS.index("strokes")] += more
         strokes[3] = np.resize(strokes[3], (1 + more, 7))
-        found["strokes"] = packed(strokes)
-        found["agent"]["simulated_shots"] = 0.0
-        assert any(one.startswith(line) for one in faults(consistent(HARD, found))), faults(found)
+        record["strokes"] = packed(strokes)
+        record["agent"]["simulated_shots"] = 0.0
+        assert any(one.startswith(line) for one in faults(consistent(HARD, record))), faults(record)
 
 
 @pytest.mark.parametrize("value", [1.5, -1.0000001, np.nan, np.inf])
 def test_strokes_outside_the_space(boxes, value):
-    found, strokes = copy.deepcopy(boxes), [one.copy() for one in strokes_of(boxes)]
+    record, strokes = copy.deepcopy(boxes), [one.copy() for one in strokes_of(boxes)]
     strokes[7][0, 0] = value
-    found["strokes"] = packed(strokes)
+    record["strokes"] = packed(strokes)
     assert (
-        faults(found)[0].startswith("strokes.data[")
-        and "must be finite and within [-1, 1]" in faults(found)[0]
+        faults(record)[0].startswith("strokes.data[")
+        and "must be finite and within [-1, 1]" in faults(record)[0]
     )
 
 
 def test_swapped_episodes_and_other_seeds(boxes):
     rows, strokes = copy.deepcopy(boxes["rows"]), strokes_of(boxes)
     a, b = (next(k for k, row in enumerate(rows) if row[5] == pots) for pots in (0, 1))
-    found = copy.deepcopy(boxes)
-    found["rows"][a], found["rows"][b] = copy.deepcopy((rows[b], rows[a]))
-    assert faults(consistent(HARD, found))[0].startswith(f"rows[{min(a, b)}]: run 0, table ")
-    for row, old in ((found["rows"][a], rows[a]), (found["rows"][b], rows[b])):
+    record = copy.deepcopy(boxes)
+    record["rows"][a], record["rows"][b] = copy.deepcopy((rows[b], rows[a]))
+    assert faults(consistent(HARD, record))[0].startswith(f"rows[{min(a, b)}]: run 0, table ")
+    for row, old in ((record["rows"][a], rows[a]), (record["rows"][b], rows[b])):
         row[1] = old[1]
     strokes[a], strokes[b] = strokes[b], strokes[a]
-    found["strokes"] = packed(strokes)
-    assert faults(consistent(HARD, found))[0].startswith(f"rows[{min(a, b)}].")
+    record["strokes"] = packed(strokes)
+    assert faults(consistent(HARD, record))[0].startswith(f"rows[{min(a, b)}].")
     later = copy.deepcopy(boxes)
     for row in later["rows"]:
         row[1] += 1
@@ -291,8 +290,8 @@ def test_rows_more_or_fewer(boxes):
         (boxes["rows"][:-1], strokes[:-1]),
         (boxes["rows"] + boxes["rows"][-1:], strokes + strokes[-1:]),
     ):
-        found = consistent(HARD, boxes | {"rows": rows, "strokes": packed(some)})
-        assert faults(found)[0].startswith(
+        record = consistent(HARD, boxes | {"rows": rows, "strokes": packed(some)})
+        assert faults(record)[0].startswith(
             f"rows: must be 24 episodes, 24 for each training seed, not {len(rows)}"
         )
 
@@ -309,20 +308,12 @@ def leaves(value, path=()):
 
 def others(value):
     """Other values: of the same type, and of another."""
-    near = (
-        [value + 1, value - 1, 0, 10**400]
-        if type(value) is int
-        else [value * (1 + 2**-52) + 5e-324]
-        if type(value) is float
-        else []
-    )
-    near += (
-        [value + "x", value[1:], value.upper()]
-        if type(value) is str
-        else [not value]
-        if type(value) is bool
-        else []
-    )
+    near = {
+        int: lambda: [value + 1, value - 1, 0, 10**400],
+        float: lambda: [value * (1 + 2**-52) + 5e-324],
+        str: lambda: [value + "x", value[1:], value.upper()],
+        bool: lambda: [not value],
+    }.get(type(value), list)()
     wrong = [None, True, "other", 7, -1, 0.5, [], {}, ["a"]]
     return [one for one in near + wrong if type(one) is not type(value) or one != value]
 
@@ -335,8 +326,8 @@ def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves(bo
         if path[0] == "rows" and path[1] not in (0, 23):
             continue
         for value in others(at(boxes, path)):
-            found = put(boxes, path, value)
-            if faults(found) == []:
+            record = put(boxes, path, value)
+            if faults(record) == []:
                 passed.add(".".join(part for part in path if isinstance(part, str)))
     assert passed <= set(UNPROVED), passed - set(UNPROVED)
     assert passed >= {
@@ -344,49 +335,42 @@ def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves(bo
         "agent.sources",
         "machine.cpu",
         "timing.seconds",
-        "command",
         "commit",
         "software.numpy",
     }
 
 
-def at(found, path):
+@pytest.mark.parametrize("change", [{"more": None}, {"iqm": ...}])
+def test_figures_have_their_fields_and_no_others(boxes, change):
+    """Also where the value of a field more, or of a field less, is null."""
+    figures = {name: value for name, value in (boxes["figures"] | change).items() if value is not ...}
+    assert faults(boxes | {"figures": figures})[0].startswith("figures: must have the fields score, iqm, ")
+
+
+def at(record, path):
     for key in path:
-        found = found[key]
-    return found
+        record = record[key]
+    return record
 
 
-def put(found, path, value):
-    found = copy.deepcopy(found)
-    at(found, path[:-1])[path[-1]] = value
-    return found
+def put(record, path, value):
+    record = copy.deepcopy(record)
+    at(record, path[:-1])[path[-1]] = value
+    return record
 
 
 def test_what_is_called_unproved_can_be_changed_unseen(boxes):
     """All of it at once, as long as the fields fit each other."""
-    found = copy.deepcopy(boxes)
-    found["agent"] |= {
-        "label": "other",
-        "sources": ["there"],
-        "training_shots": 60_000,
-        "budget": "1M",
-        "simulated_shots": 9.0,
-        "class": "planning",
-        "declared": True,
-    }
-    found["software"] |= {name: "1.0" for name in found["software"] if name != "snooker_env"}
-    found["machine"] = {
-        "platform": "one",
-        "cpu": "two",
-        "cores": 3,
-        "load": 4.0,
-        "load_at_end": 5.0,
-        "arithmetic": "0" * 16,
-    }
-    found["timing"] = {"seconds": 1.0, "simulated_shots": 6, "one_table_ms": 2.0}
-    found |= {"command": "none", "commit": "0" * 40, "date": "2026-11-22T00:00:00Z", "incomplete": "stopped"}
-    assert faults(found) == []
-    changed = {name for name in FIELDS if at(found, name.split(".")) != at(boxes, name.split("."))}
+    record = copy.deepcopy(boxes)
+    record["agent"] |= {"label": "other", "sources": ["there"], "training_shots": 60_000, "budget": "1M"}
+    record["agent"] |= {"simulated_shots": 9.0, "class": "planning", "declared": True}
+    record["software"] |= {name: "1.0" for name in record["software"] if name != "snooker_env"}
+    record["machine"] = {"platform": "one", "cpu": "two", "cores": 3, "load": 4.0, "load_at_end": 5.0}
+    record["machine"]["arithmetic"] = "0" * 16
+    record["timing"] = {"seconds": 1.0, "simulated_shots": 6, "one_table_ms": 2.0}
+    record |= {"command": "none", "commit": "0" * 40, "date": "2026-11-22T00:00:00Z", "incomplete": "stopped"}
+    assert faults(record) == []
+    changed = {name for name in FIELDS if at(record, name.split(".")) != at(boxes, name.split("."))}
     assert changed == {*UNPROVED, "agent.class", "agent.budget"}
 
 
@@ -406,7 +390,7 @@ def test_where_strokes_end_otherwise_that_is_said_first(tmp_path):
     file = tmp_path / "one.json"
     judge(TASKS["SnookerFrame-v0"], Agent.of("ghost_ball"), episodes=40, out=file)
     here = os.environ | {"PYTHONPATH": str(Path(sn.__file__).parents[1]), "SNOOKER_ENV_QUIET": "1"}
-    said = {}
+    refused = {}
     for where, tunables in (
         ("here", ""),
         ("there", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable"),
@@ -417,14 +401,14 @@ def test_where_strokes_end_otherwise_that_is_said_first(tmp_path):
             capture_output=True,
             check=True,
         )
-        said[where] = run.stdout.decode().splitlines()
-    assert said["here"] == [arithmetic()]
-    if said["there"][0] == arithmetic():
+        refused[where] = run.stdout.decode().splitlines()
+    assert refused["here"] == [arithmetic()]
+    if refused["there"][0] == arithmetic():
         pytest.skip("this system has no such functions, or this processor has no others")
-    assert said["there"][1].startswith(
-        f"machine.arithmetic = {arithmetic()!r}: must be {said['there'][0]!r} to check it here"
+    assert refused["there"][1].startswith(
+        f"machine.arithmetic = {arithmetic()!r}: must be {refused['there'][0]!r} to check it here"
     )
-    assert said["there"][2].startswith("rows[")
+    assert refused["there"][2].startswith("rows[")
 
 
 # the agent itself
@@ -451,11 +435,13 @@ def test_fresh_seeds_find_an_agent_that_knew_the_tables():
         _, rewards, *_ = peeking.step(strokes.actions(peeking.options, at).astype(np.float32))
         known |= {at.positions[k, :2].tobytes(): strokes.values[k] for k in np.flatnonzero(rewards > 0)}
     peeks = agent(Remembers)
-    found = judge(HARD, peeks, episodes=100)
-    assert faults(found) == [] and found["figures"]["score"]["value"] > 0.85
-    mean, _, said = afresh(found, peeks, 100, 5_000_000)
+    record = judge(HARD, peeks, episodes=100)
+    assert faults(record) == [] and record["figures"]["score"]["value"] > 0.85
+    mean, _, refused = afresh(record, peeks, 100, 5_000_000)
     assert (
-        mean < 0.7 and said[0].startswith("figures.score.value = ") and said[0].endswith("as on fresh seeds")
+        mean < 0.7
+        and refused[0].startswith("figures.score.value = ")
+        and refused[0].endswith("as on fresh seeds")
     )
     honest = judge(HARD, agent(), episodes=100)
     assert afresh(honest, agent(), 100, 5_000_000)[2] == []
@@ -467,13 +453,13 @@ def test_fresh_seeds_find_a_planner_that_calls_itself_model_free():
             sn.simulate_batch(np.zeros((5, 1, 2)), np.zeros((5, 1, 2)), np.zeros((5, 1, 3)))
             return super().play(positions, seeds)
 
-    found = judge(HARD, agent(Plans), episodes=10)
-    assert found["agent"]["class"] == "planning" and afresh(found, agent(Plans), 10, 5_000_000)[2] == []
-    found["timing"]["simulated_shots"] = 0
-    found["agent"] |= {"simulated_shots": 0.0, "class": "model_free"}
-    assert faults(found) == []
-    said = afresh(found, agent(Plans), 10, 5_000_000)[2]
-    assert said == ["agent.class = 'model_free': must be 'planning': it simulated 5 shots for 10 strokes"]
+    record = judge(HARD, agent(Plans), episodes=10)
+    assert record["agent"]["class"] == "planning" and afresh(record, agent(Plans), 10, 5_000_000)[2] == []
+    record["timing"]["simulated_shots"] = 0
+    record["agent"] |= {"simulated_shots": 0.0, "class": "model_free"}
+    assert faults(record) == []
+    refused = afresh(record, agent(Plans), 10, 5_000_000)[2]
+    assert refused == ["agent.class = 'model_free': must be 'planning': it simulated 5 shots for 10 strokes"]
 
 
 def test_the_command_plays_on_fresh_seeds(tmp_path, capsys):

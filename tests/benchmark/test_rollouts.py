@@ -141,15 +141,15 @@ def test_the_cue_balls_place_is_kept_unless_it_was_potted(monkeypatch):
 
     class Kept(SnookerVectorEnv):
         def step(self, actions):
-            found = super().step(actions)
+            outcome = super().step(actions)
             after.append((self.tables.positions[:, 0].copy(), self.tables.on_table[:, 0].copy()))
-            return found
+            return outcome
 
     monkeypatch.setattr(rollouts, "SnookerVectorEnv", Kept)
     s = play_visits("random", 200, noise="club")
-    places, there = (np.stack(column)[s.number, s.visit] for column in zip(*after, strict=True))
-    assert 0 < (~there).sum() < s.foul.sum()
-    assert np.isnan(s.cue[~there]).all() and np.array_equal(s.cue[there], places[there])
+    places, stayed = (np.stack(column)[s.number, s.visit] for column in zip(*after, strict=True))
+    assert 0 < (~stayed).sum() < s.foul.sum()
+    assert np.isnan(s.cue[~stayed]).all() and np.array_equal(s.cue[stayed], places[stayed])
 
 
 # conditions
@@ -166,13 +166,13 @@ def test_an_agent_is_played_under_its_condition(change):
     """Stroke by stroke as ``play_visits`` plays it there; and what is changed changes the play."""
     condition, seeds = USUAL | change, list(range(change.get("seeds", 3), 33))[:20]
     condition.pop("seeds", None)
-    found = protocol.play_agent(protocol.Entrant("a", ("ghost_ball",)), condition, seeds, 100)
+    outcome = protocol.play_agent(protocol.Entrant("a", ("ghost_ball",)), condition, seeds, 100)
     wanted = play_visits("ghost_ball", 20, first_seed=seeds, **condition)
     usual = play_visits("ghost_ball", 20, first_seed=list(range(3, 23)), **USUAL)
-    (strokes,) = found.strokes
+    (strokes,) = outcome.strokes
     for name in ("visit", "number", "points", "foul", "ball_on", "cleared", "cue", "tolerance"):
         assert np.array_equal(getattr(strokes, name), getattr(wanted, name), equal_nan=name == "cue"), name
-    assert found.counted["points"].tolist() == [wanted.a_visit(wanted.points).tolist()]
+    assert outcome.counted["points"].tolist() == [wanted.a_visit(wanted.points).tolist()]
     assert np.array_equal(strokes.cue, usual.cue, equal_nan=True) == (not change)
 
 

@@ -120,8 +120,8 @@ def test_one_stroke_is_an_option_of_a_visit_that_no_planner_minds():
     assert env.step([0.0, 0.0, 0.0, 0.1])[2]
     colours = sn.SnookerEnv(layout="colours", action="discrete", one_stroke=True)
     colours.reset(seed=1)
-    found = sn.Planner(colours, noise="none").play(colours, np.zeros(60, int), np.arange(60))
-    assert (found.goes_on == (found.points > 0)).all() and found.goes_on.any()
+    outcome = sn.Planner(colours, noise="none").play(colours, np.zeros(60, int), np.arange(60))
+    assert (outcome.goes_on == (outcome.points > 0)).all() and outcome.goes_on.any()
     with pytest.raises(ValueError, match='one_stroke = True: must be False with task="frame"'):
         sn.Options(task="frame", one_stroke=True)
 
@@ -214,7 +214,7 @@ def test_a_mirrored_table_is_no_other_table(monkeypatch):
 # ------------------------------------------------------------------------------------------------------------
 
 
-def said(task, before):
+def noted_share(task, before):
     """The share that a task's note names, and as the page of the benchmark and that of the task repeat it
     [%]."""
     (share,) = re.findall(rf"{before} (\d+\.\d) %", task.note)
@@ -237,7 +237,7 @@ def test_what_a_constant_choice_wins():
 
     rows = play_episodes(task, Constant(), task.seeds(task.episodes)).rows
     assert 100 * np.mean([row[2] for row in rows]) == pytest.approx(
-        said(task, "A constant choice wins"), abs=3.0
+        noted_share(task, "A constant choice wins"), abs=3.0
     )
 
 
@@ -245,5 +245,5 @@ def test_how_often_ghost_ball_escapes():
     task = TASKS["SnookerEscape-v0"]
     rows = play_episodes(task, "ghost_ball", task.seeds(task.episodes)).rows
     assert 100 * np.mean([row[2] for row in rows]) == pytest.approx(
-        said(task, "ghost_ball escapes from"), abs=1.0
+        noted_share(task, "ghost_ball escapes from"), abs=1.0
     )
