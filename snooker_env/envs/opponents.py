@@ -86,7 +86,10 @@ def match_tables(options: Options, differences: Any, n: int) -> Frames:
             choice(f"key of seats[{k}]", name, allowed)
         discrete = changes.get("action") == "discrete"
         box_only = dict.fromkeys(("elevation", "placement", "decision"), False) if discrete else {}
-        seats[k] = Seat.of(options.but(**box_only | dict(changes)).rules)
+        try:
+            seats[k] = Seat.of(options.but(**box_only | dict(changes)).rules)
+        except ValueError as error:
+            raise ValueError(f"seats[{k}].{error}") from None
     return made(options, n, seats=seats)
 
 

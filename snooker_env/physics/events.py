@@ -8,14 +8,17 @@ class EventKind(IntEnum):
 
     ``i`` is the ball; ``j`` is the other ball (i < j), the nose, the jaw or the pocket, or -1.
 
-    ========= ====== =============================================================================================
-    BALL_BALL 0      Balls i and j struck each other. CUSHION   1      Ball i struck nose j. JAW       2
-    Ball i struck jaw j. POT       3      Ball i was potted in pocket j. ROLL      4      Ball i stopped
-    sliding; it rolls from now on. STOP      5      Ball i stopped; it may still spin on the spot. DROP      6
-    Ball i flies over the edge of pocket j towards a jaw (else POT); a POT or RETURN follows. RETURN    7
-    Ball i came back on to the bed, over the edge of pocket j. BEND      8      The nap turned rolling ball i:
-    its next piece begins. Only with ``Physics.nap``.
-    ========= ====== =============================================================================================
+    ========= ====== ================================================================================
+    BALL_BALL 0      Balls i and j struck each other.
+    CUSHION   1      Ball i struck nose j.
+    JAW       2      Ball i struck jaw j.
+    POT       3      Ball i was potted in pocket j.
+    ROLL      4      Ball i stopped sliding; it rolls from now on.
+    STOP      5      Ball i stopped; it may still spin on the spot.
+    DROP      6      Ball i flies over the edge of pocket j towards a jaw: a POT or RETURN follows.
+    RETURN    7      Ball i came back on to the bed, over the edge of pocket j.
+    BEND      8      The nap turned rolling ball i: its next piece begins. Only with ``Physics.nap``.
+    ========= ====== ================================================================================
 
     Examples
     --------

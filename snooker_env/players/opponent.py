@@ -75,8 +75,11 @@ def _named(name: str, options: Options) -> Player:
     try:
         return player_of(name, trust=options.trust)
     except ValueError as error:
-        text = str(error).replace("must be one of ", "must be one of 'none', ", 1)
-        raise ValueError(f"opponent{text.removeprefix('player')}") from error
+        text = str(error)
+        if not text.startswith("player = "):  # of what the name stands for
+            raise ValueError(f"opponent = {name!r}: {text}") from error
+        others = text.removeprefix("player").replace("must be one of ", "must be one of 'none', ", 1)
+        raise ValueError(f"opponent{others}") from error
 
 
 def _of_train(name: str) -> bool:

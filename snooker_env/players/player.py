@@ -15,18 +15,26 @@ from numpy.typing import NDArray
 from .._check import refuse, refuse_what
 from .._types import Environment, Floats, Integers, Ints
 from ..game.balls import YELLOW
-from ..game.frame_columns import BALL_ON, PLAY, PLAY_AGAIN
+from ..game.frame_columns import BALL_ON, PLACE_ANYWHERE, PLAY, PLAY_AGAIN, REPLACE
 from ..game.ruling import AUTO
 from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..planning.positions import Positions, PositionsLike
 from ..planning.strokes import NAMES
 from ..planning.trials import AIM, ELEVATION, SIDE, SPEED, TOP
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
-from ..tasks.declarations import CLAIMS, COLOURS, SAYS_NOTHING
+from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options
 
 RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]
 """What ``Player.at`` takes: an environment, an ``Options``, or a dict of its fields."""
+
+
+CODES = {
+    "nominate": (AUTO, 0, *range(YELLOW, YELLOW + COLOURS)),
+    "decision": (PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE),
+    "declare": (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS),
+}
+"""The codes of what is said with a stroke."""
 
 
 @dataclass(frozen=True)
@@ -86,10 +94,19 @@ class Strokes:
         }
         object.__setattr__(self, "values", values)
         for name, default in usual.items():
-            array = default if getattr(self, name) is None else np.asarray(getattr(self, name), default.dtype)
+            array = default if getattr(self, name) is None else np.asarray(getattr(self, name))
             if array.shape != default.shape:
                 raise refuse_what(name, f"array of shape {array.shape}", f"must have shape {default.shape}")
-            object.__setattr__(self, name, array)
+            if name in CODES and not (sound := np.isin(array, CODES[name])).all():
+                k = int(np.argmin(sound))
+                raise refuse(f"{name}[{k}]", array[k].item(), f"must be one of {CODES[name]}")
+            object.__setattr__(self, name, array.astype(default.dtype))
+        sound = np.isnan(self.place).all(1) | (np.abs(self.place) <= (HALF_WIDTH, HALF_LENGTH)).all(1)
+        if not sound.all():
+            k = int(np.argmin(sound))
+            raise refuse(
+                f"place[{k}]", self.place[k].tolist(), "must be on the table, or NaN and NaN for none"
+            )
 
     def __len__(self) -> int:
         return len(self.values)
@@ -138,7 +155,8 @@ class Strokes:
 
         ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. ``at``: the n
         positions, on which the meaning of a place and a nomination depends. ValueError if the environment
-        reads other actions, or a stroke has a part that its actions do not hold."""
+        reads other actions, or a raised cue, a decision or a declaration that they do not hold; a place and a
+        nomination that they do not hold are left out."""
         box = options.rules.actions
         if not isinstance(box, Actions) or box.aim != "absolute":
             what = f"action={options.action!r}, aim={options.aim!r}"

@@ -13,7 +13,7 @@ from typing import Any
 from .._check import refuse, refuse_what, truth
 from .choices import GhostBall, Random
 from .player import Player
-from .search import BUDGET, SearchPlayer
+from .search import BUDGET, LEAST, MOST, SearchPlayer
 
 GROUP = "snooker_env.players"
 """Entry points of this group name players of other packages: NAME = MODULE:MAKER, called without
@@ -30,7 +30,7 @@ OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")
 PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"
 """How names of programs begin, and their player, which is loaded as an entry point is."""
 _SEARCHING = re.compile(
-    r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d{1,7}))?(?:@(.+))?"
+    r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d+))?(?:@(.+))?"
 )
 
 
@@ -127,6 +127,8 @@ def _built_in(name: str) -> Player | None:
         warnings.warn(f"the player {old!r} is called {kind!r} now", DeprecationWarning, stacklevel=3)
     if model is not None and not kind.startswith("planner"):
         raise refuse("player", name, f"must not name a model: {kind} has learned nothing")
+    if budget and not LEAST <= int(budget) <= MOST:
+        raise refuse("player", name, f"must end in a number of simulated shots from {LEAST} to {MOST:,}")
     learned = None if model is None else _learned(model)
     return SearchPlayer(kind, int(budget) if budget else BUDGET, learned)
 

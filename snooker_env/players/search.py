@@ -27,7 +27,9 @@ BUDGET = 120
 KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")
 """``planner_value`` and ``planner_policy`` have one of the planner's two halves: what is each worth?"""
 
-MOST = 40
+LEAST, MOST = 8, 10**7
+"""The fewest and the most simulated shots of a decision."""
+RANKED = 40
 """Most strokes of a ranking."""
 
 
@@ -37,7 +39,7 @@ class SearchPlayer(BoundPlayer):
 
     def __init__(self, kind: str, budget: int = BUDGET, learned: Learned | None = None):
         self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"
-        self.budget = integer("budget", budget, 8, 10**7)
+        self.budget = integer("budget", budget, LEAST, MOST)
         self._learned, self.training_shots = learned, None if kind.startswith("planner") else 0
         self.search: Any = None
         """The ``StrokeSearch`` where it is bound; None before."""
@@ -62,7 +64,7 @@ class SearchPlayer(BoundPlayer):
         at = Positions.of(positions)
         ranked, places = self._ranked(at, seeds)
         met = (ranked.samples > 0).sum(axis=1)
-        most = np.minimum(np.where(met > 0, met, ranked.samples.shape[1]), MOST)
+        most = np.minimum(np.where(met > 0, met, ranked.samples.shape[1]), RANKED)
         return [
             Ranked(Strokes(ranked.strokes[k, :m], np.repeat(places[k : k + 1], m, 0)), ranked.scores[k, :m])
             for k, m in enumerate(most.tolist())

@@ -185,7 +185,7 @@ def test_seeds_of_decisions_depend_on_the_table_and_the_decision_alone():
     ("name", "why"),
     [
         ("nobody", "must be one of 'random'"),
-        ("search_7", "budget"),
+        ("search_7", "must end in a number"),
         ("search@none", "has learned nothing"),
         ("planner@nothing", "policy and value"),
         ("math:sqrt", "math:sqrt"),

@@ -164,7 +164,7 @@ def test_figures_do_not_depend_on_the_company(models, tmp_path):
         (["--agent", "random", "--physics", "paper,R=0.03"], "physics = 'paper,R=0.03': must leave R"),
         (["--agent", "random", "--physics", "paper,mu_s=0"], "physics.mu_s = 0.0: must be > 0"),
         (["--agent", "random", "--physics", "paper,mu_r=0"], "physics.mu_r = 0.0: must be > 0"),
-        (["--agent", "search_1"], "budget = 1: must be an integer in \\[8"),
+        (["--agent", "search_1"], "player = 'search_1': must end in a number of simulated shots from 8"),
         (["--agent", "random", "--json", "tests"], "json = 'tests': must be a file"),
         (
             ["--agent", "random", "--json", "pyproject.toml/r.json"],
