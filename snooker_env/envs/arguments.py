@@ -36,8 +36,11 @@ def seeds_of(seed: Any, n: int) -> list[int | None]:
         return [None] * n
     if isinstance(seed, (int, np.integer)):
         return [int(seed) + k for k in range(n)]
-    if not isinstance(seed, (list, tuple, np.ndarray)) or len(seed) != n:
-        raise refuse("seed", seed, f"must be an int, None, or {n} of them")
+    allowed = f"must be an int, None, or {n} of them"
+    if not isinstance(seed, (list, tuple, np.ndarray)):
+        raise refuse("seed", seed, allowed)
+    if len(seed) != n:
+        raise refuse_what("seed", f"{len(seed)} seeds", allowed)
     return list(seed)
 
 

@@ -53,7 +53,7 @@ def test_an_opponents_error_names_the_opponent(opponent, says):
 
 def test_a_budget_that_is_none_names_the_player():
     with pytest.raises(
-        ValueError, match="^player = 'planner_0': must end in a number of simulated shots from 8"
+        ValueError, match=r"^player = 'planner_0': must end in a number of simulated shots from 8"
     ):
         sn.player("planner_0")
 
@@ -64,5 +64,5 @@ def test_errors_of_a_seat_name_it():
 
 
 def test_a_seed_that_is_no_number_is_refused():
-    with pytest.raises(ValueError, match="^seed = 1.5: must be an int, None, or 2 of them"):
+    with pytest.raises(ValueError, match=r"^seed = 1\.5: must be an int, None, or 2 of them"):
         sn.SnookerVectorEnv(2).reset(seed=1.5)
