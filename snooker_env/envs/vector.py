@@ -251,7 +251,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def close_extras(self, **kwargs: Any) -> None:
         """End the threads; called by ``close``."""
-        self._crew.shutdown()
+        if hasattr(self, "_crew"):  # not if the constructor refused its options
+            self._crew.shutdown()
 
     @property
     def threads(self) -> int:
