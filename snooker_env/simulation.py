@@ -256,7 +256,7 @@ class _Run:
         return events
 
 
-def log_space(b, log_size, path_size):
+def log_space(b: int, log_size: int, path_size: int) -> Log:
     """A ``Log`` of b shots."""
     return Log(
         np.zeros((b, log_size)), np.zeros((b, log_size, 3), np.int32), np.zeros((b, path_size, cloth.SEGMENT))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from .._shots import simulated
 from .._types import Bools, Floats, Ints
 from ..envs.vector import SnookerVectorEnv
-from ..players import FRAMES, VISITS, decided, decision_seeds
+from ..players import FRAMES, VISITS, Player, decided, decision_seeds
 from ..players import player as player_named
 from .tasks import Task
 
@@ -80,8 +80,10 @@ class Decider:
     """A player at tables: what it decides is rounded, kept and timed, and its simulated shots are counted."""
 
     def __init__(self, player: Any, tables: SnookerVectorEnv, seeds: Any, seed: int):
-        self.player = player_named(player).at(tables)
-        self.decisions, self.seconds, self.simulated = 0, 0.0, 0
+        self.player: Player = player_named(player).at(tables)
+        self.decisions: int = 0
+        self.seconds: float = 0.0
+        self.simulated: int = 0
         self._tables, self._seeds, self._seed = tables, np.asarray(seeds, np.int64), seed
         self._log: list[tuple[Ints, NDArray[np.float32]]] = []
 

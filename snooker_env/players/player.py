@@ -29,7 +29,7 @@ RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]
 """What ``Player.at`` takes: an environment, an ``Options``, or a dict of its fields."""
 
 
-CODES = {
+CODES: dict[str, tuple[int, ...]] = {
     "nominate": (AUTO, 0, *range(YELLOW, YELLOW + COLOURS)),
     "decision": (PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE),
     "declare": (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS),

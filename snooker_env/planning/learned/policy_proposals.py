@@ -6,11 +6,14 @@ sampled systematically: a choice with a share of 10 % gets 10 % of the strokes. 
 the choice's cell of speed, side and top by a Sobol point, so that the grid does not limit the search.
 """
 
+from typing import Any
+
 import numpy as np
 
 from ...tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
 from ...tasks.discrete_actions import SIZE as CHOICES
-from ..proposals import strokes_at
+from ..positions import Positions
+from ..proposals import Proposals, strokes_at
 from ..sobol import sobol_points
 from ..strokes import action_masks
 from .pot_view import with_pots
@@ -27,15 +30,15 @@ _SIDE_STEP, _TOP_STEP = _SIDES[1] - _SIDES[0], _TOPS[1] - _TOPS[0]
 class PolicyProposals:
     """The proposals of a ``StrokeSearch`` by a ``StrokePolicy`` on tables as ``with_pots`` shows them."""
 
-    def __init__(self, policy):
+    def __init__(self, policy: Any):
         self.policy = policy
 
-    def scores(self, at):
+    def scores(self, at: Positions) -> Any:
         """Scores of all choices in n ``Positions``: float32 (n, CHOICES), and which are available."""
         masks = action_masks(at)
         return self.policy.scores(with_pots(at.observations()), masks), masks
 
-    def __call__(self, search, at, m, seeds):
+    def __call__(self, search: Any, at: Positions, m: int, seeds: Any) -> Proposals:
         """m strokes for each position, as ``StrokeSearch`` wants them."""
         scores, masks = self.scores(at)
         likely = np.where(masks, np.exp((scores - scores.max(axis=1, keepdims=True)) / TEMPERATURE), 0.0)

@@ -2,6 +2,7 @@
 pots."""
 
 from math import hypot, log10
+from typing import Any
 
 import numpy as np
 from gymnasium import spaces
@@ -25,7 +26,7 @@ TOLERANCE = 7
 """The entry that shows the tolerance, see ``tolerance_of``."""
 
 
-def tolerance_of(shown):
+def tolerance_of(shown: Any) -> Any:
     """The tolerance [rad] of a pot whose entry ``TOLERANCE`` is this (array or tensor)."""
     return 10.0 ** (2.0 * (shown - 1.0))
 
@@ -64,7 +65,7 @@ def _add_pots(observations, shown):
                 row[c] = min(1.0, max(-1.0, row[c]))
 
 
-def with_pots(observations):
+def with_pots(observations: Any) -> Any:
     """Flat observations (n, OBSERVATION_SIZE), then ``POT_ENTRIES`` of each of the four widest pots.
 
     1, direction cue ball -> ghost ball (x, y), sine and cosine of the cut, both distances, tolerance, the
