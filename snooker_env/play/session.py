@@ -24,11 +24,10 @@ from ..planning.position import Position
 from ..planning.positions import Positions
 from ..players import Strokes
 from ..simulation import SimulationError
-from ..tasks.frame import Frames
+from ..tasks.frame import Frames, Seat
 from ..tasks.noise import LEVELS
 from ..tasks.options import Options
 from ..tasks.played import Played
-from ..tasks.seats import Seat
 from ..tasks.states import FrameState
 from ..tasks.stroke import ShotBuffers
 from ..tasks.tables import Crew

@@ -13,8 +13,8 @@ from ..game.frame_columns import Layouts
 from ..game.sides import strikers_own
 from ..planning import Positions
 from ..tasks.carry_out import carry_out
-from ..tasks.frame import Frames
-from ..tasks.opponents import SIDE, Opponent, drawn
+from ..tasks.frame import Frames, Opponent
+from ..tasks.opponents import SIDE, drawn
 from ..tasks.options import Options
 from ..tasks.saved_models import by_train, entries
 from ..tasks.stroke import ShotBuffers

@@ -1,6 +1,6 @@
 """How are players' strokes carried out in frames? What is said with each, its place, the strike."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -35,12 +35,10 @@ from .declarations import (
     may_declare,
     nominated_ball,
 )
+from .frame import Frames
 from .frame_kernels import choose_as, give_up
 from .rewards import MATCH_REWARDS
 from .stroke import ShotBuffers, place, place_anywhere, strike
-
-if TYPE_CHECKING:
-    from .frame import Frames
 
 
 @entry(what="the strokes of players in frames", seconds=3)
@@ -85,7 +83,7 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
     return m
 
 
-def carry_out(frames: "Frames", which: Ints, asked: tuple[Any, ...], buffers: ShotBuffers, side: int) -> Ints:
+def carry_out(frames: Frames, which: Ints, asked: tuple[Any, ...], buffers: ShotBuffers, side: int) -> Ints:
     """Carry out the strokes ``asked``, arrays of ``players.Strokes``, up to the strike, with the errors of the
     seat ``side``; returns the tables with a stroke."""
     playing, codes = (

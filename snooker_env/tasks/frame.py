@@ -13,7 +13,9 @@ nearest to its usual one (``balls.SPOTS``), so that it can be seen; the player m
 physics is planar: no ball leaves the table or jumps over another, so those fouls never occur.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -45,15 +47,55 @@ from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
 from . import frame_kernels
 from .attempts import judge_attempts, remember
+from .box_actions import Actions
 from .declarations import A_LOT
+from .discrete_actions import Choices
 from .frame_kernels import AGENT
+from .noise import Noise
 from .observations import FRAME_SIZE, REPLACED_SIZE
 from .options import NEVER, Options, Rules
 from .rewards import MATCH_REWARDS
-from .seats import Seat
 from .states import FrameState, checked_frame
 from .stroke import ShotBuffers
 from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
+
+
+class Opponent(ABC):
+    """Who plays the other side of frames."""
+
+    name: str = ""
+
+    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Any:
+        """What it plays on the tables ``which``, for ``prepare``; None for one that plays as a kernel."""
+        return None
+
+    @abstractmethod
+    def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
+        """Carry the strokes out up to the strike; returns the tables with a stroke."""
+
+    def turns(
+        self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]
+    ) -> "list[tuple[Opponent, Ints, Any]]":
+        """Who plays on which of the tables ``which``, and what: [(opponent, tables, asked), ...]."""
+        return [(self, which, self.ask(frames, which, generators))]
+
+
+@dataclass(frozen=True)
+class Seat:
+    """One side of frames; ``player`` None: whoever calls ``Frames`` decides."""
+
+    actions: Actions | Choices
+    noise: Noise
+    player: Opponent | None = None
+
+    @classmethod
+    def of(cls, rules: Rules, player: Opponent | None = None) -> "Seat":
+        """The seat with the actions and errors of ``rules``."""
+        return cls(rules.actions, rules.noise, player)
+
+    def packed(self, rules: Rules) -> tuple[Any, Any, Any]:
+        """``Rules.packed`` with this seat's actions and errors."""
+        return replace(rules, actions=self.actions, noise=self.noise).packed()
 
 
 class Frames(Tables):

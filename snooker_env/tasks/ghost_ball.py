@@ -1,7 +1,7 @@
 """How does the opponent "ghost_ball" play? The widest direct pot, softly; without one, a plain stroke."""
 
 from math import atan2, cos, hypot, sin, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -32,13 +32,11 @@ from ..physics.cue import squirt
 from .arrays import StruckArrays
 from .declarations import A_END_MASS, A_NOMINATE, nominated_ball
 from .escapes import ROLL
+from .frame import Frames, Opponent
 from .lines import LINE_ROWS, racked
-from .opponents import SIDE, Opponent
+from .opponents import SIDE
 from .plain_stroke import BREAK_X, SLIDE, break_off, plain, soft
 from .stroke import ShotBuffers, place, place_anywhere, strike
-
-if TYPE_CHECKING:
-    from .frame import Frames
 
 _PLACES = tuple(
     (x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8)
@@ -229,7 +227,7 @@ class GhostBallOpponent(Opponent):
       more: two exact players cannot repeat one failing stroke for ever.
     """
 
-    def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
+    def prepare(self, frames: Frames, which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
         """See ``Opponent.prepare``."""
         _ghost_ball(which, frames.arrays, buffers.struck, frames.packs[SIDE], frames.rules.rule_set.code)
         frames.hold_late(which, buffers)

@@ -1,17 +1,15 @@
 """How does one train against several opponents? One is drawn for each frame, from the table's own stream."""
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from .._check import integer, number, refuse
 from .._types import Ints
 from ..game.frame_columns import OPPONENT
-from .opponents import Opponent, drawn
-
-if TYPE_CHECKING:
-    from .frame import Frames
+from .frame import Frames, Opponent
+from .opponents import drawn
 
 
 class OpponentPool:
@@ -100,12 +98,12 @@ class PoolOpponent(Opponent):
             except ValueError as error:
                 raise ValueError(f"members[{k}] of the OpponentPool: {error}") from error
 
-    def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: Any) -> Ints:
+    def prepare(self, frames: Frames, which: Ints, asked: Any, buffers: Any) -> Ints:
         """Nothing: its members play."""
         return which[:0]
 
     def turns(
-        self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]
+        self, frames: Frames, which: Ints, generators: Sequence[np.random.Generator]
     ) -> list[tuple[Opponent, Ints, Any]]:
         """See ``Opponent.turns``: one entry for each member that plays."""
         self._complete()

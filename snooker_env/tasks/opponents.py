@@ -1,9 +1,8 @@
 """Who plays the other side of a frame? ``ask`` is called once for all tables at which it is the opponent's
 turn, in Python; ``prepare`` then carries what it returned out up to the strike, on several threads."""
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -13,35 +12,13 @@ from .._types import Action, Floats, Ints, Observation
 from ..game.philox import pair
 from . import observations
 from .discrete_actions import Choices
+from .frame import Frames, Opponent
 from .stroke import ShotBuffers
-
-if TYPE_CHECKING:
-    from .frame import Frames
 
 Policy: TypeAlias = Callable[[Observation, np.random.Generator], Action]
 """A player in Python: maps the observation from its own side of the table, and a generator, to an action."""
 SIDE = 1
 """Index of the opponent in the frame, and of its seat."""
-
-
-class Opponent(ABC):
-    """Who plays the other side of frames."""
-
-    name: str = ""
-
-    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Any:
-        """What it plays on the tables ``which``, for ``prepare``; None for one that plays as a kernel."""
-        return None
-
-    @abstractmethod
-    def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
-        """Carry the strokes out up to the strike; returns the tables with a stroke."""
-
-    def turns(
-        self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]
-    ) -> "list[tuple[Opponent, Ints, Any]]":
-        """Who plays on which of the tables ``which``, and what: [(opponent, tables, asked), ...]."""
-        return [(self, which, self.ask(frames, which, generators))]
 
 
 @entry
@@ -58,7 +35,7 @@ class AskedOpponent(Opponent):
     def __init__(self, policy: Policy):
         self.policy = policy
 
-    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
+    def ask(self, frames: Frames, which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
         """See ``Opponent.ask``: (n, k). ValueError, naming "opponent's action", for an invalid one."""
         actions, k_of = frames.seats[SIDE].actions, which.tolist()
         seen = frames.observe(which, SIDE)
@@ -71,7 +48,7 @@ class AskedOpponent(Opponent):
                 raise ValueError(f"opponent's {error}") from None
         return out
 
-    def prepare(self, frames: "Frames", which: Ints, asked: Floats, buffers: ShotBuffers) -> Ints:
+    def prepare(self, frames: Frames, which: Ints, asked: Floats, buffers: ShotBuffers) -> Ints:
         """See ``Opponent.prepare``."""
         return frames.prepare(which, asked, buffers, SIDE)
 

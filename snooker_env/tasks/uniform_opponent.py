@@ -1,7 +1,6 @@
 """How does the built-in opponent "random" play? Uniformly: any action, or one of the available choices."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +10,9 @@ from ..game.philox import pair
 from .declarations import COLOURS
 from .discrete_actions import SIZE as CHOICES
 from .discrete_actions import Choices
-from .opponents import SIDE, Opponent
+from .frame import Frames, Opponent
+from .opponents import SIDE
 from .stroke import ShotBuffers
-
-if TYPE_CHECKING:
-    from .frame import Frames
 
 
 @entry(what="uniform play", seconds=1)
@@ -50,11 +47,11 @@ def _uniform_choice(which, streams, masks, actions):
 class UniformOpponent(Opponent):
     """Uniform random play: every component of a box action, or an available choice, but it never concedes."""
 
-    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
+    def ask(self, frames: Frames, which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
         """Empty actions: ``prepare`` draws them from each table's own stream."""
         return np.empty((frames.n, frames.seats[SIDE].actions.size))
 
-    def prepare(self, frames: "Frames", which: Ints, asked: Floats, buffers: ShotBuffers) -> Ints:
+    def prepare(self, frames: Frames, which: Ints, asked: Floats, buffers: ShotBuffers) -> Ints:
         """See ``Opponent.prepare``."""
         reads = frames.seats[SIDE].actions
         if isinstance(reads, Choices):
