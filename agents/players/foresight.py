@@ -13,7 +13,7 @@ class ForesightRule(ChoicePlayer):
     """The observation of ``ppo_foresight``, scored by a rule instead of a network: mean points plus the mean
     value of the afterstates."""
 
-    name = "foresight_rule"
+    name, training_shots = "foresight_rule", 0
 
     def _bind(self, options):
         super()._bind(options)

@@ -19,7 +19,7 @@ class Geometric(BoundPlayer):
         Cue speed [m/s] of its first attempt.
     """
 
-    name = "geometric"
+    name, training_shots = "geometric", 0
 
     def __init__(self, speed=2.3):
         self._speed = speed

@@ -186,8 +186,9 @@ def _differences(value: Any, want: Any, name: str = "") -> list[str]:
 
 
 def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
-    """Do known players begin as in the file, and is it called planning if they simulate shots?"""
+    """Do known players begin as in the file, and do class, shots and training fit them?"""
     agent, many, wrong = result["agent"], result["protocol"]["episodes"], []
+    shots, simulated = result["timing"]["simulated_shots"], 0
     for run, source in enumerate(agent["sources"]):
         first = min(BATCH, len(strokes) - run * many, many)
         if first <= 0 or not is_known(source):
@@ -205,8 +206,21 @@ def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: in
                     f"strokes: run {run}, table {seeds[k]}: {source} begins with another stroke than the file"
                 )
                 break
-        wrong += _of_class(result, shortened(source), decide)
+        wrong += _of_class(result, shortened(source), decide) + _of_training(agent, source, decide)
+        simulated += decide.simulated
+    if shots < simulated:
+        least = f"must be at least {simulated}, which the first strokes alone take"
+        wrong.append(f"timing.simulated_shots = {shots}: {least}")
     return _elsewhere(result, wrong)
+
+
+def _of_training(agent: dict[str, Any], source: str, decide: Decider) -> list[str]:
+    """Are the shots of training those that the player itself says, and not 0 if it does not say so?"""
+    shots, its = agent["training_shots"], getattr(decide.player, "training_shots", None)
+    if shots == its or (its is None and shots != 0):
+        return []
+    must = "more than 0: something was learned" if its is None else f"{its}, as {source} says"
+    return [f"agent.training_shots = {shots}: must be {must}"]
 
 
 def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None) -> list[str]:

@@ -29,7 +29,7 @@ from snooker_env.benchmark import (
     write_result,
 )
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.results import packed, strokes_of
+from snooker_env.benchmark.results import completed, packed, strokes_of
 from snooker_env.benchmark.schema import DATE, FIELDS, PACKAGES, UNPROVED
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import pot_aim, pots
@@ -131,15 +131,38 @@ def test_simulated_shots_that_the_agent_does_not_need():
     assert replayed(record, random, 4) == ["timing.simulated_shots = 8: must be 0, as the agent played again"]
 
 
-@pytest.mark.parametrize("name", ["search_30", "planner_30", "foresight_rule"])
-def test_a_known_planner_is_not_model_free(name):
+@pytest.mark.parametrize(
+    ("name", "training"), [("search_30", 0), ("planner_30", 10**7), ("foresight_rule", 0)]
+)
+def test_a_known_planner_is_not_model_free(name, training):
     """Its own strokes, as if no shot had been simulated for them."""
-    record = judge(HARD, Agent.of(name, training_shots=0), episodes=4)
+    record = judge(HARD, Agent.of(name, training_shots=training), episodes=4)
     assert faults(record) == [] and record["agent"]["class"] == "planning"
     record["timing"]["simulated_shots"] = 0
     record["agent"] |= {"simulated_shots": 0.0, "class": "model_free"}
-    (line,) = faults(record)
-    assert line.startswith(f"agent.class = 'model_free': must be 'planning': '{name}' simulated ")
+    kind, shots = faults(record)
+    assert kind.startswith(f"agent.class = 'model_free': must be 'planning': '{name}' simulated ")
+    assert shots.startswith("timing.simulated_shots = 0: must be at least ")
+
+
+@pytest.mark.parametrize(
+    ("name", "training", "says"),
+    [
+        ("search_30", 50_000_000, "agent.training_shots = 50000000: must be 0, as search_30 says"),
+        ("planner_30", 0, "agent.training_shots = 0: must be more than 0: something was learned"),
+    ],
+)
+def test_known_players_were_trained_as_they_say(name, training, says):
+    record = judge(HARD, Agent(label=name, sources=(name,), training_shots=training), episodes=3)
+    assert faults(record) == [says]
+
+
+def test_a_known_planner_simulates_what_its_first_strokes_take():
+    record = judge(HARD, Agent.of("search_30"), episodes=3)
+    assert faults(record) == []
+    record["timing"]["simulated_shots"] = 1
+    (line,) = faults(completed(record, HARD))
+    assert line.startswith("timing.simulated_shots = 1: must be at least ")
 
 
 @pytest.mark.parametrize("label", ["r\u0430ndom", "RANDOM", "Random", "random.", "ghost-ball"])
