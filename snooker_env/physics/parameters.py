@@ -11,9 +11,10 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from .._check import choice, number, refuse
+from .._check import choice, number, refuse, truth
 from .._types import Floats, PhysicsName
 from ..geometry import BALL_RADIUS
+from .impact.tables import SIZE, Rolling, table_of
 
 MARLOW = (9.951e-3, 0.108, 1.088)
 """Marlow's law of ball-ball friction, mu(s) = a + b exp(-c s), s the slip speed in m/s."""
@@ -51,7 +52,11 @@ _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
     P_SIN,
     P_E_J,
     P_NAP,
-) = range(17)
+    P_RAIL,
+    P_JAW,
+    P_BALLS,
+) = range(20)
+"""P_RAIL, P_JAW, P_BALLS: where the tables of rolling impacts begin behind these (``tables.py``); 0: none."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,6 +109,10 @@ class Physics:
         Ball mass over the cue's effective end mass, >= 0; it determines the squirt [TP A.31].
     max_offset : float
         Tip offset over R beyond which the tip slips (miscue), in (0, 0.999] [TP A.30].
+    tables : bool
+        Whether impacts of rolling balls come from tables, but for "reference" and "euler:N": faster and more
+        accurate. Those of the presets are stored; other constants make theirs at their first use, about 30 ms
+        (and 10 s, once, to compile what makes them). False: no tables; for constants that are used for few shots.
 
     Raises
     ------
@@ -134,6 +143,7 @@ class Physics:
     sin_theta: float = 0.4
     end_mass_ratio: float = 30.0
     max_offset: float = 0.5
+    tables: bool = True
 
     def __post_init__(self) -> None:
         low_high = {
@@ -169,6 +179,7 @@ class Physics:
         if self.e_j is not None:
             object.__setattr__(self, "e_j", number("physics.e_j", self.e_j, 0, 1))
         object.__setattr__(self, "mu_bb", _mu_bb(self.mu_bb))
+        object.__setattr__(self, "tables", truth("physics.tables", self.tables))
         if self.e_c_power > 0 and self.e_c_knee < _LEAST_KNEE:
             allowed = f"must be at least {_LEAST_KNEE:g} m/s where e_c_power > 0: above it e(v) = e_c (v / e_c_knee)^(-e_c_power)"
             raise refuse("physics.e_c_knee", self.e_c_knee, allowed)
@@ -238,31 +249,44 @@ class Physics:
         return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
 
     def pack(self) -> Floats:
-        """The constants for the kernels: float64 (17,), at the places ``P_*`` of this module, SI units."""
-        return self._packed.copy()
+        """The constants for the kernels, which only read them: one array, the same at each call.
+
+        float64 (20 + m,): the constants at the places ``P_*`` of this module, SI units, then the tables of rolling
+        impacts, which are made now if they are not a preset's.
+        """
+        return self._packed
 
     @cached_property
     def _packed(self) -> Floats:
-        """One array for all kernels, which only read it."""
-        return np.array(
-            [
-                self.R,
-                self.M,
-                self.g,
-                self.mu_s,
-                self.mu_r,
-                self.spin_decel,
-                self.e_b,
-                *self.friction_law,
-                self.e_c,
-                self.e_c_knee,
-                self.e_c_power,
-                self.mu_c,
-                self.sin_theta,
-                self.e_c if self.e_j is None else self.e_j,
-                self.nap,
-            ]
-        )
+        law, e_j = self.friction_law, self.e_c if self.e_j is None else self.e_j
+        places, made = {}, []
+        if self.tables:
+            rolling = {P_RAIL: Rolling(self.sin_theta, self.mu_c, self.mu_s, self.e_c)}
+            rolling[P_JAW] = rolling[P_RAIL]._replace(e=e_j)
+            if law[1] == 0.0:
+                rolling[P_BALLS] = Rolling(-1.0, law[0], self.mu_s, self.e_b)
+            distinct = list(dict.fromkeys(rolling.values()))
+            made = [table_of(r) for r in distinct]
+            places = {place: P_BALLS + 1 + SIZE * distinct.index(r) for place, r in rolling.items()}
+        constants = [
+            self.R,
+            self.M,
+            self.g,
+            self.mu_s,
+            self.mu_r,
+            self.spin_decel,
+            self.e_b,
+            *law,
+            self.e_c,
+            self.e_c_knee,
+            self.e_c_power,
+            self.mu_c,
+            self.sin_theta,
+            e_j,
+            self.nap,
+            *(places.get(place, 0) for place in (P_RAIL, P_JAW, P_BALLS)),
+        ]
+        return np.concatenate([constants, *made])
 
 
 PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None

@@ -104,7 +104,7 @@ impacts: ``_REACH`` doubled 2.1 times the steps, halved 12 % more; ``_STABLE`` h
 more."""
 _TINY = 1e-300
 """Keeps a quotient of zeros finite."""
-_NONE = Impulses(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NO_IMPULSE = Impulses(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class Accuracy(NamedTuple):
@@ -118,6 +118,10 @@ class Accuracy(NamedTuple):
     """A slip that begins keeps its limiting direction until it exceeds this."""
     order: int
     """The highest order of the Taylor series."""
+
+
+REFERENCE = Accuracy(tol=1e-13, delta=1e-13, creep=1e-5, order=20)
+"""Of the fidelity "reference": errors below 1e-9 of the larger incoming speed."""
 
 
 class Outlook(NamedTuple):
@@ -169,15 +173,15 @@ def _first_state(s, outlook, limits, problem):
     if s > limits.delta:
         mode, h = SLIP, min(outlook.p_full / s, _FIRST * outlook.h_slip)
     else:
-        mode, h = _stick_or_creep(_NONE, near, cloth, problem), outlook.p_full
-    per = _NONE
+        mode, h = _stick_or_creep(NO_IMPULSE, near, cloth, problem), outlook.p_full
+    per = NO_IMPULSE
     if not (outlook.analytic and mode == SLIP):
-        per = rates(_NONE, mode, near, cloth, problem)
-        if cloth == GRIPS and not grip_holds(per, _NONE, problem):
+        per = rates(NO_IMPULSE, mode, near, cloth, problem)
+        if cloth == GRIPS and not grip_holds(per, NO_IMPULSE, problem):
             cloth = STARTS
             if s <= limits.delta:
-                mode = _stick_or_creep(_NONE, near, cloth, problem)
-            per = rates(_NONE, mode, near, cloth, problem)
+                mode = _stick_or_creep(NO_IMPULSE, near, cloth, problem)
+            per = rates(NO_IMPULSE, mode, near, cloth, problem)
     return mode, cloth, per, h
 
 
@@ -253,7 +257,7 @@ def solve(problem, accuracy, series):
     slip = problem.start
     s = sqrt(slip.a1 * slip.a1 + slip.a2 * slip.a2)
     mode, cloth, per, h = _first_state(s, outlook, limits, problem)
-    now, target, located = Moment(_NONE, slip, per), Target(True, 0.0, 0.0), False
+    now, target, located = Moment(NO_IMPULSE, slip, per), Target(True, 0.0, 0.0), False
     for n in range(_MAX_STEPS):
         # Advance: one step from now, unless it must be shorter.
         by_series = outlook.analytic and mode == SLIP
