@@ -79,6 +79,21 @@ def _take(typing_context, x, k):
     )
 
 
+def _no_more(typing_context, x, y):
+    def make(context, builder, signature, arguments):
+        flags = builder.fcmp_ordered("<=", *arguments)
+        return builder.zext(builder.bitcast(flags, ir.IntType(LANES)), ir.IntType(64))
+
+    return types.int64(_LANES, _LANES), make
+
+
+def _lesser(typing_context, x, y):
+    def make(context, builder, signature, arguments):
+        return builder.select(builder.fcmp_ordered("<", *arguments), *arguments)
+
+    return _LANES(_LANES, _LANES), make
+
+
 class _Both(ConcreteTemplate):
     cases = [signature(_LANES, _LANES, _LANES)]  # noqa: RUF012 - numba's own convention
 
@@ -97,14 +112,20 @@ lower_builtin(operator.mul, _Lanes, _Lanes)(
 lanes: Any = intrinsic(_make)
 """Four numbers side by side."""
 lanes_at: Any = intrinsic(_load)
-"""The numbers i to i + 3 of a float64 array in one piece; ends are not checked."""
+"""The numbers i to i + 3 of a float64 array, of several axes too, in one piece; ends are not checked."""
 put_lanes: Any = intrinsic(_store)
 """Writes x to the places i to i + 3 of such an array; ends are not checked."""
 lane: Any = intrinsic(prefer_literal=True)(_take)
 """Number k of the four; k is a constant."""
+no_more: Any = intrinsic(_no_more)
+"""An integer whose bit k is 1 where lane k of x is at most that of y."""
+lesser: Any = intrinsic(_lesser)
+"""The lesser of two numbers in each lane."""
 
 if getattr(config, "DISABLE_JIT", 0):
     lanes = lambda a, b, c, d: np.array([a, b, c, d])  # noqa: E731
-    lanes_at = lambda array, i: array[i : i + LANES].copy()  # noqa: E731
+    lanes_at = lambda array, i: array.ravel()[i : i + LANES].copy()  # noqa: E731
+    no_more = lambda x, y: int((x <= y) @ (1 << np.arange(LANES)))  # noqa: E731
+    lesser = np.minimum
     put_lanes = lambda array, i, x: operator.setitem(array, slice(i, i + LANES), x)  # noqa: E731
     lane = operator.getitem

@@ -32,6 +32,8 @@ class Setup(NamedTuple):
     boundaries: Boundaries
     reach: np.ndarray
     """(2, 2): the lowest and highest x and y that a ball's centre may have [m]."""
+    clear: tuple[float, float, float, float]
+    """``detection.clear_box``."""
 
 
 class Balls(NamedTuple):
@@ -82,16 +84,21 @@ class Motions(NamedTuple):
 
 
 class Forecast(NamedTuple):
-    """The next events of each ball, from the present motions. A time of inf means that there is none."""
+    """The paths' bounds, and the next events of each ball. A time of inf means that there is none.
 
+    m is n, rounded up to a multiple of ``LANES``; columns from n on stay as those of balls off the table.
+    """
+
+    bounds: np.ndarray
+    """(4, m) the lowest and highest x, and y, of each ball's present path [m]; inf, -inf off the table."""
     pair: np.ndarray
-    """(n, n) times at which two balls meet [s]."""
+    """(n, m) times at which two balls meet [s]."""
     best_time: np.ndarray
-    """(n,) the earliest time of each row of ``pair`` [s]."""
+    """(m,) the earliest time of each row of ``pair`` [s]."""
     best_ball: np.ndarray
     """(n,) the other ball of that meeting; -1 if there is none."""
     alone_time: np.ndarray
-    """(n,) time of the next event without another ball [s]."""
+    """(m,) time of the next event without another ball [s]."""
     alone_kind: np.ndarray
     """(n,) kind of that event."""
     alone_index: np.ndarray

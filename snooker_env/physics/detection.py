@@ -100,17 +100,6 @@ def _rolls_onto(dx, dy, vx, vy, ax, ay, d):
 
 
 @kernel
-def may_meet(lo_x, hi_x, lo_y, hi_y, motion, j):
-    """Whether ball j's path has a place in the rectangle [m], by its bounds.
-
-    Indices, no rows: numba counts references to rows, slower than the arithmetic. ``&``: one branch, not
-    four.
-    """
-    beside = (lo_x <= motion[j, HI_X]) & (motion[j, LO_X] <= hi_x)
-    return beside & (lo_y <= motion[j, HI_Y]) & (motion[j, LO_Y] <= hi_y)
-
-
-@kernel
 def pair_time(motion, state, i, j, t, d):
     """Absolute time of the next contact of i and j in their phases [s]; t: now; d: distance then."""
     ti, tj = t - motion[i, T0], t - motion[j, T0]

@@ -9,11 +9,12 @@ from math import inf, sqrt
 import numpy as np
 
 from .._jit import entry, inlined, kernel
+from .._lanes import LANES, lane, lanes, lanes_at, lesser, no_more
 from . import cloth, events, pocket
 from .arrays import Balls, Boundaries, Forecast, Law, Log, Motions, Setup
 from .cloth import FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, WZ, X, Y
 from .columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_SIDE
-from .detection import HELD, TOUCH, boundary_event, clear_box, may_meet, pair_time
+from .detection import HELD, TOUCH, boundary_event, clear_box, pair_time
 from .events import EventKind as EventKind  # for the layers above
 from .events import Status as Status
 from .impact.contact import collide_balls, collide_cushion
@@ -21,6 +22,9 @@ from .impact.polynomial import WORK
 from .meetings import meet, rebound
 from .parameters import P_R, P_SIN, P_SPIN
 from .placement import SOUND, place_fault
+
+_LATEST = 1.7e308
+"""Every time of a meeting is below."""
 
 
 @kernel
@@ -43,49 +47,89 @@ def _begin_again(paths, i, t, r, v, w, boundaries, phys):
 
 
 @kernel
+def _earliest(times, start):
+    """The least of a row of times, from ``start`` in the array on, and its first index in the row."""
+    size = times.shape[-1]
+    least = lanes_at(times, start)
+    for k in range(start + LANES, start + size, LANES):
+        least = lesser(lanes_at(times, k), least)
+    t = min(min(lane(least, 0), lane(least, 1)), min(lane(least, 2), lane(least, 3)))
+    return t, _first(times, start, t, 0)
+
+
+@kernel
+def _first(times, start, t, k):
+    """The first index from k, a multiple of ``LANES``, whose time is not after t, the row's least or more."""
+    latest = lanes(t, t, t, t)
+    while True:
+        which = no_more(lanes_at(times, start + k), latest)
+        if which:
+            while not which & 1:
+                which >>= 1
+                k += 1
+            return k
+        k += LANES
+
+
+@kernel
 def _rescan(pair, best_time, best_ball, i):
     """Ball i's earliest partner from the stored pair times; in a tie the lower index."""
-    n = pair.shape[0]
-    time, ball = inf, -1
-    for j in range(n):
-        if pair[i, j] < time:
-            time, ball = pair[i, j], j
-    best_time[i], best_ball[i] = time, ball
+    time, ball = _earliest(pair, i * pair.shape[1])
+    best_time[i], best_ball[i] = time, ball if time < inf else -1
+
+
+@kernel
+def _bound(bounds, i, lo_x, hi_x, lo_y, hi_y):
+    """Keep the bounds of ball i's path [m]."""
+    bounds[0, i], bounds[1, i], bounds[2, i], bounds[3, i] = lo_x, hi_x, lo_y, hi_y
 
 
 @kernel
 def _predict(paths, i, t, boundaries, clear, forecast):
     """Ball i has a new motion at time t: predict all its events, and correct its partners' rows."""
     motion, state, flight = paths
-    pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
-    n = pair.shape[0]
-    still = state[i] == REST
+    bounds, pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
+    still, m = state[i] == REST, pair.shape[1]
     d = 2.0 * boundaries.R + TOUCH
-    lo_x, hi_x, lo_y, hi_y = (
-        motion[i, LO_X] - d,
-        motion[i, HI_X] + d,
-        motion[i, LO_Y] - d,
-        motion[i, HI_Y] + d,
-    )
+    lo_x, hi_x, lo_y, hi_y = motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y]
+    _bound(bounds, i, lo_x, hi_x, lo_y, hi_y)
+    lo_x, hi_x, lo_y, hi_y = lo_x - d, hi_x + d, lo_y - d, hi_y + d
+    lows_x, highs_x = lanes(lo_x, lo_x, lo_x, lo_x), lanes(hi_x, hi_x, hi_x, hi_x)
+    lows_y, highs_y = lanes(lo_y, lo_y, lo_y, lo_y), lanes(hi_y, hi_y, hi_y, hi_y)
+    known = lanes(_LATEST, _LATEST, _LATEST, _LATEST)
     time, ball = inf, -1
-    for j in range(n):
-        if j == i or state[j] == GONE:
-            continue
-        if (still and state[j] == REST) or not may_meet(lo_x, hi_x, lo_y, hi_y, motion, j):
-            if pair[i, j] < inf:
-                pair[i, j] = pair[j, i] = inf
-                if best_ball[j] == i:
-                    _rescan(pair, best_time, best_ball, j)
-            continue
-        a, b = (i, j) if i < j else (j, i)
-        s = pair_time(motion, state, a, b, t, 2.0 * boundaries.R)
-        pair[i, j] = pair[j, i] = s
-        if s < time:
-            time, ball = s, j
-        if s < best_time[j] or (s == best_time[j] and i < best_ball[j]):
-            best_time[j], best_ball[j] = s, i
-        elif best_ball[j] == i and s > best_time[j]:
-            _rescan(pair, best_time, best_ball, j)
+    for k in range(0, m, LANES):
+        # whose path has a place in this one's bounds, and whose meeting with i was known
+        near = (
+            no_more(lows_x, lanes_at(bounds, m + k))
+            & no_more(lanes_at(bounds, k), highs_x)
+            & no_more(lows_y, lanes_at(bounds, 3 * m + k))
+            & no_more(lanes_at(bounds, 2 * m + k), highs_y)
+        )
+        which = near | no_more(lanes_at(pair, i * m + k), known)
+        j = k - 1
+        while which:
+            j += 1
+            wanted, is_near = which & 1, near & 1
+            which >>= 1
+            near >>= 1
+            if not wanted or j == i:
+                continue
+            if not is_near or (still and state[j] == REST):
+                if pair[i, j] < inf:
+                    pair[i, j] = pair[j, i] = inf
+                    if best_ball[j] == i:
+                        _rescan(pair, best_time, best_ball, j)
+                continue
+            a, b = (i, j) if i < j else (j, i)
+            s = pair_time(motion, state, a, b, t, 2.0 * boundaries.R)
+            pair[i, j] = pair[j, i] = s
+            if s < time:
+                time, ball = s, j
+            if s < best_time[j] or (s == best_time[j] and i < best_ball[j]):
+                best_time[j], best_ball[j] = s, i
+            elif best_ball[j] == i and s > best_time[j]:
+                _rescan(pair, best_time, best_ball, j)
     best_time[i], best_ball[i] = time, ball
     alone_time[i], alone_kind[i], alone_index[i] = inf, events.NONE, -1
     if state[i] == FALLING:
@@ -128,8 +172,9 @@ def _is_astray(motion, state, i, reach, boundaries):
 @kernel
 def _leave(state, i, forecast):
     """Ball i is off the table: remove all its events."""
-    pair, best_time, best_ball, alone_time, _kind, _index = forecast
+    bounds, pair, best_time, best_ball, alone_time, _kind, _index = forecast
     state[i] = GONE
+    _bound(bounds, i, inf, -inf, inf, -inf)
     n = pair.shape[0]
     for j in range(n):
         pair[i, j] = pair[j, i] = inf
@@ -161,14 +206,16 @@ def _record(segments, n_segments, motion, state, i):
 @inlined
 def _next_event(best_time, best_ball, alone_time, alone_kind, alone_index):
     """The earliest event: time [s], kind, ball, partner; ties: the lowest kind, then the lowest ball."""
-    t, kind, i, j = inf, np.int64(events.NONE), np.int64(-1), np.int64(-1)
-    for k in range(best_time.shape[0]):
-        s = best_time[k]
-        if s < t or (s == t and s < inf and kind > events.BALL_BALL):
-            t, kind, i, j = s, events.BALL_BALL, k, best_ball[k]
-        s = alone_time[k]
-        if s < t or (s == t and s < inf and kind > alone_kind[k]):
-            t, kind, i, j = s, alone_kind[k], k, alone_index[k]
+    t, i = _earliest(best_time, 0)
+    s, k = _earliest(alone_time, 0)
+    if t <= s:
+        kind, j = np.int64(events.NONE if t == inf else events.BALL_BALL), best_ball[i]
+    else:
+        t, i, kind = s, k, alone_kind[k]
+        for k in range(i + 1, alone_kind.shape[0]):
+            if alone_time[k] == t and alone_kind[k] < kind:
+                i, kind = k, alone_kind[k]
+        j = alone_index[i]
     return t, kind, i, j
 
 
@@ -180,25 +227,26 @@ def run(balls, setup, max_events, log, paths, forecast, series):
     numba would count references to the arrays of a tuple at every use (4 % of a shot of two balls).
     """
     positions, velocities, spins, on_table, potted = balls
-    law, boundaries, reach = setup
+    law, boundaries, reach, clear = setup
     phys, (noses, jaws, falls, R) = law.phys, boundaries
     time, what, segments = log
     motion, state, flight = paths
-    pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
+    bounds, pair, best_time, best_ball, alone_time, alone_kind, alone_index = forecast
     n = positions.shape[0]
-    clear = clear_box(boundaries)
     n_segments = n_events = np.int64(0)  # (typed: with a literal numba would compile every callee twice)
     for i in range(n):
         potted[i] = -1
         best_time[i], best_ball[i], alone_time[i] = inf, -1, inf
-        for j in range(n):
+        for j in range(pair.shape[1]):
             pair[i, j] = inf
         if on_table[i]:
             r, v = (positions[i, 0], positions[i, 1]), (velocities[i, 0], velocities[i, 1])
             cloth.begin(motion, state, i, 0.0, r, v, (spins[i, 0], spins[i, 1], spins[i, 2]), phys)
+            _bound(bounds, i, motion[i, LO_X], motion[i, HI_X], motion[i, LO_Y], motion[i, HI_Y])
         else:
             state[i] = GONE
             _lie(motion, i, positions[i, 0], positions[i, 1])
+            _bound(bounds, i, inf, -inf, inf, -inf)
         n_segments = _record(segments, n_segments, motion, state, i)
     for i in range(n):
         if state[i] > REST:
@@ -321,17 +369,22 @@ def run_batch(balls, setup, max_events, log, ends, start, stop):
     time, what, segments = log
     status, n_events, n_segments, duration = ends
     phys, noses, jaws, falls, reach, fidelity, n_steps = setup
-    same = Setup(Law(phys, fidelity, n_steps), Boundaries(noses, jaws, falls, phys[P_R]), reach)
+    boundaries = Boundaries(noses, jaws, falls, phys[P_R])
+    same = Setup(Law(phys, fidelity, n_steps), boundaries, reach, clear_box(boundaries))
     n = positions.shape[1]
+    m = (n + LANES - 1) // LANES * LANES
     paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, pocket.FLIGHT)))
     forecast = Forecast(
-        np.zeros((n, n)),
-        np.zeros(n),
+        np.empty((4, m)),
+        np.empty((n, m)),
+        np.full(m, inf),
         np.zeros(n, np.int64),
-        np.zeros(n),
+        np.full(m, inf),
         np.zeros(n, np.int64),
         np.zeros(n, np.int64),
     )
+    for i in range(n, m):
+        _bound(forecast.bounds, i, inf, -inf, inf, -inf)
     series = np.zeros(WORK)
     for k in range(start, stop):
         shot = Balls(positions[k], velocities[k], spins[k], on_table[k], potted[k])
