@@ -12,9 +12,9 @@ from ._shots import count
 from ._types import Batches, Bools, Fidelity, FlagRows, Flags, Floats, Solver, Vectors
 from .physics import cloth, engine
 from .physics.arrays import Ends, Log
-from .physics.events import LOG_FULL, OK, EventKind, Status
+from .physics.events import LOG_FULL, OK, UNSOUND, EventKind, Status
 from .physics.impact import contact
-from .physics.parameters import FASTEST, MOST_SPIN, Physics, PhysicsLike
+from .physics.parameters import FARTHEST, FASTEST, MOST_SPIN, Physics, PhysicsLike
 from .physics.table import Table, TableLike
 from .shot import EVENT, Shot, ShotBatch, SimulationError
 from .shot import check_path as check_path  # for the layers above
@@ -22,23 +22,35 @@ from .shot import check_path as check_path  # for the layers above
 MAX_EVENTS = 100_000
 MAX_BALLS = 4096
 """The most balls of one shot: the times of all pairs are stored (134 MB)."""
-FARTHEST = 1e6
-"""The largest coordinate of a ball [m]: up to there float64 resolves 1e-10 m."""
 _FIRST_LOG = 512
 
 
-def _balls(positions, velocities, spins, on_table, batch):
-    lead = (-1,) if batch else ()
-    r = array("positions", positions, (*lead, -1, 2), FARTHEST, "m")
+def _balls(positions, velocities, spins, on_table, batch, checked=False):
+    """The four arrays of a shot, new; ``checked`` too: within the limits, else the engine says so."""
+    lead, (farthest, fastest, most_spin) = (
+        (-1,) if batch else (),
+        (FARTHEST, FASTEST, MOST_SPIN) if checked else _UNCHECKED,
+    )
+    r = array("positions", positions, (*lead, -1, 2), farthest, "m")
     shape = r.shape[:-1]
-    v = array("velocities", velocities, (*shape, 2), FASTEST, "m/s")
-    w = array("spins", spins, (*shape, 3), MOST_SPIN, "rad/s")
+    v = array("velocities", velocities, (*shape, 2), fastest, "m/s")
+    w = array("spins", spins, (*shape, 3), most_spin, "rad/s")
     if not 1 <= shape[-1] <= MAX_BALLS:
         raise refuse_what(
             "positions", f"array of shape {r.shape}", f"must hold at least one ball and at most {MAX_BALLS}"
         )
     here = np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)
     return r, v, w, here
+
+
+_UNCHECKED = None, None, None
+
+
+def _refuse(balls, physics, table):
+    """Raise the ValueError of a shot, or of a batch of shots, that the engine found ``UNSOUND``."""
+    r, _, _, here = _balls(*balls, batch=balls[0].ndim == 3, checked=True)
+    table.check(r, physics.R, "positions", here)
+    raise AssertionError("a sound shot was refused")  # the two checks are the same
 
 
 def simulate(
@@ -99,12 +111,17 @@ def simulate(
     ((2, 2), [True, True])
     """
     physics, table, solver = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
-    r, v, w, here = _balls(positions, velocities, spins, on_table, batch=False)
+    balls = _balls(positions, velocities, spins, on_table, batch=False)
     physics.check_stopping()
-    table.check(r, physics.R, "positions", here)
+    table.check_ball(physics.R)
     max_events = integer("max_events", max_events, 1, 2**31)
+    try:
+        shot = play(balls, physics, table, solver, max_events, doubt=True)
+    except SimulationError:
+        count(1)
+        raise
     count(1)
-    return play((r, v, w, here), physics, table, solver, max_events)
+    return shot
 
 
 def play(
@@ -115,16 +132,18 @@ def play(
     max_events: int = MAX_EVENTS,
     *,
     path: bool = True,
+    doubt: bool = False,
 ) -> Shot:
-    """``simulate`` of a checked layout, not counted; ``balls``, the four arrays, are not changed.
+    """``simulate`` of a layout, not counted; ``balls``, the four arrays, are not changed.
 
-    ``fidelity``: as of ``parse_fidelity``. ``path`` False leaves out the paths that ``Shot.at`` needs.
+    ``fidelity``: as of ``parse_fidelity``. ``path`` False leaves out the paths that ``Shot.at`` needs. ``doubt``: the
+    numbers are checked first.
     """
     capacity = min(_FIRST_LOG, max_events)
     while True:
         state = [a[None].copy() for a in balls]
         log = _take_log(capacity, 2 * capacity + len(balls[0]) + 2 if path else 0)
-        out = _run(state, physics, table, fidelity, max_events, log)
+        out = _run(state, physics, table, fidelity, max_events, log, doubt=doubt)
         if out.status[0] != LOG_FULL:
             break
         capacity *= 4
@@ -132,6 +151,8 @@ def play(
     if capacity <= _FIRST_LOG:
         _KEPT.log = log
     if out.status[0] != OK:
+        if out.status[0] == UNSOUND:
+            _refuse(balls, physics, table)
         raise _failure(out, 0, events)
     return Shot(
         state[0][0], out.potted[0], state[3][0], float(out.duration[0]), events, segments, physics, table
@@ -200,11 +221,10 @@ def simulate_batch(
     physics, table, solver = Physics.of(physics), Table.of(table), contact.parse_fidelity(fidelity)
     r, v, w, here = _balls(positions, velocities, spins, on_table, batch=True)
     physics.check_stopping()
-    table.check(r, physics.R, "positions", here)
+    table.check_ball(physics.R)
     threads = os.cpu_count() or 1 if threads is None else integer("threads", threads, 1, 1024)
     max_events = integer("max_events", max_events, 1, 2**31)
     start = r.copy(), v.copy(), w.copy(), here.copy()
-    count(len(r))
     out = _run(
         (r, v, w, here),
         physics,
@@ -213,7 +233,11 @@ def simulate_batch(
         max_events,
         log_space(len(r), _FIRST_LOG if events else 0, 0),
         threads,
+        doubt=True,
     )
+    if (out.status == UNSOUND).any():
+        _refuse(start, physics, table)
+    count(len(r))
     logs = [out.log(k) for k in range(len(r))] if events else None
     for k in np.flatnonzero(out.status != OK).tolist():
         # rare: the log is longer than the first guess, so the shot is simulated again with more room
@@ -276,13 +300,13 @@ def _take_log(log_size, path_size):
     return log
 
 
-def _run(state, physics, table, fidelity, max_events, log=None, threads=1):
+def _run(state, physics, table, fidelity, max_events, log=None, threads=1, doubt=False):
     """Run the engine on positions, velocities, spins, on_table: batched, in place, maybe with a ``Log``."""
     b, n = state[0].shape[:2]
     log = log or log_space(b, 0, 0)
     ends = Ends(np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b))
     out = _Run(np.zeros((b, n), np.int64), *ends, *log)
-    setup = physics.pack(), table.noses, table.jaws, table.falls, table._reach(physics.R), *fidelity
+    setup = physics.pack(), table.noses, table.jaws, table.falls, table._reach(physics.R), *fidelity, doubt
     arguments = (*state, out.potted), setup, max_events, tuple(log), tuple(ends)
 
     def run(first, last):

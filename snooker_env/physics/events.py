@@ -42,9 +42,12 @@ class Status(IntEnum):
     """How a run ended.
 
     ================= ============================================================================
-    OK                All balls came to rest. TOO_MANY_EVENTS   More events than allowed. LOG_FULL
-    The log was too short; run the shot again with more. IMPACT_UNSOLVED   An impact did not end. ASTRAY
-    A ball on the bed was where none can be: in a cushion, or off the table.
+    OK                All balls came to rest.
+    TOO_MANY_EVENTS   More events than allowed.
+    LOG_FULL          The log was too short; run the shot again with more.
+    IMPACT_UNSOLVED   An impact did not end.
+    ASTRAY            A ball on the bed was where none can be: in a cushion, or off the table.
+    UNSOUND           It was not played: a place, a speed or a spin is none that a shot may begin with.
     ================= ============================================================================
     """
 
@@ -53,11 +56,12 @@ class Status(IntEnum):
     LOG_FULL = 2
     IMPACT_UNSOLVED = 3
     ASTRAY = 4
+    UNSOUND = 5
 
 
 # The same as plain integers, because kernels compare them with numbers in integer arrays.
 BALL_BALL, CUSHION, JAW, POT, ROLL, STOP, DROP, RETURN, BEND = (int(kind) for kind in EventKind)
-OK, TOO_MANY_EVENTS, LOG_FULL, IMPACT_UNSOLVED, ASTRAY = (int(status) for status in Status)
+OK, TOO_MANY_EVENTS, LOG_FULL, IMPACT_UNSOLVED, ASTRAY, UNSOUND = (int(status) for status in Status)
 
 NONE = len(EventKind)
 """No event; its number is higher than that of every kind."""

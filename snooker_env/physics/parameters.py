@@ -26,6 +26,8 @@ end."""
 MOST_SPIN = 1e5
 """Largest spin component of a shot [rad/s], what a strike at ``FASTEST`` can give. Measured: shots are right
 to 1e6 and do not end at 1e7."""
+FARTHEST = 1e6
+"""The largest coordinate of a ball [m]: up to there float64 resolves 1e-10 m."""
 FASTEST_IMPACT, MOST_SPIN_IMPACT = 1e6, 1e9
 """The same for one impact alone: its outcome scales with its speeds (but for laws that contain one)."""
 _LEAST_DECELERATION, _MOST_DECELERATION = 1e-6, 1e6
@@ -187,6 +189,10 @@ class Physics:
             raise refuse(
                 "physics.nap", self.nap, f"must be 0 or below mu_r g = {self.mu_r * self.g:g} m/s^2 in size"
             )
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields alone: the tables are 230 KB."""
+        return {f.name: getattr(self, f.name) for f in dataclasses.fields(self)}
 
     @classmethod
     def preset(cls, name: PhysicsName = "paper", **fields: Any) -> "Physics":

@@ -68,6 +68,24 @@ def place_fault(x, y, reach, boundaries, allowed, edge):
     return SOUND, -1
 
 
+@kernel
+def layout_fault(positions, on_table, reach, boundaries):
+    """The first unsound place of a layout (n, 2) [m]: ball, kind, index of what it is in; or (-1, SOUND, -1)."""
+    n = positions.shape[0]
+    for i in range(n):
+        if on_table[i]:
+            fault, j = place_fault(positions[i, 0], positions[i, 1], reach, boundaries, OVERLAP_ALLOWED, 0.0)
+            if fault != SOUND:
+                return i, fault, j
+    least = 2.0 * boundaries.R - OVERLAP_ALLOWED
+    for i in range(n):
+        for j in range(i + 1, n):
+            dx, dy = positions[j, 0] - positions[i, 0], positions[j, 1] - positions[i, 1]
+            if dx * dx + dy * dy < least * least and on_table[i] and on_table[j]:
+                return i, IN_BALL, j
+    return -1, SOUND, -1
+
+
 @entry
 def first_fault(positions, on_table, reach, noses, jaws, falls, R):
     """The first unsound place in positions (b, n, 2) [m]: table, ball, kind, index of what it is in.
@@ -76,17 +94,7 @@ def first_fault(positions, on_table, reach, noses, jaws, falls, R):
     """
     boundaries = Boundaries(noses, jaws, falls, R)
     for k in range(positions.shape[0]):
-        for i in range(positions.shape[1]):
-            if on_table[k, i]:
-                fault, j = place_fault(
-                    positions[k, i, 0], positions[k, i, 1], reach, boundaries, OVERLAP_ALLOWED, 0.0
-                )
-                if fault != SOUND:
-                    return k, i, fault, j
-        least = 2.0 * R - OVERLAP_ALLOWED
-        for i in range(positions.shape[1]):
-            for j in range(i + 1, positions.shape[1]):
-                dx, dy = positions[k, j, 0] - positions[k, i, 0], positions[k, j, 1] - positions[k, i, 1]
-                if dx * dx + dy * dy < least * least and on_table[k, i] and on_table[k, j]:
-                    return k, i, IN_BALL, j
+        i, fault, j = layout_fault(positions[k], on_table[k], reach, boundaries)
+        if fault != SOUND:
+            return k, i, fault, j
     return -1, -1, SOUND, -1

@@ -210,6 +210,19 @@ class Table:
             first += k + 1
             unfit.append(first - 1)
 
+    def check_ball(self, R: float) -> None:
+        """ValueError if the table is made for other balls than ``R`` [m], or too narrow for them."""
+        radius = self.ball_radius
+        if radius is not None and abs(R - radius) > SAME_BALL:
+            made = f'must be {radius} on table "{self.name}", which is made for it'
+            raise refuse(
+                "physics.R", R, f'{made}: write physics={{"R": {radius}}}, or give a Table of your own'
+            )
+        width, *pair = self._narrowest
+        if width - 2 * R < PLAY:  # it would bounce between them infinitely often in a finite time
+            what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
+            raise refuse_what("table.noses", f"{pair[0]} and {pair[1]}", what)
+
     def check(
         self,
         positions: Batches | Vectors,
@@ -221,12 +234,7 @@ class Table:
         table is made for other balls than ``R`` [m]. ``positions``: float (n, 2) or (b, n, 2), centres [m];
         ``field``: their name in messages; ``on_table``: bool for each place, False for balls to leave out;
         None: all."""
-        radius = self.ball_radius
-        if radius is not None and abs(R - radius) > SAME_BALL:
-            made = f'must be {radius} on table "{self.name}", which is made for it'
-            raise refuse(
-                "physics.R", R, f'{made}: write physics={{"R": {radius}}}, or give a Table of your own'
-            )
+        self.check_ball(R)
         positions = np.ascontiguousarray(positions, np.float64)
         many = positions.ndim == 3
         if positions.ndim not in (2, 3) or positions.shape[-1] != 2:
@@ -237,10 +245,6 @@ class Table:
         here = (np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)).reshape(
             places.shape[:2]
         )
-        width, *pair = self._narrowest
-        if width - 2 * R < PLAY:  # it would bounce between them infinitely often in a finite time
-            what = f"must leave a ball of radius {R:g} m at least {PLAY:g} m of play (they leave {width - 2 * R:.3g})"
-            raise refuse_what("table.noses", f"{pair[0]} and {pair[1]}", what)
         k, i, fault, j = first_fault(
             places, here, self._reach(R), self.noses, self.jaws, self.falls, float(R)
         )

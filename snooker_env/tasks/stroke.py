@@ -296,7 +296,7 @@ def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> No
     table = rules.table
     buffers.enlarged = {}
     balls = buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted
-    setup = phys, table.noses, table.jaws, table.falls, table._reach(rules.physics.R), *rules.fidelity
+    setup = phys, table.noses, table.jaws, table.falls, table._reach(rules.physics.R), *rules.fidelity, False
     log = buffers.event_time, buffers.event_what, buffers.segments
     ends = buffers.status, buffers.n_events, buffers.n_segments, buffers.duration
     engine.run_batch(balls, setup, MAX_EVENTS, log, ends, 0, m)

@@ -1,0 +1,145 @@
+"""Are impacts of rolling balls, which come from tables, those of ``reference``? And only those of rolling balls?"""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.physics.impact import tables
+from snooker_env.physics.impact.tables import CELL, NEAR, PRESETS, Rolling, make
+
+PAPER = sn.Physics()
+SOLVED = sn.Physics(tables=False)
+KINKED = Rolling(0.1, 0.5, 0.3, 0.9)  # the slip at the nose ends within most impacts, and the ball may stick
+
+
+def rolling(rng, physics):
+    """A ball that rolls into a cushion at +y: any angle, speed and side."""
+    speed, angle = np.exp(rng.uniform(np.log(0.05), np.log(8.0))), rng.uniform(0.002, np.pi - 0.002)
+    v = speed * np.array([np.cos(angle), np.sin(angle), 0.0])
+    return v, np.array([-v[1] / physics.R, v[0] / physics.R, rng.normal(0.0, 2.0) * speed / physics.R])
+
+
+def difference(one, other, physics):
+    """Of two outcomes: velocities and spins [m/s]."""
+    scale = [1.0, physics.R] * (len(one) // 2)
+    return max(k * np.abs(a - b).max() for k, a, b in zip(scale, one, other, strict=True))
+
+
+def impacts(physics, seed=0, n=400):
+    """Outcomes of n impacts at a fidelity: each kind of a table in turn, with the speed before."""
+    rng, rest = np.random.default_rng(seed), np.zeros(3)
+    for k in range(n):
+        v, w = rolling(rng, physics)
+        kind = k % 3
+        speed = np.hypot(*v[:2])
+        if kind == 0:
+            yield lambda p, f, v=v, w=w: sn.collide_cushion(v, w, (0, 1, 0), p, f), speed
+        elif kind == 1:
+            yield lambda p, f, v=v, w=w: sn.collide_balls(v, w, rest, rest, (0, 1, 0), p, f), speed
+        else:  # the resting ball is the first one
+            yield lambda p, f, v=v, w=w: sn.collide_balls(rest, rest, -v, -w, (0, 1, 0), p, f), speed
+
+
+def test_they_are_those_of_reference_to_1e_10_and_without_tables_to_1e_6():
+    worst, solved = 0.0, 0.0
+    for impact, speed in impacts(PAPER):
+        truth = impact(PAPER, "reference")
+        worst = max(worst, difference(impact(PAPER, "standard"), truth, PAPER) / speed)
+        solved = max(solved, difference(impact(SOLVED, "standard"), truth, PAPER) / speed)
+    assert worst < 1e-10
+    assert 1e-8 < solved < 2e-6  # so the tables were asked
+
+
+def test_reference_and_the_papers_scheme_ask_no_table():
+    for impact, _ in impacts(PAPER, 1, 12):
+        for fidelity in ("reference", "euler:200"):
+            assert difference(impact(PAPER, fidelity), impact(SOLVED, fidelity), PAPER) == 0.0
+
+
+@pytest.mark.parametrize("slip", [1e-6, -1e-3])
+def test_a_ball_that_slides_a_little_is_solved(slip):
+    v, w = rolling(np.random.default_rng(2), PAPER)
+    w[0] += slip / PAPER.R
+    still = np.zeros(3)
+    for impact in (
+        lambda p: sn.collide_cushion(v, w, (0, 1, 0), p),
+        lambda p: sn.collide_balls(v, w, still, still, (0, 1, 0), p),
+        lambda p: sn.collide_balls(v, w, -0.1 * v, w, (0, 1, 0), p),
+    ):
+        assert difference(impact(PAPER), impact(SOLVED), PAPER) == 0.0
+
+
+def test_mirrored_impacts_have_mirrored_outcomes():
+    rng = np.random.default_rng(3)
+    for _ in range(50):
+        v, w = rolling(rng, PAPER)
+        after = sn.collide_cushion(v, w, (0, 1, 0))
+        mirrored = sn.collide_cushion(v * (-1, 1, 1), w * (1, -1, -1), (0, 1, 0))
+        assert np.array_equal(mirrored[0], after[0] * (-1, 1, 1))
+        assert np.array_equal(mirrored[1], after[1] * (1, -1, -1))
+
+
+def test_the_stored_tables_are_those_that_are_made_now():
+    for rolling in PRESETS:
+        assert np.abs(tables.table_of(rolling) - make(rolling)).max() < 1e-12
+    for preset in ("paper", "match"):  # nothing is made for them
+        physics = sn.Physics.preset(preset)
+        assert Rolling(physics.sin_theta, physics.mu_c, physics.mu_s, physics.e_c) == PRESETS[0]
+    assert Rolling(-1.0, PAPER.mu_bb, PAPER.mu_s, PAPER.e_b) == PRESETS[1]
+
+
+@pytest.mark.parametrize("constants", [{"e_j": 0.7}, {"mu_bb": 0.2, "e_b": 0.8}, {"mu_c": 0.3, "mu_s": 0.4}])
+def test_other_constants_have_their_own(constants):
+    physics = sn.Physics(**constants)
+    for impact, speed in impacts(physics, 4, 60):
+        assert difference(impact(physics, "standard"), impact(physics, "reference"), physics) < 1e-8 * speed
+
+
+def test_a_jaw_has_its_own_restitution():
+    """Two balls that roll into a rail, alike but for the restitution of jaws, rebound alike."""
+    v, w = (0.3, 1.0, 0.0), (-1.0 / PAPER.R, 0.3 / PAPER.R, 0.0)
+    soft = sn.Physics(e_j=0.5)
+    assert (
+        difference(sn.collide_cushion(v, w, (0, 1, 0), soft), sn.collide_cushion(v, w, (0, 1, 0)), PAPER)
+        == 0.0
+    )
+    fast = sn.Physics.preset("match")  # above the knee the restitution falls: no table
+    v, w = np.multiply(v, 4.0), np.multiply(w, 4.0)
+    assert (
+        difference(sn.collide_cushion(v, w, (0, 1, 0), fast), sn.collide_cushion(v, w, (0, 1, 0)), PAPER)
+        > 0.1
+    )
+
+
+def test_cells_with_a_kink_are_empty_and_their_impacts_solved():
+    table = make(KINKED).reshape(NEAR + 1, CELL)
+    empty = np.isnan(table[:, 0])
+    assert np.array_equal(np.isnan(table), np.repeat(empty[:, None], CELL, 1))
+    assert 50 < empty.sum() < NEAR
+    physics = sn.Physics(sin_theta=0.1, mu_c=0.5, mu_s=0.3, e_c=0.9)
+    solved = sn.Physics(sin_theta=0.1, mu_c=0.5, mu_s=0.3, e_c=0.9, tables=False)
+    same = 0
+    for impact, speed in impacts(physics, 5, 120):
+        one = impact(physics, "standard")
+        assert difference(one, impact(physics, "reference"), physics) < 1e-5 * speed
+        same += difference(one, impact(solved, "standard"), physics) == 0.0
+    assert same > 10
+
+
+def test_a_physics_is_sent_without_its_tables():
+    physics = sn.Physics(e_b=0.9)
+    physics.pack()
+    assert len(pickle.dumps(physics)) < 2000
+    assert pickle.loads(pickle.dumps(physics)) == physics
+    assert physics.pack() is physics.pack()
+
+
+def test_no_tables_where_none_are_wanted():
+    assert len(SOLVED.pack()) == 20
+    assert len(PAPER.pack()) == 20 + 2 * tables.SIZE  # rails and jaws have the same
+    assert len(sn.Physics(e_j=0.5).pack()) == 20 + 3 * tables.SIZE
+    assert len(sn.Physics.preset("match").pack()) == 20 + tables.SIZE  # friction between balls varies
+    with pytest.raises(ValueError, match=r"physics\.tables = 1: must be True or False"):
+        sn.Physics(tables=1)
