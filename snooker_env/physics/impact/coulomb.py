@@ -228,6 +228,22 @@ def wedged(problem):
 
 
 @kernel
+def stopped(x, slip, contact):
+    """The impulses x and what stops a wedged ball: both slips end, and with them the closing speed."""
+    k1, k2, c1, c2 = contact.k1, contact.k2, contact.c1, contact.c2
+    det1, det2 = k1 * K_CLOTH - c1 * c1, k2 * K_CLOTH - c2 * c2
+    return Impulses(
+        x.F1 + (c1 * slip.b1 - K_CLOTH * slip.a1) / det1,
+        x.F2 + (c2 * slip.b2 - K_CLOTH * slip.a2) / det2,
+        x.G1 + (c1 * slip.a1 - k1 * slip.b1) / det1,
+        x.G2 + (c2 * slip.a2 - k2 * slip.b2) / det2,
+        x.p,
+        x.W,
+        0.0,
+    )
+
+
+@kernel
 def grip_holds(per, x, problem):
     """Whether the cloth's friction in the rates ``per`` of a grip obeys Coulomb, and the ball is down."""
     most = problem.mu_s * (problem.contact.n_p * per.p + problem.contact.n_f * per.F2)
