@@ -72,10 +72,8 @@ def test_pockets_and_places_are_defined_in_one_file():
 def test_snooker_is_as_the_rules_say():
     assert (2 * HALF_WIDTH, 2 * HALF_LENGTH) == (1.778, 3.569)  # WPBSA
     assert np.array_equal(geometry.COLOUR_SPOTS, balls.SPOTS[16:])
-    assert (
-        HALF_LENGTH - geometry.COLOUR_SPOTS[5, 1] == pytest.approx(0.324)
-        and geometry.COLOUR_SPOTS[4, 1] == HALF_LENGTH / 2
-    )
+    assert HALF_LENGTH - geometry.COLOUR_SPOTS[5, 1] == pytest.approx(0.324)
+    assert geometry.COLOUR_SPOTS[4, 1] == HALF_LENGTH / 2
     assert sn.Physics().R == sn.Physics.preset("match").R == BALL_RADIUS == sn.Physics().pack()[0]
 
 
@@ -94,9 +92,8 @@ def test_the_order_of_pockets_is_one(name):
             geometry.SIDES[k],
         ):
             assert np.sign((x, y)).tolist() == want
-        assert np.sign(POCKET_AIMS[k, [AXIS_X, AXIS_Y]]).tolist() == want and POCKET_AIMS[k, IS_MIDDLE] == (
-            end == "middle"
-        )
+        assert np.sign(POCKET_AIMS[k, [AXIS_X, AXIS_Y]]).tolist() == want
+        assert POCKET_AIMS[k, IS_MIDDLE] == (end == "middle")
 
 
 @pytest.mark.parametrize("name", ["match", "tight"])
@@ -121,36 +118,26 @@ def test_a_table_without_some_pockets_keeps_their_order():
         [-1, 1],
     ]
     bare = Table.rectangular(2, 1, pockets=0)
-    assert (
-        bare.pockets == ()
-        and bare.falls.shape == (0, 3)
-        and bare.jaws.shape == (0, 6)
-        and bare.bounds.tolist() == [[-0.5, 0.5], [-1, 1]]
-    )
+    assert bare.pockets == () and bare.falls.shape == (0, 3) and bare.jaws.shape == (0, 6)
+    assert bare.bounds.tolist() == [[-0.5, 0.5], [-1, 1]]
 
 
 def test_a_rectangular_table_of_snookers_size_is_the_match_table():
     own, match = Table.rectangular(3.569, 1.778), Table.preset("match")
     for part in ("noses", "jaws", "falls"):
         assert np.array_equal(getattr(own, part), getattr(match, part))
-    assert (
-        own.ball_radius is None
-        and own.ball == {}
-        and match.ball == {"R": 0.02625, "M": 0.1406, "sin_theta": 0.4}
-    )
+    assert own.ball_radius is None and own.ball == {}
+    assert match.ball == {"R": 0.02625, "M": 0.1406, "sin_theta": 0.4}
 
 
 def test_presets_have_the_published_sizes():
     pool, carom, uk8 = (Table.preset(name) for name in ("pool9", "carom", "uk8"))
-    assert np.diff(pool.bounds).ravel() == pytest.approx(
-        [1.27, 2.54]
-    ) and 2 * pool.ball_radius == pytest.approx(0.05715)
-    assert np.diff(carom.bounds).ravel() == pytest.approx(
-        [1.42, 2.84]
-    ) and 2 * carom.ball_radius == pytest.approx(0.0615)
-    assert np.diff(uk8.bounds).ravel() == pytest.approx(
-        [1.0668, 2.1336]
-    ) and 2 * uk8.ball_radius == pytest.approx(0.0508)
+    assert np.diff(pool.bounds).ravel() == pytest.approx([1.27, 2.54])
+    assert 2 * pool.ball_radius == pytest.approx(0.05715)
+    assert np.diff(carom.bounds).ravel() == pytest.approx([1.42, 2.84])
+    assert 2 * carom.ball_radius == pytest.approx(0.0615)
+    assert np.diff(uk8.bounds).ravel() == pytest.approx([1.0668, 2.1336])
+    assert 2 * uk8.ball_radius == pytest.approx(0.0508)
     assert carom.ball["R"] * (1 + carom.ball["sin_theta"]) == pytest.approx(0.037)  # UMB: the nose's height
     assert (1 + pool.ball["sin_theta"]) / 2 == pytest.approx(0.635)  # WPA: over the ball's diameter
 
@@ -217,9 +204,8 @@ def test_snookers_pockets_have_the_throats_that_are_quoted():
     assert [match.corner.throat, tight.corner.throat, match.middle.throat] == pytest.approx(
         [0.0860, 0.08014, 0.08457], abs=6e-6
     )
-    assert (
-        match.corner.facing == tight.corner.facing == match.middle.facing == 0.0 and match.corner.taper == 0.0
-    )
+    assert match.corner.facing == tight.corner.facing == match.middle.facing == 0.0
+    assert match.corner.taper == 0.0
 
 
 SMALL = {"mouth": 0.12, "shelf": 0.02, "fall_radius": 0.06}
@@ -325,9 +311,8 @@ def test_the_examples_of_the_document_run(k, tmp_path):
         capture_output=True,
     )
     printed, files = SHOWS[k]
-    assert (
-        printed in done.stdout.decode() and tuple(sorted(path.name for path in tmp_path.iterdir())) == files
-    )
+    assert printed in done.stdout.decode()
+    assert tuple(sorted(path.name for path in tmp_path.iterdir())) == files
 
 
 def test_the_document_names_every_preset_and_the_sizes_that_the_arrays_have():

@@ -148,12 +148,8 @@ def test_every_built_in_agent_has_a_stroke_at_every_position(name, agent):
 def test_in_hand_a_stroke_has_a_place_in_the_d_that_counts():
     one = sn.advise(IN_HAND, n=1, samples=100, visits=0)[0]
     x, y = one.place
-    assert (
-        y <= -1.0475 + 1e-9
-        and np.hypot(x, y + 1.0475) <= 0.292 + 1e-9
-        and one.kind == "pot"
-        and "brown spot" in one.words
-    )
+    assert y <= -1.0475 + 1e-9 and np.hypot(x, y + 1.0475) <= 0.292 + 1e-9 and one.kind == "pot"
+    assert "brown spot" in one.words
     points, _, _ = played(IN_HAND, one.stroke, 400, noise="professional")
     assert abs((points > 0).mean() - one.chance) < 4 * np.sqrt(0.25 / 100)
     assert sn.Position(**{**IN_HAND.to_dict(), "cue": one.place}).in_hand  # no ball is in the way
@@ -168,13 +164,10 @@ def test_where_nothing_can_be_potted_a_ball_on_is_hit():
         assert one.kind == kind and one.pocket == -1 and one.ball == one.first and 1 <= one.ball <= 15
         assert bool(clear_paths(position).any_part[0]) == (kind == "contact")
         points, fouls, _ = played(position, one.stroke, 400, noise="professional")
-        assert abs((~fouls).mean() - one.chance) < 4 * np.sqrt(0.25 / 60) and points.mean() == pytest.approx(
-            one.points, abs=0.3
-        )
-        assert (
-            one.words.startswith("escape off the " if kind == "escape" else "contact with the red, ")
-            and " fair " in one.words
-        )
+        assert abs((~fouls).mean() - one.chance) < 4 * np.sqrt(0.25 / 60)
+        assert points.mean() == pytest.approx(one.points, abs=0.3)
+        assert one.words.startswith("escape off the " if kind == "escape" else "contact with the red, ")
+        assert " fair " in one.words
 
 
 def test_where_no_ball_can_be_potted_directly_a_plant_is_found():
@@ -192,11 +185,8 @@ def test_advice_is_json_and_a_sequence():
     kept = json.loads(json.dumps(advice.to_dict()))
     assert kept == advice.to_dict() and len(kept["suggestions"]) == 2 and kept["noise"]["aim_deg"] == 0.1
     assert sn.Position(**kept["position"]) == OPEN
-    assert (
-        advice[0] is next(iter(advice))
-        and advice[:1] == (advice[0],)
-        and str(advice).startswith(f"{advice.order}\n1. {advice[0].words}\n2. ")
-    )
+    assert advice[0] is next(iter(advice)) and advice[:1] == (advice[0],)
+    assert str(advice).startswith(f"{advice.order}\n1. {advice[0].words}\n2. ")
     assert advice[0].words == str(advice[0])
 
 

@@ -112,9 +112,8 @@ def test_a_player_of_frames_sees_the_frame_and_a_visit_as_one():
     stroke_of(OfFrames(), env)
     assert np.array_equal(OfFrames.seen[0], env.tables.observe(np.arange(1))[0])
     visits = [stroke_of(OfFrames(), position) for position in ALL.values()]
-    assert len(OfFrames.seen) == 1 + len(ALL) and len({seen.tobytes() for seen in OfFrames.seen}) == 1 + len(
-        ALL
-    )
+    assert len(OfFrames.seen) == 1 + len(ALL)
+    assert len({seen.tobytes() for seen in OfFrames.seen}) == 1 + len(ALL)
     assert {round(stroke.aim, 6) for stroke in visits} == {round(np.pi / 2, 6)}
 
 

@@ -21,14 +21,10 @@ def test_shares_are_those_of_the_environment(blue):
     stops = destinations(ENDGAME, blue, noise="club", samples=2000)
     points, fouls, after = played(ENDGAME, blue.stroke, 2000, noise="club")
     cue = np.array([s["positions"][0] for s in after if s["on_table"][0]])
-    assert stops.scored == pytest.approx((points > 0).mean(), abs=0.05) and stops.foul == pytest.approx(
-        fouls.mean(), abs=0.03
-    )
-    assert (
-        stops.points == pytest.approx(points.mean(), abs=0.25)
-        and stops.object_ball == 19
-        and stops.samples == 2000
-    )
+    assert stops.scored == pytest.approx((points > 0).mean(), abs=0.05)
+    assert stops.foul == pytest.approx(fouls.mean(), abs=0.03)
+    assert stops.points == pytest.approx(points.mean(), abs=0.25) and stops.object_ball == 19
+    assert stops.samples == 2000
     assert 0.3 < stops.potted < 1.0 and stops.potted == pytest.approx(1.0 - len(stops.ball) / 2000)
     assert len(stops.cue) == round(2000 * (1.0 - stops.in_off))
     assert stops.cue.mean(axis=0) == pytest.approx(cue.mean(axis=0), abs=0.05)
@@ -53,19 +49,11 @@ def test_without_noise_it_is_the_one_shot(blue):
 def test_an_in_off_and_a_stroke_at_nothing():
     straight = sn.Position(cue=(0.0, 0.0), black=(0.0, 1.4605))
     miss = destinations(straight, CueStroke(speed=1.0, aim=-np.pi / 2), samples=50)
-    assert (
-        miss.object_ball == -1
-        and miss.foul == 1.0
-        and miss.potted == 0.0
-        and miss.ball.shape == (0, 2)
-        and miss.cue.shape == (50, 2)
-    )
+    assert miss.object_ball == -1 and miss.foul == 1.0 and miss.potted == 0.0 and miss.ball.shape == (0, 2)
+    assert miss.cue.shape == (50, 2)
     at_pocket = destinations(straight, {"speed": 2.0, "aim": float(np.arctan2(-1.7845, 0.889))}, samples=50)
-    assert (
-        at_pocket.in_off > 0.9
-        and at_pocket.foul == 1.0
-        and len(at_pocket.cue) == round(50 * (1 - at_pocket.in_off))
-    )
+    assert at_pocket.in_off > 0.9 and at_pocket.foul == 1.0
+    assert len(at_pocket.cue) == round(50 * (1 - at_pocket.in_off))
 
 
 def test_a_map_adds_up(blue):

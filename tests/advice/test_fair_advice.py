@@ -58,11 +58,8 @@ def test_advice_is_fair_ordered_by_what_it_shows_and_called_what_it_is(positions
         assert [one.points for one in pots] == sorted((one.points for one in pots), reverse=True)
         assert [one.chance for one in others] == sorted((one.chance for one in others), reverse=True)
         for one in pots:
-            assert (
-                one.pocket >= 0
-                and one.words.endswith(" expected")
-                and f"chance {100 * one.chance:.0f} %" in one.words
-            )
+            assert one.pocket >= 0 and one.words.endswith(" expected")
+            assert f"chance {100 * one.chance:.0f} %" in one.words
         for one in others:
             assert one.words.startswith({"contact": "contact with the ", "escape": "escape "}[one.kind])
             assert (
@@ -103,9 +100,8 @@ def test_a_foul_is_left_out_where_a_stroke_of_the_agents_is_fair():
 def test_where_none_of_an_agents_strokes_is_fair_it_is_said_and_others_are_judged():
     advice = sn.advise(COVERED, agent=Given(BLUE_FIRST, AWAY), **QUICK)
     assert not advice.own and advice.agent == "given" and not any(map(foul, advice))
-    assert advice.order.startswith("given has no fair stroke here; these are not its own. ") and str(
-        advice
-    ).startswith(advice.order)
+    assert advice.order.startswith("given has no fair stroke here; these are not its own. ")
+    assert str(advice).startswith(advice.order)
     assert advice.to_dict()["own"] is False
 
 
@@ -117,10 +113,8 @@ def test_where_no_fair_stroke_is_found_the_least_bad_is_said_to_be_that():
     for agent in ("planner_500", "random", Given(AWAY)):
         advice = sn.advise(caged, agent=agent, **QUICK)
         assert len(advice) == 1 and foul(advice[0])
-        assert (
-            advice[0].words.startswith(f"no fair stroke found: {advice[0].kind}")
-            and f"fair {100 * advice[0].chance:.0f} %" in advice[0].words
-        )
+        assert advice[0].words.startswith(f"no fair stroke found: {advice[0].kind}")
+        assert f"fair {100 * advice[0].chance:.0f} %" in advice[0].words
 
 
 def test_a_heading_says_by_what():

@@ -32,17 +32,14 @@ def test_a_stroke_is_its_action():
         1.0,
         -1.0,
     ]
-    assert (
-        CueStroke(**stroke.to_dict()) == stroke == CueStroke.of(stroke.to_dict())
-        and CueStroke.of(stroke) is stroke
-    )
+    assert CueStroke(**stroke.to_dict()) == stroke == CueStroke.of(stroke.to_dict())
+    assert CueStroke.of(stroke) is stroke
 
 
 def test_a_suggestion_is_a_stroke_as_well():
     (one,) = sn.advise(OPEN, n=1, samples=10, visits=0)
-    assert CueStroke.of(one) is one and one.stroke == CueStroke.of(
-        {"speed": one.speed, "aim": one.aim, "side": one.side, "top": one.top}
-    )
+    assert CueStroke.of(one) is one
+    assert one.stroke == CueStroke.of({"speed": one.speed, "aim": one.aim, "side": one.side, "top": one.top})
 
 
 def test_pockets_are_named_as_seen_from_baulk():
@@ -89,11 +86,8 @@ def test_spin_in_words():
         "deep screw",
     ]
     assert say(0.0, distance=0.1) == "stun"
-    assert (
-        say(0.0, distance=2.0) == "plain"
-        and say(-0.2, distance=2.5) == "drag"
-        and say(-0.2, distance=0.6) == "stun"
-    )
+    assert say(0.0, distance=2.0) == "plain" and say(-0.2, distance=2.5) == "drag"
+    assert say(-0.2, distance=0.6) == "stun"
     assert say(-0.4, 0.3) == "deep screw with right side" and say(0.2, -0.3) == "follow with left side"
     assert say(-0.2, distance=None) == "screw" and say(0.0, distance=None) == "plain"
 
@@ -138,44 +132,32 @@ def test_contacts_in_words():
 def test_what_a_stroke_does_in_words():
     say = words.what_words
     assert say("pot", 19, 2, 19) == "blue, right middle" and say("pot", 5, 5, 5) == "red, left middle"
-    assert (
-        say("pot", 5, 0, 8) == "red by a plant, green pocket"
-        and say("pot", 21, 4, 1) == "black off the red, top left"
-    )
-    assert (
-        say("contact", 3, -1, 3, "full") == "contact with the red, full"
-        and say("in-off", 3, -1, 3) == "in-off from the red"
-    )
-    assert (
-        say("escape", 20, -1, 20, "top cushion") == "escape off the top cushion to the pink"
-        and say("escape", 1, -1, 1) == "escape to the red"
-    )
-    assert (
-        say("foul", -1, -1, -1) == "foul, nothing struck" and say("foul", 16, -1, 16) == "foul, yellow first"
-    )
+    assert say("pot", 5, 0, 8) == "red by a plant, green pocket"
+    assert say("pot", 21, 4, 1) == "black off the red, top left"
+    assert say("contact", 3, -1, 3, "full") == "contact with the red, full"
+    assert say("in-off", 3, -1, 3) == "in-off from the red"
+    assert say("escape", 20, -1, 20, "top cushion") == "escape off the top cushion to the pink"
+    assert say("escape", 1, -1, 1) == "escape to the red"
+    assert say("foul", -1, -1, -1) == "foul, nothing struck"
+    assert say("foul", 16, -1, 16) == "foul, yellow first"
     assert words.figures_words("pot", 0.874, 23.4) == "chance 87 %, 23 points expected"
     for kind in ("contact", "escape"):
         assert (
             words.figures_words(kind, 0.5, 1.04)
             == "fair 50 %; no pot intended, its worth as a safety is not judged"
         )
-    assert (
-        words.figures_words("foul", 0.03, 0.0) == "fair 3 %"
-        and words.figures_words("pot", 1.0, 1.04) == "chance 100 %, 1 point expected"
-    )
+    assert words.figures_words("foul", 0.03, 0.0) == "fair 3 %"
+    assert words.figures_words("pot", 1.0, 1.04) == "chance 100 %, 1 point expected"
     assert words.figures_words("pot", 1.0, 0.26).endswith("0.3 points expected")
-    assert (
-        words.place_words(0.05, -1.1475) == "from 5 cm right of and 10 cm behind the brown spot"
-        and words.place_words(0, -1.0475) == "from the brown spot"
-    )
+    assert words.place_words(0.05, -1.1475) == "from 5 cm right of and 10 cm behind the brown spot"
+    assert words.place_words(0, -1.0475) == "from the brown spot"
 
 
 def test_the_words_of_a_suggestion_are_its_data():
     for one in sn.advise(OPEN, n=4, samples=50, visits=5):
         parts = one.words.split(", ")
-        assert (
-            parts[0] == "red" and parts[1] == POCKET_WORDS[one.pocket] and parts[2] == f"{one.speed:.1f} m/s"
-        )
+        assert parts[0] == "red" and parts[1] == POCKET_WORDS[one.pocket]
+        assert parts[2] == f"{one.speed:.1f} m/s"
         assert f"chance {100 * one.chance:.0f} %" in parts and one.words.endswith(" expected")
         points, _, (state,) = played(OPEN, one.stroke, 1, noise="none")
         assert points[0] >= 1 and not state["on_table"][one.ball]

@@ -30,10 +30,7 @@ def test_files_that_pages_name_exist():
     assert not [(page, path) for page, path in found if not any(ROOT.glob(path))]
     assert paths(
         "`tests/a.py`, `agents/b/*.json` `snooker_env/` `docs/NAME.md` tests/c.py `snooker_env.d`"
-    ) == [
-        "tests/a.py",
-        "agents/b/*.json",
-    ]
+    ) == ["tests/a.py", "agents/b/*.json"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)

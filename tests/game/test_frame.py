@@ -260,14 +260,10 @@ def test_what_only_the_striker_may_play_is_not_there_for_the_other_player():
     colour = Frame(
         on_table=COLOURS_MASK | 2, ball_on=BallOn.ANY_COLOUR, striker=1, scores=(0, 36), in_hand=False
     )
-    assert (
-        colour.available == 42
-        and colour.needs_snookers(0)
-        and not replace(colour, scores=(0, 35)).needs_snookers(0)
-    )
-    assert not replace(colour, scores=(42, 0)).needs_snookers(1) and replace(
-        colour, scores=(43, 0)
-    ).needs_snookers(1)
+    assert colour.available == 42 and colour.needs_snookers(0)
+    assert not replace(colour, scores=(0, 35)).needs_snookers(0)
+    assert not replace(colour, scores=(42, 0)).needs_snookers(1)
+    assert replace(colour, scores=(43, 0)).needs_snookers(1)
     free = Frame(
         on_table=COLOURS_MASK | 2,
         ball_on=BallOn.RED,

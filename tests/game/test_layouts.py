@@ -28,12 +28,8 @@ def gaps(positions, on_table):
 @given(seed=st.integers(0, 2**32 - 1))
 def test_every_layout_is_playable(name, seed):
     positions, on_table = layouts.layout(name, np.random.default_rng(seed))
-    assert (
-        positions.shape == (22, 2)
-        and positions.dtype == np.float64
-        and on_table.shape == (22,)
-        and on_table.dtype == np.bool_
-    )
+    assert positions.shape == (22, 2) and positions.dtype == np.float64 and on_table.shape == (22,)
+    assert on_table.dtype == np.bool_
     assert on_table[0] and np.all(on_table[YELLOW:])
     assert np.array_equal(positions[YELLOW:], SPOTS[YELLOW:])
     distances = gaps(positions, on_table)

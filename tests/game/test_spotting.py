@@ -197,10 +197,8 @@ def test_every_colour_returns_and_none_overlaps(case):
         others = present.copy()
         others[ball] = False
         assert np.all(np.hypot(*(placed[others] - placed[ball]).T) > 2 * BALL_RADIUS)
-        assert (
-            abs(placed[ball, 0]) + BALL_RADIUS < HALF_WIDTH
-            and abs(placed[ball, 1]) + BALL_RADIUS < HALF_LENGTH
-        )
+        assert abs(placed[ball, 0]) + BALL_RADIUS < HALF_WIDTH
+        assert abs(placed[ball, 1]) + BALL_RADIUS < HALF_LENGTH
 
 
 @settings(max_examples=100, deadline=None)

@@ -61,9 +61,8 @@ def test_a_planned_stroke_is_the_stroke_of_the_environment(options):
         points, goes_on, left, seen = planner.play(state, [0], chosen, [state["stream"]])
         observation, reward, ended, _, info = env.step(chosen[0])
         assert points[0] == reward and goes_on[0] == (not ended) and np.array_equal(seen[0], observation)
-        assert np.array_equal(left.positions[0], env.positions) and np.array_equal(
-            left.on_table[0], env.on_table
-        )
+        assert np.array_equal(left.positions[0], env.positions)
+        assert np.array_equal(left.on_table[0], env.on_table)
         assert (left.ball_on[0], left.in_hand[0], left.points[0], left.over[0]) == (
             env.ball_on,
             env.in_hand,
@@ -88,9 +87,8 @@ def test_whole_tables_are_read_from_a_vector_environment_and_left_as_they_are():
     assert np.array_equal(at.on_table, kept.on_table) and np.array_equal(at.game, kept.game)
     observations, rewards, ended, _, _ = env.step(strokes)
     assert np.array_equal(played.points, rewards) and np.array_equal(~played.goes_on, ended)
-    assert np.array_equal(played.observations, observations) and not np.array_equal(
-        played.afterstates.positions, at.positions
-    )
+    assert np.array_equal(played.observations, observations)
+    assert not np.array_equal(played.afterstates.positions, at.positions)
 
 
 def test_any_number_of_threads_and_any_order_of_strokes_give_the_same():
@@ -215,9 +213,8 @@ def test_the_key_alone_decides_the_errors():
     cue = planner.play(position, np.zeros(6, int), stroke, [5, 5, 6, 7, 7, 2**64 - 1]).afterstates.positions[
         :, 0
     ]
-    assert (
-        np.array_equal(cue[0], cue[1]) and np.array_equal(cue[3], cue[4]) and len(np.unique(cue, axis=0)) == 4
-    )
+    assert np.array_equal(cue[0], cue[1]) and np.array_equal(cue[3], cue[4])
+    assert len(np.unique(cue, axis=0)) == 4
     again = planner.play(position, [0], stroke[:1], np.array([[5, 0]], np.uint64)).afterstates.positions[0, 0]
     assert np.array_equal(again, cue[0])  # a key is a stream at its beginning
     later = planner.play(position, [0], stroke[:1], [[5, 3]]).afterstates.positions[0, 0]
@@ -263,12 +260,8 @@ def test_a_frame_and_a_match_are_planned_as_a_visit():
     match.reset(seed=0)
     for env in (frame, match):
         at, planner = Positions.of(env), Planner(env)
-        assert (
-            len(at) == 1
-            and at.in_hand[0]
-            and at.ball_on[0] == 1
-            and planner.rules.actions.space.shape == (7,)
-        )
+        assert len(at) == 1 and at.in_hand[0] and at.ball_on[0] == 1
+        assert planner.rules.actions.space.shape == (7,)
         stroke = np.float32([[0.6, 0.0, 0.0, 0.1, 0.5, 0.5, 0.0]])
         _, _, left, seen = planner.play(at, [0], stroke)
         env.step(stroke[0])

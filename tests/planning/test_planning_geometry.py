@@ -19,19 +19,13 @@ def test_pots_are_those_of_each_position():
             at.positions[k], at.on_table[k], mask_of(np.flatnonzero(at.balls_on[k]).tolist()), most=6
         )
         n = len(each)
-        assert (
-            direct.ball[k, :n].tolist() == each[:, 0].tolist()
-            and direct.pocket[k, :n].tolist() == each[:, 1].tolist()
-        )
-        assert np.array_equal(direct.ghost[k, :n], each[:, 2:4]) and np.array_equal(
-            direct.tolerance[k, :n], each[:, 5]
-        )
+        assert direct.ball[k, :n].tolist() == each[:, 0].tolist()
+        assert direct.pocket[k, :n].tolist() == each[:, 1].tolist()
+        assert np.array_equal(direct.ghost[k, :n], each[:, 2:4])
+        assert np.array_equal(direct.tolerance[k, :n], each[:, 5])
         assert np.cos(direct.cut[k, :n]) == pytest.approx(each[:, 4], abs=1e-12)
-        assert (
-            (direct.ball[k, n:] == -1).all()
-            and (direct.pocket[k, n:] == -1).all()
-            and not direct.tolerance[k, n:].any()
-        )
+        assert (direct.ball[k, n:] == -1).all() and (direct.pocket[k, n:] == -1).all()
+        assert not direct.tolerance[k, n:].any()
     assert (direct.ball[:, 0] >= 16).sum() == 10 and np.array_equal(pots(at).ball, direct.ball[:, :4])
     with pytest.raises(ValueError, match="most = 0"):
         pots(at, most=0)
@@ -48,9 +42,8 @@ def test_what_is_in_the_way_is_nearer_than_two_radii_to_the_path():
         assert np.array_equal(direct[i, sure], (nearest < 0.0525)[sure] & at.on_table[rows[i], sure])
     assert 0.02 < direct.mean() < 0.5
     ignored = obstructions(at, rows, starts, ends, ignore=np.stack([np.zeros(200, int), np.full(200, 5)], 1))
-    assert not ignored[:, [0, 5]].any() and np.array_equal(
-        np.delete(ignored, [0, 5], 1), np.delete(direct, [0, 5], 1)
-    )
+    assert not ignored[:, [0, 5]].any()
+    assert np.array_equal(np.delete(ignored, [0, 5], 1), np.delete(direct, [0, 5], 1))
 
 
 def test_bad_paths_are_refused():

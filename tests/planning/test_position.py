@@ -41,9 +41,8 @@ def test_a_field_that_there_is_not_is_named_with_those_that_there_are():
 
 def test_words_and_arrays_say_the_same():
     position = Position(**FULL, on="any colour", points=9)
-    assert (
-        position.on == "any_colour" and position.reds == ((0.3, 0.5), (-0.3, 0.7)) and position.yellow is None
-    )
+    assert position.on == "any_colour" and position.reds == ((0.3, 0.5), (-0.3, 0.7))
+    assert position.yellow is None
     positions, on_table, game = position.arrays()
     assert np.flatnonzero(on_table).tolist() == [0, 1, 2, 20, 21] and game.tolist() == [0, 0, 9, 0, 0]
     assert positions[[0, 1, 2, 20, 21]].tolist() == [
@@ -53,9 +52,8 @@ def test_words_and_arrays_say_the_same():
         [0.2, 0.1],
         [0.0, 1.4605],
     ]
-    assert Position.of_arrays(positions, on_table, game) == position and hash(position) == hash(
-        Position(**FULL, on="any_colour", points=9)
-    )
+    assert Position.of_arrays(positions, on_table, game) == position
+    assert hash(position) == hash(Position(**FULL, on="any_colour", points=9))
     assert Position(**json.loads(json.dumps(position.to_dict()))) == position
     assert set(position.to_dict()) == {"cue", "reds", "pink", "black", "on", "in_hand", "points", "over"}
     assert dataclasses.replace(position, pink=None).pink is None
@@ -127,11 +125,8 @@ def test_positions_of_states_and_of_environments_are_the_same():
     batch, states = Positions.of(env), Positions.of(env.get_state())
     for name in ("positions", "on_table", "game"):
         assert np.array_equal(getattr(batch, name), getattr(states, name))
-    assert (
-        Positions.of(batch) is batch
-        and len(Positions.of(env.get_state()[1])) == 1
-        and repr(batch) == "Positions(4 rows)"
-    )
+    assert Positions.of(batch) is batch and len(Positions.of(env.get_state()[1])) == 1
+    assert repr(batch) == "Positions(4 rows)"
     assert batch.balls_on.sum(axis=1).tolist() == [5] * 4 and not batch.over.any() and not batch.in_hand.any()
 
 
@@ -143,10 +138,8 @@ def test_one_row_is_words_and_any_other_index_a_batch():
     # reds keep their order here
     assert np.array_equal(Positions.of(list(batch)).observations(), batch.observations())
     for rows in (slice(1, 5, 2), [1, 3], np.array([False, True, False, True, False])):
-        assert (
-            np.array_equal(batch[rows].positions, batch.positions[[1, 3]])
-            and batch[rows].positions.flags.c_contiguous
-        )
+        assert np.array_equal(batch[rows].positions, batch.positions[[1, 3]])
+        assert batch[rows].positions.flags.c_contiguous
     view = batch[1:3]
     view.ball_on[:] = 0
     assert batch.ball_on.tolist() == [1, 0, 0, 1, 1]
@@ -192,29 +185,19 @@ def test_positions_of_frames_hold_what_the_striker_may_know():
     saved.positions[1, 0] = (0.1, 0.2)
     at = Positions.of(env)
     assert at.of_frames and at.game.shape == (3, 33) and at.saved.positions[1, 0].tolist() == [0.1, 0.2]
-    assert at.scores.tolist() == [[20, 7], [7, 20], [20, 7]] and at.frames_won.tolist() == [
-        [1, 2],
-        [2, 1],
-        [1, 2],
-    ]
+    assert at.scores.tolist() == [[20, 7], [7, 20], [20, 7]]
+    assert at.frames_won.tolist() == [[1, 2], [2, 1], [1, 2]]
     assert [each.tolist() for each in (at.free_ball, at.choice, at.miss_called)] == [[False, True, False]] * 3
     assert [each.tolist() for each in (at.lot, at.respotted_black)] == [[False, False, True]] * 2
-    assert (
-        at.balls_on.sum(axis=1).tolist() == [15, 21, 15]
-        and not at.anywhere.any()
-        and not at.game[:, STRIKER].any()
-    )
+    assert at.balls_on.sum(axis=1).tolist() == [15, 21, 15] and not at.anywhere.any()
+    assert not at.game[:, STRIKER].any()
     assert game[1, STRIKER] == 1  # the environment's own rows stay as they are
     part = at[[1]]
-    assert (
-        part.free_ball.all()
-        and part.saved.positions[0, 0].tolist() == [0.1, 0.2]
-        and part.copy().saved.on_table.shape == (1, 22)
-    )
+    assert part.free_ball.all() and part.saved.positions[0, 0].tolist() == [0.1, 0.2]
+    assert part.copy().saved.on_table.shape == (1, 22)
     visits = at.as_visits()
-    assert (
-        visits.game.shape == (3, 5) and visits.ball_on.tolist() == [1, 0, 1] and visits.as_visits() is visits
-    )
+    assert visits.game.shape == (3, 5) and visits.ball_on.tolist() == [1, 0, 1]
+    assert visits.as_visits() is visits
     assert not (visits.free_ball.any() or visits.choice.any() or visits.scores.any() or visits.of_frames)
     assert at[1].on == "any_colour" and at[0].on == "red"
 

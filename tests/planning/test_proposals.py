@@ -68,17 +68,10 @@ def test_strokes_stay_within_their_limits_and_fill_them():
     strokes, chances = spread_strokes(at, 512, seeds(20), SPREAD, DYNAMICS)
     assert strokes.shape == (20, 512, 5) and chances.shape == (20, 512) and np.isfinite(strokes).all()
     speed, side, top = (strokes[..., c] for c in (SPEED, SIDE, TOP))
-    assert (
-        speed.min() >= SLOWEST
-        and speed.max() <= FASTEST
-        and speed.min() < 1.02 * SLOWEST
-        and speed.max() > 0.98 * FASTEST
-    )
-    assert (
-        np.abs(side).max() <= WIDEST
-        and np.abs(top).max() <= HIGHEST
-        and np.hypot(side, top).max() <= RIM + 1e-12
-    )
+    assert speed.min() >= SLOWEST and speed.max() <= FASTEST and speed.min() < 1.02 * SLOWEST
+    assert speed.max() > 0.98 * FASTEST
+    assert np.abs(side).max() <= WIDEST and np.abs(top).max() <= HIGHEST
+    assert np.hypot(side, top).max() <= RIM + 1e-12
     assert np.abs(side).max() > 0.9 * WIDEST and np.abs(top).max() > 0.98 * HIGHEST
     assert (side == 0.0).mean(axis=1) == pytest.approx(np.full(20, PLAIN), abs=0.03)
     # as much to the left, as much below
@@ -200,9 +193,8 @@ def test_away_from_a_ball_on_that_touches_the_cue_ball():
     strokes = at_balls(SEARCH, at, 100, [3]).strokes[0]
     assert np.cos(strokes[:, AIM]).max() < 1e-6 and np.ptp(strokes[:, AIM]) > 3.0
     fouls = PLANNER.stops(at, np.zeros(100, int), strokes=strokes)
-    assert (fouls.penalty[(fouls.potted[:, [0, 21]] < 0).all(axis=1)] == 0).all() and (
-        fouls.penalty == 0
-    ).mean() > 0.7
+    assert (fouls.penalty[(fouls.potted[:, [0, 21]] < 0).all(axis=1)] == 0).all()
+    assert (fouls.penalty == 0).mean() > 0.7
 
 
 def test_hidden_balls_are_reached_over_cushions():
@@ -236,11 +228,8 @@ def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
     )
     kept = which.copy(), passed.copy()
     strokes, of = strokes_at(at, which, passed, SPREAD, DYNAMICS)
-    assert (
-        np.array_equal(strokes[..., :AIM], passed)
-        and np.array_equal(which, kept[0])
-        and np.array_equal(passed, kept[1])
-    )
+    assert np.array_equal(strokes[..., :AIM], passed) and np.array_equal(which, kept[0])
+    assert np.array_equal(passed, kept[1])
     for k in range(6):
         for i in range(30):
             j = min(which[k, i], many[k] - 1)  # beyond the last pot: the last one

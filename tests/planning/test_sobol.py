@@ -65,9 +65,8 @@ def test_every_elementary_interval_gets_its_share(k):
 
 def test_the_first_points_of_many_are_those_of_few():
     many = sobol_points(100, DIMENSIONS, 7)
-    assert np.array_equal(many[:13], sobol_points(13, DIMENSIONS, 7)) and np.array_equal(
-        many[:, :2], sobol_points(100, 2, 7)
-    )
+    assert np.array_equal(many[:13], sobol_points(13, DIMENSIONS, 7))
+    assert np.array_equal(many[:, :2], sobol_points(100, 2, 7))
 
 
 def test_scrambles_and_dimensions_differ():
@@ -104,9 +103,8 @@ def test_normal_points_are_standard_normal_and_independent():
     points = np.concatenate([normal_points(64, seed) for seed in range(200)])
     assert points.shape == (12_800, 5) and np.isfinite(points).all()
     assert np.abs(points.mean(0)).max() < 0.01 and points.std(0) == pytest.approx(np.ones(5), abs=0.01)
-    assert (points**3).mean(0) == pytest.approx(np.zeros(5), abs=0.05) and (points**4).mean(
-        0
-    ) == pytest.approx(3 * np.ones(5), abs=0.2)
+    assert (points**3).mean(0) == pytest.approx(np.zeros(5), abs=0.05)
+    assert (points**4).mean(0) == pytest.approx(3 * np.ones(5), abs=0.2)
     assert np.abs(np.corrcoef(points.T) - np.eye(5)).max() < 0.02
 
 
@@ -117,6 +115,5 @@ def test_the_aim_gets_the_most_even_coordinate():
     for i in range(7):
         cells = (even[:, 3] * 2**i).astype(int) * 2 ** (6 - i) + (even[:, 0] * 2 ** (6 - i)).astype(int)
         assert np.array_equal(np.sort(cells), np.arange(64))
-    assert np.array_equal(normal_points(64, 12)[:10], normal_points(10, 12)) and not np.array_equal(
-        normal_points(10, 12), normal_points(10, 13)
-    )
+    assert np.array_equal(normal_points(64, 12)[:10], normal_points(10, 12))
+    assert not np.array_equal(normal_points(10, 12), normal_points(10, 13))

@@ -27,11 +27,8 @@ def test_stops_agree_with_outcomes():
     assert np.array_equal(outcomes.points, stops.points) and np.array_equal(outcomes.goes_on, stops.goes_on)
     for name in ("positions", "on_table", "game"):
         assert np.array_equal(getattr(outcomes.afterstates, name), getattr(stops.afterstates, name))
-    assert (
-        ((stops.penalty > 0) & (stops.points == 0)).any()
-        and (stops.penalty == 0).any()
-        and not stops.points[stops.penalty > 0].any()
-    )
+    assert ((stops.penalty > 0) & (stops.points == 0)).any() and (stops.penalty == 0).any()
+    assert not stops.points[stops.penalty > 0].any()
     present = POSITION.arrays()[1]
     moved = present[None] & (stops.potted < 0)
     reds = moved[:, 1:16]

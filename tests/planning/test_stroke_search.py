@@ -114,9 +114,8 @@ def test_strokes_under_errors_are_those_of_the_table_under_the_same_errors(noise
     apart = np.abs(played.afterstates.positions - table.afterstates.positions).max(axis=(1, 2))
     assert np.median(apart) < 1e-9 and (apart < 1e-4).mean() > 0.99
     alike = apart < 1e-4
-    assert np.array_equal(played.points[alike], table.points[alike]) and np.array_equal(
-        played.goes_on[alike], table.goes_on[alike]
-    )
+    assert np.array_equal(played.points[alike], table.points[alike])
+    assert np.array_equal(played.goes_on[alike], table.goes_on[alike])
     assert np.array_equal(strokes, kept[0]) and np.array_equal(errors, kept[1])
     exact = (
         Planner(options, noise="none", threads=1).play(at, rows, as_actions(strokes)).afterstates.positions
@@ -185,11 +184,8 @@ def test_as_many_strokes_are_played_as_the_schedule_says(budget, noise):
     total = looks + sum(many * each for many, each in rounds)
     if noise == "none":
         looks, rounds, total = budget, (), budget
-    assert (
-        tool.shots == 2 * total
-        and ranked.strokes.shape == (2, looks, 5)
-        and ranked.scores.shape == ranked.samples.shape == (2, looks)
-    )
+    assert tool.shots == 2 * total and ranked.strokes.shape == (2, looks, 5)
+    assert ranked.scores.shape == ranked.samples.shape == (2, looks)
     met = np.zeros(looks, int)
     for many, each in rounds:
         met[:many] += each
@@ -234,9 +230,8 @@ def test_the_ranking_recomputed(budget, value):
             for i in order[:many]:
                 score[i], met[i] = (PRIOR * look[i] + gains[i, :done].sum()) / (PRIOR + done), done
             order[:many] = sorted(order[:many], key=lambda i: -score[i])
-        assert np.array_equal(ranked.strokes[k], strokes[order]) and ranked.samples[k].tolist() == [
-            met[i] for i in order
-        ]
+        assert np.array_equal(ranked.strokes[k], strokes[order])
+        assert ranked.samples[k].tolist() == [met[i] for i in order]
         assert ranked.scores[k] == pytest.approx([score[i] for i in order], rel=1e-9, abs=1e-9)
     assert PRIOR == 1.0 and ranked.scores.max() > 3.0
 
@@ -276,9 +271,8 @@ def test_without_errors_the_ranking_is_that_of_the_looks():
 
     tool = search(80, {"noise": "none", "fidelity": "fast"}, propose=sure)
     ranked = tool.rank(at, np.arange(6))
-    assert (
-        not ranked.samples.any() and (np.diff(ranked.scores) <= 0.0).all() and ranked.scores.shape == (6, 80)
-    )
+    assert not ranked.samples.any() and (np.diff(ranked.scores) <= 0.0).all()
+    assert ranked.scores.shape == (6, 80)
     played = Planner({"noise": "none", "fidelity": "fast"}).play(
         at, np.arange(6), as_actions(ranked.strokes[:, 0])
     )
@@ -315,11 +309,8 @@ def test_a_decision_is_the_same_alone_or_among_many_on_any_number_of_threads():
     )
     seeds = np.arange(len(at)) + 70
     seen = pots(at).ball[:, 0] >= 0
-    assert (
-        (~seen & clear_paths(at).any_part).sum() > 0
-        and (~seen & ~clear_paths(at).any_part).sum() > 0
-        and seen.any()
-    )
+    assert (~seen & clear_paths(at).any_part).sum() > 0 and (~seen & ~clear_paths(at).any_part).sum() > 0
+    assert seen.any()
     order = np.random.default_rng(0).permutation(np.tile(np.arange(len(at)), 4))
     whole = search(60, threads=2).rank(at[order], seeds[order])
     for k in range(len(at)):
@@ -374,9 +365,8 @@ def test_generators_that_have_strokes_share_the_looks():
         search(60, {"noise": "none", "fidelity": "fast"}).rank(at, [1, 2, 3]),
     )
     assert (ranked.strokes[..., 0] == 1.0).sum(axis=1).tolist() == [30, 0, 30] and calls == [3]
-    assert np.array_equal(ranked.strokes[1], usual.strokes[1]) and not np.array_equal(
-        ranked.scores[0], usual.scores[0]
-    )
+    assert np.array_equal(ranked.strokes[1], usual.strokes[1])
+    assert not np.array_equal(ranked.scores[0], usual.scores[0])
 
 
 def test_equal_seeds_give_equal_decisions_on_any_number_of_threads():
@@ -387,9 +377,8 @@ def test_equal_seeds_give_equal_decisions_on_any_number_of_threads():
     assert same(one, tool.rank(at, seeds)) and same(one, tool.rank(at, seeds))  # a search remembers nothing
     other = tool.rank(at, seeds + 50)
     assert all(not np.array_equal(one.strokes[k], other.strokes[k]) for k in range(12))
-    assert same(one, tool.rank(at, (seeds + 2**32).astype(np.uint64))) and same(
-        one, tool.rank(at, seeds.tolist())
-    )
+    assert same(one, tool.rank(at, (seeds + 2**32).astype(np.uint64)))
+    assert same(one, tool.rank(at, seeds.tolist()))
 
 
 def test_nothing_given_is_changed_and_nothing_returned_is_shared():

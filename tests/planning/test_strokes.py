@@ -38,9 +38,8 @@ def test_choices_as_angles_are_the_same_shots():
 
 def test_the_masks_are_those_of_the_environment():
     env = tables(30, layout="random:4", **DISCRETE)
-    assert np.array_equal(action_masks(env), env.action_masks()) and np.array_equal(
-        action_masks(env.get_state()), env.action_masks()
-    )
+    assert np.array_equal(action_masks(env), env.action_masks())
+    assert np.array_equal(action_masks(env.get_state()), env.action_masks())
 
 
 def test_an_action_of_a_speed_and_a_direction_is_that_stroke():

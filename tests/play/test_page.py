@@ -108,16 +108,14 @@ def test_a_visit_is_played_by_mouse(shown):
     assert shown.page.inner_text("#speed-out") == "2.00 m/s"
     shown.page.click("#play")
     shown.until("page.moving")
-    assert (
-        shown.page.is_visible("#skip") and not shown.page.is_enabled("#play") and "plays: red" in shown.words
-    )
+    assert shown.page.is_visible("#skip") and not shown.page.is_enabled("#play")
+    assert "plays: red" in shown.words
     moved = shown("[page.moving.stroke.at(0.3).x[0], page.moving.stroke.first[0]]")
     assert abs(moved[0] - moved[1]) > 0.05
     shown.page.click("#skip")
     shown.played(1)
-    assert shown.words == "Player 1's stroke: any colour is on." and "Red potted, 1" in shown.page.inner_text(
-        "#last"
-    )
+    assert shown.words == "Player 1's stroke: any colour is on."
+    assert "Red potted, 1" in shown.page.inner_text("#last")
     assert shown.page.inner_text("#side-0 b") == "1" and shown("page.balls.on[1]") == 0
     assert shown.page.is_visible("#nominate")
     assert shown("[...document.querySelectorAll('#nominate option')].map(one => one.value)") == [
@@ -148,12 +146,10 @@ def test_keys_and_dial_change_the_stroke(shown):
     for key in ("ArrowLeft", "Shift+ArrowLeft", "ArrowUp", "Shift+ArrowUp", "w", "w", "d", "e"):
         shown.page.keyboard.press(key)
     wish = shown("page.aim.wish")
-    assert wish["aim"] == pytest.approx(1 + 1.1 * 0.017453293, abs=1e-6) and wish["speed"] == pytest.approx(
-        2.6
-    )
-    assert (wish["side"], wish["top"]) == pytest.approx((0.05, 0.1)) and wish["elevation"] == pytest.approx(
-        0.017453293
-    )
+    assert wish["aim"] == pytest.approx(1 + 1.1 * 0.017453293, abs=1e-6)
+    assert wish["speed"] == pytest.approx(2.6)
+    assert (wish["side"], wish["top"]) == pytest.approx((0.05, 0.1))
+    assert wish["elevation"] == pytest.approx(0.017453293)
     box = shown.page.locator("#dial").bounding_box()
     shown.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     shown.page.mouse.down()
@@ -183,10 +179,8 @@ def test_after_a_foul_the_choices_are_shown(shown):
     assert shown.page.is_visible("#choices") and not shown.page.is_enabled("#play")
     shown.page.click("#choices button[data-choice=replace]")
     shown.until("page.state.phase === 'stroke' && page.settled === page.state.revision")
-    assert (
-        not shown.page.is_visible("#choices")
-        and shown("[page.balls.x[0], page.balls.y[0]]") == COVERED["cue"]
-    )
+    assert not shown.page.is_visible("#choices")
+    assert shown("[page.balls.x[0], page.balls.y[0]]") == COVERED["cue"]
     assert shown("page.state.striker") == 0
     shown.page.click("#undo")
     shown.until("page.state.phase === 'choice'")
@@ -200,9 +194,8 @@ def test_a_ball_is_dragged_in_set_up_and_a_wrong_place_is_reported_beside_it(sho
     shown.page.click("#set")
     shown.drag(EASY["reds"][1], (0.02, 0.90), steps=4)  # onto the pink
     shown.until("!document.getElementById('bubble').hidden")
-    assert shown.page.inner_text("#bubble") == "The pink overlaps the red." and not shown.page.is_enabled(
-        "#set-done"
-    )
+    assert shown.page.inner_text("#bubble") == "The pink overlaps the red."
+    assert not shown.page.is_enabled("#set-done")
     assert shown.page.inner_text("#set-wrong") == ""  # it is reported once
     shown.drag((0.02, 0.90), (-0.3, 0.4))
     shown.until("document.getElementById('bubble').hidden && !document.getElementById('set-done').disabled")
@@ -217,11 +210,8 @@ def test_a_ball_is_dragged_in_set_up_and_a_wrong_place_is_reported_beside_it(sho
     shown.until("page.state.striker === 1 && !page.setup.open && page.settled === page.state.revision")
     state = shown("page.state")
     places = state["positions"]
-    assert (
-        state["scores"] == [33, 0]
-        and "black" not in places
-        and places["blue"] == pytest.approx([0.3, -0.3], abs=0.003)
-    )
+    assert state["scores"] == [33, 0] and "black" not in places
+    assert places["blue"] == pytest.approx([0.3, -0.3], abs=0.003)
     assert places["red 2"] == pytest.approx([-0.3, 0.4], abs=0.003) and places["red 1"] == EASY["reds"][0]
 
 
@@ -328,11 +318,8 @@ def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
         assert before, f"stroke {k} was not shown"
         for one in before:
             said = f"break {break_} on {stroke['ball_on']} reds {len(balls & {1, 2, 3})} left {left_after(balls, stroke['ball_on'])}"
-            assert (
-                one["now"] == said
-                and one["score"] == scores
-                and one["asked"] == f"ghost ball plays: {stroke['ball_on']}"
-            )
+            assert one["now"] == said and one["score"] == scores
+            assert one["asked"] == f"ghost ball plays: {stroke['ball_on']}"
         balls -= {ball for ball in stroke["pots"] if 1 <= ball <= 15}
         break_, scores = stroke["break"], stroke["score"]
         if k + 1 == len(strokes):
@@ -348,11 +335,8 @@ def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
                 one["now"]
                 == f"break {break_} on {on} reds {len(balls & {1, 2, 3})} left {left_after(balls, on)}"
             )
-            assert (
-                one["score"] == scores
-                and stroke["words"] in one["last"]
-                and one["asked"] == f"ghost ball's stroke: {on} is on."
-            )
+            assert one["score"] == scores and stroke["words"] in one["last"]
+            assert one["asked"] == f"ghost ball's stroke: {on} is on."
     shown.page.keyboard.press("v")  # the last stroke again: from the table before it
     shown.until("page.moving && page.moving.start")
     assert f"left {left_after(balls, strokes[-1]['ball_on'])}" in shown.page.inner_text("#now").replace(
@@ -373,17 +357,12 @@ def test_the_end_of_a_frame_is_seen(shown):
     shown.page.click("#concede")
     shown.until("page.state.phase === 'over' && page.settled === page.state.revision")
     assert shown.page.inner_text("#over-who") == "ghost ball won the frame"
-    assert (
-        shown.page.inner_text("#over-score") == "You 1 : 0 ghost ball"
-        and shown.page.inner_text("#over-last") == "You concede the frame."
-    )
+    assert shown.page.inner_text("#over-score") == "You 1 : 0 ghost ball"
+    assert shown.page.inner_text("#over-last") == "You concede the frame."
     assert shown.words == "Frame over: ghost ball won."
     table, over = shown.page.locator("#stage").bounding_box(), shown.page.locator("#over").bounding_box()
-    assert (
-        over["y"] >= table["y"]
-        and over["x"] >= table["x"]
-        and over["x"] + over["width"] <= table["x"] + table["width"]
-    )
+    assert over["y"] >= table["y"] and over["x"] >= table["x"]
+    assert over["x"] + over["width"] <= table["x"] + table["width"]
     shown.page.click("#over-close")
     assert not shown.page.is_visible("#over")
     shown.page.click("#undo")
@@ -403,10 +382,8 @@ def test_the_end_of_a_frame_is_seen_when_its_last_ball_is_down(shown):
     shown.until("page.moving")
     assert not shown.page.is_visible("#over")
     shown.played(1)
-    assert (
-        shown.page.inner_text("#over-who") == "Player 2 won the frame"
-        and shown.page.inner_text("#over-score") == "Player 1 12 : 13 Player 2"
-    )
+    assert shown.page.inner_text("#over-who") == "Player 2 won the frame"
+    assert shown.page.inner_text("#over-score") == "Player 1 12 : 13 Player 2"
 
 
 def test_the_odds_are_those_of_the_errors_of_the_persons_seat(shown):
@@ -528,11 +505,8 @@ def test_a_suggestion_with_its_place_in_the_d_keeps_the_list(shown):
         "[...document.querySelectorAll('#pockets span')].map(one => [one.textContent, one.offsetLeft, one.offsetTop])"
     )
     places = {name: (x, y) for name, x, y in names}
-    assert (
-        len(places) == 6
-        and places["right middle"][1] > places["left middle"][1]
-        and places["top right"][0] > places["yellow pocket"][0]
-    )
+    assert len(places) == 6 and places["right middle"][1] > places["left middle"][1]
+    assert places["top right"][0] > places["yellow pocket"][0]
     many, before = shown("page.advisor.list.length"), shown("page.state.revision")
     shown.page.click("#advice li:last-child button")
     shown.until("page.state.revision > argument && page.settled === page.state.revision", before)
@@ -550,9 +524,8 @@ def test_reds_off_leaves_it_to_the_balls_what_is_on(shown):
     shown.until("!document.getElementById('set-done').disabled")
     shown.page.select_option("#set-on", "red")
     shown.until("document.getElementById('set-done').disabled")
-    assert shown.page.inner_text(
-        "#set-wrong"
-    ) == "There is no red left to be on." and not shown.page.is_visible("#bubble")
+    assert shown.page.inner_text("#set-wrong") == "There is no red left to be on."
+    assert not shown.page.is_visible("#bubble")
     shown.page.select_option("#set-on", "as the balls say")
     shown.until("!document.getElementById('set-done').disabled")
     shown.page.click("#set-done")

@@ -19,9 +19,8 @@ from tests.processes import ROOT
 def refused(found, status, words):
     """Is that an error of this status, as one JSON object, that says these words?"""
     code, body, headers = found
-    assert (
-        code == status and set(body) == {"error"} and set(body["error"]) == {"field", "value", "message"}
-    ), found[:2]
+    assert code == status and set(body) == {"error"}, found[:2]
+    assert set(body["error"]) == {"field", "value", "message"}, found[:2]
     assert words in body["error"]["message"] and headers["Content-Type"] == "application/json"
     return body["error"]
 
@@ -41,10 +40,8 @@ def test_the_page_and_the_protocol_are_served_with_headers_that_keep_others_out(
     ):
         status, body, headers = line(name)
         assert status == 200 and body and headers["Content-Type"].startswith(kind)
-        assert (
-            "default-src 'none'" in headers["Content-Security-Policy"]
-            and "unsafe" not in headers["Content-Security-Policy"]
-        )
+        assert "default-src 'none'" in headers["Content-Security-Policy"]
+        assert "unsafe" not in headers["Content-Security-Policy"]
         assert (headers["X-Content-Type-Options"], headers["X-Frame-Options"], headers["Cache-Control"]) == (
             "nosniff",
             "DENY",
@@ -294,11 +291,8 @@ def test_the_replay_is_a_file_to_keep(line):
     )
     assert line("api/stroke", {"speed": 1, "aim": 0.5})[0] == 200
     status, body, headers = line("api/replay.html")
-    assert (
-        status == 200
-        and body.startswith(b"<!DOCTYPE html>")
-        and headers["Content-Disposition"].startswith("attachment")
-    )
+    assert status == 200 and body.startswith(b"<!DOCTYPE html>")
+    assert headers["Content-Disposition"].startswith("attachment")
 
 
 def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
@@ -320,11 +314,8 @@ def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
     assert lines[2].strip().startswith("http://127.0.0.1:") and len(lines[2].strip()) > 50
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=20)
-    assert (
-        process.returncode == 0
-        and err == "Loading the players and the simulator ...\n"
-        and "Traceback" not in out
-    )
+    assert process.returncode == 0 and err == "Loading the players and the simulator ...\n"
+    assert "Traceback" not in out
 
 
 @pytest.mark.parametrize(
@@ -348,8 +339,5 @@ def test_a_port_in_use_is_said_with_what_to_do(line, capsys):
     port = line.server.server_port
     assert main(["--no-browser", "--port", str(port)]) == 2
     _, err = capsys.readouterr()
-    assert (
-        err.startswith(f"snooker_env.play: port = {port}: must be free (")
-        and "another with --port" in err
-        and err.count("\n") == 1
-    )
+    assert err.startswith(f"snooker_env.play: port = {port}: must be free (") and "another with --port" in err
+    assert err.count("\n") == 1

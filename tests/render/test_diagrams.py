@@ -80,11 +80,8 @@ def test_balls_ghosts_and_signs_lie_where_things_happen(screw):
         assert np.allclose(circles(ax, f"ball-{ball}"), [(*start[ball], R)])
     met = next(c for c in shot_paths.contacts(screw, 0) if c.kind == sn.EventKind.BALL_BALL)
     ghosts = circles(ax, "ghost-0")
-    assert (
-        np.allclose(ghosts[0], (*met.centre, R))
-        and np.allclose(ghosts[-1], (*screw.positions[0], R))
-        and len(ghosts) == 2
-    )
+    assert np.allclose(ghosts[0], (*met.centre, R)) and np.allclose(ghosts[-1], (*screw.positions[0], R))
+    assert len(ghosts) == 2
     assert not len(circles(ax, "ghost-1"))  # potted
     for ball in (0, 1):
         for kind in ("ball_ball", "cushion", "jaw", "pot"):
@@ -121,9 +118,8 @@ def test_speeds_cut_and_tip_are_written(screw):
     assert (tip[1] - inset[1]) / inset[2] == pytest.approx(0.2, abs=1e-9)  # right is right
     assert (tip[0] - inset[0]) / inset[2] == pytest.approx(0.35, abs=1e-9)  # below is down
     described = screw.plot(cue={"side": -0.1, "top": 0.4, "speed": 3.0, "elevation": 0.3})
-    assert "top 0.40 R, left side 0.10 R" in words(described) and "3.00 m/s, butt raised 17°" in words(
-        described
-    )
+    assert "top 0.40 R, left side 0.10 R" in words(described)
+    assert "3.00 m/s, butt raised 17°" in words(described)
     bare = screw.plot(speeds=False, caption="none", title="a title")
     assert words(bare) == ["a title"]
 
@@ -137,9 +133,8 @@ def test_labels_do_not_cover_each_other_and_are_legible():
     assert len(boxes) > 8
     for k, one in enumerate(boxes):
         assert not any(one.overlaps(other) for other in boxes[k + 1 :]), ax.texts[k].get_text()
-        assert one.x0 >= 0 and one.x1 <= figure.bbox.x1 and one.y0 >= 0 and one.y1 <= figure.bbox.y1, (
-            ax.texts[k].get_text()
-        )
+        assert one.x0 >= 0 and one.x1 <= figure.bbox.x1 and one.y0 >= 0, ax.texts[k].get_text()
+        assert one.y1 <= figure.bbox.y1, ax.texts[k].get_text()
     assert min(text.get_size() for text in ax.texts) >= 7.5
     assert figure.get_size_inches()[0] * 100 == pytest.approx(830)
 
@@ -184,9 +179,8 @@ def test_every_table_draws_as_itself(table):
         and np.allclose(p.get_facecolor()[:3], np.array(palette.PALETTE["hole"]) / 255)
     ]
     falls = {(round(p.center[1], 6), round(p.center[0], 6), round(p.radius, 6)) for p in holes}
-    assert {tuple(row) for row in np.round(table.falls, 6).tolist()} <= falls and len(holes) == 2 * len(
-        table.falls
-    )
+    assert {tuple(row) for row in np.round(table.falls, 6).tolist()} <= falls
+    assert len(holes) == 2 * len(table.falls)
     edges = [
         line
         for line in ax.get_lines()
@@ -210,10 +204,8 @@ def test_given_axes_are_drawn_on_and_a_table_once(screw):
     n = sum(p.get_gid() == "snooker-table" for p in one.patches)
     limits = one.get_xlim(), one.get_ylim()
     assert density(np.random.default_rng(0).normal(0.3, 0.1, (200, 2)), one) is one
-    assert (
-        sum(p.get_gid() == "snooker-table" for p in one.patches) == n > 10
-        and (one.get_xlim(), one.get_ylim()) == limits
-    )
+    assert sum(p.get_gid() == "snooker-table" for p in one.patches) == n > 10
+    assert (one.get_xlim(), one.get_ylim()) == limits
     assert figure.axes == [one, other]
 
 
@@ -246,9 +238,8 @@ def test_a_fan_pots_every_time_and_ends_where_the_cue_ball_stops():
     ax = fan(places, tops=tops, sides=sides)
     strokes, match = Strokes(2.0, tops, sides), sn.Table.preset("match")
     options = fan_options(np.array(places), np.ones(2, bool), None, None, strokes, match, sn.Physics.of(None))
-    assert (
-        all(option.shot.potted[1] == 3 for option in options) and len({option.aim for option in options}) > 1
-    )
+    assert all(option.shot.potted[1] == 3 for option in options)
+    assert len({option.aim for option in options}) > 1
     paths = lines(ax, "fan")
     assert len(paths) == 6
     for path, option in zip(paths, options, strict=True):

@@ -36,9 +36,8 @@ def test_film_of_a_shot(pot):
 
 def test_paths_run_from_start_to_end(pot):
     paths = ball_paths(pot, (CUE, 1))
-    assert np.array_equal(paths[CUE][0], (0.2, 0.0)) and paths[CUE][-1] == pytest.approx(
-        pot.positions[0], abs=1e-4
-    )
+    assert np.array_equal(paths[CUE][0], (0.2, 0.0))
+    assert paths[CUE][-1] == pytest.approx(pot.positions[0], abs=1e-4)
     assert paths[1][-1] == pytest.approx(pot.positions[1], abs=1e-9)
     impact = 0.7 - 2 * BALL_RADIUS
     assert np.min(np.abs(paths[CUE][:, 0] - impact)) < 1e-6  # the place of the impact itself is on the path
@@ -94,9 +93,8 @@ def test_a_rolling_ball_turns_once_each_circumference():
     times = np.linspace(0.0, shot.duration, 4000)
     t = float(np.interp(np.pi / 2 * R, shot.at(times)[0][:, 0, 0], times))
     assert matrix(turning.at(t)) == pytest.approx(np.array([(0, 0, 1), (0, 1, 0), (-1, 0, 0)]), abs=2e-3)
-    assert np.array_equal(turning.at(0.0), (1, 0, 0, 0)) and np.linalg.norm(
-        turning.at(shot.duration)
-    ) == pytest.approx(1.0, abs=1e-12)
+    assert np.array_equal(turning.at(0.0), (1, 0, 0, 0))
+    assert np.linalg.norm(turning.at(shot.duration)) == pytest.approx(1.0, abs=1e-12)
     film = Film(None, shot, spots=(CUE,))
     assert np.array_equal(film.at(t).turns[CUE], turning.at(t)) and Film(None, shot).at(t).turns == {}
 

@@ -80,14 +80,12 @@ def test_the_json_is_the_table(name):
         assert np.array(data[key]).reshape(getattr(parts, key).shape) == pytest.approx(
             getattr(parts, key), abs=5.1e-7
         )
-    assert (
-        data["extent"] == pytest.approx(table.bounds, abs=5.1e-7) and data["ball_radius"] == table.ball_radius
-    )
+    assert data["extent"] == pytest.approx(table.bounds, abs=5.1e-7)
+    assert data["ball_radius"] == table.ball_radius
     assert data["palette"] == {key: list(rgb) for key, rgb in PALETTE.items()}
     assert [ball["rgb"] for ball in data["balls"]] == COLOURS.tolist()
-    assert [ball["value"] for ball in data["balls"]] == VALUES.tolist() and [
-        ball["name"] for ball in data["balls"]
-    ] == list(NAMES)
+    assert [ball["value"] for ball in data["balls"]] == VALUES.tolist()
+    assert [ball["name"] for ball in data["balls"]] == list(NAMES)
     if name in ("match", "tight"):
         assert data["lines"]["spots"] == pytest.approx(SPOTS[16:], abs=5.1e-7)
         assert np.hypot(*(np.array(data["lines"]["d"]) - (0, BAULK_Y)).T) == pytest.approx(
@@ -100,9 +98,6 @@ def test_the_json_is_the_table(name):
 
 def test_the_json_of_unbounded_cloth():
     data = scene_data(None)
-    assert (
-        data["cushions"] == data["falls"] == data["throats"] == []
-        and data["lines"]
-        and data["ball_radius"] == BALL_RADIUS
-    )
+    assert data["cushions"] == data["falls"] == data["throats"] == [] and data["lines"]
+    assert data["ball_radius"] == BALL_RADIUS
     json.dumps(data, allow_nan=False)

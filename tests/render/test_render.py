@@ -72,10 +72,8 @@ def test_picture_shows_every_ball_in_its_place():
         assert is_drawn(picture, SPOTS[ball], ball), ball
     # Seen from baulk towards the black the yellow is on the right: black right, yellow below, green above.
     places = to_pixels(SPOTS)
-    assert (
-        places[BLACK, 0] > places[PINK, 0] > places[BROWN, 0]
-        and places[YELLOW, 1] > places[BROWN, 1] > places[GREEN, 1]
-    )
+    assert places[BLACK, 0] > places[PINK, 0] > places[BROWN, 0]
+    assert places[YELLOW, 1] > places[BROWN, 1] > places[GREEN, 1]
     assert places[BLACK, 1] == places[BROWN, 1]
 
 
@@ -113,9 +111,8 @@ def test_overlays_and_text_change_only_where_they_are():
     plain = rgb_array(scene("match", SPOTS, ~ALL))
     path = np.array([(-0.5, 0.5), (0.5, 0.5)])
     drawn = rgb_array(scene("match", SPOTS, ~ALL, paths={CUE: path}))
-    assert at(drawn, (0.1, 0.5)).min() > 200 and np.array_equal(
-        at(drawn, (0.1, 0.55)), at(plain, (0.1, 0.55))
-    )
+    assert at(drawn, (0.1, 0.5)).min() > 200
+    assert np.array_equal(at(drawn, (0.1, 0.55)), at(plain, (0.1, 0.55)))
     assert at(rgb_array(scene("match", SPOTS, ~ALL, aim=path)), (0.1, 0.5))[:2].min() > 200
     ghost = rgb_array(scene("match", SPOTS, ~ALL, ghost=(0.3, 0.5)))
     assert np.array_equal(at(ghost, (0.3, 0.5)), at(plain, (0.3, 0.5))) and np.any(ghost != plain)
@@ -124,11 +121,8 @@ def test_overlays_and_text_change_only_where_they_are():
     for text, least, most in (("break 12", 100, 300), ("long " * 100, 1700, 1900)):
         said = rgb_array(scene("match", SPOTS, ~ALL, text=text))
         rows, columns = np.nonzero(np.any(said != nothing, axis=2))
-        assert (
-            said.shape == plain.shape
-            and rows.min() > to_pixels((0.889 + 0.155, 0.0))[1]
-            and least < columns.max() < most
-        )
+        assert said.shape == plain.shape and rows.min() > to_pixels((0.889 + 0.155, 0.0))[1]
+        assert least < columns.max() < most
         assert np.array_equal(said[:1000], plain[:1000])
 
 
@@ -145,11 +139,8 @@ def test_scene_copies_and_refuses():
     r = SPOTS.copy()
     s = scene("match", r, without(3), paths={CUE: r})
     r[:] = 0
-    assert (
-        np.array_equal(s.positions, SPOTS[without(3)])
-        and s.labels == tuple("W" + "r" * 14 + "YGNBPK")
-        and 3 not in s.ids
-    )
+    assert np.array_equal(s.positions, SPOTS[without(3)]) and s.labels == tuple("W" + "r" * 14 + "YGNBPK")
+    assert 3 not in s.ids
     assert np.array_equal(s.paths[CUE], SPOTS) and np.array_equal(s.colours[-1], COLOURS[BLACK])
     for bad, field in [
         (lambda: scene("match", SPOTS, np.ones(21, bool)), "on_table"),
@@ -176,11 +167,8 @@ def test_text_shows_the_balls():
     picture = ansi(scene("match", SPOTS, ALL, text="break 12"))
     lines = picture.split("\n")
     table = lines[:27]
-    assert (
-        {len(line) for line in table} == {100}
-        and table[0].startswith("O═")
-        and table[0].count("O") == 4 == table[-1].count("O")
-    )
+    assert {len(line) for line in table} == {100} and table[0].startswith("O═")
+    assert table[0].count("O") == 4 == table[-1].count("O")
     assert lines[27] == "break 12" and "N=brown" in lines[28] and "\x1b" not in picture
     rows = {letter: [k for k, line in enumerate(table) if letter in line] for letter in "WYGNBPK"}
     assert all(len(found) == 1 for found in rows.values())

@@ -37,9 +37,8 @@ def test_every_vertex_of_a_path_is_where_the_shot_has_the_ball(shots):
             for piece in own:
                 assert np.array_equal(piece.points, shot.at(piece.times)[0][:, ball])
             starts, ends = [p.times[0] for p in own[1:]], [p.times[-1] for p in own[:-1]]
-            assert (
-                all(a >= b for a, b in zip(starts, ends, strict=True)) and own[-1].times[-1] <= shot.duration
-            )
+            assert all(a >= b for a, b in zip(starts, ends, strict=True))
+            assert own[-1].times[-1] <= shot.duration
             assert np.allclose(own[-1].points[-1], shot.positions[ball], atol=1e-9)
 
 
@@ -82,9 +81,8 @@ def test_contacts_are_those_of_the_log_at_their_places(shots):
                 assert np.hypot(*(c.place - other)) == pytest.approx(R, abs=1e-6)
             elif c.kind == sn.EventKind.CUSHION:
                 axis, side, level = shot.table.noses[c.other, :3]
-                assert c.place[int(axis)] == side * level and np.hypot(
-                    *(c.place - c.centre)
-                ) == pytest.approx(R, abs=1e-6)
+                assert c.place[int(axis)] == side * level
+                assert np.hypot(*(c.place - c.centre)) == pytest.approx(R, abs=1e-6)
             assert c.speed == pytest.approx(np.hypot(*shot.at(c.time - 1e-7)[1][c.ball]), abs=1e-5)
             assert c.after == np.hypot(*shot.at(c.time)[1][c.ball])
 

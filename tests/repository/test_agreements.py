@@ -47,9 +47,8 @@ def test_observations_have_a_row_for_each_ball_and_an_entry_for_each_thing_on():
     assert observations.space("flat").shape == (
         balls.N_BALLS * len(observations.BALL_COLUMNS) + len(observations.STATE_ENTRIES),
     )
-    assert balls.NAMES[16:] == balls.COLOUR_NAMES and len(balls.NAMES) == balls.N_BALLS == len(
-        balls.VALUES
-    ) == len(balls.SPOTS)
+    assert balls.NAMES[16:] == balls.COLOUR_NAMES
+    assert len(balls.NAMES) == balls.N_BALLS == len(balls.VALUES) == len(balls.SPOTS)
 
 
 def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():

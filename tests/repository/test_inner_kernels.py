@@ -44,9 +44,8 @@ def test_inner_kernels_are_only_linked():
     exec(KERNELS, here)
     assert here["outer"](3.0) == 7.0 and _inner.KNOWN
     ((inner,), (outer,)) = (here[name].overloads.values() for name in ("double", "outer"))
-    assert isinstance(inner.entry_point, _inner.EntryPoint) and not isinstance(
-        outer.entry_point, _inner.EntryPoint
-    )
+    assert isinstance(inner.entry_point, _inner.EntryPoint)
+    assert not isinstance(outer.entry_point, _inner.EntryPoint)
 
 
 def test_numba_finds_by_itself_what_is_not_of_an_inner_kernel():
@@ -55,9 +54,8 @@ def test_numba_finds_by_itself_what_is_not_of_an_inner_kernel():
     here = {}
     exec(KERNELS.replace("2.0 * x", "max(2.0 * x, 1.0)"), here)
     assert here["outer"](3.0) == 7.0 and here["outer"](0.0) == 2.0
-    assert any(called is operator.mul for called, _ in _inner._found) and not any(
-        called is max for called, _ in _inner._found
-    )
+    assert any(called is operator.mul for called, _ in _inner._found)
+    assert not any(called is max for called, _ in _inner._found)
     assert getattr(BaseFunction, _inner.FIND) is _inner._find
 
 

@@ -39,7 +39,7 @@ def test_the_import_is_light():
         "import gymnasium, numba, numpy\n"
         "needed = set(sys.modules)\n"  # numba imports scipy where there is one
         "import snooker_env\n"
-        "print(json.dumps(sorted(set(sys.modules) - needed)))\n",
+        "print(json.dumps(sorted(set(sys.modules) - needed)))\n"
     )
     new = json.loads(out)
     assert "snooker_env.simulation" in new and "snooker_env.physics.engine" in new
@@ -69,7 +69,7 @@ def test_with_the_core_dependencies_alone_everything_but_pictures_works():
         "env = gymnasium.make('Snooker-v0', render_mode='rgb_array')\n"
         "env.reset(seed=1)\n"
         "try: env.render()\n"
-        "except ImportError as error: print(error)\n",
+        "except ImportError as error: print(error)\n"
     )
     wanted = f'pictures need pygame-ce; install it, in the clone {ROOT}, with: pip install -e ".[render]"'
     assert out.splitlines() == ["True", wanted]
@@ -152,7 +152,7 @@ def test_a_second_import_is_silent():
         "importlib.reload(snooker_env)\n"
         "del sys.modules['snooker_env']\n"
         "import snooker_env\n"
-        "print(gymnasium.make('snooker_env:Snooker-v0').spec.id)\n",
+        "print(gymnasium.make('snooker_env:Snooker-v0').spec.id)\n"
     )
     assert (out, err) == ("Snooker-v0\n", "")
 
@@ -237,10 +237,8 @@ def test_without_a_place_for_the_cache_it_works_from_memory(tmp_path, where):
     variables = dict.fromkeys(CACHE) | {where: str(tmp_path / "file")}
     out, err = python(SPOT, warn="error,default::RuntimeWarning", **variables)
     assert out.split() == ["1.4605", "-1", "None"]
-    assert (
-        err.count("Warning") == 1
-        and "is not writable: every process compiles for itself; set NUMBA_CACHE_DIR" in err
-    )
+    assert err.count("Warning") == 1
+    assert "is not writable: every process compiles for itself; set NUMBA_CACHE_DIR" in err
     assert (tmp_path / "file").read_text() == ""
 
 
@@ -307,9 +305,8 @@ def test_one_shot_is_the_same_alone_and_in_a_batch(golden):
     for k in range(0, 40, 3):
         shot = sn.simulate(r[k], v[k], w[k], on_table=here[k])
         assert shot.positions.tobytes() == batch.positions[k].tobytes() and shot.duration == batch.duration[k]
-        assert np.array_equal(shot.potted, batch.potted[k]) and np.array_equal(
-            shot.on_table, batch.on_table[k]
-        )
+        assert np.array_equal(shot.potted, batch.potted[k])
+        assert np.array_equal(shot.on_table, batch.on_table[k])
         assert shot.events.tobytes() == batch.events[k].tobytes() and len(shot.events) == batch.event_count[k]
 
 
@@ -328,9 +325,8 @@ def test_a_pickled_shot_and_physics_stay_what_they_are():
     shot = sn.simulate([(0.0, 0.0), (0.3, 0.0)], [(1.0, 0.0), (0.0, 0.0)], np.zeros((2, 3)), physics="match")
     again = pickle.loads(pickle.dumps(shot))
     assert again.physics == shot.physics == sn.Physics.preset("match") != sn.Physics()
-    assert np.array_equal(again.positions, shot.positions) and all(
-        map(np.array_equal, again.at(0.3), shot.at(0.3))
-    )
+    assert np.array_equal(again.positions, shot.positions)
+    assert all(map(np.array_equal, again.at(0.3), shot.at(0.3)))
     assert pickle.loads(pickle.dumps(sn.Table.preset("tight"))) is sn.Table.preset("tight")
 
 

@@ -137,7 +137,7 @@ def test_environments_and_planning_are_reached_from_the_package_and_loaded_when_
         "print(heavy(), 'SnookerEnv' in dir(sn), 'planning' in dir(sn))\n"
         "print(sn.planning.Planner is sn.Planner, sn.SnookerEnv.__module__, sn.SnookerVectorEnv.__module__)\n"
         "from snooker_env import *\n"
-        "print(Position is sn.Position, SnookerEnv is sn.SnookerEnv)\n",
+        "print(Position is sn.Position, SnookerEnv is sn.SnookerEnv)\n"
     )
     assert out.splitlines() == [
         "[] True True",

@@ -35,10 +35,8 @@ def built(tmp_path_factory):
 
 def test_the_wheel_says_who_may_use_it(built):
     found = built.metadata
-    assert found["License-Expression"] == "MIT" and found.get_all("License-File") == [
-        "LICENSE",
-        "snooker_env/render/fonts/OFL.txt",
-    ]
+    assert found["License-Expression"] == "MIT"
+    assert found.get_all("License-File") == ["LICENSE", "snooker_env/render/fonts/OFL.txt"]
     assert found["Author"] == "the snooker_env authors" and found["Version"] == sn.__version__
     text = built.read_text("licenses/LICENSE")
     assert text == (ROOT / "LICENSE").read_text()

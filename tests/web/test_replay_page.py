@@ -58,9 +58,8 @@ class Watched:
 
     def close(self):
         assert not self.errors
-        assert {url.split(":")[0] for url in self.asked} <= {"file", "data"} and len(
-            [url for url in self.asked if url.startswith("file")]
-        ) == 1
+        assert {url.split(":")[0] for url in self.asked} <= {"file", "data"}
+        assert len([url for url in self.asked if url.startswith("file")]) == 1
         self.page.close()
 
 
@@ -264,18 +263,12 @@ def test_the_score_bar_says_what_the_referee_says(open_page, shown):
     assert scores == ["0", "0"] and "break 0" in now and "on red" in now
     p("p.seek(1, 0)")
     scores, now = bar()
-    assert (
-        scores == ["1", "0"]
-        and "break 1" in now
-        and p.page.locator(".sn-now span").first.locator("i").count() == 1
-    )
+    assert scores == ["1", "0"] and "break 1" in now
+    assert p.page.locator(".sn-now span").first.locator("i").count() == 1
     p("p.seek(1, p.strokes[1].duration)")
     scores, now = bar()
-    assert (
-        scores == ["8", "0"]
-        and "break 8" in now
-        and p.page.locator(".sn-now span").first.locator("i").count() == 2
-    )
+    assert scores == ["8", "0"] and "break 8" in now
+    assert p.page.locator(".sn-now span").first.locator("i").count() == 2
     assert p.page.locator(".sn-words").inner_text() == data["strokes"][1]["words"]
     p("p.seek(2, 0)")
     assert "break 0" in bar()[1] and "sn-turn" in p.page.locator(".sn-who").nth(1).get_attribute("class")
@@ -325,10 +318,7 @@ def test_nothing_overlaps_or_overflows_at_any_size(open_page):
             p(moment)
             assert p(
                 "document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight"
-            ), (
-                width,
-                height,
-            )
+            ), (width, height)
             assert p.page.evaluate(OVERLAPS) == [], (width, height, moment)
         wide, high = p(
             "[p.view.toScreen(0, p.replay.scene.extent[1][1])[0] - p.view.toScreen(0, p.replay.scene.extent[1][0])[0], innerHeight]"

@@ -84,11 +84,8 @@ def page(chromium):  # noqa: F811
 def test_the_file_is_small_and_loads_nothing():
     source = table_js()
     assert len(source.encode()) < 56 * 1024
-    assert (
-        "import " not in source
-        and "http" not in source.replace("http-equiv", "")
-        and "</script" not in source
-    )
+    assert "import " not in source and "http" not in source.replace("http-equiv", "")
+    assert "</script" not in source
 
 
 def test_places_are_those_of_the_simulation_at_1000_times_of_100_shots(page):
@@ -259,9 +256,8 @@ def test_every_table_is_drawn_as_it_is(page, table):
     assert near(cloth_, palette["cloth"])
     assert near(rail, palette["wood"] if scene["cushions"] else palette["cloth"], 70)
     assert near(ball, scene["balls"][0]["rgb"])
-    assert all(near(pocket, palette["hole"], 70) for pocket in pockets) and len(pockets) == len(
-        scene["falls"]
-    )
+    assert all(near(pocket, palette["hole"], 70) for pocket in pockets)
+    assert len(pockets) == len(scene["falls"])
 
 
 def test_everything_that_a_frame_may_hold_is_drawn(page):

@@ -57,14 +57,12 @@ def test_a_rows_result_does_not_depend_on_the_rows_beside_it(activation):
     assert together.shape == (1001, 5) and together.dtype == np.float32
     for part in (slice(0, 1), slice(7, 8), slice(1, 64), slice(500, 1001), slice(0, 0)):
         assert np.array_equal(layers(rows[part]), together[part])
-    assert np.array_equal(layers(rows[::-1]), together[::-1]) and np.array_equal(
-        layers(rows.astype(np.float64)), together
-    )
+    assert np.array_equal(layers(rows[::-1]), together[::-1])
+    assert np.array_equal(layers(rows.astype(np.float64)), together)
     between = {"relu": lambda x: np.maximum(x, 0.0), "tanh": np.tanh}[activation]
     expected = between(between(rows @ first.T + b1) @ second.T + b2) @ third.T + b3
-    assert together == pytest.approx(expected, abs=1e-4) and not np.allclose(
-        expected, rows @ first.T @ second.T @ third.T, atol=0.1
-    )
+    assert together == pytest.approx(expected, abs=1e-4)
+    assert not np.allclose(expected, rows @ first.T @ second.T @ third.T, atol=0.1)
 
 
 def test_weights_are_copied_and_rows_left_alone():

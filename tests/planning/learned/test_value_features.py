@@ -49,12 +49,8 @@ def seen(*positions, spread=SPREAD):
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_they_are_numbers_of_a_moderate_size(layout):
     rows = value_features(some(150, layout), SPREAD)
-    assert (
-        rows.shape == (150, SIZE)
-        and rows.dtype == np.float32
-        and np.isfinite(rows).all()
-        and np.abs(rows).max() <= 8.0
-    )
+    assert rows.shape == (150, SIZE) and rows.dtype == np.float32 and np.isfinite(rows).all()
+    assert np.abs(rows).max() <= 8.0
     assert OF_ALL + SHARED == SIZE and LOGIT == SIZE - 1 and len(np.unique(rows, axis=0)) > 1
 
 
@@ -71,9 +67,8 @@ def test_a_table_and_its_mirror_image_differ_by_the_side_alone():
         rest = np.arange(SIZE) != SIDE
         assert one[:, rest] == pytest.approx(other[:, rest], abs=2e-6)
         off = at.positions[:, 0, 0] != 0.0
-        assert np.array_equal(one[off, SIDE], -other[off, SIDE]) and np.array_equal(
-            one[off, SIDE], np.sign(at.positions[off, 0, 0])
-        )
+        assert np.array_equal(one[off, SIDE], -other[off, SIDE])
+        assert np.array_equal(one[off, SIDE], np.sign(at.positions[off, 0, 0]))
 
 
 def test_the_order_of_the_reds_does_not_matter():
@@ -140,13 +135,10 @@ def test_the_pots_are_the_best_ones_recomputed(ball_on):
             expected[j] = entries
         assert shown == pytest.approx(expected, abs=2e-5)
         all_of = [one[1] for one in best] or [0.0]
-        assert rows[k, COUNT] == pytest.approx(len(best) / 8) and rows[k, OF_ALL + 7] == pytest.approx(
-            0.25 * sum(all_of), rel=1e-5
-        )
-        assert (
-            rows[k, OF_ALL + 8] == sum(c > 0.9 for c in all_of) / 4
-            and rows[k, OF_ALL + 9] == sum(c > 0.6 for c in all_of) / 4
-        )
+        assert rows[k, COUNT] == pytest.approx(len(best) / 8)
+        assert rows[k, OF_ALL + 7] == pytest.approx(0.25 * sum(all_of), rel=1e-5)
+        assert rows[k, OF_ALL + 8] == sum(c > 0.9 for c in all_of) / 4
+        assert rows[k, OF_ALL + 9] == sum(c > 0.6 for c in all_of) / 4
         assert rows[k, LIKELIEST] == pytest.approx(max(all_of), rel=1e-5)
         assert rows[k, LOGIT] == pytest.approx(log((max(all_of) + 1e-3) / (1 - max(all_of) + 1e-3)), abs=1e-4)
         several += len(best) > POTS_SEEN
@@ -168,9 +160,8 @@ def test_a_blocker_takes_a_pot_away():
     ):
         row = seen(Position(**pot, reds=[red], **on))[0]
         assert np.array_equal(row[chance], free[chance]) != blocked, red
-        assert (
-            row[LIKELIEST] <= free[LIKELIEST] + 1e-7 and (row[LIKELIEST] < 0.9 * free[LIKELIEST]) == blocked
-        )
+        assert row[LIKELIEST] <= free[LIKELIEST] + 1e-7
+        assert (row[LIKELIEST] < 0.9 * free[LIKELIEST]) == blocked
     open_to = POTS_SEEN * POT_ENTRIES + 5 * COLOUR_ENTRIES + 1  # how open the black is for a pocket
     near, far = (seen(Position(**pot, reds=[red], **on))[0, open_to] for red in ((0.2, 1.08), (0.62, 1.53)))
     assert near == free[open_to] > far  # wherever the cue ball lies
@@ -196,16 +187,8 @@ def test_the_ball_on_is_one_of_eight():
     # any colour after a red: a seventh black more; then what lies there, a black with each red
     assert (147 * rows[:, LEFT]).round(3).tolist() == [27 + 7, 27 + 8, 27, 25, 22, 18, 13, 7]
     assert value_features(some(1, "break_off"), SPREAD)[0, LEFT] == 1.0
-    assert rows[:, OF_ALL + 23].tolist() == [1, 0, 1, 1, 1, 1, 1, 1] and rows[:, OF_ALL + 24].tolist() == [
-        0,
-        1,
-        0,
-        0,
-        0,
-        0,
-        0,
-        0,
-    ]
+    assert rows[:, OF_ALL + 23].tolist() == [1, 0, 1, 1, 1, 1, 1, 1]
+    assert rows[:, OF_ALL + 24].tolist() == [0, 1, 0, 0, 0, 0, 0, 0]
 
 
 def test_what_is_said_of_the_reds():
@@ -213,26 +196,21 @@ def test_what_is_said_of_the_reds():
     reds = [(0.86, 0.5), (0.3, 1.74), (0.1, 0.6), (0.1, -0.6)]
     at = Position(cue=(0.4, 0.2), reds=[*reds, (0.156, -0.6)], black=(0.0, 1.4605), on="red")
     row = seen(at)[0, OF_ALL:]
-    assert (
-        row[0] == pytest.approx(5 / 15) and row[3] == pytest.approx(2 / 8) and row[4] == pytest.approx(2 / 8)
-    )
+    assert row[0] == pytest.approx(5 / 15) and row[3] == pytest.approx(2 / 8)
+    assert row[4] == pytest.approx(2 / 8)
     assert row[5] == pytest.approx(3 / 8)
     away = [hypot(x - 0.4, y - 0.2) for x, y in [*reds, (0.156, -0.6)]]
     assert row[6] == pytest.approx(np.mean(away) - 1.0, abs=1e-6)
-    assert (
-        row[11] == pytest.approx(0.4 / 0.889)
-        and row[12] == pytest.approx(0.2 / 1.7845)
-        and row[13] == pytest.approx(0.889 - 0.4)
-    )
+    assert row[11] == pytest.approx(0.4 / 0.889) and row[12] == pytest.approx(0.2 / 1.7845)
+    assert row[13] == pytest.approx(0.889 - 0.4)
 
 
 def test_larger_errors_make_every_pot_less_likely():
     at = some(80, "random:5")
     small, large = (value_features(at, spread) for spread in (3e-4, 5e-3))
     present = small[:, LIKELIEST] > 0.0
-    assert (large[:, LIKELIEST] <= small[:, LIKELIEST]).all() and (
-        large[present, LIKELIEST] < small[present, LIKELIEST]
-    ).mean() > 0.9
+    assert (large[:, LIKELIEST] <= small[:, LIKELIEST]).all()
+    assert (large[present, LIKELIEST] < small[present, LIKELIEST]).mean() > 0.9
     # what is open and where the balls lie has nothing to do with errors
     apart = slice(POTS_SEEN * POT_ENTRIES, LIKELIEST - 3)
     assert np.array_equal(small[:, apart], large[:, apart]) and present.sum() > 60
@@ -242,11 +220,8 @@ def test_any_number_of_threads_and_any_rows_give_the_same():
     at = some(300, "random:6")
     kept = at.copy()
     one = value_features(at, SPREAD)
-    assert np.array_equal(one, value_features(at, SPREAD, threads=2)) and np.array_equal(
-        one, value_features(at, SPREAD, threads=5)
-    )
-    assert (
-        np.array_equal(one[[7, 250, 3]], value_features(at[[7, 250, 3]], SPREAD))
-        and len(value_features(at[[]], SPREAD)) == 0
-    )
+    assert np.array_equal(one, value_features(at, SPREAD, threads=2))
+    assert np.array_equal(one, value_features(at, SPREAD, threads=5))
+    assert np.array_equal(one[[7, 250, 3]], value_features(at[[7, 250, 3]], SPREAD))
+    assert len(value_features(at[[]], SPREAD)) == 0
     assert np.array_equal(at.positions, kept.positions) and np.array_equal(at.game, kept.game)
