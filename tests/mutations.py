@@ -1,5 +1,4 @@
-"""How does a test spoil a saved state? Every field in it, one at a time, in every way that a file or a slip
-of the keyboard might."""
+"""How does a test spoil a saved state?"""
 
 import copy
 import json
@@ -105,8 +104,7 @@ def keys_of(field):
 
 
 def layout(keys):
-    """Where balls lie and which are there is one layout, and a ball that cannot lie there may be either's
-    fault: one name for both."""
+    """Positions and on_table are one layout: a ball that cannot lie where it does may be either's fault."""
     if keys[:2] in (("state", "positions"), ("state", "on_table")):
         return ("state", "layout", *keys[2:])
     return tuple(key for k, key in enumerate(keys) if k == 0 or keys[k - 1] != "layout")

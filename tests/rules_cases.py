@@ -81,8 +81,7 @@ def frame_before(before, miss):
 
 
 def stroke_of(shot, free_ball):
-    """The stroke. Reds have no names in a file: those that leave the table are the first ones, and so are
-    those struck."""
+    """The stroke; reds have no names in a file: those that go, or are struck, are the first ones."""
     reds = iter(range(1, 16))
 
     def ids(names):
@@ -230,8 +229,7 @@ def frame_answers(frame):
 
 
 def fouled(before):
-    """A frame just after a foul by hitting nothing, in the state of ``before``: (before the stroke, after
-    it)."""
+    """A frame before and after a foul by hitting nothing, in the state of ``before``."""
     ball_on = ball_on_of(before.get("ball_on_before_foul", before.get("ball_on", "red")))
     low = max(ball_on, BallOn.YELLOW)
     on_table = mask_of(range(14 + low, N_BALLS)) | (mask_of(range(1, 16)) if ball_on <= BallOn.RED else 0)
@@ -363,8 +361,7 @@ def value_of(formula):
 
 
 def run_arithmetic(case):
-    """The best break that the code allows, with or without a free ball first: there is no other arithmetic in
-    the schema."""
+    """The best break that the code allows, with or without a free ball first."""
     title = case["title"].lower()
     if "maximum" not in title:
         return "not understood: " + title

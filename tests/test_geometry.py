@@ -1,5 +1,4 @@
-"""Is there one geometry? One definition of table and ball, one order of pockets, sizes as published; and what
-fits nowhere is refused."""
+"""Is there one geometry? One definition of table and ball, one order of pockets, sizes as published."""
 
 import ast
 import dataclasses

@@ -1,5 +1,4 @@
-"""Does a long command say how far it is? In lines every few seconds where it is read later, in one line that
-is rewritten on a terminal."""
+"""Does a long command say how far it is?"""
 
 import io
 import re

@@ -54,8 +54,7 @@ def state_of(position, **options):
 
 
 def played(position, stroke, tables, **options):
-    """A stroke on so many tables of the environment, each with errors of its own: points, fouls, and the
-    states after it."""
+    """A stroke on so many tables of the environment, each with errors of its own."""
     env = sn.SnookerVectorEnv(tables, aim="absolute", elevation=True, placement=True, **options)
     env.reset(seed=99, options={"state": state_of(position, aim="absolute", elevation=True, placement=True)})
     action = stroke.action(elevation=True, placement=True)

@@ -1,5 +1,4 @@
-"""Is advice right? Chances and points against independent visits in the environment; its order, its seeds,
-and every kind of position."""
+"""Is advice right? Chances and points against independent visits in the environment."""
 
 import json
 
@@ -17,8 +16,7 @@ AGENTS = ("planner_500", "search", "ghost_ball", "random")
 
 
 def test_chances_are_those_of_the_environment():
-    """Each stroke 2,000 times with other errors: the interval of 95 % holds the share of its pots, and is no
-    wider than due."""
+    """Each stroke 2,000 times with other errors."""
     advice = sn.advise(ENDGAME, noise="club", n=3, samples=400, visits=0)
     assert advice[0].kind == "pot" and advice[0].ball == 19
     inside = 0
@@ -70,8 +68,7 @@ def test_the_same_seed_gives_the_same_advice_and_another_one_other_samples():
 
 
 def test_the_noise_stream_of_a_state_has_no_say():
-    """The trap: a state that is played again meets its own errors again. Advice is that of the seed, whatever
-    the stream."""
+    """The trap: a state that is played again meets its own errors again."""
     states = [state_of(OPEN) | {"stream": [key, 0]} for key in (1, 2)]
     one, other = (sn.advise(state, noise="club", n=2, **QUICK).to_dict() for state in states)
     assert one == other == sn.advise(OPEN, noise="club", n=2, **QUICK).to_dict()
@@ -91,8 +88,7 @@ def test_points_of_the_visit_so_far_do_not_count():
 
 
 def test_the_choice_is_the_agents_own():
-    """The strokes are those of its ranking, with its own scores; their order is that of the points that they
-    show."""
+    """The strokes are those of its ranking, with its own scores."""
     advice = sn.advise(OPEN, agent="search", n=4, seed=3, **QUICK)
     (ranked,) = sn.player("search").at({"noise": "professional"}).rank(OPEN, [3])
     scores = {
@@ -115,8 +111,7 @@ def test_strokes_that_read_the_same_are_given_once():
 
 
 def test_the_first_advice_is_good():
-    """The blue goes in nine times out of ten, and the best stroke scores more than the widest pot played
-    without a thought."""
+    """The blue goes in nine times of ten; the best stroke scores more than the widest pot alone."""
     best, plain = (
         sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0]
         for agent in ("planner_500", "ghost_ball")

@@ -1,5 +1,4 @@
-"""Is every player asked in the same way? Its first stroke is the one that it would play on tables; players of
-one's own are asked, too."""
+"""Is the first stroke of every player, of one's own too, the one that it would play on tables?"""
 
 from typing import ClassVar
 

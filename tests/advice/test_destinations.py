@@ -1,5 +1,4 @@
-"""Do the balls stop where destinations say? Against the environment, stroke by stroke, and against what a map
-must add up to."""
+"""Do the balls stop where destinations say?"""
 
 import json
 

@@ -1,5 +1,4 @@
-"""Is what is advised fair, in the order of what is shown, and called what it is? After break-offs, on opened
-tables, snookered."""
+"""Is what is advised fair, in the order of what is shown, and called what it is?"""
 
 from functools import cache
 from math import asin, atan2, hypot

@@ -1,5 +1,4 @@
-"""Does a stroke mean what it says? As an action of the environment, and in words against what the simulator
-does."""
+"""Does a stroke mean what it says?"""
 
 from math import atan2, cos, pi, sin
 
@@ -43,8 +42,7 @@ def test_a_suggestion_is_a_stroke_as_well():
 
 
 def test_pockets_are_named_as_seen_from_baulk():
-    """The yellow pocket is the corner beside the yellow spot, on the right; the black is between the two top
-    ones."""
+    """The yellow pocket is the corner beside the yellow spot, on the right."""
     yellow, green = sn.geometry.COLOUR_SPOTS[:2]
     for index, (x, y) in enumerate(sn.geometry.POCKET_PLACES.tolist()):
         name = POCKET_WORDS[index]

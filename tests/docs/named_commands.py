@@ -1,5 +1,4 @@
-"""Which commands does the documentation name, and how does a test run each? In a short form, or by the test
-named; one is not run."""
+"""Which commands does the documentation name, and how does a test run each?"""
 
 SHORT = {
     "benchmarks.tradeoff": ["--impacts", "30", "--shots", "12", "--repeats", "1", "--out", "{tmp}"],

@@ -1,5 +1,4 @@
-"""What do the pages of the documentation hold? README and ``docs/``: their links, pictures, Python blocks and
-commands, and the words."""
+"""What do the pages of the documentation hold? README and ``docs/``."""
 
 import re
 from pathlib import Path
@@ -32,8 +31,7 @@ def links(text):
 
 
 def paths(text):
-    """Files and folders of the repository between backticks, as patterns; those that the reader is to name
-    are left out."""
+    """Files and folders of the repository between backticks, as patterns."""
     tops = "tests|benchmarks|agents|snooker_env|docs|examples|commands|leaderboard|[.]github|[.]ci"
     found = re.findall(rf"`((?:{tops})/[\w./*-]+)`", text)
     return [path for path in found if not re.search(r"NAME|\bmy_", path)]
@@ -51,8 +49,7 @@ def anchors(text):
 
 
 def commands(text):
-    """What is run with Python: ("benchmarks.speed", ["--parts", "start"]) for each
-    ``python -m benchmarks.speed --parts start``."""
+    """What Python runs: ``python -m benchmarks.speed --parts start`` is (name, [options])."""
     text = re.sub(r"\\\n\s*", " ", text)
     found = [re.sub(r"^-m +", "", command).split() for command in _COMMAND.findall(text)]
     return [

@@ -1,5 +1,4 @@
-"""Does the Python of the pages run? Every block by itself, the blocks of a page in one process, in an empty
-folder, warnings as errors."""
+"""Does the Python of the pages run? The blocks of a page in one process, with warnings as errors."""
 
 import json
 import os

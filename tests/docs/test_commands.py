@@ -1,5 +1,4 @@
-"""Does each command of the documentation run? In a short form, or in the test named beside it; and does it
-have the options given?"""
+"""Does each command of the documentation run? In a short form, or in the test named beside it."""
 
 import os
 import re
@@ -29,8 +28,7 @@ def test_every_command_is_known():
     "name", sorted(set(GIVEN) - set(NOT_RUN) - {"pytest", "sphinx", "venv", "rl_zoo3.train"})
 )
 def test_commands_have_the_options_that_are_given(name):
-    """They stand in the source of the command, or in what all commands of its kind share: in quotes, or as
-    fields of a dataclass."""
+    """They stand in the source of the command, or in what all commands of its kind share."""
     top = name.split("/")[0] if name.endswith(".py") else name.split(".")[0]
     shared = {
         "train.py": ("agents", "commands"),

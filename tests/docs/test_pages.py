@@ -1,5 +1,4 @@
-"""Do the pages hold together? Links, anchors, pictures and films are there, films are small, and the words
-are the field's."""
+"""Do the pages hold together?"""
 
 import pytest
 

@@ -1,5 +1,4 @@
-"""Does the specification print the options and noise levels of the code? Their names and defaults, and every
-number of a level."""
+"""Does the specification print the options and noise levels of the code?"""
 
 import ast
 import dataclasses

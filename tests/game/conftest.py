@@ -1,5 +1,4 @@
-"""Where do these tests find ``tests.rules_cases``? In the project's root, whatever folder pytest was started
-in."""
+"""Where do these tests find ``tests.rules_cases``?"""
 
 import sys
 from pathlib import Path

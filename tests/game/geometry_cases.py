@@ -1,5 +1,4 @@
-"""Does the code place and see as a case says? The kinds "spotting" and "snooker_geometry" of
-``tests.rules_cases``."""
+"""Does the code place and see as a case says?"""
 
 import numpy as np
 
@@ -17,8 +16,7 @@ def unknown(given, known):
 
 
 def blockers(occupied, no_room):
-    """Centres of balls that occupy the spots named and leave no room between some of them and the top
-    cushion."""
+    """Centres of balls on the spots named that leave some of them no room towards the top cushion."""
     balls = [SPOTS[colour(name)].copy() for name in occupied]
     for name in no_room:
         x, y = SPOTS[colour(name)]

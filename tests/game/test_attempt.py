@@ -1,5 +1,4 @@
-"""Is the closest approach of the cue ball to a ball on exact? Against a path sampled densely, on shots really
-played."""
+"""Is the closest approach of the cue ball to a ball on exact?"""
 
 import numpy as np
 import pytest

@@ -1,5 +1,4 @@
-"""Does a frame go on as the rules say, from the break to the last black, and does it survive being written
-down?"""
+"""Does a frame go on as the rules say, to the last black, and survive being written down?"""
 
 import dataclasses
 import json
@@ -255,8 +254,7 @@ def points_of_the_best_break_from(frame, ball):
 
 
 def test_what_only_the_striker_may_play_is_not_there_for_the_other_player():
-    """A colour after a red is the striker's, and so is a free ball: the other player trails by more than he
-    could ever score."""
+    """A colour after a red is the striker's, and so is a free ball."""
     colour = Frame(
         on_table=COLOURS_MASK | 2, ball_on=BallOn.ANY_COLOUR, striker=1, scores=(0, 36), in_hand=False
     )

@@ -124,8 +124,7 @@ def test_six_red_not_anywhere_when_snookers_are_required():
 
 
 def test_any_number_of_misses_with_part_of_a_ball_to_be_seen_until_the_scores_decide():
-    """S3 R14 has no limit but for a full ball: penalties add up until they reach what is left, and then no
-    miss is called."""
+    """S3 R14 limits full balls alone: penalties add up until no miss is called for the scores."""
     frame, calls = Frame.start(miss="clear_path"), 0
     while True:
         frame, _ = frame.play(MISSED, clear_path=True)

@@ -1,5 +1,4 @@
-"""Is the place found in the D legal, and the nearest? Named cases, and many places drawn at random as the
-judge."""
+"""Is the place found in the D legal, and the nearest?"""
 
 import numpy as np
 import pytest

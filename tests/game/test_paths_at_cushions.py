@@ -62,8 +62,7 @@ def test_named_cases(ball, places, expected):
 
 
 def first_met(positions, on_table, angles):
-    """What a cue ball that rolls fast along each angle meets first: a ball's id, or -1 for a cushion or
-    nothing."""
+    """What a cue ball that rolls fast along each angle meets first: a ball's id, or -1."""
     n = len(angles)
     velocities, spins = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS, 3))
     c, s = np.cos(angles), np.sin(angles)
@@ -104,8 +103,7 @@ def in_mouths_and_at_rails(rng):
 
 
 def test_paths_agree_with_rolled_balls():
-    """Cue ball and target near rails and pockets, two balls between them; 300 directions, then 6,000, over
-    the whole target."""
+    """Near rails and pockets, two balls between; 300 directions, then 6,000, over the target."""
     rng, met = np.random.default_rng(8), {"any": 0, "full": 0, "barred": 0, "partly": 0, "by cushions": 0}
     while met["any"] < 60:
         cue, red = in_mouths_and_at_rails(rng), in_mouths_and_at_rails(rng)

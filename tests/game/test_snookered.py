@@ -1,5 +1,4 @@
-"""Are snookers and clear paths seen as the rules define them? Named cases, and a cue ball rolled in small
-steps as the judge."""
+"""Are snookers and clear paths seen as the rules define them?"""
 
 import time
 
@@ -179,8 +178,7 @@ def test_in_hand_is_fast_enough():
 
 
 def rolls_into(cue, angle, reach, balls):
-    """Index of the ball that a cue ball rolling along ``angle`` meets first within ``reach``, or None: tried
-    every 0.2 mm."""
+    """The ball that a cue ball rolling along ``angle`` meets first within ``reach``, in steps of 0.2 mm."""
     path = np.array(cue) + np.arange(0.0, reach, 2e-4)[:, None] * [np.cos(angle), np.sin(angle)]
     distance = np.hypot(*(path[:, None] - np.array(balls)).T).T
     meets = np.argwhere(distance < 2 * R - 1e-7)
@@ -215,8 +213,7 @@ def test_paths_agree_with_rolling(scene):
 
 
 def swept(reds, others, directions):
-    """Does a sweep over each red find a direction in which a ball rolls into it? Other reds do not obstruct,
-    so they are taken away."""
+    """Does a direction of a sweep over each red, with the other reds taken away, lead into it?"""
     spread = np.linspace(-0.999, 0.999, directions)
     return any(
         rolls_into(
@@ -264,8 +261,7 @@ def test_snookers_agree_with_rolling(scene):
     ],
 )
 def test_a_colour_is_met_full_only_with_nothing_at_all_before_it(colours, reds, expected):
-    """S3 R14: of colours that could be on, the nominated one alone is on; only a red may lie before another
-    red."""
+    """S3 R14: of colours that could be on, the nominated one alone is on."""
     positions, on_table, _ = table(CUE, reds, colours)
     assert paths(positions, on_table, COLOURS_MASK & mask_of(np.flatnonzero(on_table))) == expected
 
@@ -273,8 +269,7 @@ def test_a_colour_is_met_full_only_with_nothing_at_all_before_it(colours, reds, 
 @settings(max_examples=60, deadline=None)
 @given(scenes())
 def test_full_paths_to_colours_agree_with_rolling(scene):
-    """The balls of ``scenes``, each a colour that could be on or a red that is not: a cue ball rolled at each
-    centre must meet it first."""
+    """The balls of ``scenes`` as colours that could be on, or reds: a full path joins the centres."""
     on, others = scene
     positions, on_table, _ = table((0.0, 0.0), others, on)
     balls = np.array([*on, *others])

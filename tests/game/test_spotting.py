@@ -97,8 +97,7 @@ def test_the_last_room_above_must_clear_the_cushion():
 @settings(max_examples=60, deadline=None)
 @given(st.data(), st.sampled_from(SIX), st.booleans())
 def test_no_spotted_colour_touches_in_the_eyes_of_the_referee(data, ball, crowded):
-    """The cue ball lies at the edge of where the colour goes: on its spot, on another or, with all spots
-    occupied, beside a ball."""
+    """The cue ball lies at the edge of where the colour goes."""
     gap, turn = (
         data.draw(st.sampled_from([0.0, 2e-6, 1e-5, 4.9e-5, 5.1e-5, 9e-5, 2e-4])),
         data.draw(st.floats(0, 2 * np.pi)),

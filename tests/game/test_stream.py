@@ -1,5 +1,4 @@
-"""Are the random numbers of the kernels the generator's that they say, uniform, normal, and independent
-between streams?"""
+"""Are the kernels' random numbers the generator's, uniform, normal, and independent between streams?"""
 
 import numba
 import numpy as np

@@ -1,5 +1,4 @@
-"""Does a planned stroke lead where the environment's stroke leads, bit for bit, and is whatever makes no
-sense refused by name?"""
+"""Is a planned stroke the environment's, bit for bit, and is what makes no sense refused by name?"""
 
 import pickle
 from concurrent.futures import ThreadPoolExecutor
@@ -124,8 +123,7 @@ def test_any_number_of_threads_and_any_order_of_strokes_give_the_same():
     ],
 )
 def test_a_stroke_decoded_is_played_as_its_action(options):
-    """By keys, by the errors that the keys draw, as a stroke or as an action: one law of errors, one decoder;
-    equal but for rounding."""
+    """By keys, by the errors that the keys draw, as a stroke or as an action: equal but for rounding."""
     env = sn.SnookerVectorEnv(5, threads=1, **options)
     env.reset(seed=4)
     planner, rows, keys = Planner(env, threads=1), np.arange(60) % 5, np.arange(100, 160)
@@ -372,8 +370,7 @@ def test_an_unsound_position_is_refused_by_its_row_if_it_is_played(change, compl
     "options", [{"noise": "club"}, {"noise": "club", "physics": "match", "fidelity": "fast"}]
 )
 def test_strokes_in_succession_are_those_played_alone(options):
-    """An aim is solved once for successive equal tables, and anew for another choice, ball on, layout, or a
-    ball that has gone."""
+    """An aim is solved once for successive equal tables, and anew where choice, ball on or a ball differs."""
     planner = Planner({"action": "discrete", **options}, threads=1)
     spread = {"cue": (0.1, 0.4), "reds": [(0.5, 1.0), (-0.3, 1.1)], "blue": (0.0, 0.0), "black": (-0.5, 0.9)}
     moved, gone = (

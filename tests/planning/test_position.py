@@ -1,5 +1,4 @@
-"""Does a position in words mean what it says, and does it come back from the arrays that planning and
-environments use?"""
+"""Does a position in words mean what it says, and come back from the arrays of planning and environments?"""
 
 import dataclasses
 import json

@@ -1,5 +1,4 @@
-"""Is a position kept in a file as it was, whole or not at all, and is a file that says something else refused
-by name?"""
+"""Is a position kept in a file as it was, or not at all, and is any other file refused by name?"""
 
 import json
 

@@ -81,8 +81,7 @@ def test_strokes_stay_within_their_limits_and_fill_them():
 
 
 def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
-    """Shares in plain Python from the chances of ``prospects_of``; aims by ``Planner.pot_aim``. Of two reds
-    the likelier gets more."""
+    """Shares in plain Python from the chances of ``prospects_of``; aims by ``Planner.pot_aim``."""
     at, m, several = some(), 150, 0
     direct, likely, chances = (
         pots(at, most=MOST_POTS),
@@ -116,8 +115,7 @@ def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
 
 
 def test_a_chance_is_what_errors_leave_of_the_pot():
-    """Strokes that score without errors, under a professional's: by the chance that they were given, sure
-    ones and doubtful ones."""
+    """Strokes that score without errors, under a professional's: by the chance that they have."""
     spread, n, m, errors = spread_of(LEVELS["professional"]), 40, 30, 12
     at = Positions.of(tables(n, seed=9))
     strokes, chances = spread_strokes(at, m, seeds(n), spread, DYNAMICS)
@@ -160,8 +158,7 @@ def test_where_there_is_no_pot_the_strokes_hit_the_balls_on_from_thin_to_full():
 
 
 def test_without_a_pot_half_of_the_strokes_are_hard_and_the_others_of_any_speed():
-    """Hard strokes score more often by chance: the density of their speed grows with its square, up to the
-    fastest action."""
+    """Hard strokes score more often by chance: the density of their speed grows with its square."""
     strokes = at_balls(SEARCH, Positions.of(NO_POT), 2000, [5]).strokes[0]
     shares = [(strokes[1::2, SPEED] < v).mean() for v in (2.0, 4.0, 6.0)]
     assert shares == pytest.approx([(v / MAX_SPEED) ** 3 for v in (2.0, 4.0, 6.0)], abs=0.01)
@@ -172,8 +169,7 @@ def test_without_a_pot_half_of_the_strokes_are_hard_and_the_others_of_any_speed(
 
 
 def test_no_contact_is_tried_that_another_ball_hides():
-    """A colour before the reds: where nothing is in its place, some of the plain strokes would meet it
-    first."""
+    """A colour before the reds: without it, some of the plain strokes would meet its place first."""
     at = Positions.of(
         Position(
             cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], yellow=(0.4, 1.4), black=(0.0, -1.0), on="red"

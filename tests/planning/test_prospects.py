@@ -93,8 +93,7 @@ def test_what_is_left_of_a_last_black():
 
 @pytest.mark.parametrize("level", ["professional", "club", "olympiad"])
 def test_spread_is_that_of_the_aim_and_of_the_squirt(level):
-    """Squirt [Alciatore, TP A.31] of a tip that is off by one standard deviation; small offsets, where it is
-    straight."""
+    """Squirt [Alciatore, TP A.31] of a tip that is off by one standard deviation."""
     noise, physics = Noise.of(level), Physics.of("paper")
     b = 1e-3 * noise.offset_mm / physics.R
     squirt = atan(2.5 * b * sqrt(1 - b * b) / (1 + physics.end_mass_ratio + 2.5 * (1 - b * b)))

@@ -1,5 +1,4 @@
-"""Are the points those of Sobol's sequence, scrambled as Owen proposed: evenly spread, each by itself
-uniform?"""
+"""Are the points those of Sobol's sequence, scrambled as Owen proposed: evenly spread, each uniform?"""
 
 from itertools import combinations
 
@@ -10,8 +9,7 @@ from scipy.stats import norm, qmc
 from snooker_env.planning.sobol import DIMENSIONS, normal_points, sobol_points
 
 PARTS = (0, 0, 1, 2, 2)
-"""Degree of each dimension's polynomial, less one: two dimensions are a (t, m, 2)-net with t the sum of
-theirs (Sobol 1967)."""
+"""Degree of each dimension's polynomial less one; t of a net of two is their sum (Sobol 1967)."""
 
 
 def whole(points):
@@ -28,9 +26,7 @@ def shared_bits(x):
 
 
 def test_unscrambled_they_are_the_sequence_of_joe_and_kuo():
-    """A nested scramble keeps how many leading bits two points share, and nothing else: so this pins the
-    direction numbers and the order. SciPy has the same numbers; it takes the points in the order of the Gray
-    code."""
+    """A nested scramble keeps the leading bits that points share; SciPy takes them in Gray code's order."""
     n = 512
     reference = np.empty((n, DIMENSIONS))
     steps = np.arange(n)
@@ -70,8 +66,7 @@ def test_the_first_points_of_many_are_those_of_few():
 
 
 def test_scrambles_and_dimensions_differ():
-    """The first point of each scramble, in each dimension, is a number of its own; only the low 32 bits of a
-    seed count."""
+    """The first point of each scramble differs in each dimension; only the low 32 bits of a seed count."""
     first = np.array([sobol_points(1, DIMENSIONS, seed)[0] for seed in range(2000)])
     assert len(np.unique(first)) == first.size
     assert np.abs(np.corrcoef(first.T) - np.eye(DIMENSIONS)).max() < 0.1  # 4.5 standard deviations
@@ -79,8 +74,7 @@ def test_scrambles_and_dimensions_differ():
 
 
 def test_each_point_is_uniform_over_the_scrambles():
-    """Whatever its index: mean, variance and the shares of ten parts; so means over the points are
-    unbiased."""
+    """Whatever its index: mean, variance and the shares of ten parts."""
     many = 4000
     points = np.array([sobol_points(7, DIMENSIONS, 104729 * seed + 11) for seed in range(many)])
     assert np.abs(points.mean(0) - 0.5).max() < 4.5 * np.sqrt(1 / 12 / many)
@@ -92,8 +86,7 @@ def test_each_point_is_uniform_over_the_scrambles():
 
 
 def test_a_mean_over_the_points_errs_less_than_one_over_random_numbers():
-    """A smooth function of two coordinates: unbiased, and over 64 points its error is a tenth of that of
-    plain sampling."""
+    """A smooth function of two coordinates."""
     means = [np.exp(sobol_points(64, 2, 977 * seed)).prod(axis=1).mean() for seed in range(400)]
     truth, plain = (np.e - 1) ** 2, np.sqrt((((np.e**2 - 1) / 2) ** 2 - (np.e - 1) ** 4) / 64)
     assert abs(np.mean(means) - truth) < 4.5 * np.std(means) / 20 and np.std(means) < 0.1 * plain
@@ -109,8 +102,7 @@ def test_normal_points_are_standard_normal_and_independent():
 
 
 def test_the_aim_gets_the_most_even_coordinate():
-    """Aim (column 3) and speed (column 0) together are a net without a gap: each elementary interval of 64
-    points holds one."""
+    """Aim (column 3) and speed (column 0) together are a net without a gap."""
     even = norm.cdf(normal_points(64, 12))
     for i in range(7):
         cells = (even[:, 3] * 2**i).astype(int) * 2 ** (6 - i) + (even[:, 0] * 2 ** (6 - i)).astype(int)

@@ -1,5 +1,4 @@
-"""Does a planner say where every ball stopped? Against the outcomes of the same strokes, the environment, and
-a simulated shot."""
+"""Does a planner say where every ball stopped?"""
 
 import numpy as np
 import pytest

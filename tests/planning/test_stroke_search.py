@@ -1,5 +1,4 @@
-"""Does the search play its strokes as the table would, within its budget, and rank them by the scores that
-its docstring defines?"""
+"""Does the search play as the table would, within its budget, and rank by the scores of its docstring?"""
 
 from math import atan, sqrt
 
@@ -69,8 +68,7 @@ def random_strokes(m, rng):
 
 
 def as_actions(strokes):
-    """The actions of ``aim="absolute"`` for strokes, in double precision, as the table of ``Actions`` defines
-    them."""
+    """The actions of ``aim="absolute"`` for strokes, in double precision, as ``Actions`` defines them."""
     turns = strokes[:, 3] / np.pi
     return np.stack(
         [
@@ -125,8 +123,7 @@ def test_strokes_under_errors_are_those_of_the_table_under_the_same_errors(noise
 
 
 def test_a_tip_error_beyond_the_disc_is_drawn_in_along_its_radius():
-    """A ball alone, its tip sent far to the right of the rim: it leaves as from the rim there, turned by the
-    squirt of what was hit."""
+    """A tip sent beyond the rim: the ball leaves as from the rim, turned by the squirt of the stroke."""
     at = Positions.of(Position(cue=(0.0, -1.2), black=(0.6, 1.6)))
     noise = {"offset_mm": 0.02625e3 * 0.2}  # a fifth of R
     tool = search(options={"noise": noise})
@@ -197,8 +194,7 @@ def test_as_many_strokes_are_played_as_the_schedule_says(budget, noise):
 
 
 def gains_by_hand(tool, at, strokes, errors, value):
-    """Points and value of what is left, for each of the strokes (m, 5) of one position under each of the
-    errors (s, 5): (m, s)."""
+    """Points and value of what is left for each stroke of one position under each error: (m, s)."""
     m, s = len(strokes), len(errors)
     out = tool.outcomes(at, np.zeros(m * s, int), np.repeat(strokes, s, axis=0), np.tile(errors, (m, 1)))
     gains = [
@@ -211,8 +207,7 @@ def gains_by_hand(tool, at, strokes, errors, value):
 @pytest.mark.parametrize("budget", [30, 120])
 @pytest.mark.parametrize("value", [by_place, None])
 def test_the_ranking_recomputed(budget, value):
-    """Sequential halving in plain Python: look = chance x gain; each round samples the best; score = (2 look
-    + sum) / (2 + samples)."""
+    """Sequential halving in plain Python, by score = (2 look + sum) / (2 + samples), look = chance x gain."""
     at, seeds = some(4), [3, 2**32 - 1, 0, 17]
     tool = search(budget, value=value)
     worth = value or (lambda left: prospects_of(left, tool.spread, RULE_OF_THUMB)[0])
@@ -261,8 +256,7 @@ def test_for_pots_alone_a_score_is_a_rate_and_nothing_is_valued():
 
 
 def test_without_errors_the_ranking_is_that_of_the_looks():
-    """All strokes given a chance of 1: scores are points and value, best first, and the best scores what it
-    says when it is played."""
+    """With a chance of 1, scores are points and value, and the best scores what it says when played."""
     at = some(6)
 
     def sure(tool, here, m, seeds):
@@ -281,8 +275,7 @@ def test_without_errors_the_ranking_is_that_of_the_looks():
 
 
 def test_the_search_beats_the_first_of_its_looks_under_fresh_errors():
-    """On positions with easy pots, what the search prefers is worth more than a stroke proposed at random,
-    and its score is no flattery."""
+    """What the search prefers is worth more than a stroke at random, and its score is no flattery."""
     at = some(30, layout="random:4")
     tool = search(120, value=by_place)
     ranked = tool.rank(at, np.arange(30))
@@ -330,8 +323,7 @@ def test_a_fair_stroke_is_found_where_the_balls_on_are_hidden(noise, budget):
 
 
 def test_without_a_pot_fouls_and_what_is_left_count():
-    """Recomputed for one look: points, less penalty and cost of a foul, less a share of what the opponent is
-    left."""
+    """Recomputed for one look: points, less penalty and cost of a foul, less what the opponent is left."""
     at = some(6, layout="snookered", seed=3)
     at = at[np.flatnonzero(pots(at).ball[:, 0] < 0)]
     tool = search(40, {"noise": "none", "fidelity": "fast"})

@@ -1,5 +1,4 @@
-"""Does the page play? In a real headless Chromium, by mouse, keys and touch: visits, fouls, positions,
-advice, agents, undo, all sizes."""
+"""Does the page play? In a real headless Chromium, by mouse, keys and touch."""
 
 import time
 
@@ -99,8 +98,7 @@ def shown(chromium, line):  # noqa: F811
 
 
 def test_a_visit_is_played_by_mouse(shown):
-    """Aim by dragging, speed by the slider, strike by the button: a red, the black, then a miss ends the
-    visit."""
+    """Aim by dragging, speed by the slider, strike by the button."""
     shown.set_up(EASY)
     shown.drag((0.4, 1.0), (0.6, 1.4))
     assert shown("page.aim.wish.aim") == pytest.approx(STRAIGHT, abs=0.01)
@@ -297,8 +295,7 @@ def left_after(balls, on):
 
 
 def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
-    """Between two strokes the table is the one left by the first, and on, left, reds, break and score are
-    those of this table."""
+    """Between two strokes the table is the one left by the first, with its score, break and reds."""
     shown.set_up(VISIT)
     shown.line("api/players", {"players": ["person", "ghost_ball"], "noise": ["none", "none"]})
     shown.line("api/position", {"position": VISIT, "striker": 1})
@@ -347,8 +344,7 @@ def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
 
 
 def test_the_end_of_a_frame_is_seen(shown):
-    """Who has won, the score from the viewer's side, and the next frame, which the other player breaks
-    off."""
+    """The winner, the score from the viewer's side, and the next frame, which the other breaks off."""
     shown.set_up(EASY, striker=1, scores=[0, 1])
     state = shown.line("api/players", {"players": ["ghost_ball", "person"]})[1]
     shown.until("page.settled === argument", state["revision"])
@@ -410,8 +406,7 @@ def test_the_odds_are_those_of_the_errors_of_the_persons_seat(shown):
 
 
 def test_two_agents_play_on_by_themselves_until_paused(shown):
-    """Each stroke is seen, then the other agent plays; Pause stops them after the stroke that goes on,
-    Continue lets them play on."""
+    """Each stroke is seen before the other agent plays; Pause stops them, Continue lets them play on."""
     shown.set_up(EASY)
     shown.line("api/players", {"players": ["ghost_ball", "random"], "noise": ["professional", "amateur"]})
     shown.until("page.state.players[0] === 'ghost_ball'")
@@ -434,8 +429,7 @@ def test_two_agents_play_on_by_themselves_until_paused(shown):
 
 
 def test_the_result_of_a_stroke_is_shown_when_its_balls_rest(shown):
-    """Words, score, break and reds are those before the stroke until then: looked at with every change of the
-    page."""
+    """Words, score, break and reds are those before the stroke until then, at every change of the page."""
     shown.set_up(EASY)
     seen = "document.getElementById(%r).innerText"
     shown(
@@ -558,8 +552,7 @@ def test_it_fits_every_screen_and_can_be_touched(chromium, line, size):  # noqa:
 
 
 def test_one_press_is_one_stroke(shown):
-    """Enter three times before the answer, and Enter held down until the balls rest, play one stroke, not
-    two."""
+    """Enter three times before the answer, or held down until the balls rest, plays one stroke."""
     shown.set_up(EASY)
     before = shown("page.state.strokes")
     press = "document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true, repeat: argument }))"

@@ -1,5 +1,4 @@
-"""Does the protocol give a program what it needs, and does it refuse what cannot be? Each route, as a request
-calls it."""
+"""Does the protocol give a program what it needs, and does it refuse what cannot be?"""
 
 import base64
 import json

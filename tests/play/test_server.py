@@ -1,5 +1,4 @@
-"""Does the server answer those alone who know its address, and stay within its bounds? Hosts, origins,
-tokens, sizes, forms, time."""
+"""Does the server answer those alone who know its address, and stay within its bounds?"""
 
 import json
 import signal

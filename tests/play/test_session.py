@@ -1,5 +1,4 @@
-"""Is the game in memory the game by the rules? Strokes, choices, nominations, ball in hand, undo, files;
-against MatchEnv."""
+"""Is the game in memory the game by the rules, and that of MatchEnv?"""
 
 import json
 from dataclasses import replace
@@ -28,8 +27,7 @@ def standing(position, *, scores=(0, 0), striker=0, free_ball=False):
 
 
 def test_strokes_are_those_of_the_match_environment():
-    """The same strokes, with noise, in both: the same balls, the same frame, the same random numbers, to the
-    last bit."""
+    """The same strokes, with noise, in both: the same balls, frame and random numbers, to the last bit."""
     pytest.importorskip("pettingzoo")
     from snooker_env.envs.match import MatchEnv
 
@@ -101,8 +99,7 @@ def test_a_colour_that_was_named_must_be_struck_first():
 
 
 def test_a_miss_is_called_whichever_colour_was_named():
-    """The stroke strikes nothing. The pink is hidden behind the blue, but S3 R14(c) speaks of every ball that
-    could be on."""
+    """S3 R14(c) speaks of every ball that could be on: here the pink is hidden behind the blue."""
     for named in (AUTO, BLACK, PINK):
         session = standing(COVERED | {"blue": [0.08, -0.5], "pink": [0.6, -0.5]})
         session.play(AT_NOTHING, nominated=named)
@@ -120,8 +117,7 @@ def test_only_what_is_open_may_be_named():
 
 
 def test_the_choices_after_a_foul():
-    """Play: the other plays on. Play again: the offender. Replace, after a miss: the offender from where the
-    balls were."""
+    """Play: the other plays on. Play again: the offender. Replace: the offender from where the balls were."""
     for what, striker, back in (("play", 1, False), ("play_again", 0, False), ("replace", 0, True)):
         session = standing(COVERED)
         before = session.tables.positions[0].copy()

@@ -1,5 +1,4 @@
-"""Is a picture drawn as it says? Pockets, cushions, lamps mirrored by the law of reflection, paths' widths,
-ghosts, spots and letters."""
+"""Is a picture drawn as it says?"""
 
 import numpy as np
 import pytest
@@ -128,8 +127,7 @@ def test_ghosts_are_faded_balls(empty):
 
 
 def test_spots_turn_with_the_ball():
-    """A spot lies on top; the ball turned by 45 degrees about +y carries it towards +x, which is down in the
-    picture."""
+    """A spot on top of a ball turned by 45 degrees about +y moves to +x, which is down in the picture."""
     place = np.array([0.3, 0.5])
     balls = np.tile(place, (N_BALLS, 1))
     for angle in (0.0, np.pi / 4):

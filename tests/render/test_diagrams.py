@@ -1,5 +1,4 @@
-"""Do diagrams show what happened? Their lines, circles, signs and words against the shots, on every kind of
-table, and what is refused."""
+"""Do diagrams show what happened?"""
 
 import sys
 

@@ -1,5 +1,4 @@
-"""Does a film show the shot? Balls, paths, turns and contacts at every time against ``Shot.at`` and against
-closed forms."""
+"""Does a film show the shot?"""
 
 import itertools
 

@@ -1,5 +1,4 @@
-"""Do the colours stand out from the cloth and from each other? By CIEDE2000; and does the JSON hold them
-all?"""
+"""Do the colours stand out from the cloth and each other, by CIEDE2000, and does the JSON hold them all?"""
 
 import itertools
 import json
@@ -32,8 +31,7 @@ def lab(rgb):
 
 
 def ciede2000(one, two):
-    """The difference of two colours in CIELAB: G. Sharma, W. Wu, E. N. Dalal, Color Research and Application
-    30 (2005) 21, eq. 2 to 22."""
+    """The difference of two colours in CIELAB: Sharma, Wu, Dalal, Color Res. Appl. 30 (2005) 21."""
     (l1, a1, b1), (l2, a2, b2) = one, two
     mean = (np.hypot(a1, b1) + np.hypot(a2, b2)) / 2
     grey = 1.5 - 0.5 * np.sqrt(mean**7 / (mean**7 + 25.0**7))

@@ -1,5 +1,4 @@
-"""Does a drawn table show what lies on it? Pictures, text and films against known places, sizes and balls; no
-display needed."""
+"""Does a drawn table show what lies on it? Pictures, text and films against known places, sizes and balls."""
 
 import re
 import sys
@@ -30,8 +29,7 @@ def at(picture, point):
 
 
 def is_drawn(picture, point, ball):
-    """The ball is nearer to its colour than to any other ball's, and near it; looked at beside the lamps that
-    are mirrored in it."""
+    """The ball is nearer to its colour than to any other ball's, and near it."""
     far = np.abs(COLOURS.astype(int) - at(picture, np.add(point, (0.45 * BALL_RADIUS, 0.0)))).max(axis=1)
     return far[ball] == far.min() and far[ball] < 40
 
@@ -230,8 +228,7 @@ OTHERS = {
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_a_picture_shows_the_table_and_the_balls_of_another_game(name):
-    """Its cloth from nose to nose, its pockets black, no snooker lines, and a ball in its place and of its
-    size."""
+    """Its cloth from nose to nose, its pockets black, no snooker lines, a ball in place and of its size."""
     table, height = OTHERS[name], 601
     place = table.bounds @ (0.6, 0.4)
     empty = rgb_array(scene(table, [place], np.zeros(1, bool)), height)
@@ -290,8 +287,7 @@ def test_a_text_shows_the_table_of_another_game(name):
 
 @pytest.mark.parametrize("name", ["pool9", "mine", "carom"])
 def test_outlines_of_other_tables_are_what_the_balls_meet(name):
-    """Along each drawn nose and jaw: a ball that touches it from the table's side is free, one 0.1 mm nearer
-    is refused."""
+    """A ball touching a drawn nose or jaw from the table's side is free, one 0.1 mm nearer is refused."""
     table, parts = OTHERS[name], outline(OTHERS[name])
     R = table.ball_radius
     assert len(parts.cushions) == len(table.noses) and len(parts.throats) == len(table.falls)

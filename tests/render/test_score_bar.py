@@ -1,5 +1,4 @@
-"""Does the score bar say what it is given? Figures evenly set, balls of the break, whose turn it is, and
-nothing over anything else."""
+"""Does the score bar say what it is given?"""
 
 import numpy as np
 import pytest

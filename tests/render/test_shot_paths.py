@@ -1,5 +1,4 @@
-"""Are the paths, contacts and strikes that diagrams draw those of the shot? Against ``Shot.at``, the strike
-that was made, and geometry."""
+"""Are the paths, contacts and strikes that diagrams draw those of the shot?"""
 
 import numpy as np
 import pytest
@@ -19,8 +18,7 @@ def played(balls, speed=2.0, aim=1.5708, table="match", physics=None, **tip):
 
 @pytest.fixture(scope="module")
 def shots():
-    """Screw off a red into a cushion; a masse; a shot in which the nap bends the paths; a pot with a jaw on
-    its way."""
+    """Screw into a cushion; a masse; a path bent by the nap; a pot with a jaw on its way."""
     return {
         "screw": played([(0.0, 0.5), (0.03, 1.0), (-0.4, 1.3)], top=-0.4, side=0.2),
         "masse": played([(0.0, -1.0), (0.4, 0.6)], aim=1.3, side=0.3, top=-0.1, elevation=0.8),

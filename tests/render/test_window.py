@@ -1,5 +1,4 @@
-"""Does the window do what its keys say, and does it refuse where nobody would see it? With SDL's driver that
-needs no display."""
+"""Does the window do what its keys say, and does it refuse where nobody would see it?"""
 
 import numpy as np
 import pytest

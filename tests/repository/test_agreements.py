@@ -1,5 +1,4 @@
-"""Do the rooms agree on what they share? What one takes for granted of another: places, gaps, limits, and
-columns."""
+"""Do the rooms agree on what they share? What one takes for granted of another."""
 
 import dataclasses
 

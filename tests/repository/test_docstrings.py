@@ -1,5 +1,4 @@
-"""Is every public name documented as numpy does it? Summary, parameters in the signature's order, what is
-returned, an example."""
+"""Is every public name documented as numpy does it?"""
 
 import ast
 import dataclasses
@@ -112,8 +111,7 @@ def class_faults(thing):
 
 
 def explained(module, name):
-    """The words that stand below a constant where it is made, followed through imports; None if there are
-    none."""
+    """The words that stand below a constant where it is made, followed through imports."""
     path = ROOT / (module.replace(".", "/") + ".py")
     path = path if path.is_file() else ROOT / module.replace(".", "/") / "__init__.py"
     body = ast.parse(path.read_text(encoding="utf-8")).body

@@ -1,5 +1,4 @@
-"""Does each room import only what stands below it, without circles? The contracts are in pyproject.toml:
-``lint-imports``."""
+"""Does each room import only what stands below it, by the contracts of ``lint-imports``?"""
 
 import os
 import subprocess
@@ -41,8 +40,7 @@ def test_a_broken_contract_is_seen(tmp_path):
 
 
 def test_the_built_in_players_load_no_learning_library():
-    """Neither torch nor Stable-Baselines3, nor what reads the recipes: not even to play as the planner
-    does."""
+    """Neither torch, Stable-Baselines3 nor what reads recipes, not even to play as the planner does."""
     code = """if True:
         import sys
         import numpy as np, snooker_env as sn

@@ -1,5 +1,4 @@
-"""What is compiled of an inner kernel? No machine code of its own; and with a numba whose parts are others,
-what numba makes by itself."""
+"""Has an inner kernel no machine code of its own, and does another numba give the same results?"""
 
 import json
 import operator
@@ -49,8 +48,7 @@ def test_inner_kernels_are_only_linked():
 
 
 def test_numba_finds_by_itself_what_is_not_of_an_inner_kernel():
-    """What was found once is for the types alone: of ``max``, which is compiled for its caller's options,
-    nothing is kept."""
+    """What was found once is for the types alone: ``max``, compiled for its caller's options, is not kept."""
     here = {}
     exec(KERNELS.replace("2.0 * x", "max(2.0 * x, 1.0)"), here)
     assert here["outer"](3.0) == 7.0 and here["outer"](0.0) == 2.0

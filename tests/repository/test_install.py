@@ -1,5 +1,4 @@
-"""Does ``gymnasium.make("Snooker-v0")`` work where the package is installed, without importing it, and at no
-cost for other programs?"""
+"""Does ``gymnasium.make("Snooker-v0")`` work once installed, without an import and at no cost for others?"""
 
 import compileall
 import os
@@ -24,8 +23,7 @@ HERE = Path(sysconfig.get_paths()["purelib"])
 
 
 class Environment:
-    """A virtual environment: the libraries of this one, without its ``.pth`` files, and what is unpacked into
-    it."""
+    """A virtual environment with the libraries of this one, and what is unpacked into it."""
 
     def __init__(self, folder):
         venv.create(folder, with_pip=False, symlinks=True)
@@ -206,8 +204,7 @@ def test_the_wheel_holds_what_belongs_there(tmp_path, monkeypatch):
 
 @pytest.mark.skipif(not (ROOT / ".git").exists(), reason="only a clone can say what belongs to it")
 def test_the_source_distribution_is_a_clone_and_gives_the_same_wheel(tmp_path, monkeypatch):
-    """Tests, agents, weights and documents come with it; what git ignores does not. Data files of the package
-    are in the wheel."""
+    """Tests, agents, weights and documents come with it; what git ignores does not."""
     monkeypatch.chdir(ROOT)
     with tarfile.open(tmp_path / hatchling.build_sdist(str(tmp_path))) as source:
         source.extractall(tmp_path)

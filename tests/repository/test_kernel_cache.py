@@ -1,5 +1,4 @@
-"""Is kept machine code loaded only where nobody else can write, and does a damaged or full cache do no more
-harm than a warning?"""
+"""Is kept machine code loaded only where nobody else can write, and is a damaged or full cache harmless?"""
 
 import os
 import pickle
@@ -285,8 +284,7 @@ def test_equal_sources_share_their_machine_code_wherever_they_lie(toy, tmp_path)
 
 @pytest.mark.parametrize("way", ["-c", "-"])
 def test_a_kernel_that_is_in_no_file_is_not_kept(tmp_path, way):
-    """Two versions of it have the same bytecode and place, and no hash that differs: the second would run the
-    machine code of the first."""
+    """Two versions have the same bytecode and place: the second would run the code of the first."""
     env = os.environ | {
         "NUMBA_CACHE_DIR": str(tmp_path / "cache"),
         "PYTHONPATH": str(ROOT),

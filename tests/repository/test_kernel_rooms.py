@@ -1,5 +1,4 @@
-"""Do the rooms whose source names the folder of machine code hold all that kernels are made from? A file left
-out would run old code."""
+"""Do the rooms whose source names the folder of machine code hold all that kernels are made from?"""
 
 import ast
 from pathlib import Path
@@ -12,13 +11,11 @@ from snooker_env import _cache
 PACKAGE = Path(snooker_env.__file__).resolve().parent
 INSIDE = [p for p in sorted(PACKAGE.rglob("*.py")) if p.relative_to(PACKAGE).parts[0] in _cache.KERNEL_ROOMS]
 NO_CONSTANTS = {"_cache", "_check", "_files", "_install", "_notices", "_shots", "_tables", "_types", "shot"}
-"""What the rooms import besides themselves: errors, files, types and results, of which no kernel takes
-anything."""
+"""What the rooms import besides themselves, of which no kernel takes anything."""
 
 
 def taken(path):
-    """The modules of the package that a file imports names from, as paths: ``from ..game import pots`` is
-    game/pots.py."""
+    """The modules that a file imports names from, as paths: ``from ..game import pots`` is game/pots.py."""
     here = path.relative_to(PACKAGE).parts[:-1]
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.ImportFrom) and node.level:

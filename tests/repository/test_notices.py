@@ -1,5 +1,4 @@
-"""Does a user hear of a long compile before it starts, once and on stderr, and of nothing else? And how far a
-warm-up is?"""
+"""Does a user hear of a long compile before it starts, once and on stderr, and of nothing else?"""
 
 import importlib
 import os

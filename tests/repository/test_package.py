@@ -1,5 +1,4 @@
-"""Is the package light to import, whole, and the same everywhere? Imports, names, the cache of machine code,
-equal bits."""
+"""Is the package light to import, whole, and the same everywhere?"""
 
 import importlib
 import inspect
@@ -77,8 +76,7 @@ def test_with_the_core_dependencies_alone_everything_but_pictures_works():
 
 
 def test_what_is_missing_is_installed_as_the_package_was(tmp_path):
-    """In a clone by its project file; the package alone, as a wheel leaves it, by its name: pip adds the
-    extra to what is there."""
+    """In a clone by its project file; the package alone, as a wheel leaves it, by its name."""
     code = "from snooker_env._install import missing\nprint(missing('pictures need pygame-ce', 'render'))"
     out, _ = python(code, at=copy_of_package(tmp_path))
     assert out == 'pictures need pygame-ce; install it with: pip install "snooker-env[render]"\n'
@@ -216,8 +214,7 @@ print(positions[balls.BLACK, 1], hits, _jit.CACHE_FOLDER)
 
 
 def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
-    """numba checks only the file of the entry kernel (spotting.py); the black's place is frozen in from
-    geometry.py."""
+    """numba checks only spotting.py, the entry kernel's file; the black's place comes from geometry.py."""
     at, cache = copy_of_package(tmp_path / "copy"), str(tmp_path / "cache")
     runs = [python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() for _ in range(2)]
     assert [run[:2] for run in runs] == [["1.4605", "0"], ["1.4605", "1"]]  # compiled once, then loaded

@@ -1,5 +1,4 @@
-"""Can every chart of the repository be read at README width, and is the command of every picture written
-down?"""
+"""Can every chart of the repository be read at README width, and is every picture's command written down?"""
 
 import importlib
 import importlib.util

@@ -1,5 +1,4 @@
-"""Do agents, commands and examples get along with what the package promises? They import public names only,
-and each of those is there."""
+"""Do agents, commands and examples get along with what the package promises?"""
 
 import ast
 import doctest
@@ -83,8 +82,7 @@ TRAINED_FOR = (
 
 @pytest.mark.parametrize("path", USERS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_agents_commands_and_examples_use_public_names_only(path):
-    """But for what ``commands`` passes on, and for the rooms that ``agents`` trains for: the players, and
-    what they learned."""
+    """But for what ``commands`` passes on, and for the rooms that ``agents`` trains for."""
     passed_on = (
         {"files.py": "snooker_env._files", "tables.py": "snooker_env._tables"}
         if path.parent.name == "commands"

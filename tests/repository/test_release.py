@@ -1,5 +1,4 @@
-"""May people use this, and how? Licence, authors, citation, change log, and the instructions to install
-it."""
+"""May people use this, and how?"""
 
 import re
 import zipfile
@@ -69,8 +68,7 @@ def test_the_change_log_has_this_version_and_every_one_before():
 
 
 def test_no_text_says_to_install_from_an_index_that_does_not_have_it():
-    """The package is on no index: a bare ``pip install snooker-env`` would fail, or fetch whatever takes that
-    name."""
+    """The package is on no index."""
     said = [
         f"{p.relative_to(ROOT)}: {line}"
         for p in TEXTS

@@ -1,5 +1,4 @@
-"""Are the annotations true? Pyright on right and wrong calls, what it finds in the package, and hints that
-resolve."""
+"""Are the annotations true?"""
 
 import inspect
 import json
@@ -120,8 +119,7 @@ BAD = (
 
 
 def pyright(*arguments, cwd=ROOT):
-    """What pyright says, as JSON gives it. Skips where it is not installed or cannot be started (it may want
-    to load Node.js)."""
+    """What pyright says, as JSON; skips where it is not installed or cannot be started."""
     program = shutil.which(
         "pyright", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
     )
@@ -216,8 +214,7 @@ def members(thing):
 
 
 def annotated(thing):
-    """A function; or a class with the annotations of this one, and none of those it inherits from other
-    libraries."""
+    """A function; or a class with its annotations, and none that it inherits from other libraries."""
     if not inspect.isclass(thing):
         return thing
     return type(

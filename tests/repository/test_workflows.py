@@ -1,5 +1,4 @@
-"""Do the workflow and CI run what exists? Paths and extras that are there, the Python versions and the
-commands that are promised."""
+"""Do the workflow and CI run what exists?"""
 
 import re
 import shlex

@@ -1,5 +1,4 @@
-"""How do the tests get a browser? Debian's Chromium, headless, driven by playwright; without either, its
-tests are skipped and say so."""
+"""How do the tests get a browser? Debian's Chromium, headless, driven by playwright."""
 
 import shutil
 

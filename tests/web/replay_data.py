@@ -1,5 +1,4 @@
-"""Which shots and replays do the tests of the browser show? Struck here, and written down by
-``snooker_env.replays``."""
+"""Which shots and replays do the tests of the browser show?"""
 
 import base64
 
@@ -28,8 +27,7 @@ def break_off():
 
 
 def visit():
-    """The data of a replay of three strokes by two players; after the second the black is respotted and the
-    cue ball placed."""
+    """A replay of three strokes by two players, the black re-spotted after the second."""
     shots = [break_off()]
     for aim in (2.0, -1.0):
         shots.append(hit(shots[-1].positions, shots[-1].on_table, 3.0, aim, 0.2, -0.3, 0.1))

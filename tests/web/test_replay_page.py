@@ -1,5 +1,4 @@
-"""Does a replay's page play? Opened from disk in a real headless Chromium: by its clock, its bar, its keys
-and buttons, at all sizes."""
+"""Does a replay's page play? Opened from disk in a real headless Chromium."""
 
 import time
 

@@ -1,5 +1,4 @@
-"""Does the browser show what was simulated? ``table.js`` in a real headless Chromium: its places, its
-orientations, what it draws."""
+"""Does the browser show what was simulated? ``table.js`` in a real headless Chromium."""
 
 import numpy as np
 import pytest
@@ -24,8 +23,7 @@ GAMES = {  # table, physics, balls
 
 
 def start_of(game, rng):
-    """Places (n, 2) and flags for a shot of a game: snooker's break-off with some balls gone, else balls
-    strewn over the bed."""
+    """Places (n, 2) and flags for a shot of a game: snooker's break-off less some, else strewn balls."""
     table, physics, n = GAMES[game]
     if n == 22:
         r, here = layout("break_off" if rng.random() < 0.5 else "random:9", rng)
@@ -39,8 +37,7 @@ def start_of(game, rng):
 
 
 def shots(count, rng):
-    """(game, shot, start, on_table) of ``count`` shots: hard and soft, with draw, side and a raised cue, of
-    all games in turn."""
+    """(game, shot, start, on_table) of ``count`` shots of all games, with draw, side and raised cues."""
     made = []
     for k in range(count):
         game = list(GAMES)[k % len(GAMES)]

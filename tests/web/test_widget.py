@@ -1,5 +1,4 @@
-"""Does a replay play in a notebook? The widget's module in a real Chromium, its host imitated: what it draws,
-and its traits both ways."""
+"""Does a replay play in a notebook? The widget's module in a real Chromium, its host imitated."""
 
 import json
 import sys
@@ -36,8 +35,7 @@ async ([source, state]) => {
   window.host = { model, el, clean, sent, state, handlers };
 }
 """
-"""What anywidget does with a module: imports it from a blob, and calls render with the model and an
-element."""
+"""What anywidget does: imports the module from a blob, and calls render with the model and an element."""
 
 
 @pytest.fixture(scope="module")

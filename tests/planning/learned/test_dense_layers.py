@@ -1,5 +1,4 @@
-"""Are layers computed as their sums are written, rounded after each operation, whatever rows stand beside a
-row?"""
+"""Are layers the sums as they are written, rounded after each operation, whatever rows stand beside?"""
 
 import numpy as np
 import pytest
@@ -13,8 +12,7 @@ def drawn(*sizes, seed=0):
 
 
 def by_hand(rows, weight, bias):
-    """The same sums in NumPy, one term after another: elementwise, so each operation is rounded to
-    float32."""
+    """The same sums in NumPy, elementwise: each operation is rounded to float32."""
     sums = np.tile(bias, (len(rows), 1))
     for k in range(rows.shape[1]):
         sums = sums + rows[:, k : k + 1] * weight[k]

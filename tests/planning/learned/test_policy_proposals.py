@@ -44,8 +44,7 @@ def learned():
 
 
 def test_a_policy_that_likes_one_choice_gets_strokes_within_its_cell():
-    """The second pot at 2.9 m/s, left side, below the middle: half a cell of speed, side and top around it,
-    aimed at that pot."""
+    """The second pot at 2.9 m/s, left side, below the middle."""
     at, m = some(), 64
     strokes, chances = preferring(_1_4_0_1=5.0)(SEARCH, at, m, np.arange(6))
     assert strokes.shape == (6, m, 5) and chances.shape == (6, m)

@@ -1,5 +1,4 @@
-"""Does an agent see each pot as the docstring of ``with_pots`` says? Recomputed in plain Python from
-``game.pots``."""
+"""Does an agent see each pot as the docstring of ``with_pots`` says?"""
 
 from math import hypot, log10
 

@@ -1,5 +1,4 @@
-"""Do the features say what they claim, whatever the order of the reds and on whichever side the table
-lies?"""
+"""Do the features say what they claim, whatever the order of the reds and the side of the table?"""
 
 from math import erf, exp, hypot, log, sqrt
 
@@ -84,8 +83,7 @@ def test_the_order_of_the_reds_does_not_matter():
 
 @pytest.mark.parametrize("ball_on", [0, 1])
 def test_the_pots_are_the_best_ones_recomputed(ball_on):
-    """From ``planning.pots`` and the docstring's chance, in plain Python: by chance x (20 + value), with all
-    entries of each."""
+    """Recomputed from ``planning.pots`` and the docstring's chance, by chance x (20 + value)."""
     at = some(60, "random:4", seed=5)
     at.game[:, 0] = ball_on
     rows, direct = value_features(at, SPREAD), pots(at, most=40)
@@ -146,8 +144,7 @@ def test_the_pots_are_the_best_ones_recomputed(ball_on):
 
 
 def test_a_blocker_takes_a_pot_away():
-    """A red in the way of the cue ball, of the object ball, and beside both; the pot's other entries stay as
-    they are."""
+    """A red in the way of the cue ball, of the object ball, and beside both."""
     pot = {"cue": (0.0, 0.9), "black": (0.4, 1.3)}
     free, chance = seen(Position(**pot))[0], slice(0, POT_ENTRIES)
     assert free[0] == 1.0 and free[1] > 0.8
