@@ -1,18 +1,30 @@
-"""Is every public name documented as numpy does it?"""
+"""Is every public name documented as numpy does it: parameters as in the signature, what is returned, an example?"""
 
 import ast
 import dataclasses
-import enum
 import importlib
 import inspect
 import re
-import textwrap
+from itertools import pairwise
 
 import pytest
 
 from tests.processes import ROOT
 from tests.repository.test_public_names import ALL
 
+BODIES = [ast.parse(p.read_text(encoding="utf-8")).body for p in (ROOT / "snooker_env").rglob("*.py")]
+EXPLAINED = {
+    name.id
+    for body in BODIES
+    for node, below in pairwise(body)
+    if isinstance(node, ast.Assign | ast.AnnAssign)
+    and isinstance(getattr(below, "value", None), ast.Constant)
+    for name in ast.walk(node)
+    if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)
+}
+"""The constants that have words below them where they are made."""
+IMPORTS = [node for body in BODIES for node in body if isinstance(node, ast.ImportFrom)]
+EXPLAINED |= {alias.asname for node in IMPORTS for alias in node.names if alias.name in EXPLAINED}
 NAMES = sorted({(module, name) for module, names in ALL.items() for name in names})
 
 
@@ -38,109 +50,50 @@ def parameters(thing):
     """The names of a function's parameters, with their stars, without the receiver."""
     stars = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
     every = inspect.signature(plain(thing)).parameters.items()
-    return [
-        stars.get(p.kind, "") + name
-        for name, p in every
-        if name not in ("self", "cls") and not name.startswith("_")
-    ]
+    names = [(stars.get(p.kind, ""), name) for name, p in every if name not in ("self", "cls")]
+    return [star + name for star, name in names if not name.startswith("_")]
 
 
-def returns(thing):
-    """Whether a function gives anything back, by its annotation or its source."""
-    annotation = inspect.signature(thing).return_annotation
-    if annotation is not inspect.Signature.empty:
-        return annotation not in (None, "None")
-    body = ast.parse(textwrap.dedent(inspect.getsource(thing)))
-    return any(isinstance(node, ast.Return) and node.value is not None for node in ast.walk(body))
-
-
-def text_faults(text, *, example):
-    """What is wrong with a docstring's first line and its example."""
-    if not text.splitlines()[0].endswith((".", "?")):
-        yield f"begins with {text.splitlines()[0]!r}, not with a sentence on one line"
-    if example and ">>> " not in sections(text).get("Examples", ""):
-        yield "has no example"
-
-
-def function_faults(thing, *, example):
-    """What a function's docstring lacks."""
-    text = inspect.getdoc(plain(thing))
-    if not text:
-        yield "has no docstring"
-        return
-    yield from text_faults(text, example=example)
-    parts = sections(text)
-    if entries(parts.get("Parameters", "")) != parameters(thing):
-        yield f"has Parameters {entries(parts.get('Parameters', ''))}, its signature {parameters(thing)}"
-    if returns(plain(thing)) and not {"Returns", "Yields"} & set(parts):
-        yield "does not say what it returns"
-
-
-def class_faults(thing):
+def class_faults(thing, parts):
     """What a class's docstring lacks, and those of its public methods and properties."""
-    if not thing.__doc__:
-        yield "has no docstring"
-        return
-    text = inspect.cleandoc(thing.__doc__)
-    yield from text_faults(text, example=not issubclass(thing, BaseException))
-    parts = sections(text)
-    described = [*entries(parts.get("Parameters", "")), *entries(parts.get("Attributes", ""))]
+    described = entries(parts.get("Parameters", "")) + entries(parts.get("Attributes", ""))
     wanted = []
-    if issubclass(thing, enum.Enum):
-        described, wanted = re.findall(r"\w+", text), list(thing.__members__)
+    if members := getattr(thing, "__members__", ()):
+        described, wanted = re.findall(r"\w+", thing.__doc__), list(members)
     elif dataclasses.is_dataclass(thing) or hasattr(thing, "_fields"):
-        fields = (
-            [f.name for f in dataclasses.fields(thing)] if dataclasses.is_dataclass(thing) else thing._fields
-        )
+        fields = getattr(thing, "_fields", None) or [field.name for field in dataclasses.fields(thing)]
         wanted = [*parameters(thing), *(name for name in fields if not name.startswith("_"))]
-    elif (
-        "__init__" in vars(thing)
-        and not issubclass(thing, BaseException)
-        and not getattr(thing, "_is_protocol", False)
-    ):
-        wanted = parameters(thing.__init__)
+    elif "__init__" in vars(thing) and not issubclass(thing, BaseException):
+        wanted = [] if getattr(thing, "_is_protocol", False) else parameters(thing.__init__)
     if missing := set(wanted) - set(described):
         yield f"does not describe {sorted(missing)}"
     for name, member in vars(thing).items():
-        if name.startswith("_") or (issubclass(thing, enum.Enum) and name in thing.__members__):
-            continue
-        if isinstance(member, property) or (
-            inspect.isfunction(plain(member)) and plain(member).__module__.startswith("snooker_env")
-        ):
-            yield from () if inspect.getdoc(member) else [f".{name} has no docstring"]
-
-
-def explained(module, name):
-    """The words that stand below a constant where it is made, followed through imports."""
-    path = ROOT / (module.replace(".", "/") + ".py")
-    path = path if path.is_file() else ROOT / module.replace(".", "/") / "__init__.py"
-    body = ast.parse(path.read_text(encoding="utf-8")).body
-    for k, node in enumerate(body):
-        targets = getattr(node, "targets", [getattr(node, "target", None)])
-        if name in {
-            part.id for target in targets if target for part in ast.walk(target) if isinstance(part, ast.Name)
-        }:
-            words = getattr(body[k + 1], "value", None) if k + 1 < len(body) else None
-            return words.value if isinstance(words, ast.Constant) and isinstance(words.value, str) else None
-        for alias in node.names if isinstance(node, ast.ImportFrom) else ():
-            if (alias.asname or alias.name) == name:
-                package = module if path.name == "__init__.py" else module.rpartition(".")[0]
-                base = package.split(".")[: len(package.split(".")) + 1 - node.level] if node.level else []
-                return explained(".".join([*base, *filter(None, [node.module])]), alias.name)
-    return None
+        ours = inspect.isfunction(plain(member)) and plain(member).__module__.startswith("snooker_env")
+        if not name.startswith("_") and (ours or isinstance(member, property)) and not inspect.getdoc(member):
+            yield f".{name} has no docstring"
 
 
 def faults(module, name):
     """What is wrong with the documentation of a public name."""
     thing = getattr(importlib.import_module(module), name)
-    if inspect.ismodule(thing):
-        return [] if inspect.getdoc(thing) else ["has no docstring"]
-    if inspect.isclass(thing):
-        return list(class_faults(thing))
-    if callable(thing) and inspect.isfunction(plain(thing)):
-        inner = type(thing).__name__ == "Inner"  # only kernels can call it, so no example can
-        return list(function_faults(thing, example=not inner))
-    return [] if explained(module, name) else ["is a constant without words below it"]
+    function = callable(thing) and inspect.isfunction(plain(thing))
+    if not (function or inspect.isclass(thing) or inspect.ismodule(thing)):
+        return [] if name in EXPLAINED else ["is a constant without words below it"]
+    text = inspect.cleandoc((plain(thing) if function else thing).__doc__ or "")
+    if not text or inspect.ismodule(thing):
+        return [] if text else ["has no docstring"]
+    parts = sections(text)
+    direct = [] if function else list(class_faults(thing, parts))
+    # only kernels can call an inner kernel, so no example can
+    exempt = type(thing).__name__ == "Inner" or (not function and issubclass(thing, BaseException))
+    if not exempt and ">>> " not in parts.get("Examples", ""):
+        direct.append("has no example")
+    if function and entries(parts.get("Parameters", "")) != parameters(thing):
+        direct.append(f"has Parameters {entries(parts.get('Parameters', ''))}, not {parameters(thing)}")
+    returned = inspect.signature(plain(thing)).return_annotation if function else None
+    if returned not in (None, "None", inspect.Signature.empty) and not {"Returns", "Yields"} & set(parts):
+        direct.append("does not say what it returns")
+    return direct
 
 
 @pytest.mark.parametrize(("module", "name"), NAMES, ids=[f"{module}.{name}" for module, name in NAMES])

@@ -2,19 +2,13 @@
 
 import json
 import operator
-import os
-import shutil
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 from numba.core.types.functions import BaseFunction
 
-import snooker_env
 from snooker_env import _inner
+from tests.processes import copy_of_package, python, replace
 
-PACKAGE = Path(snooker_env.__file__).parent
 KERNELS = """
 from snooker_env.kernels import entry, kernel
 
@@ -62,27 +56,10 @@ def test_without_the_parts_of_numba_the_results_are_the_same(tmp_path):
     """Both kinds of compiling from an empty cache: half a minute each."""
     results = []
     for k, known in enumerate((True, False)):
-        tree = tmp_path / str(k)
-        shutil.copytree(PACKAGE, tree / "snooker_env", ignore=shutil.ignore_patterns("__pycache__"))
-        file = tree / "snooker_env" / "_inner.py"
-        text = file.read_text()
-        assert text.count("KNOWN = all(") == 1
-        if not known:
-            file.write_text(text.replace("KNOWN = all(", "KNOWN = False and all("))
-        environment = os.environ | {
-            "PYTHONPATH": str(tree),
-            "NUMBA_CACHE_DIR": str(tmp_path / f"cache{k}"),
-            "SNOOKER_ENV_QUIET": "1",
-        }
-        done = subprocess.run(
-            [sys.executable, "-c", SHOT],
-            env=environment,
-            cwd=tree,
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        results.append(json.loads(done.stdout))
+        tree = copy_of_package(tmp_path / str(k))
+        new = "KNOWN = all(" if known else "KNOWN = False and all("
+        replace(tree / "snooker_env" / "_inner.py", "KNOWN = all(", new)
+        results.append(json.loads(python(SHOT, at=tree, NUMBA_CACHE_DIR=str(tmp_path / f"cache{k}"))[0]))
     assert results[0][:2] == [True, ["EntryPoint"]]
     assert results[1][0] is False and "EntryPoint" not in results[1][1]
     assert results[0][2:] == results[1][2:]
