@@ -14,8 +14,8 @@ import pytest
 
 import snooker_env as sn
 from snooker_env import checks, game, geometry, planning, render, tasks
+from tests.processes import ROOT, python
 
-ROOT = Path(sn.__file__).resolve().parent.parent
 LEAST = 0.965
 
 HEAD = """
@@ -120,14 +120,12 @@ BAD = (
 
 def pyright(*arguments, cwd=ROOT):
     """What pyright says, as JSON; skips where it is not installed or cannot be started."""
-    program = shutil.which(
-        "pyright", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
-    )
-    if program is None:
-        pytest.skip("pyright is not installed")
     # --verifytypes reads no --pythonpath: it takes the first Python of PATH, and without its libraries half
     # the types are unknown
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    program = shutil.which("pyright", path=path)
+    if program is None:
+        pytest.skip("pyright is not installed")
     env = os.environ | {"PYTHONPATH": str(ROOT), "PATH": path}
     command = [program, "--outputjson", "--pythonpath", sys.executable, *arguments]
     done = subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, timeout=600, check=False)
@@ -168,15 +166,10 @@ def test_calls_that_are_wrong_are_errors_to_the_checker(report):
 
 
 @pytest.mark.slow
-def test_calls_of_each_documented_kind_run(tmp_path):
+def test_calls_of_each_documented_kind_run():
     """The calls that the checker is shown do what they say: an annotation is no promise by itself."""
     pytest.importorskip("pettingzoo")
-    command = [sys.executable, "-c", HEAD + "\n".join(GOOD[:-1])]
-    env = os.environ | {"PYTHONPATH": str(ROOT), "SNOOKER_ENV_QUIET": "1"}
-    done = subprocess.run(
-        command, capture_output=True, text=True, cwd=tmp_path, timeout=600, env=env, check=False
-    )
-    assert done.returncode == 0, done.stderr
+    python(HEAD + "\n".join(GOOD[:-1]))
 
 
 def test_the_checker_finds_the_types_of_public_names():
@@ -198,36 +191,20 @@ with suppress(ImportError):
     PUBLIC["SnookerVecEnv"] = SnookerVecEnv
 
 
-def members(thing):
-    """A function itself; of a class it, and all that it defines in public."""
+def annotated(thing):
+    """A function; of a class its annotations, none that it inherits, and the public functions that it defines."""
     if not inspect.isclass(thing):
         return [thing]
-    inside = [m for name, m in vars(thing).items() if not name.startswith("_")]
-    return [
-        thing,
-        *(inspect.unwrap(m.__func__) for m in inside if isinstance(m, classmethod | staticmethod)),
-    ] + [
-        m.fget if isinstance(m, property) else m
-        for m in inside
-        if inspect.isfunction(m) or isinstance(m, property)
-    ]
-
-
-def annotated(thing):
-    """A function; or a class with its annotations, and none that it inherits from other libraries."""
-    if not inspect.isclass(thing):
-        return thing
-    return type(
-        thing.__name__,
-        (),
-        {"__module__": thing.__module__, "__annotations__": vars(thing).get("__annotations__", {})},
-    )
+    names = {"__module__": thing.__module__, "__annotations__": vars(thing).get("__annotations__", {})}
+    public = [member for name, member in vars(thing).items() if not name.startswith("_")]
+    inside = [getattr(m, "fget", None) or getattr(m, "__func__", m) for m in public]
+    return [type(thing.__name__, (), names), *filter(inspect.isfunction, map(inspect.unwrap, inside))]
 
 
 @pytest.mark.parametrize("name", [name for name, thing in PUBLIC.items() if callable(thing)])
 def test_annotations_can_be_resolved_when_the_program_runs(name):
-    for thing in members(PUBLIC[name]):
-        hints = typing.get_type_hints(annotated(thing))
+    for thing in annotated(PUBLIC[name]):
+        hints = typing.get_type_hints(thing)
         if inspect.isfunction(thing):
             parameters = [p for p in inspect.signature(thing).parameters if p not in ("self", "cls")]
             assert set(parameters) | {"return"} <= set(hints), thing
