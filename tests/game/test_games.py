@@ -1,5 +1,6 @@
 """Do frames of every game go on as their rules say? What six-red and the Shoot Out change; random strokes."""
 
+import json
 from collections import Counter
 
 import numpy as np
@@ -67,7 +68,7 @@ def test_whatever_is_played_the_frame_is_possible_and_a_table_keeps_it(rules, mi
         frame = Frame.start(breaker=game % 2, miss=miss, rules=rules, on_table=few)
         to_play = int(rng.choice([4_000, 9_000, 12_000, 16_000]))
         for _ in range(400):
-            assert Frame.from_dict(frame.to_dict()) == frame
+            assert Frame.from_dict(json.loads(json.dumps(frame.to_dict()))) == frame
             write_frame(frame, 7, row, layouts, 0)
             assert frame_of(row, miss, layouts, 0, rules) == frame
             if frame.phase == "over":
@@ -98,13 +99,8 @@ def test_six_red_the_fifth_miss_lets_the_opponent_place_the_cue_ball_anywhere():
     frame, _ = frame.play(Stroke(snookered=True), clear_path=True)
     assert frame.misses == 5 and frame.choices == ("play", "play_again", "anywhere") and frame.free_ball
     placed = frame.choose("anywhere")
-    assert (placed.striker, placed.in_hand, placed.anywhere, placed.free_ball, placed.misses) == (
-        1,
-        True,
-        True,
-        False,
-        0,
-    )
+    assert placed.striker == 1 and placed.in_hand and placed.anywhere
+    assert not placed.free_ball and not placed.misses
     after, _ = placed.play(Stroke(first=2))
     assert not after.in_hand and not after.anywhere
     missed, _ = placed.play(MISSED, clear_path=True)  # replaced, he places it anywhere once more
@@ -149,13 +145,8 @@ def shoot_out(**more):
 
 def test_shoot_out_a_foul_gives_the_ball_in_hand_anywhere():
     frame, verdict = shoot_out().play(Stroke(snookered=True))
-    assert (frame.phase, frame.striker, frame.in_hand, frame.anywhere, frame.free_ball) == (
-        "stroke",
-        1,
-        True,
-        True,
-        False,
-    )
+    assert (frame.phase, frame.striker) == ("stroke", 1)
+    assert frame.in_hand and frame.anywhere and not frame.free_ball
     assert frame.scores == (0, 4) and verdict.in_hand
     frame, _ = frame.play(Stroke(first=2))
     assert not frame.in_hand and not frame.anywhere
@@ -164,9 +155,8 @@ def test_shoot_out_a_foul_gives_the_ball_in_hand_anywhere():
 def test_shoot_out_a_ball_must_be_potted_or_reach_a_cushion():
     assert shoot_out().play(Stroke(first=2, no_cushion=True))[0].scores == (0, 4)
     assert shoot_out().play(Stroke(first=2, potted=2, no_cushion=True))[0].scores == (1, 0)
-    assert shoot_out(ball_on=BallOn.PINK, on_table=3 << 20).play(Stroke(first=1 << 20, no_cushion=True))[
-        0
-    ].scores == (0, 6)
+    pink = shoot_out(ball_on=BallOn.PINK, on_table=3 << 20)
+    assert pink.play(Stroke(first=1 << 20, no_cushion=True))[0].scores == (0, 6)
     assert Frame().play(Stroke(first=2, no_cushion=True))[0].scores == (0, 0)
 
 
@@ -175,12 +165,8 @@ def test_shoot_out_the_clocks():
     assert frame.clock == 6_000  # it starts with the first stroke
     late, verdict = frame.play(Stroke(first=2, potted=2), time_to_play=15_001, duration=6_000)
     assert verdict.penalty == 5 and late.clock == 21_000 and late.anywhere and late.on_table == frame.on_table
-    assert (
-        shoot_out(ball_on=BallOn.PINK, on_table=3 << 20, clock=1)
-        .play(Stroke(), time_to_play=20_000)[1]
-        .penalty
-        == 6
-    )
+    pink = shoot_out(ball_on=BallOn.PINK, on_table=3 << 20, clock=1)
+    assert pink.play(Stroke(), time_to_play=20_000)[1].penalty == 6
     half = shoot_out(clock=300_000)
     assert half.shot_clock == 10_000 and half.play(Stroke(first=2), time_to_play=10_000)[1].penalty == 0
     assert half.play(Stroke(first=2), time_to_play=10_001)[1].penalty == 5
@@ -193,10 +179,8 @@ def test_shoot_out_when_the_time_is_up_the_higher_score_wins(scores, winner):
     assert frame.play(Stroke(first=2), time_to_play=8_000, duration=3_999)[0].phase == "stroke"
     over, _ = frame.play(Stroke(first=2), time_to_play=8_000, duration=4_000)
     assert (over.phase, over.winner, over.clock) == ("over", winner, 592_000)
-    last, _ = shoot_out(scores=(4, 5), clock=585_000).play(
-        Stroke(first=2, potted=14), time_to_play=8_000, duration=2_000
-    )
-    assert last.winner == 0  # a stroke begun in time counts
+    late = shoot_out(scores=(4, 5), clock=585_000)  # a stroke begun in time counts
+    assert late.play(Stroke(first=2, potted=14), time_to_play=8_000, duration=2_000)[0].winner == 0
 
 
 def test_shoot_out_level_scores_leave_the_black():

@@ -94,11 +94,12 @@ def test_line_up_is_a_line_through_which_a_ball_passes():
     assert abs(on_line).max() < HALF_LENGTH - 3 * BALL_RADIUS
 
 
-@pytest.mark.parametrize(
-    "name", ["", "no such", "random", "random:", "random:16", "random:-1", "random:N", None, 3]
-)
+UNKNOWN = ["", "no such", "random", "random:", "random:16", "random:-1", "random:N", None, 3]
+
+
+@pytest.mark.parametrize("name", [*UNKNOWN, "pots", "pots:", "pots:Easy", "pots:very hard", "Snookered"])
 def test_unknown_names_are_refused(name):
-    with pytest.raises(ValueError):
+    with pytest.raises(ValueError, match=r"^layout = "):
         layouts.layout(name, np.random.default_rng(0))
 
 
@@ -143,9 +144,3 @@ def test_single_pots_are_as_hard_as_they_say(difficulty):
 def test_the_difficulties_leave_no_gap_and_do_not_overlap():
     windows = [layouts.POT_WINDOWS[d] for d in ("hard", "medium", "easy")]
     assert [w[1] for w in windows[:2]] == [w[0] for w in windows[1:]] and windows[-1][1] == np.inf
-
-
-@pytest.mark.parametrize("name", ["pots", "pots:", "pots:Easy", "pots:very hard", "Snookered"])
-def test_unknown_drills_are_refused(name):
-    with pytest.raises(ValueError, match=r"^layout = "):
-        layouts.layout(name, np.random.default_rng(0))
