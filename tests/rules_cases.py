@@ -112,40 +112,12 @@ def stroke_of(shot, free_ball):
 
 
 SHOT_FIELDS = (
-    *(
-        "nominated",
-        "free_ball_nominated",
-        "first_contact",
-        "touching",
-        "touching_ball_moved",
-        "potted",
-        "cue_potted",
-        "forced_off",
-    ),
-    *(
-        "jump_shot",
-        "push_stroke",
-        "double_hit",
-        "played_from_outside_D",
-        "clear_path_to_ball_on",
-        "clear_full_ball_path",
-        "after",
-    ),
-    *("attempt", "no_cushion", "time_to_play", "duration"),
+    "nominated free_ball_nominated first_contact touching touching_ball_moved potted cue_potted forced_off "
+    "jump_shot push_stroke double_hit played_from_outside_D clear_path_to_ball_on clear_full_ball_path after "
+    "attempt no_cushion time_to_play duration"
 )
 BEFORE_FIELDS = (
-    "reds",
-    "colours",
-    "ball_on",
-    "free_ball",
-    "scores",
-    "striker",
-    "in_hand",
-    "respotted_black",
-    "rules",
-    "miss",
-    "misses",
-    "clock",
+    "reds colours ball_on free_ball scores striker in_hand respotted_black rules miss misses clock"
 )
 
 
@@ -155,37 +127,24 @@ def run_shot(case):
     if problem:
         return problem
     frame = frame_before(before, "clear_path" if "foul_and_a_miss" in case["expect"] else "off")
-    paths = {
-        "clear_path": bool(shot["clear_path_to_ball_on"]),
-        "full_ball_path": bool(shot["clear_full_ball_path"]),
-    }
-    more = {
-        "attempt": shot.get("attempt", True),
-        "time_to_play": shot.get("time_to_play", 0),
-        "duration": shot.get("duration", 0),
-    }
-    after, verdict = frame.play(stroke_of(shot, frame.free_ball), **paths, **more)
-    over = after.phase == "over"
+    paths = bool(shot["clear_path_to_ball_on"]), bool(shot["clear_full_ball_path"])
+    more = {name: shot[name] for name in ("attempt", "time_to_play", "duration") if name in shot}
+    stroke = stroke_of(shot, frame.free_ball)
+    after, verdict = frame.play(stroke, clear_path=paths[0], full_ball_path=paths[1], **more)
     answers = {
         "foul": bool(verdict.fouls),
         "penalty_to_opponent": verdict.penalty,
         "points_to_striker": verdict.points,
-        "next_striker": None if over or after.phase == "lot" else PLAYERS[after.striker],
-        "next_ball_on": name_of(after.ball_on),
-        "reds_left": reds_in(after.on_table),
         "colours_left": colours_in(after.on_table),
         "respotted": colours_in(verdict.respotted),
         "cue_ball_in_hand": verdict.in_hand,
         "free_ball_to_next": verdict.free_ball,
-        "frame_over": over,
-        "winner": PLAYERS[after.winner] if over else None,
         "respotted_black_procedure": after.phase == "lot",
         "foul_and_a_miss": after.miss_called,
         "choices": list(after.choices),
         "anywhere": after.anywhere,
-        "scores": by_player(after.scores),
     }
-    return compare(case["expect"], answers)
+    return compare(case["expect"], frame_answers(after) | answers)
 
 
 def compare(expect, answers):
@@ -213,16 +172,14 @@ def refused(act):
 
 def frame_answers(frame):
     """What a frame says of itself, under every name that a case may use."""
-    over = frame.phase == "over"
+    over, reds = frame.phase == "over", reds_in(frame.on_table)
     return {
-        "next_striker": None if over else PLAYERS[frame.striker],
+        "next_striker": None if over or frame.phase == "lot" else PLAYERS[frame.striker],
         "next_ball_on": name_of(frame.ball_on),
         "scores": by_player(frame.scores),
-        "reds": reds_in(frame.on_table),
-        "reds_left": reds_in(frame.on_table),
+        **dict.fromkeys(("reds", "reds_left"), reds),
         "cue_ball_in_hand": frame.in_hand,
-        "free_ball": frame.free_ball,
-        "free_ball_to_next": frame.free_ball,
+        **dict.fromkeys(("free_ball", "free_ball_to_next"), frame.free_ball),
         "frame_over": over,
         "winner": PLAYERS[frame.winner] if over else None,
     }
@@ -236,14 +193,8 @@ def fouled(before):
     offender = PLAYERS.index(before["foul_by"])
     scores = tuple(before.get("scores", {"A": 0, "B": 0})[p] for p in PLAYERS)
     miss = bool(before.get("miss"))
-    start = Frame(
-        scores=scores,
-        striker=offender,
-        on_table=on_table,
-        ball_on=ball_on,
-        in_hand=False,
-        miss="clear_path" if miss else "off",
-    )
+    standing = {"on_table": on_table, "ball_on": ball_on, "in_hand": False}
+    start = Frame(scores=scores, striker=offender, miss="clear_path" if miss else "off", **standing)
     # On any colour, the nomination that costs the case's penalty.
     nominated = 14 + max(2, before.get("penalty", 4)) if ball_on == BallOn.ANY_COLOUR else AUTO
     stroke = Stroke(nominated=nominated, snookered=bool(before.get("free_ball")))
@@ -261,22 +212,15 @@ def fair_strokes(frame):
 def run_option(case):
     before, what = case["before"], case["action"]["choice"]
     if what == "miss_again":
-        problem = unknown(before, ["offender", "consecutive_misses_from_same_position_full_ball", "warned"])
+        problem = unknown(before, "offender consecutive_misses_from_same_position_full_ball warned")
         if problem:
             return problem
         failures = before["consecutive_misses_from_same_position_full_ball"]
-        frame = Frame(
-            striker=PLAYERS.index(before["offender"]),
-            miss="clear_path",
-            failures=failures,
-            warned=before["warned"],
-        )
-        return compare(
-            case["expect"], frame_answers(frame.play(Stroke(), clear_path=True, full_ball_path=True)[0])
-        )
-    problem = unknown(
-        before, ["foul_by", "ball_on", "ball_on_before_foul", "free_ball", "miss", "scores", "penalty"]
-    )
+        offender, warned = PLAYERS.index(before["offender"]), before["warned"]
+        frame = Frame(striker=offender, miss="clear_path", failures=failures, warned=warned)
+        after, _ = frame.play(Stroke(), clear_path=True, full_ball_path=True)
+        return compare(case["expect"], frame_answers(after))
+    problem = unknown(before, "foul_by ball_on ball_on_before_foul free_ball miss scores penalty")
     if problem or what not in CHOICES:
         return problem or f"not understood: choice {what}"
     start, foul = fouled(before)
@@ -312,25 +256,18 @@ def run_end(case):
         can = player == frame.striker and not refused(frame.claim)
         return compare(case["expect"], frame_answers(frame.claim() if can else frame))
     if action["choice"] == "concede":
-        return compare(
-            case["expect"],
-            frame_answers(frame if refused(lambda: frame.concede(player)) else frame.concede(player)),
-        )
+        after = frame if refused(lambda: frame.concede(player)) else frame.concede(player)
+        return compare(case["expect"], frame_answers(after))
     return f"not understood: choice {action['choice']}"
 
 
 def run_stalemate(case):
     before = case["before"]
-    problem = unknown(before, ["scores", "breaker"])
+    problem = unknown(before, "scores breaker")
     if problem or case["action"]["choice"] != "restart":
         return problem or f"not understood: choice {case['action']['choice']}"
-    breaker = PLAYERS.index(before["breaker"])
-    frame = Frame(
-        scores=tuple(before["scores"][p] for p in PLAYERS),
-        striker=1 - breaker,
-        breaker=breaker,
-        in_hand=False,
-    )
+    breaker, scores = PLAYERS.index(before["breaker"]), tuple(before["scores"][p] for p in PLAYERS)
+    frame = Frame(scores=scores, striker=1 - breaker, breaker=breaker, in_hand=False)
     return compare(case["expect"], frame_answers(frame.restart()))
 
 
@@ -362,15 +299,12 @@ def value_of(formula):
 
 def run_arithmetic(case):
     """The best break that the code allows, with or without a free ball first."""
-    title = case["title"].lower()
+    title, formula = case["title"].lower(), case["expect"].get("formula", "0")
     if "maximum" not in title:
         return "not understood: " + title
-    answers = {"value": best_break("free ball" in title and "without" not in title)}
-    if "formula" in case["expect"]:
-        answers["formula"] = (
-            case["expect"]["formula"] if value_of(case["expect"]["formula"]) == answers["value"] else "other"
-        )
-    return compare(case["expect"], answers)
+    value = best_break("free ball" in title and "without" not in title)
+    same = "formula" in case["expect"] and value_of(formula) == value
+    return compare(case["expect"], {"value": value, "formula": formula if same else "other"})
 
 
 KINDS = {
@@ -405,10 +339,9 @@ def main(arguments):
     for case in cases:
         problem = run(case)
         failed += problem is not None
-        print(
-            f"{'FAIL' if problem else 'pass'} {case['id']} {case['kind']}: {case['title']}"
-            + (f"\n     {problem}" if problem else "")
-        )
+        print(f"{'FAIL' if problem else 'pass'} {case['id']} {case['kind']}: {case['title']}")
+        if problem:
+            print(f"     {problem}")
     print(f"{len(cases) - failed} passed, {failed} failed")
     return 1 if failed else 0
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from snooker_env.game.balls import mask_of
-from snooker_env.game.layouts import deal_tables, plan_of
-from snooker_env.game.philox import stream_of
+from snooker_env.game.layouts import layout
 from snooker_env.game.pots import (
     _CORNER_ANGLE,
     _CORNER_WINDOW,
@@ -31,18 +30,9 @@ def two(cue, red):
 def test_no_ghost_lies_in_a_cushion():
     """A red by the rail cannot be potted across the table: there is no room behind it."""
     assert not (np.abs(two((-0.5, 1.6), (-0.86, 0.3))[:, GHOST_X]) > HALF_WIDTH - BALL_RADIUS + 1e-9).any()
-    deal = plan_of("opened")
     for seed in range(200):
-        positions, on_table = np.zeros((1, 22, 2)), np.zeros((1, 22), bool)
-        deal_tables(
-            np.zeros(1, np.int64),
-            deal.code,
-            deal.tables,
-            stream_of(np.random.default_rng(seed))[None],
-            positions,
-            on_table,
-        )
-        found = pots(positions[0], on_table[0], mask_of(range(1, 16)))
+        positions, on_table = layout("opened", np.random.default_rng(seed))
+        found = pots(positions, on_table, mask_of(range(1, 16)))
         assert (np.abs(found[:, GHOST_X]) <= HALF_WIDTH - BALL_RADIUS + 1e-9).all()
         assert (np.abs(found[:, GHOST_Y]) <= HALF_LENGTH - BALL_RADIUS + 1e-9).all()
 
