@@ -15,9 +15,8 @@ def test_pots_are_those_of_each_position():
     at.ball_on[10:] = 0
     direct = pots(at, most=6)
     for k in range(20):
-        each = one_by_one.pots(
-            at.positions[k], at.on_table[k], mask_of(np.flatnonzero(at.balls_on[k]).tolist()), most=6
-        )
+        on = mask_of(np.flatnonzero(at.balls_on[k]).tolist())
+        each = one_by_one.pots(at.positions[k], at.on_table[k], on, most=6)
         n = len(each)
         assert direct.ball[k, :n].tolist() == each[:, 0].tolist()
         assert direct.pocket[k, :n].tolist() == each[:, 1].tolist()
@@ -61,9 +60,8 @@ def test_clear_paths_are_those_of_the_miss_rule():
     direct = clear_paths(at)
     for k in range(40):
         on = mask_of(np.flatnonzero(at.balls_on[k]).tolist())
-        assert (direct.any_part[k], direct.full_ball[k]) == miss_rule.paths(
-            at.positions[k], at.on_table[k], on
-        )
+        paths = miss_rule.paths(at.positions[k], at.on_table[k], on)
+        assert (direct.any_part[k], direct.full_ball[k]) == paths
     assert not direct.full_ball.all()
     assert clear_paths(Positions.of(tables(5))).any_part.all()
     assert clear_paths(Position(black=(0.0, 1.4605), over=True)).any_part.tolist() == [False]

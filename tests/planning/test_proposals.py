@@ -1,5 +1,6 @@
 """Are the strokes proposed within their limits, aimed at real pots and shared among them by their chance?"""
 
+from dataclasses import replace
 from itertools import pairwise
 from math import floor
 
@@ -83,11 +84,8 @@ def test_strokes_stay_within_their_limits_and_fill_them():
 def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
     """Shares in plain Python from the chances of ``prospects_of``; aims by ``Planner.pot_aim``."""
     at, m, several = some(), 150, 0
-    direct, likely, chances = (
-        pots(at, most=MOST_POTS),
-        prospects_of(at, SPREAD, most=MOST_POTS)[1],
-        chances_by_width(at, SPREAD),
-    )
+    direct, likely = pots(at, most=MOST_POTS), prospects_of(at, SPREAD, most=MOST_POTS)[1]
+    chances = chances_by_width(at, SPREAD)
     proposed = spread_strokes(at, m, seeds(20), SPREAD, DYNAMICS)
     for k in range(20):
         many = int((direct.ball[k] >= 0).sum())
@@ -99,9 +97,7 @@ def test_each_pot_gets_its_share_with_its_own_aims_and_its_chance():
         for j in range(many):
             last = m if j == many - 1 else floor(m * ends[j] + 0.5)
             strokes = proposed.strokes[k, first:last]
-            assert proposed.chances[k, first:last] == pytest.approx(
-                np.full(last - first, chances[k, j]), rel=1e-9
-            )
+            assert np.allclose(proposed.chances[k, first:last], chances[k, j], rtol=1e-9, atol=0)
             if last > first:
                 expected = solved(at, k, strokes, direct.ball[k, j], direct.pocket[k, j], direct.ghost[k, j])
                 assert np.array_equal(strokes[:, AIM], expected)
@@ -122,11 +118,10 @@ def test_a_chance_is_what_errors_leave_of_the_pot():
     tool = StrokeSearch({"noise": "professional", "fidelity": "fast"}, threads=1)
     rows = np.repeat(np.arange(n), m * errors)
     drawn = np.random.default_rng(0).standard_normal((len(rows), 5))
-    pots_made = tool.outcomes(at, rows, np.repeat(strokes.reshape(-1, 5), errors, 0), drawn).points > 0
-    made, chances = pots_made.reshape(-1, errors).mean(axis=1), chances.ravel()
-    scores = (
-        tool.outcomes(at, np.repeat(np.arange(n), m), strokes.reshape(-1, 5), np.zeros((n * m, 5))).points > 0
-    )
+    flat, chances = strokes.reshape(-1, 5), chances.ravel()
+    made = tool.outcomes(at, rows, np.repeat(flat, errors, 0), drawn).points > 0
+    made = made.reshape(-1, errors).mean(axis=1)
+    scores = tool.outcomes(at, np.repeat(np.arange(n), m), flat, np.zeros((n * m, 5))).points > 0
     for some, exact in ((scores & (chances > 0.9), 0.05), (scores & (chances < 0.9), 0.1)):
         assert some.sum() > 30 and made[some].mean() == pytest.approx(chances[some].mean(), abs=exact)
 
@@ -162,19 +157,14 @@ def test_without_a_pot_half_of_the_strokes_are_hard_and_the_others_of_any_speed(
     strokes = at_balls(SEARCH, Positions.of(NO_POT), 2000, [5]).strokes[0]
     shares = [(strokes[1::2, SPEED] < v).mean() for v in (2.0, 4.0, 6.0)]
     assert shares == pytest.approx([(v / MAX_SPEED) ** 3 for v in (2.0, 4.0, 6.0)], abs=0.01)
-    assert np.histogram(np.log(strokes[::2, SPEED]), 4, np.log([SOFTEST, FASTEST]))[0] == pytest.approx(
-        [250] * 4, abs=6
-    )
+    counts = np.histogram(np.log(strokes[::2, SPEED]), 4, np.log([SOFTEST, FASTEST]))[0]
+    assert counts == pytest.approx([250] * 4, abs=6)
     assert strokes[:, SPEED].min() >= SOFTEST and 0.99 * MAX_SPEED < strokes[:, SPEED].max() <= MAX_SPEED
 
 
 def test_no_contact_is_tried_that_another_ball_hides():
     """A colour before the reds: without it, some of the plain strokes would meet its place first."""
-    at = Positions.of(
-        Position(
-            cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], yellow=(0.4, 1.4), black=(0.0, -1.0), on="red"
-        )
-    )
+    at = Positions.of(replace(NO_POT, yellow=(0.4, 1.4)))
     assert pots(at).ball[0, 0] == -1
     strokes = at_balls(SEARCH, at, 400, [3]).strokes[0]
     straight = (strokes[:, SIDE] == 0.0) & (strokes[:, SPEED] > 2.0)
@@ -218,10 +208,7 @@ def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
     many = (direct.ball >= 0).sum(axis=1)
     assert (many > 0).all()
     which = rng.integers(0, 4, (6, 30))
-    passed = np.stack(
-        [rng.uniform(1.0, 5.0, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30)), rng.uniform(-0.3, 0.3, (6, 30))],
-        axis=2,
-    )
+    passed = rng.uniform((1.0, -0.3, -0.3), (5.0, 0.3, 0.3), (6, 30, 3))
     kept = which.copy(), passed.copy()
     strokes, of = strokes_at(at, which, passed, SPREAD, DYNAMICS)
     assert np.array_equal(strokes[..., :AIM], passed) and np.array_equal(which, kept[0])
@@ -230,12 +217,8 @@ def test_strokes_at_keeps_what_is_given_and_solves_the_aim():
         for i in range(30):
             j = min(which[k, i], many[k] - 1)  # beyond the last pot: the last one
             assert of[k, i] == pytest.approx(chances[k, j], rel=1e-9)
-            assert (
-                strokes[k, i, AIM]
-                == solved(
-                    at, k, strokes[k, i : i + 1], direct.ball[k, j], direct.pocket[k, j], direct.ghost[k, j]
-                )[0]
-            )
+            pot = direct.ball[k, j], direct.pocket[k, j], direct.ghost[k, j]
+            assert strokes[k, i, AIM] == solved(at, k, strokes[k, i : i + 1], *pot)[0]
 
 
 @pytest.mark.parametrize("generate", [at_pots, at_balls, over_cushions])
@@ -249,15 +232,12 @@ def test_a_position_is_proposed_for_by_itself(generate):
     assert all(np.array_equal(one, whole[some[::-1]]) for one, whole in zip(again, made, strict=True))
     other = generate(SEARCH, at, 40, seeds(30, first=500)).strokes
     assert all(not np.array_equal(other[k], made.strokes[k]) for k in some)
-    assert all(
-        np.array_equal(getattr(at, name), getattr(kept, name)) for name in ("positions", "on_table", "game")
-    )
+    names = "positions", "on_table", "game"
+    assert all(np.array_equal(getattr(at, name), getattr(kept, name)) for name in names)
 
 
 def test_a_wider_hand_spares_the_doubtful_pots():
     """With larger errors every chance falls, and the likeliest pot's share of the strokes grows."""
-    at = Positions.of(
-        Position(cue=(0.0, 0.9), reds=[(0.5, 1.35), (-0.6, -0.9)], black=(0.0, 1.4605), on="red")
-    )
+    at = Positions.of(Position(cue=(0.0, 0.9), reds=[(0.5, 1.35), (-0.6, -0.9)], black=(0.0, 1.4605)))
     small, large = (spread_strokes(at, 200, [3], spread, DYNAMICS).chances[0] for spread in (5e-4, 4e-3))
     assert large.max() < small.max() and (large == large.max()).sum() > (small == small.max()).sum() > 0

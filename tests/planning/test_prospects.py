@@ -46,9 +46,8 @@ def by_plain_python(positions, on_table, ball_on, spread, follows, second, third
     """The value of a position and the chances of its pots, from the pots of ``game.pots``."""
     present = [ball for ball in VALUE if on_table[ball]]
     balls = [ball for ball in present if (VALUE[ball] == 1) == (ball_on == BallOn.RED)]
-    left = sum(8 if VALUE[ball] == 1 else VALUE[ball] for ball in present) + 7 * (
-        ball_on == BallOn.ANY_COLOUR
-    )
+    left = sum(8 if VALUE[ball] == 1 else VALUE[ball] for ball in present)
+    left += 7 * (ball_on == BallOn.ANY_COLOUR)
     chances, worths = [], [0.0, 0.0, 0.0]
     for ball, pocket, gx, gy, _, tolerance in pots(positions, on_table, mask_of(balls)):
         (cx, cy), (bx, by), (px, py) = positions[CUE], positions[int(ball)], POCKET_AIMS[int(pocket), :2]
@@ -97,9 +96,8 @@ def test_spread_is_that_of_the_aim_and_of_the_squirt(level):
     noise, physics = Noise.of(level), Physics.of("paper")
     b = 1e-3 * noise.offset_mm / physics.R
     squirt = atan(2.5 * b * sqrt(1 - b * b) / (1 + physics.end_mass_ratio + 2.5 * (1 - b * b)))
-    assert prospects.spread_of(noise, physics) == pytest.approx(
-        hypot(radians(noise.aim_deg), squirt), rel=1e-3
-    )
+    spread = hypot(radians(noise.aim_deg), squirt)
+    assert prospects.spread_of(noise, physics) == pytest.approx(spread, rel=1e-3)
     assert prospects.spread_of(Noise(), physics) == 1e-5
 
 

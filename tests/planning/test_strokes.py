@@ -80,10 +80,8 @@ def test_a_solved_aim_pots_where_the_straight_line_misses():
     spun = np.tile([2.9, 0.3, 0.0, 0.0, 0.0], (60, 1))
     solved = planner.pot_aim(at, n, direct.ball[:, 0], targets, spun)
     assert np.array_equal(solved, pot_aim(at, n, direct.ball[:, 0], targets, spun, ghosts=direct.ghost[:, 0]))
-    made = [
-        (planner.play(at, n, actions_of(np.full(60, 2.9), aims, 0.3)).points > 0).mean()
-        for aims in (solved, straight)
-    ]
+    played = [planner.play(at, n, actions_of(np.full(60, 2.9), aims, 0.3)) for aims in (solved, straight)]
+    made = [(outcomes.points > 0).mean() for outcomes in played]
     assert made[0] > 0.8 and made[1] < 0.5
 
 
@@ -118,7 +116,5 @@ def test_an_aim_that_cannot_be_solved_is_refused(changes, complaint):
 def test_choices_out_of_range_are_refused():
     with pytest.raises(ValueError, match=r"choices\[1\] = 540: must be an integer in \[0, 539\]"):
         as_actions(POT, [0, 0], [3, 540])
-    with pytest.raises(
-        ValueError, match=r"choices = int64 array of shape \(2,\): must be integers of shape \(1,\)"
-    ):
+    with pytest.raises(ValueError, match=r"choices = int64 array of shape \(2,\): must be integers of shape"):
         as_actions(POT, [0], [3, 4])

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from positions import chances_by_width, tables
 
-from snooker_env.game import VALUES
+from snooker_env.game import COLOUR_NAMES, VALUES
+from snooker_env.geometry import SIDES
 from snooker_env.planning import Position, Positions, pots, spread_of
 from snooker_env.planning.learned.value_features import (
     COLOUR_ENTRIES,
@@ -26,11 +27,7 @@ LAYOUTS = (
     "break_off",
     "line_up",
     "colours",
-    "random:0",
-    "random:1",
-    "random:3",
-    "random:9",
-    "random:15",
+    *(f"random:{n}" for n in (0, 1, 3, 9, 15)),
 )
 OF_ALL = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES
 """The first entry of the whole position."""
@@ -59,9 +56,8 @@ def test_a_table_and_its_mirror_image_differ_by_the_side_alone():
         at = some(60, layout)
         turned = at.copy()
         turned.positions[..., 0] *= -1.0
-        turned.positions[~turned.on_table] = np.random.default_rng(0).uniform(
-            -0.8, 0.8, ((~turned.on_table).sum(), 2)
-        )
+        gone = ~turned.on_table
+        turned.positions[gone] = np.random.default_rng(0).uniform(-0.8, 0.8, (gone.sum(), 2))
         one, other = value_features(at, SPREAD), value_features(turned, SPREAD)
         rest = np.arange(SIZE) != SIDE
         assert one[:, rest] == pytest.approx(other[:, rest], abs=2e-6)
@@ -92,39 +88,18 @@ def test_the_pots_are_the_best_ones_recomputed(ball_on):
     for k in range(60):
         best = []
         for j in np.flatnonzero(direct.ball[k] >= 0):
-            ball, (gx, gy), tolerance = (
-                int(direct.ball[k, j]),
-                direct.ghost[k, j],
-                float(direct.tolerance[k, j]),
-            )
-            (cx, cy), (x, y) = at.positions[k, 0], at.positions[k, ball]
+            ball, tolerance = int(direct.ball[k, j]), float(direct.tolerance[k, j])
+            (gx, gy), (cx, cy), (x, y) = direct.ghost[k, j], at.positions[k, 0], at.positions[k, ball]
             away, middle = hypot(gx - cx, gy - cy), direct.pocket[k, j] in (2, 5)
-            px, py = {0: (-1, -1), 1: (1, -1), 2: (1, 0), 3: (1, 1), 4: (-1, 1), 5: (-1, 0)}[
-                int(direct.pocket[k, j])
-            ]
-            px, py = (
-                (px * (0.889 - 0.0016), 0.0) if middle else (px * (0.889 - 0.01524), py * (1.7845 - 0.01524))
-            )
+            aim_point = 0.889 - (0.0016 if middle else 0.01524), 1.7845 - 0.01524
+            px, py = np.multiply(SIDES[direct.pocket[k, j]], aim_point)
             run = hypot(px - x, py - y)
             chance = erf(tolerance / (SPREAD * sqrt(2))) * exp(-0.01 * (away + run))
             side = -1.0 if cx < 0 else 1.0
-            entries = [
-                1,
-                chance,
-                0.25 * log((chance + 1e-3) / (1 - chance + 1e-3)),
-                VALUES[ball] / 7,
-                np.cos(direct.cut[k, j]),
-            ]
-            entries += [
-                away - 1,
-                run - 1,
-                2 + np.log10(tolerance + 1e-6),
-                side * gx / 0.889,
-                gy / 1.7845,
-                side * x / 0.889,
-                y / 1.7845,
-                middle,
-            ]
+            odds = 0.25 * log((chance + 1e-3) / (1 - chance + 1e-3))
+            entries = [1, chance, odds, VALUES[ball] / 7, np.cos(direct.cut[k, j]), away - 1, run - 1]
+            entries += [2 + np.log10(tolerance + 1e-6), side * gx / 0.889, gy / 1.7845]
+            entries += [side * x / 0.889, y / 1.7845, middle]
             best.append((chance * (20 + VALUES[ball]), chance, entries))
         best.sort(key=lambda one: -one[0])
         shown = rows[k, : POTS_SEEN * POT_ENTRIES].reshape(POTS_SEEN, POT_ENTRIES)
@@ -149,12 +124,8 @@ def test_a_blocker_takes_a_pot_away():
     free, chance = seen(Position(**pot))[0], slice(0, POT_ENTRIES)
     assert free[0] == 1.0 and free[1] > 0.8
     on = {"on": "any_colour"}
-    for red, blocked in (
-        ((0.2, 1.08), True),
-        ((0.62, 1.53), True),
-        ((-0.4, 1.2), False),
-        ((0.1, 1.3), False),
-    ):
+    places = (0.2, 1.08), (0.62, 1.53), (-0.4, 1.2), (0.1, 1.3)
+    for red, blocked in zip(places, (True, True, False, False), strict=True):
         row = seen(Position(**pot, reds=[red], **on))[0]
         assert np.array_equal(row[chance], free[chance]) != blocked, red
         assert row[LIKELIEST] <= free[LIKELIEST] + 1e-7
@@ -165,14 +136,8 @@ def test_a_blocker_takes_a_pot_away():
 
 
 def test_the_ball_on_is_one_of_eight():
-    colours = {
-        "yellow": (0.3, -1.0),
-        "green": (-0.3, -1.0),
-        "brown": (0.0, -1.0),
-        "blue": (0.0, 0.0),
-        "pink": (0.0, 0.9),
-        "black": (0.0, 1.4),
-    }
+    spots = [(0.3, -1.0), (-0.3, -1.0), (0.0, -1.0), (0.0, 0.0), (0.0, 0.9), (0.0, 1.4)]
+    colours = dict(zip(COLOUR_NAMES, spots, strict=True))
     names = list(colours)
     places = [
         Position(cue=(0.5, 0.3), **colours, on="any_colour"),
