@@ -16,22 +16,22 @@ AGENTS = ("planner_500", "search", "ghost_ball", "random")
 
 
 def test_chances_are_those_of_the_environment():
-    """Each stroke 2,000 times with other errors."""
+    """Each stroke 500 times with other errors."""
     advice = sn.advise(ENDGAME, noise="club", n=3, samples=400, visits=0)
     assert advice[0].kind == "pot" and advice[0].ball == 19
-    inside = 0
+    # two means of 400 and 500 samples differ by less than four standard deviations of their difference; the
+    # variance of one sample of a share p is p (1 - p)
+    apart = 4.0 * np.sqrt(1 / 400 + 1 / 500)
     for one in advice:
-        points, fouls, after = played(ENDGAME, one.stroke, 2000, noise="club")
-        share = float(((points == 5) & ~fouls).mean())
+        points, fouls, after = played(ENDGAME, one.stroke, 500, noise="club")
+        share, foul = float(((points == 5) & ~fouls).mean()), float(fouls.mean())
         low, high = one.chance_interval
         assert low <= one.chance <= high and high - low < 2 * 2.1 * np.sqrt(0.25 / 400)
-        assert abs(one.chance - share) < 4.0 * np.sqrt(share * (1 - share) * (1 / 400 + 1 / 2000)) + 1e-3
-        inside += low <= share <= high
+        assert abs(one.chance - share) < apart * np.sqrt(share * (1 - share)) + 1e-3
+        assert abs(one.foul - foul) < apart * np.sqrt(foul * (1 - foul)) + 1e-2
         cue = np.array([s["positions"][0] for s in after if s["on_table"][0]])
-        assert one.stops == pytest.approx(cue.mean(axis=0), abs=5 * one.spread / 20)
+        assert one.stops == pytest.approx(cue.mean(axis=0), abs=apart * one.spread)
         assert one.spread == pytest.approx(np.sqrt(((cue - cue.mean(axis=0)) ** 2).sum(1).mean()), rel=0.2)
-        assert one.foul == pytest.approx(fouls.mean(), abs=0.06)
-    assert inside >= 2
 
 
 def test_points_expected_of_the_last_ball_are_its_chance_times_its_value():
@@ -43,10 +43,8 @@ def test_points_expected_of_the_last_ball_are_its_chance_times_its_value():
 
 def test_points_expected_hold_what_follows():
     """The whole visit again, with other errors: the intervals overlap."""
-    few, many = (
-        sn.advise(OPEN, n=1, samples=s, visits=v, seed=seed)[0]
-        for s, v, seed in ((200, 60, 1), (400, 200, 2))
-    )
+    few = sn.advise(OPEN, n=1, samples=200, visits=60, seed=1)[0]
+    many = sn.advise(OPEN, n=1, samples=400, visits=200, seed=2)[0]
     again = sn.advise(OPEN, n=1, samples=400, visits=200, seed=1)[0]
     assert few.points > 2.0 * few.chance > 0.0
     assert abs(few.points - again.points) < 3.0 * (few.points_interval[1] - few.points)
@@ -56,14 +54,10 @@ def test_points_expected_hold_what_follows():
 
 
 def test_the_same_seed_gives_the_same_advice_and_another_one_other_samples():
-    first, again, other = (
-        sn.advise(OPEN, noise="club", n=3, seed=seed, **QUICK).to_dict()["suggestions"] for seed in (4, 4, 5)
-    )
-    assert first == again and first != other
-    apart = [
-        sn.advise(ENDGAME, agent="ghost_ball", noise="club", n=1, seed=seed, **QUICK)[0].stops
-        for seed in (4, 5)
-    ]
+    many = {"noise": "club", "n": 3, **QUICK}
+    first, again, other = (sn.advise(OPEN, seed=seed, **many).to_dict() for seed in (4, 4, 5))
+    assert first == again and first["suggestions"] != other["suggestions"]
+    apart = [sn.advise(ENDGAME, agent="ghost_ball", seed=seed, **many)[0].stops for seed in (4, 5)]
     assert apart[0] != apart[1]  # of one and the same stroke
 
 
@@ -91,10 +85,8 @@ def test_the_choice_is_the_agents_own():
     """The strokes are those of its ranking, with its own scores."""
     advice = sn.advise(OPEN, agent="search", n=4, seed=3, **QUICK)
     (ranked,) = sn.player("search").at({"noise": "professional"}).rank(OPEN, [3])
-    scores = {
-        tuple(row): score
-        for row, score in zip(ranked.strokes.values.tolist(), ranked.scores.tolist(), strict=True)
-    }
+    rows = map(tuple, ranked.strokes.values.tolist())
+    scores = dict(zip(rows, ranked.scores.tolist(), strict=True))
     assert all(scores[one.speed, one.side, one.top, one.aim, one.elevation] == one.score for one in advice)
     assert [one.points for one in advice] == sorted((one.points for one in advice), reverse=True)
     (first,) = sn.advise(OPEN, agent="search", n=1, seed=3, **QUICK)
@@ -102,20 +94,16 @@ def test_the_choice_is_the_agents_own():
 
 
 def test_strokes_that_read_the_same_are_given_once():
-    said = [
-        one.words.split(" m/s, ")[1].split(", chance")[0] + str((one.ball, one.pocket))
-        for one in sn.advise(ENDGAME, n=8, **QUICK)
-    ]
-    assert len(set(said)) == len(said) > 2
+    advice = sn.advise(ENDGAME, n=8, **QUICK)
+    words = [one.words.split(" m/s, ")[1].split(", chance")[0] for one in advice]
+    assert len({(w, one.ball, one.pocket) for w, one in zip(words, advice, strict=True)}) == len(advice) > 2
     assert len({round(one.speed, 3) for one in sn.advise(ENDGAME, n=8, distinct=False, **QUICK)}) > 1
 
 
 def test_the_first_advice_is_good():
     """The blue goes in nine times of ten; the best stroke scores more than the widest pot alone."""
-    best, plain = (
-        sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0]
-        for agent in ("planner_500", "ghost_ball")
-    )
+    agents = "planner_500", "ghost_ball"
+    best, plain = (sn.advise(OPEN, agent=agent, n=1, samples=200, visits=100)[0] for agent in agents)
     assert best.points > plain.points
 
 
@@ -151,10 +139,8 @@ def test_in_hand_a_stroke_has_a_place_in_the_d_that_counts():
 
 
 def test_where_nothing_can_be_potted_a_ball_on_is_hit():
-    for position, kind, agent in (
-        (SNOOKERED, "escape", "planner_500"),
-        (ALL["hidden"], "contact", "ghost_ball"),
-    ):
+    escape, contact = (SNOOKERED, "escape", "planner_500"), (ALL["hidden"], "contact", "ghost_ball")
+    for position, kind, agent in (escape, contact):
         one = sn.advise(position, agent=agent, n=1, samples=60, visits=0)[0]
         assert one.kind == kind and one.pocket == -1 and one.ball == one.first and 1 <= one.ball <= 15
         assert bool(clear_paths(position).any_part[0]) == (kind == "contact")
@@ -186,12 +172,10 @@ def test_advice_is_json_and_a_sequence():
 
 
 def test_physics_table_and_fidelity_may_be_chosen():
-    usual, slow = (
-        sn.advise(ENDGAME, n=1, options=o, **QUICK)[0]
-        for o in (None, {"physics": {"mu_r": 0.02}, "table": "tight"})
-    )
+    options = {"physics": {"mu_r": 0.02}, "table": "tight"}
+    usual, slow = (sn.advise(ENDGAME, n=1, options=o, **QUICK)[0] for o in (None, options))
     assert usual.to_dict() != slow.to_dict()
-    env = sn.SnookerEnv(physics={"mu_r": 0.02}, table="tight")
+    env = sn.SnookerEnv(**options)
     env.reset(seed=1, options={"state": state_of(ENDGAME)})
     assert sn.advise(env, n=1, **QUICK)[0].to_dict() == slow.to_dict()
 
@@ -211,24 +195,16 @@ WRONG = [
 
 
 @pytest.mark.parametrize(
-    ("given", "field", "value", "allowed"),
-    WRONG,
-    ids=[next(iter(w[0])) + str(i) for i, w in enumerate(WRONG)],
+    ("given", "field", "value", "allowed"), WRONG, ids=[f"{[*w[0]]}{i}" for i, w in enumerate(WRONG)]
 )
 def test_wrong_arguments_are_refused(given, field, value, allowed):
     refused(lambda: sn.advise(OPEN, **given), field, value, allowed)
 
 
 def test_wrong_positions_are_refused():
-    refused(
-        lambda: sn.advise(sn.planning.Positions.of([OPEN, OPEN])),
-        "position",
-        "2 positions",
-        "must be one position",
-    )
-    refused(
-        lambda: sn.advise(sn.Position(cue=(0.0, 0.0), over=True)), "position.over", "True", "must be False"
-    )
+    two, over = sn.planning.Positions.of([OPEN, OPEN]), sn.Position(cue=(0.0, 0.0), over=True)
+    refused(lambda: sn.advise(two), "position", "2 positions", "must be one position")
+    refused(lambda: sn.advise(over), "position.over", "True", "must be False")
     with pytest.raises(ValueError, match="key of position = 'cues'"):
         sn.advise({"cue": (0.0, 0.0), "cues": 3})
 

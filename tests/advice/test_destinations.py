@@ -28,14 +28,9 @@ def test_shares_are_those_of_the_environment(blue):
     assert len(stops.cue) == round(2000 * (1.0 - stops.in_off))
     assert stops.cue.mean(axis=0) == pytest.approx(cue.mean(axis=0), abs=0.05)
     assert stops.cue.std(axis=0) == pytest.approx(cue.std(axis=0), rel=0.1)
-    missed = np.array(
-        [
-            s["positions"][19]
-            for s, p, f in zip(after, points, fouls, strict=True)
-            if p == 0 and s["on_table"][0] and not f
-        ]
-    )
-    assert stops.ball.mean(axis=0) == pytest.approx(missed.mean(axis=0), abs=0.1)
+    missed = (points == 0) & ~fouls & [s["on_table"][0] for s in after]
+    places = np.array([s["positions"][19] for s in after])[missed]
+    assert stops.ball.mean(axis=0) == pytest.approx(places.mean(axis=0), abs=0.1)
 
 
 def test_without_noise_it_is_the_one_shot(blue):
@@ -83,32 +78,25 @@ def test_seeds_and_common_errors(blue):
 
 
 def test_in_hand_the_place_counts():
-    left, right = (
-        destinations(IN_HAND, CueStroke(speed=1.0, aim=1.57, place=(x, -1.1)), noise="none").cue[0]
-        for x in (-0.2, 0.2)
-    )
+    strokes = [CueStroke(speed=1.0, aim=1.57, place=(x, -1.1)) for x in (-0.2, 0.2)]
+    left, right = (destinations(IN_HAND, stroke, noise="none").cue[0] for stroke in strokes)
     assert left[0] < 0 < right[0]
 
 
 def test_wrong_strokes_are_refused():
-    ask = lambda stroke, position=OPEN, **more: lambda: destinations(position, stroke, **more)  # noqa: E731
-    refused(ask({"speed": 9.0, "aim": 0.0}), "speed", "9.0", "[0.2, 7]")
-    refused(ask({"speed": 2.0}), "stroke", "without 'aim'", "must be a CueStroke")
-    refused(ask({"speed": 2.0, "aim": 0.0, "spin": 1}), "field of the stroke", "spin", "'speed'")
-    refused(
-        ask({"speed": 2.0, "aim": 0.0, "side": 0.4, "top": 0.4}), "side, top", "(0.4, 0.4)", "within the disc"
-    )
-    refused(ask({"speed": 2.0, "aim": 0.0, "elevation": 1.0}), "elevation", "1.0", "must be")
-    refused(
-        ask({"speed": 2.0, "aim": 0.0, "place": (0.0, -1.1)}),
-        "place",
-        "(0.0, -1.1)",
-        "must be None: the cue ball is not in hand",
-    )
-    refused(
-        ask({"speed": 2.0, "aim": 0.0, "place": (0.0, 0.0)}, IN_HAND), "place", "(0, 0)", "lines of the D"
-    )
-    refused(ask({"speed": 2.0, "aim": 0.0}, samples=0), "samples", "0", "must be an integer")
+    soft = {"speed": 2.0, "aim": 0.0}
+    for stroke, *said in (
+        (soft | {"speed": 9.0}, "speed", "9.0", "[0.2, 7]"),
+        ({"speed": 2.0}, "stroke", "without 'aim'", "must be a CueStroke"),
+        (soft | {"spin": 1}, "field of the stroke", "spin", "'speed'"),
+        (soft | {"side": 0.4, "top": 0.4}, "side, top", "(0.4, 0.4)", "within the disc"),
+        (soft | {"elevation": 1.0}, "elevation", "1.0", "must be"),
+        (soft | {"place": (0.0, -1.1)}, "place", "(0.0, -1.1)", "must be None: the cue ball is not in hand"),
+    ):
+        refused(lambda stroke=stroke: destinations(OPEN, stroke), *said)
+    wrong = soft | {"place": (0.0, 0.0)}
+    refused(lambda: destinations(IN_HAND, wrong), "place", "(0, 0)", "lines of the D")
+    refused(lambda: destinations(OPEN, soft, samples=0), "samples", "0", "must be an integer")
     stops = destinations(SNOOKERED, {"speed": 2.0, "aim": 0.0}, samples=5)
     refused(lambda: stops.density(0.0), "cell", "0.0", "must be")
     refused(lambda: stops.density(0.1, "red"), "ball", "'red'", "'cue', 'ball'")

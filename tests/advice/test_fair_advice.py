@@ -12,7 +12,7 @@ from snooker_env.advice import CueStroke
 from snooker_env.play.session import Session
 from snooker_env.players import Ranked, Strokes
 
-TABLES = 60
+TABLES = 30
 QUICK = {"samples": 60, "visits": 2}
 
 
@@ -61,11 +61,8 @@ def test_advice_is_fair_ordered_by_what_it_shows_and_called_what_it_is(positions
             assert f"chance {100 * one.chance:.0f} %" in one.words
         for one in others:
             assert one.words.startswith({"contact": "contact with the ", "escape": "escape "}[one.kind])
-            assert (
-                f"fair {100 * one.chance:.0f} %; no pot intended, its worth as a safety is not judged"
-                in one.words
-            )
-            assert "points" not in one.words
+            fair = f"fair {100 * one.chance:.0f} %; no pot intended, its worth as a safety is not judged"
+            assert fair in one.words and "points" not in one.words
 
 
 class Given:
@@ -117,14 +114,10 @@ def test_where_no_fair_stroke_is_found_the_least_bad_is_said_to_be_that():
 
 
 def test_a_heading_says_by_what():
-    assert (
-        sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="search", **QUICK).order
-        == "Pots by points expected:"
-    )
-    assert (
-        sn.advise(SNOOKERED, agent="random", **QUICK).order
-        == "Strokes without a pot by how often they are fair:"
-    )
+    last, pots = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), "Pots by points expected:"
+    assert sn.advise(last, agent="search", **QUICK).order == pots
+    others = sn.advise(SNOOKERED, agent="random", **QUICK).order
+    assert others == "Strokes without a pot by how often they are fair:"
     long = sn.Position(in_hand=True, black=(0.0, 1.4605))
     both = sn.advise(long, agent="random", n=20, **QUICK)
     assert {one.kind == "pot" for one in both} == {True, False} and both[0].kind != "pot"

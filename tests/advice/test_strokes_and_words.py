@@ -27,10 +27,8 @@ def test_a_stroke_is_its_action():
     assert (0.292 * x, -1.0475 - 0.292 * np.sqrt(1 - x * x) * back) == pytest.approx((0.1, -1.2), abs=1e-6)
     assert abs(a[7]) < 1 / 3  # play
     assert CueStroke(speed=1.0, aim=7.0).action()[3] == pytest.approx((7.0 - 2 * pi) / pi)
-    assert CueStroke(speed=1.0, aim=0.0, place=(0.292, -1.0475)).action(placement=True).tolist()[4:] == [
-        1.0,
-        -1.0,
-    ]
+    corner = CueStroke(speed=1.0, aim=0.0, place=(0.292, -1.0475)).action(placement=True)
+    assert corner.tolist()[4:] == [1.0, -1.0]
     assert CueStroke(**stroke.to_dict()) == stroke == CueStroke.of(stroke.to_dict())
     assert CueStroke.of(stroke) is stroke
 
@@ -50,9 +48,8 @@ def test_pockets_are_named_as_seen_from_baulk():
             near = min((yellow, green), key=lambda spot: np.hypot(spot[0] - x, spot[1] - y))
             assert name == ("yellow pocket" if near is yellow else "green pocket")
         else:
-            assert (
-                name == f"{'top ' if y > 0 else ''}{'right' if x > 0 else 'left'}{'' if y > 0 else ' middle'}"
-            )
+            side = "right" if x > 0 else "left"
+            assert name == (f"top {side}" if y > 0 else f"{side} middle")
 
 
 @pytest.mark.parametrize(
@@ -76,13 +73,8 @@ def test_spin_in_words():
     say = lambda top, side=0.0, distance=0.3, speed=2.5: words.spin_words(  # noqa: E731
         CueStroke(speed=speed, aim=0.0, top=top, side=side), distance, sn.Physics()
     )
-    assert [say(top) for top in (0.4, 0.2, 0.0, -0.2, -0.45)] == [
-        "top",
-        "follow",
-        "plain",
-        "screw",
-        "deep screw",
-    ]
+    tops = {0.4: "top", 0.2: "follow", 0.0: "plain", -0.2: "screw", -0.45: "deep screw"}
+    assert {top: say(top) for top in tops} == tops
     assert say(0.0, distance=0.1) == "stun"
     assert say(0.0, distance=2.0) == "plain" and say(-0.2, distance=2.5) == "drag"
     assert say(-0.2, distance=0.6) == "stun"
@@ -94,11 +86,8 @@ def test_the_cushion_of_an_escape_is_the_one_that_the_ball_meets():
     rng, seen = np.random.default_rng(1), set()
     for _ in range(40):
         x, y, aim = rng.uniform(-0.7, 0.7), rng.uniform(-1.5, 1.5), rng.uniform(-pi, pi)
-        shot = sn.simulate(
-            [(x, y)],
-            [(4.0 * cos(aim), 4.0 * sin(aim))],
-            [(-4.0 / 0.02625 * sin(aim), 4.0 / 0.02625 * cos(aim), 0.0)],
-        )
+        c, s, spin = cos(aim), sin(aim), 4.0 / 0.02625
+        shot = sn.simulate([(x, y)], [(4.0 * c, 4.0 * s)], [(-spin * s, spin * c, 0.0)])
         hits = shot.events[shot.events["kind"] == EventKind.CUSHION]
         jaws = shot.events[np.isin(shot.events["kind"], (EventKind.JAW, EventKind.POT))]
         if not len(hits) or (len(jaws) and jaws["time"][0] < hits["time"][0]):
@@ -113,15 +102,9 @@ def test_the_cushion_of_an_escape_is_the_one_that_the_ball_meets():
 
 def test_contacts_in_words():
     """As seen along the path: a ball whose middle lies to the left of it is struck on its right."""
-    reach = 2 * 0.02625
+    reach, names = 2 * 0.02625, ("full", "three-quarter ball", "half-ball", "quarter-ball", "thin")
     for aim in (0.0, 1.0, -2.5):
-        for aside, said in (
-            (0.0, "full"),
-            (0.25, "three-quarter ball"),
-            (0.5, "half-ball"),
-            (0.75, "quarter-ball"),
-            (0.95, "thin"),
-        ):
+        for aside, said in zip((0.0, 0.25, 0.5, 0.75, 0.95), names, strict=True):
             for sign, side in ((1, "right"), (-1, "left")):
                 x, y = cos(aim) - sign * aside * reach * sin(aim), sin(aim) + sign * aside * reach * cos(aim)
                 assert words.contact_words(x, y, aim) == (said if said == "full" else f"{said} on the {side}")
@@ -139,11 +122,8 @@ def test_what_a_stroke_does_in_words():
     assert say("foul", -1, -1, -1) == "foul, nothing struck"
     assert say("foul", 16, -1, 16) == "foul, yellow first"
     assert words.figures_words("pot", 0.874, 23.4) == "chance 87 %, 23 points expected"
-    for kind in ("contact", "escape"):
-        assert (
-            words.figures_words(kind, 0.5, 1.04)
-            == "fair 50 %; no pot intended, its worth as a safety is not judged"
-        )
+    safety = "fair 50 %; no pot intended, its worth as a safety is not judged"
+    assert [words.figures_words(kind, 0.5, 1.04) for kind in ("contact", "escape")] == [safety] * 2
     assert words.figures_words("foul", 0.03, 0.0) == "fair 3 %"
     assert words.figures_words("pot", 1.0, 1.04) == "chance 100 %, 1 point expected"
     assert words.figures_words("pot", 1.0, 0.26).endswith("0.3 points expected")

@@ -51,9 +51,6 @@ def anchors(text):
 def commands(text):
     """What Python runs: ``python -m benchmarks.speed --parts start`` is (name, [options])."""
     text = re.sub(r"\\\n\s*", " ", text)
-    found = [re.sub(r"^-m +", "", command).split() for command in _COMMAND.findall(text)]
-    return [
-        (words[0].rstrip(".,:"), words[1:])
-        for words in found
-        if not words[0].isupper() and not words[0].endswith("...")
-    ]
+    every = [re.sub(r"^-m +", "", command).split() for command in _COMMAND.findall(text)]
+    named = [words for words in every if not words[0].isupper() and not words[0].endswith("...")]
+    return [(words[0].rstrip(".,:"), words[1:]) for words in named]

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import subprocess
 import sys
 
@@ -31,34 +32,25 @@ def test_commands_have_the_options_that_are_given(name):
     """They stand in the source of the command, or in what all commands of its kind share."""
     top = name.split("/")[0] if name.endswith(".py") else name.split(".")[0]
     shared = {
-        "train.py": ("agents", "commands"),
-        "agents": ("agents", "commands"),
-        "benchmarks": ("benchmarks", "commands"),
+        top: (top.replace("train.py", "agents"), "commands") for top in ("train.py", "agents", "benchmarks")
     }
     files = [file for folder in shared.get(top, (top,)) for file in (ROOT / folder).rglob("*.py")]
     files += [ROOT / name] if name.endswith(".py") else []
     source = "\n".join(file.read_text(encoding="utf-8") for file in files)
-    fields = {option: option[2:].replace("-", "_") for option in GIVEN[name]}
-    assert not [
-        option
-        for option in fields
-        if not re.search(rf'"{option}"|^    {fields[option]}: ', source, re.MULTILINE)
-    ]
+    for option in GIVEN[name]:
+        field = option[2:].replace("-", "_")
+        assert re.search(rf'"{option}"|^    {field}: ', source, re.MULTILINE), option
 
 
 @pytest.mark.parametrize("name", sorted(set(GIVEN) & set(SHORT)))
 def test_commands_run(name, tmp_path):
-    arguments = [a.format(tmp=tmp_path) for a in SHORT[name]]
+    arguments = shlex.split(SHORT[name].format(tmp=tmp_path))
     command = [sys.executable, name] if name.endswith(".py") else [sys.executable, "-m", name]
-    env = os.environ | {
-        "SDL_VIDEODRIVER": "dummy",
-        "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]),
-    }
-    done = subprocess.run(
-        [*command, *arguments], cwd=ROOT, check=True, timeout=300, capture_output=True, text=True, env=env
-    )
-    assert done.stdout.strip()
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    env = os.environ | {"SDL_VIDEODRIVER": "dummy", "PYTHONPATH": path}
+    printed = subprocess.check_output([*command, *arguments], cwd=ROOT, timeout=300, text=True, env=env)
+    assert printed.strip()
     if name == "tests.rules_cases":
-        assert done.stdout.splitlines()[-1].endswith(", 0 failed")
+        assert printed.splitlines()[-1].endswith(", 0 failed")
     if name == "docs/films/make.py":
         assert (tmp_path / "pot_easy.mp4").stat().st_size > 5_000

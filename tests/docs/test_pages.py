@@ -1,11 +1,12 @@
 """Do the pages hold together?"""
 
+import importlib
+import re
+
 import pytest
 
+import snooker_env as sn
 from tests.docs.pages import DOCS, LINKED, NAMES, PAGES, ROOT, anchors, links, paths
-
-LARGEST_FILM = 400_000
-"""Bytes."""
 
 
 @pytest.mark.parametrize("page", LINKED, ids=lambda page: page.relative_to(ROOT).as_posix())
@@ -20,16 +21,10 @@ def test_links_lead_somewhere(page):
 
 
 def test_files_that_pages_name_exist():
-    found = [
-        (page.relative_to(ROOT).as_posix(), path)
-        for page in PAGES
-        for path in paths(page.read_text(encoding="utf-8"))
-    ]
-    assert len(found) > 80
-    assert not [(page, path) for page, path in found if not any(ROOT.glob(path))]
-    assert paths(
-        "`tests/a.py`, `agents/b/*.json` `snooker_env/` `docs/NAME.md` tests/c.py `snooker_env.d`"
-    ) == ["tests/a.py", "agents/b/*.json"]
+    texts = {name: page.read_text(encoding="utf-8") for name, page in zip(NAMES, PAGES, strict=True)}
+    named = [(name, path) for name, text in texts.items() for path in paths(text)]
+    assert len(named) > 80
+    assert not [(name, path) for name, path in named if not any(ROOT.glob(path))]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)
@@ -40,9 +35,23 @@ def test_pictures_and_films_are_no_stubs(page):
 
 
 def test_every_film_is_shown_and_small():
-    films = sorted((DOCS / "_static" / "films").iterdir())
-    shown = {
-        (page.parent / link).resolve() for page in PAGES for link in links(page.read_text(encoding="utf-8"))
-    }
+    films, shown = sorted((DOCS / "_static" / "films").iterdir()), set()
+    for page in PAGES:
+        shown |= {(page.parent / link).resolve() for link in links(page.read_text(encoding="utf-8"))}
     assert films and set(films) <= shown
-    assert max(film.stat().st_size for film in films) <= LARGEST_FILM
+    assert max(film.stat().st_size for film in films) <= 400_000  # bytes
+
+
+SOURCE = "\n".join(path.read_text(encoding="utf-8") for path in sorted((DOCS / "api").glob("*.md")))
+
+
+@pytest.mark.parametrize(
+    "module", ["snooker_env", *re.findall(r"^\* ``(snooker_env[.\w]*)``", str(sn.__doc__), re.MULTILINE)]
+)
+def test_every_public_name_is_documented_on_an_api_page(module):
+    parts = re.findall(rf"^\.\. public:: {re.escape(module)}\n((?:   :.*\n)*)", SOURCE, re.MULTILINE)
+    assert parts, f"no page has '.. public:: {module}'"
+    chosen = " ".join(re.findall(r":only: (.*)", "".join(parts))).split()
+    everything = any(":only:" not in options for options in parts)
+    assert everything or set(chosen) == set(importlib.import_module(module).__all__)
+    assert len(set(chosen)) == len(chosen) and ":but:" not in "".join(parts)

@@ -17,10 +17,8 @@ def tables(heading):
     """The tables between that heading and the next of any depth: rows of cells, the first one the head."""
     section = re.split(r"^#+ ", PAGE.partition(f"# {heading}\n")[2], maxsplit=1, flags=re.MULTILINE)[0]
     found = re.findall(r"(?:^\|.*\n)+", section, re.MULTILINE)
-    rows = [
-        [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
-        for table in found
-    ]
+    cells = lambda line: [cell.strip() for cell in line.strip("|").split("|")]  # noqa: E731
+    rows = [list(map(cells, table.splitlines())) for table in found]
     return [[table[0], *table[2:]] for table in rows]
 
 
@@ -47,6 +45,5 @@ def test_noise_levels_have_the_numbers_that_are_printed():
     assert {*levels, "none"} == set(LEVELS)
     assert [row[0].strip("`") for row in rows] == [field.name for field in dataclasses.fields(Noise)]
     for row in rows:
-        assert [float(cell) for cell in row[2:]] == [
-            getattr(LEVELS[level], row[0].strip("`")) for level in levels
-        ], row[0]
+        numbers = [getattr(LEVELS[level], row[0].strip("`")) for level in levels]
+        assert [float(cell) for cell in row[2:]] == numbers, row[0]

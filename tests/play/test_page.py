@@ -13,6 +13,10 @@ VISIT = {**EASY, "reds": [[0.6, 1.4], [-0.6, 1.35], [0.7, 0.9]], "blue": [0.0, 0
 """Here ghost_ball makes a visit of two reds with the black."""
 
 
+PERSONS = {"players": ["person", "person"], "noise": ["none", "none"], "practice": False}
+SETTLED = "page.settled === page.state.revision"
+
+
 class Shown:
     """The page of a server's game, its mouse in metres, and what went wrong in it."""
 
@@ -40,23 +44,16 @@ class Shown:
 
     def set_up(self, position, **fields):
         """A position by the protocol, and wait until the page shows it."""
-        self.line(
-            "api/players", {"players": ["person", "person"], "noise": ["none", "none"], "practice": False}
-        )
+        self.line("api/players", PERSONS)
         self.line("api/new", {"layout": "break_off", "seed": 1})
         status, state, _ = self.line("api/position", {"position": position, **fields})
         assert status == 200
-        self.until(
-            "page.state.revision >= argument && page.settled === page.state.revision && page.aiming",
-            state["revision"],
-        )
+        self.until(f"page.state.revision >= argument && {SETTLED} && page.aiming", state["revision"])
 
     def at(self, x, y):
         """Where a place [m] is on the screen."""
-        box, (px, py) = (
-            self.page.locator("#table").bounding_box(),
-            self("page.view.toScreen(...argument)", [x, y]),
-        )
+        box = self.page.locator("#table").bounding_box()
+        px, py = self("page.view.toScreen(...argument)", [x, y])
         return box["x"] + px, box["y"] + py
 
     def drag(self, start, end, steps=8):
@@ -70,10 +67,7 @@ class Shown:
         """Cut the motion short and wait until so many strokes are shown."""
         self.until("page.moving || page.state.strokes >= argument", strokes)
         end = time.monotonic() + 120
-        while not self(
-            "page.played >= argument && !page.busy && !page.moving && page.settled === page.state.revision",
-            strokes,
-        ):
+        while not self(f"page.played >= argument && !page.busy && !page.moving && {SETTLED}", strokes):
             assert time.monotonic() < end
             self("page.skip()")
             time.sleep(0.02)
@@ -85,9 +79,8 @@ class Shown:
     def close(self):
         self.page.close()
         assert not self.errors
-        assert not [
-            url for url in self.asked if not url.startswith((self.line.server.address, "blob:", "data:"))
-        ]
+        allowed = self.line.server.address, "blob:", "data:"
+        assert not [url for url in self.asked if not url.startswith(allowed)]
 
 
 @pytest.fixture
@@ -249,19 +242,6 @@ def test_advice_is_shown_drawn_and_taken(shown):
     assert shown("document.querySelectorAll('#advice button').length") == 0  # it was about another table
 
 
-def test_the_clouds_follow_the_aim(shown):
-    shown.set_up(EASY)
-    shown.until("page.advisor.found")
-    shown("page.aim.set({aim: argument, speed: 2})", STRAIGHT)
-    shown.until("page.advisor.found && page.advisor.found.potted > 0.5")
-    assert "red: potted" in shown.page.inner_text("#odds")
-    shown("page.aim.set({aim: argument})", AWAY)
-    shown.until("page.advisor.found && page.advisor.found.first === null")
-    assert "strikes no ball" in shown.page.inner_text("#odds")
-    shown.page.uncheck("#map")
-    assert shown("page.advisor.found") is None and shown.page.inner_text("#odds") == ""
-
-
 def test_an_agent_plays_and_its_strokes_are_shown(shown):
     shown.set_up(EASY)
     shown.page.click("#game details summary")
@@ -310,35 +290,30 @@ def test_an_agents_visit_is_shown_stroke_by_stroke(shown):
     shown.until("!page.behind && page.settled === page.state.revision")
     strokes, drawn = shown.line("api/strokes")[1]["strokes"], shown("window.drawn")
     balls, break_, scores = {0, 1, 2, 3, 19, 20, 21}, 0, [0, 0]
+
+    def now(on):
+        return f"break {break_} on {on} reds {len(balls & {1, 2, 3})} left {left_after(balls, on)}"
+
     for k, stroke in enumerate(strokes):
         before = [one for one in drawn if one["k"] == k + 1 and one["moving"]]
         assert before, f"stroke {k} was not shown"
         for one in before:
-            said = f"break {break_} on {stroke['ball_on']} reds {len(balls & {1, 2, 3})} left {left_after(balls, stroke['ball_on'])}"
-            assert one["now"] == said and one["score"] == scores
+            assert one["now"] == now(stroke["ball_on"]) and one["score"] == scores
             assert one["asked"] == f"ghost ball plays: {stroke['ball_on']}"
         balls -= {ball for ball in stroke["pots"] if 1 <= ball <= 15}
         break_, scores = stroke["break"], stroke["score"]
         if k + 1 == len(strokes):
             break
-        on, after = (
-            strokes[k + 1]["ball_on"],
-            [one for one in drawn if one["k"] == k + 1 and not one["moving"]],
-        )
+        on, after = strokes[k + 1]["ball_on"], [d for d in drawn if d["k"] == k + 1 and not d["moving"]]
         assert after, f"the table after stroke {k} was not shown"
         for one in after:
-            assert set(one["on"]) == balls, f"after stroke {k}"
-            assert (
-                one["now"]
-                == f"break {break_} on {on} reds {len(balls & {1, 2, 3})} left {left_after(balls, on)}"
-            )
+            assert set(one["on"]) == balls and one["now"] == now(on), f"after stroke {k}"
             assert one["score"] == scores and stroke["words"] in one["last"]
             assert one["asked"] == f"ghost ball's stroke: {on} is on."
     shown.page.keyboard.press("v")  # the last stroke again: from the table before it
     shown.until("page.moving && page.moving.start")
-    assert f"left {left_after(balls, strokes[-1]['ball_on'])}" in shown.page.inner_text("#now").replace(
-        "\n", " "
-    )
+    left = f"left {left_after(balls, strokes[-1]['ball_on'])}"
+    assert left in shown.page.inner_text("#now").replace("\n", " ")
     shown("page.skip()")
     shown.until("!page.behind")
 
@@ -391,18 +366,17 @@ def test_the_odds_are_those_of_the_errors_of_the_persons_seat(shown):
     found = shown.line("api/destinations", {"speed": 2.0, "aim": STRAIGHT + 0.01, "noise": noise})[1]
     assert found["samples"] == 500
     shown.until("page.advisor.found && !page.advisor.wait.busy")
-    assert shown("[page.advisor.found.samples, page.advisor.found.potted]") == [
-        found["samples"],
-        found["potted"],
-    ]
+    odds = shown("[page.advisor.found.samples, page.advisor.found.potted]")
+    assert odds == [found["samples"], found["potted"]]
     assert f"red: potted {100 * found['potted']:.0f} %" in shown.page.inner_text("#odds")
     assert noise in shown.page.inner_text("#errors")
+    shown.page.uncheck("#map")
+    assert shown("page.advisor.found") is None and shown.page.inner_text("#odds") == ""
     shown.page.click("#advise")
     shown.until("page.advisor.list.length")
-    own = shown.line("api/advise", {"agent": shown.page.input_value("#agent"), "noise": noise})[1][
-        "suggestions"
-    ]
-    assert shown("page.advisor.list.map(one => one.words)") == [one["words"] for one in own]
+    asked = {"agent": shown.page.input_value("#agent"), "noise": noise}
+    words = [one["words"] for one in shown.line("api/advise", asked)[1]["suggestions"]]
+    assert shown("page.advisor.list.map(one => one.words)") == words
 
 
 def test_two_agents_play_on_by_themselves_until_paused(shown):
@@ -425,37 +399,11 @@ def test_two_agents_play_on_by_themselves_until_paused(shown):
     assert shown("page.state.strokes") == stopped >= 3 and "press Continue" in shown.words
     shown.page.click("#go")
     shown.until("page.moving && page.state.strokes > argument", stopped)
-    shown.line("api/players", {"players": ["person", "person"], "noise": ["none", "none"]})
-
-
-def test_the_result_of_a_stroke_is_shown_when_its_balls_rest(shown):
-    """Words, score, break and reds are those before the stroke until then, at every change of the page."""
-    shown.set_up(EASY)
-    seen = "document.getElementById(%r).innerText"
-    shown(
-        "(window.seen = [], new MutationObserver(() => window.seen.push([Boolean(page.moving || page.played < page.state.strokes), "
-        + ", ".join(seen % one for one in ("side-0", "now", "asked", "last"))
-        + "])).observe(document.body, {subtree: true, childList: true, characterData: true, attributes: true}), 0)"
-    )
-    shown("page.aim.set({aim: argument, speed: 2})", STRAIGHT)
-    shown.page.keyboard.press("Enter")
-    shown.until("page.moving")
-    time.sleep(0.3)
-    assert "reds 2" in shown.page.inner_text("#now") and "break 0" in shown.page.inner_text("#now")
-    shown.played(1)
-    assert "reds 1" in shown.page.inner_text("#now") and "break 1" in shown.page.inner_text("#now")
-    early = [row for row in shown("window.seen") if row[0]]
-    assert early
-    for _, score, now, asked, last in early:
-        assert "1" not in score.replace("Player 1", "") and "break 1" not in now and "reds 1" not in now, (
-            score,
-            now,
-        )
-        assert "any colour" not in asked and "potted" not in last
+    shown.line("api/players", PERSONS)
 
 
 def test_the_first_aim_of_a_frame_is_no_foul_and_fouls_are_shown(shown):
-    shown.line("api/players", {"players": ["person", "person"], "noise": ["none", "none"], "practice": False})
+    shown.line("api/players", PERSONS)
     for seed in (1, 2, 3):
         _, state, _ = shown.line("api/new", {"layout": "break_off", "seed": seed})
         shown.until("page.settled >= argument && page.aiming && page.advisor.found", state["revision"])
@@ -528,24 +476,18 @@ def test_reds_off_leaves_it_to_the_balls_what_is_on(shown):
 
 @pytest.mark.parametrize("size", [(390, 844), (844, 390), (1280, 720), (1920, 1080)])
 def test_it_fits_every_screen_and_can_be_touched(chromium, line, size):  # noqa: F811
-    shown = Shown(
-        chromium, line, viewport={"width": size[0], "height": size[1]}, has_touch=True, device_scale_factor=1
-    )
+    viewport = dict(zip(("width", "height"), size, strict=True))
+    shown = Shown(chromium, line, viewport=viewport, has_touch=True, device_scale_factor=1)
     shown.set_up(EASY)
     canvas = shown.page.locator("#table").bounding_box()
     assert canvas["width"] >= 0.6 * size[0] and canvas["height"] >= 0.2 * size[1]
-    assert shown(
-        "document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight"
-    )
+    page = "document.documentElement"
+    assert shown(f"{page}.scrollWidth <= innerWidth && {page}.scrollHeight <= innerHeight")
     shown.page.touchscreen.tap(*shown.at(0.0, 0.89225))
     assert shown("page.aim.wish.aim") == pytest.approx(-2.738, abs=0.02)
     seen = "[...document.querySelectorAll('button, select, input, canvas')].filter(one => one.offsetParent)"
-    assert (
-        shown(
-            f"{seen}.filter(one => one.type !== 'checkbox' && one.getBoundingClientRect().height < 28).map(one => one.id)"
-        )
-        == []
-    )
+    low = "one.type !== 'checkbox' && one.getBoundingClientRect().height < 28"
+    assert shown(f"{seen}.filter(one => {low}).map(one => one.id)") == []
     named = "one.textContent.trim() || one.getAttribute('aria-label') || one.title || one.labels?.[0]?.textContent.trim()"
     assert shown(f"{seen}.filter(one => !({named})).map(one => one.id)") == []
     shown.close()

@@ -33,25 +33,11 @@ def waited(game, until, seconds=240.0):
 def test_a_state_says_where_everything_is_and_what_may_be_done(game):
     game("position", position=EASY, scores=[10, 20])
     state = game.get("state")
-    assert state["positions"] == {
-        "cue": EASY["cue"],
-        "red 1": EASY["reds"][0],
-        "red 2": EASY["reds"][1],
-        "pink": EASY["pink"],
-        "black": EASY["black"],
-    }
-    assert (state["ball_on"], state["balls_on"], state["phase"], state["striker"]) == (
-        "red",
-        ["red 1", "red 2"],
-        "stroke",
-        0,
-    )
-    assert (state["scores"], state["reds"], state["available"], state["snookered"]) == (
-        [10, 20],
-        2,
-        29,
-        False,
-    )
+    reds = dict(zip(("red 1", "red 2"), EASY["reds"], strict=True))
+    assert state["positions"] == {name: EASY[name] for name in ("cue", "pink", "black")} | reds
+    expected = {"ball_on": "red", "balls_on": [*reds], "phase": "stroke", "striker": 0, "scores": [10, 20]}
+    expected |= {"reds": 2, "available": 29, "snookered": False}
+    assert {name: state[name] for name in expected} == expected
     assert state["nominations"] == state["choices"] == [] and state["undo"] and not state["redo"]
     assert state["words"] == "Player 1's stroke: red is on."
 
@@ -72,10 +58,8 @@ def test_the_text_gives_a_blind_player_places_lines_and_what_is_in_the_way(game)
     mine = next(one for one in line if one["ball"] == "red 1" and one["pocket"] == "top right")
     assert not mine["open"] and mine["blocked_by"] == ["blue"]
     open_text = game("position", position=EASY)["text"]
-    assert re.search(
-        r"red 1, top right: open, straight, cue ball 0\.\d\d m, ball 0\.\d\d m, aim 0\.93\d\d rad, may err \d\.\d\d deg, chance \d+ %",
-        open_text,
-    )
+    far = r"cue ball 0\.\d\d m, ball 0\.\d\d m, aim 0\.93\d\d rad, may err \d\.\d\d deg, chance \d+ %"
+    assert re.search(rf"red 1, top right: open, straight, {far}", open_text)
 
 
 def test_lines_agree_with_geometry():

@@ -16,16 +16,12 @@ def lab(rgb):
     """CIELAB of sRGB, under D65."""
     c = np.asarray(rgb, float) / 255
     c = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
-    x = (
-        np.array(
-            [
-                (0.4124564, 0.3575761, 0.1804375),
-                (0.2126729, 0.7151522, 0.0721750),
-                (0.0193339, 0.1191920, 0.9503041),
-            ]
-        )
-        @ c
+    red, green, blue = (
+        (0.4124564, 0.2126729, 0.0193339),
+        (0.3575761, 0.7151522, 0.119192),
+        (0.1804375, 0.072175, 0.9503041),
     )
+    x = c @ np.array([red, green, blue])
     f = [np.cbrt(v) if v > 216 / 24389 else (24389 / 27 * v + 16) / 116 for v in x / (0.95047, 1.0, 1.08883)]
     return 116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])
 
@@ -45,11 +41,8 @@ def ciede2000(one, two):
     t = 1 + sum(w * np.cos(np.radians(k * hue + by)) for w, k, by in cosines)
     s_l = 1 + 0.015 * (level - 50) ** 2 / np.sqrt(20 + (level - 50) ** 2)
     s_c, s_h = 1 + 0.045 * chroma, 1 + 0.015 * chroma * t
-    rotated = (
-        -2
-        * np.sqrt(chroma**7 / (chroma**7 + 25.0**7))
-        * np.sin(np.radians(60 * np.exp(-(((hue - 275) / 25) ** 2))))
-    )
+    turned = np.sin(np.radians(60 * np.exp(-(((hue - 275) / 25) ** 2))))
+    rotated = -2 * np.sqrt(chroma**7 / (chroma**7 + 25.0**7)) * turned
     parts = (l2 - l1) / s_l, (c2 - c1) / s_c, far / s_h
     return np.sqrt(sum(p * p for p in parts) + rotated * parts[1] * parts[2])
 
@@ -75,9 +68,8 @@ def test_the_json_is_the_table(name):
         for given, own in zip(data[key], getattr(parts, key), strict=True):
             assert np.array(given) == pytest.approx(own, abs=5.1e-7)
     for key in ("falls", "throats"):
-        assert np.array(data[key]).reshape(getattr(parts, key).shape) == pytest.approx(
-            getattr(parts, key), abs=5.1e-7
-        )
+        own = getattr(parts, key)
+        assert np.array(data[key]).reshape(own.shape) == pytest.approx(own, abs=5.1e-7)
     assert data["extent"] == pytest.approx(table.bounds, abs=5.1e-7)
     assert data["ball_radius"] == table.ball_radius
     assert data["palette"] == {key: list(rgb) for key, rgb in PALETTE.items()}
@@ -86,9 +78,8 @@ def test_the_json_is_the_table(name):
     assert [ball["name"] for ball in data["balls"]] == list(NAMES)
     if name in ("match", "tight"):
         assert data["lines"]["spots"] == pytest.approx(SPOTS[16:], abs=5.1e-7)
-        assert np.hypot(*(np.array(data["lines"]["d"]) - (0, BAULK_Y)).T) == pytest.approx(
-            np.full(65, D_RADIUS), abs=1e-6
-        )
+        away = np.hypot(*(np.array(data["lines"]["d"]) - (0, BAULK_Y)).T)
+        assert away == pytest.approx(np.full(65, D_RADIUS), abs=1e-6)
         assert max(y for _, y in data["lines"]["d"]) <= BAULK_Y + 1e-9
     else:
         assert data["lines"] is None

@@ -22,9 +22,7 @@ def shots():
     return {
         "screw": played([(0.0, 0.5), (0.03, 1.0), (-0.4, 1.3)], top=-0.4, side=0.2),
         "masse": played([(0.0, -1.0), (0.4, 0.6)], aim=1.3, side=0.3, top=-0.1, elevation=0.8),
-        "nap": played(
-            [(0.0, -1.0), (0.3, 0.2)], speed=3.0, aim=1.3, physics=sn.Physics.preset("match", nap=0.02)
-        ),
+        "nap": played([(0.0, -1.0), (0.3, 0.2)], 3.0, 1.3, physics=sn.Physics.preset("match", nap=0.02)),
         "cushions": played([(0.1, -0.9), (0.5, 1.2)], speed=4.0, aim=1.9, side=0.3),
     }
 
@@ -88,9 +86,8 @@ def test_contacts_are_those_of_the_log_at_their_places(shots):
 def test_the_cut_is_that_of_the_geometry():
     """A ball that rolls along y past a ball aside by d is cut by asin(d / 2R)."""
     for aside in (0.0, 0.01, 0.03, 0.05):
-        shot = sn.simulate(
-            [(0.0, 0.0), (aside, 0.5)], [(0.0, 1.0), (0.0, 0.0)], [(-1.0 / R, 0.0, 0.0), (0.0, 0.0, 0.0)]
-        )
+        spins = [(-1.0 / R, 0.0, 0.0), (0.0, 0.0, 0.0)]
+        shot = sn.simulate([(0.0, 0.0), (aside, 0.5)], [(0.0, 1.0), (0.0, 0.0)], spins)
         met = next(shot_paths.contacts(shot, 0))
         assert shot_paths.cut_angle(shot, met) == pytest.approx(np.arcsin(aside / (2 * R)), abs=1e-9)
 
@@ -100,9 +97,8 @@ def test_the_cut_is_that_of_the_geometry():
 def test_the_tip_is_that_of_the_strike(tip, elevation):
     v, w = sn.strike(2.5, 0.7, *tip, elevation)
     found = shot_paths.tip_of(v[:2], w, sn.Physics.of(None))
-    assert np.allclose(
-        [found.side, found.top, found.speed, found.elevation], [*tip, 2.5, elevation], atol=1e-12
-    )
+    given = found.side, found.top, found.speed, found.elevation
+    assert np.allclose(given, [*tip, 2.5, elevation], atol=1e-12)
 
 
 def test_without_side_the_cue_is_taken_as_level():

@@ -92,18 +92,12 @@ def test_a_film_runs_faster_and_slower_and_shows_its_end(dummy_screen, pot, kind
 
     whole = int(np.ceil(pot.duration * 20)) + 1
     up, down = dummy_screen.K_UP, dummy_screen.K_DOWN
-    for keys, speed in [
-        ((), 1.0),
-        ((up,), 2.0),
-        ((up,) * 9, SPEEDS[-1]),
-        ((down,), 0.5),
-        ((down,) * 9, SPEEDS[0]),
-    ]:
+    ends = ((up,) * 9, SPEEDS[-1]), ((down,) * 9, SPEEDS[0])
+    for keys, speed in [((), 1.0), ((up,), 2.0), ((down,), 0.5), *ends]:
         window = Pressed(dummy_screen, {1: keys})
         assert window.draw(scene("match", SPOTS))
-        assert window.play(
-            made(), fps=20_000, speed=1000
-        )  # a film's picture every 1/20 s of it, without waiting
+        # a film's picture every 1/20 s of it, without waiting
+        assert window.play(made(), fps=20_000, speed=1000)
         played = window.seen[1:]
         assert len(played) == pytest.approx((whole - 1) / speed + 1, abs=1 / speed + 1), speed
         assert played[-1][0] == pot.positions[CUE, 0] and window.speed == speed
@@ -127,14 +121,12 @@ def test_a_film_is_paused_stepped_and_skipped(dummy_screen, pot):
 
 def test_letters_and_paths_are_shown_at_will(dummy_screen):
     given = {"paths": {CUE: [(0.0, -1.0), (0.0, 1.0)]}}
-    window = Pressed(
-        dummy_screen, {1: [dummy_screen.K_l], 2: [dummy_screen.K_p], 3: [dummy_screen.K_l]}, height=300
-    )
+    presses = {1: [dummy_screen.K_l], 2: [dummy_screen.K_p], 3: [dummy_screen.K_l]}
+    window = Pressed(dummy_screen, presses, height=300)
     for wanted in (given, {**given, "lettered": True}, {"lettered": True}, {}):
         window.draw(scene("match", SPOTS, **given))
-        assert np.array_equal(
-            picture(dummy_screen), rgb_array(scene("match", SPOTS, **wanted), size=(518, 300))
-        )
+        expected = rgb_array(scene("match", SPOTS, **wanted), size=(518, 300))
+        assert np.array_equal(picture(dummy_screen), expected)
     window.close()
 
 
@@ -152,10 +144,8 @@ def test_without_a_display_it_refuses(monkeypatch):
     monkeypatch.setattr("sys.platform", "linux")
     window = Window(100)
     for ask in (require_display, lambda: window.draw(scene("match", SPOTS))):
-        with pytest.raises(
-            RuntimeError,
-            match=r"\(neither DISPLAY nor WAYLAND_DISPLAY is set\).*rgb_array.*SDL_VIDEODRIVER=dummy",
-        ):
+        unset = r"\(neither DISPLAY nor WAYLAND_DISPLAY is set\).*rgb_array.*SDL_VIDEODRIVER=dummy"
+        with pytest.raises(RuntimeError, match=unset):
             ask()
         assert not window.is_open
     monkeypatch.setenv("DISPLAY", ":4321")  # nobody listens there

@@ -35,9 +35,8 @@ class Watched:
     """A page of a replay, and what went wrong in it."""
 
     def __init__(self, browser, file, **options):
-        self.page = browser.new_page(
-            **{"viewport": {"width": 1280, "height": 720}, "reduced_motion": "reduce", **options}
-        )
+        usual = {"viewport": {"width": 1280, "height": 720}, "reduced_motion": "reduce"}
+        self.page = browser.new_page(**usual | options)
         self.errors, self.asked = [], []
         self.page.on("console", lambda message: self.errors.append(message.text))
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
@@ -103,9 +102,8 @@ def test_it_plays_by_itself_and_ends_where_the_simulation_ends(open_page, shown)
 def test_it_goes_on_from_stroke_to_stroke_by_the_placed_balls(open_page, shown):
     _, shots, places, _ = shown
     p = open_page()
-    p(
-        "(p.seen = [], p.options.onstroke = k => p.seen.push(k), p.options.ontime = (t, k) => { p.last = [t, k]; })"
-    )
+    p("(p.seen = [], p.options.onstroke = k => p.seen.push(k))")
+    p("p.options.ontime = (t, k) => { p.last = [t, k]; }")
     p("p.seek(1, Infinity)")
     assert p("p.time") > shots[1].duration  # the pause between strokes
     assert np.array_equal(p("p.positions()"), places) and p("p.shown.on[21]") == 1
@@ -218,11 +216,8 @@ def test_keys(open_page, shown):
 def test_buttons_and_the_table(open_page):
     p = open_page()
     p("p.seek(0, 0)")
-    for label, after in (
-        ("next event", "p.time > 0"),
-        ("next stroke", "p.stroke === 1"),
-        ("previous stroke", "p.stroke === 0"),
-    ):
+    strokes = ("next stroke", "p.stroke === 1"), ("previous stroke", "p.stroke === 0")
+    for label, after in (("next event", "p.time > 0"), *strokes):
         p.page.get_by_label(label, exact=True).click()
         assert p(after), label
     p.page.get_by_label("faster").click()
@@ -235,7 +230,6 @@ def test_buttons_and_the_table(open_page):
     for name in ("paths", "labels"):
         button = p.page.locator(".sn-keys button", has_text=name)
         before = button.get_attribute("aria-pressed")
-        image = p("p.canvas.toDataURL()")
         p("p.seek(0, 3)")
         image = p("p.canvas.toDataURL()")
         button.click()
@@ -252,25 +246,16 @@ def test_the_score_bar_says_what_the_referee_says(open_page, shown):
     data = shown[0]
     p = open_page()
 
-    def bar():
-        return [p.page.locator(".sn-who b").nth(k).inner_text() for k in (0, 1)], " ".join(
-            p.page.locator(".sn-now").inner_text().split()
-        )
-
-    p("p.seek(0, 1)")
-    scores, now = bar()
-    assert scores == ["0", "0"] and "break 0" in now and "on red" in now
-    p("p.seek(1, 0)")
-    scores, now = bar()
-    assert scores == ["1", "0"] and "break 1" in now
-    assert p.page.locator(".sn-now span").first.locator("i").count() == 1
-    p("p.seek(1, p.strokes[1].duration)")
-    scores, now = bar()
-    assert scores == ["8", "0"] and "break 8" in now
-    assert p.page.locator(".sn-now span").first.locator("i").count() == 2
+    for place, scores, balls in (("0, 1", "00", 0), ("1, 0", "10", 1), ("1, p.strokes[1].duration", "80", 2)):
+        p(f"p.seek({place})")
+        assert [p.page.locator(".sn-who b").nth(k).inner_text() for k in (0, 1)] == [*scores]
+        now = " ".join(p.page.locator(".sn-now").inner_text().split())
+        assert f"break {scores[0]}" in now and ("on red" in now or balls)
+        assert p.page.locator(".sn-now span").first.locator("i").count() == balls
     assert p.page.locator(".sn-words").inner_text() == data["strokes"][1]["words"]
     p("p.seek(2, 0)")
-    assert "break 0" in bar()[1] and "sn-turn" in p.page.locator(".sn-who").nth(1).get_attribute("class")
+    assert "break 0" in " ".join(p.page.locator(".sn-now").inner_text().split())
+    assert "sn-turn" in p.page.locator(".sn-who").nth(1).get_attribute("class")
     # words are words, not HTML
     assert p.page.locator(".sn-who span").first.inner_text() == "Ada <b>Lovelace</b>"
     assert "3.00 m/s" in p.page.locator(".sn-about").inner_text()
@@ -315,18 +300,16 @@ def test_nothing_overlaps_or_overflows_at_any_size(open_page):
         p.until("p.canvas.width === argument", width)
         for moment in ("p.seek(1, 0.5)", "p.seek(1, p.strokes[1].duration)", "(p.seek(0, 0), p.step(1))"):
             p(moment)
-            assert p(
-                "document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight"
-            ), (width, height)
+            root = "document.documentElement"
+            assert p(f"{root}.scrollWidth <= innerWidth && {root}.scrollHeight <= innerHeight"), (
+                width,
+                height,
+            )
             assert p.page.evaluate(OVERLAPS) == [], (width, height, moment)
-        wide, high = p(
-            "[p.view.toScreen(0, p.replay.scene.extent[1][1])[0] - p.view.toScreen(0, p.replay.scene.extent[1][0])[0], innerHeight]"
-        )
-        assert wide > 0.85 * width or wide > min(1.3, high / 400) * high, (
-            width,
-            height,
-            wide,
-        )  # the table fills the width, or what the bars leave of the height
+        left, right = p("p.replay.scene.extent[1].map(y => p.view.toScreen(0, y)[0])")
+        wide, high = right - left, p("innerHeight")
+        # the table fills the width, or what the bars leave of the height
+        assert wide > 0.85 * width or wide > min(1.3, high / 400) * high, (width, height, wide)
 
 
 def test_a_player_in_another_page_leaves_it_as_it_was(chromium):  # noqa: F811

@@ -53,24 +53,13 @@ def hosted(browser, widget):
     page.faults = []
     page.on("pageerror", lambda error: page.faults.append(str(error)))
     page.set_content("<!DOCTYPE html><body></body>")
-    state = json.loads(
-        json.dumps(
-            {
-                name: value
-                for name, value in widget.get_state().items()
-                if name in widget.trait_names(sync=True)
-            }
-        )
-    )
-    wanted = ("data", "options", "stroke", "time", "playing")
-    page.evaluate(HOST, [module(), {name: state[name] for name in wanted}])
+    state, wanted = widget.get_state(), ("data", "options", "stroke", "time", "playing")
+    page.evaluate(HOST, [module(), json.loads(json.dumps({name: state[name] for name in wanted}))])
     return page
 
 
 def shown_by(page):
-    return page.evaluate(
-        "() => ({stroke: host.state.stroke, time: host.state.time, playing: host.state.playing})"
-    )
+    return page.evaluate("(({stroke, time, playing}) => ({stroke, time, playing}))(host.state)")
 
 
 def cloth_share(page):
