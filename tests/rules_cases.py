@@ -11,19 +11,7 @@ import ast
 import json
 import sys
 
-from snooker_env.game.balls import (
-    BLACK,
-    CUE,
-    CUE_BIT,
-    N_BALLS,
-    NAMES,
-    YELLOW,
-    BallOn,
-    balls_on,
-    colour,
-    ids_of,
-    mask_of,
-)
+from snooker_env.game import balls
 from snooker_env.game.frame import Frame
 from snooker_env.game.referee import Stroke
 from snooker_env.game.ruling import AUTO
@@ -35,23 +23,23 @@ CHOICES = {"play": "play", "play_again_as_left": "play_again", "replace_and_repl
 
 
 def ball_on_of(name):
-    return BallOn[name.upper()]
+    return balls.BallOn[name.upper()]
 
 
 def name_of(ball_on):
-    return None if ball_on == BallOn.NOTHING else ball_on.name.lower()
+    return None if ball_on == balls.BallOn.NOTHING else ball_on.name.lower()
 
 
 def colours_in(mask):
-    return [NAMES[i] for i in ids_of(mask) if i >= YELLOW]
+    return [balls.NAMES[i] for i in balls.ids_of(mask) if i >= balls.YELLOW]
 
 
 def reds_in(mask):
-    return sum(1 <= i < YELLOW for i in ids_of(mask))
+    return sum(1 <= i < balls.YELLOW for i in balls.ids_of(mask))
 
 
 def table(reds, colours):
-    return mask_of([*range(1, 1 + reds), *map(colour, colours)])
+    return balls.mask_of([*range(1, 1 + reds), *map(balls.colour, colours)])
 
 
 def by_player(pair):
@@ -85,22 +73,22 @@ def stroke_of(shot, free_ball):
     reds = iter(range(1, 16))
 
     def ids(names):
-        return [CUE if n == "cue" else next(reds) if n == "red" else colour(n) for n in names]
+        return [balls.CUE if n == "cue" else next(reds) if n == "red" else balls.colour(n) for n in names]
 
     potted, off = ids(shot["potted"]), ids(shot["forced_off"])
     reds = iter(range(1, 16))
     first = ids(shot["first_contact"])
     reds = iter(range(1, 16))
-    touching = mask_of(ids(shot["touching"]))
+    touching = balls.mask_of(ids(shot["touching"]))
     chosen = shot.get("free_ball_nominated") if free_ball else shot.get("nominated")
     return Stroke(
-        first=mask_of(first),
-        potted=mask_of(potted) | (CUE_BIT if shot["cue_potted"] else 0),
-        off=mask_of(off),
+        first=balls.mask_of(first),
+        potted=balls.mask_of(potted) | (balls.CUE_BIT if shot["cue_potted"] else 0),
+        off=balls.mask_of(off),
         touching=touching,
         moved=touching if shot["touching_ball_moved"] else 0,
         # A free ball that nobody nominated is declined; a colour after a red is the one evidently played at.
-        nominated=colour(chosen) if chosen else 0 if free_ball else AUTO,
+        nominated=balls.colour(chosen) if chosen else 0 if free_ball else AUTO,
         jump=shot["jump_shot"],
         push=shot["push_stroke"],
         double_hit=shot["double_hit"],
@@ -188,24 +176,28 @@ def frame_answers(frame):
 def fouled(before):
     """A frame before and after a foul by hitting nothing, in the state of ``before``."""
     ball_on = ball_on_of(before.get("ball_on_before_foul", before.get("ball_on", "red")))
-    low = max(ball_on, BallOn.YELLOW)
-    on_table = mask_of(range(14 + low, N_BALLS)) | (mask_of(range(1, 16)) if ball_on <= BallOn.RED else 0)
+    low = max(ball_on, balls.BallOn.YELLOW)
+    on_table = balls.mask_of(range(14 + low, balls.N_BALLS)) | (
+        balls.mask_of(range(1, 16)) if ball_on <= balls.BallOn.RED else 0
+    )
     offender = PLAYERS.index(before["foul_by"])
     scores = tuple(before.get("scores", {"A": 0, "B": 0})[p] for p in PLAYERS)
     miss = bool(before.get("miss"))
     standing = {"on_table": on_table, "ball_on": ball_on, "in_hand": False}
     start = Frame(scores=scores, striker=offender, miss="clear_path" if miss else "off", **standing)
     # On any colour, the nomination that costs the case's penalty.
-    nominated = 14 + max(2, before.get("penalty", 4)) if ball_on == BallOn.ANY_COLOUR else AUTO
+    nominated = 14 + max(2, before.get("penalty", 4)) if ball_on == balls.BallOn.ANY_COLOUR else AUTO
     stroke = Stroke(nominated=nominated, snookered=bool(before.get("free_ball")))
     return start, start.play(stroke, clear_path=miss, layout=("the position",))[0]
 
 
 def fair_strokes(frame):
     """Strokes at each ball on, which is potted."""
-    for ball in ids_of(balls_on(frame.ball_on, frame.on_table)):
+    for ball in balls.ids_of(balls.balls_on(frame.ball_on, frame.on_table)):
         yield Stroke(
-            first=1 << ball, potted=1 << ball, nominated=ball if frame.ball_on == BallOn.ANY_COLOUR else AUTO
+            first=1 << ball,
+            potted=1 << ball,
+            nominated=ball if frame.ball_on == balls.BallOn.ANY_COLOUR else AUTO,
         )
 
 
@@ -239,7 +231,7 @@ def run_option(case):
         "may_score": all(v.points > 0 for v in played),
         "revocable": not refused(lambda: after.choose("play")),
         "position": "as before the stroke (incl. potted balls)" if restored else "as left",
-        "nomination_free": after.ball_on == BallOn.ANY_COLOUR and free_choice,
+        "nomination_free": after.ball_on == balls.BallOn.ANY_COLOUR and free_choice,
     }
     return compare(case["expect"], answers)
 
@@ -250,7 +242,9 @@ def run_end(case):
     problem = unknown(before, BEFORE_FIELDS)
     if problem:
         return problem
-    frame = frame_before({"ball_on": "red", "reds": 15, "colours": list(NAMES[YELLOW:])} | before, "off")
+    frame = frame_before(
+        {"ball_on": "red", "reds": 15, "colours": list(balls.NAMES[balls.YELLOW :])} | before, "off"
+    )
     player = PLAYERS.index(action["player"])
     if action["choice"] == "claim":
         can = player == frame.striker and not refused(frame.claim)
@@ -275,11 +269,11 @@ def best_break(free_ball):
     """The points of a visit that pots all there is, always with the black."""
     frame = Frame(free_ball=free_ball)
     while frame.phase == "stroke":
-        choosing = frame.free_ball or frame.ball_on == BallOn.ANY_COLOUR
-        ball = BLACK if choosing else ids_of(balls_on(frame.ball_on, frame.on_table))[0]
+        choosing = frame.free_ball or frame.ball_on == balls.BallOn.ANY_COLOUR
+        ball = balls.BLACK if choosing else balls.ids_of(balls.balls_on(frame.ball_on, frame.on_table))[0]
         total = frame.scores[0]
         frame, verdict = frame.play(
-            Stroke(first=1 << ball, potted=1 << ball, nominated=BLACK if choosing else AUTO)
+            Stroke(first=1 << ball, potted=1 << ball, nominated=balls.BLACK if choosing else AUTO)
         )
         assert frame.scores[0] == total + verdict.points
     return frame.scores[0]

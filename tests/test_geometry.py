@@ -9,18 +9,6 @@ import pytest
 import snooker_env as sn
 from snooker_env import Pocket, Table, geometry
 from snooker_env.game import balls
-from snooker_env.geometry import (
-    AIM_X,
-    AIM_Y,
-    AXIS_X,
-    AXIS_Y,
-    BALL_RADIUS,
-    HALF_LENGTH,
-    HALF_WIDTH,
-    IS_MIDDLE,
-    POCKET_AIMS,
-    POCKETS,
-)
 from tests.refusals import case, refused
 
 PACKAGE = Path(sn.__file__).resolve().parent
@@ -29,30 +17,35 @@ SIDE, END = {"left": -1, "right": 1}, {"bottom": -1, "middle": 0, "top": 1}
 
 
 def test_snooker_is_as_the_rules_say():
-    assert (2 * HALF_WIDTH, 2 * HALF_LENGTH) == (1.778, 3.569)  # WPBSA
+    assert (2 * geometry.HALF_WIDTH, 2 * geometry.HALF_LENGTH) == (1.778, 3.569)  # WPBSA
     assert np.array_equal(geometry.COLOUR_SPOTS, balls.SPOTS[16:])
-    assert HALF_LENGTH - geometry.COLOUR_SPOTS[5, 1] == pytest.approx(0.324)
-    assert geometry.COLOUR_SPOTS[4, 1] == HALF_LENGTH / 2
-    assert sn.Physics().R == sn.Physics.preset("match").R == BALL_RADIUS == sn.Physics().pack()[0]
+    assert geometry.HALF_LENGTH - geometry.COLOUR_SPOTS[5, 1] == pytest.approx(0.324)
+    assert geometry.COLOUR_SPOTS[4, 1] == geometry.HALF_LENGTH / 2
+    assert sn.Physics().R == sn.Physics.preset("match").R == geometry.BALL_RADIUS == sn.Physics().pack()[0]
 
 
 @pytest.mark.parametrize("name", ["match", "tight", "uk8", "pool9"])
 def test_the_order_of_pockets_is_one(name):
     """Names, aims, nominal places, falls of every preset: index k is one pocket."""
     table = Table.preset(name)
-    assert table.pockets == POCKETS == sn.POCKETS
-    for k, called in enumerate(POCKETS):
+    assert table.pockets == geometry.POCKETS == sn.POCKETS
+    for k, called in enumerate(geometry.POCKETS):
         end, side = called.split()
         want = [SIDE[side], END[end]]
-        aim, axis = POCKET_AIMS[k, [AIM_X, AIM_Y]], POCKET_AIMS[k, [AXIS_X, AXIS_Y]]
+        aim, axis = (
+            geometry.POCKET_AIMS[k, [geometry.AIM_X, geometry.AIM_Y]],
+            geometry.POCKET_AIMS[k, [geometry.AXIS_X, geometry.AXIS_Y]],
+        )
         for way in (table.falls[k, :2], aim, axis, geometry.POCKET_PLACES[k], geometry.SIDES[k]):
             assert np.sign(way).tolist() == want
-        assert POCKET_AIMS[k, IS_MIDDLE] == (end == "middle")
+        assert geometry.POCKET_AIMS[k, geometry.IS_MIDDLE] == (end == "middle")
 
 
 @pytest.mark.parametrize("name", ["match", "tight"])
 def test_the_aim_points_lie_where_the_falls_meet_the_axes(name):
-    for (x, y, radius), (ax, ay, ux, uy, _) in zip(Table.preset(name).falls, POCKET_AIMS, strict=True):
+    for (x, y, radius), (ax, ay, ux, uy, _) in zip(
+        Table.preset(name).falls, geometry.POCKET_AIMS, strict=True
+    ):
         assert np.hypot(ux, uy) == pytest.approx(1.0, abs=1e-12)
         assert np.hypot(x - ax, y - ay) == pytest.approx(radius, abs=2e-5)
         assert np.hypot(ax + radius * ux - x, ay + radius * uy - y) < 2e-5
@@ -130,8 +123,8 @@ def test_a_pocket_has_the_sizes_that_it_was_made_from(shape):
     for field in ("start", "turn", "fall_depth", "fall_radius", "jaw_radius"):
         assert getattr(again, field) == pytest.approx(getattr(shape, field), abs=1e-12)
     table = Table.rectangular(2.5, 1.25, **{"middle" if shape.is_middle else "corner": shape})
-    k = POCKETS.index("middle right" if shape.is_middle else "top right")
-    _, _, ux, uy, _ = POCKET_AIMS[k]
+    k = geometry.POCKETS.index("middle right" if shape.is_middle else "top right")
+    _, _, ux, uy, _ = geometry.POCKET_AIMS[k]
     x, y, radius = table.falls[k]
     corner = np.array((0.625, 0.0 if shape.is_middle else 1.25))
     depth = (np.array((x, y)) - corner) @ (ux, uy) - radius

@@ -9,7 +9,7 @@ from snooker_env.game import lines
 from snooker_env.game.balls import BLACK, COLOURS_MASK, PINK, SPOTS, YELLOW, mask_of
 from snooker_env.game.paths import paths
 from snooker_env.game.snookered import is_snookered
-from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
+from snooker_env.geometry import BALL_RADIUS, BAULK_Y
 from tests.kernels import from_python
 
 meets = from_python(lines.meets)
@@ -124,25 +124,6 @@ def test_in_hand_a_place_on_a_ball_is_no_place():
     ring = [red + 2.001 * R * np.array([np.cos(a), np.sin(a)]) for a in np.radians(range(0, 360, 60))]
     assert snookered(None, [red], ring)[0]
     assert not snookered(None, [red], ring[:3])[0]
-
-
-def test_in_hand_agrees_with_places_drawn_at_random():
-    rng = np.random.default_rng(1)
-    seen = {True: 0, False: 0}
-    for _ in range(60):
-        red = np.array([rng.uniform(-0.8, 0.8), rng.uniform(-0.9, 1.7)])
-        others = [
-            red + rng.uniform(2 * R, 0.4) * np.array([np.sin(a), -np.cos(a)])
-            for a in rng.uniform(-1.0, 1.0, 2)
-        ]
-        places = rng.uniform([-D_RADIUS, -D_RADIUS], [D_RADIUS, 0.0], (300, 2))
-        places = places[np.hypot(*places.T) <= D_RADIUS] + [0.0, BAULK_Y]
-        legal = [p for p in places if all(np.hypot(*(p - b)) > 2 * R + 1e-3 for b in [red, *others])]
-        somewhere = any(not snookered(p, [red], others)[0] for p in legal)
-        in_hand = snookered(None, [red], others)[0]
-        assert not (somewhere and in_hand)
-        seen[in_hand] += 1
-    assert min(seen.values()) >= 5
 
 
 # Small steps as the judge

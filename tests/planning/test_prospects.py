@@ -19,29 +19,6 @@ VALUE = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 """Points of each ball."""
 
 
-def test_prospects_prefer_easy_pots_and_more_to_come():
-    env = tables(1, layout="random:2")
-    at = Positions.of(env)
-    at.on_table[0, 1:] = False
-    at.on_table[0, [1, 2]] = True
-    at.game[0, 0] = 1
-    at.positions[0, :3] = (0.0, 0.0), (0.5, 0.8), (-0.7, -1.5)
-
-    def value(p, spread):
-        values, chances = prospects.prospects_of(p, spread)
-        return values[0], chances[0]
-
-    easy, chances = value(at, 1e-3)
-    assert 0 < chances[1] <= chances[0] <= 1
-    assert value(at, 4e-3)[0] < easy  # larger execution errors
-    fewer = at[np.array([0])]
-    fewer.on_table[0, 2] = False
-    assert value(fewer, 1e-3)[0] < easy
-    nothing = at[np.array([0])]
-    nothing.on_table[0, 1:] = False
-    assert value(nothing, 1e-3)[0] == 0
-
-
 def by_plain_python(positions, on_table, ball_on, spread, follows, second, third, far):
     """The value of a position and the chances of its pots, from the pots of ``game.pots``."""
     present = [ball for ball in VALUE if on_table[ball]]

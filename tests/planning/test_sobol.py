@@ -1,15 +1,10 @@
 """Are the points those of Sobol's sequence, scrambled as Owen proposed: evenly spread, each uniform?"""
 
-from itertools import combinations
-
 import numpy as np
 import pytest
 from scipy.stats import norm, qmc
 
 from snooker_env.planning.sobol import DIMENSIONS, normal_points, sobol_points
-
-PARTS = (0, 0, 1, 2, 2)
-"""Degree of each dimension's polynomial less one; t of a net of two is their sum (Sobol 1967)."""
 
 
 def whole(points):
@@ -39,23 +34,6 @@ def test_unscrambled_they_are_the_sequence_of_joe_and_kuo():
         for d in range(DIMENSIONS):
             expected = shared_bits((reference[:, d] * 2**32).astype(np.uint64))
             assert np.array_equal(shared_bits(direct[:, d]), expected), (seed, d)
-
-
-@pytest.mark.parametrize("k", range(8))
-def test_every_elementary_interval_gets_its_share(k):
-    """Of 2^k points, in each dimension and in each two of them."""
-    for seed in (3, 2**31 + 5):
-        points = sobol_points(2**k, DIMENSIONS, seed)
-        assert ((points > 0.0) & (points < 1.0)).all()
-        for d in range(DIMENSIONS):
-            assert np.array_equal(np.sort((points[:, d] * 2**k).astype(int)), np.arange(2**k))
-        for a, b in combinations(range(DIMENSIONS), 2):
-            t = PARTS[a] + PARTS[b]
-            for i in range(max(0, k - t) + 1):
-                j = k - t - i
-                if j >= 0:
-                    cells = (points[:, a] * 2**i).astype(int) * 2**j + (points[:, b] * 2**j).astype(int)
-                    assert (np.bincount(cells, minlength=2 ** (k - t)) == 2**t).all(), (a, b, i, j)
 
 
 def test_the_first_points_of_many_are_those_of_few():

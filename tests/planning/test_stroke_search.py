@@ -213,19 +213,6 @@ def test_without_errors_the_ranking_is_that_of_the_looks():
     assert ranked.scores[:, 0] == pytest.approx(worth, rel=1e-6) and (played.points > 0).sum() >= 4
 
 
-def test_the_search_beats_the_first_of_its_looks_under_fresh_errors():
-    """What the search prefers is worth more than a stroke at random, and its score is no flattery."""
-    at = some(30, layout="random:4")
-    tool = search(120, value=by_place)
-    ranked = tool.rank(at, np.arange(30))
-    rows, errors = np.repeat(np.arange(30), 20), np.random.default_rng(0).standard_normal((600, 5))
-    means = []
-    for column in (0, 40):
-        out = tool.outcomes(at, rows, np.repeat(ranked.strokes[:, column], 20, axis=0), errors)
-        means.append((out.points + np.where(out.goes_on, by_place(out.afterstates), 0.0)).mean())
-    assert means[0] > means[1] + 1.0 and abs(means[0] - ranked.scores[:, 0].mean()) < 1.5
-
-
 def test_a_decision_is_the_same_alone_or_among_many_on_any_number_of_threads():
     """Pots, balls that are seen, escapes, in visits and in frames: the position and its seed alone decide."""
     parts = [some(5), some(4, layout="break_off"), some(9, layout="snookered", seed=3)]
