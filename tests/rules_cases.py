@@ -53,18 +53,14 @@ def frame_before(before, miss):
     """The frame that ``before`` describes."""
     on_table = table(before.get("reds", 0), before.get("colours", []))
     scores = before.get("scores", {"A": 0, "B": 0})
+    as_said = ("in_hand", "free_ball", "respotted_black", "miss", "rules", "misses", "clock")
+    fields = {"in_hand": False, "miss": miss} | {name: before[name] for name in as_said if name in before}
     return Frame(
         scores=tuple(scores[p] for p in PLAYERS),
         striker=PLAYERS.index(before.get("striker", "A")),
         on_table=on_table,
         ball_on=ball_on_of(before["ball_on"]),
-        in_hand=before.get("in_hand", False),
-        free_ball=before.get("free_ball", False),
-        respotted_black=before.get("respotted_black", False),
-        miss=before.get("miss", miss),
-        rules=before.get("rules", "snooker"),
-        misses=before.get("misses", 0),
-        clock=before.get("clock", 0),
+        **fields,
     )
 
 
@@ -194,11 +190,8 @@ def fouled(before):
 def fair_strokes(frame):
     """Strokes at each ball on, which is potted."""
     for ball in balls.ids_of(balls.balls_on(frame.ball_on, frame.on_table)):
-        yield Stroke(
-            first=1 << ball,
-            potted=1 << ball,
-            nominated=ball if frame.ball_on == balls.BallOn.ANY_COLOUR else AUTO,
-        )
+        named = ball if frame.ball_on == balls.BallOn.ANY_COLOUR else AUTO
+        yield Stroke(first=1 << ball, potted=1 << ball, nominated=named)
 
 
 def run_option(case):

@@ -32,10 +32,8 @@ def test_the_order_of_pockets_is_one(name):
     for k, called in enumerate(geometry.POCKETS):
         end, side = called.split()
         want = [SIDE[side], END[end]]
-        aim, axis = (
-            geometry.POCKET_AIMS[k, [geometry.AIM_X, geometry.AIM_Y]],
-            geometry.POCKET_AIMS[k, [geometry.AXIS_X, geometry.AXIS_Y]],
-        )
+        row = geometry.POCKET_AIMS[k]
+        aim, axis = row[[geometry.AIM_X, geometry.AIM_Y]], row[[geometry.AXIS_X, geometry.AXIS_Y]]
         for way in (table.falls[k, :2], aim, axis, geometry.POCKET_PLACES[k], geometry.SIDES[k]):
             assert np.sign(way).tolist() == want
         assert geometry.POCKET_AIMS[k, geometry.IS_MIDDLE] == (end == "middle")
@@ -51,16 +49,13 @@ def test_the_aim_points_lie_where_the_falls_meet_the_axes(name):
         assert np.hypot(ax + radius * ux - x, ay + radius * uy - y) < 2e-5
 
 
-def test_a_table_without_some_pockets_keeps_their_order():
+def test_rectangular_tables_keep_the_order_of_pockets_and_snookers_shape():
     four = Table.rectangular(2, 1, pockets=4)
     assert four.pockets == ("bottom left", "bottom right", "top right", "top left")
     assert np.sign(four.falls[:, :2]).tolist() == [[-1, -1], [1, -1], [1, 1], [-1, 1]]
     bare = Table.rectangular(2, 1, pockets=0)
     assert bare.pockets == () and bare.falls.shape == (0, 3) and bare.jaws.shape == (0, 6)
     assert bare.bounds.tolist() == [[-0.5, 0.5], [-1, 1]]
-
-
-def test_a_rectangular_table_of_snookers_size_is_the_match_table():
     own, match = Table.rectangular(3.569, 1.778), Table.preset("match")
     for part in ("noses", "jaws", "falls"):
         assert np.array_equal(getattr(own, part), getattr(match, part))

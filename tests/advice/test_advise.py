@@ -53,30 +53,24 @@ def test_points_expected_hold_what_follows():
     assert only.points == pytest.approx(only.chance, abs=0.05) and many.points > only.points  # one red
 
 
-def test_the_same_seed_gives_the_same_advice_and_another_one_other_samples():
+def test_the_seed_decides_and_the_noise_stream_of_a_state_has_no_say():
     many = {"noise": "club", "n": 3, **QUICK}
     first, again, other = (sn.advise(OPEN, seed=seed, **many).to_dict() for seed in (4, 4, 5))
     assert first == again and first["suggestions"] != other["suggestions"]
     apart = [sn.advise(ENDGAME, agent="ghost_ball", seed=seed, **many)[0].stops for seed in (4, 5)]
     assert apart[0] != apart[1]  # of one and the same stroke
-
-
-def test_the_noise_stream_of_a_state_has_no_say():
-    """The trap: a state that is played again meets its own errors again."""
+    # The trap: a state that is played again meets its own errors again
     states = [state_of(OPEN) | {"stream": [key, 0]} for key in (1, 2)]
     one, other = (sn.advise(state, noise="club", n=2, **QUICK).to_dict() for state in states)
     assert one == other == sn.advise(OPEN, noise="club", n=2, **QUICK).to_dict()
 
 
-def test_a_position_may_be_given_in_every_way():
+def test_a_position_may_be_given_in_every_way_and_its_points_do_not_count():
     env = sn.SnookerEnv(noise="club")
     env.reset(seed=1, options={"state": state_of(OPEN)})
     many = sn.planning.Positions.of([OPEN])
     asked = [sn.advise(p, n=1, **QUICK).to_dict() for p in (OPEN, OPEN.to_dict(), state_of(OPEN), env, many)]
     assert all(one["suggestions"] == asked[0]["suggestions"] for one in asked)
-
-
-def test_points_of_the_visit_so_far_do_not_count():
     far = sn.Position(**OPEN.to_dict() | {"points": 140})
     assert sn.advise(far, n=1, **QUICK)[0] == sn.advise(OPEN, n=1, **QUICK)[0]
 
@@ -151,12 +145,9 @@ def test_where_nothing_can_be_potted_a_ball_on_is_hit():
         assert " fair " in one.words
 
 
-def test_where_no_ball_can_be_potted_directly_a_plant_is_found():
+def test_a_plant_is_advised_where_there_is_no_other_pot_and_a_short_pot_where_there_is():
     one = sn.advise(ALL["hidden"], n=1, agent="search_2000", **QUICK)[0]
     assert one.kind == "pot" and " by a plant, " in one.words and one.chance > 0.6
-
-
-def test_a_short_pot_is_advised():
     assert sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), n=1, **QUICK)[0].kind == "pot"
     assert sn.advise(RESPOTTED, n=1, noise="none", **QUICK)[0].kind == "pot"
 
@@ -201,15 +192,12 @@ def test_wrong_arguments_are_refused(given, field, value, allowed):
     refused(lambda: sn.advise(OPEN, **given), field, value, allowed)
 
 
-def test_wrong_positions_are_refused():
+def test_wrong_positions_and_environments_before_reset_are_refused():
     two, over = sn.planning.Positions.of([OPEN, OPEN]), sn.Position(cue=(0.0, 0.0), over=True)
     refused(lambda: sn.advise(two), "position", "2 positions", "must be one position")
     refused(lambda: sn.advise(over), "position.over", "True", "must be False")
     with pytest.raises(ValueError, match="key of position = 'cues'"):
         sn.advise({"cue": (0.0, 0.0), "cues": 3})
-
-
-def test_an_environment_must_have_begun():
     for env in (sn.SnookerEnv(), sn.SnookerVectorEnv(1), sn.SnookerEnv(task="frame")):
         with pytest.raises(ValueError, match=r"call reset\(\) first"):
             sn.advise(env, **QUICK)

@@ -87,13 +87,10 @@ BLUE_FIRST, POT, AWAY = (CueStroke(speed=1.5, aim=aim) for aim in (0.0, np.pi / 
 COVERED = sn.Position(cue=(-0.84, 1.0), reds=[(-0.84, 1.4)], blue=(-0.4, 1.0), black=(0.0, 1.4605))
 
 
-def test_a_foul_is_left_out_where_a_stroke_of_the_agents_is_fair():
+def test_fouls_are_left_out_and_others_judged_where_all_are_fouls():
     thin = CueStroke(speed=1.0, aim=np.pi / 2 + 0.12)
     advice = sn.advise(COVERED, agent=Given(BLUE_FIRST, thin, AWAY), **QUICK)
     assert advice.own and [one.stroke for one in advice] == [thin] and not foul(advice[0])
-
-
-def test_where_none_of_an_agents_strokes_is_fair_it_is_said_and_others_are_judged():
     advice = sn.advise(COVERED, agent=Given(BLUE_FIRST, AWAY), **QUICK)
     assert not advice.own and advice.agent == "given" and not any(map(foul, advice))
     assert advice.order.startswith("given has no fair stroke here; these are not its own. ")

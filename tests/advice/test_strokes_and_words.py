@@ -13,7 +13,7 @@ from snooker_env.physics.events import EventKind
 from snooker_env.tasks import box_actions
 
 
-def test_a_stroke_is_its_action():
+def test_a_stroke_is_its_action_and_a_suggestion_is_a_stroke():
     stroke = CueStroke(speed=3.1, aim=2.5, side=-0.2, top=0.3, elevation=0.2, place=(0.1, -1.2))
     actions = box_actions.Actions("absolute", True, True, sn.Physics(), ("decision",))
     a = stroke.action(elevation=True, placement=True, decision=True).astype(float)
@@ -31,9 +31,6 @@ def test_a_stroke_is_its_action():
     assert corner.tolist()[4:] == [1.0, -1.0]
     assert CueStroke(**stroke.to_dict()) == stroke == CueStroke.of(stroke.to_dict())
     assert CueStroke.of(stroke) is stroke
-
-
-def test_a_suggestion_is_a_stroke_as_well():
     (one,) = sn.advise(OPEN, n=1, samples=10, visits=0)
     assert CueStroke.of(one) is one
     assert one.stroke == CueStroke.of({"speed": one.speed, "aim": one.aim, "side": one.side, "top": one.top})
@@ -141,13 +138,10 @@ def test_the_words_of_a_suggestion_are_its_data():
         assert points[0] >= 1 and not state["on_table"][one.ball]
 
 
-def test_wilsons_interval():
+def test_intervals_hold_the_truth_as_often_as_they_say():
     for made, tries in ((0, 10), (3, 10), (10, 10), (87, 100), (199, 200)):
         interval = binomtest(made, tries).proportion_ci(0.95, "wilson")
         assert judging.wilson(made, tries) == pytest.approx((interval.low, interval.high), abs=1e-6)
-
-
-def test_the_interval_of_the_points_holds_the_true_mean_as_often_as_it_says():
     rng, inside, runs = np.random.default_rng(3), 0, 600
     for _ in range(runs):
         goes_on = rng.random(200) < 0.8

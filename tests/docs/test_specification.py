@@ -24,11 +24,8 @@ def tables(heading):
 
 def defaults(table):
     """Name -> default, of a table of options; a row may have several names."""
-    return {
-        name: ast.literal_eval(row[1].strip("`"))
-        for row in table[1:]
-        for name in re.findall(r"`(\w+)`", row[0])
-    }
+    rows = [(re.findall(r"`(\w+)`", row[0]), ast.literal_eval(row[1].strip("`"))) for row in table[1:]]
+    return {name: default for names, default in rows for name in names}
 
 
 def test_options_have_the_defaults_that_are_printed():

@@ -50,16 +50,13 @@ def test_the_start():
     assert Frame.start(on_table=COLOURS_MASK).ball_on == BallOn.YELLOW
 
 
-def test_play_takes_the_free_ball_and_play_again_voids_it():
+def test_play_takes_the_free_ball_play_again_voids_it_and_neither_is_taken_back():
     foul = played(Frame.start(), Stroke(snookered=True))
     assert foul.free_ball
     mine, his = foul.choose("play"), foul.choose("play_again")
     assert (mine.striker, mine.free_ball, his.striker, his.free_ball) == (1, True, 0, False)
     assert played(mine, pot(BLACK, nominated=BLACK)).scores == (0, 5)
     assert played(his, pot(1)).scores == (1, 4)
-
-
-def test_a_choice_cannot_be_taken_back_and_play_waits_for_it():
     foul = played(Frame.start(), MISSED)
     with pytest.raises(ValueError, match="choice"):
         foul.play(MISSED)
@@ -69,7 +66,7 @@ def test_a_choice_cannot_be_taken_back_and_play_waits_for_it():
         foul.choose("replace")
 
 
-def test_replacing_restores_the_table_and_keeps_the_penalty():
+def test_replacing_restores_table_and_free_ball_and_keeps_the_penalty():
     frame = played(Frame.start(miss="clear_path"), pot(1))
     foul, _ = frame.play(Stroke(first=4, potted=4, nominated=BLUE), **PATHS, layout=((0.1, 0.2), (0.3, 0.4)))
     assert foul.choices == ("play", "play_again", "replace") and foul.on_table == frame.on_table & ~4
@@ -77,9 +74,6 @@ def test_replacing_restores_the_table_and_keeps_the_penalty():
     assert (again.striker, again.on_table, again.scores) == (0, frame.on_table, (1, 5))
     assert again.ball_on == BallOn.ANY_COLOUR and again.saved.layout == ((0.1, 0.2), (0.3, 0.4))
     assert played(again, pot(PINK)).scores == (7, 5)  # another colour may be nominated
-
-
-def test_replacing_brings_a_free_ball_back():
     frame = Frame(free_ball=True, miss="clear_path")
     assert frame.play(Stroke(nominated=BLUE), **PATHS)[0].choose("replace").free_ball
 
@@ -119,15 +113,11 @@ def test_a_free_ball_adds_to_the_points_available(on_table, ball_on, worth):
     """As many as the referee gives for the best of all breaks, whichever ball they begin with."""
     plain, free = (Frame(on_table=on_table, ball_on=ball_on, free_ball=given) for given in (False, True))
     assert free.available == plain.available + worth == points_available(on_table, ball_on, free_ball=True)
-    first = ids_of(balls_on(ball_on, on_table))[0], *ids_of(on_table & COLOURS_MASK)
-    assert free.available == max(points_of_the_best_break_from(free, ball) for ball in first)
-
-
-def points_of_the_best_break_from(frame, ball):
-    """A break that begins with this ball: what it scores, and what is left for its player."""
-    after, verdict = frame.play(pot(ball))
-    assert not verdict.fouls and after.striker == frame.striker
-    return verdict.points + (0 if after.phase == "over" else after.available)
+    best = 0
+    for ball in (ids_of(balls_on(ball_on, on_table))[0], *ids_of(on_table & COLOURS_MASK)):
+        after, verdict = free.play(pot(ball))
+        best = max(best, verdict.points + (0 if after.phase == "over" else after.available))
+    assert free.available == best
 
 
 def test_what_only_the_striker_may_play_is_not_there_for_the_other_player():
@@ -148,24 +138,6 @@ def test_needs_snookers(scores, needs):
     assert frame.needs_snookers(1) == (scores[0] - scores[1] > 13)
 
 
-@pytest.mark.parametrize(
-    ("scores", "stroke", "phase", "winner", "after"),
-    [
-        ((60, 58), pot(BLACK), "over", 0, (67, 58)),
-        ((40, 60), pot(BLACK), "over", 1, (47, 60)),
-        ((60, 55), MISSED, "over", 1, (60, 62)),
-        ((90, 55), MISSED, "over", 0, (90, 62)),
-        ((50, 57), pot(BLACK), "lot", None, (57, 57)),
-        ((64, 57), MISSED, "lot", None, (64, 64)),
-        ((64, 57), hit(BLACK), "stroke", None, (64, 57)),
-    ],
-)
-def test_the_last_black(scores, stroke, phase, winner, after):
-    frame = played(last(BallOn.BLACK, scores), stroke)
-    assert (frame.phase, frame.winner, frame.scores) == (phase, winner, after)
-    assert frame.ball_on == (BallOn.NOTHING if phase == "over" else BallOn.BLACK)
-
-
 @pytest.mark.parametrize("first", [0, 1])
 def test_a_respotted_black_is_decided_by_the_next_score_or_foul(first):
     lot = played(last(BallOn.BLACK, (50, 57)), pot(BLACK))
@@ -179,15 +151,12 @@ def test_a_respotted_black_is_decided_by_the_next_score_or_foul(first):
         frame.draw(0)
 
 
-def test_claiming():
+def test_who_may_claim_and_concede():
     assert last(BallOn.BLACK, (60, 52)).claim().winner == 0
     for frame in (last(BallOn.BLACK, (60, 53)), last(BallOn.PINK, (60, 20)), last(BallOn.BLACK, (20, 60))):
         assert not frame.may_claim
         with pytest.raises(ValueError, match="over 7"):
             frame.claim()
-
-
-def test_only_the_striker_concedes():
     frame = Frame.start(breaker=1)
     assert frame.concede(1).winner == 0
     with pytest.raises(ValueError, match="striker"):
@@ -196,7 +165,7 @@ def test_only_the_striker_concedes():
         frame.concede(1).concede(1)
 
 
-def test_a_stalemate_starts_again():
+def test_a_stalemate_starts_again_and_what_is_over_does_not():
     frame = played(Frame.start(breaker=1, miss="clear_path"), pot(1), pot(BLACK), hit(2)).restart()
     assert frame == Frame.start(breaker=1, miss="clear_path")
     few = Frame.start(on_table=COLOURS_MASK | 0b10110, miss="clear_path")
@@ -204,9 +173,6 @@ def test_a_stalemate_starts_again():
     assert Frame.start(rules="six_red").restart().on_table == Frame.start(rules="six_red").on_table
     with pytest.raises(ValueError, match="over"):
         frame.concede(frame.striker).restart()
-
-
-def test_nothing_more_is_played_when_it_is_over():
     with pytest.raises(ValueError, match="over"):
         Frame.start().concede(0).play(MISSED)
 
@@ -215,12 +181,16 @@ def through_json(frame):
     return Frame.from_dict(json.loads(json.dumps(frame.to_dict())))
 
 
-def test_a_whole_frame_of_the_best_break():
+def test_the_break_to_the_end_of_a_frame():
     frame, reds = Frame.start(), list(range(1, 16))
     for red in reds:
         frame = played(frame, pot(red), pot(BLACK))
     frame = played(frame, *map(pot, range(YELLOW, BLACK + 1)))
     assert (frame.phase, frame.winner, frame.scores) == ("over", 0, (147, 0))
+    # The last black belongs to the break; a foul ends it, as everywhere
+    frame = last(BallOn.BLACK, (60, 20), break_points=140)
+    assert played(frame, pot(BLACK)).break_points == 147
+    assert played(frame, MISSED).break_points == 0
 
 
 @pytest.mark.parametrize(
@@ -242,13 +212,6 @@ def test_a_whole_frame_of_the_best_break():
 def test_impossible_frames_are_refused(wrong):
     with pytest.raises(ValueError, match=" = "):
         Frame(**wrong)
-
-
-def test_the_break_at_the_end_of_a_frame():
-    """The last black belongs to the break; a foul ends it, as everywhere."""
-    frame = last(BallOn.BLACK, (60, 20), break_points=140)
-    assert played(frame, pot(BLACK)).break_points == 147
-    assert played(frame, MISSED).break_points == 0
 
 
 def test_a_strange_dict_is_refused():

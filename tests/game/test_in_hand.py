@@ -52,15 +52,12 @@ def test_a_wish_outside_goes_to_the_nearest_point_of_the_d(wish, place):
     assert place_cue(*table(), *wish) == pytest.approx(place, abs=1e-12)
 
 
-def test_beside_one_ball():
+def test_the_place_is_beside_the_balls_in_the_way():
     assert place_cue(*table((0.0, -1.2)), 0.01, -1.2) == pytest.approx((REACH, -1.2), abs=1e-12)
     touching = 2 * BALL_RADIUS + 0.9 * REFEREE_TOUCH  # a referee would call a touching ball there
     assert place_cue(*table((0.0, -1.2)), touching, -1.2) == pytest.approx((REACH, -1.2), abs=1e-12)
     x, y = place_cue(*table((0.0, -1.2)), 0.0, -1.2)
     assert np.hypot(x, y + 1.2) == pytest.approx(REACH, abs=1e-12)
-
-
-def test_beside_one_ball_on_the_lines_of_the_d():
     # The nearest point of the circle lies beyond the line; the place is where circle and line meet.
     half = np.sqrt(REACH**2 - 0.02**2)
     assert place_cue(*table((0.0, BAULK_Y - 0.02)), 0.01, BAULK_Y) == pytest.approx(
@@ -69,27 +66,18 @@ def test_beside_one_ball_on_the_lines_of_the_d():
     x, y = place_cue(*table((0.0, BAULK_Y - D_RADIUS + 0.02)), 0.01, BAULK_Y - D_RADIUS)
     assert np.hypot(x, y - BAULK_Y) == pytest.approx(D_RADIUS, abs=1e-12)
     assert np.hypot(x, y - BAULK_Y + D_RADIUS - 0.02) == pytest.approx(REACH, abs=1e-12) and x > 0.0
-
-
-def test_on_the_spots_of_the_d():
     for ball in (YELLOW, GREEN, BROWN):
         x, y = place_cue(*table(SPOTS[ball]), *SPOTS[ball])
         assert in_d(x, y) and np.hypot(*(SPOTS[ball] - [x, y])) == pytest.approx(REACH, abs=1e-12)
-
-
-def test_the_cue_ball_is_not_in_its_own_way():
     positions, on_table = table()
     positions[0], on_table[0] = (0.0, -1.1), True
     assert place_cue(positions, on_table, 0.0, -1.1) == (0.0, -1.1)
 
 
-def test_a_full_d_is_refused():
+def test_a_full_d_and_wrong_input_are_refused():
     rows = [(x, BAULK_Y - y) for y in (0.02, 0.11, 0.2, 0.28) for x in np.linspace(-0.26, 0.26, 6)]
     with pytest.raises(ValueError, match="free place"):
         place_cue(*table(*rows[:17], *rows[18:22]), 0.0, -1.1, radius=0.08)
-
-
-def test_wrong_input_is_refused():
     with pytest.raises(ValueError, match="x = nan"):
         place_cue(*table(), np.nan, 0.0)
 

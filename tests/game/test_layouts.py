@@ -78,15 +78,12 @@ def test_number_of_reds(name, reds):
     assert layouts.layout(name, np.random.default_rng(0))[1][1:16].sum() == reds
 
 
-def test_break_off_is_played_from_the_d():
+def test_where_the_break_off_and_the_line_up_lie():
     """From one place: beside the brown, on the side that the stream decides."""
     places = [tuple(layouts.layout("break_off", np.random.default_rng(seed))[0][0]) for seed in range(60)]
     usual = tuple(SPOTS[0].tolist())
     assert usual == (0.18, BAULK_Y) and set(places) == {usual, (-0.18, BAULK_Y)}
     assert 20 < places.count(usual) < 40
-
-
-def test_line_up_is_a_line_through_which_a_ball_passes():
     positions, _ = layouts.layout("line_up", np.random.default_rng(0))
     on_line = np.sort(np.append(positions[1:16, 1], SPOTS[19:22, 1]))
     assert np.all(positions[1:16, 0] == 0.0)

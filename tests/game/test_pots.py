@@ -1,17 +1,14 @@
 """Are the pots that are offered ones that can be played?"""
 
 import numpy as np
-import pytest
 
 from snooker_env.game.balls import mask_of
-from snooker_env.game.layouts import layout
 from snooker_env.game.pots import (
     _CORNER_ANGLE,
     _CORNER_WINDOW,
     _MIDDLE_ANGLE,
     _MIDDLE_WINDOW,
     GHOST_X,
-    GHOST_Y,
     POT_BALL,
     POT_POCKET,
     count_pots,
@@ -19,29 +16,6 @@ from snooker_env.game.pots import (
 )
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCKET_AIMS
 from snooker_env.kernels import entry
-
-
-def two(cue, red):
-    positions, on_table = np.zeros((22, 2)), np.zeros(22, bool)
-    positions[:2], on_table[:2] = (cue, red), True
-    return pots(positions, on_table, mask_of([1]))
-
-
-def test_no_ghost_lies_in_a_cushion():
-    """A red by the rail cannot be potted across the table: there is no room behind it."""
-    assert not (np.abs(two((-0.5, 1.6), (-0.86, 0.3))[:, GHOST_X]) > HALF_WIDTH - BALL_RADIUS + 1e-9).any()
-    for seed in range(200):
-        positions, on_table = layout("opened", np.random.default_rng(seed))
-        found = pots(positions, on_table, mask_of(range(1, 16)))
-        assert (np.abs(found[:, GHOST_X]) <= HALF_WIDTH - BALL_RADIUS + 1e-9).all()
-        assert (np.abs(found[:, GHOST_Y]) <= HALF_LENGTH - BALL_RADIUS + 1e-9).all()
-
-
-@pytest.mark.parametrize("side", [-1, 1])
-def test_a_ball_frozen_to_a_rail_can_be_sent_along_it(side):
-    red = (side * (HALF_WIDTH - BALL_RADIUS), 1.2)
-    found = two((side * 0.7, 0.4), red)
-    assert len(found) and found[0, GHOST_Y] < red[1]
 
 
 @entry

@@ -13,7 +13,7 @@ from snooker_env.game.balls import (
     mask_of,
 )
 from snooker_env.game.referee import FULL_TABLE, Situation, Stroke, judge
-from snooker_env.game.ruling import AUTO, Foul, Outcome, VisitEnd
+from snooker_env.game.ruling import Foul, Outcome, VisitEnd
 
 MASKS = ("first", "potted", "off", "touching", "moved")
 
@@ -45,20 +45,6 @@ def assert_foul(verdict, fouls, penalty, ball_on="RED"):
 
 
 # First impact
-
-
-@pytest.mark.parametrize(
-    ("ball_on", "first", "penalty"),
-    [
-        ("RED", [1, 2], 0),
-        ("RED", [1, BLACK], 7),
-        ("RED", [1, YELLOW], 4),
-        ("ANY_COLOUR", [PINK, BLACK], 7),
-        ("YELLOW", [YELLOW, BLUE], 5),
-    ],
-)
-def test_balls_struck_at_the_same_time(ball_on, first, penalty):
-    assert rule(ball_on, first=first, nominated=PINK if ball_on == "ANY_COLOUR" else AUTO).penalty == penalty
 
 
 # Balls down, balls off, the cue ball
@@ -97,15 +83,12 @@ def test_how_it_was_played_costs_the_ball_on(field, foul, ball_on, ball, penalty
     assert_foul(rule(ball_on, first=ball, potted=ball, **{field: True}), foul, penalty, ball_on)
 
 
-def test_a_push_costs_the_ball_concerned():
+def test_penalties_of_a_push_and_of_seven_points():
     assert_foul(rule(first=1, push=True), Foul.PUSH, 4)
     assert_foul(rule(first=BLACK, push=True), Foul.PUSH | Foul.WRONG_FIRST, 7)
     assert_foul(rule(first=1, touching=PINK, moved=PINK), Foul.PUSH, 6)
     # free to meet the black, but not to push it
     assert_foul(rule(touching=1, first=BLACK, push=True), Foul.PUSH, 7)
-
-
-def test_seven_points_whatever_is_on():
     assert_foul(rule(first=1, potted=1, seven=True), Foul.SEVEN, 7)
 
 
@@ -115,14 +98,11 @@ def test_seven_points_whatever_is_on():
 # Nomination left to the referee
 
 
-def test_auto_takes_the_highest_of_several_and_else_a_touching_one():
+def test_what_auto_nominates():
     assert rule("ANY_COLOUR", first=[YELLOW, GREEN]).nominated == GREEN
     assert rule("ANY_COLOUR", first=[YELLOW, GREEN]).penalty == 4
     assert_fair(rule("ANY_COLOUR", touching=BLUE), 0, "RED", False)
     assert rule("ANY_COLOUR", touching=BLUE, first=PINK).nominated == PINK
-
-
-def test_auto_takes_a_free_ball_only_when_one_was_played():
     assert rule(free_ball=True, first=BLUE).nominated == BLUE
     assert rule(free_ball=True, first=1, touching=BLUE).nominated == 0
     assert_fair(rule(free_ball=True, first=1, potted=1), 1, "ANY_COLOUR", True)
@@ -162,10 +142,7 @@ def test_how_a_visit_ends_on_the_last_black(lead, seen, outcome, end):
         assert (verdict.ball_on, verdict.on_table, verdict.respotted) == (BallOn.NOTHING, 0, 0)
 
 
-def test_a_foul_on_an_earlier_colour_does_not_end_the_frame():
+def test_what_ends_a_frame_or_a_practice_table():
     assert rule("PINK", first=PINK, potted=[PINK, BLACK]).outcome == Outcome.PLAYING
-
-
-def test_a_practice_table_without_colours_ends_with_its_last_red():
     assert rule(on_table=[1], first=1, potted=1).visit_end == VisitEnd.CLEARANCE
     assert_fair(rule(on_table=[1, 2], first=1, potted=1), 1, "RED", True)

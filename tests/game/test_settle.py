@@ -46,9 +46,12 @@ def test_a_free_ball_after_a_foul_that_snookers(blocker, free_ball):
     assert not settled(arrays, BallOn.RED, first=2)[0].free_ball
 
 
-def test_what_the_stroke_says_of_snookers_does_not_count():
+def test_the_table_decides_what_is_snookered_and_must_be_the_situations():
     arrays = table(BLACK, b0=(0.0, -0.8), b1=(0.0, 0.8))
     assert not settled(arrays, BallOn.RED, snookered=True)[0].free_ball
+    positions, on_table = table(PINK, BLACK, 0)
+    with pytest.raises(ValueError, match="on_table"):
+        settle_table(positions, on_table, Situation(), Stroke())
 
 
 def test_it_is_the_referees_verdict():
@@ -66,9 +69,3 @@ def test_it_is_the_referees_verdict():
         verdict, _, left = settle_table(positions, on_table, situation, stroke)
         assert replace(verdict, free_ball=False) == replace(judge(situation, stroke), free_ball=False)
         assert mask_of(np.flatnonzero(left)) & ~1 == verdict.on_table
-
-
-def test_array_and_situation_must_agree():
-    positions, on_table = table(PINK, BLACK, 0)
-    with pytest.raises(ValueError, match="on_table"):
-        settle_table(positions, on_table, Situation(), Stroke())

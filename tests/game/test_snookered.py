@@ -5,14 +5,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game import lines
 from snooker_env.game.balls import BLACK, COLOURS_MASK, PINK, SPOTS, YELLOW, mask_of
 from snooker_env.game.paths import paths
 from snooker_env.game.snookered import is_snookered
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y
-from tests.kernels import from_python
-
-meets = from_python(lines.meets)
 
 R = BALL_RADIUS
 RED = mask_of([1])
@@ -42,13 +38,6 @@ FAR = (0.0, 0.8)
         ([FAR], [], False),
         ([FAR], [(0.0, 0.0)], True),
         ([FAR], [(0.06, 0.0)], True),  # one edge hidden is enough
-        ([FAR], [(-0.06, 0.0)], True),
-        ([FAR], [(0.08, 0.0)], False),
-        ([FAR], [(0.0, -0.9)], False),  # behind the cue ball
-        ([FAR], [(0.0, 0.9)], False),  # behind the red
-        ([FAR, (0.0, 0.3)], [], False),  # a ball on hides nothing
-        ([FAR, (0.5, 0.7)], [(0.0, 0.0)], False),  # one of two is enough
-        ([FAR, (0.5, 0.7)], [(0.06, 0.0), (0.33, 0.3)], True),
         ([(0.0, -0.8 + 2 * R)], [(0.0, 0.0)], False),  # touching a ball on
         ([(0.0, -0.8 + 2 * R + 49e-6)], [(0.0526, -0.8001)], False),  # as the referee sees it
         ([(0.0, -0.8 + 2 * R + 51e-6)], [(0.0526, -0.8001)], True),
@@ -87,12 +76,16 @@ def test_a_cushion_does_not_snooker():
 # In hand: the whole D
 
 
-def test_in_hand_sees_from_any_place():
+def test_in_hand_sees_from_any_place_that_is_free():
     assert not snookered(None, [FAR])[0]
     assert not snookered(None, [FAR], [(0.0, 0.0)])[0]  # round the blocker from the ends of the D
     cage = [(2.1 * R * np.sin(a), 0.8 - 2.1 * R * np.cos(a)) for a in np.radians([-60.0, 0.0, 60.0])]
     assert snookered(None, [FAR], cage)[0]
     assert not snookered(None, [FAR, (0.5, 0.0)], cage)[0]
+    red = np.array([0.0, -1.19])
+    ring = [red + 2.001 * R * np.array([np.cos(a), np.sin(a)]) for a in np.radians(range(0, 360, 60))]
+    assert snookered(None, [red], ring)[0]
+    assert not snookered(None, [red], ring[:3])[0]
 
 
 @pytest.mark.parametrize(("spare", "expected"), [(0.0012, False), (-0.0005, True)])
@@ -109,21 +102,10 @@ def test_in_hand_finds_a_narrow_view_right_beside_a_ball():
     # Both edges of the green are in view from the baulk line 0.1 to 0.6 mm beside it, which no grid of places
     # meets.
     green, brown = (-0.292, BAULK_Y), (-0.27029115608194443, -1.0993258680927571)
-    others = [
-        (0.687739087233893, -0.6279441785695304),
-        (-0.6521780571937696, -0.4790269154178912),
-        (0.0, 0.0),
-        brown,
-    ]
+    far = (0.687739087233893, -0.6279441785695304), (-0.6521780571937696, -0.4790269154178912)
+    others = [*far, (0.0, 0.0), brown]
     assert not snookered((-0.2392, BAULK_Y), [green], others)[0]
     assert not snookered(None, [green], others)[0]
-
-
-def test_in_hand_a_place_on_a_ball_is_no_place():
-    red = np.array([0.0, -1.19])
-    ring = [red + 2.001 * R * np.array([np.cos(a), np.sin(a)]) for a in np.radians(range(0, 360, 60))]
-    assert snookered(None, [red], ring)[0]
-    assert not snookered(None, [red], ring[:3])[0]
 
 
 # Small steps as the judge
@@ -167,17 +149,11 @@ def test_paths_agree_with_rolling(scene):
 def swept(reds, others, directions):
     """Does a direction of a sweep over each red, with the other reds taken away, lead into it?"""
     spread = np.linspace(-0.999, 0.999, directions)
-    return any(
-        rolls_into(
-            (0.0, 0.0),
-            np.arctan2(red[1], red[0]) + part * np.arcsin(min(1.0, 2 * R / np.hypot(*red))),
-            1.0,
-            [red, *others],
-        )
-        == 0
-        for red in reds
-        for part in spread
-    )
+    for red in reds:
+        ways = np.arctan2(red[1], red[0]) + spread * np.arcsin(min(1.0, 2 * R / np.hypot(*red)))
+        if any(rolls_into((0.0, 0.0), way, 1.0, [red, *others]) == 0 for way in ways):
+            return True
+    return False
 
 
 @settings(max_examples=150, deadline=None)
@@ -241,17 +217,6 @@ def test_a_view_that_ends_where_the_cue_ball_would_meet_two_balls_at_once(side):
     assert paths(*table((0.0, 0.0), [red], [neighbour, near])) == (True, False)
     # that edge at 0.034 rad
     assert paths(*table((0.0, 0.0), [red], [neighbour, (-side * 0.0355, 0.498)])) == (False, False)
-
-
-@pytest.mark.parametrize("across", [-0.05, -0.03, 0.0, 0.01, 0.0524])
-def test_where_a_rolling_ball_meets_another(across):
-    angle = 0.7
-    along, aside = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
-    ball = 0.9 * along + across * aside
-    run = meets(*ball, *along, R)
-    assert np.hypot(*(run * along - ball)) == pytest.approx(2 * R, abs=1e-12) and run < 0.9
-    assert meets(*-ball, *along, R) == np.inf
-    assert meets(*(ball + 0.11 * aside), *along, R) == np.inf
 
 
 def test_wrong_input_is_refused():

@@ -45,7 +45,7 @@ def test_blocks_are_those_of_the_authors(counter, key, expected):
     assert [f"{int(word):08x}" for word in block(words)] == expected.split()
 
 
-def test_a_draw_takes_one_block_and_can_be_found_again():
+def test_a_draw_takes_one_block_and_keys_come_from_the_generator():
     state = np.array([7, 2**40], np.uint64)
     out = np.empty((3, 2))
     pairs(state, out)
@@ -54,6 +54,12 @@ def test_a_draw_takes_one_block_and_can_be_found_again():
     # counter 2^40 = 2^8 in the upper word
     words = [int(w) for w in block(np.array([0, 2**8, 0, 0, 7, 0], np.uint64))]
     assert out[0].tolist() == [(low + (high << 32) >> 11) * 2.0**-53 for low, high in (words[:2], words[2:])]
+    one, two = philox.stream_of(np.random.default_rng(1)), philox.stream_of(np.random.default_rng(1))
+    assert np.array_equal(one, two) and one.dtype == np.uint64 and one[1] == 0
+    rng = np.random.default_rng(1)
+    assert philox.stream_of(rng)[0] != philox.stream_of(rng)[0]
+    with pytest.raises(ValueError, match="Generator"):
+        philox.stream_of(np.random.RandomState(0))
 
 
 def test_normal_numbers_are_normal():
@@ -65,12 +71,3 @@ def test_normal_numbers_are_normal():
     # the fourth power has variance 96, the others less
     assert moments == pytest.approx([0, 1, 0, 3], abs=4 * np.sqrt(96 / n))
     assert abs(np.corrcoef(z.T)[0, 1]) < 4 / np.sqrt(len(z))
-
-
-def test_keys_come_from_the_generator():
-    one, two = philox.stream_of(np.random.default_rng(1)), philox.stream_of(np.random.default_rng(1))
-    assert np.array_equal(one, two) and one.dtype == np.uint64 and one[1] == 0
-    rng = np.random.default_rng(1)
-    assert philox.stream_of(rng)[0] != philox.stream_of(rng)[0]
-    with pytest.raises(ValueError, match="Generator"):
-        philox.stream_of(np.random.RandomState(0))

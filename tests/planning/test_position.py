@@ -54,6 +54,8 @@ def test_what_is_on_follows_from_the_balls_if_it_is_not_said():
     assert Position(**FULL).on == "red"
     assert Position(**FULL | {"reds": []}).on == "pink"
     assert Position(**FULL, on=BallOn.ANY_COLOUR).on == "any_colour"
+    assert Position(black=(0.0, 1.4605), over=True, on="nothing").cue is None
+    assert Position(over=True).on == "nothing"
 
 
 def test_a_cue_ball_in_hand_lies_in_the_d():
@@ -90,11 +92,6 @@ def test_a_cue_ball_in_hand_lies_in_the_d():
 def test_a_position_that_cannot_be_is_refused(words, complaint):
     with pytest.raises(ValueError, match=complaint):
         Position(**FULL | words)
-
-
-def test_a_visit_that_is_over_needs_nothing_on():
-    assert Position(black=(0.0, 1.4605), over=True, on="nothing").cue is None
-    assert Position(over=True).on == "nothing"
 
 
 def test_the_table_decides_what_fits():
@@ -146,11 +143,8 @@ def test_one_row_is_words_and_any_other_index_a_batch():
     ],
 )
 def test_arrays_of_the_wrong_shape_or_type_are_refused(change, complaint):
-    arrays = {
-        "positions": np.zeros((2, 22, 2)),
-        "on_table": np.zeros((2, 22), bool),
-        "game": np.zeros((2, 5), int),
-    }
+    arrays = {"positions": np.zeros((2, 22, 2)), "on_table": np.zeros((2, 22), bool)}
+    arrays["game"] = np.zeros((2, 5), int)
     with pytest.raises(ValueError, match=complaint):
         Positions(*(arrays | change).values())
 

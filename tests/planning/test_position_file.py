@@ -11,12 +11,16 @@ BALLS = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (1 / 3, -0.7)], "black": (0.0,
 POSITION = Position(**BALLS, on="any_colour", points=9, in_hand=True)
 
 
-def test_a_file_holds_the_position_to_the_last_bit(tmp_path):
+def test_a_file_holds_the_position_to_the_last_bit_on_any_table(tmp_path):
     file = tmp_path / "one.json"
     POSITION.save(file)
     assert Position.load(file) == POSITION and Position.load(str(file)) == POSITION
     assert json.loads(file.read_text()) == POSITION.to_dict() and file.stat().st_size < 300
     assert [p.name for p in tmp_path.iterdir()] == ["one.json"]
+    far = Position(cue=(0.0, 0.0), black=(3.0, 0.0), table=None)
+    far.save(tmp_path / "far.json")
+    assert Position.load(tmp_path / "far.json", table=None) == far
+    refused(lambda: Position.load(tmp_path / "far.json"), "black", "3.0", "must be on the table")
 
 
 def test_a_file_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
@@ -29,13 +33,6 @@ def test_a_file_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch)
     assert Position.load(file) == POSITION and len(list(tmp_path.iterdir())) == 1
     with pytest.raises(OSError, match="nowhere"):
         POSITION.save(tmp_path / "nowhere" / "one.json")
-
-
-def test_a_position_on_a_table_of_its_own(tmp_path):
-    far = Position(cue=(0.0, 0.0), black=(3.0, 0.0), table=None)
-    far.save(tmp_path / "far.json")
-    assert Position.load(tmp_path / "far.json", table=None) == far
-    refused(lambda: Position.load(tmp_path / "far.json"), "black", "3.0", "must be on the table")
 
 
 GOOD = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], black=(0.0, 1.4605)).to_dict()

@@ -309,15 +309,12 @@ def test_nothing_given_is_changed_and_nothing_returned_is_shared():
     assert same(copies, tool.rank(at, seeds))
 
 
-def test_noise_given_takes_the_place_of_the_tables_own():
+def test_physics_and_fidelity_are_the_tables_and_noise_given_takes_its_place():
     at = some(3)
     exact = search(30, noise="none")
     assert exact.noise.silent and not exact.rank(at, [1, 2, 3]).samples.any()
     loud = search(30, {"noise": "none", "fidelity": "fast"}, noise="club")
     assert same(loud.rank(at, [1, 2, 3]), search(30).rank(at, [1, 2, 3]))
-
-
-def test_the_tables_own_physics_and_fidelity_count():
     at = some(3)
     usual = search(30).rank(at, [1, 2, 3])
     for change in ({"physics": "match"}, {"fidelity": "standard"}, {"table": "tight"}):

@@ -24,9 +24,12 @@ def refused(answer, status, words):
     return body["error"]
 
 
-def test_it_listens_on_this_machine_alone(line):
+def test_it_listens_on_this_machine_alone_and_serves_its_own_page(line):
     assert line.server.server_address[0] == "127.0.0.1" and len(line.server.token) >= 32
     assert line.server.address == f"http://127.0.0.1:{line.server.server_port}/{line.server.token}/"
+    own = {"Origin": f"http://127.0.0.1:{line.server.server_port}", "Sec-Fetch-Site": "same-origin"}
+    assert line("api/undo", {}, headers=own)[0] == 200
+    assert line("", headers={"Sec-Fetch-Site": "none"})[0] == 200
 
 
 def test_the_page_and_the_protocol_are_served_with_headers_that_keep_others_out(line):
@@ -75,12 +78,6 @@ def test_this_machines_names_are_served(line, name):
 def test_other_pages_are_refused(line, headers):
     refused(line("api/undo", {}, headers=headers), 403, "must be")
     refused(line("api/state", headers=headers), 403, "must be")
-
-
-def test_the_own_page_is_served(line):
-    own = {"Origin": f"http://127.0.0.1:{line.server.server_port}", "Sec-Fetch-Site": "same-origin"}
-    assert line("api/undo", {}, headers=own)[0] == 200
-    assert line("", headers={"Sec-Fetch-Site": "none"})[0] == 200
 
 
 def test_only_known_names_are_served(line):
@@ -132,18 +129,6 @@ def test_wrong_fields_are_named(line):
     refused(line("api/undo?x=1", {}), 400, "in its body")
 
 
-def test_bodies_are_bounded_and_typed(line):
-    refused(line("api/load", b" " * (module.MOST_BODY + 1)), 413, "at most")
-    refused(line("api/load", b"", headers={"Content-Length": "999999999999"}), 413, "at most")
-    refused(line("api/undo", {}, headers={"Content-Type": "text/plain"}), 415, "application/json")
-    refused(line("api/undo", {}, headers={"Content-Type": None}), 415, "application/json")
-    for wrong in ("x", "-1", "1e3", "", "+2", "0x2"):
-        refused(line("api/undo", {}, headers={"Content-Length": wrong}), 411, "bytes")
-    chunked = {"Content-Length": None, "Transfer-Encoding": "chunked"}
-    refused(line("api/undo", {}, headers=chunked), 411, "Content-Length")
-    refused(line("api/state", b"{}", method="GET"), 400, "no body")
-
-
 def test_a_post_without_a_body_has_no_fields_and_a_second_slash_does_no_harm(line):
     for length in (None, "0"):
         assert line("api/redo", b"", headers={"Content-Length": length, "Content-Type": None})[0] == 200
@@ -161,10 +146,19 @@ def test_the_client_says_in_one_line_that_nobody_answers(address, words):
     assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1
 
 
-def test_heads_are_bounded(line):
+def test_heads_and_bodies_are_bounded_and_typed(line):
     refused(line("api/state", headers={"X-Long": "x" * module.MOST_HEAD}), 431, "head")
     refused(line("api/state", headers={f"X-{k}": "x" * 100 for k in range(200)}), 431, "")
     assert line("api/state", path=f"/{line.server.token}/api/state?" + "x" * 20_000)[0] == 431
+    refused(line("api/load", b" " * (module.MOST_BODY + 1)), 413, "at most")
+    refused(line("api/load", b"", headers={"Content-Length": "999999999999"}), 413, "at most")
+    refused(line("api/undo", {}, headers={"Content-Type": "text/plain"}), 415, "application/json")
+    refused(line("api/undo", {}, headers={"Content-Type": None}), 415, "application/json")
+    for wrong in ("x", "-1", "1e3", "", "+2", "0x2"):
+        refused(line("api/undo", {}, headers={"Content-Length": wrong}), 411, "bytes")
+    chunked = {"Content-Length": None, "Transfer-Encoding": "chunked"}
+    refused(line("api/undo", {}, headers=chunked), 411, "Content-Length")
+    refused(line("api/state", b"{}", method="GET"), 400, "no body")
 
 
 def raw(line, *parts, wait=0.0):
@@ -214,10 +208,8 @@ def closed(connection):
 
 
 def test_connections_at_once_are_bounded(line):
-    held = [
-        socket.create_connection(("127.0.0.1", line.server.server_port))
-        for _ in range(module.MOST_AT_ONCE + 4)
-    ]
+    address = "127.0.0.1", line.server.server_port
+    held = [socket.create_connection(address) for _ in range(module.MOST_AT_ONCE + 4)]
     try:
         time.sleep(0.3)
         held[-1].settimeout(5)

@@ -62,17 +62,14 @@ def test_strokes_are_those_of_the_match_environment():
     assert session.tables.game[0, STROKES] == 12
 
 
-def test_a_colour_that_was_named_must_be_struck_first():
+def test_a_colour_that_was_named_must_be_struck_first_and_a_miss_is_called_for_any():
     for named, penalty in ((AUTO, 0), (BLUE, 0), (PINK, 6), (BLACK, 7)):
         session = standing(COVERED)
         session.play(ALONG_X, nominated=named)
         assert session.frame.scores == (0, penalty) and (session.frame.phase == "choice") == bool(penalty)
         assert session.tables.nominated[0] == AUTO
         assert session.acts[-1].detail == ("" if named == AUTO else NAMES[named])
-
-
-def test_a_miss_is_called_whichever_colour_was_named():
-    """S3 R14(c) speaks of every ball that could be on: here the pink is hidden behind the blue."""
+    # S3 R14(c) speaks of every ball that could be on: here the pink is hidden behind the blue
     for named in (AUTO, BLACK, PINK):
         session = standing(COVERED | {"blue": [0.08, -0.5], "pink": [0.6, -0.5]})
         session.play(AT_NOTHING, nominated=named)

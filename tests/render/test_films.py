@@ -66,14 +66,11 @@ def test_a_film_is_the_same_at_any_time_as_picture_after_picture(pot):
     assert len(film.at(pot.duration).paths[CUE]) == len(whole[CUE])
 
 
-def test_contacts_are_where_the_cue_ball_met_others(pot):
+def test_contacts_and_ghosts_are_where_the_cue_ball_met_others(pot):
     assert contacts(pot) == pytest.approx(np.array([(0.7 - 2 * BALL_RADIUS, 0.0)]), abs=1e-6)
     assert contacts(pot, 1) == pytest.approx(np.array([(0.7, 0.0)]), abs=1e-6)
     alone = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)])
     assert contacts(alone).shape == (0, 2)
-
-
-def test_ghosts_stay_from_the_contact_on(pot):
     film = Film("match", pot, faded=(CUE, 1))
     met = pot.events["time"][pot.events["kind"] == sn.EventKind.BALL_BALL][0]
     for t, count in [(0.0, 0), (met - 1e-6, 0), (met, 1), (pot.duration, 1)]:

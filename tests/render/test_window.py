@@ -45,7 +45,7 @@ def test_window_opens_lazily_plays_and_closes(dummy_screen, pot):
     window.close()
 
 
-def test_window_heeds_its_close_button(dummy_screen, pot):
+def test_the_window_heeds_its_close_button_and_escape(dummy_screen, pot):
     window = Window(height=300)
     assert window.draw(scene("match", SPOTS))
     dummy_screen.event.post(dummy_screen.event.Event(dummy_screen.QUIT))
@@ -54,6 +54,10 @@ def test_window_heeds_its_close_button(dummy_screen, pot):
     assert not dummy_screen.display.get_init()
     window.close()
     assert window.draw(scene("match", SPOTS))
+    window.close()
+    window = Pressed(dummy_screen, {3: [dummy_screen.K_ESCAPE]})
+    assert not window.play(Film("match", pot), fps=1000)
+    assert len(window.seen) == 4 and not window.is_open
     window.close()
 
 
@@ -127,13 +131,6 @@ def test_letters_and_paths_are_shown_at_will(dummy_screen):
         window.draw(scene("match", SPOTS, **given))
         expected = rgb_array(scene("match", SPOTS, **wanted), size=(518, 300))
         assert np.array_equal(picture(dummy_screen), expected)
-    window.close()
-
-
-def test_escape_shuts_the_window(dummy_screen, pot):
-    window = Pressed(dummy_screen, {3: [dummy_screen.K_ESCAPE]})
-    assert not window.play(Film("match", pot), fps=1000)
-    assert len(window.seen) == 4 and not window.is_open
     window.close()
 
 

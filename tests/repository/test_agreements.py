@@ -26,21 +26,15 @@ def test_wherever_a_layout_may_put_a_ball_the_table_of_the_physics_has_room(name
     Table.preset(name).check(places[clear][:, None], geometry.BALL_RADIUS)  # each by itself
 
 
-def test_touching_and_overlapping_are_measured_alike():
+def test_constants_that_rooms_share_agree():
     assert balls.TOUCH == table.OVERLAP_ALLOWED == 1e-6
     assert spotting.CLEARANCE is in_hand.CLEARANCE is balls.CLEARANCE  # of every ball that a hand puts down
     assert layouts.GAP > balls.PINK_GAP > balls.CLEARANCE > balls.REFEREE_TOUCH > balls.TOUCH
-
-
-def test_actions_reach_to_the_miscue_limit_of_the_physics():
-    """Half a radius at the end of the action's scale is what ``Physics.max_offset`` allows by default."""
+    # Half a radius at the end of the action's scale is what ``Physics.max_offset`` allows by default
     actions = Actions("absolute", False, False, Physics())
     assert (
         actions.shot([0, 1, 0, 0], balls.SPOTS, np.ones(22, bool), 2)[1] == actions.physics.max_offset == 0.5
     )
-
-
-def test_observations_have_a_row_for_each_ball_and_an_entry_for_each_thing_on():
     kinds = observations.STATE_ENTRIES[1:9]
     assert kinds == tuple(b.name.lower() for b in balls.BallOn if b >= 0)
     assert observations.space("flat").shape == (

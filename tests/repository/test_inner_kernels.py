@@ -32,17 +32,14 @@ print(json.dumps([_inner.KNOWN, machine, shot.positions.tolist(), shot.duration,
 """
 
 
-def test_inner_kernels_are_only_linked():
+def test_inner_kernels_are_only_linked_and_numba_finds_the_rest():
     here = {}
     exec(KERNELS, here)
     assert here["outer"](3.0) == 7.0 and _inner.KNOWN
     ((inner,), (outer,)) = (here[name].overloads.values() for name in ("double", "outer"))
     assert isinstance(inner.entry_point, _inner.EntryPoint)
     assert not isinstance(outer.entry_point, _inner.EntryPoint)
-
-
-def test_numba_finds_by_itself_what_is_not_of_an_inner_kernel():
-    """What was found once is for the types alone: ``max``, compiled for its caller's options, is not kept."""
+    # What was found once is for the types alone: ``max``, compiled for its caller's options, is not kept
     here = {}
     exec(KERNELS.replace("2.0 * x", "max(2.0 * x, 1.0)"), here)
     assert here["outer"](3.0) == 7.0 and here["outer"](0.0) == 2.0

@@ -47,10 +47,8 @@ class Environment:
         return self
 
     def run(self, code, *flags, **variables):
-        env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {
-            "PYTHONWARNINGS": "error",
-            "SNOOKER_ENV_QUIET": "1",
-        }
+        env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
+        env |= {"PYTHONWARNINGS": "error", "SNOOKER_ENV_QUIET": "1"}
         command, cwd = [self.python, *flags, "-c", code], getattr(self, "cwd", "/")
         options = {"capture_output": True, "text": True, "timeout": 280}
         done = subprocess.run(command, cwd=cwd, env=env | variables, **options)
@@ -88,12 +86,8 @@ print(type(gymnasium.make("snooker_env:Snooker-v0").unwrapped).__name__, [f for 
 def test_the_environment_is_made_without_an_import(installed, flags):
     out, err = installed.run(MAKE, *flags)
     assert err == ""
-    assert out.splitlines() == [
-        "snooker_env.envs.snooker:SnookerEnv",
-        "SnookerEnv (121,)",
-        "SnookerVectorEnv (3, 121)",
-        "SnookerEnv []",
-    ]
+    made = ["SnookerEnv (121,)", "SnookerVectorEnv (3, 121)", "SnookerEnv []"]
+    assert out.splitlines() == ["snooker_env.envs.snooker:SnookerEnv", *made]
 
 
 WORKERS = """
@@ -120,14 +114,11 @@ def test_workers_make_it_too(installed, method):
 RUN_FILE = "import subprocess, sys; sys.exit(subprocess.run([sys.executable, 'workers.py']).returncode)"
 
 
-def test_without_the_site_it_is_not_registered(installed):
+def test_it_is_registered_by_the_site_and_can_be_switched_off(installed):
     """The control: neither Gymnasium nor anything else here has the id by itself."""
     paths = [str(installed.site), str(installed.cwd.parent / "libraries"), str(ROOT)]
     code = f"import sys; sys.path += {paths!r}\nimport gymnasium\nprint('Snooker-v0' in gymnasium.registry)"
     assert installed.run(code, "-S")[0] == "False\n"
-
-
-def test_it_can_be_switched_off(installed):
     code = "import gymnasium, sys; print('Snooker-v0' in gymnasium.registry, [f for f in sys.meta_path if 'snooker' in repr(f)])"
     assert installed.run(code, SNOOKER_ENV_AUTOREGISTER="0")[0] == "False []\n"
     assert installed.run(code)[0] == "True []\n"
@@ -218,7 +209,5 @@ def test_the_source_distribution_is_a_clone_and_gives_the_same_wheel(tmp_path, m
             del wheels[-1][next(name for name in wheels[-1] if name.endswith("RECORD"))]
     assert wheels[0] == wheels[1]
     data = {name for name in here if name.startswith("snooker_env/") and not name.endswith(".py")}
-    assert (
-        data - {"snooker_env/_autoregister.pth"} <= set(wheels[0])
-        and {"snooker_env/py.typed", "snooker_env/game/opened.npz"} <= data
-    )
+    assert data - {"snooker_env/_autoregister.pth"} <= set(wheels[0])
+    assert {"snooker_env/py.typed", "snooker_env/game/opened.npz"} <= data

@@ -112,10 +112,13 @@ def test_a_folder_of_another_user_is_not_used(folders, monkeypatch, which):
     )
 
 
-def test_a_home_that_others_share_is_good_as_long_as_they_cannot_exchange_what_is_ours(folders):
+def test_a_shared_home_is_good_and_without_owners_none_are_checked(folders, monkeypatch):
     for mode in (0o1777, 0o775, 0o755):  # /tmp; a home of the user's own group; readable by others
         folders["home"].chmod(mode)
         assert _cache.cache_folder() == folders["hash"]
+    folders["snooker_env"].chmod(0o777)
+    monkeypatch.delattr(os, "geteuid")
+    assert _cache.cache_folder() == folders["hash"]
 
 
 def test_links_are_followed(folders, monkeypatch, tmp_path):
@@ -129,12 +132,6 @@ def test_links_are_followed(folders, monkeypatch, tmp_path):
     assert f"others can write to {folders['snooker_env']}" in unsafe(
         monkeypatch, folders["home"], "others can write to"
     )
-
-
-def test_where_there_are_no_owners_none_are_checked(folders, monkeypatch):
-    folders["snooker_env"].chmod(0o777)
-    monkeypatch.delattr(os, "geteuid")
-    assert _cache.cache_folder() == folders["hash"]
 
 
 def test_a_user_without_a_home_has_no_folder(monkeypatch, tmp_path):

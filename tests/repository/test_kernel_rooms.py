@@ -21,11 +21,8 @@ def taken(path):
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.ImportFrom) and node.level:
             base = here[: len(here) - node.level + 1]
-            yield (
-                *base,
-                *(node.module.split(".") if node.module else []),
-                *(a.name for a in node.names if not node.module),
-            )
+            names = node.module.split(".") if node.module else [alias.name for alias in node.names]
+            yield (*base, *names)
 
 
 @pytest.mark.parametrize("path", INSIDE, ids=lambda p: p.relative_to(PACKAGE).as_posix())

@@ -59,11 +59,9 @@ def toys(tmp_path):
 def test_one_line_before_each_long_compile_and_none_when_it_is_loaded(toys):
     """What large kernels cost is said where they are compiled: with the first that uses them."""
     code = "small(1.0); one(1.0); one(2.0); another(1.0); rest(1.0)"
-    one, other = (
-        f"snooker_env: compiling {what}, once, about {s} s {toys.kept}\n"
-        for what, s in (("one toy", 9), ("another toy", 3))
-    )
-    assert toys(code) == one + other
+    costs = ("one toy", 9), ("another toy", 3)
+    lines = [f"snooker_env: compiling {what}, once, about {s} s {toys.kept}\n" for what, s in costs]
+    assert toys(code) == "".join(lines)
     assert toys(code) == ""
 
 

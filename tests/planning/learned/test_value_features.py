@@ -21,14 +21,8 @@ from snooker_env.planning.learned.value_features import (
 from snooker_env.tasks import LEVELS
 
 SPREAD = spread_of(LEVELS["professional"])
-LAYOUTS = (
-    "opened",
-    "held_out",
-    "break_off",
-    "line_up",
-    "colours",
-    *(f"random:{n}" for n in (0, 1, 3, 9, 15)),
-)
+LAYOUTS = ["opened", "held_out", "break_off", "line_up", "colours"]
+LAYOUTS += [f"random:{n}" for n in (0, 1, 3, 9, 15)]
 OF_ALL = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES
 """The first entry of the whole position."""
 LIKELIEST, BALL_ON, LEFT, SIDE, COUNT = OF_ALL + 10, OF_ALL + 14, OF_ALL + 22, OF_ALL + 25, OF_ALL + 26
@@ -139,11 +133,9 @@ def test_the_ball_on_is_one_of_eight():
     spots = [(0.3, -1.0), (-0.3, -1.0), (0.0, -1.0), (0.0, 0.0), (0.0, 0.9), (0.0, 1.4)]
     colours = dict(zip(COLOUR_NAMES, spots, strict=True))
     names = list(colours)
-    places = [
-        Position(cue=(0.5, 0.3), **colours, on="any_colour"),
-        Position(cue=(0.5, 0.3), reds=[(0.4, 0.6)], **colours),
-    ]
-    places += [Position(cue=(0.5, 0.3), **{name: colours[name] for name in names[k:]}) for k in range(6)]
+    cue = (0.5, 0.3)
+    places = [Position(cue, **colours, on="any_colour"), Position(cue, [(0.4, 0.6)], **colours)]
+    places += [Position(cue, **{name: colours[name] for name in names[k:]}) for k in range(6)]
     rows = seen(*places)
     assert np.array_equal(rows[:, BALL_ON : BALL_ON + 8], np.eye(8))
     # any colour after a red: a seventh black more; then what lies there, a black with each red
