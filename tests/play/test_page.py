@@ -5,7 +5,7 @@ import time
 import pytest
 
 from tests.playing import COVERED, EASY, STRAIGHT, Line
-from tests.web.chromium import chromium  # noqa: F401
+from tests.web.chromium import Watched, chromium  # noqa: F401
 
 AWAY = 2.0
 """An aim [rad] along which EASY has no ball."""
@@ -17,30 +17,14 @@ PERSONS = {"players": ["person", "person"], "noise": ["none", "none"], "practice
 SETTLED = "page.settled === page.state.revision"
 
 
-class Shown:
+class Shown(Watched):
     """The page of a server's game, its mouse in metres, and what went wrong in it."""
 
+    names = "const page = window.page ?? {}"
+
     def __init__(self, browser, line: Line, **options):
-        self.line = line
-        self.page = browser.new_page(**{"viewport": {"width": 1280, "height": 720}, **options})
-        self.errors, self.asked = [], set()
-        self.page.on("console", lambda message: self.errors.append(message.text))
-        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.page.on("request", lambda request: self.asked.add(request.url))
-        self.page.goto(line.server.address)
-        self.until("page.state")
-
-    def __call__(self, code, argument=None):
-        return self.page.evaluate(
-            f"argument => {{ const page = window.page ?? {{}}; return {code}; }}", argument
-        )
-
-    def until(self, code, argument=None, seconds=120):  # what is not compiled yet takes a while
-        """Wait for it from here: the page's policy allows no code from a string."""
-        end = time.monotonic() + seconds
-        while not self(f"Boolean({code})", argument):
-            assert time.monotonic() < end, code
-            time.sleep(0.02)
+        self.line, address = line, line.server.address
+        super().__init__(browser, address, (address, "blob:", "data:"), "page.state", **options)
 
     def set_up(self, position, **fields):
         """A position by the protocol, and wait until the page shows it."""
@@ -75,12 +59,6 @@ class Shown:
     @property
     def words(self):
         return self.page.inner_text("#asked")
-
-    def close(self):
-        self.page.close()
-        assert not self.errors
-        allowed = self.line.server.address, "blob:", "data:"
-        assert not [url for url in self.asked if not url.startswith(allowed)]
 
 
 @pytest.fixture

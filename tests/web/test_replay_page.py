@@ -1,12 +1,10 @@
 """Does a replay's page play? Opened from disk in a real headless Chromium."""
 
-import time
-
 import numpy as np
 import pytest
 
 import snooker_env as sn
-from tests.web.chromium import chromium, module_page  # noqa: F401
+from tests.web.chromium import Watched, chromium, module_page  # noqa: F401
 from tests.web.replay_data import break_off, page_of, visit
 
 SIZES = [(320, 568), (360, 640), (640, 360), (844, 390), (800, 600), (1280, 720), (1920, 1080), (3840, 2160)]
@@ -31,36 +29,6 @@ OVERLAPS = """() => {
 }"""
 
 
-class Watched:
-    """A page of a replay, and what went wrong in it."""
-
-    def __init__(self, browser, file, **options):
-        usual = {"viewport": {"width": 1280, "height": 720}, "reduced_motion": "reduce"}
-        self.page = browser.new_page(**usual | options)
-        self.errors, self.asked = [], []
-        self.page.on("console", lambda message: self.errors.append(message.text))
-        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.page.on("request", lambda request: self.asked.append(request.url))
-        self.page.goto(file.as_uri())
-        self.until("p")
-
-    def until(self, code, argument=None, seconds=20):
-        """Wait for it from here: the page's policy allows no code from a string."""
-        end = time.monotonic() + seconds
-        while not self(f"Boolean({code})", argument):
-            assert time.monotonic() < end, code
-            time.sleep(0.02)
-
-    def __call__(self, code, argument=None):
-        return self.page.evaluate(f"argument => {{ const p = window.player; return {code}; }}", argument)
-
-    def close(self):
-        assert not self.errors
-        assert {url.split(":")[0] for url in self.asked} <= {"file", "data"}
-        assert len([url for url in self.asked if url.startswith("file")]) == 1
-        self.page.close()
-
-
 @pytest.fixture(scope="module")
 def shown(tmp_path_factory):
     """The data of a visit, its shots, the places after its second stroke, and its page."""
@@ -76,12 +44,14 @@ def open_page(chromium, shown):  # noqa: F811
     opened = []
 
     def watched(**options):
-        opened.append(Watched(chromium, shown[3], **options))
+        options = {"reduced_motion": "reduce"} | options
+        opened.append(Watched(chromium, shown[3].as_uri(), ("file:", "data:"), "p", **options))
         return opened[-1]
 
     yield watched
     for one in opened:
         one.close()
+        assert [url for url in one.asked if url.startswith("file:")] == [shown[3].as_uri()]
 
 
 def test_it_plays_by_itself_and_ends_where_the_simulation_ends(open_page, shown):

@@ -133,9 +133,9 @@ def test_the_ball_on_is_one_of_eight():
     spots = [(0.3, -1.0), (-0.3, -1.0), (0.0, -1.0), (0.0, 0.0), (0.0, 0.9), (0.0, 1.4)]
     colours = dict(zip(COLOUR_NAMES, spots, strict=True))
     names = list(colours)
-    cue = (0.5, 0.3)
-    places = [Position(cue, **colours, on="any_colour"), Position(cue, [(0.4, 0.6)], **colours)]
-    places += [Position(cue, **{name: colours[name] for name in names[k:]}) for k in range(6)]
+    at = {"cue": (0.5, 0.3)}
+    places = [Position(**at, **colours, on="any_colour"), Position(**at, **colours, reds=[(0.4, 0.6)])]
+    places += [Position(**at, **{name: colours[name] for name in names[k:]}) for k in range(6)]
     rows = seen(*places)
     assert np.array_equal(rows[:, BALL_ON : BALL_ON + 8], np.eye(8))
     # any colour after a red: a seventh black more; then what lies there, a black with each red
