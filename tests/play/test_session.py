@@ -83,8 +83,6 @@ def test_the_choices_after_a_foul():
         session = standing(COVERED)
         before = session.tables.positions[0].copy()
         session.play(CueStroke(speed=1.0, aim=0.5 * pi))
-        assert session.frame.phase == "choice" and session.frame.striker == 1
-        assert session.frame.scores == (0, 7)
         with pytest.raises(ValueError, match="choose first"):
             session.play(ALONG_X)
         session.choose(what)
