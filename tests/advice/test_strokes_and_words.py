@@ -20,9 +20,8 @@ def test_a_stroke_is_its_action_and_a_suggestion_is_a_stroke():
     places, on_table, _ = OPEN.arrays()
     speed, side, top, cue, elevation = actions.shot(a, places, on_table, 2)
     v, _ = sn.strike(speed, cue, side, top, 0.0)
-    assert (speed, side, top, elevation, atan2(v[1], v[0])) == pytest.approx(
-        (3.1, -0.2, 0.3, 0.2, 2.5), abs=1e-6
-    )
+    numbers = speed, side, top, elevation, atan2(v[1], v[0])
+    assert numbers == pytest.approx((3.1, -0.2, 0.3, 0.2, 2.5), abs=1e-6)
     x, back = a[5], 0.5 * (a[6] + 1.0)
     assert (0.292 * x, -1.0475 - 0.292 * np.sqrt(1 - x * x) * back) == pytest.approx((0.1, -1.2), abs=1e-6)
     assert abs(a[7]) < 1 / 3  # play

@@ -48,10 +48,8 @@ def test_visits_are_played_on_stroke_by_stroke(noise):
     positions = [OPEN, ENDGAME, OPEN, ENDGAME, OPEN]
     numbers = np.array([0, 0, 1, 3, 2])
     found = played_on(practice_of(noise), Positions.of(positions), numbers, 7)
-    own = [
-        by_plain_python(position, visit, 4, 7, noise)
-        for position, visit in zip(positions, numbers.tolist(), strict=True)
-    ]
+    asked = zip(positions, numbers.tolist(), strict=True)
+    own = [by_plain_python(position, visit, 4, 7, noise) for position, visit in asked]
     assert found.tolist() == [total for total, _ in own]
     assert max(strokes for _, strokes in own) > 2 and len(set(found.tolist())) > 2
 

@@ -60,9 +60,8 @@ def test_the_place_is_beside_the_balls_in_the_way():
     assert np.hypot(x, y + 1.2) == pytest.approx(REACH, abs=1e-12)
     # The nearest point of the circle lies beyond the line; the place is where circle and line meet.
     half = np.sqrt(REACH**2 - 0.02**2)
-    assert place_cue(*table((0.0, BAULK_Y - 0.02)), 0.01, BAULK_Y) == pytest.approx(
-        (half, BAULK_Y), abs=1e-12
-    )
+    place = place_cue(*table((0.0, BAULK_Y - 0.02)), 0.01, BAULK_Y)
+    assert place == pytest.approx((half, BAULK_Y), abs=1e-12)
     x, y = place_cue(*table((0.0, BAULK_Y - D_RADIUS + 0.02)), 0.01, BAULK_Y - D_RADIUS)
     assert np.hypot(x, y - BAULK_Y) == pytest.approx(D_RADIUS, abs=1e-12)
     assert np.hypot(x, y - BAULK_Y + D_RADIUS - 0.02) == pytest.approx(REACH, abs=1e-12) and x > 0.0

@@ -38,9 +38,8 @@ def test_every_layout_is_playable(name, seed):
     if name != "break_off":
         assert distances.min() >= layouts.GAP - 1e-12
     sprinkled = positions[:16][on_table[:16]] if name.startswith("random") else positions[:1]
-    assert np.all(
-        np.abs(sprinkled) <= np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - layouts.CUSHION_GAP
-    )
+    reach = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - layouts.CUSHION_GAP
+    assert np.all(np.abs(sprinkled) <= reach)
     assert all(np.hypot(*(POCKET_PLACES - place).T).min() >= layouts.POCKET_GAP for place in sprinkled)
 
 

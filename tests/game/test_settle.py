@@ -23,9 +23,8 @@ def table(*balls, **places):
 
 def settled(arrays, ball_on, free_ball=False, lead=0, **seen):
     positions, on_table = arrays
-    situation = Situation(
-        on_table=mask_of(np.flatnonzero(on_table)), ball_on=ball_on, free_ball=free_ball, lead=lead
-    )
+    mask = mask_of(np.flatnonzero(on_table))
+    situation = Situation(on_table=mask, ball_on=ball_on, free_ball=free_ball, lead=lead)
     return settle_table(positions, on_table, situation, Stroke(**seen))
 
 
@@ -62,10 +61,9 @@ def test_it_is_the_referees_verdict():
             on_table=mask_of(np.flatnonzero(on_table)), ball_on=BallOn(int(rng.integers(0, 2)))
         )
         balls = [0, *range(1, 6), *range(YELLOW, 22)]
-        stroke = Stroke(
-            first=1 << int(rng.choice(balls[1:])),
-            potted=mask_of(rng.choice(balls, int(rng.integers(0, 3)), replace=False)),
-        )
+        first = 1 << int(rng.choice(balls[1:]))
+        potted = mask_of(rng.choice(balls, int(rng.integers(0, 3)), replace=False))
+        stroke = Stroke(first=first, potted=potted)
         verdict, _, left = settle_table(positions, on_table, situation, stroke)
         assert replace(verdict, free_ball=False) == replace(judge(situation, stroke), free_ball=False)
         assert mask_of(np.flatnonzero(left)) & ~1 == verdict.on_table

@@ -8,9 +8,8 @@ from snooker_env.geometry import POCKET_PLACES
 from snooker_env.planning import Planner, Position, actions_of
 from snooker_env.tasks import stroke
 
-POSITION = Position(
-    cue=(0.25, -0.4), reds=[(0.3, 0.5), (-0.3, 0.7), (0.1, 1.0)], blue=(0.0, 0.0), black=(0.0, 1.4605)
-)
+REDS = [(0.3, 0.5), (-0.3, 0.7), (0.1, 1.0)]
+POSITION = Position(cue=(0.25, -0.4), reds=REDS, blue=(0.0, 0.0), black=(0.0, 1.4605))
 AIMS = np.linspace(-3.0, 3.0, 60)
 ACTIONS = actions_of(np.linspace(1.0, 6.0, 60), AIMS)
 

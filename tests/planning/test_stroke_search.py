@@ -300,9 +300,8 @@ def test_nothing_given_is_changed_and_nothing_returned_is_shared():
     copies = [one.copy() for one in first]
     for made, strokes, chances in proposed:
         assert np.array_equal(made.strokes, strokes) and np.array_equal(made.chances, chances)
-    assert all(
-        np.array_equal(getattr(at, name), getattr(kept, name)) for name in ("positions", "on_table", "game")
-    )
+    names = "positions", "on_table", "game"
+    assert all(np.array_equal(getattr(at, name), getattr(kept, name)) for name in names)
     assert np.array_equal(seeds, np.arange(5))
     for one in first:
         one[:] = 0

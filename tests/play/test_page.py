@@ -137,11 +137,8 @@ def test_after_a_foul_the_choices_are_shown(shown):
     shown.page.click("#play")
     shown.played(1)
     assert shown.words == "Foul and a miss by Player 1: Player 2 chooses."
-    assert shown("[...document.querySelectorAll('#choices button')].map(b => b.dataset.choice)") == [
-        "play",
-        "play_again",
-        "replace",
-    ]
+    open_to = shown("[...document.querySelectorAll('#choices button')].map(b => b.dataset.choice)")
+    assert open_to == ["play", "play_again", "replace"]
     assert shown.page.is_visible("#choices") and not shown.page.is_enabled("#play")
     shown.page.click("#choices button[data-choice=replace]")
     shown.until("page.state.phase === 'stroke' && page.settled === page.state.revision")

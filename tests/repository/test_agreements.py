@@ -32,9 +32,8 @@ def test_constants_that_rooms_share_agree():
     assert layouts.GAP > balls.PINK_GAP > balls.CLEARANCE > balls.REFEREE_TOUCH > balls.TOUCH
     # Half a radius at the end of the action's scale is what ``Physics.max_offset`` allows by default
     actions = Actions("absolute", False, False, Physics())
-    assert (
-        actions.shot([0, 1, 0, 0], balls.SPOTS, np.ones(22, bool), 2)[1] == actions.physics.max_offset == 0.5
-    )
+    side = actions.shot([0, 1, 0, 0], balls.SPOTS, np.ones(22, bool), 2)[1]
+    assert side == actions.physics.max_offset == 0.5
     kinds = observations.STATE_ENTRIES[1:9]
     assert kinds == tuple(b.name.lower() for b in balls.BallOn if b >= 0)
     assert observations.space("flat").shape == (
@@ -59,9 +58,5 @@ def test_physics_packs_every_field_that_a_kernel_needs_in_its_place():
         assert np.flatnonzero(changed != base.pack()).tolist() == [place] and changed[place] == value, name
     assert Physics(e_c=0.7).pack()[p.P_E_J] == 0.7
     law = [p.P_MU_BB_LEAST, p.P_MU_BB_EXTRA, p.P_MU_BB_FADE]
-    for mu_bb, packed in (
-        ((0.01, 0.1, 2.0), [0.01, 0.1, 2.0]),
-        (0.07, [0.07, 0.0, 0.0]),
-        ("marlow", list(p.MARLOW)),
-    ):
-        assert Physics(mu_bb=mu_bb).pack()[law].tolist() == packed
+    packed = {(0.01, 0.1, 2.0): [0.01, 0.1, 2.0], 0.07: [0.07, 0.0, 0.0], "marlow": list(p.MARLOW)}
+    assert {mu_bb: Physics(mu_bb=mu_bb).pack()[law].tolist() for mu_bb in packed} == packed

@@ -36,9 +36,8 @@ def test_a_chart_drawn_from_kept_figures_can_be_read(name, tmp_path, monkeypatch
     with saved_figures() as figures:
         command.main()
     read(figures)
-    assert {file.name for file in tmp_path.glob("*.png")} <= {
-        file.name for file in (ROOT / "benchmarks/pictures").iterdir()
-    }
+    kept = {file.name for file in (ROOT / "benchmarks/pictures").iterdir()}
+    assert {file.name for file in tmp_path.glob("*.png")} <= kept
 
 
 def test_learning_curves_and_destinations_can_be_read(tmp_path):
