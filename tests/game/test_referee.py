@@ -114,6 +114,7 @@ def test_what_auto_nominates():
     assert_fair(rule("ANY_COLOUR", touching=BLUE), 0, "RED", False)
     assert rule("ANY_COLOUR", touching=BLUE, first=PINK).nominated == PINK
     assert rule(free_ball=True, first=BLUE).nominated == BLUE
+    assert rule("YELLOW", free_ball=True, first=YELLOW).nominated == 0  # the ball on itself is no free ball
     assert rule(free_ball=True, first=1, touching=BLUE).nominated == 0
     assert_fair(rule(free_ball=True, first=1, potted=1), 1, "ANY_COLOUR", True)
     assert_foul(rule(free_ball=True, first=BLUE, nominated=0), Foul.WRONG_FIRST, 5)
