@@ -108,6 +108,13 @@ def test_penalties_of_a_push_and_of_seven_points():
 # Nomination left to the referee
 
 
+def test_a_touching_ball_that_is_moved_is_not_struck_and_a_free_ball_costs_what_is_on():
+    assert_foul(rule(touching=1, moved=1), Foul.PUSH | Foul.NO_CONTACT, 4)
+    free = {"free_ball": True, "nominated": BLACK}
+    assert_foul(rule(**free, first=[BLACK, BLUE]), Foul.WRONG_FIRST, 5)
+    assert_foul(rule(**free, first=BLACK, off=BLACK), Foul.BALL_OFF, 4)
+
+
 def test_what_auto_nominates():
     assert rule("ANY_COLOUR", first=[YELLOW, GREEN]).nominated == GREEN
     assert rule("ANY_COLOUR", first=[YELLOW, GREEN]).penalty == 4
