@@ -1,5 +1,4 @@
-"""How does a test spoil a saved state? Every field in it, one at a time, in every way that a file or a slip
-of the keyboard might."""
+"""How does a test spoil a saved state?"""
 
 import copy
 import json
@@ -29,26 +28,8 @@ def at(state, path):
 
 def spoilt(value):
     """Other things to stand in the place of a value, None among them where it was not."""
-    wrong = [
-        None,
-        NAN,
-        INF,
-        -INF,
-        -1,
-        2**70,
-        10**400,
-        1e300,
-        1.5,
-        "x",
-        "",
-        True,
-        False,
-        [],
-        {},
-        [value],
-        {"a": 1},
-        3,
-    ]
+    wrong = [None, NAN, INF, -INF, -1, 2**70, 10**400, 1e300, 1.5, "x", "", True, False, [], {}]
+    wrong += [[value], {"a": 1}, 3]
     if isinstance(value, str):
         wrong += ["over", "stroke", "choice", "lot", "off", "clear_path"]
     elif isinstance(value, bool):
@@ -56,20 +37,11 @@ def spoilt(value):
     elif isinstance(value, int | float):
         wrong += [value + 1, value - 1, -value, value + 2**64, str(value), value + 0.25, 0, 1, 2, 7, 155]
     elif isinstance(value, list):
-        wrong += [
-            value[:-1],
-            [*value, value[-1]],
-            [None, *value[1:]],
-            value[::-1],
-            tuple(value),
-            dict.fromkeys(map(str, range(len(value)))),
-        ]
+        wrong += [value[:-1], [*value, value[-1]], [None, *value[1:]], value[::-1], tuple(value)]
+        wrong.append(dict.fromkeys(map(str, range(len(value)))))
     elif isinstance(value, dict):
-        wrong += [{k: v for k, v in value.items() if k != key} for key in value] + [
-            value | {"more": 1},
-            value | {7: 1},
-            list(value),
-        ]
+        wrong += [{k: v for k, v in value.items() if k != key} for key in value]
+        wrong += [value | {"more": 1}, value | {7: 1}, list(value)]
     as_text = repr(value)
     return [other for other in wrong if repr(other) != as_text]
 
@@ -84,19 +56,12 @@ def mutations(state):
             yield path, wrong, (new if path else wrong)
 
 
+KINDS = {bool: "truth", int: "integer", float: "number", str: "text", dict: "dict", type(None): "null"}
+
+
 def kind_of(value):
     """What JSON calls the type of a value; a tuple is as good as a list."""
-    names = {
-        bool: "truth",
-        int: "integer",
-        float: "number",
-        str: "text",
-        list: "list",
-        tuple: "list",
-        dict: "dict",
-        type(None): "null",
-    }
-    return names[type(value)]
+    return "list" if isinstance(value, list | tuple) else KINDS[type(value)]
 
 
 def keys_of(field):
@@ -105,8 +70,7 @@ def keys_of(field):
 
 
 def layout(keys):
-    """Where balls lie and which are there is one layout, and a ball that cannot lie there may be either's
-    fault: one name for both."""
+    """Positions and on_table are one layout: a ball that cannot lie where it does may be either's fault."""
     if keys[:2] in (("state", "positions"), ("state", "on_table")):
         return ("state", "layout", *keys[2:])
     return tuple(key for k, key in enumerate(keys) if k == 0 or keys[k - 1] != "layout")

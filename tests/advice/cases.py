@@ -2,42 +2,20 @@
 
 import snooker_env as sn
 
-OPEN = sn.Position(
-    cue=(0.25, -0.4),
-    reds=[(0.3, 0.5), (-0.3, 0.7), (0.1, 1.0)],
-    blue=(0.0, 0.0),
-    pink=(0.2, 0.1),
-    black=(0.0, 1.4605),
-)
+REDS = [(0.3, 0.5), (-0.3, 0.7), (0.1, 1.0)]
+OPEN = sn.Position(cue=(0.25, -0.4), reds=REDS, blue=(0.0, 0.0), pink=(0.2, 0.1), black=(0.0, 1.4605))
 """Reds to pot."""
 ENDGAME = sn.Position(cue=(0.0, 0.3), blue=(0.3, -0.2), pink=(0.4, 0.9), black=(0.0, 1.4605), on="blue")
-IN_HAND = sn.Position(
-    in_hand=True,
-    reds=[(0.0, 0.3), (0.5, 1.0)],
-    yellow=(0.292, -1.0475),
-    brown=(0.0, -1.0475),
-    black=(0.0, 1.4605),
-)
+BAULK = {"yellow": (0.292, -1.0475), "brown": (0.0, -1.0475)}
+IN_HAND = sn.Position(in_hand=True, reds=[(0.0, 0.3), (0.5, 1.0)], **BAULK, black=(0.0, 1.4605))
 RESPOTTED = sn.Position(in_hand=True, black=(0.0, 1.4605))
-SNOOKERED = sn.Position(
-    cue=(0.0, -1.6),
-    reds=[(0.0, 1.6)],
-    green=(0.0, -1.4),
-    brown=(0.06, -1.42),
-    yellow=(-0.06, -1.42),
-    black=(0.1, 1.2),
-)
+WALL = {"green": (0.0, -1.4), "brown": (0.06, -1.42), "yellow": (-0.06, -1.42)}
+SNOOKERED = sn.Position(cue=(0.0, -1.6), reds=[(0.0, 1.6)], **WALL, black=(0.1, 1.2))
 """No straight path to the red."""
 HIDDEN = sn.Position(cue=(0.3, -0.5), reds=[(0.0, 1.74), (0.06, 1.74)], pink=(0.0, 0.89), black=(0.0, 1.4605))
 """Reds that straight lines reach, and none of them can be potted."""
-ALL = {
-    "open": OPEN,
-    "endgame": ENDGAME,
-    "in_hand": IN_HAND,
-    "respotted": RESPOTTED,
-    "snookered": SNOOKERED,
-    "hidden": HIDDEN,
-}
+ALL = {"open": OPEN, "endgame": ENDGAME, "in_hand": IN_HAND, "respotted": RESPOTTED}
+ALL |= {"snookered": SNOOKERED, "hidden": HIDDEN}
 
 
 def state_of(position, **options):
@@ -45,17 +23,12 @@ def state_of(position, **options):
     env = sn.SnookerEnv(**options)
     env.reset(seed=1)
     places, on_table, game = position.arrays()
-    state = env.get_state() | {
-        "positions": places.tolist(),
-        "on_table": on_table.tolist(),
-        "ball_on": int(game[0]),
-    }
-    return state | {"in_hand": bool(game[1]), "points": 0, "over": False}
+    state = env.get_state() | {"positions": places.tolist(), "on_table": on_table.tolist()}
+    return state | {"ball_on": int(game[0]), "in_hand": bool(game[1]), "points": 0, "over": False}
 
 
 def played(position, stroke, tables, **options):
-    """A stroke on so many tables of the environment, each with errors of its own: points, fouls, and the
-    states after it."""
+    """A stroke on so many tables of the environment, each with errors of its own."""
     env = sn.SnookerVectorEnv(tables, aim="absolute", elevation=True, placement=True, **options)
     env.reset(seed=99, options={"state": state_of(position, aim="absolute", elevation=True, placement=True)})
     action = stroke.action(elevation=True, placement=True)

@@ -1,5 +1,4 @@
-"""Do the balls stop where destinations say? Against the environment, stroke by stroke, and against what a map
-must add up to."""
+"""Do the balls stop where destinations say?"""
 
 import json
 
@@ -21,26 +20,17 @@ def test_shares_are_those_of_the_environment(blue):
     stops = destinations(ENDGAME, blue, noise="club", samples=2000)
     points, fouls, after = played(ENDGAME, blue.stroke, 2000, noise="club")
     cue = np.array([s["positions"][0] for s in after if s["on_table"][0]])
-    assert stops.scored == pytest.approx((points > 0).mean(), abs=0.05) and stops.foul == pytest.approx(
-        fouls.mean(), abs=0.03
-    )
-    assert (
-        stops.points == pytest.approx(points.mean(), abs=0.25)
-        and stops.object_ball == 19
-        and stops.samples == 2000
-    )
+    assert stops.scored == pytest.approx((points > 0).mean(), abs=0.05)
+    assert stops.foul == pytest.approx(fouls.mean(), abs=0.03)
+    assert stops.points == pytest.approx(points.mean(), abs=0.25) and stops.object_ball == 19
+    assert stops.samples == 2000
     assert 0.3 < stops.potted < 1.0 and stops.potted == pytest.approx(1.0 - len(stops.ball) / 2000)
     assert len(stops.cue) == round(2000 * (1.0 - stops.in_off))
     assert stops.cue.mean(axis=0) == pytest.approx(cue.mean(axis=0), abs=0.05)
     assert stops.cue.std(axis=0) == pytest.approx(cue.std(axis=0), rel=0.1)
-    missed = np.array(
-        [
-            s["positions"][19]
-            for s, p, f in zip(after, points, fouls, strict=True)
-            if p == 0 and s["on_table"][0] and not f
-        ]
-    )
-    assert stops.ball.mean(axis=0) == pytest.approx(missed.mean(axis=0), abs=0.1)
+    missed = (points == 0) & ~fouls & [s["on_table"][0] for s in after]
+    places = np.array([s["positions"][19] for s in after])[missed]
+    assert stops.ball.mean(axis=0) == pytest.approx(places.mean(axis=0), abs=0.1)
 
 
 def test_without_noise_it_is_the_one_shot(blue):
@@ -53,19 +43,11 @@ def test_without_noise_it_is_the_one_shot(blue):
 def test_an_in_off_and_a_stroke_at_nothing():
     straight = sn.Position(cue=(0.0, 0.0), black=(0.0, 1.4605))
     miss = destinations(straight, CueStroke(speed=1.0, aim=-np.pi / 2), samples=50)
-    assert (
-        miss.object_ball == -1
-        and miss.foul == 1.0
-        and miss.potted == 0.0
-        and miss.ball.shape == (0, 2)
-        and miss.cue.shape == (50, 2)
-    )
+    assert miss.object_ball == -1 and miss.foul == 1.0 and miss.potted == 0.0 and miss.ball.shape == (0, 2)
+    assert miss.cue.shape == (50, 2)
     at_pocket = destinations(straight, {"speed": 2.0, "aim": float(np.arctan2(-1.7845, 0.889))}, samples=50)
-    assert (
-        at_pocket.in_off > 0.9
-        and at_pocket.foul == 1.0
-        and len(at_pocket.cue) == round(50 * (1 - at_pocket.in_off))
-    )
+    assert at_pocket.in_off > 0.9 and at_pocket.foul == 1.0
+    assert len(at_pocket.cue) == round(50 * (1 - at_pocket.in_off))
 
 
 def test_a_map_adds_up(blue):
@@ -96,32 +78,25 @@ def test_seeds_and_common_errors(blue):
 
 
 def test_in_hand_the_place_counts():
-    left, right = (
-        destinations(IN_HAND, CueStroke(speed=1.0, aim=1.57, place=(x, -1.1)), noise="none").cue[0]
-        for x in (-0.2, 0.2)
-    )
+    strokes = [CueStroke(speed=1.0, aim=1.57, place=(x, -1.1)) for x in (-0.2, 0.2)]
+    left, right = (destinations(IN_HAND, stroke, noise="none").cue[0] for stroke in strokes)
     assert left[0] < 0 < right[0]
 
 
 def test_wrong_strokes_are_refused():
-    ask = lambda stroke, position=OPEN, **more: lambda: destinations(position, stroke, **more)  # noqa: E731
-    refused(ask({"speed": 9.0, "aim": 0.0}), "speed", "9.0", "[0.2, 7]")
-    refused(ask({"speed": 2.0}), "stroke", "without 'aim'", "must be a CueStroke")
-    refused(ask({"speed": 2.0, "aim": 0.0, "spin": 1}), "field of the stroke", "spin", "'speed'")
-    refused(
-        ask({"speed": 2.0, "aim": 0.0, "side": 0.4, "top": 0.4}), "side, top", "(0.4, 0.4)", "within the disc"
-    )
-    refused(ask({"speed": 2.0, "aim": 0.0, "elevation": 1.0}), "elevation", "1.0", "must be")
-    refused(
-        ask({"speed": 2.0, "aim": 0.0, "place": (0.0, -1.1)}),
-        "place",
-        "(0.0, -1.1)",
-        "must be None: the cue ball is not in hand",
-    )
-    refused(
-        ask({"speed": 2.0, "aim": 0.0, "place": (0.0, 0.0)}, IN_HAND), "place", "(0, 0)", "lines of the D"
-    )
-    refused(ask({"speed": 2.0, "aim": 0.0}, samples=0), "samples", "0", "must be an integer")
+    soft = {"speed": 2.0, "aim": 0.0}
+    for stroke, *said in (
+        (soft | {"speed": 9.0}, "speed", "9.0", "[0.2, 7]"),
+        ({"speed": 2.0}, "stroke", "without 'aim'", "must be a CueStroke"),
+        (soft | {"spin": 1}, "field of the stroke", "spin", "'speed'"),
+        (soft | {"side": 0.4, "top": 0.4}, "side, top", "(0.4, 0.4)", "within the disc"),
+        (soft | {"elevation": 1.0}, "elevation", "1.0", "must be"),
+        (soft | {"place": (0.0, -1.1)}, "place", "(0.0, -1.1)", "must be None: the cue ball is not in hand"),
+    ):
+        refused(lambda stroke=stroke: destinations(OPEN, stroke), *said)
+    wrong = soft | {"place": (0.0, 0.0)}
+    refused(lambda: destinations(IN_HAND, wrong), "place", "(0, 0)", "lines of the D")
+    refused(lambda: destinations(OPEN, soft, samples=0), "samples", "0", "must be an integer")
     stops = destinations(SNOOKERED, {"speed": 2.0, "aim": 0.0}, samples=5)
     refused(lambda: stops.density(0.0), "cell", "0.0", "must be")
     refused(lambda: stops.density(0.1, "red"), "ball", "'red'", "'cue', 'ball'")

@@ -1,5 +1,4 @@
-"""Does a stroke mean what it says? As an action of the environment, and in words against what the simulator
-does."""
+"""Does a stroke mean what it says?"""
 
 from math import atan2, cos, pi, sin
 
@@ -14,40 +13,30 @@ from snooker_env.physics.events import EventKind
 from snooker_env.tasks import box_actions
 
 
-def test_a_stroke_is_its_action():
+def test_a_stroke_is_its_action_and_a_suggestion_is_a_stroke():
     stroke = CueStroke(speed=3.1, aim=2.5, side=-0.2, top=0.3, elevation=0.2, place=(0.1, -1.2))
     actions = box_actions.Actions("absolute", True, True, sn.Physics(), ("decision",))
     a = stroke.action(elevation=True, placement=True, decision=True).astype(float)
     places, on_table, _ = OPEN.arrays()
     speed, side, top, cue, elevation = actions.shot(a, places, on_table, 2)
     v, _ = sn.strike(speed, cue, side, top, 0.0)
-    assert (speed, side, top, elevation, atan2(v[1], v[0])) == pytest.approx(
-        (3.1, -0.2, 0.3, 0.2, 2.5), abs=1e-6
-    )
+    numbers = speed, side, top, elevation, atan2(v[1], v[0])
+    assert numbers == pytest.approx((3.1, -0.2, 0.3, 0.2, 2.5), abs=1e-6)
     x, back = a[5], 0.5 * (a[6] + 1.0)
     assert (0.292 * x, -1.0475 - 0.292 * np.sqrt(1 - x * x) * back) == pytest.approx((0.1, -1.2), abs=1e-6)
     assert abs(a[7]) < 1 / 3  # play
     assert CueStroke(speed=1.0, aim=7.0).action()[3] == pytest.approx((7.0 - 2 * pi) / pi)
-    assert CueStroke(speed=1.0, aim=0.0, place=(0.292, -1.0475)).action(placement=True).tolist()[4:] == [
-        1.0,
-        -1.0,
-    ]
-    assert (
-        CueStroke(**stroke.to_dict()) == stroke == CueStroke.of(stroke.to_dict())
-        and CueStroke.of(stroke) is stroke
-    )
-
-
-def test_a_suggestion_is_a_stroke_as_well():
+    corner = CueStroke(speed=1.0, aim=0.0, place=(0.292, -1.0475)).action(placement=True)
+    assert corner.tolist()[4:] == [1.0, -1.0]
+    assert CueStroke(**stroke.to_dict()) == stroke == CueStroke.of(stroke.to_dict())
+    assert CueStroke.of(stroke) is stroke
     (one,) = sn.advise(OPEN, n=1, samples=10, visits=0)
-    assert CueStroke.of(one) is one and one.stroke == CueStroke.of(
-        {"speed": one.speed, "aim": one.aim, "side": one.side, "top": one.top}
-    )
+    assert CueStroke.of(one) is one
+    assert one.stroke == CueStroke.of({"speed": one.speed, "aim": one.aim, "side": one.side, "top": one.top})
 
 
 def test_pockets_are_named_as_seen_from_baulk():
-    """The yellow pocket is the corner beside the yellow spot, on the right; the black is between the two top
-    ones."""
+    """The yellow pocket is the corner beside the yellow spot, on the right."""
     yellow, green = sn.geometry.COLOUR_SPOTS[:2]
     for index, (x, y) in enumerate(sn.geometry.POCKET_PLACES.tolist()):
         name = POCKET_WORDS[index]
@@ -55,9 +44,8 @@ def test_pockets_are_named_as_seen_from_baulk():
             near = min((yellow, green), key=lambda spot: np.hypot(spot[0] - x, spot[1] - y))
             assert name == ("yellow pocket" if near is yellow else "green pocket")
         else:
-            assert (
-                name == f"{'top ' if y > 0 else ''}{'right' if x > 0 else 'left'}{'' if y > 0 else ' middle'}"
-            )
+            side = "right" if x > 0 else "left"
+            assert name == (f"top {side}" if y > 0 else f"{side} middle")
 
 
 @pytest.mark.parametrize(
@@ -81,19 +69,11 @@ def test_spin_in_words():
     say = lambda top, side=0.0, distance=0.3, speed=2.5: words.spin_words(  # noqa: E731
         CueStroke(speed=speed, aim=0.0, top=top, side=side), distance, sn.Physics()
     )
-    assert [say(top) for top in (0.4, 0.2, 0.0, -0.2, -0.45)] == [
-        "top",
-        "follow",
-        "plain",
-        "screw",
-        "deep screw",
-    ]
+    tops = {0.4: "top", 0.2: "follow", 0.0: "plain", -0.2: "screw", -0.45: "deep screw"}
+    assert {top: say(top) for top in tops} == tops
     assert say(0.0, distance=0.1) == "stun"
-    assert (
-        say(0.0, distance=2.0) == "plain"
-        and say(-0.2, distance=2.5) == "drag"
-        and say(-0.2, distance=0.6) == "stun"
-    )
+    assert say(0.0, distance=2.0) == "plain" and say(-0.2, distance=2.5) == "drag"
+    assert say(-0.2, distance=0.6) == "stun"
     assert say(-0.4, 0.3) == "deep screw with right side" and say(0.2, -0.3) == "follow with left side"
     assert say(-0.2, distance=None) == "screw" and say(0.0, distance=None) == "plain"
 
@@ -102,11 +82,8 @@ def test_the_cushion_of_an_escape_is_the_one_that_the_ball_meets():
     rng, seen = np.random.default_rng(1), set()
     for _ in range(40):
         x, y, aim = rng.uniform(-0.7, 0.7), rng.uniform(-1.5, 1.5), rng.uniform(-pi, pi)
-        shot = sn.simulate(
-            [(x, y)],
-            [(4.0 * cos(aim), 4.0 * sin(aim))],
-            [(-4.0 / 0.02625 * sin(aim), 4.0 / 0.02625 * cos(aim), 0.0)],
-        )
+        c, s, spin = cos(aim), sin(aim), 4.0 / 0.02625
+        shot = sn.simulate([(x, y)], [(4.0 * c, 4.0 * s)], [(-spin * s, spin * c, 0.0)])
         hits = shot.events[shot.events["kind"] == EventKind.CUSHION]
         jaws = shot.events[np.isin(shot.events["kind"], (EventKind.JAW, EventKind.POT))]
         if not len(hits) or (len(jaws) and jaws["time"][0] < hits["time"][0]):
@@ -121,15 +98,9 @@ def test_the_cushion_of_an_escape_is_the_one_that_the_ball_meets():
 
 def test_contacts_in_words():
     """As seen along the path: a ball whose middle lies to the left of it is struck on its right."""
-    reach = 2 * 0.02625
+    reach, names = 2 * 0.02625, ("full", "three-quarter ball", "half-ball", "quarter-ball", "thin")
     for aim in (0.0, 1.0, -2.5):
-        for aside, said in (
-            (0.0, "full"),
-            (0.25, "three-quarter ball"),
-            (0.5, "half-ball"),
-            (0.75, "quarter-ball"),
-            (0.95, "thin"),
-        ):
+        for aside, said in zip((0.0, 0.25, 0.5, 0.75, 0.95), names, strict=True):
             for sign, side in ((1, "right"), (-1, "left")):
                 x, y = cos(aim) - sign * aside * reach * sin(aim), sin(aim) + sign * aside * reach * cos(aim)
                 assert words.contact_words(x, y, aim) == (said if said == "full" else f"{said} on the {side}")
@@ -138,56 +109,38 @@ def test_contacts_in_words():
 def test_what_a_stroke_does_in_words():
     say = words.what_words
     assert say("pot", 19, 2, 19) == "blue, right middle" and say("pot", 5, 5, 5) == "red, left middle"
-    assert (
-        say("pot", 5, 0, 8) == "red by a plant, green pocket"
-        and say("pot", 21, 4, 1) == "black off the red, top left"
-    )
-    assert (
-        say("contact", 3, -1, 3, "full") == "contact with the red, full"
-        and say("in-off", 3, -1, 3) == "in-off from the red"
-    )
-    assert (
-        say("escape", 20, -1, 20, "top cushion") == "escape off the top cushion to the pink"
-        and say("escape", 1, -1, 1) == "escape to the red"
-    )
-    assert (
-        say("foul", -1, -1, -1) == "foul, nothing struck" and say("foul", 16, -1, 16) == "foul, yellow first"
-    )
+    assert say("pot", 5, 0, 8) == "red by a plant, green pocket"
+    assert say("pot", 21, 4, 1) == "black off the red, top left"
+    assert say("contact", 3, -1, 3, "full") == "contact with the red, full"
+    assert say("in-off", 3, -1, 3) == "in-off from the red"
+    assert say("escape", 20, -1, 20, "top cushion") == "escape off the top cushion to the pink"
+    assert say("escape", 1, -1, 1) == "escape to the red"
+    assert say("foul", -1, -1, -1) == "foul, nothing struck"
+    assert say("foul", 16, -1, 16) == "foul, yellow first"
     assert words.figures_words("pot", 0.874, 23.4) == "chance 87 %, 23 points expected"
-    for kind in ("contact", "escape"):
-        assert (
-            words.figures_words(kind, 0.5, 1.04)
-            == "fair 50 %; no pot intended, its worth as a safety is not judged"
-        )
-    assert (
-        words.figures_words("foul", 0.03, 0.0) == "fair 3 %"
-        and words.figures_words("pot", 1.0, 1.04) == "chance 100 %, 1 point expected"
-    )
+    safety = "fair 50 %; no pot intended, its worth as a safety is not judged"
+    assert [words.figures_words(kind, 0.5, 1.04) for kind in ("contact", "escape")] == [safety] * 2
+    assert words.figures_words("foul", 0.03, 0.0) == "fair 3 %"
+    assert words.figures_words("pot", 1.0, 1.04) == "chance 100 %, 1 point expected"
     assert words.figures_words("pot", 1.0, 0.26).endswith("0.3 points expected")
-    assert (
-        words.place_words(0.05, -1.1475) == "from 5 cm right of and 10 cm behind the brown spot"
-        and words.place_words(0, -1.0475) == "from the brown spot"
-    )
+    assert words.place_words(0.05, -1.1475) == "from 5 cm right of and 10 cm behind the brown spot"
+    assert words.place_words(0, -1.0475) == "from the brown spot"
 
 
 def test_the_words_of_a_suggestion_are_its_data():
     for one in sn.advise(OPEN, n=4, samples=50, visits=5):
         parts = one.words.split(", ")
-        assert (
-            parts[0] == "red" and parts[1] == POCKET_WORDS[one.pocket] and parts[2] == f"{one.speed:.1f} m/s"
-        )
+        assert parts[0] == "red" and parts[1] == POCKET_WORDS[one.pocket]
+        assert parts[2] == f"{one.speed:.1f} m/s"
         assert f"chance {100 * one.chance:.0f} %" in parts and one.words.endswith(" expected")
         points, _, (state,) = played(OPEN, one.stroke, 1, noise="none")
         assert points[0] >= 1 and not state["on_table"][one.ball]
 
 
-def test_wilsons_interval():
+def test_intervals_hold_the_truth_as_often_as_they_say():
     for made, tries in ((0, 10), (3, 10), (10, 10), (87, 100), (199, 200)):
         interval = binomtest(made, tries).proportion_ci(0.95, "wilson")
         assert judging.wilson(made, tries) == pytest.approx((interval.low, interval.high), abs=1e-6)
-
-
-def test_the_interval_of_the_points_holds_the_true_mean_as_often_as_it_says():
     rng, inside, runs = np.random.default_rng(3), 0, 600
     for _ in range(runs):
         goes_on = rng.random(200) < 0.8

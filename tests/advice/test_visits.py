@@ -19,30 +19,24 @@ def by_plain_python(position, visit, visits, seed, noise):
     """Points of the rest of one visit, number ``visit`` of so many, and its strokes."""
     at, exact, noisy = Positions.of(position), Planner({}), Planner({"noise": noise})
     spread, total, strokes = spread_of(LEVELS[noise]), 0.0, 0
+
+    def worth(outcome):
+        points, goes_on, left, _ = outcome
+        return points[0] + goes_on[0] * prospects_of(left, spread)[0][0]
+
     while True:
         chances, tried = prospects_of(at, spread)[1][0], []
         for pick in PICKS[action_masks(at)[0, PICKS]].tolist():
-            points, goes_on, left, _ = exact.play(at, [0], strokes=stroke(at, pick))
-            tried.append(
-                (
-                    -chances[pick // STROKES] * (points[0] + goes_on[0] * prospects_of(left, spread)[0][0]),
-                    pick,
-                )
-            )
+            look = worth(exact.play(at, [0], strokes=stroke(at, pick)))
+            tried.append((-chances[pick // STROKES] * look, pick))
         best, chosen = -1.0, -1
         for _, pick in sorted(tried)[:BEST]:
             five = [noisy.play(at, [0], strokes=stroke(at, pick), keys=[key]) for key in EVEN_SAMPLES]
-            worth = np.mean(
-                [
-                    points[0] + goes_on[0] * prospects_of(left, spread)[0][0]
-                    for points, goes_on, left, _ in five
-                ]
-            )
-            if worth > best:
-                best, chosen = worth, pick
-        key = np.random.default_rng((seed, GOING_ON, strokes)).integers(
-            0, 2**64 - 1, visits, dtype=np.uint64
-        )[visit]
+            mean = np.mean([worth(outcome) for outcome in five])
+            if mean > best:
+                best, chosen = mean, pick
+        rng = np.random.default_rng((seed, GOING_ON, strokes))
+        key = rng.integers(0, 2**64 - 1, visits, dtype=np.uint64)[visit]
         points, goes_on, at, _ = noisy.play(at, [0], strokes=stroke(at, chosen), keys=[key])
         total, strokes = total + points[0], strokes + 1
         if not goes_on[0]:
@@ -54,10 +48,8 @@ def test_visits_are_played_on_stroke_by_stroke(noise):
     positions = [OPEN, ENDGAME, OPEN, ENDGAME, OPEN]
     numbers = np.array([0, 0, 1, 3, 2])
     found = played_on(practice_of(noise), Positions.of(positions), numbers, 7)
-    own = [
-        by_plain_python(position, visit, 4, 7, noise)
-        for position, visit in zip(positions, numbers.tolist(), strict=True)
-    ]
+    asked = zip(positions, numbers.tolist(), strict=True)
+    own = [by_plain_python(position, visit, 4, 7, noise) for position, visit in asked]
     assert found.tolist() == [total for total, _ in own]
     assert max(strokes for _, strokes in own) > 2 and len(set(found.tolist())) > 2
 

@@ -1,5 +1,4 @@
-"""What do the pages of the documentation hold? README and ``docs/``: their links, pictures, Python blocks and
-commands, and the words."""
+"""What do the pages of the documentation hold? README and ``docs/``."""
 
 import re
 from pathlib import Path
@@ -32,8 +31,7 @@ def links(text):
 
 
 def paths(text):
-    """Files and folders of the repository between backticks, as patterns; those that the reader is to name
-    are left out."""
+    """Files and folders of the repository between backticks, as patterns."""
     tops = "tests|benchmarks|agents|snooker_env|docs|examples|commands|leaderboard|[.]github|[.]ci"
     found = re.findall(rf"`((?:{tops})/[\w./*-]+)`", text)
     return [path for path in found if not re.search(r"NAME|\bmy_", path)]
@@ -51,12 +49,8 @@ def anchors(text):
 
 
 def commands(text):
-    """What is run with Python: ("benchmarks.speed", ["--parts", "start"]) for each
-    ``python -m benchmarks.speed --parts start``."""
+    """What Python runs: ``python -m benchmarks.speed --parts start`` is (name, [options])."""
     text = re.sub(r"\\\n\s*", " ", text)
-    found = [re.sub(r"^-m +", "", command).split() for command in _COMMAND.findall(text)]
-    return [
-        (words[0].rstrip(".,:"), words[1:])
-        for words in found
-        if not words[0].isupper() and not words[0].endswith("...")
-    ]
+    every = [re.sub(r"^-m +", "", command).split() for command in _COMMAND.findall(text)]
+    named = [words for words in every if not words[0].isupper() and not words[0].endswith("...")]
+    return [(words[0].rstrip(".,:"), words[1:]) for words in named]

@@ -1,5 +1,4 @@
-"""Does the Python of the pages run? Every block by itself, the blocks of a page in one process, in an empty
-folder, warnings as errors."""
+"""Does the Python of the pages run? The blocks of a page in one process, with warnings as errors."""
 
 import json
 import os
@@ -18,24 +17,17 @@ RUNNER = """if True:
         print("block", number, flush=True)
         exec(compile(block, f"block {number}", "exec"), {"__name__": "__main__"})
 """
-CODE = [(page, blocks(page.read_text(encoding="utf-8"))) for page in PAGES]
+CODE = {name: blocks(page.read_text(encoding="utf-8")) for name, page in zip(NAMES, PAGES, strict=True)}
 
 
-@pytest.mark.parametrize(
-    ("page", "code"),
-    [(p, c) for p, c in CODE if c],
-    ids=[n for n, (_, c) in zip(NAMES, CODE, strict=True) if c],
-)
-def test_python_blocks_run(page, code, tmp_path):
-    env = os.environ | {
-        "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]),
-        "MPLBACKEND": "Agg",
-    }
+@pytest.mark.parametrize("page", [name for name, code in CODE.items() if code])
+def test_python_blocks_run(page, tmp_path):
+    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+    env = os.environ | {"PYTHONPATH": path, "MPLBACKEND": "Agg", "SDL_VIDEODRIVER": "dummy"}
     command = [sys.executable, "-c", RUNNER]
-    env["SDL_VIDEODRIVER"] = "dummy"
-    text = {"input": json.dumps(code), "text": True, "capture_output": True}
+    text = {"input": json.dumps(CODE[page]), "text": True, "capture_output": True}
     done = subprocess.run(command, cwd=tmp_path, env=env, timeout=600, check=False, **text)
-    assert done.returncode == 0, f"{page.name}\n{done.stdout[-1500:]}\n{done.stderr[-3000:]}"
+    assert done.returncode == 0, f"{page}\n{done.stdout[-1500:]}\n{done.stderr[-3000:]}"
 
 
 def test_the_python_of_a_command_line_runs():

@@ -1,12 +1,17 @@
-"""Do the pages hold together? Links, anchors, pictures and films are there, films are small, and the words
-are the field's."""
+"""Do the pages hold together, name every public name, and print the options and numbers of the code?"""
+
+import ast
+import dataclasses
+import importlib
+import inspect
+import re
 
 import pytest
 
+import snooker_env as sn
+from snooker_env.tasks import LEVELS, Noise
+from snooker_env.tasks.options import options_table
 from tests.docs.pages import DOCS, LINKED, NAMES, PAGES, ROOT, anchors, links, paths
-
-LARGEST_FILM = 400_000
-"""Bytes."""
 
 
 @pytest.mark.parametrize("page", LINKED, ids=lambda page: page.relative_to(ROOT).as_posix())
@@ -21,19 +26,10 @@ def test_links_lead_somewhere(page):
 
 
 def test_files_that_pages_name_exist():
-    found = [
-        (page.relative_to(ROOT).as_posix(), path)
-        for page in PAGES
-        for path in paths(page.read_text(encoding="utf-8"))
-    ]
-    assert len(found) > 80
-    assert not [(page, path) for page, path in found if not any(ROOT.glob(path))]
-    assert paths(
-        "`tests/a.py`, `agents/b/*.json` `snooker_env/` `docs/NAME.md` tests/c.py `snooker_env.d`"
-    ) == [
-        "tests/a.py",
-        "agents/b/*.json",
-    ]
+    texts = {name: page.read_text(encoding="utf-8") for name, page in zip(NAMES, PAGES, strict=True)}
+    named = [(name, path) for name, text in texts.items() for path in paths(text)]
+    assert len(named) > 80
+    assert not [(name, path) for name, path in named if not any(ROOT.glob(path))]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)
@@ -44,9 +40,59 @@ def test_pictures_and_films_are_no_stubs(page):
 
 
 def test_every_film_is_shown_and_small():
-    films = sorted((DOCS / "_static" / "films").iterdir())
-    shown = {
-        (page.parent / link).resolve() for page in PAGES for link in links(page.read_text(encoding="utf-8"))
-    }
+    films, shown = sorted((DOCS / "_static" / "films").iterdir()), set()
+    for page in PAGES:
+        shown |= {(page.parent / link).resolve() for link in links(page.read_text(encoding="utf-8"))}
     assert films and set(films) <= shown
-    assert max(film.stat().st_size for film in films) <= LARGEST_FILM
+    assert max(film.stat().st_size for film in films) <= 400_000  # bytes
+
+
+SOURCE = "\n".join(path.read_text(encoding="utf-8") for path in sorted((DOCS / "api").glob("*.md")))
+
+
+@pytest.mark.parametrize(
+    "module", ["snooker_env", *re.findall(r"^\* ``(snooker_env[.\w]*)``", str(sn.__doc__), re.MULTILINE)]
+)
+def test_every_public_name_is_documented_on_an_api_page(module):
+    parts = re.findall(rf"^\.\. public:: {re.escape(module)}\n((?:   :.*\n)*)", SOURCE, re.MULTILINE)
+    assert parts, f"no page has '.. public:: {module}'"
+    chosen = " ".join(re.findall(r":only: (.*)", "".join(parts))).split()
+    everything = any(":only:" not in options for options in parts)
+    assert everything or set(chosen) == set(importlib.import_module(module).__all__)
+    assert len(set(chosen)) == len(chosen) and ":but:" not in "".join(parts)
+
+
+PAGE = (ROOT / "docs/environment/specification.md").read_text(encoding="utf-8")
+
+
+def tables(heading):
+    """The tables between that heading and the next of any depth: rows of cells, the first one the head."""
+    section = re.split(r"^#+ ", PAGE.partition(f"# {heading}\n")[2], maxsplit=1, flags=re.MULTILINE)[0]
+    found = re.findall(r"(?:^\|.*\n)+", section, re.MULTILINE)
+    cells = lambda line: [cell.strip() for cell in line.strip("|").split("|")]  # noqa: E731
+    rows = [list(map(cells, table.splitlines())) for table in found]
+    return [[table[0], *table[2:]] for table in rows]
+
+
+def defaults(table):
+    """Name -> default, of a table of options; a row may have several names."""
+    rows = [(re.findall(r"`(\w+)`", row[0]), ast.literal_eval(row[1].strip("`"))) for row in table[1:]]
+    return {name: default for names, default in rows for name in names}
+
+
+def test_options_have_the_defaults_that_are_printed():
+    of_all, of_one = map(defaults, tables("Options"))
+    fields = {field.name: field.default for field in dataclasses.fields(sn.Options) if field.init}
+    assert of_all == fields and options_table() in PAGE and options_table() in str(sn.SnookerEnv.__doc__)
+    signature = inspect.signature(sn.SnookerEnv).parameters
+    assert of_one == {name: signature[name].default for name in ("options", "render_mode", "render_size")}
+
+
+def test_noise_levels_have_the_numbers_that_are_printed():
+    ((head, *rows),) = tables("Noise")
+    levels = [ast.literal_eval(cell.strip("`")) for cell in head[2:]]
+    assert {*levels, "none"} == set(LEVELS)
+    assert [row[0].strip("`") for row in rows] == [field.name for field in dataclasses.fields(Noise)]
+    for row in rows:
+        numbers = [getattr(LEVELS[level], row[0].strip("`")) for level in levels]
+        assert [float(cell) for cell in row[2:]] == numbers, row[0]

@@ -1,5 +1,4 @@
-"""Does the code place and see as a case says? The kinds "spotting" and "snooker_geometry" of
-``tests.rules_cases``."""
+"""Does the code place and see as a case says?"""
 
 import numpy as np
 
@@ -8,17 +7,16 @@ from snooker_env.game.snookered import is_snookered
 from snooker_env.game.spotting import spot_colours
 from snooker_env.geometry import BALL_RADIUS, HALF_LENGTH
 
-ABOUT = ("id", "kind", "title", "rule", "confidence", "note", "expect")
+ABOUT = "id kind title rule confidence note expect "
 
 
 def unknown(given, known):
-    extra = set(given) - set(known)
+    extra = set(given) - set(known.split())
     return f"not understood: {', '.join(sorted(extra))}" if extra else None
 
 
 def blockers(occupied, no_room):
-    """Centres of balls that occupy the spots named and leave no room between some of them and the top
-    cushion."""
+    """Centres of balls on the spots named that leave some of them no room towards the top cushion."""
     balls = [SPOTS[colour(name)].copy() for name in occupied]
     for name in no_room:
         x, y = SPOTS[colour(name)]
@@ -29,11 +27,8 @@ def blockers(occupied, no_room):
                 break
             # As high as it still bars the lowest free place, but not into the next ball above.
             above = min([b[1] for b in balls if b[0] == x and b[1] > free[0]], default=np.inf)
-            balls.append(
-                np.array(
-                    [x, min(free[0] + 1.9 * BALL_RADIUS, above - 2 * BALL_RADIUS, HALF_LENGTH - BALL_RADIUS)]
-                )
-            )
+            highest = min(above - 2 * BALL_RADIUS, HALF_LENGTH - BALL_RADIUS)
+            balls.append(np.array([x, min(free[0] + 1.9 * BALL_RADIUS, highest)]))
     return balls
 
 
@@ -46,15 +41,14 @@ def touched(balls, x, ys, gap=0.0):
 
 
 def run_spotting(case):
-    problem = unknown(case, (*ABOUT, "to_spot", "occupied", "no_room_toward_top"))
+    problem = unknown(case, ABOUT + "to_spot occupied no_room_toward_top")
     if problem:
         return problem
     to_spot = [colour(name) for name in case["to_spot"]]
     positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, dtype=bool)
     spare = [i for i in range(1, N_BALLS) if i not in to_spot]
-    for ball, place in zip(
-        spare, blockers(case["occupied"], case.get("no_room_toward_top", [])), strict=False
-    ):
+    standing = blockers(case["occupied"], case.get("no_room_toward_top", []))
+    for ball, place in zip(spare, standing, strict=False):
         positions[ball], on_table[ball] = place, True
     positions, on_table = spot_colours(positions, on_table, mask_of(to_spot))
     if not all(on_table[to_spot]):
@@ -97,7 +91,7 @@ def misplaced(place, others, wanted):
 
 
 def run_snooker_geometry(case):
-    problem = unknown(case, (*ABOUT, "cue", "balls_on", "obstructing"))
+    problem = unknown(case, ABOUT + "cue balls_on obstructing")
     if problem:
         return problem
     positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, dtype=bool)

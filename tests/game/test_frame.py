@@ -1,22 +1,16 @@
-"""Does a frame go on as the rules say, from the break to the last black, and does it survive being written
-down?"""
+"""Does a frame go on as the rules say, to the last black, and survive being written down?"""
 
 import dataclasses
 import json
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from snooker_env.game.balls import (
     BLACK,
     BLUE,
     COLOURS_MASK,
-    CUE_BIT,
-    GREEN,
     PINK,
-    REDS_MASK,
     YELLOW,
     BallOn,
     balls_on,
@@ -24,7 +18,6 @@ from snooker_env.game.balls import (
 )
 from snooker_env.game.frame import Frame, points_available
 from snooker_env.game.referee import FULL_TABLE, Stroke
-from snooker_env.game.ruling import AUTO
 
 MISSED = Stroke()
 PATHS = {"clear_path": True, "full_ball_path": True}
@@ -52,50 +45,18 @@ def last(ball_on, scores=(0, 0), **more):
 
 def test_the_start():
     frame = Frame.start(breaker=1)
-    assert (frame.striker, frame.scores, frame.ball_on, frame.in_hand, frame.available) == (
-        1,
-        (0, 0),
-        BallOn.RED,
-        True,
-        147,
-    )
+    assert (frame.striker, frame.scores, frame.ball_on) == (1, (0, 0), BallOn.RED)
+    assert frame.in_hand and frame.available == 147
     assert Frame.start(on_table=COLOURS_MASK).ball_on == BallOn.YELLOW
 
 
-def test_a_break_grows_and_ends_with_the_visit():
-    frame = played(Frame.start(), pot(1), pot(BLACK))
-    assert (frame.scores, frame.break_points, frame.striker, frame.ball_on, frame.in_hand) == (
-        (8, 0),
-        8,
-        0,
-        BallOn.RED,
-        False,
-    )
-    frame = played(frame, hit(2))
-    assert (frame.scores, frame.break_points, frame.striker) == ((8, 0), 0, 1)
-
-
-def test_a_foul_gives_points_and_a_choice():
-    frame = played(Frame.start(), pot(1), hit(BLUE, potted=CUE_BIT))
-    assert (frame.scores, frame.striker, frame.phase, frame.choices) == (
-        (1, 5),
-        1,
-        "choice",
-        ("play", "play_again"),
-    )
-    assert frame.in_hand and frame.ball_on == BallOn.RED and frame.on_table & REDS_MASK == REDS_MASK & ~2
-
-
-def test_play_takes_the_free_ball_and_play_again_voids_it():
+def test_play_takes_the_free_ball_play_again_voids_it_and_neither_is_taken_back():
     foul = played(Frame.start(), Stroke(snookered=True))
     assert foul.free_ball
     mine, his = foul.choose("play"), foul.choose("play_again")
     assert (mine.striker, mine.free_ball, his.striker, his.free_ball) == (1, True, 0, False)
     assert played(mine, pot(BLACK, nominated=BLACK)).scores == (0, 5)
     assert played(his, pot(1)).scores == (1, 4)
-
-
-def test_a_choice_cannot_be_taken_back_and_play_waits_for_it():
     foul = played(Frame.start(), MISSED)
     with pytest.raises(ValueError, match="choice"):
         foul.play(MISSED)
@@ -105,83 +66,16 @@ def test_a_choice_cannot_be_taken_back_and_play_waits_for_it():
         foul.choose("replace")
 
 
-def test_the_last_red_gives_a_free_colour_to_its_potter_only():
-    frame = Frame(on_table=COLOURS_MASK | 2)
-    assert played(frame, pot(1)).ball_on == BallOn.ANY_COLOUR
-    assert played(frame, pot(1), hit(PINK)).ball_on == BallOn.YELLOW
-    assert played(frame, pot(1), pot(PINK)).ball_on == BallOn.YELLOW
-    assert played(frame, pot(1), pot(PINK)).on_table == COLOURS_MASK
-
-
-# A foul and a miss
-
-
-def test_miss_is_off_by_default():
-    assert not Frame.start().play(MISSED, **PATHS)[0].miss_called
-
-
-@pytest.mark.parametrize(
-    ("stroke", "paths", "called"),
-    [
-        (MISSED, PATHS, True),
-        (MISSED, {"clear_path": True}, True),
-        (MISSED, {}, False),
-        (hit(BLACK), PATHS, True),
-        (hit(1, potted=CUE_BIT), PATHS, False),  # the ball on was struck first
-        (hit(1), PATHS, False),
-    ],
-)
-def test_a_miss_is_called_where_a_path_was_clear(stroke, paths, called):
-    assert Frame.start(miss="clear_path").play(stroke, **paths)[0].miss_called == called
-
-
-@pytest.mark.parametrize(
-    ("scores", "called"),
-    [
-        ((0, 0), True),
-        ((0, 30), True),
-        ((0, 31), False),  # 35 on the table, the foul makes it level with the difference
-        ((0, 60), False),  # the striker needs penalty points
-        ((60, 0), False),  # the opponent does
-        ((35, 0), False),  # the points left equalled the difference
-        ((34, 0), True),
-    ],
-)
-def test_no_miss_when_points_are_needed(scores, called):
-    frame = Frame(on_table=COLOURS_MASK | 2, scores=scores, miss="clear_path")
-    assert frame.available == 35
-    assert frame.play(MISSED, **PATHS)[0].miss_called == called
-
-
-def test_replacing_restores_the_table_and_keeps_the_penalty():
+def test_replacing_restores_table_and_free_ball_and_keeps_the_penalty():
     frame = played(Frame.start(miss="clear_path"), pot(1))
     foul, _ = frame.play(Stroke(first=4, potted=4, nominated=BLUE), **PATHS, layout=((0.1, 0.2), (0.3, 0.4)))
     assert foul.choices == ("play", "play_again", "replace") and foul.on_table == frame.on_table & ~4
     again = foul.choose("replace")
-    assert (again.striker, again.on_table, again.ball_on, again.scores) == (
-        0,
-        frame.on_table,
-        BallOn.ANY_COLOUR,
-        (1, 5),
-    )
-    assert again.saved.layout == ((0.1, 0.2), (0.3, 0.4))
+    assert (again.striker, again.on_table, again.scores) == (0, frame.on_table, (1, 5))
+    assert again.ball_on == BallOn.ANY_COLOUR and again.saved.layout == ((0.1, 0.2), (0.3, 0.4))
     assert played(again, pot(PINK)).scores == (7, 5)  # another colour may be nominated
-
-
-def test_replacing_brings_a_free_ball_back():
     frame = Frame(free_ball=True, miss="clear_path")
     assert frame.play(Stroke(nominated=BLUE), **PATHS)[0].choose("replace").free_ball
-
-
-def test_three_misses_from_one_position_lose_the_frame():
-    frame = Frame.start(miss="clear_path")
-    for failures in (1, 2):
-        frame, _ = frame.play(MISSED, **PATHS)
-        assert frame.miss_called and frame.failures == failures
-        frame = frame.choose("replace")
-        assert frame.warned == (failures == 2)
-    frame, verdict = frame.play(MISSED, **PATHS)
-    assert (frame.phase, frame.winner, frame.scores, verdict.penalty) == ("over", 1, (0, 12), 4)
 
 
 def test_the_second_miss_is_called_whatever_the_scores():
@@ -195,37 +89,13 @@ def test_the_second_miss_is_called_whatever_the_scores():
 
 
 @pytest.mark.parametrize("end", ["play", "play_again"])
-def test_another_position_starts_the_count_again(end):
-    frame = (
-        Frame.start(miss="clear_path")
-        .play(MISSED, **PATHS)[0]
-        .choose("replace")
-        .play(MISSED, **PATHS)[0]
-        .choose(end)
-    )
+def test_another_position_and_a_fair_stroke_start_the_count_again(end):
+    once = Frame.start(miss="clear_path").play(MISSED, **PATHS)[0].choose("replace")
+    frame = once.play(MISSED, **PATHS)[0].choose(end)
     assert (frame.failures, frame.warned) == (0, False)
     assert frame.play(MISSED, **PATHS)[0].phase == "choice"
-
-
-def test_a_fair_stroke_ends_the_count():
-    frame = Frame.start(miss="clear_path").play(MISSED, **PATHS)[0].choose("replace").play(hit(1), **PATHS)[0]
-    assert (frame.failures, frame.phase, frame.striker) == (0, "stroke", 1)
-
-
-def test_only_a_full_ball_path_counts_to_three():
-    frame = Frame.start(miss="clear_path")
-    for _ in range(5):
-        frame = frame.play(MISSED, clear_path=True)[0].choose("replace")
-    assert frame.failures == 0 and not frame.warned
-
-
-# The end
-
-
-def test_points_available():
-    assert points_available(FULL_TABLE, BallOn.RED) == 147
-    assert points_available(COLOURS_MASK | 2 | 4, BallOn.ANY_COLOUR) == 16 + 7 + 27
-    assert points_available(1 << PINK | 1 << BLACK, BallOn.PINK) == 13
+    fair = once.play(hit(1), **PATHS)[0]
+    assert (fair.failures, fair.phase, fair.striker) == (0, "stroke", 1)
 
 
 @pytest.mark.parametrize(
@@ -243,53 +113,22 @@ def test_a_free_ball_adds_to_the_points_available(on_table, ball_on, worth):
     """As many as the referee gives for the best of all breaks, whichever ball they begin with."""
     plain, free = (Frame(on_table=on_table, ball_on=ball_on, free_ball=given) for given in (False, True))
     assert free.available == plain.available + worth == points_available(on_table, ball_on, free_ball=True)
-    first = ids_of(balls_on(ball_on, on_table))[0], *ids_of(on_table & COLOURS_MASK)
-    assert free.available == max(points_of_the_best_break_from(free, ball) for ball in first)
-
-
-def points_of_the_best_break_from(frame, ball):
-    """A break that begins with this ball: what it scores, and what is left for its player."""
-    after, verdict = frame.play(pot(ball))
-    assert not verdict.fouls and after.striker == frame.striker
-    return verdict.points + (0 if after.phase == "over" else after.available)
+    best = 0
+    for ball in (ids_of(balls_on(ball_on, on_table))[0], *ids_of(on_table & COLOURS_MASK)):
+        after, verdict = free.play(pot(ball))
+        best = max(best, verdict.points + (0 if after.phase == "over" else after.available))
+    assert free.available == best
 
 
 def test_what_only_the_striker_may_play_is_not_there_for_the_other_player():
-    """A colour after a red is the striker's, and so is a free ball: the other player trails by more than he
-    could ever score."""
-    colour = Frame(
-        on_table=COLOURS_MASK | 2, ball_on=BallOn.ANY_COLOUR, striker=1, scores=(0, 36), in_hand=False
-    )
-    assert (
-        colour.available == 42
-        and colour.needs_snookers(0)
-        and not replace(colour, scores=(0, 35)).needs_snookers(0)
-    )
-    assert not replace(colour, scores=(42, 0)).needs_snookers(1) and replace(
-        colour, scores=(43, 0)
-    ).needs_snookers(1)
-    free = Frame(
-        on_table=COLOURS_MASK | 2,
-        ball_on=BallOn.RED,
-        striker=1,
-        scores=(0, 36),
-        in_hand=False,
-        free_ball=True,
-    )
+    """A colour after a red is the striker's, and so is a free ball."""
+    colour = Frame(on_table=COLOURS_MASK | 2, ball_on=BallOn.ANY_COLOUR, striker=1, scores=(0, 36))
+    assert colour.available == 42 and colour.needs_snookers(0)
+    assert not replace(colour, scores=(0, 35)).needs_snookers(0)
+    assert not replace(colour, scores=(42, 0)).needs_snookers(1)
+    assert replace(colour, scores=(43, 0)).needs_snookers(1)
+    free = replace(colour, ball_on=BallOn.RED, free_ball=True)
     assert free.needs_snookers(0) and not replace(free, scores=(43, 0)).needs_snookers(1)
-
-
-@pytest.mark.parametrize(("behind", "called"), [(35, True), (36, False), (42, False)])
-def test_no_miss_when_the_player_who_waits_needs_penalty_points(behind, called):
-    """S3 R14: of the 42 points on the table seven are the striker's alone."""
-    frame = Frame(
-        on_table=COLOURS_MASK | 2,
-        ball_on=BallOn.ANY_COLOUR,
-        scores=(behind, 0),
-        in_hand=False,
-        miss="clear_path",
-    )
-    assert frame.play(hit(1), **PATHS)[0].miss_called == called
 
 
 @pytest.mark.parametrize(("scores", "needs"), [((0, 13), False), ((0, 14), True), ((20, 0), False)])
@@ -297,24 +136,6 @@ def test_needs_snookers(scores, needs):
     frame = last(BallOn.PINK, scores)
     assert frame.needs_snookers(0) == needs
     assert frame.needs_snookers(1) == (scores[0] - scores[1] > 13)
-
-
-@pytest.mark.parametrize(
-    ("scores", "stroke", "phase", "winner", "after"),
-    [
-        ((60, 58), pot(BLACK), "over", 0, (67, 58)),
-        ((40, 60), pot(BLACK), "over", 1, (47, 60)),
-        ((60, 55), MISSED, "over", 1, (60, 62)),
-        ((90, 55), MISSED, "over", 0, (90, 62)),
-        ((50, 57), pot(BLACK), "lot", None, (57, 57)),
-        ((64, 57), MISSED, "lot", None, (64, 64)),
-        ((64, 57), hit(BLACK), "stroke", None, (64, 57)),
-    ],
-)
-def test_the_last_black(scores, stroke, phase, winner, after):
-    frame = played(last(BallOn.BLACK, scores), stroke)
-    assert (frame.phase, frame.winner, frame.scores) == (phase, winner, after)
-    assert frame.ball_on == (BallOn.NOTHING if phase == "over" else BallOn.BLACK)
 
 
 @pytest.mark.parametrize("first", [0, 1])
@@ -330,15 +151,12 @@ def test_a_respotted_black_is_decided_by_the_next_score_or_foul(first):
         frame.draw(0)
 
 
-def test_claiming():
+def test_who_may_claim_and_concede():
     assert last(BallOn.BLACK, (60, 52)).claim().winner == 0
     for frame in (last(BallOn.BLACK, (60, 53)), last(BallOn.PINK, (60, 20)), last(BallOn.BLACK, (20, 60))):
         assert not frame.may_claim
         with pytest.raises(ValueError, match="over 7"):
             frame.claim()
-
-
-def test_only_the_striker_concedes():
     frame = Frame.start(breaker=1)
     assert frame.concede(1).winner == 0
     with pytest.raises(ValueError, match="striker"):
@@ -347,7 +165,7 @@ def test_only_the_striker_concedes():
         frame.concede(1).concede(1)
 
 
-def test_a_stalemate_starts_again():
+def test_a_stalemate_starts_again_and_what_is_over_does_not():
     frame = played(Frame.start(breaker=1, miss="clear_path"), pot(1), pot(BLACK), hit(2)).restart()
     assert frame == Frame.start(breaker=1, miss="clear_path")
     few = Frame.start(on_table=COLOURS_MASK | 0b10110, miss="clear_path")
@@ -355,67 +173,24 @@ def test_a_stalemate_starts_again():
     assert Frame.start(rules="six_red").restart().on_table == Frame.start(rules="six_red").on_table
     with pytest.raises(ValueError, match="over"):
         frame.concede(frame.striker).restart()
-
-
-def test_nothing_more_is_played_when_it_is_over():
     with pytest.raises(ValueError, match="over"):
         Frame.start().concede(0).play(MISSED)
-
-
-# Written down and read again
 
 
 def through_json(frame):
     return Frame.from_dict(json.loads(json.dumps(frame.to_dict())))
 
 
-@st.composite
-def strokes_for(draw, frame):
-    """A stroke that can be played in a frame: mostly fair, sometimes anything."""
-    on = ids_of(balls_on(frame.ball_on, frame.on_table))
-    everything = ids_of(frame.on_table)
-    ball = draw(st.sampled_from(on if draw(st.booleans()) else everything))
-    potted = draw(
-        st.sampled_from([0, 1 << ball, 1 << ball, 1 << ball, CUE_BIT, 1 << draw(st.sampled_from(everything))])
-    )
-    return Stroke(
-        first=draw(st.sampled_from([1 << ball] * 5 + [0])), potted=potted, snookered=draw(st.booleans())
-    )
-
-
-@settings(max_examples=60, deadline=None)
-@given(st.data(), st.sampled_from(["off", "clear_path"]))
-def test_a_frame_written_down_goes_on_as_the_same(data, miss):
-    frame = data.draw(st.just(Frame.start(miss=miss, on_table=COLOURS_MASK | 0b1110)))
-    for _ in range(60):
-        assert through_json(frame) == frame
-        total = sum(frame.scores)
-        if frame.phase == "stroke":
-            stroke = data.draw(strokes_for(frame))
-            options = {
-                "clear_path": data.draw(st.booleans()),
-                "full_ball_path": False,
-                "layout": ((0.5, 0.25), "here"),
-            }
-            following, verdict = frame.play(stroke, **options)
-            assert through_json(frame).play(stroke, **options) == (following, verdict)
-            assert sum(following.scores) - total == verdict.points + verdict.penalty
-            frame = following
-        elif frame.phase == "choice":
-            frame = frame.choose(data.draw(st.sampled_from(frame.choices)))
-        elif frame.phase == "lot":
-            frame = frame.draw(data.draw(st.integers(0, 1)))
-        else:
-            assert frame.winner in (0, 1)
-            break
-
-
-def test_a_whole_frame_of_the_best_break():
+def test_the_break_to_the_end_of_a_frame():
     frame, reds = Frame.start(), list(range(1, 16))
     for red in reds:
         frame = played(frame, pot(red), pot(BLACK))
     frame = played(frame, *map(pot, range(YELLOW, BLACK + 1)))
     assert (frame.phase, frame.winner, frame.scores) == ("over", 0, (147, 0))
+    # The last black belongs to the break; a foul ends it, as everywhere
+    frame = last(BallOn.BLACK, (60, 20), break_points=140)
+    assert played(frame, pot(BLACK)).break_points == 147
+    assert played(frame, MISSED).break_points == 0
 
 
 @pytest.mark.parametrize(
@@ -439,21 +214,10 @@ def test_impossible_frames_are_refused(wrong):
         Frame(**wrong)
 
 
-def test_the_break_at_the_end_of_a_frame():
-    """The last black belongs to the break; a foul ends it, as everywhere."""
-    frame = last(BallOn.BLACK, (60, 20), break_points=140)
-    assert played(frame, pot(BLACK)).break_points == 147
-    assert played(frame, MISSED).break_points == 0
-
-
 def test_a_strange_dict_is_refused():
     plain = Frame.start().to_dict()
-    for wrong in (
-        plain | {"more": 1},
-        {k: v for k, v in plain.items() if k != "miss"},
-        [],
-        plain | {"ball_on": 9},
-    ):
+    without = {k: v for k, v in plain.items() if k != "miss"}
+    for wrong in (plain | {"more": 1}, without, [], plain | {"ball_on": 9}):
         with pytest.raises(ValueError):
             Frame.from_dict(wrong)
 
@@ -464,9 +228,3 @@ def test_a_frame_never_changes():
     assert frame == Frame.start()
     with pytest.raises(dataclasses.FrozenInstanceError):
         frame.striker = 1
-
-
-def test_a_nomination_is_checked_against_the_table():
-    with pytest.raises(ValueError, match="nominated"):
-        Frame.start().play(Stroke(first=2, nominated=GREEN))
-    assert Stroke().nominated == AUTO

@@ -1,11 +1,12 @@
 """Do frames of every game go on as their rules say? What six-red and the Shoot Out change; random strokes."""
 
+import json
 from collections import Counter
 
 import numpy as np
 import pytest
 
-from snooker_env.game.balls import COLOURS_MASK, BallOn, balls_on, ids_of, mask_of
+from snooker_env.game.balls import COLOURS_MASK, balls_on, ids_of, mask_of
 from snooker_env.game.frame import MISS_RULES, Frame, frame_of, write_frame
 from snooker_env.game.frame_columns import COLUMNS, Layouts
 from snooker_env.game.referee import Stroke
@@ -67,7 +68,7 @@ def test_whatever_is_played_the_frame_is_possible_and_a_table_keeps_it(rules, mi
         frame = Frame.start(breaker=game % 2, miss=miss, rules=rules, on_table=few)
         to_play = int(rng.choice([4_000, 9_000, 12_000, 16_000]))
         for _ in range(400):
-            assert Frame.from_dict(frame.to_dict()) == frame
+            assert Frame.from_dict(json.loads(json.dumps(frame.to_dict()))) == frame
             write_frame(frame, 7, row, layouts, 0)
             assert frame_of(row, miss, layouts, 0, rules) == frame
             if frame.phase == "over":
@@ -98,13 +99,8 @@ def test_six_red_the_fifth_miss_lets_the_opponent_place_the_cue_ball_anywhere():
     frame, _ = frame.play(Stroke(snookered=True), clear_path=True)
     assert frame.misses == 5 and frame.choices == ("play", "play_again", "anywhere") and frame.free_ball
     placed = frame.choose("anywhere")
-    assert (placed.striker, placed.in_hand, placed.anywhere, placed.free_ball, placed.misses) == (
-        1,
-        True,
-        True,
-        False,
-        0,
-    )
+    assert placed.striker == 1 and placed.in_hand and placed.anywhere
+    assert not placed.free_ball and not placed.misses
     after, _ = placed.play(Stroke(first=2))
     assert not after.in_hand and not after.anywhere
     missed, _ = placed.play(MISSED, clear_path=True)  # replaced, he places it anywhere once more
@@ -124,8 +120,7 @@ def test_six_red_not_anywhere_when_snookers_are_required():
 
 
 def test_any_number_of_misses_with_part_of_a_ball_to_be_seen_until_the_scores_decide():
-    """S3 R14 has no limit but for a full ball: penalties add up until they reach what is left, and then no
-    miss is called."""
+    """S3 R14 limits full balls alone: penalties add up until no miss is called for the scores."""
     frame, calls = Frame.start(miss="clear_path"), 0
     while True:
         frame, _ = frame.play(MISSED, clear_path=True)
@@ -135,40 +130,8 @@ def test_any_number_of_misses_with_part_of_a_ball_to_be_seen_until_the_scores_de
     assert calls == 36 and frame.scores == (0, 148) and frame.available == 147  # 4 points each
 
 
-def test_a_snookered_striker_must_come_near():
-    for miss, called in (("clear_path", False), ("attempt", True)):
-        frame = Frame.start(miss=miss)
-        assert frame.play(MISSED, attempt=False)[0].miss_called == called
-        assert not frame.play(MISSED, attempt=True)[0].miss_called
-        ahead = Frame(miss=miss, scores=(0, 147))
-        assert not ahead.play(MISSED, attempt=False)[0].miss_called
-
-
 def shoot_out(**more):
     return Frame(rules="shoot_out", **more)
-
-
-def test_shoot_out_a_foul_gives_the_ball_in_hand_anywhere():
-    frame, verdict = shoot_out().play(Stroke(snookered=True))
-    assert (frame.phase, frame.striker, frame.in_hand, frame.anywhere, frame.free_ball) == (
-        "stroke",
-        1,
-        True,
-        True,
-        False,
-    )
-    assert frame.scores == (0, 4) and verdict.in_hand
-    frame, _ = frame.play(Stroke(first=2))
-    assert not frame.in_hand and not frame.anywhere
-
-
-def test_shoot_out_a_ball_must_be_potted_or_reach_a_cushion():
-    assert shoot_out().play(Stroke(first=2, no_cushion=True))[0].scores == (0, 4)
-    assert shoot_out().play(Stroke(first=2, potted=2, no_cushion=True))[0].scores == (1, 0)
-    assert shoot_out(ball_on=BallOn.PINK, on_table=3 << 20).play(Stroke(first=1 << 20, no_cushion=True))[
-        0
-    ].scores == (0, 6)
-    assert Frame().play(Stroke(first=2, no_cushion=True))[0].scores == (0, 0)
 
 
 def test_shoot_out_the_clocks():
@@ -176,28 +139,13 @@ def test_shoot_out_the_clocks():
     assert frame.clock == 6_000  # it starts with the first stroke
     late, verdict = frame.play(Stroke(first=2, potted=2), time_to_play=15_001, duration=6_000)
     assert verdict.penalty == 5 and late.clock == 21_000 and late.anywhere and late.on_table == frame.on_table
-    assert (
-        shoot_out(ball_on=BallOn.PINK, on_table=3 << 20, clock=1)
-        .play(Stroke(), time_to_play=20_000)[1]
-        .penalty
-        == 6
-    )
     half = shoot_out(clock=300_000)
     assert half.shot_clock == 10_000 and half.play(Stroke(first=2), time_to_play=10_000)[1].penalty == 0
-    assert half.play(Stroke(first=2), time_to_play=10_001)[1].penalty == 5
     assert Frame().shot_clock == 0 and Frame().play(Stroke(first=2), time_to_play=10**6)[1].penalty == 0
-
-
-@pytest.mark.parametrize(("scores", "winner"), [((10, 3), 0), ((3, 10), 1), ((4, 5), 1)])
-def test_shoot_out_when_the_time_is_up_the_higher_score_wins(scores, winner):
-    frame = shoot_out(scores=scores, clock=580_000)
-    assert frame.play(Stroke(first=2), time_to_play=8_000, duration=3_999)[0].phase == "stroke"
-    over, _ = frame.play(Stroke(first=2), time_to_play=8_000, duration=4_000)
-    assert (over.phase, over.winner, over.clock) == ("over", winner, 592_000)
-    last, _ = shoot_out(scores=(4, 5), clock=585_000).play(
-        Stroke(first=2, potted=14), time_to_play=8_000, duration=2_000
-    )
-    assert last.winner == 0  # a stroke begun in time counts
+    end = shoot_out(scores=(4, 5), clock=580_000)
+    assert end.play(Stroke(first=2), time_to_play=8_000, duration=3_999)[0].phase == "stroke"
+    over, _ = end.play(Stroke(first=2), time_to_play=8_000, duration=4_000)
+    assert (over.phase, over.winner, over.clock) == ("over", 1, 592_000)
 
 
 def test_shoot_out_level_scores_leave_the_black():

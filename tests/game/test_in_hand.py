@@ -1,5 +1,4 @@
-"""Is the place found in the D legal, and the nearest? Named cases, and many places drawn at random as the
-judge."""
+"""Is the place found in the D legal, and the nearest?"""
 
 import numpy as np
 import pytest
@@ -13,8 +12,7 @@ from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HA
 from snooker_env.physics.table import Table
 from tests.kernels import from_python
 
-in_d = from_python(in_hand.in_d)
-
+in_d, on_bed = from_python(in_hand.in_d), from_python(in_hand.on_bed)
 REACH = 2 * BALL_RADIUS + CLEARANCE
 
 
@@ -54,107 +52,74 @@ def test_a_wish_outside_goes_to_the_nearest_point_of_the_d(wish, place):
     assert place_cue(*table(), *wish) == pytest.approx(place, abs=1e-12)
 
 
-def test_beside_one_ball():
+def test_the_place_is_beside_the_balls_in_the_way():
     assert place_cue(*table((0.0, -1.2)), 0.01, -1.2) == pytest.approx((REACH, -1.2), abs=1e-12)
     touching = 2 * BALL_RADIUS + 0.9 * REFEREE_TOUCH  # a referee would call a touching ball there
     assert place_cue(*table((0.0, -1.2)), touching, -1.2) == pytest.approx((REACH, -1.2), abs=1e-12)
     x, y = place_cue(*table((0.0, -1.2)), 0.0, -1.2)
     assert np.hypot(x, y + 1.2) == pytest.approx(REACH, abs=1e-12)
-
-
-def test_beside_one_ball_on_the_lines_of_the_d():
     # The nearest point of the circle lies beyond the line; the place is where circle and line meet.
     half = np.sqrt(REACH**2 - 0.02**2)
-    assert place_cue(*table((0.0, BAULK_Y - 0.02)), 0.01, BAULK_Y) == pytest.approx(
-        (half, BAULK_Y), abs=1e-12
-    )
+    place = place_cue(*table((0.0, BAULK_Y - 0.02)), 0.01, BAULK_Y)
+    assert place == pytest.approx((half, BAULK_Y), abs=1e-12)
     x, y = place_cue(*table((0.0, BAULK_Y - D_RADIUS + 0.02)), 0.01, BAULK_Y - D_RADIUS)
     assert np.hypot(x, y - BAULK_Y) == pytest.approx(D_RADIUS, abs=1e-12)
     assert np.hypot(x, y - BAULK_Y + D_RADIUS - 0.02) == pytest.approx(REACH, abs=1e-12) and x > 0.0
-
-
-def test_on_the_spots_of_the_d():
     for ball in (YELLOW, GREEN, BROWN):
         x, y = place_cue(*table(SPOTS[ball]), *SPOTS[ball])
         assert in_d(x, y) and np.hypot(*(SPOTS[ball] - [x, y])) == pytest.approx(REACH, abs=1e-12)
-
-
-def test_the_cue_ball_is_not_in_its_own_way():
     positions, on_table = table()
     positions[0], on_table[0] = (0.0, -1.1), True
     assert place_cue(positions, on_table, 0.0, -1.1) == (0.0, -1.1)
 
 
-def test_a_full_d_is_refused():
-    rows = [
-        (x, BAULK_Y - y)
-        for y in (0.02, 0.11, 0.2, 0.28)
-        for x in np.linspace(-0.26, 0.26, 6)[: 6 if y < 0.2 else 5]
-    ]
+def test_a_full_d_and_wrong_input_are_refused():
+    rows = [(x, BAULK_Y - y) for y in (0.02, 0.11, 0.2, 0.28) for x in np.linspace(-0.26, 0.26, 6)]
     with pytest.raises(ValueError, match="free place"):
-        place_cue(*table(*rows[:21]), 0.0, -1.1, radius=0.08)
-
-
-def test_wrong_input_is_refused():
+        place_cue(*table(*rows[:17], *rows[18:22]), 0.0, -1.1, radius=0.08)
     with pytest.raises(ValueError, match="x = nan"):
         place_cue(*table(), np.nan, 0.0)
 
 
-@settings(max_examples=60, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.integers(0, 21))
-def test_no_place_drawn_at_random_is_nearer(seed, number):
-    rng = np.random.default_rng(seed)
+def strewn(rng, number, low, high):
+    """At most so many balls without overlap within a rectangle."""
     balls = []
-    for place in rng.uniform([-0.33, BAULK_Y - 0.33], [0.33, BAULK_Y + 0.05], (400, 2)):
+    for place in rng.uniform(low, high, (400, 2)):
         if len(balls) < number and all(np.hypot(*(place - ball)) > 2 * BALL_RADIUS for ball in balls):
             balls.append(place)
-    wish = rng.uniform([-0.3, BAULK_Y - 0.3], [0.3, BAULK_Y])
-    wish = np.array(place_cue(*table(), *wish))
-    try:
-        place = place_cue(*table(*balls), *wish)
-    except ValueError:
-        place = None
-    anywhere = rng.uniform([-D_RADIUS, BAULK_Y - D_RADIUS], [D_RADIUS, BAULK_Y], (4000, 2))
-    tries = np.vstack([anywhere, wish + rng.normal(0, 0.05, (4000, 2))])
-    tries = tries[[in_d(x, y) for x, y in tries]]
+    return balls
+
+
+@pytest.mark.parametrize("anywhere", [False, True])
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), number=st.integers(0, 21))
+def test_no_place_drawn_at_random_is_nearer(anywhere, seed, number):
+    rng = np.random.default_rng(seed)
+    if anywhere:  # next to a corner pocket or a middle one, so that balls are close
+        corner = rng.choice([-1, 1], 2) * [0.6, 1.5]
+        balls = strewn(rng, number, *(corner + np.array([[-0.35, -0.3], [0.35, 0.3]])))
+        wish = corner + rng.uniform([-0.4, -0.4], [0.4, 0.4])
+        edge = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - CLEARANCE
+        nearest = np.clip(wish, -edge, edge)
+        tries = nearest + rng.normal(0, 1, (8000, 2)) * rng.choice([0.01, 0.1, 0.3], (8000, 1))
+        tries = np.vstack([tries, np.clip(tries, -edge, edge)])
+    else:
+        balls = strewn(rng, number, [-0.33, BAULK_Y - 0.33], [0.33, BAULK_Y + 0.05])
+        wish = nearest = np.array(place_cue(*table(), *rng.uniform([-0.3, BAULK_Y - 0.3], [0.3, BAULK_Y])))
+        tries = rng.uniform([-D_RADIUS, BAULK_Y - D_RADIUS], [D_RADIUS, BAULK_Y], (4000, 2))
+        tries = np.vstack([tries, wish + rng.normal(0, 0.05, (4000, 2))])
+    legal = (lambda x, y: on_bed(x, y, BALL_RADIUS)) if anywhere else in_d
+    tries = tries[[legal(x, y) for x, y in tries]]
     for ball in balls:
         tries = tries[np.hypot(*(tries - ball).T) > REACH]
-    if place is None:
+    try:
+        place = place_cue(*table(*balls), *wish, anywhere=anywhere)
+    except ValueError:
         assert not len(tries)
         return
-    assert in_d(*place)
+    assert legal(*place)
     assert all(np.hypot(*(ball - place)) > 2 * BALL_RADIUS + CLEARANCE / 2 for ball in balls)
-    if len(tries):
-        assert np.hypot(*(tries - wish).T).min() > np.hypot(*(place - wish)) - 1e-9
-
-
-# Anywhere on the table
-
-on_bed = from_python(in_hand.on_bed)
-
-
-@settings(max_examples=60, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.integers(0, 21))
-def test_anywhere_no_place_drawn_at_random_is_nearer(seed, number):
-    rng = np.random.default_rng(seed)
-    # in one part of the bed, next to a corner pocket or a middle one, so that balls are close
-    corner = rng.choice([-1, 1], 2) * [0.6, 1.5]
-    balls = []
-    for place in corner + rng.uniform([-0.35, -0.3], [0.35, 0.3], (400, 2)):
-        if len(balls) < number and all(np.hypot(*(place - ball)) > 2 * BALL_RADIUS for ball in balls):
-            balls.append(place)
-    wish = corner + rng.uniform([-0.4, -0.4], [0.4, 0.4])
-    place = np.array(place_cue(*table(*balls), *wish, anywhere=True))
-    edge = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - CLEARANCE
-    wish = np.clip(wish, -edge, edge)
-    tries = wish + rng.normal(0, 1, (8000, 2)) * rng.choice([0.01, 0.1, 0.3], (8000, 1))
-    tries = np.vstack([tries, np.clip(tries, -edge, edge)])
-    tries = tries[[on_bed(x, y, BALL_RADIUS) for x, y in tries]]
-    for ball in balls:
-        tries = tries[np.hypot(*(tries - ball).T) > REACH]
-    assert on_bed(*place, BALL_RADIUS)
-    assert all(np.hypot(*(ball - place)) > 2 * BALL_RADIUS + CLEARANCE / 2 for ball in balls)
-    assert not len(tries) or np.hypot(*(tries - wish).T).min() > np.hypot(*(place - wish)) - 1e-9
+    assert not len(tries) or np.hypot(*(tries - nearest).T).min() > np.hypot(*(place - nearest)) - 1e-9
 
 
 def test_anywhere_is_on_the_bed_and_off_the_pockets():

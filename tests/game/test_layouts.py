@@ -28,12 +28,8 @@ def gaps(positions, on_table):
 @given(seed=st.integers(0, 2**32 - 1))
 def test_every_layout_is_playable(name, seed):
     positions, on_table = layouts.layout(name, np.random.default_rng(seed))
-    assert (
-        positions.shape == (22, 2)
-        and positions.dtype == np.float64
-        and on_table.shape == (22,)
-        and on_table.dtype == np.bool_
-    )
+    assert positions.shape == (22, 2) and positions.dtype == np.float64 and on_table.shape == (22,)
+    assert on_table.dtype == np.bool_
     assert on_table[0] and np.all(on_table[YELLOW:])
     assert np.array_equal(positions[YELLOW:], SPOTS[YELLOW:])
     distances = gaps(positions, on_table)
@@ -42,9 +38,8 @@ def test_every_layout_is_playable(name, seed):
     if name != "break_off":
         assert distances.min() >= layouts.GAP - 1e-12
     sprinkled = positions[:16][on_table[:16]] if name.startswith("random") else positions[:1]
-    assert np.all(
-        np.abs(sprinkled) <= np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - layouts.CUSHION_GAP
-    )
+    reach = np.array([HALF_WIDTH, HALF_LENGTH]) - BALL_RADIUS - layouts.CUSHION_GAP
+    assert np.all(np.abs(sprinkled) <= reach)
     assert all(np.hypot(*(POCKET_PLACES - place).T).min() >= layouts.POCKET_GAP for place in sprinkled)
 
 
@@ -82,15 +77,12 @@ def test_number_of_reds(name, reds):
     assert layouts.layout(name, np.random.default_rng(0))[1][1:16].sum() == reds
 
 
-def test_break_off_is_played_from_the_d():
+def test_where_the_break_off_and_the_line_up_lie():
     """From one place: beside the brown, on the side that the stream decides."""
     places = [tuple(layouts.layout("break_off", np.random.default_rng(seed))[0][0]) for seed in range(60)]
     usual = tuple(SPOTS[0].tolist())
     assert usual == (0.18, BAULK_Y) and set(places) == {usual, (-0.18, BAULK_Y)}
     assert 20 < places.count(usual) < 40
-
-
-def test_line_up_is_a_line_through_which_a_ball_passes():
     positions, _ = layouts.layout("line_up", np.random.default_rng(0))
     on_line = np.sort(np.append(positions[1:16, 1], SPOTS[19:22, 1]))
     assert np.all(positions[1:16, 0] == 0.0)
@@ -98,11 +90,12 @@ def test_line_up_is_a_line_through_which_a_ball_passes():
     assert abs(on_line).max() < HALF_LENGTH - 3 * BALL_RADIUS
 
 
-@pytest.mark.parametrize(
-    "name", ["", "no such", "random", "random:", "random:16", "random:-1", "random:N", None, 3]
-)
+UNKNOWN = ["", "no such", "random", "random:", "random:16", "random:-1", "random:N", None, 3]
+
+
+@pytest.mark.parametrize("name", [*UNKNOWN, "pots", "pots:", "pots:Easy", "pots:very hard", "Snookered"])
 def test_unknown_names_are_refused(name):
-    with pytest.raises(ValueError):
+    with pytest.raises(ValueError, match=r"^layout = "):
         layouts.layout(name, np.random.default_rng(0))
 
 
@@ -147,9 +140,3 @@ def test_single_pots_are_as_hard_as_they_say(difficulty):
 def test_the_difficulties_leave_no_gap_and_do_not_overlap():
     windows = [layouts.POT_WINDOWS[d] for d in ("hard", "medium", "easy")]
     assert [w[1] for w in windows[:2]] == [w[0] for w in windows[1:]] and windows[-1][1] == np.inf
-
-
-@pytest.mark.parametrize("name", ["pots", "pots:", "pots:Easy", "pots:very hard", "Snookered"])
-def test_unknown_drills_are_refused(name):
-    with pytest.raises(ValueError, match=r"^layout = "):
-        layouts.layout(name, np.random.default_rng(0))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.game.balls import BLACK, BLUE, CUE, GREEN, N_BALLS, PINK, SPOTS, mask_of
+from snooker_env.game.balls import BLUE, CUE, GREEN, N_BALLS, NAMES, PINK, SPOTS, mask_of
 from snooker_env.game.paths import paths
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
@@ -14,18 +14,9 @@ TABLE = sn.Table.preset("match")
 
 def scene(**places):
     positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
-    ids = {
-        "cue": CUE,
-        "green": GREEN,
-        "blue": BLUE,
-        "pink": PINK,
-        "black": BLACK,
-        "red": 1,
-        "brown": 18,
-        "yellow": 16,
-    }
     for name, place in places.items():
-        positions[ids[name]], on_table[ids[name]] = place, True
+        ball = 1 if name == "red" else NAMES.index(name)
+        positions[ball], on_table[ball] = place, True
     return positions, on_table
 
 
@@ -62,21 +53,14 @@ def test_named_cases(ball, places, expected):
 
 
 def first_met(positions, on_table, angles):
-    """What a cue ball that rolls fast along each angle meets first: a ball's id, or -1 for a cushion or
-    nothing."""
+    """What a cue ball that rolls fast along each angle meets first: a ball's id, or -1."""
     n = len(angles)
     velocities, spins = np.zeros((n, N_BALLS, 2)), np.zeros((n, N_BALLS, 3))
     c, s = np.cos(angles), np.sin(angles)
     velocities[:, CUE] = 20 * np.column_stack([c, s])
     spins[:, CUE, :2] = 20 / R * np.column_stack([-s, c])
-    out = sn.simulate_batch(
-        np.repeat(positions[None], n, 0),
-        velocities,
-        spins,
-        "match",
-        on_table=np.repeat(on_table[None], n, 0),
-        events=True,
-    )
+    tables, present = np.repeat(positions[None], n, 0), np.repeat(on_table[None], n, 0)
+    out = sn.simulate_batch(tables, velocities, spins, "match", on_table=present, events=True)
     met = np.full(n, -1)
     for k in range(n):
         own = [e for e in out.events[k] if e["i"] == CUE and e["kind"] in (0, 1, 2, 3, 6)]
@@ -91,9 +75,8 @@ def in_mouths_and_at_rails(rng):
         place = rng.uniform([-HALF_WIDTH, -HALF_LENGTH], [HALF_WIDTH, HALF_LENGTH])
         if rng.random() < 0.6:
             side = rng.integers(2)
-            place[side] = np.sign(place[side]) * (
-                (HALF_WIDTH, HALF_LENGTH)[side] - R - rng.exponential(0.003) + 0.004
-            )
+            rail = (HALF_WIDTH, HALF_LENGTH)[side] - R
+            place[side] = np.sign(place[side]) * (rail - rng.exponential(0.003) + 0.004)
         if rng.random() < 0.4:
             place[1] = rng.choice([-HALF_LENGTH, 0, HALF_LENGTH]) + rng.normal(0, 0.05)
         try:
@@ -104,26 +87,17 @@ def in_mouths_and_at_rails(rng):
 
 
 def test_paths_agree_with_rolled_balls():
-    """Cue ball and target near rails and pockets, two balls between them; 300 directions, then 6,000, over
-    the whole target."""
+    """Near rails and pockets, two balls between; 300 directions, then 6,000, over the target."""
     rng, met = np.random.default_rng(8), {"any": 0, "full": 0, "barred": 0, "partly": 0, "by cushions": 0}
     while met["any"] < 60:
         cue, red = in_mouths_and_at_rails(rng), in_mouths_and_at_rails(rng)
         if rng.random() < 0.7:
             red[0] = cue[0]  # along the same rail
         across = np.array([cue[1] - red[1], red[0] - cue[0]]) / np.hypot(*(red - cue))
-        places = [
-            cue,
-            red,
-            *(
-                cue + rng.uniform(0.1, 0.9) * (red - cue) + rng.uniform(-2.5, 2.5) * R * across
-                for _ in range(2)
-            ),
-        ]
+        shares = rng.uniform((0.1, -2.5 * R), (0.9, 2.5 * R), (2, 2))
+        places = [cue, red, *(cue + along * (red - cue) + aside * across for along, aside in shares)]
         try:
-            TABLE.check([red], R)
-            TABLE.check([places[2]], R)
-            TABLE.check([places[3]], R)
+            TABLE.check(np.array(places[1:])[:, None], R)  # each by itself
         except ValueError:
             continue
         apart = [np.hypot(*(a - b)) for k, a in enumerate(places) for b in places[:k]]

@@ -18,9 +18,6 @@ def test_case(case):
     assert rules_cases.run(case) is None
 
 
-WRONG = {True: False, False: True, None: "A", "A": "B", "B": "A", "red": "blue", "black": "yellow"}
-
-
 @pytest.mark.parametrize("case", CASES + MORE, ids=[case["id"] for case in CASES + MORE])
 def test_a_wrong_expectation_fails(case):
     expect = case["expect"]
@@ -28,16 +25,7 @@ def test_a_wrong_expectation_fails(case):
         assert rules_cases.run(case | {"expect": not expect})
         return
     for key, value in expect.items():
-        if isinstance(value, dict):
-            wrong = {player: points + 1 for player, points in value.items()}
-        elif isinstance(value, list):
-            wrong = [*value, "red"]
-        elif isinstance(value, bool) or value is None:
-            wrong = WRONG[value]
-        elif isinstance(value, int):
-            wrong = value + 1
-        else:
-            wrong = WRONG.get(value, "green" if value != "green" else "brown")
+        wrong = [*value, "red"] if isinstance(value, list) else "1"
         assert rules_cases.run(case | {"expect": expect | {key: wrong}}), key
 
 

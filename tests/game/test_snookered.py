@@ -1,21 +1,14 @@
-"""Are snookers and clear paths seen as the rules define them? Named cases, and a cue ball rolled in small
-steps as the judge."""
-
-import time
+"""Are snookers and clear paths seen as the rules define them?"""
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from snooker_env.game import lines
 from snooker_env.game.balls import BLACK, COLOURS_MASK, PINK, SPOTS, YELLOW, mask_of
 from snooker_env.game.paths import paths
 from snooker_env.game.snookered import is_snookered
-from snooker_env.geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
-from tests.kernels import from_python
-
-meets = from_python(lines.meets)
+from snooker_env.geometry import BALL_RADIUS, BAULK_Y
 
 R = BALL_RADIUS
 RED = mask_of([1])
@@ -45,13 +38,6 @@ FAR = (0.0, 0.8)
         ([FAR], [], False),
         ([FAR], [(0.0, 0.0)], True),
         ([FAR], [(0.06, 0.0)], True),  # one edge hidden is enough
-        ([FAR], [(-0.06, 0.0)], True),
-        ([FAR], [(0.08, 0.0)], False),
-        ([FAR], [(0.0, -0.9)], False),  # behind the cue ball
-        ([FAR], [(0.0, 0.9)], False),  # behind the red
-        ([FAR, (0.0, 0.3)], [], False),  # a ball on hides nothing
-        ([FAR, (0.5, 0.7)], [(0.0, 0.0)], False),  # one of two is enough
-        ([FAR, (0.5, 0.7)], [(0.06, 0.0), (0.33, 0.3)], True),
         ([(0.0, -0.8 + 2 * R)], [(0.0, 0.0)], False),  # touching a ball on
         ([(0.0, -0.8 + 2 * R + 49e-6)], [(0.0526, -0.8001)], False),  # as the referee sees it
         ([(0.0, -0.8 + 2 * R + 51e-6)], [(0.0526, -0.8001)], True),
@@ -61,18 +47,6 @@ FAR = (0.0, 0.8)
 )
 def test_snookers(reds, others, expected):
     assert snookered(CUE, reds, others)[0] == expected
-
-
-def test_the_edge_is_that_of_a_graze():
-    # The tangent at 2 R from FAR passes x(y) = 2 R cos / ... ; a ball just 2 R from that line is not in the
-    # way, 0.1 mm nearer it is.
-    d = 1.6
-    s = 2 * R / d
-    # the tangent on the right goes along (s, cos) from the cue ball
-    normal = np.array([np.sqrt(1 - s * s), -s])
-    middle = np.array(CUE) + 0.8 * np.array([s, np.sqrt(1 - s * s)])
-    assert not snookered(CUE, [FAR], [middle + 2 * R * normal])[0]
-    assert snookered(CUE, [FAR], [middle + (2 * R - 1e-4) * normal])[0]
 
 
 @pytest.mark.parametrize(
@@ -102,12 +76,16 @@ def test_a_cushion_does_not_snooker():
 # In hand: the whole D
 
 
-def test_in_hand_sees_from_any_place():
+def test_in_hand_sees_from_any_place_that_is_free():
     assert not snookered(None, [FAR])[0]
     assert not snookered(None, [FAR], [(0.0, 0.0)])[0]  # round the blocker from the ends of the D
     cage = [(2.1 * R * np.sin(a), 0.8 - 2.1 * R * np.cos(a)) for a in np.radians([-60.0, 0.0, 60.0])]
     assert snookered(None, [FAR], cage)[0]
     assert not snookered(None, [FAR, (0.5, 0.0)], cage)[0]
+    red = np.array([0.0, -1.19])
+    ring = [red + 2.001 * R * np.array([np.cos(a), np.sin(a)]) for a in np.radians(range(0, 360, 60))]
+    assert snookered(None, [red], ring)[0]
+    assert not snookered(None, [red], ring[:3])[0]
 
 
 @pytest.mark.parametrize(("spare", "expected"), [(0.0012, False), (-0.0005, True)])
@@ -124,63 +102,17 @@ def test_in_hand_finds_a_narrow_view_right_beside_a_ball():
     # Both edges of the green are in view from the baulk line 0.1 to 0.6 mm beside it, which no grid of places
     # meets.
     green, brown = (-0.292, BAULK_Y), (-0.27029115608194443, -1.0993258680927571)
-    others = [
-        (0.687739087233893, -0.6279441785695304),
-        (-0.6521780571937696, -0.4790269154178912),
-        (0.0, 0.0),
-        brown,
-    ]
+    far = (0.687739087233893, -0.6279441785695304), (-0.6521780571937696, -0.4790269154178912)
+    others = [*far, (0.0, 0.0), brown]
     assert not snookered((-0.2392, BAULK_Y), [green], others)[0]
     assert not snookered(None, [green], others)[0]
-
-
-def test_in_hand_a_place_on_a_ball_is_no_place():
-    red = np.array([0.0, -1.19])
-    ring = [red + 2.001 * R * np.array([np.cos(a), np.sin(a)]) for a in np.radians(range(0, 360, 60))]
-    assert snookered(None, [red], ring)[0]
-    assert not snookered(None, [red], ring[:3])[0]
-
-
-def test_in_hand_a_ball_in_the_d_takes_its_place_away():
-    full = [(x, BAULK_Y + 0.001) for x in np.linspace(-D_RADIUS, D_RADIUS, 6)]
-    assert not snookered(None, [FAR], full)[0]
-
-
-def test_in_hand_agrees_with_places_drawn_at_random():
-    rng = np.random.default_rng(1)
-    seen = {True: 0, False: 0}
-    for _ in range(60):
-        red = np.array([rng.uniform(-0.8, 0.8), rng.uniform(-0.9, 1.7)])
-        others = [
-            red + rng.uniform(2 * R, 0.4) * np.array([np.sin(a), -np.cos(a)])
-            for a in rng.uniform(-1.0, 1.0, 2)
-        ]
-        places = rng.uniform([-D_RADIUS, -D_RADIUS], [D_RADIUS, 0.0], (300, 2))
-        places = places[np.hypot(*places.T) <= D_RADIUS] + [0.0, BAULK_Y]
-        legal = [p for p in places if all(np.hypot(*(p - b)) > 2 * R + 1e-3 for b in [red, *others])]
-        somewhere = any(not snookered(p, [red], others)[0] for p in legal)
-        in_hand = snookered(None, [red], others)[0]
-        assert not (somewhere and in_hand)
-        seen[in_hand] += 1
-    assert min(seen.values()) >= 5
-
-
-def test_in_hand_is_fast_enough():
-    positions, on_table, on = table(
-        None, [(x, 1.6) for x in np.linspace(-0.8, 0.8, 15)], [(x, 1.5) for x in np.linspace(-0.7, 0.7, 6)]
-    )
-    is_snookered(positions, on_table, on)
-    start = time.perf_counter()
-    is_snookered(positions, on_table, on)
-    assert time.perf_counter() - start < 0.25
 
 
 # Small steps as the judge
 
 
 def rolls_into(cue, angle, reach, balls):
-    """Index of the ball that a cue ball rolling along ``angle`` meets first within ``reach``, or None: tried
-    every 0.2 mm."""
+    """The ball that a cue ball rolling along ``angle`` meets first within ``reach``, in steps of 0.2 mm."""
     path = np.array(cue) + np.arange(0.0, reach, 2e-4)[:, None] * [np.cos(angle), np.sin(angle)]
     distance = np.hypot(*(path[:, None] - np.array(balls)).T).T
     meets = np.argwhere(distance < 2 * R - 1e-7)
@@ -215,20 +147,13 @@ def test_paths_agree_with_rolling(scene):
 
 
 def swept(reds, others, directions):
-    """Does a sweep over each red find a direction in which a ball rolls into it? Other reds do not obstruct,
-    so they are taken away."""
+    """Does a direction of a sweep over each red, with the other reds taken away, lead into it?"""
     spread = np.linspace(-0.999, 0.999, directions)
-    return any(
-        rolls_into(
-            (0.0, 0.0),
-            np.arctan2(red[1], red[0]) + part * np.arcsin(min(1.0, 2 * R / np.hypot(*red))),
-            1.0,
-            [red, *others],
-        )
-        == 0
-        for red in reds
-        for part in spread
-    )
+    for red in reds:
+        ways = np.arctan2(red[1], red[0]) + spread * np.arcsin(min(1.0, 2 * R / np.hypot(*red)))
+        if any(rolls_into((0.0, 0.0), way, 1.0, [red, *others]) == 0 for way in ways):
+            return True
+    return False
 
 
 @settings(max_examples=150, deadline=None)
@@ -264,8 +189,7 @@ def test_snookers_agree_with_rolling(scene):
     ],
 )
 def test_a_colour_is_met_full_only_with_nothing_at_all_before_it(colours, reds, expected):
-    """S3 R14: of colours that could be on, the nominated one alone is on; only a red may lie before another
-    red."""
+    """S3 R14: of colours that could be on, the nominated one alone is on."""
     positions, on_table, _ = table(CUE, reds, colours)
     assert paths(positions, on_table, COLOURS_MASK & mask_of(np.flatnonzero(on_table))) == expected
 
@@ -273,8 +197,7 @@ def test_a_colour_is_met_full_only_with_nothing_at_all_before_it(colours, reds, 
 @settings(max_examples=60, deadline=None)
 @given(scenes())
 def test_full_paths_to_colours_agree_with_rolling(scene):
-    """The balls of ``scenes``, each a colour that could be on or a red that is not: a cue ball rolled at each
-    centre must meet it first."""
+    """The balls of ``scenes`` as colours that could be on, or reds: a full path joins the centres."""
     on, others = scene
     positions, on_table, _ = table((0.0, 0.0), others, on)
     balls = np.array([*on, *others])
@@ -294,36 +217,6 @@ def test_a_view_that_ends_where_the_cue_ball_would_meet_two_balls_at_once(side):
     assert paths(*table((0.0, 0.0), [red], [neighbour, near])) == (True, False)
     # that edge at 0.034 rad
     assert paths(*table((0.0, 0.0), [red], [neighbour, (-side * 0.0355, 0.498)])) == (False, False)
-
-
-@pytest.mark.parametrize("across", [-0.05, -0.03, 0.0, 0.01, 0.0524])
-def test_where_a_rolling_ball_meets_another(across):
-    angle = 0.7
-    along, aside = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
-    ball = 0.9 * along + across * aside
-    run = meets(*ball, *along, R)
-    assert np.hypot(*(run * along - ball)) == pytest.approx(2 * R, abs=1e-12) and run < 0.9
-    assert meets(*-ball, *along, R) == np.inf
-    assert meets(*(ball + 0.11 * aside), *along, R) == np.inf
-
-
-@pytest.mark.parametrize(
-    ("reds", "others", "expected"),
-    [
-        ([FAR], [], (True, True)),
-        ([FAR], [(0.0, 0.0)], (False, False)),
-        ([FAR], [(0.06, 0.0)], (True, True)),
-        ([FAR], [(0.04, 0.0)], (True, False)),
-        ([FAR], [(0.07, 0.0), (-0.07, 0.0)], (True, True)),
-        ([FAR], [(0.04, 0.0), (-0.04, 0.1)], (False, False)),
-        ([FAR, (0.0, 0.3)], [], (True, True)),  # a red behind a red is not obstructed
-        ([FAR], [(0.0, 0.9)], (True, True)),
-        ([FAR], [(0.05, 0.755)], (True, False)),
-        ([FAR], [(0.05, 0.764)], (True, True)),  # the cue ball meets the red before it would meet this one
-    ],
-)
-def test_clear_paths(reds, others, expected):
-    assert paths(*table(CUE, reds, others)) == expected
 
 
 def test_wrong_input_is_refused():

@@ -15,23 +15,16 @@ def test_pots_are_those_of_each_position():
     at.ball_on[10:] = 0
     direct = pots(at, most=6)
     for k in range(20):
-        each = one_by_one.pots(
-            at.positions[k], at.on_table[k], mask_of(np.flatnonzero(at.balls_on[k]).tolist()), most=6
-        )
+        on = mask_of(np.flatnonzero(at.balls_on[k]).tolist())
+        each = one_by_one.pots(at.positions[k], at.on_table[k], on, most=6)
         n = len(each)
-        assert (
-            direct.ball[k, :n].tolist() == each[:, 0].tolist()
-            and direct.pocket[k, :n].tolist() == each[:, 1].tolist()
-        )
-        assert np.array_equal(direct.ghost[k, :n], each[:, 2:4]) and np.array_equal(
-            direct.tolerance[k, :n], each[:, 5]
-        )
+        assert direct.ball[k, :n].tolist() == each[:, 0].tolist()
+        assert direct.pocket[k, :n].tolist() == each[:, 1].tolist()
+        assert np.array_equal(direct.ghost[k, :n], each[:, 2:4])
+        assert np.array_equal(direct.tolerance[k, :n], each[:, 5])
         assert np.cos(direct.cut[k, :n]) == pytest.approx(each[:, 4], abs=1e-12)
-        assert (
-            (direct.ball[k, n:] == -1).all()
-            and (direct.pocket[k, n:] == -1).all()
-            and not direct.tolerance[k, n:].any()
-        )
+        assert (direct.ball[k, n:] == -1).all() and (direct.pocket[k, n:] == -1).all()
+        assert not direct.tolerance[k, n:].any()
     assert (direct.ball[:, 0] >= 16).sum() == 10 and np.array_equal(pots(at).ball, direct.ball[:, :4])
     with pytest.raises(ValueError, match="most = 0"):
         pots(at, most=0)
@@ -48,9 +41,8 @@ def test_what_is_in_the_way_is_nearer_than_two_radii_to_the_path():
         assert np.array_equal(direct[i, sure], (nearest < 0.0525)[sure] & at.on_table[rows[i], sure])
     assert 0.02 < direct.mean() < 0.5
     ignored = obstructions(at, rows, starts, ends, ignore=np.stack([np.zeros(200, int), np.full(200, 5)], 1))
-    assert not ignored[:, [0, 5]].any() and np.array_equal(
-        np.delete(ignored, [0, 5], 1), np.delete(direct, [0, 5], 1)
-    )
+    assert not ignored[:, [0, 5]].any()
+    assert np.array_equal(np.delete(ignored, [0, 5], 1), np.delete(direct, [0, 5], 1))
 
 
 def test_bad_paths_are_refused():
@@ -68,9 +60,8 @@ def test_clear_paths_are_those_of_the_miss_rule():
     direct = clear_paths(at)
     for k in range(40):
         on = mask_of(np.flatnonzero(at.balls_on[k]).tolist())
-        assert (direct.any_part[k], direct.full_ball[k]) == miss_rule.paths(
-            at.positions[k], at.on_table[k], on
-        )
+        paths = miss_rule.paths(at.positions[k], at.on_table[k], on)
+        assert (direct.any_part[k], direct.full_ball[k]) == paths
     assert not direct.full_ball.all()
     assert clear_paths(Positions.of(tables(5))).any_part.all()
     assert clear_paths(Position(black=(0.0, 1.4605), over=True)).any_part.tolist() == [False]

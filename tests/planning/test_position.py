@@ -1,5 +1,4 @@
-"""Does a position in words mean what it says, and does it come back from the arrays that planning and
-environments use?"""
+"""Does a position mean what its words say, in arrays, environments and files, or is it refused by name?"""
 
 import dataclasses
 import json
@@ -23,39 +22,28 @@ from snooker_env.game.frame_columns import (
     STRIKER,
 )
 from snooker_env.planning import Planner, Position, Positions, action_masks, clear_paths, pots, prospects_of
+from tests.refusals import refused
 
 FULL = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (-0.3, 0.7)], "pink": (0.2, 0.1), "black": (0.0, 1.4605)}
 
 
 def test_a_field_that_there_is_not_is_named_with_those_that_there_are():
-    with pytest.raises(
-        TypeError,
-        match=r"unexpected keyword argument 'red'; the reds are one list, reds=\[\(x, y\), \.\.\.\]",
-    ):
+    with pytest.raises(TypeError, match=r"argument 'red'; the reds are one list, reds=\[\(x, y\), \.\.\.\]"):
         Position(cue=(0.0, 0.2), red=(0.1, 0.3))
-    with pytest.raises(
-        TypeError, match="'white'; the fields are cue, reds, yellow, green, brown, blue, pink, black, on, "
-    ):
+    with pytest.raises(TypeError, match="'white'; the fields are cue, reds, yellow, green, brown, blue"):
         Position(white=(0.0, 0.2))
 
 
 def test_words_and_arrays_say_the_same():
     position = Position(**FULL, on="any colour", points=9)
-    assert (
-        position.on == "any_colour" and position.reds == ((0.3, 0.5), (-0.3, 0.7)) and position.yellow is None
-    )
+    assert position.on == "any_colour" and position.reds == ((0.3, 0.5), (-0.3, 0.7))
+    assert position.yellow is None
     positions, on_table, game = position.arrays()
     assert np.flatnonzero(on_table).tolist() == [0, 1, 2, 20, 21] and game.tolist() == [0, 0, 9, 0, 0]
-    assert positions[[0, 1, 2, 20, 21]].tolist() == [
-        [0.1, -1.2],
-        [0.3, 0.5],
-        [-0.3, 0.7],
-        [0.2, 0.1],
-        [0.0, 1.4605],
-    ]
-    assert Position.of_arrays(positions, on_table, game) == position and hash(position) == hash(
-        Position(**FULL, on="any_colour", points=9)
-    )
+    places = [FULL["cue"], *FULL["reds"], FULL["pink"], FULL["black"]]
+    assert np.array_equal(positions[[0, 1, 2, 20, 21]], places)
+    assert Position.of_arrays(positions, on_table, game) == position
+    assert hash(position) == hash(Position(**FULL, on="any_colour", points=9))
     assert Position(**json.loads(json.dumps(position.to_dict()))) == position
     assert set(position.to_dict()) == {"cue", "reds", "pink", "black", "on", "in_hand", "points", "over"}
     assert dataclasses.replace(position, pink=None).pink is None
@@ -67,14 +55,14 @@ def test_what_is_on_follows_from_the_balls_if_it_is_not_said():
     assert Position(**FULL).on == "red"
     assert Position(**FULL | {"reds": []}).on == "pink"
     assert Position(**FULL, on=BallOn.ANY_COLOUR).on == "any_colour"
+    assert Position(black=(0.0, 1.4605), over=True, on="nothing").cue is None
+    assert Position(over=True).on == "nothing"
 
 
 def test_a_cue_ball_in_hand_lies_in_the_d():
     assert Position(reds=[(0.3, 0.3)], in_hand=True).cue == pytest.approx(tuple(SPOTS[0]))
     beside = Position(reds=[tuple(SPOTS[0])], in_hand=True)  # its usual place is taken
-    assert np.hypot(beside.cue[0] - SPOTS[0, 0], beside.cue[1] - SPOTS[0, 1]) == pytest.approx(
-        2 * 0.02625, abs=1e-3
-    )
+    assert np.hypot(*(beside.cue - SPOTS[0])) == pytest.approx(2 * 0.02625, abs=1e-3)
     with pytest.raises(ValueError, match="in_hand = True: must be False with the cue ball at"):
         Position(cue=(0.0, 0.0), reds=[(0.3, 0.3)], in_hand=True)
 
@@ -107,11 +95,6 @@ def test_a_position_that_cannot_be_is_refused(words, complaint):
         Position(**FULL | words)
 
 
-def test_a_visit_that_is_over_needs_nothing_on():
-    assert Position(black=(0.0, 1.4605), over=True, on="nothing").cue is None
-    assert Position(over=True).on == "nothing"
-
-
 def test_the_table_decides_what_fits():
     mouth = (0.834, -1.766)  # in a corner's mouth, which is wider on the usual table
     sn.Table.preset("match").check(np.array([mouth]), 0.02625)
@@ -127,11 +110,8 @@ def test_positions_of_states_and_of_environments_are_the_same():
     batch, states = Positions.of(env), Positions.of(env.get_state())
     for name in ("positions", "on_table", "game"):
         assert np.array_equal(getattr(batch, name), getattr(states, name))
-    assert (
-        Positions.of(batch) is batch
-        and len(Positions.of(env.get_state()[1])) == 1
-        and repr(batch) == "Positions(4 rows)"
-    )
+    assert Positions.of(batch) is batch and len(Positions.of(env.get_state()[1])) == 1
+    assert repr(batch) == "Positions(4 rows)"
     assert batch.balls_on.sum(axis=1).tolist() == [5] * 4 and not batch.over.any() and not batch.in_hand.any()
 
 
@@ -143,10 +123,8 @@ def test_one_row_is_words_and_any_other_index_a_batch():
     # reds keep their order here
     assert np.array_equal(Positions.of(list(batch)).observations(), batch.observations())
     for rows in (slice(1, 5, 2), [1, 3], np.array([False, True, False, True, False])):
-        assert (
-            np.array_equal(batch[rows].positions, batch.positions[[1, 3]])
-            and batch[rows].positions.flags.c_contiguous
-        )
+        assert np.array_equal(batch[rows].positions, batch.positions[[1, 3]])
+        assert batch[rows].positions.flags.c_contiguous
     view = batch[1:3]
     view.ball_on[:] = 0
     assert batch.ball_on.tolist() == [1, 0, 0, 1, 1]
@@ -155,31 +133,21 @@ def test_one_row_is_words_and_any_other_index_a_batch():
 
 
 @pytest.mark.parametrize(
-    ("arrays", "complaint"),
+    ("change", "complaint"),
     [
-        (
-            (np.zeros((2, 21, 2)), np.zeros((2, 22), bool), np.zeros((2, 5), int)),
-            "positions = array of shape",
-        ),
-        (
-            (np.full((2, 22, 2), np.nan), np.zeros((2, 22), bool), np.zeros((2, 5), int)),
-            r"positions\[0, 0, 0\] = nan",
-        ),
-        ((np.zeros((2, 22, 2)), np.zeros((2, 22)), np.zeros((2, 5), int)), "on_table = float64 array"),
-        (
-            (np.zeros((2, 22, 2)), np.zeros((1, 22), bool), np.zeros((2, 5), int)),
-            "on_table = bool array of shape",
-        ),
-        (
-            (np.zeros((2, 22, 2)), np.zeros((2, 22), bool), np.zeros((2, 4), int)),
-            "game = int64 array of shape",
-        ),
-        ((np.zeros((2, 22, 2)), np.zeros((2, 22), bool), np.zeros((2, 5))), "game = float64 array"),
+        ({"positions": np.zeros((2, 21, 2))}, "positions = array of shape"),
+        ({"positions": np.full((2, 22, 2), np.nan)}, r"positions\[0, 0, 0\] = nan"),
+        ({"on_table": np.zeros((2, 22))}, "on_table = float64 array"),
+        ({"on_table": np.zeros((1, 22), bool)}, "on_table = bool array of shape"),
+        ({"game": np.zeros((2, 4), int)}, "game = int64 array of shape"),
+        ({"game": np.zeros((2, 5))}, "game = float64 array"),
     ],
 )
-def test_arrays_of_the_wrong_shape_or_type_are_refused(arrays, complaint):
+def test_arrays_of_the_wrong_shape_or_type_are_refused(change, complaint):
+    arrays = {"positions": np.zeros((2, 22, 2)), "on_table": np.zeros((2, 22), bool)}
+    arrays["game"] = np.zeros((2, 5), int)
     with pytest.raises(ValueError, match=complaint):
-        Positions(*arrays)
+        Positions(*(arrays | change).values())
 
 
 def test_positions_of_frames_hold_what_the_striker_may_know():
@@ -192,29 +160,19 @@ def test_positions_of_frames_hold_what_the_striker_may_know():
     saved.positions[1, 0] = (0.1, 0.2)
     at = Positions.of(env)
     assert at.of_frames and at.game.shape == (3, 33) and at.saved.positions[1, 0].tolist() == [0.1, 0.2]
-    assert at.scores.tolist() == [[20, 7], [7, 20], [20, 7]] and at.frames_won.tolist() == [
-        [1, 2],
-        [2, 1],
-        [1, 2],
-    ]
+    assert at.scores.tolist() == [[20, 7], [7, 20], [20, 7]]
+    assert at.frames_won.tolist() == [[1, 2], [2, 1], [1, 2]]
     assert [each.tolist() for each in (at.free_ball, at.choice, at.miss_called)] == [[False, True, False]] * 3
     assert [each.tolist() for each in (at.lot, at.respotted_black)] == [[False, False, True]] * 2
-    assert (
-        at.balls_on.sum(axis=1).tolist() == [15, 21, 15]
-        and not at.anywhere.any()
-        and not at.game[:, STRIKER].any()
-    )
+    assert at.balls_on.sum(axis=1).tolist() == [15, 21, 15] and not at.anywhere.any()
+    assert not at.game[:, STRIKER].any()
     assert game[1, STRIKER] == 1  # the environment's own rows stay as they are
     part = at[[1]]
-    assert (
-        part.free_ball.all()
-        and part.saved.positions[0, 0].tolist() == [0.1, 0.2]
-        and part.copy().saved.on_table.shape == (1, 22)
-    )
+    assert part.free_ball.all() and part.saved.positions[0, 0].tolist() == [0.1, 0.2]
+    assert part.copy().saved.on_table.shape == (1, 22)
     visits = at.as_visits()
-    assert (
-        visits.game.shape == (3, 5) and visits.ball_on.tolist() == [1, 0, 1] and visits.as_visits() is visits
-    )
+    assert visits.game.shape == (3, 5) and visits.ball_on.tolist() == [1, 0, 1]
+    assert visits.as_visits() is visits
     assert not (visits.free_ball.any() or visits.choice.any() or visits.scores.any() or visits.of_frames)
     assert at[1].on == "any_colour" and at[0].on == "red"
 
@@ -226,18 +184,15 @@ def test_planning_plays_the_strokes_of_frames_as_those_of_visits():
     at = Positions.of(env)
     visits, strokes = at.as_visits(), np.array([[2.0, 0.1, 0.2, 1.3, 0.0]] * 2)
     planner = Planner({}, threads=1)
-    for one, other in (
-        (
-            planner.play(at, [0, 1], strokes=strokes).afterstates.positions,
-            planner.play(visits, [0, 1], strokes=strokes).afterstates.positions,
-        ),
-        (pots(at).ball, pots(visits).ball),
-        (action_masks(at), action_masks(visits)),
-        (clear_paths(at).any_part, clear_paths(visits).any_part),
-        (at.observations(), visits.observations()),
-        (prospects_of(at, 1e-3)[0], prospects_of(visits, 1e-3)[0]),
+    for plan in (
+        lambda at: planner.play(at, [0, 1], strokes=strokes).afterstates.positions,
+        lambda at: pots(at).ball,
+        action_masks,
+        lambda at: clear_paths(at).any_part,
+        Positions.observations,
+        lambda at: prospects_of(at, 1e-3)[0],
     ):
-        assert np.array_equal(one, other)
+        assert np.array_equal(plan(at), plan(visits))
 
 
 def test_a_cue_ball_that_may_stand_anywhere_is_played_from_where_it_lies():
@@ -251,3 +206,75 @@ def test_a_cue_ball_that_may_stand_anywhere_is_played_from_where_it_lies():
     assert not position.in_hand and position.cue == pytest.approx(state["positions"][0])
     env.reset(options={"position": position})
     assert np.array_equal(env.positions[1:], np.array(state["positions"])[1:]) and not env.frame.in_hand
+
+
+BALLS = {"cue": (0.1, -1.2), "reds": [(0.3, 0.5), (1 / 3, -0.7)], "black": (0.0, 1.4605)}
+POSITION = Position(**BALLS, on="any_colour", points=9, in_hand=True)
+
+
+def test_a_file_holds_the_position_to_the_last_bit_on_any_table(tmp_path):
+    file = tmp_path / "one.json"
+    POSITION.save(file)
+    assert Position.load(file) == POSITION and Position.load(str(file)) == POSITION
+    assert json.loads(file.read_text()) == POSITION.to_dict() and file.stat().st_size < 300
+    assert [p.name for p in tmp_path.iterdir()] == ["one.json"]
+    far = Position(cue=(0.0, 0.0), black=(3.0, 0.0), table=None)
+    far.save(tmp_path / "far.json")
+    assert Position.load(tmp_path / "far.json", table=None) == far
+    refused(lambda: Position.load(tmp_path / "far.json"), "black", "3.0", "must be on the table")
+
+
+def test_a_file_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
+    file = tmp_path / "one.json"
+    POSITION.save(file)
+    monkeypatch.setattr(Position, "to_dict", lambda self: {"cue": object()})
+    with pytest.raises(TypeError):
+        Position(cue=(0.0, 0.0), black=(0.0, 1.0)).save(file)
+    monkeypatch.undo()
+    assert Position.load(file) == POSITION and len(list(tmp_path.iterdir())) == 1
+    with pytest.raises(OSError, match="nowhere"):
+        POSITION.save(tmp_path / "nowhere" / "one.json")
+
+
+GOOD = Position(cue=(0.0, 0.0), reds=[(0.5, 0.5)], black=(0.0, 1.4605)).to_dict()
+WRONG = [
+    ({"reds": [[0.5, 0.5], [0.52, 0.5]]}, "reds[1]", "overlaps reds[0]", "at most 1e-06"),
+    ({"whit": [0, 0]}, "key of position", "whit", "'cue'"),
+    ({"cue": [0.0, True]}, "cue", "True", "must be two real numbers"),
+    ({"reds": [[0.5, 0.5], [False, 1]]}, "reds", "False", "must be two real numbers for each ball"),
+    ({"cue": [0.0]}, "cue", "shape (1,)", "must have shape (2,)"),
+    ({"cue": "middle"}, "cue", "middle", "must be real numbers"),
+    ({"points": 1.5}, "points", "1.5", "must be an integer"),
+]
+
+
+@pytest.mark.parametrize(("change", "field", "value", "allowed"), WRONG, ids=[str(w[0]) for w in WRONG])
+def test_what_is_wrong_is_named(tmp_path, change, field, value, allowed):
+    refused(lambda: Position.from_dict(GOOD | change), field, value, allowed)
+    file = tmp_path / "wrong.json"
+    file.write_text(json.dumps(GOOD | change))
+    refused(lambda: Position.load(file), field if "key" not in field else f"key of {file}", value, allowed)
+
+
+def test_what_is_no_json_is_refused(tmp_path):
+    file = tmp_path / "wrong.json"
+    for text in ("", "{", "\ud800".encode("utf-8", "surrogatepass"), "[" * 100_000):
+        file.write_bytes(text if isinstance(text, bytes) else text.encode())
+        refused(lambda: Position.load(file), "path", str(file), "must be a file of JSON")
+    for text in ("[]", "3", '"black"'):
+        file.write_text(text)
+        refused(lambda: Position.load(file), str(file), "a ", "must be a dict with keys of cue")
+    file.write_text('{"cue": [0, 0], "cue": [0.1, 0], "black": [0, 1]}')
+    refused(lambda: Position.load(file), "key of the position", "'cue'", "must be there once")
+    file.write_text('{"cue": [0, NaN], "black": [0, 1]}')
+    refused(lambda: Position.load(file), "cue", "nan", "must be finite")
+    with pytest.raises(OSError):
+        Position.load(tmp_path / "none.json")
+
+
+def test_a_position_in_words_is_taken_wherever_a_state_is():
+    assert Positions.of(GOOD)[0] == Position.from_dict(GOOD) and len(Positions.of([GOOD, POSITION])) == 2
+    wrong = {"cue": (0.0, 0.0), "blak": (0.0, 1.0)}
+    refused(lambda: Positions.of(wrong), "key of position", "blak", "'black'")
+    missing = "a dict without ['positions'", "must be a state of get_state() of a visit"
+    refused(lambda: Positions.of({"on_table": []}), "state", *missing)

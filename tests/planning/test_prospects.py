@@ -19,36 +19,12 @@ VALUE = {**dict.fromkeys(range(1, 16), 1), **{14 + k: k for k in range(2, 8)}}
 """Points of each ball."""
 
 
-def test_prospects_prefer_easy_pots_and_more_to_come():
-    env = tables(1, layout="random:2")
-    at = Positions.of(env)
-    at.on_table[0, 1:] = False
-    at.on_table[0, [1, 2]] = True
-    at.game[0, 0] = 1
-    at.positions[0, :3] = (0.0, 0.0), (0.5, 0.8), (-0.7, -1.5)
-
-    def value(p, spread):
-        values, chances = prospects.prospects_of(p, spread)
-        return values[0], chances[0]
-
-    easy, chances = value(at, 1e-3)
-    assert 0 < chances[1] <= chances[0] <= 1
-    assert value(at, 4e-3)[0] < easy  # larger execution errors
-    fewer = at[np.array([0])]
-    fewer.on_table[0, 2] = False
-    assert value(fewer, 1e-3)[0] < easy
-    nothing = at[np.array([0])]
-    nothing.on_table[0, 1:] = False
-    assert value(nothing, 1e-3)[0] == 0
-
-
 def by_plain_python(positions, on_table, ball_on, spread, follows, second, third, far):
     """The value of a position and the chances of its pots, from the pots of ``game.pots``."""
     present = [ball for ball in VALUE if on_table[ball]]
     balls = [ball for ball in present if (VALUE[ball] == 1) == (ball_on == BallOn.RED)]
-    left = sum(8 if VALUE[ball] == 1 else VALUE[ball] for ball in present) + 7 * (
-        ball_on == BallOn.ANY_COLOUR
-    )
+    left = sum(8 if VALUE[ball] == 1 else VALUE[ball] for ball in present)
+    left += 7 * (ball_on == BallOn.ANY_COLOUR)
     chances, worths = [], [0.0, 0.0, 0.0]
     for ball, pocket, gx, gy, _, tolerance in pots(positions, on_table, mask_of(balls)):
         (cx, cy), (bx, by), (px, py) = positions[CUE], positions[int(ball)], POCKET_AIMS[int(pocket), :2]
@@ -93,14 +69,12 @@ def test_what_is_left_of_a_last_black():
 
 @pytest.mark.parametrize("level", ["professional", "club", "olympiad"])
 def test_spread_is_that_of_the_aim_and_of_the_squirt(level):
-    """Squirt [Alciatore, TP A.31] of a tip that is off by one standard deviation; small offsets, where it is
-    straight."""
+    """Squirt [Alciatore, TP A.31] of a tip that is off by one standard deviation."""
     noise, physics = Noise.of(level), Physics.of("paper")
     b = 1e-3 * noise.offset_mm / physics.R
     squirt = atan(2.5 * b * sqrt(1 - b * b) / (1 + physics.end_mass_ratio + 2.5 * (1 - b * b)))
-    assert prospects.spread_of(noise, physics) == pytest.approx(
-        hypot(radians(noise.aim_deg), squirt), rel=1e-3
-    )
+    spread = hypot(radians(noise.aim_deg), squirt)
+    assert prospects.spread_of(noise, physics) == pytest.approx(spread, rel=1e-3)
     assert prospects.spread_of(Noise(), physics) == 1e-5
 
 

@@ -1,5 +1,4 @@
-"""Does a planner say where every ball stopped? Against the outcomes of the same strokes, the environment, and
-a simulated shot."""
+"""Does a planner say where every ball stopped?"""
 
 import numpy as np
 import pytest
@@ -9,9 +8,8 @@ from snooker_env.geometry import POCKET_PLACES
 from snooker_env.planning import Planner, Position, actions_of
 from snooker_env.tasks import stroke
 
-POSITION = Position(
-    cue=(0.25, -0.4), reds=[(0.3, 0.5), (-0.3, 0.7), (0.1, 1.0)], blue=(0.0, 0.0), black=(0.0, 1.4605)
-)
+REDS = [(0.3, 0.5), (-0.3, 0.7), (0.1, 1.0)]
+POSITION = Position(cue=(0.25, -0.4), reds=REDS, blue=(0.0, 0.0), black=(0.0, 1.4605))
 AIMS = np.linspace(-3.0, 3.0, 60)
 ACTIONS = actions_of(np.linspace(1.0, 6.0, 60), AIMS)
 
@@ -19,19 +17,14 @@ ACTIONS = actions_of(np.linspace(1.0, 6.0, 60), AIMS)
 def test_stops_agree_with_outcomes():
     planner = Planner({"noise": "club"})
     keys = np.arange(60)
-    outcomes, stops = (
-        planner.play(POSITION, np.zeros(60, int), ACTIONS, keys),
-        planner.stops(POSITION, np.zeros(60, int), ACTIONS, keys),
-    )
+    asked = POSITION, np.zeros(60, int), ACTIONS, keys
+    outcomes, stops = planner.play(*asked), planner.stops(*asked)
     assert planner.shots == 120
     assert np.array_equal(outcomes.points, stops.points) and np.array_equal(outcomes.goes_on, stops.goes_on)
     for name in ("positions", "on_table", "game"):
         assert np.array_equal(getattr(outcomes.afterstates, name), getattr(stops.afterstates, name))
-    assert (
-        ((stops.penalty > 0) & (stops.points == 0)).any()
-        and (stops.penalty == 0).any()
-        and not stops.points[stops.penalty > 0].any()
-    )
+    assert ((stops.penalty > 0) & (stops.points == 0)).any() and (stops.penalty == 0).any()
+    assert not stops.points[stops.penalty > 0].any()
     present = POSITION.arrays()[1]
     moved = present[None] & (stops.potted < 0)
     reds = moved[:, 1:16]
@@ -62,12 +55,8 @@ def test_stops_are_those_of_the_shot_simulated_by_itself():
         shot = sn.simulate(places[balls], velocities, spins)
         assert np.array_equal(shot.potted, stops.potted[k, balls])
         assert np.allclose(shot.positions, stops.places[k, balls], atol=1e-9)
-        struck = [
-            int(balls[j])
-            for kind, i, j in shot.events[["kind", "i", "j"]].tolist()
-            if kind == sn.EventKind.BALL_BALL and i == 0
-        ]
-        assert stops.first[k] == (struck[0] if struck else -1)
+        hits = shot.events[(shot.events["kind"] == sn.EventKind.BALL_BALL) & (shot.events["i"] == 0)]
+        assert stops.first[k] == (balls[hits["j"][0]] if len(hits) else -1)
 
 
 def test_a_log_that_is_too_short_is_enlarged(monkeypatch):
@@ -75,19 +64,14 @@ def test_a_log_that_is_too_short_is_enlarged(monkeypatch):
     original, runs = stroke.ShotBuffers.__init__, []
     for log in (512, 3):
         with monkeypatch.context() as patch:
-            patch.setattr(
-                stroke.ShotBuffers,
-                "__init__",
-                lambda self, m, first=log, **more: original(self, m, first, **more),
-            )
+            first = lambda self, m, n=log, **more: original(self, m, n, **more)  # noqa: E731
+            patch.setattr(stroke.ShotBuffers, "__init__", first)
             runs.append(Planner({}).stops(POSITION, np.zeros(60, int), ACTIONS))
     assert np.array_equal(runs[0].places, runs[1].places) and np.array_equal(runs[0].potted, runs[1].potted)
 
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_any_number_of_threads_gives_the_same(threads):
-    mine, other = (
-        Planner({"noise": "club"}, threads=t).stops(POSITION, np.zeros(60, int), ACTIONS, np.arange(60))
-        for t in (2, threads)
-    )
+    asked = POSITION, np.zeros(60, int), ACTIONS, np.arange(60)
+    mine, other = (Planner({"noise": "club"}, threads=t).stops(*asked) for t in (2, threads))
     assert np.array_equal(mine.places, other.places) and np.array_equal(mine.first, other.first)

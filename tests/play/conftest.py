@@ -1,5 +1,4 @@
-"""Which fixtures do tests of play share? A game without the network, and one behind a server in this
-process."""
+"""Which fixtures do tests of play share?"""
 
 import threading
 

@@ -1,5 +1,4 @@
-"""Does the protocol give a program what it needs, and does it refuse what cannot be? Each route, as a request
-calls it."""
+"""Does the protocol give a program what it needs, and does it refuse what cannot be?"""
 
 import base64
 import json
@@ -34,25 +33,11 @@ def waited(game, until, seconds=240.0):
 def test_a_state_says_where_everything_is_and_what_may_be_done(game):
     game("position", position=EASY, scores=[10, 20])
     state = game.get("state")
-    assert state["positions"] == {
-        "cue": EASY["cue"],
-        "red 1": EASY["reds"][0],
-        "red 2": EASY["reds"][1],
-        "pink": EASY["pink"],
-        "black": EASY["black"],
-    }
-    assert (state["ball_on"], state["balls_on"], state["phase"], state["striker"]) == (
-        "red",
-        ["red 1", "red 2"],
-        "stroke",
-        0,
-    )
-    assert (state["scores"], state["reds"], state["available"], state["snookered"]) == (
-        [10, 20],
-        2,
-        29,
-        False,
-    )
+    reds = dict(zip(("red 1", "red 2"), EASY["reds"], strict=True))
+    assert state["positions"] == {name: EASY[name] for name in ("cue", "pink", "black")} | reds
+    expected = {"ball_on": "red", "balls_on": [*reds], "phase": "stroke", "striker": 0, "scores": [10, 20]}
+    expected |= {"reds": 2, "available": 29, "snookered": False}
+    assert {name: state[name] for name in expected} == expected
     assert state["nominations"] == state["choices"] == [] and state["undo"] and not state["redo"]
     assert state["words"] == "Player 1's stroke: red is on."
 
@@ -73,10 +58,8 @@ def test_the_text_gives_a_blind_player_places_lines_and_what_is_in_the_way(game)
     mine = next(one for one in line if one["ball"] == "red 1" and one["pocket"] == "top right")
     assert not mine["open"] and mine["blocked_by"] == ["blue"]
     open_text = game("position", position=EASY)["text"]
-    assert re.search(
-        r"red 1, top right: open, straight, cue ball 0\.\d\d m, ball 0\.\d\d m, aim 0\.93\d\d rad, may err \d\.\d\d deg, chance \d+ %",
-        open_text,
-    )
+    far = r"cue ball 0\.\d\d m, ball 0\.\d\d m, aim 0\.93\d\d rad, may err \d\.\d\d deg, chance \d+ %"
+    assert re.search(rf"red 1, top right: open, straight, {far}", open_text)
 
 
 def test_lines_agree_with_geometry():
@@ -84,12 +67,8 @@ def test_lines_agree_with_geometry():
     lines = {(line.ball, POCKETS[line.pocket]): line for line in lines_of([at], 0b110, "none")}
     assert len(lines) == 12
     straight = lines[1, "top right"]
-    assert (
-        straight.open
-        and straight.cut < 0.01
-        and straight.aim == pytest.approx(STRAIGHT, abs=1e-3)
-        and straight.chance is None
-    )
+    assert straight.open and straight.cut < 0.01 and straight.aim == pytest.approx(STRAIGHT, abs=1e-3)
+    assert straight.chance is None
     assert straight.to_pocket == pytest.approx(np.hypot(0.87376 - 0.6, 1.76926 - 1.4), abs=1e-6)
     away = lines[1, "bottom left"]
     assert not away.open and away.why == "cut too thin"
@@ -113,22 +92,14 @@ def test_places_in_words(ball, place, words):
 def test_a_stroke_is_played_and_described_as_in_a_replay(game):
     game("position", position=EASY)
     answer = game("stroke", speed=2.0, aim=STRAIGHT)
-    assert (
-        answer["stroke"]["points"] == 1
-        and answer["stroke"]["pots"] == [1]
-        and answer["stroke"]["cue"]["speed"] == 2.0
-    )
+    assert answer["stroke"]["points"] == 1 and answer["stroke"]["pots"] == [1]
+    assert answer["stroke"]["cue"]["speed"] == 2.0
     state = answer["state"]
-    assert (
-        state["scores"] == [1, 0]
-        and state["ball_on"] == "any_colour"
-        and state["nominations"] == ["pink", "black"]
-    )
+    assert state["scores"] == [1, 0] and state["ball_on"] == "any_colour"
+    assert state["nominations"] == ["pink", "black"]
     assert "Red potted, 1" in state["last"]
-    assert (
-        game.get("strokes")["strokes"] == [answer["stroke"]]
-        and game.get("strokes", **{"from": 1})["strokes"] == []
-    )
+    assert game.get("strokes")["strokes"] == [answer["stroke"]]
+    assert game.get("strokes", **{"from": 1})["strokes"] == []
 
 
 def test_a_stroke_brings_the_tables_before_and_after_it(game):
@@ -138,15 +109,8 @@ def test_a_stroke_brings_the_tables_before_and_after_it(game):
     own = game("stroke", speed=2.0, aim=STRAIGHT)
     first, then = own["stroke"]["tables"]
     assert first == {name: before[name] for name in first} | {"words": "Your stroke: red is on."}
-    assert then == {name: own["state"][name] for name in then} and (
-        then["available"],
-        then["ball_on"],
-        then["reds"],
-    ) == (
-        28,
-        "any_colour",
-        1,
-    )
+    assert then == {name: own["state"][name] for name in then}
+    assert (then["available"], then["ball_on"], then["reds"]) == (28, "any_colour", 1)
     game("stroke", speed=0.5, aim=2.0)
     waited(game, lambda s: not s["thinking"] and (s["striker"] == 0 or s["phase"] == "over"))
     state, strokes = game.get("state"), game.get("strokes")["strokes"]
@@ -167,14 +131,11 @@ def test_questions_are_answered_for_the_errors_of_the_seat(game):
     for noise, samples in (("club", 500), ("none", 1)):
         game("players", noise=[noise, "professional"])
         found = game("destinations", speed=2.0, aim=STRAIGHT + 0.01)
-        assert found["samples"] == samples and found == game(
-            "destinations", speed=2.0, aim=STRAIGHT + 0.01, noise=noise
-        )
+        assert found["samples"] == samples
+        assert found == game("destinations", speed=2.0, aim=STRAIGHT + 0.01, noise=noise)
         asked = game("advise", agent="ghost_ball", n=2)
-        assert (
-            asked == game("advise", agent="ghost_ball", n=2, noise=noise)
-            and asked["order"] == "Pots by points expected:"
-        )
+        assert asked == game("advise", agent="ghost_ball", n=2, noise=noise)
+        assert asked["order"] == "Pots by points expected:"
 
 
 def test_an_aim_may_be_given_by_a_pot_and_is_solved(game):
@@ -201,11 +162,8 @@ def test_a_foul_asks_for_a_choice_and_a_nomination_counts(game):
     with pytest.raises(ValueError, match='must be "play" in a request that holds a stroke'):
         game("stroke", speed=1.0, aim=0.0, choice="replace")
     back = game("stroke", choice="replace")
-    assert (
-        back["stroke"] is None
-        and back["state"]["striker"] == 0
-        and back["state"]["positions"]["cue"] == COVERED["cue"]
-    )
+    assert back["stroke"] is None and back["state"]["striker"] == 0
+    assert back["state"]["positions"]["cue"] == COVERED["cue"]
     both = game("undo") and game("stroke", choice="play", speed=1.0, aim=1.0)
     assert both["stroke"]["player"] == 1
 
@@ -243,9 +201,8 @@ def test_a_position_that_cannot_be_is_refused_by_the_ball(game):
         ({"points": 1.5}, "points"),
     ):
         found = game("position", position=EASY | change, check=True)
-        assert found["sound"] is False and found["error"]["field"] == field and found["error"]["message"], (
-            change
-        )
+        assert found["sound"] is False and found["error"]["field"] == field, change
+        assert found["error"]["message"], change
         with pytest.raises(ValueError, match=f"^{re.escape(field)} = "):
             game("position", position=EASY | change)
     assert game("position", position=EASY, check=True) == {"sound": True, "error": None}
@@ -285,11 +242,8 @@ def test_an_agent_that_fails_is_reported_and_the_game_waits(game):
     game("position", position=EASY)
     game("players", players=["broken", "person"])
     state = waited(game, lambda s: not s["thinking"])
-    assert (
-        state["trouble"].startswith("broken gave no stroke")
-        and state["words"] == state["trouble"]
-        and state["strokes"] == 0
-    )
+    assert state["trouble"].startswith("broken gave no stroke") and state["words"] == state["trouble"]
+    assert state["strokes"] == 0
     game("players", players=["person", "person"])
     assert game.get("state")["trouble"] == ""
 
@@ -306,10 +260,8 @@ class Deciding:
 
     def play(self, positions, seeds):
         self.saw.append(positions)
-        return Strokes(
-            np.array([[0.6, 0.0, 0.0, 0.0, 0.0]]),
-            **{name: np.array(value) for name, value in self.says.items()},
-        )
+        parts = {name: np.array(value) for name, value in self.says.items()}
+        return Strokes(np.array([[0.6, 0.0, 0.0, 0.0, 0.0]]), **parts)
 
 
 def deciding(game, position, *, striker=1, **says):
@@ -329,11 +281,8 @@ def deciding(game, position, *, striker=1, **says):
 def test_an_agent_decides_after_a_foul(game, decision, what, striker):
     state, acts, agent = deciding(game, COVERED, striker=0, decision=[decision])
     choices = [act.detail for act in game.session.acts if act.what == "choice"]
-    assert (
-        choices == [what]
-        and agent.saw[0].choice.tolist() == [True]
-        and agent.saw[0].scores.tolist() == [[7, 0]]
-    )
+    assert choices == [what] and agent.saw[0].choice.tolist() == [True]
+    assert agent.saw[0].scores.tolist() == [[7, 0]]
     assert striker is None or state["striker"] == striker
     assert acts[-1] == ("stroke" if what == "play" else "choice")
 
@@ -370,10 +319,8 @@ def test_advice_is_ranked_named_and_drawn(game):
     assert all("points expected" in one["words"] for one in found)
     best = next(one for one in found if (one["ball"], one["pocket"]) == ("red 1", "top right"))
     assert best["chance"] > 0.8
-    assert (
-        np.allclose(best["paths"]["0"][0], EASY["cue"], atol=1e-4)
-        and np.hypot(*np.subtract(best["paths"]["1"][-1], (0.87376, 1.76926))) < 0.15
-    )
+    assert np.allclose(best["paths"]["0"][0], EASY["cue"], atol=1e-4)
+    assert np.hypot(*np.subtract(best["paths"]["1"][-1], (0.87376, 1.76926))) < 0.15
     played = game("stroke", **{name: best[name] for name in ("speed", "side", "top", "aim", "elevation")})
     assert played["stroke"]["pots"] == [1]
 
@@ -383,15 +330,10 @@ def test_destinations_spread_with_the_errors(game):
     unpacked = lambda text: np.frombuffer(base64.b64decode(text), "<f4").reshape(-1, 2)  # noqa: E731
     sure = game("destinations", speed=1.5, aim=STRAIGHT, noise="none")
     loose = game("destinations", speed=1.5, aim=STRAIGHT, noise="club", samples=300)
-    assert (
-        sure["first"] == loose["first"] == "red 1"
-        and sure["pots"] == [["red 1", "top right"]]
-        and sure["potted"] == 1.0
-    )
-    assert (
-        len(unpacked(loose["cue"])) + round(300 * loose["in_off"]) == 300
-        and unpacked(loose["cue"]).std(axis=0).max() > 0.01
-    )
+    assert sure["first"] == loose["first"] == "red 1" and sure["pots"] == [["red 1", "top right"]]
+    assert sure["potted"] == 1.0
+    assert len(unpacked(loose["cue"])) + round(300 * loose["in_off"]) == 300
+    assert unpacked(loose["cue"]).std(axis=0).max() > 0.01
     assert np.allclose(unpacked(sure["cue"])[0], sure["paths"]["0"][-1], atol=1e-3)
     assert game("destinations", speed=1.5, aim=STRAIGHT, noise="club", samples=300) == loose
     assert game.get("state")["strokes"] == 0
@@ -401,17 +343,12 @@ def test_a_question_about_a_table_that_is_gone_is_refused(game):
     revision = game("position", position=EASY)["revision"]
     assert "cue" in game("destinations", speed=1.0, aim=0.0, samples=8, revision=revision)
     game("stroke", speed=1.0, aim=STRAIGHT)
-    assert (
-        game("destinations", speed=1.0, aim=0.0, revision=revision)
-        == {"stale": True}
-        == game("advise", revision=revision)
-    )
+    assert game("destinations", speed=1.0, aim=0.0, revision=revision) == {"stale": True}
+    assert game("advise", revision=revision) == {"stale": True}
     before = game.get("state")
     assert game("stroke", speed=1.0, aim=0.0, revision=revision) == {"stale": True}
-    assert (
-        game.get("state")["strokes"] == before["strokes"]
-        and game.get("state")["revision"] == before["revision"]
-    )
+    assert game.get("state")["strokes"] == before["strokes"]
+    assert game.get("state")["revision"] == before["revision"]
 
 
 def test_undo_redo_new_save_load_and_replay(game):
@@ -420,59 +357,40 @@ def test_undo_redo_new_save_load_and_replay(game):
     game("position", position=EASY)
     game("stroke", speed=2.0, aim=STRAIGHT)
     replay = game.get("replay")
-    assert (
-        replay["format"] == "snooker-replay"
-        and len(replay["strokes"]) == 1
-        and replay["players"] == ["Player 1", "Player 2"]
-    )
+    assert replay["format"] == "snooker-replay" and len(replay["strokes"]) == 1
+    assert replay["players"] == ["Player 1", "Player 2"]
     assert json.loads(json.dumps(replay))["strokes"][0]["words"] in game.get("replay.html")
     saved = game("save")
     assert game("undo")["scores"] == [0, 0] and game("redo")["scores"] == [1, 0]
     fresh = game("new", layout="colours", seed=4)
     assert fresh["reds"] == 0 and fresh["ball_on"] == "yellow" and not fresh["undo"] and fresh["strokes"] == 0
-    assert (
-        game("new", layout="colours", seed=4)["positions"]
-        == fresh["positions"]
-        != game("new", layout="colours", seed=5)["positions"]
-    )
+    again, other = (game("new", layout="colours", seed=seed)["positions"] for seed in (4, 5))
+    assert again == fresh["positions"] != other
     assert game("load", saved=saved)["scores"] == [1, 0]
-    for fields, words in (
-        ({"layout": "x"}, "layout = 'x'"),
-        ({"seed": -1}, "seed = -1"),
-        ({"breaker": 2}, "breaker = 2"),
-        ({"seed": "1"}, "seed = '1'"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            game("new", **fields)
+    for name, value in (("layout", "x"), ("seed", -1), ("breaker", 2), ("seed", "1")):
+        with pytest.raises(ValueError, match=f"{name} = {value!r}"):
+            game("new", **{name: value})
 
 
 def test_who_waits_hears_of_a_change_and_not_of_none(game):
     revision = game.get("state")["revision"]
     start = time.monotonic()
-    assert (
-        game.get("state", after=revision, wait=0.2)["revision"] == revision
-        and time.monotonic() - start >= 0.2
-    )
+    assert game.get("state", after=revision, wait=0.2)["revision"] == revision
+    assert time.monotonic() - start >= 0.2
     game("place", place=[0.0, -1.2])
     start = time.monotonic()
-    assert (
-        game.get("state", after=revision, wait=20.0)["revision"] > revision and time.monotonic() - start < 5
-    )
+    assert game.get("state", after=revision, wait=20.0)["revision"] > revision
+    assert time.monotonic() - start < 5
 
 
-def test_every_route_and_field_is_documented():
+def test_every_route_and_part_of_a_state_is_documented(game):
     page = (ROOT / "docs/play/protocol.md").read_text(encoding="utf-8")
     for method, table in (("GET", routes.GET), ("POST", routes.POST)):
         for name, route in table.items():
             assert f"`{method} api/{name}`" in page, name
             part = page.partition(f"`{method} api/{name}`")[2].partition("\n### ")[0]
             for field in route.fields:
-                assert f"`{field}`" in part or ("of a stroke" in part and field in routes.STROKE), (
-                    name,
-                    field,
-                )
-
-
-def test_every_part_of_a_state_is_documented(game):
+                of_stroke = "of a stroke" in part and field in routes.STROKE
+                assert f"`{field}`" in part or of_stroke, (name, field)
     page = (ROOT / "docs/play/protocol.md").read_text(encoding="utf-8")
     assert not [name for name in game.get("state") if f"`{name}`" not in page]

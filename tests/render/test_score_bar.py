@@ -1,5 +1,4 @@
-"""Does the score bar say what it is given? Figures evenly set, balls of the break, whose turn it is, and
-nothing over anything else."""
+"""Does the score bar say what it is given?"""
 
 import numpy as np
 import pytest
@@ -38,10 +37,8 @@ def where(one, two):
 def test_figures_are_as_wide_as_each_other(file):
     widths = {typeset(digit * 20, (255, 255, 255), 40, file).get_width() for digit in "0123456789"}
     assert len(widths) == 1
-    assert (
-        typeset("iii", (255, 255, 255), 40, file).get_width()
-        < typeset("mmm", (255, 255, 255), 40, file).get_width() / 2
-    )
+    narrow, wide = (typeset(text, (255, 255, 255), 40, file).get_width() for text in ("iii", "mmm"))
+    assert narrow < wide / 2
 
 
 def test_the_bar_is_under_the_table_and_changes_nothing_else():
@@ -82,20 +79,16 @@ def test_each_thing_has_its_place():
     ]:
         left, right = where(full, pixels(ScoreBar(**{**given, **change})))
         assert low <= left <= right < high, change
-    accents = [
-        np.flatnonzero(np.all(bar[37] == PALETTE["bar_accent"], axis=1))
-        for bar in (full, pixels(ScoreBar(**{**given, "striker": 1})))
-    ]
+    bars = full, pixels(ScoreBar(**{**given, "striker": 1}))
+    accents = [np.flatnonzero(np.all(bar[37] == PALETTE["bar_accent"], axis=1)) for bar in bars]
     assert accents[0].max() < 960 < accents[1].min()  # the box of the score, and the triangle beside the name
     assert accents[0].min() < 780 and accents[1].max() > 1140
 
 
 def test_what_is_too_long_is_cut():
-    names, others = (
-        ("A very long name of a player of snooker", "Another name that is quite as long"),
-        ("a ball that is on for " * 5, "words " * 50),
-    )
-    given = {**FULL, "potted": (1, 21) * 15 + tuple(range(16, 22)), "ball_on": others[0], "words": others[1]}
+    names = "A very long name of a player of snooker", "Another name that is quite as long"
+    others = {"ball_on": "a ball that is on for " * 5, "words": "words " * 50}
+    given = {**FULL, "potted": (1, 21) * 15 + tuple(range(16, 22)), **others}
     players = {"players": names, "scores": (147, 1000), "striker": 1}
     middle = where(pixels(ScoreBar()), pixels(ScoreBar(**players)))
     sides = np.any(pixels(ScoreBar(**players)) != pixels(ScoreBar(**players, **given)), axis=(0, 2))
@@ -114,9 +107,8 @@ def test_a_bar_of_any_size_and_with_anything_left_out(given, width):
 
 
 def test_a_low_bar_is_one_line_of_text():
-    bar = ScoreBar(
-        ("Ann", "Bob"), (41, 12), striker=1, break_points=16, ball_on="red", points_on=59, words="foul"
-    )
+    given = {"striker": 1, "break_points": 16, "ball_on": "red", "points_on": 59, "words": "foul"}
+    bar = ScoreBar(("Ann", "Bob"), (41, 12), **given)
     assert in_words(bar) == "Ann 41, Bob 12 · Bob to play · break 16 · red on · 59 left · foul"
     assert in_words(ScoreBar()) == ""
     assert np.array_equal(pixels(bar, height=30), pixels(None, in_words(bar), height=30))

@@ -1,5 +1,4 @@
-"""Are the paths, contacts and strikes that diagrams draw those of the shot? Against ``Shot.at``, the strike
-that was made, and geometry."""
+"""Are the paths, contacts and strikes that diagrams draw those of the shot?"""
 
 import numpy as np
 import pytest
@@ -19,14 +18,11 @@ def played(balls, speed=2.0, aim=1.5708, table="match", physics=None, **tip):
 
 @pytest.fixture(scope="module")
 def shots():
-    """Screw off a red into a cushion; a masse; a shot in which the nap bends the paths; a pot with a jaw on
-    its way."""
+    """Screw into a cushion; a masse; a path bent by the nap; a pot with a jaw on its way."""
     return {
         "screw": played([(0.0, 0.5), (0.03, 1.0), (-0.4, 1.3)], top=-0.4, side=0.2),
         "masse": played([(0.0, -1.0), (0.4, 0.6)], aim=1.3, side=0.3, top=-0.1, elevation=0.8),
-        "nap": played(
-            [(0.0, -1.0), (0.3, 0.2)], speed=3.0, aim=1.3, physics=sn.Physics.preset("match", nap=0.02)
-        ),
+        "nap": played([(0.0, -1.0), (0.3, 0.2)], 3.0, 1.3, physics=sn.Physics.preset("match", nap=0.02)),
         "cushions": played([(0.1, -0.9), (0.5, 1.2)], speed=4.0, aim=1.9, side=0.3),
     }
 
@@ -37,9 +33,8 @@ def test_every_vertex_of_a_path_is_where_the_shot_has_the_ball(shots):
             for piece in own:
                 assert np.array_equal(piece.points, shot.at(piece.times)[0][:, ball])
             starts, ends = [p.times[0] for p in own[1:]], [p.times[-1] for p in own[:-1]]
-            assert (
-                all(a >= b for a, b in zip(starts, ends, strict=True)) and own[-1].times[-1] <= shot.duration
-            )
+            assert all(a >= b for a, b in zip(starts, ends, strict=True))
+            assert own[-1].times[-1] <= shot.duration
             assert np.allclose(own[-1].points[-1], shot.positions[ball], atol=1e-9)
 
 
@@ -82,9 +77,8 @@ def test_contacts_are_those_of_the_log_at_their_places(shots):
                 assert np.hypot(*(c.place - other)) == pytest.approx(R, abs=1e-6)
             elif c.kind == sn.EventKind.CUSHION:
                 axis, side, level = shot.table.noses[c.other, :3]
-                assert c.place[int(axis)] == side * level and np.hypot(
-                    *(c.place - c.centre)
-                ) == pytest.approx(R, abs=1e-6)
+                assert c.place[int(axis)] == side * level
+                assert np.hypot(*(c.place - c.centre)) == pytest.approx(R, abs=1e-6)
             assert c.speed == pytest.approx(np.hypot(*shot.at(c.time - 1e-7)[1][c.ball]), abs=1e-5)
             assert c.after == np.hypot(*shot.at(c.time)[1][c.ball])
 
@@ -92,9 +86,8 @@ def test_contacts_are_those_of_the_log_at_their_places(shots):
 def test_the_cut_is_that_of_the_geometry():
     """A ball that rolls along y past a ball aside by d is cut by asin(d / 2R)."""
     for aside in (0.0, 0.01, 0.03, 0.05):
-        shot = sn.simulate(
-            [(0.0, 0.0), (aside, 0.5)], [(0.0, 1.0), (0.0, 0.0)], [(-1.0 / R, 0.0, 0.0), (0.0, 0.0, 0.0)]
-        )
+        spins = [(-1.0 / R, 0.0, 0.0), (0.0, 0.0, 0.0)]
+        shot = sn.simulate([(0.0, 0.0), (aside, 0.5)], [(0.0, 1.0), (0.0, 0.0)], spins)
         met = next(shot_paths.contacts(shot, 0))
         assert shot_paths.cut_angle(shot, met) == pytest.approx(np.arcsin(aside / (2 * R)), abs=1e-9)
 
@@ -104,9 +97,8 @@ def test_the_cut_is_that_of_the_geometry():
 def test_the_tip_is_that_of_the_strike(tip, elevation):
     v, w = sn.strike(2.5, 0.7, *tip, elevation)
     found = shot_paths.tip_of(v[:2], w, sn.Physics.of(None))
-    assert np.allclose(
-        [found.side, found.top, found.speed, found.elevation], [*tip, 2.5, elevation], atol=1e-12
-    )
+    given = found.side, found.top, found.speed, found.elevation
+    assert np.allclose(given, [*tip, 2.5, elevation], atol=1e-12)
 
 
 def test_without_side_the_cue_is_taken_as_level():

@@ -1,5 +1,4 @@
-"""Does ``gymnasium.make("Snooker-v0")`` work where the package is installed, without importing it, and at no
-cost for other programs?"""
+"""Does ``gymnasium.make("Snooker-v0")`` work once installed, without an import and at no cost for others?"""
 
 import compileall
 import os
@@ -11,10 +10,12 @@ import tarfile
 import time
 import venv
 import zipfile
+from importlib import metadata
 from pathlib import Path
 
 import pytest
 
+import snooker_env
 from tests.processes import ROOT
 
 hatchling = pytest.importorskip("hatchling.build")
@@ -24,8 +25,7 @@ HERE = Path(sysconfig.get_paths()["purelib"])
 
 
 class Environment:
-    """A virtual environment: the libraries of this one, without its ``.pth`` files, and what is unpacked into
-    it."""
+    """A virtual environment with the libraries of this one, and what is unpacked into it."""
 
     def __init__(self, folder):
         venv.create(folder, with_pip=False, symlinks=True)
@@ -47,20 +47,11 @@ class Environment:
         return self
 
     def run(self, code, *flags, **variables):
-        env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {
-            "PYTHONWARNINGS": "error",
-            "SNOOKER_ENV_QUIET": "1",
-        }
-        command = [self.python, *flags, "-c", code]
-        done = subprocess.run(
-            command,
-            cwd=getattr(self, "cwd", "/"),
-            env=env | variables,
-            capture_output=True,
-            text=True,
-            timeout=280,
-            check=False,
-        )
+        env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
+        env |= {"PYTHONWARNINGS": "error", "SNOOKER_ENV_QUIET": "1"}
+        command, cwd = [self.python, *flags, "-c", code], getattr(self, "cwd", "/")
+        options = {"capture_output": True, "text": True, "timeout": 280}
+        done = subprocess.run(command, cwd=cwd, env=env | variables, **options)
         assert done.returncode == 0, done.stderr[-3000:]
         return done.stdout, done.stderr
 
@@ -95,12 +86,8 @@ print(type(gymnasium.make("snooker_env:Snooker-v0").unwrapped).__name__, [f for 
 def test_the_environment_is_made_without_an_import(installed, flags):
     out, err = installed.run(MAKE, *flags)
     assert err == ""
-    assert out.splitlines() == [
-        "snooker_env.envs.snooker:SnookerEnv",
-        "SnookerEnv (121,)",
-        "SnookerVectorEnv (3, 121)",
-        "SnookerEnv []",
-    ]
+    made = ["SnookerEnv (121,)", "SnookerVectorEnv (3, 121)", "SnookerEnv []"]
+    assert out.splitlines() == ["snooker_env.envs.snooker:SnookerEnv", *made]
 
 
 WORKERS = """
@@ -127,14 +114,11 @@ def test_workers_make_it_too(installed, method):
 RUN_FILE = "import subprocess, sys; sys.exit(subprocess.run([sys.executable, 'workers.py']).returncode)"
 
 
-def test_without_the_site_it_is_not_registered(installed):
+def test_it_is_registered_by_the_site_and_can_be_switched_off(installed):
     """The control: neither Gymnasium nor anything else here has the id by itself."""
     paths = [str(installed.site), str(installed.cwd.parent / "libraries"), str(ROOT)]
     code = f"import sys; sys.path += {paths!r}\nimport gymnasium\nprint('Snooker-v0' in gymnasium.registry)"
     assert installed.run(code, "-S")[0] == "False\n"
-
-
-def test_it_can_be_switched_off(installed):
     code = "import gymnasium, sys; print('Snooker-v0' in gymnasium.registry, [f for f in sys.meta_path if 'snooker' in repr(f)])"
     assert installed.run(code, SNOOKER_ENV_AUTOREGISTER="0")[0] == "False []\n"
     assert installed.run(code)[0] == "True []\n"
@@ -187,50 +171,43 @@ def test_a_gymnasium_that_is_there_already_has_the_id_at_once():
     assert done.stdout == "True False\n"
 
 
-def test_the_wheel_holds_what_belongs_there(tmp_path, monkeypatch):
+def test_the_wheel_holds_what_belongs_there_and_says_who_may_use_it(tmp_path, monkeypatch):
     monkeypatch.chdir(ROOT)
     with zipfile.ZipFile(tmp_path / hatchling.build_wheel(str(tmp_path))) as wheel:
         names = wheel.namelist()
-        assert (
-            wheel.read("_snooker_env_autoregister.py") == (ROOT / "snooker_env/_autoregister.py").read_bytes()
-        )
+        direct = (ROOT / "snooker_env/_autoregister.py").read_bytes()
+        assert wheel.read("_snooker_env_autoregister.py") == direct
         assert wheel.read("snooker_env_autoregister.pth").count(b"\n") == 1  # one line: each is run by itself
-    assert {name.split("/")[0] for name in names if ".dist-info" not in name} == {
-        "snooker_env",
-        "_snooker_env_autoregister.py",
-        "snooker_env_autoregister.pth",
-    }
+        wheel.extractall(tmp_path)
+    tops = {"snooker_env", "_snooker_env_autoregister.py", "snooker_env_autoregister.pth"}
+    assert {name.split("/")[0] for name in names if ".dist-info" not in name} == tops
     assert "snooker_env/_registration.py" in names and len(names) == len(set(names))
     assert [name for name in names if name.endswith(".pth")] == ["snooker_env_autoregister.pth"]
+    built = metadata.Distribution.at(*tmp_path.glob("*.dist-info"))
+    assert built.metadata["License-Expression"] == "MIT" and built.version == snooker_env.__version__
+    for name in ("LICENSE", "snooker_env/render/fonts/OFL.txt"):
+        assert built.read_text(f"licenses/{name}") == (ROOT / name).read_text()
 
 
 @pytest.mark.skipif(not (ROOT / ".git").exists(), reason="only a clone can say what belongs to it")
 def test_the_source_distribution_is_a_clone_and_gives_the_same_wheel(tmp_path, monkeypatch):
-    """Tests, agents, weights and documents come with it; what git ignores does not. Data files of the package
-    are in the wheel."""
+    """Tests, agents, weights and documents come with it; what git ignores does not."""
     monkeypatch.chdir(ROOT)
     with tarfile.open(tmp_path / hatchling.build_sdist(str(tmp_path))) as source:
         source.extractall(tmp_path)
     (tree,) = (path for path in tmp_path.iterdir() if path.is_dir())
     there = {path.relative_to(tree).as_posix() for path in tree.rglob("*") if path.is_file()}
-    listed = subprocess.run(
-        ["git", "ls-files", "-z", "-co", "--exclude-standard"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    here = {name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()}
+    command = ["git", "ls-files", "-z", "-co", "--exclude-standard"]
+    listed = subprocess.check_output(command, cwd=ROOT, text=True)
+    here = {name for name in listed.split("\0") if name and (ROOT / name).is_file()}
     assert there - here == {"PKG-INFO"} and here <= there, sorted(here ^ there)[:20]
     wheels = []
     for folder in (ROOT, tree):
         monkeypatch.chdir(folder)
         with zipfile.ZipFile(tmp_path / hatchling.build_wheel(str(tmp_path))) as wheel:
-            wheels.append(
-                {name: wheel.getinfo(name).CRC for name in wheel.namelist() if not name.endswith("RECORD")}
-            )
+            wheels.append({one.filename: one.CRC for one in wheel.infolist()})
+            del wheels[-1][next(name for name in wheels[-1] if name.endswith("RECORD"))]
     assert wheels[0] == wheels[1]
-    data = {name for name in here if name.startswith("snooker_env/") and not name.endswith(".py")} - {
-        "snooker_env/_autoregister.pth"
-    }
-    assert data <= set(wheels[0]) and {"snooker_env/py.typed", "snooker_env/game/opened.npz"} <= data
+    data = {name for name in here if name.startswith("snooker_env/") and not name.endswith(".py")}
+    assert data - {"snooker_env/_autoregister.pth"} <= set(wheels[0])
+    assert {"snooker_env/py.typed", "snooker_env/game/opened.npz"} <= data

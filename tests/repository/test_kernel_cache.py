@@ -1,11 +1,11 @@
-"""Is kept machine code loaded only where nobody else can write, and does a damaged or full cache do no more
-harm than a warning?"""
+"""Is kept machine code loaded only where nobody else can write, and is a damaged or full cache harmless?"""
 
 import os
 import pickle
 import stat
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from hashlib import sha256
 from pathlib import Path
 
@@ -112,10 +112,13 @@ def test_a_folder_of_another_user_is_not_used(folders, monkeypatch, which):
     )
 
 
-def test_a_home_that_others_share_is_good_as_long_as_they_cannot_exchange_what_is_ours(folders):
+def test_a_shared_home_is_good_and_without_owners_none_are_checked(folders, monkeypatch):
     for mode in (0o1777, 0o775, 0o755):  # /tmp; a home of the user's own group; readable by others
         folders["home"].chmod(mode)
         assert _cache.cache_folder() == folders["hash"]
+    folders["snooker_env"].chmod(0o777)
+    monkeypatch.delattr(os, "geteuid")
+    assert _cache.cache_folder() == folders["hash"]
 
 
 def test_links_are_followed(folders, monkeypatch, tmp_path):
@@ -129,12 +132,6 @@ def test_links_are_followed(folders, monkeypatch, tmp_path):
     assert f"others can write to {folders['snooker_env']}" in unsafe(
         monkeypatch, folders["home"], "others can write to"
     )
-
-
-def test_where_there_are_no_owners_none_are_checked(folders, monkeypatch):
-    folders["snooker_env"].chmod(0o777)
-    monkeypatch.delattr(os, "geteuid")
-    assert _cache.cache_folder() == folders["hash"]
 
 
 def test_a_user_without_a_home_has_no_folder(monkeypatch, tmp_path):
@@ -185,38 +182,31 @@ def test_code_that_somebody_could_have_planted_is_not_run(toy, tmp_path, which):
 # Broken files, full disks
 
 
-def damaged(data, how):
-    middle = len(data) // 2
-    return {
-        "empty": b"",
-        "short": data[:10],
-        "cut": data[:middle],
-        "garbage": b"garbage" * 99,
-        "zeros": bytes(len(data)),
-        "one bit": data[:middle] + bytes([data[middle] ^ 4]) + data[middle + 1 :],
-    }[how]
+DAMAGED = {
+    "empty": lambda data: b"",
+    "short": lambda data: data[:10],
+    "cut": lambda data: data[: len(data) // 2],
+    "garbage": lambda data: b"garbage" * 99,
+    "zeros": lambda data: bytes(len(data)),
+    "one bit": lambda data: data[:40] + bytes([data[40] ^ 4]) + data[41:],
+    "another numba's": lambda data: OTHER + sha256(OTHER).digest(),
+}
+OTHER = pickle.dumps(("something", "else"))
+"""Whole, but not what this numba makes."""
 
 
-@pytest.mark.parametrize("what", ["*double*.nbi", "*double*.nbc"])
-@pytest.mark.parametrize("how", ["empty", "short", "cut", "garbage", "zeros", "one bit"])
+CASES = [(what, how) for what in ("*double*.nbi", "*double*.nbc") for how in DAMAGED]
+
+
+@pytest.mark.parametrize(("what", "how"), CASES[: len(DAMAGED) - 1] + CASES[len(DAMAGED) :])
 def test_a_damaged_file_is_compiled_and_kept_anew(toy, what, how):
+    """An index of another numba is no damage."""
     toy()
     (path,) = files(toy, what)
-    path.write_bytes(damaged(path.read_bytes(), how))
-    out, err = toy()
-    assert out == MIXED
-    assert err.count("RuntimeWarning") == 1 and f"machine code kept in {path.parent} cannot be used" in err
-    assert toy() == (LOADED, "")
-
-
-def test_what_numba_itself_cannot_rebuild_is_compiled_anew(toy):
-    """Whole, but not what this numba makes."""
-    toy()
-    (path,) = files(toy, "*double*.nbc")
-    data = pickle.dumps(("something", "else"))
-    path.write_bytes(data + sha256(data).digest())
+    path.write_bytes(DAMAGED[how](path.read_bytes()))
     out, err = toy()
     assert out == MIXED and err.count("RuntimeWarning") == 1
+    assert how == "another numba's" or f"machine code kept in {path.parent} cannot be used" in err
     assert toy() == (LOADED, "")
 
 
@@ -236,80 +226,47 @@ def test_on_a_full_disk_it_works_from_memory(toy):
     out, err = toy(FULL)
     assert out == FRESH and not files(toy, "*.nb?")
     assert err.count("RuntimeWarning") == 1
-    assert (
-        "cannot be kept" in err
-        and "No space left on device" in err
-        and "every process compiles for itself" in err
-    )
+    assert "cannot be kept" in err and "No space left on device" in err
+    assert "every process compiles for itself" in err
     assert toy() == (FRESH, "") and toy() == (LOADED, "")
 
 
 @pytest.mark.parametrize("instead", ["nothing", "a file"])
 def test_a_folder_that_is_gone_does_no_harm(toy, instead):
-    gone = "import shutil; from snooker_env import _cache; shutil.rmtree(_cache.CACHE_FOLDER.parent)\n"
-    out, err = toy(
-        "import toy\n" + gone + ("_cache.CACHE_FOLDER.parent.write_text('')\n" if instead == "a file" else "")
-    )
+    gone = "import toy, shutil; from snooker_env import _cache; shutil.rmtree(_cache.CACHE_FOLDER.parent)\n"
+    out, err = toy(gone + ("_cache.CACHE_FOLDER.parent.write_text('')\n" if instead == "a file" else ""))
     assert out == FRESH
     if instead == "nothing":
         assert err == "" and toy() == (LOADED, "")  # made again
     else:
-        assert (
-            err.count("RuntimeWarning") == 1
-            and "is not read from" in err
-            and "every process compiles for itself" in err
-        )
+        assert err.count("RuntimeWarning") == 1 and "is not read from" in err
+        assert "every process compiles for itself" in err
 
 
-def test_processes_that_compile_at_the_same_time_do_not_disturb_each_other(toy, tmp_path):
-    paths = os.pathsep.join([str(tmp_path / "toy"), str(ROOT)])
-    env = os.environ | {
-        "NUMBA_CACHE_DIR": str(toy.cache),
-        "PYTHONPATH": paths,
-        "PYTHONWARNINGS": "error",
-        "SNOOKER_ENV_QUIET": "1",
-    }
-    command = [sys.executable, "-c", RUN]
-    running = [
-        subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        for _ in range(4)
-    ]
-    for process in running:
-        out, err = process.communicate(timeout=120)
-        assert out.startswith("3.0 1.5 ") and err == "" and process.returncode == 0
+def test_processes_that_compile_at_the_same_time_do_not_disturb_each_other(toy):
+    with ThreadPoolExecutor(4) as pool:
+        for out, err in pool.map(lambda _: toy(), range(4)):
+            assert out.startswith("3.0 1.5 ") and err == ""
     assert toy() == (LOADED, "")
 
 
 def test_equal_sources_share_their_machine_code_wherever_they_lie(toy, tmp_path):
     assert toy() == (FRESH, "")
     (tmp_path / "moved").mkdir()
-    (tmp_path / "moved/toy.py").write_text(TOY)
-    assert toy(PYTHONPATH=os.pathsep.join([str(tmp_path / "moved"), str(ROOT)])) == (LOADED, "")
-    (tmp_path / "moved/toy.py").write_text(TOY + "\n# changed\n")
-    assert toy(PYTHONPATH=os.pathsep.join([str(tmp_path / "moved"), str(ROOT)])) == (FRESH, "")
+    path = os.pathsep.join([str(tmp_path / "moved"), str(ROOT)])
+    for more, result in (("", LOADED), ("\n# changed\n", FRESH)):
+        (tmp_path / "moved/toy.py").write_text(TOY + more)
+        assert toy(PYTHONPATH=path) == (result, "")
 
 
 @pytest.mark.parametrize("way", ["-c", "-"])
 def test_a_kernel_that_is_in_no_file_is_not_kept(tmp_path, way):
-    """Two versions of it have the same bytecode and place, and no hash that differs: the second would run the
-    machine code of the first."""
-    env = os.environ | {
-        "NUMBA_CACHE_DIR": str(tmp_path / "cache"),
-        "PYTHONPATH": str(ROOT),
-        "SNOOKER_ENV_QUIET": "0",
-    }
+    """Two versions have the same bytecode and place: the second would run the code of the first."""
+    here = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(ROOT), "SNOOKER_ENV_QUIET": "0"}
+    options = {"env": os.environ | here, "cwd": tmp_path, "capture_output": True, "text": True, "check": True}
     for factor in ("2.0", "3.0"):
         code = TOY.replace("2.0", factor) + "print(double(1.0))"
-        command, given = ([sys.executable, way, code], None) if way == "-c" else ([sys.executable, way], code)
-        done = subprocess.run(
-            command,
-            cwd=tmp_path,
-            env=env,
-            input=given,
-            capture_output=True,
-            text=True,
-            check=True,
-            timeout=120,
-        )
+        command = [sys.executable, way, *([code] if way == "-c" else [])]
+        done = subprocess.run(command, input=None if way == "-c" else code, timeout=120, **options)
         assert done.stdout.strip() == factor
         assert "compiling a toy, about 3 s (for this process only;" in done.stderr

@@ -1,34 +1,28 @@
-"""Do agents, commands and examples get along with what the package promises? They import public names only,
-and each of those is there."""
+"""Is every public name there once, documented as numpy does it, and nothing else used by agents and commands?"""
 
 import ast
+import dataclasses
 import doctest
 import importlib
+import inspect
 import re
-from pathlib import Path
+from itertools import pairwise
 
 import pytest
 
 import snooker_env as sn
-from tests.processes import python
+from tests.processes import ROOT, python
 
-ROOT = Path(sn.__file__).resolve().parents[1]
 PACKAGE = ROOT / "snooker_env"
-USERS = sorted(
-    path
-    for name in ("agents", "commands", "examples", "train.py")
-    for path in [ROOT / name, *(ROOT / name).rglob("*.py")]
-    if path.is_file()
-)
+FOLDERS = ("agents", "commands", "examples")
+USERS = sorted([ROOT / "train.py", *(path for name in FOLDERS for path in (ROOT / name).rglob("*.py"))])
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
 def promised(path):
     """The names in ``__all__`` of a file, or None if it has none."""
     for node in ast.parse(path.read_text(encoding="utf-8")).body:
-        if isinstance(node, ast.Assign) and [
-            target.id for target in node.targets if isinstance(target, ast.Name)
-        ] == ["__all__"]:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
             return ast.literal_eval(node.value)
     return None
 
@@ -43,34 +37,22 @@ ALL = {dotted(path): names for path in PACKAGE.rglob("*.py") if (names := promis
 
 def private(source):
     """What some code uses of the package that is not public: lines like "snooker_env.tasks.visit: Visits"."""
-    tree, found, aliases = ast.parse(source), [], {"snooker_env"}
-    for node in ast.walk(tree):
+    direct, aliases = [], {"snooker_env"}
+    for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
-            for alias in node.names:
-                if alias.name == "snooker_env":
-                    aliases.add(alias.asname or alias.name)
-                elif alias.name.startswith("snooker_env.") and alias.name not in ALL:
-                    found.append(alias.name)
+            aliases |= {alias.asname or alias.name for alias in node.names if alias.name == "snooker_env"}
+            names = [alias.name for alias in node.names if alias.name.startswith("snooker_env.")]
+            direct += [name for name in names if name not in ALL]
         elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "snooker_env":
-            for name in [alias.name for alias in node.names]:
-                if (
-                    name not in [*ALL.get(node.module, ()), "__version__"]
-                    and f"{node.module}.{name}" not in ALL
-                ):
-                    found.append(f"{node.module}: {name}")
-    attributes = [
-        node
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)
-    ]
-    used = {node.attr for node in attributes if isinstance(node.value, ast.Name) and node.value.id in aliases}
-    found += [
-        f"snooker_env.{name}"
-        for name in used - {*ALL["snooker_env"], "__version__", "__file__"}
-        if f"snooker_env.{name}" not in ALL
-    ]
+            public = {*ALL.get(node.module, ()), "__version__"}
+            names = [alias.name for alias in node.names if f"{node.module}.{alias.name}" not in ALL]
+            direct += [f"{node.module}: {name}" for name in names if name not in public]
+        elif isinstance(node, ast.Attribute) and getattr(node.value, "id", "") in aliases:
+            public = {*ALL["snooker_env"], "__version__", "__file__"}
+            if node.attr not in public and f"snooker_env.{node.attr}" not in ALL:
+                direct.append(f"snooker_env.{node.attr}")
     # what environments are made of
-    return found + re.findall(r"\b(?:env|tables|venv)\.(?:frames|shooter|visits)\b", source)
+    return direct + re.findall(r"\b(?:env|tables|venv)\.(?:frames|shooter|visits)\b", source)
 
 
 TRAINED_FOR = (
@@ -83,51 +65,24 @@ TRAINED_FOR = (
 
 @pytest.mark.parametrize("path", USERS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_agents_commands_and_examples_use_public_names_only(path):
-    """But for what ``commands`` passes on, and for the rooms that ``agents`` trains for: the players, and
-    what they learned."""
-    passed_on = (
-        {"files.py": "snooker_env._files", "tables.py": "snooker_env._tables"}
-        if path.parent.name == "commands"
-        else {}
-    )
-    known = (*TRAINED_FOR, passed_on.get(path.name, "?"))
+    """But for what ``commands`` passes on, and for the rooms that ``agents`` trains for."""
+    passed_on = {"commands/files.py": "snooker_env._files", "commands/tables.py": "snooker_env._tables"}
+    known = (*TRAINED_FOR, passed_on.get(path.relative_to(ROOT).as_posix(), "?"))
     assert [name for name in private(path.read_text(encoding="utf-8")) if not name.startswith(known)] == []
 
 
 def examples(page):
     """The Python of a page, that of its notebook cells included."""
-    return re.findall(
-        r"```(?:python|\{code-cell\}[^\n]*)\n(?::\w.*?\n)*(.*?)```",
-        page.read_text(encoding="utf-8"),
-        re.DOTALL,
-    )
+    fence = r"```(?:python|\{code-cell\}[^\n]*)\n(?::\w.*?\n)*(.*?)```"
+    return re.findall(fence, page.read_text(encoding="utf-8"), re.DOTALL)
 
 
 def test_the_readme_and_the_documentation_use_public_names_only():
     shown = {page.relative_to(ROOT).as_posix(): examples(page) for page in PAGES}
-    assert "snooker_env.physics.impact: inertia" in [
-        name for block in shown.pop("docs/physics/derivation.md") for name in private(block)
-    ]
-    assert {
-        page: found
-        for page, blocks in shown.items()
-        if (found := [name for block in blocks for name in private(block)])
-    } == {}
+    used = {page: [name for block in blocks for name in private(block)] for page, blocks in shown.items()}
+    assert "snooker_env.physics.impact: inertia" in used.pop("docs/physics/derivation.md")
+    assert {page: names for page, names in used.items() if names} == {}
     assert len(USERS) > 40 and len(shown["README.md"]) >= 3 and sum(map(len, shown.values())) > 40
-
-
-def test_public_modules_are_those_that_the_package_names():
-    named = set(re.findall(r"^\* ``(snooker_env[.\w]*)``", sn.__doc__, re.MULTILINE))
-    assert named | {"snooker_env"} == set(ALL)
-    assert not [module for module in ALL if "._" in module]
-
-
-@pytest.mark.parametrize("module", sorted(ALL))
-def test_every_public_name_is_there_once(module):
-    names = ALL[module]
-    assert len(set(names)) == len(names)
-    loaded = importlib.import_module(module)
-    assert not [name for name in names if not hasattr(loaded, name)] and loaded.__all__ == names
 
 
 def test_environments_and_planning_are_reached_from_the_package_and_loaded_when_asked():
@@ -137,13 +92,10 @@ def test_environments_and_planning_are_reached_from_the_package_and_loaded_when_
         "print(heavy(), 'SnookerEnv' in dir(sn), 'planning' in dir(sn))\n"
         "print(sn.planning.Planner is sn.Planner, sn.SnookerEnv.__module__, sn.SnookerVectorEnv.__module__)\n"
         "from snooker_env import *\n"
-        "print(Position is sn.Position, SnookerEnv is sn.SnookerEnv)\n",
+        "print(Position is sn.Position, SnookerEnv is sn.SnookerEnv)\n"
     )
-    assert out.splitlines() == [
-        "[] True True",
-        "True snooker_env.envs.snooker snooker_env.envs.vector",
-        "True True",
-    ]
+    modules = "True snooker_env.envs.snooker snooker_env.envs.vector"
+    assert out.splitlines() == ["[] True True", modules, "True True"]
     with pytest.raises(AttributeError, match=r"module 'snooker_env' has no attribute 'Snooker'"):
         _ = sn.Snooker
 
@@ -157,3 +109,92 @@ EXAMPLES = sorted(
 def test_examples_in_docstrings_run(module):
     failed, tried = doctest.testmod(importlib.import_module(module))
     assert failed == 0 and tried > 0
+
+
+BODIES = [ast.parse(p.read_text(encoding="utf-8")).body for p in (ROOT / "snooker_env").rglob("*.py")]
+EXPLAINED = {
+    name.id
+    for body in BODIES
+    for node, below in pairwise(body)
+    if isinstance(node, ast.Assign | ast.AnnAssign)
+    and isinstance(getattr(below, "value", None), ast.Constant)
+    for name in ast.walk(node)
+    if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)
+}
+"""The constants that have words below them where they are made."""
+IMPORTS = [node for body in BODIES for node in body if isinstance(node, ast.ImportFrom)]
+EXPLAINED |= {alias.asname for node in IMPORTS for alias in node.names if alias.name in EXPLAINED}
+NAMES = sorted({(module, name) for module, names in ALL.items() for name in names})
+
+
+def sections(text):
+    """Heading -> the text below it; the text before the first heading is under ""."""
+    first, *parts = re.split(r"^(\w[\w ]*)\n-{3,}$", text, flags=re.MULTILINE)
+    return {"": first} | dict(zip(parts[::2], parts[1::2], strict=True))
+
+
+def entries(text):
+    """The names that a section such as Parameters describes, in order; ``a, b : float`` are two names."""
+    lines = re.findall(r"^([*\w][\w*, ]*)(?: : .*)?\n(?= +\S)", text + "\n", re.MULTILINE)
+    return [name.strip() for line in lines for name in line.split(",")]
+
+
+def plain(thing):
+    """The function below a kernel, a class method or a cache."""
+    thing = getattr(thing, "__func__", thing)
+    return inspect.unwrap(getattr(thing, "py_func", thing))
+
+
+def parameters(thing):
+    """The names of a function's parameters, with their stars, without the receiver."""
+    stars = {inspect.Parameter.VAR_POSITIONAL: "*", inspect.Parameter.VAR_KEYWORD: "**"}
+    every = inspect.signature(plain(thing)).parameters.items()
+    names = [(stars.get(p.kind, ""), name) for name, p in every if name not in ("self", "cls")]
+    return [star + name for star, name in names if not name.startswith("_")]
+
+
+def class_faults(thing, parts):
+    """What a class's docstring lacks, and those of its public methods and properties."""
+    described = entries(parts.get("Parameters", "")) + entries(parts.get("Attributes", ""))
+    wanted = []
+    if members := getattr(thing, "__members__", ()):
+        described, wanted = re.findall(r"\w+", thing.__doc__), list(members)
+    elif dataclasses.is_dataclass(thing) or hasattr(thing, "_fields"):
+        fields = getattr(thing, "_fields", None) or [field.name for field in dataclasses.fields(thing)]
+        wanted = [*parameters(thing), *(name for name in fields if not name.startswith("_"))]
+    elif "__init__" in vars(thing) and not issubclass(thing, BaseException):
+        wanted = [] if getattr(thing, "_is_protocol", False) else parameters(thing.__init__)
+    if missing := set(wanted) - set(described):
+        yield f"does not describe {sorted(missing)}"
+    for name, member in vars(thing).items():
+        ours = inspect.isfunction(plain(member)) and plain(member).__module__.startswith("snooker_env")
+        if not name.startswith("_") and (ours or isinstance(member, property)) and not inspect.getdoc(member):
+            yield f".{name} has no docstring"
+
+
+def faults(module, name):
+    """What is wrong with the documentation of a public name."""
+    thing = getattr(importlib.import_module(module), name)
+    function = callable(thing) and inspect.isfunction(plain(thing))
+    if not (function or inspect.isclass(thing) or inspect.ismodule(thing)):
+        return [] if name in EXPLAINED else ["is a constant without words below it"]
+    text = inspect.cleandoc((plain(thing) if function else thing).__doc__ or "")
+    if not text or inspect.ismodule(thing):
+        return [] if text else ["has no docstring"]
+    parts = sections(text)
+    direct = [] if function else list(class_faults(thing, parts))
+    # only kernels can call an inner kernel, so no example can
+    exempt = type(thing).__name__ == "Inner" or (not function and issubclass(thing, BaseException))
+    if not exempt and ">>> " not in parts.get("Examples", ""):
+        direct.append("has no example")
+    if function and entries(parts.get("Parameters", "")) != parameters(thing):
+        direct.append(f"has Parameters {entries(parts.get('Parameters', ''))}, not {parameters(thing)}")
+    returned = inspect.signature(plain(thing)).return_annotation if function else None
+    if returned not in (None, "None", inspect.Signature.empty) and not {"Returns", "Yields"} & set(parts):
+        direct.append("does not say what it returns")
+    return direct
+
+
+@pytest.mark.parametrize(("module", "name"), NAMES, ids=[f"{module}.{name}" for module, name in NAMES])
+def test_each_public_name_is_there_once_and_documented_as_numpy_does_it(module, name):
+    assert faults(module, name) == [] and ALL[module].count(name) == 1

@@ -1,5 +1,4 @@
-"""Is each entry kernel compiled for one signature, whatever the numbers that users give are made of? A second
-one would take seconds."""
+"""Is each entry kernel compiled for one signature, whatever the numbers that users give are made of?"""
 
 import json
 

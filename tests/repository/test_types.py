@@ -1,5 +1,4 @@
-"""Are the annotations true? Pyright on right and wrong calls, what it finds in the package, and hints that
-resolve."""
+"""Are the annotations true?"""
 
 import inspect
 import json
@@ -15,8 +14,8 @@ import pytest
 
 import snooker_env as sn
 from snooker_env import checks, game, geometry, planning, render, tasks
+from tests.processes import ROOT, python
 
-ROOT = Path(sn.__file__).resolve().parent.parent
 LEAST = 0.965
 
 HEAD = """
@@ -120,16 +119,13 @@ BAD = (
 
 
 def pyright(*arguments, cwd=ROOT):
-    """What pyright says, as JSON gives it. Skips where it is not installed or cannot be started (it may want
-    to load Node.js)."""
-    program = shutil.which(
-        "pyright", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
-    )
-    if program is None:
-        pytest.skip("pyright is not installed")
+    """What pyright says, as JSON; skips where it is not installed or cannot be started."""
     # --verifytypes reads no --pythonpath: it takes the first Python of PATH, and without its libraries half
     # the types are unknown
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    program = shutil.which("pyright", path=path)
+    if program is None:
+        pytest.skip("pyright is not installed")
     env = os.environ | {"PYTHONPATH": str(ROOT), "PATH": path}
     command = [program, "--outputjson", "--pythonpath", sys.executable, *arguments]
     done = subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, timeout=600, check=False)
@@ -145,12 +141,8 @@ def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("typed")
     lines = [*HEAD.strip().splitlines(), *GOOD, *BAD]
     (folder / "calls.py").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    settings = {
-        "typeCheckingMode": "basic",
-        "pythonVersion": "3.10",
-        "extraPaths": [str(ROOT)],
-        "reportUnusedExpression": "none",
-    }
+    settings = {"typeCheckingMode": "basic", "pythonVersion": "3.10", "reportUnusedExpression": "none"}
+    settings["extraPaths"] = [str(ROOT)]
     (folder / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
     errors: dict = {}
     for one in pyright("calls.py", cwd=folder)["generalDiagnostics"]:
@@ -158,27 +150,19 @@ def report(tmp_path_factory):
     return lines, errors
 
 
-def test_calls_of_each_documented_kind_are_right_to_the_checker(report):
+def test_the_checker_takes_right_calls_and_sees_wrong_ones(report):
     lines, errors = report
     first_bad = len(lines) - len(BAD)
     assert {lines[k]: message for k, message in errors.items() if k < first_bad} == {}
-
-
-def test_calls_that_are_wrong_are_errors_to_the_checker(report):
     lines, errors = report
     assert [line for k, line in enumerate(lines) if line in BAD and k not in errors] == []
 
 
 @pytest.mark.slow
-def test_calls_of_each_documented_kind_run(tmp_path):
+def test_calls_of_each_documented_kind_run():
     """The calls that the checker is shown do what they say: an annotation is no promise by itself."""
     pytest.importorskip("pettingzoo")
-    command = [sys.executable, "-c", HEAD + "\n".join(GOOD[:-1])]
-    env = os.environ | {"PYTHONPATH": str(ROOT), "SNOOKER_ENV_QUIET": "1"}
-    done = subprocess.run(
-        command, capture_output=True, text=True, cwd=tmp_path, timeout=600, env=env, check=False
-    )
-    assert done.returncode == 0, done.stderr
+    python(HEAD + "\n".join(GOOD[:-1]))
 
 
 def test_the_checker_finds_the_types_of_public_names():
@@ -200,37 +184,20 @@ with suppress(ImportError):
     PUBLIC["SnookerVecEnv"] = SnookerVecEnv
 
 
-def members(thing):
-    """A function itself; of a class it, and all that it defines in public."""
+def annotated(thing):
+    """A function; of a class its annotations, none that it inherits, and the public functions that it defines."""
     if not inspect.isclass(thing):
         return [thing]
-    inside = [m for name, m in vars(thing).items() if not name.startswith("_")]
-    return [
-        thing,
-        *(inspect.unwrap(m.__func__) for m in inside if isinstance(m, classmethod | staticmethod)),
-    ] + [
-        m.fget if isinstance(m, property) else m
-        for m in inside
-        if inspect.isfunction(m) or isinstance(m, property)
-    ]
-
-
-def annotated(thing):
-    """A function; or a class with the annotations of this one, and none of those it inherits from other
-    libraries."""
-    if not inspect.isclass(thing):
-        return thing
-    return type(
-        thing.__name__,
-        (),
-        {"__module__": thing.__module__, "__annotations__": vars(thing).get("__annotations__", {})},
-    )
+    names = {"__module__": thing.__module__, "__annotations__": vars(thing).get("__annotations__", {})}
+    public = [member for name, member in vars(thing).items() if not name.startswith("_")]
+    inside = [getattr(m, "fget", None) or getattr(m, "__func__", m) for m in public]
+    return [type(thing.__name__, (), names), *filter(inspect.isfunction, map(inspect.unwrap, inside))]
 
 
 @pytest.mark.parametrize("name", [name for name, thing in PUBLIC.items() if callable(thing)])
 def test_annotations_can_be_resolved_when_the_program_runs(name):
-    for thing in members(PUBLIC[name]):
-        hints = typing.get_type_hints(annotated(thing))
+    for thing in annotated(PUBLIC[name]):
+        hints = typing.get_type_hints(thing)
         if inspect.isfunction(thing):
             parameters = [p for p in inspect.signature(thing).parameters if p not in ("self", "cls")]
             assert set(parameters) | {"return"} <= set(hints), thing

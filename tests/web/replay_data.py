@@ -1,5 +1,4 @@
-"""Which shots and replays do the tests of the browser show? Struck here, and written down by
-``snooker_env.replays``."""
+"""Which shots and replays do the tests of the browser show?"""
 
 import base64
 
@@ -28,8 +27,7 @@ def break_off():
 
 
 def visit():
-    """The data of a replay of three strokes by two players; after the second the black is respotted and the
-    cue ball placed."""
+    """A replay of three strokes by two players, the black re-spotted after the second."""
     shots = [break_off()]
     for aim in (2.0, -1.0):
         shots.append(hit(shots[-1].positions, shots[-1].on_table, 3.0, aim, 0.2, -0.3, 0.1))
@@ -38,27 +36,14 @@ def visit():
     places[[0, 21]], on[[0, 21]] = [(0.1, -1.2), (0.0, 1.4605)], True
     rows = [(0, 1, [2], "red", [1, 0], 1), (0, 7, [21], "black", [8, 0], 8), (1, 0, [], "red", [8, 0], 0)]
     for k, (player, points, pots, on_words, score, run) in enumerate(rows):
-        data["strokes"][k] |= {
-            "player": player,
-            "points": points,
-            "pots": pots,
-            "ball_on": on_words,
-            "score": score,
-            "break": run,
-            "words": f"The referee's words after stroke {k + 1}.",
-            "cue": {
-                "speed": 8.0 if k == 0 else 3.0,
-                "side": 0.2,
-                "top": -0.3,
-                "aim": (1.67, 2.0, -1.0)[k],
-                "elevation": 0.2,
-            },
-        }
+        aim, speed = (1.67, 2.0, -1.0)[k], 8.0 if k == 0 else 3.0
+        cue = {"speed": speed, "side": 0.2, "top": -0.3, "aim": aim, "elevation": 0.2}
+        judged = {"player": player, "points": points, "pots": pots, "ball_on": on_words, "score": score}
+        words = f"The referee's words after stroke {k + 1}."
+        data["strokes"][k] |= judged | {"break": run, "words": words, "cue": cue}
     data["strokes"][1]["after"] = {"places": packed(places, "f8"), "on_table": np.flatnonzero(on).tolist()}
-    data["players"] = [
-        "Ada <b>Lovelace</b>",
-        "Someone with a name that is much too long for its place in the bar",
-    ]
+    long = "Someone with a name that is much too long for its place in the bar"
+    data["players"] = ["Ada <b>Lovelace</b>", long]
     return data, shots, places
 
 

@@ -1,13 +1,10 @@
-"""Does a replay's page play? Opened from disk in a real headless Chromium: by its clock, its bar, its keys
-and buttons, at all sizes."""
-
-import time
+"""Does a replay's page play? Opened from disk in a real headless Chromium."""
 
 import numpy as np
 import pytest
 
 import snooker_env as sn
-from tests.web.chromium import chromium, module_page  # noqa: F401
+from tests.web.chromium import Watched, chromium, module_page  # noqa: F401
 from tests.web.replay_data import break_off, page_of, visit
 
 SIZES = [(320, 568), (360, 640), (640, 360), (844, 390), (800, 600), (1280, 720), (1920, 1080), (3840, 2160)]
@@ -32,38 +29,6 @@ OVERLAPS = """() => {
 }"""
 
 
-class Watched:
-    """A page of a replay, and what went wrong in it."""
-
-    def __init__(self, browser, file, **options):
-        self.page = browser.new_page(
-            **{"viewport": {"width": 1280, "height": 720}, "reduced_motion": "reduce", **options}
-        )
-        self.errors, self.asked = [], []
-        self.page.on("console", lambda message: self.errors.append(message.text))
-        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.page.on("request", lambda request: self.asked.append(request.url))
-        self.page.goto(file.as_uri())
-        self.until("p")
-
-    def until(self, code, argument=None, seconds=20):
-        """Wait for it from here: the page's policy allows no code from a string."""
-        end = time.monotonic() + seconds
-        while not self(f"Boolean({code})", argument):
-            assert time.monotonic() < end, code
-            time.sleep(0.02)
-
-    def __call__(self, code, argument=None):
-        return self.page.evaluate(f"argument => {{ const p = window.player; return {code}; }}", argument)
-
-    def close(self):
-        assert not self.errors
-        assert {url.split(":")[0] for url in self.asked} <= {"file", "data"} and len(
-            [url for url in self.asked if url.startswith("file")]
-        ) == 1
-        self.page.close()
-
-
 @pytest.fixture(scope="module")
 def shown(tmp_path_factory):
     """The data of a visit, its shots, the places after its second stroke, and its page."""
@@ -79,12 +44,14 @@ def open_page(chromium, shown):  # noqa: F811
     opened = []
 
     def watched(**options):
-        opened.append(Watched(chromium, shown[3], **options))
+        options = {"reduced_motion": "reduce"} | options
+        opened.append(Watched(chromium, shown[3].as_uri(), ("file:", "data:"), "p", **options))
         return opened[-1]
 
     yield watched
     for one in opened:
         one.close()
+        assert [url for url in one.asked if url.startswith("file:")] == [shown[3].as_uri()]
 
 
 def test_it_plays_by_itself_and_ends_where_the_simulation_ends(open_page, shown):
@@ -105,9 +72,8 @@ def test_it_plays_by_itself_and_ends_where_the_simulation_ends(open_page, shown)
 def test_it_goes_on_from_stroke_to_stroke_by_the_placed_balls(open_page, shown):
     _, shots, places, _ = shown
     p = open_page()
-    p(
-        "(p.seen = [], p.options.onstroke = k => p.seen.push(k), p.options.ontime = (t, k) => { p.last = [t, k]; })"
-    )
+    p("(p.seen = [], p.options.onstroke = k => p.seen.push(k))")
+    p("p.options.ontime = (t, k) => { p.last = [t, k]; }")
     p("p.seek(1, Infinity)")
     assert p("p.time") > shots[1].duration  # the pause between strokes
     assert np.array_equal(p("p.positions()"), places) and p("p.shown.on[21]") == 1
@@ -220,11 +186,8 @@ def test_keys(open_page, shown):
 def test_buttons_and_the_table(open_page):
     p = open_page()
     p("p.seek(0, 0)")
-    for label, after in (
-        ("next event", "p.time > 0"),
-        ("next stroke", "p.stroke === 1"),
-        ("previous stroke", "p.stroke === 0"),
-    ):
+    strokes = ("next stroke", "p.stroke === 1"), ("previous stroke", "p.stroke === 0")
+    for label, after in (("next event", "p.time > 0"), *strokes):
         p.page.get_by_label(label, exact=True).click()
         assert p(after), label
     p.page.get_by_label("faster").click()
@@ -237,7 +200,6 @@ def test_buttons_and_the_table(open_page):
     for name in ("paths", "labels"):
         button = p.page.locator(".sn-keys button", has_text=name)
         before = button.get_attribute("aria-pressed")
-        image = p("p.canvas.toDataURL()")
         p("p.seek(0, 3)")
         image = p("p.canvas.toDataURL()")
         button.click()
@@ -254,31 +216,16 @@ def test_the_score_bar_says_what_the_referee_says(open_page, shown):
     data = shown[0]
     p = open_page()
 
-    def bar():
-        return [p.page.locator(".sn-who b").nth(k).inner_text() for k in (0, 1)], " ".join(
-            p.page.locator(".sn-now").inner_text().split()
-        )
-
-    p("p.seek(0, 1)")
-    scores, now = bar()
-    assert scores == ["0", "0"] and "break 0" in now and "on red" in now
-    p("p.seek(1, 0)")
-    scores, now = bar()
-    assert (
-        scores == ["1", "0"]
-        and "break 1" in now
-        and p.page.locator(".sn-now span").first.locator("i").count() == 1
-    )
-    p("p.seek(1, p.strokes[1].duration)")
-    scores, now = bar()
-    assert (
-        scores == ["8", "0"]
-        and "break 8" in now
-        and p.page.locator(".sn-now span").first.locator("i").count() == 2
-    )
+    for place, scores, balls in (("0, 1", "00", 0), ("1, 0", "10", 1), ("1, p.strokes[1].duration", "80", 2)):
+        p(f"p.seek({place})")
+        assert [p.page.locator(".sn-who b").nth(k).inner_text() for k in (0, 1)] == [*scores]
+        now = " ".join(p.page.locator(".sn-now").inner_text().split())
+        assert f"break {scores[0]}" in now and ("on red" in now or balls)
+        assert p.page.locator(".sn-now span").first.locator("i").count() == balls
     assert p.page.locator(".sn-words").inner_text() == data["strokes"][1]["words"]
     p("p.seek(2, 0)")
-    assert "break 0" in bar()[1] and "sn-turn" in p.page.locator(".sn-who").nth(1).get_attribute("class")
+    assert "break 0" in " ".join(p.page.locator(".sn-now").inner_text().split())
+    assert "sn-turn" in p.page.locator(".sn-who").nth(1).get_attribute("class")
     # words are words, not HTML
     assert p.page.locator(".sn-who span").first.inner_text() == "Ada <b>Lovelace</b>"
     assert "3.00 m/s" in p.page.locator(".sn-about").inner_text()
@@ -323,21 +270,13 @@ def test_nothing_overlaps_or_overflows_at_any_size(open_page):
         p.until("p.canvas.width === argument", width)
         for moment in ("p.seek(1, 0.5)", "p.seek(1, p.strokes[1].duration)", "(p.seek(0, 0), p.step(1))"):
             p(moment)
-            assert p(
-                "document.documentElement.scrollWidth <= innerWidth && document.documentElement.scrollHeight <= innerHeight"
-            ), (
-                width,
-                height,
-            )
-            assert p.page.evaluate(OVERLAPS) == [], (width, height, moment)
-        wide, high = p(
-            "[p.view.toScreen(0, p.replay.scene.extent[1][1])[0] - p.view.toScreen(0, p.replay.scene.extent[1][0])[0], innerHeight]"
-        )
-        assert wide > 0.85 * width or wide > min(1.3, high / 400) * high, (
-            width,
-            height,
-            wide,
-        )  # the table fills the width, or what the bars leave of the height
+            root = "document.documentElement"
+            inside = p(f"{root}.scrollWidth <= innerWidth && {root}.scrollHeight <= innerHeight")
+            assert inside and p.page.evaluate(OVERLAPS) == [], (width, height, moment)
+        left, right = p("p.replay.scene.extent[1].map(y => p.view.toScreen(0, y)[0])")
+        wide, high = right - left, p("innerHeight")
+        # the table fills the width, or what the bars leave of the height
+        assert wide > 0.85 * width or wide > min(1.3, high / 400) * high, (width, height, wide)
 
 
 def test_a_player_in_another_page_leaves_it_as_it_was(chromium):  # noqa: F811

@@ -1,5 +1,4 @@
-"""Does the browser show what was simulated? ``table.js`` in a real headless Chromium: its places, its
-orientations, what it draws."""
+"""Does the browser show what was simulated? ``table.js`` in a real headless Chromium."""
 
 import numpy as np
 import pytest
@@ -24,8 +23,7 @@ GAMES = {  # table, physics, balls
 
 
 def start_of(game, rng):
-    """Places (n, 2) and flags for a shot of a game: snooker's break-off with some balls gone, else balls
-    strewn over the bed."""
+    """Places (n, 2) and flags for a shot of a game: snooker's break-off less some, else strewn balls."""
     table, physics, n = GAMES[game]
     if n == 22:
         r, here = layout("break_off" if rng.random() < 0.5 else "random:9", rng)
@@ -39,8 +37,7 @@ def start_of(game, rng):
 
 
 def shots(count, rng):
-    """(game, shot, start, on_table) of ``count`` shots: hard and soft, with draw, side and a raised cue, of
-    all games in turn."""
+    """(game, shot, start, on_table) of ``count`` shots of all games, with draw, side and raised cues."""
     made = []
     for k in range(count):
         game = list(GAMES)[k % len(GAMES)]
@@ -49,9 +46,8 @@ def shots(count, rng):
         other = rng.choice(np.flatnonzero(here)[1:])
         aim = np.arctan2(*(r[other] - r[0])[::-1]) + rng.normal(0, 0.01)
         side, top = rng.uniform(-0.33, 0.33, 2)
-        shot = hit(
-            r, here, rng.uniform(0.5, 9.0), aim, side, top, rng.choice([0.0, 0.1, 0.9]), table, physics
-        )
+        speed, elevation = rng.uniform(0.5, 9.0), rng.choice([0.0, 0.1, 0.9])
+        shot = hit(r, here, speed, aim, side, top, elevation, table, physics)
         made.append((game, shot, r, here))
     return made
 
@@ -84,11 +80,8 @@ def page(chromium):  # noqa: F811
 def test_the_file_is_small_and_loads_nothing():
     source = table_js()
     assert len(source.encode()) < 56 * 1024
-    assert (
-        "import " not in source
-        and "http" not in source.replace("http-equiv", "")
-        and "</script" not in source
-    )
+    assert "import " not in source and "http" not in source.replace("http-equiv", "")
+    assert "</script" not in source
 
 
 def test_places_are_those_of_the_simulation_at_1000_times_of_100_shots(page):
@@ -102,17 +95,12 @@ def test_places_are_those_of_the_simulation_at_1000_times_of_100_shots(page):
     worst, equal, total = 0.0, 0, 0
     for game in GAMES:
         ours = [one for one in made if one[0] == game]
-        times = [
-            np.append(rng.uniform(0, 1.05 * shot.duration, 998), (0.0, shot.duration))
-            for _, shot, _, _ in ours
-        ]
-        times = [
-            np.append(t[:-100], rng.choice(np.append(shot.events["time"], 0.0), 100))
-            for t, (_, shot, _, _) in zip(times, ours, strict=True)
-        ]
-        for (_, shot, _, _), t, found in zip(
-            ours, times, in_browser(page, ours, times, ["x", "y"]), strict=True
-        ):
+        times = []
+        for _, shot, _, _ in ours:
+            impacts = rng.choice(np.append(shot.events["time"], (0.0, shot.duration)), 100)
+            times.append(np.append(rng.uniform(0, 1.05 * shot.duration, 900), impacts))
+        shown = in_browser(page, ours, times, ["x", "y"])
+        for (_, shot, _, _), t, found in zip(ours, times, shown, strict=True):
             expected = shot.at(t)[0].transpose(0, 2, 1)
             worst = max(worst, np.abs(found - expected).max())
             equal += (found == expected).sum()
@@ -126,15 +114,10 @@ def test_velocities_spins_and_who_is_there(page):
     made = shots(18, rng)
     for game in GAMES:
         ours = [one for one in made if one[0] == game]
-        # impacts, too
-        times = [
-            np.append(rng.uniform(0, 1.05 * shot.duration, 50), shot.events["time"][:20])
-            for _, shot, _, _ in ours
-        ]
-        names = ["vx", "vy", "wx", "wy", "wz", "on"]
-        for (_, shot, _, here), t, found in zip(
-            ours, times, in_browser(page, ours, times, names), strict=True
-        ):
+        drawn = [(rng.uniform(0, 1.05 * shot.duration, 50), shot) for _, shot, _, _ in ours]
+        times = [np.append(some, shot.events["time"][:20]) for some, shot in drawn]  # impacts, too
+        shown = in_browser(page, ours, times, ["vx", "vy", "wx", "wy", "wz", "on"])
+        for (_, shot, _, here), t, found in zip(ours, times, shown, strict=True):
             _, v, w = shot.at(t)
             assert np.array_equal(found[:, :2], v.transpose(0, 2, 1))
             assert np.allclose(found[:, 2:5], w.transpose(0, 2, 1), rtol=1e-6, atol=5e-5)  # 32 bits
@@ -180,16 +163,8 @@ def _after(q, turn):
     angle = np.linalg.norm(turn)
     if angle == 0:
         return q
-    w, (x, y, z) = np.cos(angle / 2), np.sin(angle / 2) * turn / angle
-    a, b, c, d = q
-    return np.array(
-        [
-            w * a - x * b - y * c - z * d,
-            w * b + x * a + y * d - z * c,
-            w * c + y * a + z * b - x * d,
-            w * d + z * a + x * c - y * b,
-        ]
-    )
+    w, axis = np.cos(angle / 2), np.sin(angle / 2) * turn / angle
+    return np.array([w * q[0] - axis @ q[1:], *(w * q[1:] + axis * q[0] + np.cross(axis, q[1:]))])
 
 
 def test_a_ball_sinks_into_its_pocket(page):
@@ -206,16 +181,12 @@ def test_a_ball_sinks_into_its_pocket(page):
 
 
 def test_what_is_no_replay_is_refused(page):
-    said = page.evaluate(
-        "() => { try { table.decode({format: 'chess', version: 1}); } catch (error) { return error.message; } }"
-    )
-    assert "chess" in said
+    refused = "replay => { try { %s; } catch (error) { return error.message; } }"
+    chess = page.evaluate(refused % "table.decode(replay)", {"format": "chess", "version": 1})
     empty = sn.replay(hit(np.zeros((1, 2)), None, 1.0, 0.0)).to_dict() | {"strokes": []}
-    said = page.evaluate(
-        "replay => { try { table.mount(document.body, replay); } catch (error) { return error.message; } }",
-        empty,
+    assert "chess" in chess and "stroke" in page.evaluate(
+        refused % "table.mount(document.body, replay)", empty
     )
-    assert "stroke" in said
 
 
 DRAWN = """({scene, frame, at, size = [900, 500]}) => {
@@ -250,18 +221,16 @@ def test_one_orientation_and_places_there_and_back(page):
 def test_every_table_is_drawn_as_it_is(page, table):
     scene = scene_data(table)
     (_, high_x), (_, high_y) = scene["extent"]
-    places = [[0.3, 0.2], [high_x / 2, high_y + (0.1 if table else 0.03)], [0.1, -0.4]] + [
-        [x, y] for x, y, _ in scene["falls"]
-    ]
+    places = [[0.3, 0.2], [high_x / 2, high_y + (0.1 if table else 0.03)], [0.1, -0.4]]
+    places += [[x, y] for x, y, _ in scene["falls"]]
     frame = {"x": [0.1], "y": [-0.4], "on": [1]}
     cloth_, rail, ball, *pockets = drawn(page, scene, frame, places)["pixels"]
     palette = scene["palette"]
     assert near(cloth_, palette["cloth"])
     assert near(rail, palette["wood"] if scene["cushions"] else palette["cloth"], 70)
     assert near(ball, scene["balls"][0]["rgb"])
-    assert all(near(pocket, palette["hole"], 70) for pocket in pockets) and len(pockets) == len(
-        scene["falls"]
-    )
+    assert all(near(pocket, palette["hole"], 70) for pocket in pockets)
+    assert len(pockets) == len(scene["falls"])
 
 
 def test_everything_that_a_frame_may_hold_is_drawn(page):
@@ -271,9 +240,7 @@ def test_everything_that_a_frame_may_hold_is_drawn(page):
     extra = {
         "lines": [{"points": [[0.5, -1.5], [0.5, -0.5]], "colour": [255, 255, 0], "arrow": True}],
         "rings": [{"x": -0.5, "y": 0.5, "ball": 21, "alpha": 0.9}],
-        "heat": [
-            {"x0": 0.1, "y0": -0.6, "cell": 0.1, "nx": 2, "ny": 1, "values": [0, 5], "rgb": [255, 0, 255]}
-        ],
+        "heat": [dict(x0=0.1, y0=-0.6, cell=0.1, nx=2, ny=1, values=[0, 5], rgb=[255, 0, 255])],
         "labels": True,
         "highlight": [0],
         "cue": {"x": 0.0, "y": 0.0, "aim": np.pi / 2, "pull": 0.05},
@@ -286,10 +253,8 @@ def test_everything_that_a_frame_may_hold_is_drawn(page):
     # the full cell, with the larger x
     assert empty != before[3] and near(before[3], scene["palette"]["cloth"])
     assert not near(cue, scene["palette"]["cloth"], 40)
-    assert (
-        drawn(page, scene, {**bare, **extra}, [[0.12, -0.52]])["pixels"]
-        == drawn(page, scene, bare, [[0.12, -0.52]])["pixels"]
-    )  # an empty cell
+    empty_cell = [drawn(page, scene, frame, [[0.12, -0.52]])["pixels"] for frame in (bare, bare | extra)]
+    assert empty_cell[0] == empty_cell[1]
 
 
 def test_balls_stand_out_from_the_cloth_and_carry_letters(page):
@@ -300,15 +265,10 @@ def test_balls_stand_out_from_the_cloth_and_carry_letters(page):
     at = [[x[i] + 0.01, y[i]] for i in ids]
     plain = drawn(page, scene, frame, at, size=[1900, 1000])
     assert all(np.abs(np.subtract(p, scene["palette"]["cloth"])).max() > 45 for p in plain["pixels"])
-    grid = [
-        [x[i] + dx, y[i] + dy]
-        for i in ids
-        for dx in np.linspace(-0.015, 0.015, 7)
-        for dy in np.linspace(-0.01, 0.01, 5)
-    ]
-    without, labelled = (
-        np.array(drawn(page, scene, {**frame, "labels": on}, grid, size=[1900, 1000])["pixels"])
-        for on in (False, True)
-    )
+    around = [[dx, dy] for dx in np.linspace(-0.015, 0.015, 7) for dy in np.linspace(-0.01, 0.01, 5)]
+    grid = [[x[i] + dx, y[i] + dy] for i in ids for dx, dy in around]
+    frames = [frame | {"labels": on} for on in (False, True)]
+    pixels = [drawn(page, scene, one, grid, size=[1900, 1000])["pixels"] for one in frames]
+    without, labelled = map(np.array, pixels)
     changed = np.abs(labelled - without).max(axis=1).reshape(len(ids), -1) > 40
     assert (changed.mean(axis=1) > 0.1).all()

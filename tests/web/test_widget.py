@@ -1,5 +1,4 @@
-"""Does a replay play in a notebook? The widget's module in a real Chromium, its host imitated: what it draws,
-and its traits both ways."""
+"""Does a replay play in a notebook? The widget's module in a real Chromium, its host imitated."""
 
 import json
 import sys
@@ -36,8 +35,7 @@ async ([source, state]) => {
   window.host = { model, el, clean, sent, state, handlers };
 }
 """
-"""What anywidget does with a module: imports it from a blob, and calls render with the model and an
-element."""
+"""What anywidget does: imports the module from a blob, and calls render with the model and an element."""
 
 
 @pytest.fixture(scope="module")
@@ -55,24 +53,13 @@ def hosted(browser, widget):
     page.faults = []
     page.on("pageerror", lambda error: page.faults.append(str(error)))
     page.set_content("<!DOCTYPE html><body></body>")
-    state = json.loads(
-        json.dumps(
-            {
-                name: value
-                for name, value in widget.get_state().items()
-                if name in widget.trait_names(sync=True)
-            }
-        )
-    )
-    wanted = ("data", "options", "stroke", "time", "playing")
-    page.evaluate(HOST, [module(), {name: state[name] for name in wanted}])
+    state, wanted = widget.get_state(), ("data", "options", "stroke", "time", "playing")
+    page.evaluate(HOST, [module(), json.loads(json.dumps({name: state[name] for name in wanted}))])
     return page
 
 
 def shown_by(page):
-    return page.evaluate(
-        "() => ({stroke: host.state.stroke, time: host.state.time, playing: host.state.playing})"
-    )
+    return page.evaluate("(({stroke, time, playing}) => ({stroke, time, playing}))(host.state)")
 
 
 def cloth_share(page):
@@ -95,9 +82,8 @@ def test_the_state_is_json_and_the_module_is_whole(shots):
     assert json.loads(json.dumps(state["data"])) == sn.replay(shots).to_dict()
     assert state["options"] == {"speed": 2.0, "spin": "off", "paths": True, "ghosts": True, "labels": True}
     assert (state["stroke"], state["time"], state["playing"]) == (0, 0.0, False)
-    assert "export default { render }" in state["_esm"] and "http" not in state["_esm"].replace(
-        "http://www.w3.org", ""
-    )
+    assert "export default { render }" in state["_esm"]
+    assert "http" not in state["_esm"].replace("http://www.w3.org", "")
 
 
 def test_it_shows_the_time_that_python_sets_and_reports_what_a_viewer_does(shots, chromium):  # noqa: F811
@@ -112,10 +98,8 @@ def test_it_shows_the_time_that_python_sets_and_reports_what_a_viewer_does(shots
     assert shown_by(page) == {"stroke": 1, "time": 0.0, "playing": False}
     page.locator("button[aria-label='next event']").click()
     first = next(t for t in shots[1].events["time"] if t > 0)
-    assert (
-        shown_by(page)["time"] == pytest.approx(first, abs=1e-8)
-        and page.evaluate("host.sent.at(-1).time") == shown_by(page)["time"]
-    )
+    assert shown_by(page)["time"] == pytest.approx(first, abs=1e-8)
+    assert page.evaluate("host.sent.at(-1).time") == shown_by(page)["time"]
     page.locator("button[aria-label='previous stroke']").click()
     assert shown_by(page)["stroke"] in (0, 1)
     assert not page.faults
@@ -125,9 +109,8 @@ def test_play_and_pause_go_both_ways(shots, chromium):  # noqa: F811
     page = hosted(chromium, replay_widget(shots))
     page.evaluate("host.model.set('playing', true)")
     page.wait_for_timeout(400)
-    assert shown_by(page)["playing"] and shown_by(page)["time"] == page.evaluate(
-        "host.sent.filter(one => 'time' in one).at(-1)?.time ?? 0"
-    )
+    assert shown_by(page)["playing"]
+    assert shown_by(page)["time"] == page.evaluate("host.sent.filter(one => 'time' in one).at(-1)?.time ?? 0")
     messages = page.evaluate("host.sent.length")
     page.wait_for_timeout(300)
     assert page.evaluate("host.sent.length") <= messages + 1  # not one a frame

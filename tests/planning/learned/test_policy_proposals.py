@@ -44,19 +44,14 @@ def learned():
 
 
 def test_a_policy_that_likes_one_choice_gets_strokes_within_its_cell():
-    """The second pot at 2.9 m/s, left side, below the middle: half a cell of speed, side and top around it,
-    aimed at that pot."""
+    """The second pot at 2.9 m/s, left side, below the middle."""
     at, m = some(), 64
     strokes, chances = preferring(_1_4_0_1=5.0)(SEARCH, at, m, np.arange(6))
     assert strokes.shape == (6, m, 5) and chances.shape == (6, m)
     step = np.gradient(np.log(SPEEDS))[4]
     off = np.log(strokes[..., SPEED] / SPEEDS[4]) / step
-    assert (
-        np.abs(off).max() <= 0.5 + 1e-9
-        and off.min() < -0.45
-        and off.max() > 0.45
-        and np.abs(off.mean(axis=1)).max() < 0.05
-    )
+    assert np.abs(off).max() <= 0.5 + 1e-9 and off.min() < -0.45 and off.max() > 0.45
+    assert np.abs(off.mean(axis=1)).max() < 0.05
     side, top = (strokes[..., SIDE] - SIDES[0]) / 0.3, (strokes[..., TOP] - TOPS[1]) / 0.2
     inside = np.hypot(strokes[..., SIDE], strokes[..., TOP]) < RIM - 1e-9  # a tip beyond the rim was drawn in
     for off in (side[inside], top[inside]):
@@ -71,11 +66,8 @@ def test_a_policy_that_likes_one_choice_gets_strokes_within_its_cell():
 def test_half_of_the_plain_strokes_have_no_side_at_all():
     strokes = preferring(_0_4_1_2=5.0)(SEARCH, some(), 400, np.arange(6)).strokes
     assert (strokes[..., SIDE] == 0.0).mean(axis=1) == pytest.approx(np.full(6, 0.5), abs=0.03)
-    assert (
-        np.abs(strokes[..., SIDE]).max() <= 0.15 + 1e-9
-        and strokes[..., SIDE].max() > 0.1
-        and strokes[..., SIDE].min() < -0.1
-    )
+    assert np.abs(strokes[..., SIDE]).max() <= 0.15 + 1e-9 and strokes[..., SIDE].max() > 0.1
+    assert strokes[..., SIDE].min() < -0.1
     sided = preferring(_0_4_2_2=5.0)(SEARCH, some(), 400, np.arange(6)).strokes
     assert (sided[..., SIDE] > 0.14).all()
 

@@ -1,5 +1,4 @@
-"""Does an agent see each pot as the docstring of ``with_pots`` says? Recomputed in plain Python from
-``game.pots``."""
+"""Does an agent see each pot as the docstring of ``with_pots`` says?"""
 
 from math import hypot, log10
 
@@ -30,23 +29,9 @@ def pot_entries(positions, pot):
     path = hypot(*way)
     way = way / path
     sine, cosine = way[0] * run[1] - way[1] * run[0], way @ run
-    size = np.array((HALF_WIDTH, HALF_LENGTH))
+    size, worth = np.array((HALF_WIDTH, HALF_LENGTH)), (1 + log10(tolerance) / 2, VALUES[int(ball)] / 7)
     distances = path / HALF_LENGTH - 1, hypot(*(into - at)) / HALF_LENGTH - 1
-    return np.clip(
-        [
-            1,
-            *way,
-            sine,
-            cosine,
-            *distances,
-            1 + log10(tolerance) / 2,
-            VALUES[int(ball)] / 7,
-            *at / size,
-            *into / size,
-        ],
-        -1,
-        1,
-    )
+    return np.clip([1, *way, sine, cosine, *distances, *worth, *at / size, *into / size], -1, 1)
 
 
 @pytest.mark.parametrize("ball_on", [BallOn.RED, BallOn.ANY_COLOUR])
@@ -56,15 +41,12 @@ def test_every_pot_is_shown_entry_by_entry(ball_on):
     observations, _ = env.reset(options={"states": states})
     at, pockets = Positions.of(env), set()
     assert (at.game[:, BALL_ON] == int(ball_on)).all()
-    shown, balls = (
-        pot_view.with_pots(observations),
-        range(1, 16) if ball_on == BallOn.RED else range(16, BLACK + 1),
-    )
+    shown = pot_view.with_pots(observations)
+    balls = range(1, 16) if ball_on == BallOn.RED else range(16, BLACK + 1)
     assert np.array_equal(shown[:, :SIZE], observations) and shown.shape == (30, pot_view.SHOWN)
     for k in range(30):
-        direct = pots(
-            at.positions[k], at.on_table[k], mask_of(i for i in balls if at.on_table[k, i]), most=POTS
-        )
+        on = mask_of(i for i in balls if at.on_table[k, i])
+        direct = pots(at.positions[k], at.on_table[k], on, most=POTS)
         wanted = np.zeros((POTS, pot_view.POT_ENTRIES))
         for j, pot in enumerate(direct):
             wanted[j] = pot_entries(at.positions[k], pot)

@@ -1,7 +1,0 @@
-"""Where do these tests find ``tests.rules_cases``? In the project's root, whatever folder pytest was started
-in."""
-
-import sys
-from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
