@@ -105,9 +105,8 @@ def check_alike(options, seeds):
             total += reward
         if one.actions[0]:
             assert seen == one.seen
-        assert (
-            (terminated, truncated) == one.ended and total == one.total and _end(env.get_state()) == one.end
-        )
+        assert (terminated, truncated) == one.ended and total == one.total
+        assert _end(env.get_state()) == one.end
         assert {name: info[name] for name in one.info} == one.info
     n = len(seeds)
     tables = SnookerVectorEnv(n, **options, opponent=Other(played), threads=1)
@@ -123,9 +122,8 @@ def check_alike(options, seeds):
         for k in np.flatnonzero((terminated | truncated) & ~over).tolist():
             one, over[k] = played[k], True
             assert step + 1 == max(1, len(one.actions[0])) and shown[k].tobytes() == one.seen[-1]
-            assert (bool(terminated[k]), bool(truncated[k])) == one.ended and _end(
-                tables.get_state()[k]
-            ) == one.end
+            assert (bool(terminated[k]), bool(truncated[k])) == one.ended
+            assert _end(tables.get_state()[k]) == one.end
             assert {name: info[name][k].item() for name in one.info} == one.info
     assert over.all() and totals.tolist() == [one.total for one in played]
     return played
@@ -160,9 +158,8 @@ def test_a_match_goes_on_from_its_state_bit_for_bit():
             other.reset(options={"state": state})
         elif state is not None:
             other.step(action)
-            assert (
-                json.dumps(other.get_state()) == json.dumps(env.get_state()) and other.rewards == env.rewards
-            )
+            assert json.dumps(other.get_state()) == json.dumps(env.get_state())
+            assert other.rewards == env.rewards
             assert other.observe("player_1").tobytes() == env.observe("player_1").tobytes()
     assert state is not None and sum(state["frames"]) == 1 and max(env.get_state()["frames"]) == 3
     for change, field in (

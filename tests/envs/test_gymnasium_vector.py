@@ -40,12 +40,8 @@ def test_vector_environments_play_as_single_ones(kind):
                 else:
                     obs, reward, over[k], _, info = env.step(np.zeros(4, np.float32))
                 ends += over[k]
-                assert (
-                    np.array_equal(got[k], obs)
-                    and rewards[k] == reward
-                    and terminated[k] == over[k]
-                    and not truncated[k]
-                )
+                assert np.array_equal(got[k], obs) and rewards[k] == reward and terminated[k] == over[k]
+                assert not truncated[k]
                 assert all(infos[name][k] == info[name] for name in INFO)
         assert ends > 1
         assert infos["seconds"].dtype == infos["break"].dtype == np.float64 and infos["foul"].dtype == bool

@@ -94,13 +94,11 @@ def test_masked_observations_of_both_players_hold_their_masks():
     while True:
         for name in env.possible_agents:
             seen, mask = env.observe(name), env.action_mask(name)
-            assert np.array_equal(seen["observations"], plain.observe(name)) and env.observation_space(
-                name
-            ).contains(seen)
+            assert np.array_equal(seen["observations"], plain.observe(name))
+            assert env.observation_space(name).contains(seen)
             assert seen["action_mask"].dtype == np.int8 and np.array_equal(seen["action_mask"], mask)
-            assert np.array_equal(mask, env.infos[name]["action_mask"]) and np.array_equal(
-                mask, plain.action_mask(name)
-            )
+            assert np.array_equal(mask, env.infos[name]["action_mask"])
+            assert np.array_equal(mask, plain.action_mask(name))
             over = any(env.terminations.values())
             assert mask.any() == (name == env.agent_selection and not over)
             seen["action_mask"][:] = 1  # it is the caller's own
@@ -259,10 +257,8 @@ def test_a_saved_match_plays_on_bit_for_bit():
         if any(env.terminations.values()):
             break
         env.step(action), other.step(action)
-        assert (
-            json.dumps(env.get_state()) == json.dumps(other.get_state())
-            and env.agent_selection == other.agent_selection
-        )
+        assert json.dumps(env.get_state()) == json.dumps(other.get_state())
+        assert env.agent_selection == other.agent_selection
         assert env.rewards == other.rewards
 
 
@@ -295,11 +291,7 @@ def test_a_state_repeats_its_errors_and_a_seed_draws_others():
 
 
 @pytest.mark.parametrize(
-    ("options", "field"),
-    [
-        ({"reward": "pots"}, "reward"),
-        ({"render_mode": "x"}, "render_mode"),
-    ],
+    ("options", "field"), [({"reward": "pots"}, "reward"), ({"render_mode": "x"}, "render_mode")]
 )
 def test_wrong_arguments_are_refused(options, field):
     with pytest.raises(ValueError, match=f"^{field} = "):

@@ -56,10 +56,8 @@ def test_each_table_plays_as_a_match_alone(kind, threads):
                     name: info[name] for name in info if name in infos
                 }
                 strokes += 1
-            assert (terminated[k], truncated[k]) == (
-                one.terminations["player_0"],
-                one.truncations["player_0"],
-            )
+            assert terminated[k] == one.terminations["player_0"]
+            assert truncated[k] == one.truncations["player_0"]
             keys = ("positions", "on_table", "frame", "strokes", "stream")
             state = tables.get_state()[k]
             assert {key: state[key] for key in keys} == {key: one.get_state()[key] for key in keys}
@@ -77,17 +75,11 @@ def test_tables_that_have_ended_stand_still_until_they_are_reset():
     assert out[3].all()
     before = json.dumps(tables.get_state())
     _, rewards, terminated, truncated, _ = tables.step(np.zeros((4, 7)))
-    assert (
-        json.dumps(tables.get_state()) == before
-        and not rewards.any()
-        and truncated.all()
-        and not terminated.any()
-    )
+    assert json.dumps(tables.get_state()) == before and not rewards.any() and truncated.all()
+    assert not terminated.any()
     _, infos = tables.reset(options={"reset_mask": np.array([True, False, False, True]), "breaker": 1})
-    assert infos["_strokes"].tolist() == [True, False, False, True] and tables.strikers[[0, 3]].tolist() == [
-        1,
-        1,
-    ]
+    assert infos["_strokes"].tolist() == [True, False, False, True]
+    assert tables.strikers[[0, 3]].tolist() == [1, 1]
     assert tables.step(np.zeros((4, 7)))[3].tolist() == [False, True, True, False]
 
 
@@ -98,9 +90,8 @@ def test_a_saved_state_plays_on_whoever_is_to_play():
     states = json.loads(json.dumps(tables.get_state()))
     again = sn.MatchVectorEnv(N, **PLAIN, layout="random:3", threads=1)
     seen, _ = again.reset(options={"states": states})
-    assert set(tables.strikers.tolist()) == {0, 1} and np.array_equal(
-        seen[tables.strikers == 1], tables.observe(1)[tables.strikers == 1]
-    )
+    assert set(tables.strikers.tolist()) == {0, 1}
+    assert np.array_equal(seen[tables.strikers == 1], tables.observe(1)[tables.strikers == 1])
     for one, other in zip(tables.step(np.zeros((N, 7)))[:4], again.step(np.zeros((N, 7)))[:4], strict=True):
         assert np.array_equal(one, other)
 
@@ -113,10 +104,8 @@ def test_seats_differ_in_actions_and_errors():
     alone = [sn.match_env(seats=seats, layout="random:3", noise="club") for _ in range(N)]
     tables.reset(seed=1, options={"breaker": np.arange(N) % 2})
     [one.reset(seed=1 + k, options={"breaker": k % 2}) for k, one in enumerate(alone)]
-    assert (
-        alone[0].action_space("player_0") == gymnasium.spaces.Box(-1.0, 1.0, (7,))
-        and alone[0].action_space("player_1").n == 540
-    )
+    assert alone[0].action_space("player_0") == gymnasium.spaces.Box(-1.0, 1.0, (7,))
+    assert alone[0].action_space("player_1").n == 540
     for _ in range(6):
         for one in alone:
             if not (one.terminations["player_0"] or one.truncations["player_0"]):

@@ -104,11 +104,8 @@ def test_in_a_frame_the_agent_plays_the_position(opponent, position):
     ]
     assert not any(info[key] for key in ("strokes", "opponent_strokes", "choice", "free_ball"))
     frame = env.frame
-    assert (
-        frame.striker == frame.breaker == 0
-        and frame.phase == "stroke"
-        and frame.ball_on == BallOn[position.on.upper()]
-    )
+    assert frame.striker == frame.breaker == 0 and frame.phase == "stroke"
+    assert frame.ball_on == BallOn[position.on.upper()]
     again = sn.SnookerEnv(task="frame", opponent=opponent, **OPTIONS)
     again.reset(options={"state": json.loads(json.dumps(env.get_state()))})  # it is a sound state
     assert again.get_state() == env.get_state()
@@ -121,14 +118,10 @@ def test_in_a_match_player_0_plays_the_position():
     match = sn.match_env(noise="club")
     for seed in range(4):
         match.reset(seed=seed, options={"position": MID_BREAK, "of PettingZoo's own": 1})
-        assert (
-            match.agent_selection == "player_0"
-            and match.frame.scores == (0, 0)
-            and match.frame.break_points == 33
-        )
-        assert (
-            np.array_equal(match.positions, MID_BREAK.arrays()[0]) and match.infos["player_0"]["break"] == 33
-        )
+        assert match.agent_selection == "player_0" and match.frame.scores == (0, 0)
+        assert match.frame.break_points == 33
+        assert np.array_equal(match.positions, MID_BREAK.arrays()[0])
+        assert match.infos["player_0"]["break"] == 33
         stream = match.get_state()["stream"]
         other = sn.match_env(noise="club")
         other.reset(seed=seed)
@@ -155,9 +148,8 @@ def test_many_tables_start_from_one_position_or_from_one_each():
         a = np.zeros((4, 4))
         observations, rewards, *_ = env.step(a)
         stepped = [one.step(a[k]) for k, one in enumerate(singles)]
-        assert np.array_equal(observations, [s[0] for s in stepped]) and rewards.tolist() == [
-            s[1] for s in stepped
-        ]
+        assert np.array_equal(observations, [s[0] for s in stepped])
+        assert rewards.tolist() == [s[1] for s in stepped]
         assert len({row.tobytes() for row in observations[::3]}) == 2  # each table draws its own errors
         assert env.get_state() == [one.get_state() for one in singles]
 

@@ -55,11 +55,8 @@ def test_a_saved_state_plays_on_bit_for_bit(arguments):
         else:
             obs, info = other.reset(options={"state": json.loads(text)})
             assert data_equivalence(obs, last, exact=True)
-            assert (
-                info["break"] == other.points
-                and info["ball_on"] == BallOn.ANY_COLOUR
-                and info["points"] == 0.0
-            )
+            assert info["break"] == other.points and info["ball_on"] == BallOn.ANY_COLOUR
+            assert info["points"] == 0.0
         assert json.dumps(other.get_state()) == text
         assert shots(other) == want
 

@@ -260,9 +260,8 @@ def test_masks_in_observations_are_those_of_the_tables(mode, threads):
             seen, _ = env.reset(options={"reset_mask": done.copy()})
             for k in np.flatnonzero(done):
                 alone[k].reset()
-        assert seen["action_mask"].dtype == np.int8 and np.array_equal(
-            seen["action_mask"], env.action_masks()
-        )
+        assert seen["action_mask"].dtype == np.int8
+        assert np.array_equal(seen["action_mask"], env.action_masks())
         a = actions_of(env, rng)
         seen, _, terminated, truncated, infos = env.step(a)
         for k, one in enumerate(alone):
@@ -292,11 +291,8 @@ def test_spaces_types_and_metadata():
     assert observations in env.observation_space and observations.dtype == np.float32
     observations, rewards, terminated, truncated, infos = env.step(env.action_space.sample())
     assert observations in env.observation_space and rewards.dtype == np.float64 and rewards.shape == (5,)
-    assert (
-        terminated.dtype == truncated.dtype == bool
-        and infos["seconds"].dtype == np.float64
-        and infos["pots"].dtype == np.int64
-    )
+    assert terminated.dtype == truncated.dtype == bool and infos["seconds"].dtype == np.float64
+    assert infos["pots"].dtype == np.int64
     assert gymnasium.make_vec(env.spec).num_envs == 5
     gymnasium.wrappers.vector.RecordEpisodeStatistics(env).reset(seed=1)
 

@@ -176,16 +176,13 @@ def test_options_are_checked_once_and_taken_by_every_environment():
         (SnookerVectorEnv(2, options), SnookerVectorEnv(2, **keywords)),
     ):
         assert one.options == other.options == options and same(one.reset(seed=2), other.reset(seed=2))
-    assert (
-        Options().but(task="frame") == Options(task="frame")
-        and Options(task="frame").but(task="visit").rules.plan.name == "opened"
-    )
+    assert Options().but(task="frame") == Options(task="frame")
+    assert Options(task="frame").but(task="visit").rules.plan.name == "opened"
     level = {"aim_deg": 0.1}
     frozen = Options(noise=level)
     level["aim_deg"] = 5.0  # what is given may change: what is played does not
-    assert frozen.rules.noise.aim_deg == frozen.but(aim="target").rules.noise.aim_deg == 0.1 and hash(
-        frozen
-    ) == hash(Options(noise={"aim_deg": 0.1}))
+    assert frozen.rules.noise.aim_deg == frozen.but(aim="target").rules.noise.aim_deg == 0.1
+    assert hash(frozen) == hash(Options(noise={"aim_deg": 0.1}))
     changed = options.but(noise="none")
     assert changed.noise == "none" and options.noise == "club" and changed.rules.noise.silent
     with pytest.raises(AttributeError):
@@ -202,9 +199,8 @@ def test_options_are_checked_once_and_taken_by_every_environment():
 def test_a_match_takes_them_too():
     pytest.importorskip("pettingzoo")
     env = sn.match_env(Options(task="frame", layout="random:2", aim="target"))
-    assert env.action_space("player_0").shape == (4,) and sn.match_env().action_space("player_0").shape == (
-        7,
-    )
+    assert env.action_space("player_0").shape == (4,)
+    assert sn.match_env().action_space("player_0").shape == (7,)
     for wrong in (Options(), Options(task="frame", opponent="random")):
         with pytest.raises(ValueError, match="a match has two players"):
             sn.match_env(wrong)
@@ -246,12 +242,8 @@ def test_results_are_written_into_the_arrays_given(mode, options):
     for _ in range(12):
         a = actions_of(plain, rng)
         want, got = plain.step(a), written.step(a, out=out)
-        assert (
-            got[0] is out["observations"]
-            and got[1] is out["rewards"]
-            and got[2] is out["terminations"]
-            and got[3] is out["truncations"]
-        )
+        assert got[0] is out["observations"] and got[1] is out["rewards"] and got[2] is out["terminations"]
+        assert got[3] is out["truncations"]
         assert all(same(x, y) for x, y in zip(want, got, strict=True))
         done = want[2] | want[3]
         if mode == AutoresetMode.DISABLED and done.any():

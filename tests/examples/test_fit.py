@@ -96,9 +96,8 @@ def test_marlow_s_law_comes_back():
     true = {"a": 0.02, "b": 0.1, "c": 1.2}
     data = measured("throw", {"mu_bb": tuple(true.values()), "e_b": 0.93}, noise=0.02)
     fitted = fitting.fit("throw", data, fixed={"e_b": 0.93}, law="marlow")
-    assert fitted.values == pytest.approx(true, rel=0.1) and fitted.physics.mu_bb == pytest.approx(
-        tuple(fitted.values.values())
-    )
+    assert fitted.values == pytest.approx(true, rel=0.1)
+    assert fitted.physics.mu_bb == pytest.approx(tuple(fitted.values.values()))
 
 
 def test_bootstrap_and_covariance_agree():

@@ -169,15 +169,10 @@ def test_a_player_plays_on_tables_with_a_seed_for_each_decision():
 
 def test_seeds_of_decisions_depend_on_the_table_and_the_decision_alone():
     many = decision_seeds(7, np.arange(1000), 3)
-    assert (
-        np.array_equal(decision_seeds(7, np.arange(400, 500), 3), many[400:500])
-        and len(set(many.tolist())) == 1000
-    )
-    assert (
-        not np.array_equal(decision_seeds(7, np.arange(1000), 4), many)
-        and many.min() >= 0
-        and many.max() < 2**32
-    )
+    assert np.array_equal(decision_seeds(7, np.arange(400, 500), 3), many[400:500])
+    assert len(set(many.tolist())) == 1000
+    assert not np.array_equal(decision_seeds(7, np.arange(1000), 4), many) and many.min() >= 0
+    assert many.max() < 2**32
     assert np.array_equal(decision_seeds(7, np.arange(3), np.array([3, 4, 5]))[:1], many[:1])
 
 

@@ -81,20 +81,11 @@ def test_the_bar_of_a_table_as_it_stands():
     env.keep_history = True
     env.reset(seed=1)
     start = standing_bar(env.tables, 0, ("Ada",))
-    assert (start.scores, start.break_points, start.ball_on, start.reds_left, start.points_on) == (
-        (0,),
-        0,
-        "red",
-        15,
-        147,
-    )
+    assert (start.scores, start.break_points, start.ball_on, start.reds_left) == ((0,), 0, "red", 15)
+    assert start.points_on == 147
     env.step(67)
     kept = bars(env.history, ("Ada",))[-1][1]
     now = standing_bar(env.tables, 0, ("Ada",), kept)
-    assert (
-        now == kept
-        and now.scores == (1,)
-        and now.potted == kept.potted != ()
-        and env.ball_on == BallOn.ANY_COLOUR
-    )
+    assert now == kept and now.scores == (1,) and now.potted == kept.potted != ()
+    assert env.ball_on == BallOn.ANY_COLOUR
     assert standing_bar(env.tables, 0, ()).players == ()

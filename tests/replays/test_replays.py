@@ -102,10 +102,8 @@ def test_what_the_referee_said_is_recorded(strokes, fouls):
         assert stroke["points"] == played.points and stroke["penalty"] == played.penalty
         assert stroke["score"] == list(played.scores)
         if played.fouls:
-            assert (
-                stroke["words"].startswith(f"Foul, {played.penalty}: ")
-                and stroke["fouls"] == foul_words(played.fouls) != []
-            )
+            assert stroke["words"].startswith(f"Foul, {played.penalty}: ")
+            assert stroke["fouls"] == foul_words(played.fouls) != []
         elif played.points:
             assert f"potted, {played.points}" in stroke["words"]
         else:
@@ -148,9 +146,8 @@ def test_places_to_fill_in_that_a_title_names_are_left_alone(strokes):
 def test_a_replay_of_a_replay_takes_another_title(strokes):
     first = sn.replay(strokes[:2], title="one", players=["A"])
     second = sn.replay(first, title="two")
-    assert (second.title, second.players, len(second)) == ("two", ("A",), 2) and sn.replay(
-        first
-    ).title == "one"
+    assert (second.title, second.players, len(second)) == ("two", ("A",), 2)
+    assert sn.replay(first).title == "one"
 
 
 def test_a_bare_shot_and_other_tables():

@@ -29,10 +29,8 @@ def test_gymnasium_checks_it(observation, opponent):
         decision=decision,
     )
     check_env(env.unwrapped, skip_render_check=True)
-    assert (
-        env.spec.to_json()
-        and gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())).spec == env.spec
-    )
+    assert env.spec.to_json()
+    assert gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())).spec == env.spec
 
 
 def test_the_spaces_grow_and_those_of_a_visit_do_not():
@@ -50,10 +48,8 @@ def test_the_spaces_grow_and_those_of_a_visit_do_not():
 
 
 def test_the_default_layout_is_that_of_the_task():
-    assert (
-        SnookerEnv().options.rules.plan.name == "opened"
-        and frame_env().options.rules.plan.name == "break_off"
-    )
+    assert SnookerEnv().options.rules.plan.name == "opened"
+    assert frame_env().options.rules.plan.name == "break_off"
     env = frame_env(layout="colours")
     env.reset(seed=0)
     assert env.ball_on == BallOn.YELLOW and not env.in_hand
@@ -111,10 +107,8 @@ def test_a_saved_state_plays_on_bit_for_bit(opponent):
     text = json.dumps(env.get_state())
     other = frame_env(**options)
     obs, _ = other.reset(options={"state": json.loads(text)})
-    assert (
-        data_equivalence(obs, env.tables.observe(np.zeros(1, np.int64), 0)[0], exact=True)
-        and json.dumps(other.get_state()) == text
-    )
+    assert data_equivalence(obs, env.tables.observe(np.zeros(1, np.int64), 0)[0], exact=True)
+    assert json.dumps(other.get_state()) == text
     for _ in range(30):
         if env.over:
             break

@@ -34,9 +34,8 @@ def test_a_frame_goes_on_from_its_state_as_the_same(game, more):
         action = rng.uniform(-1, 1, env.action_space.shape).astype(np.float32)
         action[1:3] *= 0.4
         one, two = env.step(action), twin.step(action)
-        assert (
-            np.array_equal(one[0], two[0]) and one[1:4] == two[1:4] and env.observation_space.contains(one[0])
-        )
+        assert np.array_equal(one[0], two[0]) and one[1:4] == two[1:4]
+        assert env.observation_space.contains(one[0])
         assert env.get_state() == twin.get_state()
         anywhere += env.get_state()["frame"]["anywhere"]
         if one[2] or one[3]:

@@ -127,11 +127,8 @@ def test_a_ball_on_that_it_touches_is_played_away_from():
     positions[CUE], positions[1] = (0.3, 0.3), (0.3 + 2 * BALL_RADIUS, 0.3)
     tables.positions[0], tables.on_table[0], tables.game[0, IN_HAND] = positions, on_table, 0
     fouls, buffers = turn(tables)
-    assert (
-        fouls[0] == 0
-        and np.cos(buffers.shots[0, AIM]) < -0.8
-        and np.array_equal(tables.positions[0, 1], positions[1])
-    )
+    assert fouls[0] == 0 and np.cos(buffers.shots[0, AIM]) < -0.8
+    assert np.array_equal(tables.positions[0, 1], positions[1])
 
 
 @pytest.mark.parametrize("decision", [1.0, -1.0])
@@ -162,8 +159,7 @@ def test_a_constant_action_that_never_plays_after_a_foul_wins_few_frames(speed, 
 
 
 @pytest.mark.parametrize(
-    ("options", "most"),
-    [({"game": "shoot_out"}, 0.06), ({"game": "six_red", "miss": "clear_path"}, 0.05)],
+    ("options", "most"), [({"game": "shoot_out"}, 0.06), ({"game": "six_red", "miss": "clear_path"}, 0.05)]
 )
 def test_other_games_are_played_to_the_end_with_few_fouls(options, most):
     tables, which, fouls, placed, bad = dealt(60, noise="professional", **options), np.arange(60), [], 0, 0
@@ -205,11 +201,8 @@ def test_after_the_last_miss_of_six_reds_it_places_the_cue_ball_anywhere():
     tables.game[0, [PHASE, MISS_CALLED, MISSES, SAVED]] = CHOICE, 1, 5, 1
     before = tables.positions[0, CUE].copy()
     fouls, _ = turn(tables)
-    assert (
-        not fouls[0]
-        and tables.game[0, PHASE] != CHOICE
-        and not np.array_equal(before, tables.positions[0, CUE])
-    )
+    assert not fouls[0] and tables.game[0, PHASE] != CHOICE
+    assert not np.array_equal(before, tables.positions[0, CUE])
 
 
 @pytest.mark.parametrize("opponent", ["ghost_ball", "random"])

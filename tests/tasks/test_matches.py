@@ -32,11 +32,8 @@ def test_the_players_break_in_turn_and_the_frame_that_decides_ends_it():
     for seed in range(12):
         steps, terminated, env = whole(seed)
         last = steps[-1][1]
-        assert (
-            terminated
-            and {last["frames_won"], last["opponent_frames"]} >= {3}
-            and last["winner"] == int(last["opponent_frames"] == 3)
-        )
+        assert terminated and {last["frames_won"], last["opponent_frames"]} >= {3}
+        assert last["winner"] == int(last["opponent_frames"] == 3)
         first = env.get_state()["first_break"]
         for _, info, breaker, shown in steps:
             assert breaker == (first + info["frame"]) % 2
@@ -73,10 +70,8 @@ def test_points_of_a_match_are_those_of_both_players_over_its_frames():
             total[player] += info["points"]
             total[1 - player] += info["penalty"]
             paid += [env.rewards["player_0"], env.rewards["player_1"]]
-        assert (
-            paid.tolist() == [total[0] - total[1], total[1] - total[0]]
-            and env.infos["player_1"]["winner"] == env.frame.winner
-        )
+        assert paid.tolist() == [total[0] - total[1], total[1] - total[0]]
+        assert env.infos["player_1"]["winner"] == env.frame.winner
         assert env.infos["player_0"]["frames_won"] == env.infos["player_1"]["opponent_frames"]
 
 
@@ -119,11 +114,8 @@ def test_a_state_belongs_to_matches_of_its_length():
 def test_the_length_of_a_match_says_that_it_is_one():
     pytest.importorskip("pettingzoo")
     env = sn.match_env(frames=3)
-    assert (
-        env.options.task == "match"
-        and env.options.rules.frames == 3
-        and sn.match_env().options.task == "frame"
-    )
+    assert env.options.task == "match" and env.options.rules.frames == 3
+    assert sn.match_env().options.task == "frame"
     refused(lambda: sn.match_env(task="frame", frames=3), "frames", "3", 'must be 7 with task="frame"')
 
 

@@ -120,9 +120,8 @@ ONLY_BLACK = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}
 
 @pytest.mark.parametrize("only", ["concede", "claim", "lot"])
 def test_each_declaration_alone_lengthens_the_action_by_one(only):
-    assert frame_env(**{only: True}).action_space.shape == (8,) and frame_env(**SAID).action_space.shape == (
-        8,
-    )
+    assert frame_env(**{only: True}).action_space.shape == (8,)
+    assert frame_env(**SAID).action_space.shape == (8,)
     assert sn.SnookerEnv(task="frame", action="discrete", **{only: True}).action_space.n == 541
 
 

@@ -100,12 +100,10 @@ def test_masked_observations_hold_the_flat_one_and_the_available_choices(options
         done = False
         while True:
             assert np.array_equal(a, b["observations"]) and a.dtype == b["observations"].dtype
-            assert b["action_mask"].dtype == np.int8 and np.array_equal(
-                b["action_mask"], masked.action_masks()
-            )
-            assert np.array_equal(
-                flat.action_masks(), masked.action_masks()
-            ) and masked.observation_space.contains(b)
+            assert b["action_mask"].dtype == np.int8
+            assert np.array_equal(b["action_mask"], masked.action_masks())
+            assert np.array_equal(flat.action_masks(), masked.action_masks())
+            assert masked.observation_space.contains(b)
             assert b["action_mask"].any()
             kinds.add(b["action_mask"].tobytes())
             if done:

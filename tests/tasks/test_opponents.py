@@ -158,9 +158,8 @@ def test_a_saved_model_may_play(tmp_path, task, name):
             one.reset(seed=2)
             out = [one.step(np.zeros(one.action_space.shape)) for _ in range(3) if not one.over]
             runs.append(out)
-        assert data_equivalence(runs[0], runs[1], exact=True) and data_equivalence(
-            runs[0], runs[2], exact=True
-        )
+        assert data_equivalence(runs[0], runs[1], exact=True)
+        assert data_equivalence(runs[0], runs[2], exact=True)
 
 
 @pytest.mark.parametrize(

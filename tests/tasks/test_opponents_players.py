@@ -107,9 +107,8 @@ def test_to_change_sides_twice_changes_nothing():
     game[:, WINNER] = rng.integers(-1, 2, 50)
     other = swapped(game)
     assert np.array_equal(swapped(other), game) and np.array_equal(other[:, SCORE_0], game[:, SCORE_1])
-    assert (other[:, BREAKER] == 1 - game[:, BREAKER]).all() and (
-        (other[:, WINNER] < 0) == (game[:, WINNER] < 0)
-    ).all()
+    assert (other[:, BREAKER] == 1 - game[:, BREAKER]).all()
+    assert ((other[:, WINNER] < 0) == (game[:, WINNER] < 0)).all()
 
 
 def test_one_call_serves_all_tables_that_wait():
@@ -145,23 +144,16 @@ def test_it_decides_after_a_foul_and_may_concede():
     foul = [-0.9, 0, 0, -0.5, 0, 0, 0]  # away from all balls: snookered behind the green
     env = frame_state(frame_env(opponent=Soft(decision=PLAY_AGAIN), aim="absolute"), hidden, {})
     _, _, _, _, info = env.step(foul)
-    assert (
-        info["foul"]
-        and env.frame.striker == 0
-        and env.frame.phase == "stroke"
-        and info["opponent_strokes"] == 0
-    )
+    assert info["foul"] and env.frame.striker == 0 and env.frame.phase == "stroke"
+    assert info["opponent_strokes"] == 0
     # a free ball is void for an offender who plays again
     assert not env.frame.free_ball and env.ball_on == BallOn.RED
     env = frame_state(
         frame_env(opponent=Soft(decision=REPLACE), aim="absolute", miss="clear_path"), PLACES, {}
     )
     env.step(foul)
-    assert (
-        env.positions[CUE].tolist() == list(PLACES[CUE])
-        and env.frame.warned is False
-        and env.frame.failures == 1
-    )
+    assert env.positions[CUE].tolist() == list(PLACES[CUE]) and env.frame.warned is False
+    assert env.frame.failures == 1
     env = frame_state(frame_env(opponent=Soft(declare=CONCEDES), aim="absolute"), PLACES, {})
     _, _, terminated, _, info = env.step(foul)
     assert terminated and info["winner"] == 0 and info["opponent_strokes"] == 0
@@ -263,10 +255,8 @@ def test_an_error_of_a_player_names_it(error, kind):
     env = frame_env(opponent=Failing())
     with pytest.raises(kind) as info:
         [env.reset(seed=seed) for seed in range(10)]
-    assert (
-        str(info.value) == f"opponent Failing raised {type(error).__name__}: {error}"
-        and info.value.__cause__ is error
-    )
+    assert str(info.value) == f"opponent Failing raised {type(error).__name__}: {error}"
+    assert info.value.__cause__ is error
 
 
 def test_the_end_of_a_program_is_no_error_of_a_player():
@@ -341,10 +331,8 @@ def test_options_hold_text_and_objects_come_beside_them():
     with pytest.raises(ValueError, match=r"^opponent = 'object': must come with the object"):
         sn.SnookerEnv(env.options)
     again = sn.SnookerVectorEnv(2, env.options, opponent=Soft())
-    assert (
-        again.options == env.options
-        and sn.SnookerEnv(sn.Options(task="frame"), opponent=Soft()).options.opponent == "object"
-    )
+    assert again.options == env.options
+    assert sn.SnookerEnv(sn.Options(task="frame"), opponent=Soft()).options.opponent == "object"
 
 
 def test_copies_of_an_environment_play_on_alike():
@@ -358,9 +346,8 @@ def test_copies_of_an_environment_play_on_alike():
 def test_says_and_the_flags_are_two_spellings():
     options = sn.Options(task="frame", decision=True, says=["lot"])
     assert options.says == ("decision", "lot") and options.decision and not options.nominate
-    assert options == sn.Options(task="frame", lot=True, says=("decision",)) and options.but(
-        decision=False
-    ).says == ("lot",)
+    assert options == sn.Options(task="frame", lot=True, says=("decision",))
+    assert options.but(decision=False).says == ("lot",)
     assert options.but(says=("claim",)).says == ("claim",) and options.but(noise="club").says == options.says
     assert (
         sn.SnookerEnv(options).action_space
@@ -371,10 +358,6 @@ def test_says_and_the_flags_are_two_spellings():
 def test_groups_hold_every_option_once():
     groups = [sn.Options.group(name) for name in ("task", "action", "view", "shot", "frame")]
     names = [name for group in groups for name in group]
-    assert len(names) == len(set(names)) == 21 and set(sn.Options.group("action", "visit")) == {
-        "action",
-        "aim",
-        "elevation",
-        "placement",
-    }
+    assert len(names) == len(set(names)) == 21
+    assert set(sn.Options.group("action", "visit")) == {"action", "aim", "elevation", "placement"}
     assert all(getattr(sn.Options(), name) == default for group in groups for name, default in group.items())

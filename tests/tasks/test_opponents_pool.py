@@ -105,9 +105,8 @@ def test_of_whom_nobody_could_be_drawn_is_refused_at_once():
     ):
         with pytest.raises(ValueError, match=f"^{says}"):
             wrong()
-    assert OpponentPool().members == () and OpponentPool(
-        ["random", "ghost_ball"], weights=[0, 1]
-    ).weights == (0.0, 1.0)
+    assert OpponentPool().members == ()
+    assert OpponentPool(["random", "ghost_ball"], weights=[0, 1]).weights == (0.0, 1.0)
 
 
 def test_a_wrong_member_is_named():

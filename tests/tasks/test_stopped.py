@@ -150,9 +150,8 @@ def test_a_frame_that_is_stopped_in_the_opening_visit_is_reported_by_the_next_st
         opened += info["strokes"]
         _, reward, terminated, truncated, after = env.step(FOUL)
         assert (terminated, truncated, after["strokes"]) == (False, True, 1) and after["winner"] == -1
-        assert reward == after["score"] - after["opponent_score"] and (
-            info["strokes"] == 0 or after["events"] == 0
-        )
+        assert reward == after["score"] - after["opponent_score"]
+        assert info["strokes"] == 0 or after["events"] == 0
     assert 0 < opened < 10
 
 
