@@ -1,5 +1,4 @@
-"""What do tests of play share? Positions, a game called as a request calls it, and a connection to its
-server."""
+"""What do tests of play share? Positions, a game called as a request calls it, a connection."""
 
 import http.client
 import json

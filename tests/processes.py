@@ -14,8 +14,7 @@ CACHE = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "NUMBA_DISABLE_JIT")
 
 
 def python(code, *, at=ROOT, warn="error::UserWarning", **variables):
-    """What a fresh interpreter prints; ``at``: the folder that holds the package, ``variables``: of the
-    environment, None to unset."""
+    """What a fresh interpreter prints; ``at``: the package's folder; variables that are None are unset."""
     env = os.environ | {
         "PYTHONPATH": str(at),
         "PYTHONDONTWRITEBYTECODE": "1",

@@ -1,5 +1,4 @@
-"""How does a test see that wrong input is refused? A call with one wrong argument, and what its ValueError
-must name."""
+"""How does a test see that wrong input is refused, and that the message names it?"""
 
 import re
 import warnings
@@ -42,8 +41,7 @@ def case(call, field, value, allowed, name=None):
 
 
 def refused(call, field, value, allowed):
-    """The call raises ValueError whose message names all three; a warning would be a half repair, so it
-    counts as one."""
+    """The call raises ValueError that names all three; a warning is an error, too."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         with pytest.raises(ValueError) as info:

@@ -57,8 +57,7 @@ def frame_env(**options):
 
 
 def frame_state(env, places, frame, **state):
-    """Put balls {id: (x, y)} and nothing else on the table, in the middle of a ``Frame`` given by its
-    fields."""
+    """Put balls {id: (x, y)} and nothing else on the table, in a ``Frame`` given by its fields."""
     positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
     for ball, place in places.items():
         positions[ball], on_table[ball] = place, True

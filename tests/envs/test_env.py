@@ -1,5 +1,4 @@
-"""Does ``Snooker-v0`` keep Gymnasium's contract? The checkers of two libraries, making it by name and from a
-spec, pictures."""
+"""Does ``Snooker-v0`` keep Gymnasium's contract? Checkers of two libraries, names, specs, pictures."""
 
 import json
 import warnings
@@ -81,8 +80,7 @@ def test_a_window_without_a_display_is_refused_at_the_first_stroke(monkeypatch):
 
 
 ALLOWED = {"flat": set(), "masked": set(), "balls": {"Your observation balls has an unconventional shape"}}
-"""The one warning that Stable-Baselines3 gives: a table of balls is neither a vector nor an image. The
-observation is meant so."""
+"""Stable-Baselines3 warns of a table of balls, which is neither a vector nor an image, but meant so."""
 
 
 @pytest.mark.parametrize("name", IDS)

@@ -1,5 +1,4 @@
-"""Are wrong arguments, actions, states and options of the environment refused, and does that change
-nothing?"""
+"""Are wrong arguments, actions, states and options refused, and does that change nothing?"""
 
 import copy
 import json

@@ -1,5 +1,4 @@
-"""Do frames and matches go the same way in ``SnookerEnv``, ``SnookerVectorEnv`` and ``MatchEnv``? Random
-play, replayed bit for bit."""
+"""Do frames and matches go alike in ``SnookerEnv``, ``SnookerVectorEnv`` and ``MatchEnv``, bit for bit?"""
 
 import json
 
@@ -27,8 +26,7 @@ KINDS = {
 
 
 class Played:
-    """One random frame or match of two players: the actions of each, and what player 0 was shown whenever it
-    was its turn."""
+    """A random frame or match: the actions of both players, and what player 0 was shown at its turns."""
 
     def __init__(self, options, seed):
         env = sn.match_env(**options)
@@ -67,8 +65,7 @@ class Played:
 
 
 def _key(rng):
-    """What identifies the generator of a table: its state after the key of the table's stream was drawn from
-    it."""
+    """What identifies a table's generator: its state after the key of its stream was drawn."""
     return json.dumps(rng.bit_generator.state, default=str)
 
 

@@ -1,5 +1,4 @@
-"""Do Gymnasium's own vector environments play, bit for bit, what single ones play? (The native one:
-``test_vector``.)"""
+"""Do Gymnasium's own vector environments play, bit for bit, what single ones play?"""
 
 import os
 

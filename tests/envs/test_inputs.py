@@ -1,5 +1,4 @@
-"""Is what a call is given left as it is, neither written into, repaired nor kept? Arrays, dicts, actions and
-states."""
+"""Is what a call is given left as it is, neither written into, repaired nor kept?"""
 
 import copy
 

@@ -1,5 +1,4 @@
-"""Is the match of two players a sound PettingZoo environment, and whose turn is it? PettingZoo's own tests,
-turns, decisions, states."""
+"""Is the match of two players a sound PettingZoo environment, and whose turn is it?"""
 
 import json
 import subprocess
@@ -57,8 +56,7 @@ MASKED = {"action": "discrete", "observation": "masked"}
     ],
 )
 def test_pettingzoo_checks_its_interface_with_dicts_of_observations(options, capsys):
-    """Its random players take the mask from the observation. It warns of every Dict observation, and its own
-    key has no plural."""
+    """Random players take the mask from the observation. PettingZoo warns of every Dict observation."""
     with pytest.warns(UserWarning, match="Observation"):
         api_test(sn.match_env(layout="random:3", **options), num_cycles=80)
     assert "Passed API test" in capsys.readouterr().out

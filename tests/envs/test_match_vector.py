@@ -1,5 +1,4 @@
-"""Do two players on many tables play, bit for bit, what ``match_env`` plays table by table? And what do seats
-that differ mean?"""
+"""Do two players on many tables play what ``match_env`` plays, and what do seats that differ mean?"""
 
 import json
 
@@ -97,8 +96,7 @@ def test_a_saved_state_plays_on_whoever_is_to_play():
 
 
 def test_seats_differ_in_actions_and_errors():
-    """Player 1 has choices, and exact strokes: on one seed its stroke from one position is the same however
-    often it is asked."""
+    """Player 1 has choices, and exact strokes: from one position on one seed they are always the same."""
     seats = ({}, {"action": "discrete", "noise": "none"})
     tables = sn.MatchVectorEnv(N, seats=seats, layout="random:3", noise="club", threads=2)
     alone = [sn.match_env(seats=seats, layout="random:3", noise="club") for _ in range(N)]

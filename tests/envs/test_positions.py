@@ -1,5 +1,4 @@
-"""Do environments start from a position as it says, with random numbers that are not its own, and is a wrong
-one refused by its field?"""
+"""Do environments start from a position, with their own random numbers, and refuse a wrong one?"""
 
 import json
 

@@ -1,5 +1,4 @@
-"""Does random play ever lose, double, overlap or misplace a ball? Checked after every shot, wild ones and
-good ones."""
+"""Does random play ever lose, double, overlap or misplace a ball? Checked after every shot."""
 
 import numpy as np
 import pytest

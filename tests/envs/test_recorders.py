@@ -1,5 +1,4 @@
-"""Do recorders get the motion of the strokes? The recorders of Gymnasium and Stable-Baselines3 as they are,
-on one table and on many."""
+"""Do the recorders of Gymnasium and Stable-Baselines3, as they are, get the motion of the strokes?"""
 
 from itertools import pairwise
 
@@ -184,8 +183,7 @@ def test_shots_with_long_logs_are_kept_each_on_its_own_table(monkeypatch):
 
 
 def test_a_picture_shows_no_stroke_of_another_table():
-    """After set_state, and where a new episode has begun within the step, nothing is drawn of the last
-    stroke."""
+    """After set_state, and where a step has begun a new episode, the last stroke is not drawn."""
     env = made()
     env.reset(seed=1)
     state, plain = env.unwrapped.get_state(), env.render()

@@ -1,5 +1,4 @@
-"""Is ``SnookerVecEnv`` to Stable-Baselines3 what ``DummyVecEnv`` of monitored single tables is, and does PPO
-run on it?"""
+"""Is ``SnookerVecEnv`` what ``DummyVecEnv`` of monitored single tables is, and does PPO run on it?"""
 
 import warnings
 

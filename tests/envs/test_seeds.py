@@ -1,5 +1,4 @@
-"""Does the seed decide everything? The same seed the same game bit for bit, other seeds other tables, nothing
-from outside."""
+"""Does the seed decide everything, bit for bit, and nothing from outside?"""
 
 import pickle
 import random

@@ -1,5 +1,4 @@
-"""Is every fault of a saved state refused by its name, with nothing changed? Every field of every kind of
-state, spoilt in every way."""
+"""Is every fault of a saved state refused by its name, with nothing changed?"""
 
 import copy
 import json
@@ -65,8 +64,7 @@ def must_be_refused(path, value, old, root):
 
 
 def attack(state, load, saved, root="state", play=lambda: None):
-    """Load every mutation: it is refused by name with nothing changed, or it is played. Counts (refused,
-    taken)."""
+    """Load every mutation: refused by name with nothing changed, or played. Counts (refused, taken)."""
     counts = [0, 0]
     load(state)
     good = frozen(saved())

@@ -1,5 +1,4 @@
-"""Do a saved state and a copy of the environment play on bit for bit, and is a reset asked for when one is
-needed?"""
+"""Do a saved state and a copy play on bit for bit, and is a reset asked for when one is needed?"""
 
 import copy
 import json

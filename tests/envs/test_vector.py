@@ -1,5 +1,4 @@
-"""Does the native vector environment play, bit for bit, what ``SyncVectorEnv`` plays, in every mode and for
-any number of threads?"""
+"""Does the native vector environment play, bit for bit, what ``SyncVectorEnv`` plays, on any threads?"""
 
 import copy
 import pickle
@@ -54,8 +53,7 @@ def actions_of(env, rng):
 
 
 def check_equal(n, mode, steps, *, threads=None, seed=3, **options):
-    """Play both side by side; returns how many episodes ended and were truncated, what was scored, and the
-    last infos of each step."""
+    """Play both side by side: episodes ended and truncated, what was scored, the infos of each step."""
     ours, theirs = native(n, autoreset_mode=mode, threads=threads, **options), sync(n, mode, **options)
     assert ours.observation_space == theirs.observation_space and ours.action_space == theirs.action_space
     assert ours.single_observation_space == theirs.single_observation_space
@@ -236,8 +234,7 @@ def test_what_is_returned_is_the_callers_own(observation, mode):
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("threads", [1, 3])
 def test_masks_in_observations_are_those_of_the_tables(mode, threads):
-    """Those of ``action_masks()`` in the next step, and of the table as it lay at the end, for every table
-    and any number of threads."""
+    """Those of ``action_masks()`` in the next step, and of the table as it lay at the end."""
     env = native(
         70,
         action="discrete",

@@ -62,8 +62,7 @@ def alike(a, b):
 
 
 def differences(ours, theirs):
-    """Which public names of a table are not the same; those of shared state are ``Tables``, compared by their
-    arrays."""
+    """Which public names of a table are not the same; shared state is ``Tables``, compared by its arrays."""
     wrong = []
     for name in public(SnookerEnv()):
         if name in NOT_OF_A_TABLE:

@@ -1,5 +1,4 @@
-"""Do native vector frames play, bit for bit, what ``SyncVectorEnv`` plays? All autoreset modes, threads,
-opponents, actions, limits."""
+"""Do native vector frames play, bit for bit, what ``SyncVectorEnv`` plays, with all that goes with them?"""
 
 import numpy as np
 import pytest
@@ -23,8 +22,7 @@ def policy(observation, rng):
 
 
 class Many:
-    """The same opponent, which says that it can be asked for many tables at once and counts how often it
-    is."""
+    """The same opponent, which can be asked for many tables at once, and counts how often it is."""
 
     def __init__(self):
         self.calls = 0

@@ -1,5 +1,4 @@
-"""Do many tables start from states as single ones do, seeded or not, and does a refusal change none of
-them?"""
+"""Do many tables start from states as single ones do, and does a refusal change none of them?"""
 
 import gymnasium
 import numpy as np

@@ -1,5 +1,4 @@
-"""Does the fit of one's own data find the constants? Made-up data come back, published ones agree, bad files
-are refused in one line."""
+"""Does the fit of one's own data find the constants, and refuse bad files in one line?"""
 
 import importlib.util
 import re
@@ -71,8 +70,7 @@ def test_made_up_data_come_back(kind):
 
 @pytest.mark.parametrize("kind", TRUE)
 def test_a_model_of_the_wrong_sign_finds_nothing(kind, monkeypatch):
-    """The test above can fail: turn the sign of what is measured, of an angle or of a speed, and the
-    constants are lost."""
+    """The test above can fail: with the sign of what is measured turned, the constants are lost."""
     what, name = (
         fitting.KINDS[kind],
         {"throw": "throw_deg", "cushion": "rebound_deg", "cloth": "distance_m"}[kind],
@@ -109,8 +107,7 @@ def test_bootstrap_and_covariance_agree():
 
 
 def test_domenech_s_throw_gives_a_tenth():
-    """The known fit of ``benchmarks.paper``: a constant friction of 0.10 agrees with these 52 shots, 0.05
-    does not."""
+    """A constant friction of 0.10 agrees with these 52 shots, 0.05 does not, as in ``benchmarks.paper``."""
     columns = fitting.read(DATA / "throw_domenech2023.csv", "throw", {"speed_m_s": 0.8})
     fitted = fitting.fit("throw", columns, fixed=DOMENECH)
     low, high = fitted.intervals["mu_bb"]

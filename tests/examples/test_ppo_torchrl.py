@@ -1,5 +1,4 @@
-"""Does TorchRL collect what the tables play, and does its PPO run? Rollouts against single tables, and a
-short training."""
+"""Does TorchRL collect what the tables play, and does its PPO run?"""
 
 import numpy as np
 import torch

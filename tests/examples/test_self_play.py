@@ -1,5 +1,4 @@
-"""Does the example of self-play run, go on after an interruption as if there had been none, and write what it
-found?"""
+"""Does the example of self-play run, go on after an interruption, and write its results?"""
 
 import json
 import pickle

@@ -1,5 +1,4 @@
-"""Does the package alone, as a wheel holds it, have its best player? Without agents, PyTorch and
-Stable-Baselines3."""
+"""Has the package alone, as in a wheel, its best player, without PyTorch and Stable-Baselines3?"""
 
 from tests.processes import copy_of_package, python
 

@@ -1,5 +1,4 @@
-"""Do the players that search play what their names say, each with its own value and proposals, and how
-well?"""
+"""Do the players that search play what their names say, and how well?"""
 
 import numpy as np
 import pytest

@@ -1,5 +1,4 @@
-"""Do score bars and the referee's words follow the frame? Whole frames of chance, against the ``Frame`` after
-each stroke."""
+"""Do score bars and the referee's words follow the ``Frame`` after each stroke?"""
 
 from itertools import pairwise
 

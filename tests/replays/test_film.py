@@ -1,5 +1,4 @@
-"""Are films of replays what was played? Their pictures, their length, their colours, and what cannot be
-written."""
+"""Are films of replays what was played? Pictures, length, colours, and what cannot be written."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,4 @@
-"""Does a replay hold what was played? Its data decoded here by the format's own words, its words, its files,
-and what is refused."""
+"""Does a replay hold what was played? Its data decoded here by the format's own words."""
 
 import base64
 import json

@@ -1,5 +1,4 @@
-"""What does an action mean? Aim, speed, tip, elevation and placement, read from the ball as it leaves the
-tip."""
+"""What does an action mean? Read from the ball as it leaves the tip."""
 
 import math
 
@@ -34,8 +33,7 @@ def shot_of(env, *action_and_table):
 
 
 def test_squirt_is_what_is_compensated():
-    """With the same action, but no end mass to speak of in the formula, the cue's own direction is another
-    one."""
+    """The same action with hardly an end mass in the formula: the cue's own direction is another one."""
     heavy, light = (SnookerEnv(physics={"end_mass_ratio": ratio}) for ratio in (5.0, 1e9))
     cues = []
     for env in (heavy, light):

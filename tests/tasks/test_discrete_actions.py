@@ -29,8 +29,7 @@ def test_the_numbers_count_pots_speeds_sides_and_tops():
 
 @pytest.mark.parametrize("physics", ["paper", "match"])
 def test_the_object_ball_rolls_at_the_pocket(physics):
-    """Judged by the engine, which the solver does not use: two balls on unbounded cloth, the aim as the
-    environment struck it."""
+    """Judged by the engine, which the solver does not use: two balls on unbounded cloth."""
     rng = np.random.default_rng(1)
     constants, worst, seen = sn.Physics.preset(physics), [], 0
     while seen < 60:

@@ -20,8 +20,7 @@ def clears_up(observation, rng):
 
 
 def test_the_break_at_the_end_of_a_frame_is_the_players_own():
-    """The opponent plays on after a miss by the agent and pots pink and black: his 13 are none of the
-    agent's."""
+    """After the agent's miss the opponent pots pink and black: his 13 are none of the agent's."""
     places = {CUE: (0.3, 1.1), PINK: (0.6, 1.4), BLACK: (-0.5, -1.0)}
     env = frame_env(aim="target", opponent="ghost_ball")
     for seed in range(200):

@@ -58,8 +58,7 @@ class Specification:
         return what in ("play", "anywhere")
 
     def attempt(self, start, on, strike):
-        """Whether the cue ball of this stroke came near a ball of the mask ``on``: sampled from the shot,
-        simulated anew."""
+        """Whether the cue ball came near a ball of the mask ``on``: sampled from the shot, simulated anew."""
         v, w = np.zeros((N_BALLS, 2)), np.zeros((N_BALLS, 3))
         v[CUE], w[CUE] = strike[[VX, VY]], strike[[WX, WY, WZ]]
         shot = simulate(start, v, w, physics=self.physics, on_table=self.on_table)

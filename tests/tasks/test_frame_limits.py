@@ -1,5 +1,4 @@
-"""Do frames hold at their limits? Balls in the mouths of pockets, states before the first reset, a table of
-two players played alone."""
+"""Do frames hold at their limits? Mouths of pockets, before the first reset, two players' table alone."""
 
 import json
 

@@ -1,5 +1,4 @@
-"""Does ``task="frame"`` keep Gymnasium's contract? The checker, spaces, seeds, infos, saved states,
-pictures."""
+"""Does ``task="frame"`` keep Gymnasium's contract? The checker, spaces, infos, states, pictures."""
 
 import inspect
 import json

@@ -1,5 +1,4 @@
-"""Whose stroke is it in ``task="frame"``, what may he decide, and what is it worth? Turns, decisions after a
-foul, rewards."""
+"""Whose stroke is it in ``task="frame"``, what may he decide, and what is it worth?"""
 
 import json
 
@@ -117,8 +116,7 @@ def test_a_free_ball_is_seen_and_scores():
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
 @pytest.mark.parametrize("layout", ["random:2", "pots:easy", "colours"])
 def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
-    """From the first stroke of the frame, which may be the opponent's, to the last one, which may be in his
-    first visit."""
+    """From the first stroke, which may be the opponent's, to the last, which may be in his first visit."""
     broke, before = 0, 0
     for seed in range(15):
         totals = {}
@@ -142,8 +140,7 @@ def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
 
 
 def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost():
-    """Nothing is dealt again: the reset shows that it is lost, the next step plays nothing and reports it; a
-    state keeps that."""
+    """Nothing is dealt again: the reset shows that it is lost, the next step plays nothing and reports it."""
     env, won = frame_env(opponent="ghost_ball", layout="pots:easy", reward="win"), 0
     for seed in range(60):
         observation, info = env.reset(seed=seed)
@@ -218,8 +215,7 @@ def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():
 
 
 def test_a_colour_named_that_is_not_struck_first_costs_the_higher_of_the_two():
-    """Blue lies in the way: struck when nothing or blue was named it is fair, and when black was named it
-    costs black's seven."""
+    """Blue lies in the way: fair when nothing or blue was named; when black was named it costs seven."""
     places = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
     for named, penalty in ((-1, 0), (BLUE, 0), (PINK, 6), (BLACK, 7)):
         env = frame_state(frame_env(aim="absolute"), places, {"ball_on": BallOn.ANY_COLOUR})

@@ -1,5 +1,4 @@
-"""Can six-red snooker and the Shoot Out be played as a frame, with states that go on as the same, and are
-wrong options refused?"""
+"""Can every game be played as a frame, with states that go on as the same?"""
 
 import json
 

@@ -1,5 +1,4 @@
-"""Does the built-in opponent "ghost_ball" play sensibly where it has no pot? Its break-offs, soft strokes,
-escapes, and what it repeats."""
+"""Does the opponent "ghost_ball" play sensibly where it has no pot?"""
 
 import numpy as np
 import pytest

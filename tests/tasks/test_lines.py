@@ -1,5 +1,4 @@
-"""Where there is no direct pot: are the lines of ``action="discrete"`` and ``aim="target"`` real strokes, and
-the windows exact?"""
+"""Where there is no direct pot: are the lines offered real strokes, and the windows exact?"""
 
 import numpy as np
 import pytest
@@ -125,8 +124,7 @@ def test_there_is_a_fair_choice_and_a_fair_target(kind, n, least, target):
 
 
 def test_an_escape_is_solved_for_the_stroke_that_is_played():
-    """Speed, side and top turn the cue ball at a cushion; the choices of one line meet the red all the
-    same."""
+    """Speed, side and top turn the cue ball at a cushion; all choices of one line meet the red."""
     env = sn.SnookerEnv(action="discrete", physics="match", render_mode="ansi")
     table_state(
         env,
@@ -159,8 +157,7 @@ def test_choices_over_cushions_are_the_same_strokes_as_actions():
 
 
 def touching(ball, others):
-    """The fouls of all choices, a red being on, where the cue ball touches a ball on its right; the balls and
-    the lines."""
+    """The fouls of all choices, and the lines, where the cue ball touches a ball on its right; red is on."""
     tables = fair.dealt(CHOICES, 0, action="discrete")
     positions, on_table = SPOTS.copy(), np.isin(np.arange(N_BALLS), (CUE, BLACK, ball, *others))
     positions[CUE], positions[ball] = (0.3, 0.3), (0.3 + 2 * R + 1e-5, 0.3)

@@ -1,5 +1,4 @@
-"""How does a match go? Frames won, the players in turn at the break, the next rack in the same step, rewards,
-the end, who breaks."""
+"""How does a match go? Frames won, turns at the break, the next rack, rewards, the end, who breaks."""
 
 import numpy as np
 import pytest

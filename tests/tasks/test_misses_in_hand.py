@@ -1,5 +1,4 @@
-"""From where is a miss judged when the cue ball is in hand? From every place where the striker could have put
-it."""
+"""Is a miss with the cue ball in hand judged from every place where it could have been put?"""
 
 import numpy as np
 import pytest
@@ -38,8 +37,7 @@ def asks_again(observation, rng):
 
 
 def after_failures(miss, strokes):
-    """A red on, the cue ball in hand, so many failures behind the brown; the environment and the last step's
-    result."""
+    """A red on, the cue ball in hand, so many failures behind the brown: environment and last result."""
     env = frame_env(aim="absolute", miss=miss, opponent=asks_again)
     places = {1: RED, BROWN: SPOTS[BROWN], BLACK: SPOTS[BLACK], CUE: (0.18, BAULK_Y)}
     frame_state(env, places, {"in_hand": True})
@@ -80,8 +78,7 @@ def test_paths_in_hand_are_those_of_the_best_place():
 
 @pytest.mark.parametrize("seed", range(12))
 def test_no_place_of_the_d_sees_more(seed):
-    """Random tables: where some place of the D has a clear path, so has the cue ball in hand; a place that
-    touches a ball is none."""
+    """Where some place of the D has a clear path, so has the cue ball in hand; touching a ball is none."""
     rng, met = np.random.default_rng(seed), set()
     for _ in range(12):
         at = rng.uniform((-0.5, 0.5), (0.5, 1.3))

@@ -1,5 +1,4 @@
-"""What is a colour that was nominated worth, and what may be nominated and declared when? Box, discrete
-actions, masks."""
+"""What is a nominated colour worth, and what may be nominated and declared when?"""
 
 import numpy as np
 import pytest
@@ -71,8 +70,7 @@ FREE = {"phase": "stroke", "free_ball": True, "scores": (0, 4)}
 
 @pytest.mark.parametrize(("part", "penalty"), [(0, 5), (4, 0), (1, 5), (6, 5)])
 def test_a_free_ball_is_nominated_or_declined(part, penalty):
-    """With reds on: the blue struck first is fair as the free ball, else it costs its five; a free ball
-    itself has the value of a red."""
+    """With reds on: the blue struck first is fair as the free ball, worth a red, else it costs its five."""
     env = frame_state(frame_env(aim="absolute", nominate=True), PLACES, FREE)
     assert env.step([-0.9, 0, 0, TO_BLUE, 0, 0, named(part, 7), 0])[4]["penalty"] == penalty
 

@@ -88,8 +88,7 @@ OF_FRAMES = {"task": "frame", "opponent": "random", "max_strokes": 40}
     ids=["opened", "colours", "black", "frame", "all that is said", "match"],
 )
 def test_masked_observations_hold_the_flat_one_and_the_available_choices(options):
-    """Also at the end of an episode, where at least one choice stays available: no learner divides by
-    nothing."""
+    """Also at the end, where at least one choice stays available: no learner divides by nothing."""
     flat, masked = (SnookerEnv(action="discrete", observation=kind, **options) for kind in ("flat", "masked"))
     assert set(masked.observation_space.spaces) == {"observations", "action_mask"}
     assert masked.observation_space["observations"] == flat.observation_space

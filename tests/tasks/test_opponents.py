@@ -116,8 +116,7 @@ def test_the_ghost_ball_player_beats_the_random_one():
 
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
-    """Untrained models' files: of this environment's visit, of its discrete choices, with another view, of
-    another environment."""
+    """Files of untrained models: of a visit, of choices, with another view, of another environment."""
     sb3, contrib = pytest.importorskip("stable_baselines3"), pytest.importorskip("sb3_contrib")
     folder = tmp_path_factory.mktemp("saved")
     sb3.PPO("MlpPolicy", SnookerEnv(), seed=1, device="cpu").save(folder / "visit.zip")
@@ -167,8 +166,7 @@ def test_a_saved_model_may_play(tmp_path, task, name):
     [({}, False), ({"task": "frame"}, False), ({"task": "frame", "nominate": True}, True)],
 )
 def test_a_saved_model_that_sees_masks_may_play(tmp_path, own, nominate):
-    """One of visits, with 540 choices, plays in a frame with more; its choices are those of the same model on
-    what it sees."""
+    """A model of visits, with 540 choices, plays in a frame with more as it does on what it sees."""
     contrib = pytest.importorskip("sb3_contrib")
     masked = {"action": "discrete", "observation": "masked"}
     made = contrib.MaskablePPO("MultiInputPolicy", SnookerEnv(**masked, **own), seed=1, device="cpu")

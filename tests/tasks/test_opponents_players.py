@@ -1,5 +1,4 @@
-"""May any player be the opponent, seen from its own side and asked once for all tables? Strokes, seeds, what
-is said, errors."""
+"""May any player be the opponent, seen from its own side and asked once for all tables?"""
 
 import copy
 import json
@@ -76,8 +75,7 @@ class Sees:
 
 
 def asked(env):
-    """The opponent's turn on the first table, up to the strike: the buffers of the shot, and the tables with
-    a stroke."""
+    """The opponent's turn on the first table, up to the strike: (its buffers, the tables with a stroke)."""
     one, opponent, buffers = np.zeros(1, np.int64), env.tables.seats[1].player, ShotBuffers(1)
     which = opponent.prepare(env.tables, one, opponent.ask(env.tables, one, [None]), buffers)
     return buffers, which.tolist()

@@ -1,5 +1,4 @@
-"""Does a pool of opponents draw one for each table and frame, from the table's own stream, and keep it with
-the state?"""
+"""Does a pool draw an opponent for each table and frame, from its own stream, and keep it in the state?"""
 
 import copy
 import json

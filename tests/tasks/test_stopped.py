@@ -28,8 +28,7 @@ def frame_of(**options):
 
 
 def test_fouls_without_end_score_without_end():
-    """A rule has no ceiling: a hundred fouls on each side of what the first version could count to, and far
-    beyond it."""
+    """A rule has no ceiling: a hundred fouls around what the first version could count to, and beyond."""
     for scores in ((9_980, 0), (0, 9_980), (9_800, 9_800), (2**53, 2**40)):
         frame = Frame(scores=scores, miss="clear_path")
         for _ in range(200):
@@ -142,8 +141,7 @@ def test_the_strokes_are_counted_on_from_a_state():
 
 
 def test_a_frame_that_is_stopped_in_the_opening_visit_is_reported_by_the_next_step():
-    """The referee stops it after the opponent's break-off: the agent plays nothing, and is paid what the
-    opponent scored."""
+    """After the opponent's break-off the agent plays nothing, and is paid what the opponent scored."""
     env, opened = frame_of(opponent="random", max_strokes=1), 0
     for seed in range(10):
         _, info = env.reset(seed=seed)

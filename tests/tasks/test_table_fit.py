@@ -1,5 +1,4 @@
-"""Is no ball ever dealt into a cushion, a jaw or a pocket? The layouts on the presets, on tables of one's
-own, and tables refused."""
+"""Is no ball ever dealt into a cushion, a jaw or a pocket, and is a table that does not fit refused?"""
 
 import copy
 import pickle
@@ -69,8 +68,7 @@ FIT = {
 
 
 def test_some_opened_tables_do_not_fit_other_pockets():
-    """... so that the tests below see what they are for: the bank was played on the match table, where balls
-    came to rest in the mouths."""
+    """The tests below can see it: the bank was played on the match table, where balls rest in the mouths."""
     assert 3 < len(fitted("opened", Table.preset("tight")).unfit) < 100
     assert fitted("opened", MATCH).unfit == ()
 

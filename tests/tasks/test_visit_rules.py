@@ -1,5 +1,4 @@
-"""Is the game of a visit snooker? The highest break, fouls, the end, rewards, and a touching ball, each by
-shots really played."""
+"""Is the game of a visit snooker? Each rule by shots really played."""
 
 import math
 
@@ -39,8 +38,7 @@ def racked(**arguments):
 
 
 def test_the_highest_break():
-    """Fifteen reds, each with the black, then the colours: 147 points, a clearance, and every step of it as
-    the rules say."""
+    """Fifteen reds, each with the black, then the colours: 147 points, and every step as the rules say."""
     env = racked()
     total = 0
     for red in range(1, 16):
@@ -218,8 +216,7 @@ def test_a_gap_that_can_be_seen_is_no_touch():
 @pytest.mark.parametrize("aim", [INTO, 0.2, -0.3, 0.48])
 @pytest.mark.parametrize("gap", [0.0, 1e-12, -5e-7, 5e-7, 1e-5, 4e-5, 49.9e-6])
 def test_playing_into_a_touching_ball_is_a_push(aim, gap, speed):
-    """However small the gap that the referee does not see, however thin the contact and however slow the
-    stroke."""
+    """However small the unseen gap, however thin the contact and however slow the stroke."""
     env = touching(gap)
     before = env.positions[1].copy()
     _, reward, terminated, _, info = env.step([speed, 0.0, 0.0, aim])
@@ -241,8 +238,7 @@ def test_a_touching_ball_that_is_not_on_does_not_count():
 
 
 def test_of_several_touching_balls_each_that_is_played_into_is_pushed():
-    """Between the red and the black, into both; their gaps differ, so that the cue ball meets one after the
-    other."""
+    """Between red and black, into both; with different gaps it meets one after the other."""
     for gap_red, gap_black in [(0.0, 0.0), (1e-6, 4e-5), (4e-5, 1e-6)]:
         env = touching(
             gap_red,
