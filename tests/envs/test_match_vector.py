@@ -8,6 +8,7 @@ import pytest
 
 import snooker_env as sn
 from tests.envs.test_frames_alike import KINDS, PLAIN
+from tests.tables import plain
 
 pytest.importorskip("pettingzoo")
 
@@ -18,9 +19,8 @@ def actions_of(options, rng, masks):
     """Random actions on N tables: near a pot, or available choices."""
     if options.get("action") == "discrete":
         return np.array([rng.choice(np.flatnonzero(mask)) for mask in masks])
-    a = rng.uniform(
-        -1, 1, (N, 6 + sum(bool(options.get(name)) for name in ("nominate", "decision", "concede")))
-    )
+    longer = sum(bool(options.get(name)) for name in ("nominate", "decision", "concede"))
+    a = rng.uniform(-1, 1, (N, 6 + longer))
     a[:, 1:4] *= 0.3
     if options.get("concede"):
         a[:, -1] = np.where(rng.random(N) < 0.98, np.abs(a[:, -1]), a[:, -1])
@@ -51,9 +51,7 @@ def test_each_table_plays_as_a_match_alone(kind, threads):
                 one.step(int(actions[k]) if discrete else actions[k])
                 assert rewards[k].tolist() == list(one.rewards.values())
                 info = one.infos["player_0"]
-                assert {name: infos[name][k] for name in info if name in infos} == {
-                    name: info[name] for name in info if name in infos
-                }
+                assert all(infos[name][k] == info[name] for name in set(info) & set(infos))
                 strokes += 1
             assert terminated[k] == one.terminations["player_0"]
             assert truncated[k] == one.truncations["player_0"]
@@ -86,7 +84,7 @@ def test_a_saved_state_plays_on_whoever_is_to_play():
     tables = sn.MatchVectorEnv(N, **PLAIN, layout="random:3", threads=2)
     tables.reset(seed=3)
     tables.step(np.full((N, 7), -0.3))
-    states = json.loads(json.dumps(tables.get_state()))
+    states = plain(tables.get_state())
     again = sn.MatchVectorEnv(N, **PLAIN, layout="random:3", threads=1)
     seen, _ = again.reset(options={"states": states})
     assert set(tables.strikers.tolist()) == {0, 1}
@@ -134,8 +132,5 @@ def test_wrong_arguments_are_refused():
     tables = sn.MatchVectorEnv(2, threads=1)
     with pytest.raises(gymnasium.error.ResetNeeded):
         tables.step(np.zeros((2, 7)))
-    tables.reset(seed=0)
-    with pytest.raises(ValueError, match=r"actions\[1\] = .*must be finite"):
-        tables.step([[0.0] * 7, [2.0] * 7])
     with pytest.raises(ValueError, match="must be two arrays"):
         sn.MatchVectorEnv(2, seats=({}, {"action": "discrete"}), threads=1).step(np.zeros((2, 7)))

@@ -1,7 +1,8 @@
 """Does the native vector environment play, bit for bit, what ``SyncVectorEnv`` plays, on any threads?"""
 
-import copy
+import os
 import pickle
+import signal
 import warnings
 
 import gymnasium
@@ -14,7 +15,7 @@ import snooker_env as sn
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.tasks import OBSERVATIONS, stroke
-from tests.tables import viewed
+from tests.tables import COPIES, INFO, viewed
 
 MODES = list(AutoresetMode)
 
@@ -24,9 +25,8 @@ def native(n, **options):
 
 
 def sync(n, mode, **options):
-    return gymnasium.make_vec(
-        "Snooker-v0", n, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **options
-    )
+    how = {"vectorization_mode": "sync", "vector_kwargs": {"autoreset_mode": mode}}
+    return gymnasium.make_vec("Snooker-v0", n, **how, **options)
 
 
 def same(a, b):
@@ -67,10 +67,8 @@ def check_equal(n, mode, steps, *, threads=None, seed=3, **options):
             assert np.array_equal(ours.action_masks(), np.array(theirs.call("action_masks")))
         a = actions_of(ours, rng)
         got, want = ours.step(a), theirs.step(a)
-        for x, y, name in zip(
-            got, want, ("observations", "rewards", "terminated", "truncated", "infos"), strict=True
-        ):
-            assert same(x, y), (step, name, x, y)
+        for k, (x, y) in enumerate(zip(got, want, strict=True)):
+            assert same(x, y), (step, k, x, y)
         done = got[2] | got[3]
         ends, cut, scored = ends + done.sum(), cut + got[3].sum(), scored + np.maximum(got[1], 0.0).sum()
         infos.append(got[4])
@@ -78,33 +76,29 @@ def check_equal(n, mode, steps, *, threads=None, seed=3, **options):
     return ends, cut, scored, infos
 
 
+TARGET = {"aim": "target"}
+BALLS = {
+    "observation": "balls",
+    "layout": "break_off",
+    "placement": True,
+    "elevation": True,
+    "reward": "pots",
+}
+LEVEL = {"noise": "olympiad", "layout": "pots:easy", "physics": "match", "table": "tight"}
+CHOICES = {"action": "discrete", "observation": "masked"}
+OPTIONS = {
+    "plain": {},
+    "noise": TARGET | {"noise": "club", "layout": "random:5", "reward": "points_and_fouls"},
+    "balls": TARGET | BALLS,
+    "match": TARGET | LEVEL,
+    "limit": TARGET | {"max_episode_steps": 2, "layout": "random:3", "observation": "balls"},
+    "snookered": {"noise": {"aim_deg": 0.3}, "layout": "snookered", "fidelity": "fast"},
+    "masked": CHOICES | {"layout": "random:2", "noise": "club", "max_episode_steps": 2},
+}
+
+
 @pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize(
-    "options",
-    [
-        {},
-        {"aim": "target", "noise": "club", "layout": "random:5", "reward": "points_and_fouls"},
-        {
-            "aim": "target",
-            "observation": "balls",
-            "layout": "break_off",
-            "placement": True,
-            "elevation": True,
-            "reward": "pots",
-        },
-        {"aim": "target", "noise": "olympiad", "layout": "pots:easy", "physics": "match", "table": "tight"},
-        {"aim": "target", "max_episode_steps": 2, "layout": "random:3", "observation": "balls"},
-        {"noise": {"aim_deg": 0.3}, "layout": "snookered", "fidelity": "fast"},
-        {
-            "action": "discrete",
-            "observation": "masked",
-            "layout": "random:2",
-            "noise": "club",
-            "max_episode_steps": 2,
-        },
-    ],
-    ids=["plain", "noise", "balls", "match", "limit", "snookered", "masked"],
-)
+@pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
 def test_it_equals_sync_vector_env(mode, options):
     ends, cut, scored, _ = check_equal(9, mode, 60, **options)
     assert ends > 50 and (cut > 5) == ("max_episode_steps" in options)
@@ -113,9 +107,8 @@ def test_it_equals_sync_vector_env(mode, options):
 
 @pytest.mark.parametrize("layout", ["held_out", "line_up", "colours", "random:0", "pots:hard"])
 def test_every_layout_is_dealt_alike(layout):
-    assert (
-        check_equal(5, AutoresetMode.SAME_STEP, 20, layout=layout, aim="target", noise="professional")[0] > 10
-    )
+    options = TARGET | {"layout": layout, "noise": "professional"}
+    assert check_equal(5, AutoresetMode.SAME_STEP, 20, **options)[0] > 10
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3])
@@ -164,18 +157,14 @@ def test_seeds_none_int_and_list():
 
 def test_a_mask_resets_only_those():
     for mode in MODES:
-        env, other = (
-            native(6, autoreset_mode=mode, aim="target", layout="random:6"),
-            sync(6, mode, aim="target", layout="random:6"),
-        )
+        options = TARGET | {"layout": "random:6"}
+        env, other = native(6, autoreset_mode=mode, **options), sync(6, mode, **options)
         assert same(env.reset(seed=1), other.reset(seed=1))
         a = np.zeros((6, 4), np.float32)
         assert same(env.step(a), other.step(a))
         mask = np.array([True, False, True, False, False, True])
-        assert same(
-            env.reset(seed=20, options={"reset_mask": mask.copy()}),
-            other.reset(seed=20, options={"reset_mask": mask.copy()}),
-        )
+        one, two = (each.reset(seed=20, options={"reset_mask": mask.copy()}) for each in (env, other))
+        assert same(one, two)
 
 
 @pytest.mark.parametrize("mask", [[True, False], np.array([True]), np.array([1, 0]), np.zeros(2, bool)])
@@ -193,22 +182,13 @@ def test_wrong_masks_are_refused(mask):
 @pytest.mark.parametrize("mode", MODES)
 def test_what_is_returned_is_the_callers_own(observation, mode):
     """Spoiling every array that was returned changes nothing that comes later."""
-    options = {
-        **viewed(observation),
-        "autoreset_mode": mode,
-        "noise": "club",
-        "layout": "random:3",
-        "max_episode_steps": 3,
-    }
-    clean, spoiled = native(8, **options), native(8, **options)
+    options = viewed(observation) | {"noise": "club", "layout": "random:3", "max_episode_steps": 3}
+    clean, spoiled = (native(8, autoreset_mode=mode, **options) for _ in range(2))
     want, got = clean.reset(seed=1), spoiled.reset(seed=1)
 
     def spoil(x):
-        if isinstance(x, dict):
-            for value in x.values():
-                spoil(value)
-        elif isinstance(x, np.ndarray) and x.dtype == object:
-            for value in x:
+        if isinstance(x, dict | tuple) or (isinstance(x, np.ndarray) and x.dtype == object):
+            for value in x.values() if isinstance(x, dict) else x:
                 spoil(value)
         elif isinstance(x, np.ndarray):
             x[...] = True if x.dtype == bool else 1 - x if x.dtype == np.int8 else 1
@@ -218,13 +198,11 @@ def test_what_is_returned_is_the_callers_own(observation, mode):
     for k in range(10):
         assert same(want, got)
         done = (want[2] | want[3]).copy() if len(want) == 5 else np.zeros(8, bool)
-        for part in got:
-            spoil(part)
+        spoil(got)
         mine = a[k].copy()
         if mode == AutoresetMode.DISABLED and done.any():
             clean.reset(options={"reset_mask": done.copy()})
-            for part in spoiled.reset(options={"reset_mask": done}):
-                spoil(part)
+            spoil(spoiled.reset(options={"reset_mask": done}))
             done[:] = True
         want, got = clean.step(a[k]), spoiled.step(mine)
         mine[:] = 9
@@ -235,22 +213,12 @@ def test_what_is_returned_is_the_callers_own(observation, mode):
 @pytest.mark.parametrize("threads", [1, 3])
 def test_masks_in_observations_are_those_of_the_tables(mode, threads):
     """Those of ``action_masks()`` in the next step, and of the table as it lay at the end."""
-    env = native(
-        70,
-        action="discrete",
-        observation="masked",
-        layout="random:2",
-        noise="club",
-        autoreset_mode=mode,
-        threads=threads,
-    )
-    alone = [
-        SnookerEnv(action="discrete", observation="masked", layout="random:2", noise="club")
-        for _ in range(70)
-    ]
+    options = CHOICES | {"layout": "random:2", "noise": "club"}
+    env, alone = native(70, autoreset_mode=mode, threads=threads, **options), []
     seen, rng, ends = env.reset(seed=4)[0], np.random.default_rng(0), 0
-    for one, k in zip(alone, range(70), strict=True):
-        one.reset(seed=4 + k)
+    for k in range(70):
+        alone.append(SnookerEnv(**options))
+        alone[k].reset(seed=4 + k)
     done = np.zeros(70, bool)
     for _ in range(8):
         if mode == AutoresetMode.DISABLED and done.any():
@@ -275,11 +243,9 @@ def test_masks_in_observations_are_those_of_the_tables(mode, threads):
     assert (ends > 100) == (mode == AutoresetMode.SAME_STEP)
 
 
-def test_spaces_types_and_metadata():
+def test_spaces_types_and_metadata(strict):
     of_one = dict(SnookerEnv.metadata)  # Gymnasium's SyncVectorEnv before 1.3 writes into it
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        env = native(5, aim="target")
+    env = native(5, aim="target")
     assert isinstance(env, SnookerVectorEnv) and env.num_envs == 5 and env.spec.id == "Snooker-v0"
     assert env.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP is env.autoreset_mode
     assert native(2, autoreset_mode="SameStep").metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
@@ -307,40 +273,6 @@ def test_it_must_be_reset_first():
         env.step(np.zeros((3, 4)))
 
 
-def wrong(**changes):
-    a = np.zeros((3, 4))
-    for at, value in changes.items():
-        a[int(at[1]), int(at[2])] = value
-    return a
-
-
-@pytest.mark.parametrize(
-    ("actions", "message"),
-    [
-        (
-            wrong(a21=float("nan")),
-            r"actions\[2\] = \[0\.0, nan, 0\.0, 0\.0\]: must be finite and within \[-1, 1\]",
-        ),
-        (wrong(a13=1.0001), r"actions\[1\] = "),
-        (wrong(a00=-np.inf, a11=2.0), r"actions\[0\] = "),
-        (np.zeros((2, 4)), r"shape \(2, 4\): must have shape \(3, 4\)"),
-        (np.zeros((3, 5)), r"must have shape \(3, 4\)"),
-        (np.zeros(4), "must have shape"),
-        (None, "must have shape"),
-        ([["a"] * 4] * 3, "real numbers"),
-        ([[0.0] * 4, [0.0]], "must have shape"),
-        (np.zeros((3, 4), bool), "real numbers"),
-    ],
-)
-def test_wrong_actions_name_the_table_and_change_nothing(actions, message):
-    env = native(3, noise="club")
-    env.reset(seed=0)
-    before = env.get_state()
-    with pytest.raises(ValueError, match=message):
-        env.step(actions)
-    assert env.get_state() == before
-
-
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -360,9 +292,7 @@ def test_wrong_arguments(options, message):
 # States, copies, pictures, errors
 
 
-@pytest.mark.parametrize(
-    "copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))], ids=["deepcopy", "pickle"]
-)
+@pytest.mark.parametrize("copied", COPIES)
 def test_copies_play_on_alike(copied):
     env = native(20, noise="club", threads=2)
     env.reset(seed=3)
@@ -387,14 +317,10 @@ def test_pictures_of_all_tables():
 
 def test_a_log_that_is_too_short_is_enlarged(monkeypatch):
     """The same shots with room for three events at first as with room for 512."""
-    original, runs = stroke.ShotBuffers.__init__, []
+    runs = []
     for log in (512, 3):
         with monkeypatch.context() as patch:
-            patch.setattr(
-                stroke.ShotBuffers,
-                "__init__",
-                lambda self, m, first=log, **more: original(self, m, first, **more),
-            )
+            patch.setattr(stroke.ShotBuffers.__init__, "__defaults__", (log,))
             env = native(20, noise="club", aim="target", autoreset_mode=AutoresetMode.SAME_STEP)
             env.reset(seed=3)
             runs.append([env.step(np.full((20, 4), 0.1))[:4] for _ in range(4)])
@@ -418,3 +344,129 @@ def test_a_shot_that_cannot_be_computed_names_its_table(monkeypatch, threads):
     with pytest.raises(gymnasium.error.ResetNeeded):
         env.step(np.zeros((40, 4)))
     env.reset()
+
+
+# Seeds and states together
+
+
+@pytest.mark.parametrize("seed", [None, 40, [3, None, 8, None]])
+def test_a_state_with_seeds_is_what_single_tables_make_of_it(seed):
+    """Each seed draws the errors of its table anew; a table without one repeats those of the state."""
+    options = {"noise": "professional", "layout": "random:6", "aim": "target"}
+    env, other = native(4, **options), sync(4, AutoresetMode.NEXT_STEP, **options)
+    for one in (env, other):
+        one.reset(seed=1)
+    state, a = env.get_state()[2], np.zeros((4, 4), np.float32)
+    for _ in range(2):  # the second time from the middle of other visits
+        one, two = (each.reset(seed=seed, options={"state": state}) for each in (env, other))
+        assert same(one, two)
+        first = env.step(a)
+        assert same(first, other.step(a))
+        assert len({row.tobytes() for row in first[0]}) == (1 if seed is None else 4 if seed == 40 else 3)
+        assert all(same(env.step(a), other.step(a)) for _ in range(3))
+    assert env.get_state() == [one.unwrapped.get_state() for one in other.envs]
+    assert env.np_random_seed == other.np_random_seed
+
+
+def test_a_wrong_seed_or_state_changes_no_table():
+    env = native(3, noise="club")
+    env.reset(seed=1)
+    before, seeds = env.get_state(), env.np_random_seed
+    good, spoilt = before[0], before[0] | {"points": 400}
+    states = ([4, -1, 5], {}), ([4, 5, -1], {"state": good}), (9, {"states": [good, good, spoilt]})
+    for seed, options in (*states, (9, {"state": {}})):
+        with pytest.raises((ValueError, gymnasium.error.Error)):
+            env.reset(seed=seed, options=options)
+        assert env.get_state() == before and env.np_random_seed == seeds
+
+
+# Forks
+
+forks = pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on Windows")
+
+
+@forks
+def test_processes_forked_while_threads_are_kept_play_on():
+    """AsyncVectorEnv forks; the threads of a vector environment in the parent do no harm."""
+    env = native(32, threads=2)
+    env.reset(seed=0)
+    a = np.zeros((32, 4), np.float32)
+    want = env.step(a)[0]
+    forked = gymnasium.vector.AsyncVectorEnv([lambda: gymnasium.make("Snooker-v0")] * 2, context="fork")
+    try:
+        forked.reset(seed=0)
+        assert np.array_equal(forked.step(a[:2])[0], want[:2])
+    finally:
+        forked.close()
+    env.step(a)
+    env.close()
+
+
+@forks
+def test_an_environment_that_has_played_on_threads_plays_on_in_a_forked_process():
+    """A child has none of its parent's threads; waiting for them would be for ever."""
+    env = native(64, threads=2)
+    env.reset(seed=3)
+    a = np.zeros((64, 4))
+    env.step(a)
+    mine, yours = os.pipe()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of forking beside threads
+        child = os.fork()
+    if child == 0:
+        signal.alarm(30)  # kills it if it waits
+        os.write(yours, np.ascontiguousarray(env.step(a)[0]).tobytes())
+        os._exit(0)
+    os.close(yours)
+    with os.fdopen(mine, "rb") as pipe:
+        got = pipe.read()
+    os.waitpid(child, 0)
+    assert got == np.ascontiguousarray(env.step(a)[0]).tobytes()
+    env.close()
+
+
+def test_the_number_of_threads_is_fixed():
+    """Work space is made for it: a different number would write beyond its end."""
+    env = native(64, threads=2)
+    with pytest.raises(AttributeError):
+        env.threads = 1
+
+
+# Gymnasium's own vector environments play, bit for bit, what single ones play
+
+
+def make_noisy():
+    return gymnasium.make("Snooker-v0", noise="club", layout="random:4", aim="target")
+
+
+@pytest.mark.parametrize("kind", ["sync", "async"])
+def test_vector_environments_play_as_single_ones(kind):
+    if kind == "sync":
+        vector = gymnasium.vector.SyncVectorEnv([make_noisy] * 2)
+    else:
+        sn.warmup()
+        context = "fork" if hasattr(os, "fork") else "spawn"
+        vector = gymnasium.vector.AsyncVectorEnv([make_noisy] * 2, context=context)
+    singles = [make_noisy() for _ in range(2)]
+    try:
+        got, infos = vector.reset(seed=10)
+        want = [env.reset(seed=10 + k)[0] for k, env in enumerate(singles)]
+        assert np.array_equal(got, want)
+        over = [False, False]
+        ends = 0
+        for _ in range(12):
+            got, rewards, terminated, truncated, infos = vector.step(np.zeros((2, 4), np.float32))
+            for k, env in enumerate(singles):
+                if over[k]:  # NEXT_STEP: the step after the end is the reset
+                    obs, info = env.reset()
+                    reward, over[k] = 0.0, False
+                else:
+                    obs, reward, over[k], _, info = env.step(np.zeros(4, np.float32))
+                ends += over[k]
+                assert np.array_equal(got[k], obs) and rewards[k] == reward and terminated[k] == over[k]
+                assert not truncated[k]
+                assert all(infos[name][k] == info[name] for name in INFO)
+        assert ends > 1
+        assert infos["seconds"].dtype == infos["break"].dtype == np.float64 and infos["foul"].dtype == bool
+    finally:
+        vector.close()

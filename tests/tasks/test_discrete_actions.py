@@ -9,7 +9,6 @@ import snooker_env as sn
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game import pots
 from snooker_env.game.balls import mask_of
-from snooker_env.tasks import discrete_actions
 from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 
 R = 0.02625
@@ -128,35 +127,3 @@ def test_it_passes_gymnasiums_checker():
         gymnasium.make("Snooker-v0", action="discrete", noise="professional").unwrapped,
         skip_render_check=True,
     )
-
-
-@pytest.mark.parametrize("wrong", [-1, SIZE, 0.5, None, "3", [1, 2]])
-def test_wrong_choices_change_nothing(wrong):
-    env = SnookerEnv(action="discrete")
-    env.reset(seed=0)
-    before = env.get_state()
-    with pytest.raises(ValueError, match=r"action = .*must be an integer in \[0, 540\)"):
-        env.step(wrong)
-    assert env.get_state() == before
-
-
-def test_wrong_choices_of_many_name_the_table():
-    env = native(3)
-    env.reset(seed=0)
-    with pytest.raises(ValueError, match=r"actions\[1\] = 540: must be in \[0, 540\)"):
-        env.step(np.array([0, 540, 1]))
-    with pytest.raises(ValueError, match="must be 3 integers"):
-        env.step(np.zeros((3, 4)))
-
-
-def test_what_does_not_go_together_is_refused():
-    for name in ("elevation", "placement"):
-        with pytest.raises(ValueError, match=f"{name} = True: must be False"):
-            SnookerEnv(action="discrete", **{name: True})
-    with pytest.raises(ValueError, match="decision = True: must be False"):
-        SnookerEnv(action="discrete", task="frame", decision=True)
-    with pytest.raises(ValueError, match="action = 'plain'"):
-        SnookerEnv(action="plain")
-    with pytest.raises(ValueError, match="a Box has no masks"):
-        SnookerEnv().action_masks()
-    assert SnookerEnv(action="discrete").action_space.n == discrete_actions.SIZE

@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 
-from snooker_env import Options
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.game.balls import CUE
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
@@ -62,19 +61,3 @@ def test_the_place_anywhere_is_a_share_of_the_table():
     env.step(np.array([-1, 0, 0, 0.5, 0.5, 0.4], np.float32))
     start = env.history[0].shot.segments[0]
     assert start[:2] == pytest.approx([0.5 * HALF_WIDTH, 0.4 * HALF_LENGTH], abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "field"),
-    [
-        ({"game": "pool"}, "game"),
-        ({"game": "shoot_out", "miss": "clear_path"}, "miss"),
-        ({"game": "six_red", "time_to_play": 5.0}, "time_to_play"),
-        ({"game": "shoot_out", "time_to_play": 0.0}, "time_to_play"),
-        ({"game": "shoot_out", "time_to_play": 15.001}, "time_to_play"),  # no stroke would ever be in time
-        ({"task": "visit", "game": "six_red"}, "game"),
-    ],
-)
-def test_wrong_options_are_refused(wrong, field):
-    with pytest.raises(ValueError, match=field):
-        Options(**{"task": "frame"} | wrong)

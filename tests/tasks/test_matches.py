@@ -81,21 +81,6 @@ def test_a_frame_that_is_stopped_truncates_the_match():
     assert ends == [(False, False)] * 4 + [(False, True)]
 
 
-@pytest.mark.parametrize(
-    ("frames", "allowed"),
-    [(2, "must be odd"), (0, "must be an integer"), (True, "must be"), ("7", "must be")],
-)
-def test_wrong_lengths_are_refused(frames, allowed):
-    refused(lambda: SnookerEnv(task="match", frames=frames), "frames", repr(frames), allowed)
-    refused(lambda: SnookerEnv(task="frame", frames=5), "frames", "5", 'must be 7 with task="frame"')
-    refused(
-        lambda: SnookerEnv(task="frame", reward="frames"),
-        "reward",
-        "'frames'",
-        "must be one of 'points', 'win'",
-    )
-
-
 def test_a_state_belongs_to_matches_of_its_length():
     short, long = (SnookerEnv(task="match", frames=n) for n in (3, 5))
     short.reset(seed=1)

@@ -14,7 +14,6 @@ from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.frame import Frame
 from snooker_env.game.referee import Stroke
 from snooker_env.tasks.options import MAX_STROKES
-from tests.refusals import refused
 
 FOUL = np.array([-1.0, 0, 0, -0.5, 0, 0, -1], np.float32)
 """Straight down the table, as softly as can be, and the other is to play again after his foul."""
@@ -161,24 +160,6 @@ def test_it_is_sound_for_gymnasium_and_round_trips():
         spec.kwargs = {"task": "frame", "max_strokes": limit}
         again = gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(spec.to_json()))
         assert again.unwrapped.options.max_strokes == limit
-
-
-def test_wrong_limits_are_refused_and_a_visit_has_none():
-    for wrong in (0, -1, 1.5, "10", True, 10**9 + 1, float("nan")):
-        refused(
-            lambda wrong=wrong: frame_of(max_strokes=wrong),
-            "max_strokes",
-            repr(wrong),
-            "must be an integer in [1, 1000000000]",
-        )
-    for make in (SnookerEnv, SnookerVectorEnv):
-        for wrong in (None, 50):
-            refused(
-                lambda make=make, wrong=wrong: make(max_strokes=wrong),
-                "max_strokes",
-                repr(wrong),
-                'must be 1000 with task="visit"',
-            )
 
 
 def test_the_default_is_the_same_everywhere():
