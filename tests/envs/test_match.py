@@ -16,9 +16,10 @@ from pettingzoo.test import api_test, render_test, seed_test
 
 WIN = {"layout": "colours", "aim": "target", "reward": "win"}
 CHOICES = {"action": "discrete", "layout": "random:2"}
+MATCH = {"frames": 3, "layout": "pots:easy", "nominate": True, "concede": True}
 
 
-@pytest.mark.parametrize("options", [{"aim": "target"}, {"max_strokes": 20}, WIN, CHOICES])
+@pytest.mark.parametrize("options", [{"aim": "target"}, {"max_strokes": 20}, WIN, CHOICES, MATCH | CHOICES])
 def test_pettingzoo_checks_its_interface(options, strict, capsys):
     api_test(sn.match_env(**options), num_cycles=200)
     assert "Passed API test" in capsys.readouterr().out
@@ -82,8 +83,9 @@ def test_masked_observations_of_both_players_hold_their_masks():
         sn.match_env().action_mask("player_0")
 
 
-def test_pettingzoo_checks_its_seeds(strict):
-    seed_test(lambda: sn.match_env(aim="target", noise="club", layout="random:3"), num_cycles=60)
+@pytest.mark.parametrize("options", [{"noise": "club", "layout": "random:3"}, MATCH])
+def test_pettingzoo_checks_its_seeds(options, strict):
+    seed_test(lambda: sn.match_env(aim="target", **options), num_cycles=60)
 
 
 def test_pettingzoo_checks_its_pictures(monkeypatch):
@@ -131,41 +133,6 @@ def test_whole_matches_end_for_both_and_somebody_wins():
         assert not env.agents and frame.phase == "over" and info["winner"] == frame.winner
         want = frame.scores if reward == "points" else (frame.winner == 0, frame.winner == 1)
         assert totals == {"player_0": float(want[0] - want[1]), "player_1": float(want[1] - want[0])}
-
-
-def test_a_match_may_be_cut_short():
-    env = sn.match_env(max_strokes=7)
-    env.reset(seed=1)
-    while not any(env.truncations.values()):
-        env.step(np.zeros(7, np.float32))
-    assert env.strokes == 7 and all(env.truncations.values()) and not any(env.terminations.values())
-
-
-@pytest.mark.parametrize(
-    ("decision", "turn", "played"),
-    [(0.0, "player_1", True), (1.0, "player_1", True), (-1.0, "player_0", False)],
-)
-def test_the_decision_after_a_foul_is_part_of_the_action(decision, turn, played):
-    """Player 1 comes to the table after a foul: an easy pot if it plays; or player 0 has to play again."""
-    env = frame_state(sn.match_env(aim="target"), PLACES, {"phase": "choice", "striker": 1, "scores": (0, 4)})
-    assert env.agent_selection == "player_1" and env.infos["player_1"]["choice"]
-    before = env.positions.tobytes()
-    env.step(np.array([-0.5, 0, 0, 0, 0, 0, decision], np.float32))
-    assert env.agent_selection == turn and (env.positions.tobytes() != before) == played
-    assert env.rewards == {"player_0": -float(played), "player_1": float(played)} and env.strokes == played
-
-
-def test_after_a_miss_the_balls_may_be_replaced():
-    env = sn.match_env(miss="clear_path", layout="break_off")
-    env.reset(seed=3)
-    offender, before = env.agent_selection, env.positions.copy()
-    # with the reds in sight, into the bottom cushion
-    env.step(np.array([-0.9, 0, 0, -0.5, 0.6, -1.0, 0], np.float32))
-    assert env.frame.miss_called and env.agent_selection != offender
-    moved = env.positions.copy()
-    env.step(np.array([0, 0, 0, 0, 0, 0, 1.0], np.float32))
-    assert env.agent_selection == offender and not np.array_equal(moved, env.positions)
-    assert np.array_equal(before[1:], env.positions[1:]) and env.frame.in_hand
 
 
 @pytest.mark.parametrize(

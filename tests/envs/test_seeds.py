@@ -21,13 +21,17 @@ def play(env, seed, steps=6, actions=1):
     return pickle.dumps(jsonable(out))
 
 
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_the_same_seed_plays_the_same_game_bit_for_bit(layout):
-    env = SnookerEnv(layout=layout, noise="club", aim="target")
-    first = play(env, 5)
-    assert play(env, 5) == first  # again in the same environment
-    assert play(SnookerEnv(layout=layout, noise="club", aim="target"), 5) == first  # and in a new one
-    assert play(env, 6) != first
+FRAME = {"task": "frame", "decision": True, "placement": True, "layout": "random:3"}
+FRAMES = [FRAME | {"opponent": name} for name in ("none", "random", "ghost_ball")]
+
+
+@pytest.mark.parametrize("options", [*({"layout": layout} for layout in LAYOUTS), *FRAMES])
+def test_the_same_seed_plays_the_same_game_bit_for_bit(options):
+    env, other = (SnookerEnv(noise="club", aim="target", **options) for _ in range(2))
+    first = play(env, 5, 30)
+    assert play(env, 5, 30) == first  # again in the same environment
+    assert play(other, 5, 30) == first  # and in a new one
+    assert play(env, 6, 30) != first
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)

@@ -14,12 +14,18 @@ from snooker_env.tasks.box_actions import MAX_ELEVATION, TARGET_SPAN
 from tests.tables import after_strike, speed_of, table_state
 
 
+def standing(**options):
+    """A table with little on it."""
+    env = SnookerEnv(render_mode="ansi", **options)
+    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    return env
+
+
 @pytest.mark.parametrize("side", [0.0, 1.0, -1.0, 0.5])
 @pytest.mark.parametrize("aim", [-1.0, -0.75, -0.3, 0.0, 0.1, 0.5, 0.99])
 def test_absolute_aim_is_the_direction_in_which_the_ball_leaves(side, aim):
     """Also with side spin: the squirt is compensated, so the cue itself points elsewhere."""
-    env = SnookerEnv(render_mode="ansi")
-    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    env = standing()
     v, w = after_strike(env, [0.0, side, 0.0, aim])
     direction = math.pi * float(np.float32(aim))
     assert math.remainder(math.atan2(v[1], v[0]) - direction, 2 * math.pi) == pytest.approx(0.0, abs=1e-9)
@@ -34,20 +40,16 @@ def shot_of(env, *action_and_table):
 
 def test_squirt_is_what_is_compensated():
     """The same action with hardly an end mass in the formula: the cue's own direction is another one."""
-    heavy, light = (SnookerEnv(physics={"end_mass_ratio": ratio}) for ratio in (5.0, 1e9))
-    cues = []
-    for env in (heavy, light):
-        cues.append(shot_of(env, [0, 1, 0, 0.25], SPOTS, np.ones(N_BALLS, bool), 2)[3])
-    assert cues[1] == pytest.approx(math.pi / 4, abs=1e-8)
-    assert cues[0] - cues[1] == pytest.approx(
-        -math.atan(2.5 * 0.5 * math.sqrt(0.75) / (1 + 5 + 2.5 * 0.75)), abs=1e-8
-    )
+    envs = (SnookerEnv(physics={"end_mass_ratio": ratio}) for ratio in (5.0, 1e9))
+    heavy, light = (shot_of(env, [0, 1, 0, 0.25], SPOTS, np.ones(N_BALLS, bool), 2)[3] for env in envs)
+    assert light == pytest.approx(math.pi / 4, abs=1e-8)
+    squirt = math.atan(2.5 * 0.5 * math.sqrt(0.75) / (1 + 5 + 2.5 * 0.75))
+    assert heavy - light == pytest.approx(-squirt, abs=1e-8)
 
 
 @pytest.mark.parametrize(("a", "speed"), [(-1.0, 0.2), (1.0, 7.0), (0.0, 3.6), (-0.5, 1.9)])
 def test_speed_is_linear_between_its_ends(a, speed):
-    env = SnookerEnv(render_mode="ansi")
-    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    env = standing()
     assert np.hypot(*after_strike(env, [a, 0, 0, 0.3])[0]) == pytest.approx(speed, rel=1e-12)
 
 
@@ -65,14 +67,12 @@ def test_speed_is_linear_between_its_ends(a, speed):
 )
 def test_the_tip_stays_on_the_disc_within_the_miscue_limit(side, top, b, t):
     """A pair outside is drawn back along its own direction, one inside is as it is."""
-    env = SnookerEnv(render_mode="ansi")
-    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    env = standing()
     _, w = after_strike(env, [0.0, side, top, 0.0])
     scale = 2.5 * speed_of(0.0) / R
     cue = -shot_of(env, [0, side, top, 0], env.positions, env.on_table, 2)[3]
-    assert cue == pytest.approx(
-        math.atan(2.5 * b * math.sqrt(1 - b * b) / (1 + 30 + 2.5 * (1 - b * b))), abs=1e-4
-    )
+    squirt = math.atan(2.5 * b * math.sqrt(1 - b * b) / (1 + 30 + 2.5 * (1 - b * b)))
+    assert cue == pytest.approx(squirt, abs=1e-4)
     assert w[2] / scale == pytest.approx(b, abs=1e-4)
     assert w[1] / scale == pytest.approx(t, abs=1e-4)  # rolling along +x is a positive turn about +y
     assert np.hypot(*w[1:]) / scale <= 0.5 * (1 + 1e-12)
@@ -80,9 +80,8 @@ def test_the_tip_stays_on_the_disc_within_the_miscue_limit(side, top, b, t):
 
 @pytest.mark.parametrize(("a", "degrees"), [(-1.0, 0.0), (0.0, 15.0), (1.0, 30.0)])
 def test_elevation_lengthens_the_action_and_takes_speed(a, degrees):
-    env = SnookerEnv(elevation=True, render_mode="ansi")
+    env = standing(elevation=True)
     assert env.action_space.shape == (5,) and SnookerEnv().action_space.shape == (4,)
-    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
     v, w = after_strike(env, [0.0, 1.0, 0.0, 0.0, a])
     angle = math.radians(degrees)
     assert math.radians(30) == MAX_ELEVATION
@@ -161,6 +160,12 @@ def straight(rng):
             return ball, cue, math.atan2(d[1], d[0])
 
 
+def astray_of(env, direction):
+    """The angle between the cue ball's way off the tip and a direction."""
+    v = env.last_shot.at(0.0)[1][CUE]
+    return math.remainder(math.atan2(v[1], v[0]) - direction, 2 * math.pi)
+
+
 def test_target_aim_of_nothing_pots_a_straight_ball():
     """a = 0 is the line of the best pot: any straight pot goes in, 3 degrees off it does not."""
     env = SnookerEnv(aim="target", render_mode="ansi")
@@ -174,17 +179,13 @@ def test_target_aim_of_nothing_pots_a_straight_ball():
         table_state(env, {CUE: cue, 1: ball, BLACK: black}, BallOn.RED)
         before = env.get_state()
         info = env.step([-0.4, 0.0, -0.3, 0.0])[4]
-        v = env.last_shot.at(0.0)[1][CUE]
-        assert math.remainder(math.atan2(v[1], v[0]) - direction, 2 * math.pi) == pytest.approx(0.0, abs=1e-6)
+        assert astray_of(env, direction) == pytest.approx(0.0, abs=1e-6)
         assert info["pots"] == 1 and info["first_ball"] == 1
         assert env.last_shot.potted[1] >= 0
         for a in (-1.0, 1.0):
             env.set_state(before)
             tried, astray = tried + 1, astray + (env.step([-0.4, 0.0, -0.3, a])[4]["pots"] == 0)
-            v = env.last_shot.at(0.0)[1][CUE]
-            assert math.remainder(
-                math.atan2(v[1], v[0]) - direction - a * TARGET_SPAN, 2 * math.pi
-            ) == pytest.approx(0.0, abs=1e-6)
+            assert astray_of(env, direction + a * TARGET_SPAN) == pytest.approx(0.0, abs=1e-6)
     assert tried > 50 and astray > 0.8 * tried
 
 
@@ -193,14 +194,8 @@ def test_target_aim_without_a_pot_is_at_the_middle_of_what_is_seen():
     # the black hides half of the red: no pot there
     table_state(env, {CUE: (0.0, 1.0), 1: (0.0, 1.7), BLACK: (0.05, 1.3)}, BallOn.RED)
     assert len(pots(env.positions, env.on_table, env.on)) == 0
-    left, edge = (
-        math.pi / 2 + math.asin(2 * R / 0.7),
-        math.atan2(0.3, 0.05) + math.asin(2 * R / math.hypot(0.05, 0.3)),
-    )
-    middle = 0.5 * (left + edge)
-    assert shot_of(env, [0, 0, 0, 0.0], env.positions, env.on_table, env.on)[3] == pytest.approx(
-        middle, abs=1e-12
-    )
-    assert shot_of(env, [0, 0, 0, -0.5], env.positions, env.on_table, env.on)[3] == pytest.approx(
-        middle - TARGET_SPAN / 2
-    )
+    left = math.pi / 2 + math.asin(2 * R / 0.7)
+    edge = math.atan2(0.3, 0.05) + math.asin(2 * R / math.hypot(0.05, 0.3))
+    for a in (0.0, -0.5):
+        aim = shot_of(env, [0, 0, 0, a], env.positions, env.on_table, env.on)[3]
+        assert aim == pytest.approx(0.5 * (left + edge) + a * TARGET_SPAN, abs=1e-12)

@@ -3,7 +3,6 @@
 import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env
 
 import snooker_env as sn
 from snooker_env.envs.snooker import SnookerEnv
@@ -88,22 +87,6 @@ def test_solved_aims_pot_more_than_straight_lines():
     assert made["discrete"] > 0.95 > made["box"] + 0.1
 
 
-@pytest.mark.parametrize("noise", ["none", "club"])
-def test_one_table_and_many_play_alike(noise):
-    many, ones = native(5, noise=noise), [SnookerEnv(action="discrete", noise=noise) for _ in range(5)]
-    observations, _ = many.reset(seed=3)
-    rng = np.random.default_rng(0)
-    for k, one in enumerate(ones):
-        assert np.array_equal(one.reset(seed=3 + k)[0], observations[k])
-    masks = many.unwrapped.action_masks()
-    chosen = np.array([rng.choice(np.flatnonzero(m)) for m in masks])
-    observations, rewards, *_ = many.step(chosen)
-    for k, one in enumerate(ones):
-        assert np.array_equal(one.tables.action_masks()[0], masks[k])
-        observation, reward, *_ = one.step(chosen[k])
-        assert np.array_equal(observation, observations[k]) and reward == rewards[k]
-
-
 def test_masks_offer_the_pots_there_are():
     env = native(200, layout="random:1")
     env.reset(seed=0)
@@ -120,10 +103,3 @@ def test_masks_offer_the_pots_there_are():
             lines = masks[k].reshape(POTS, STROKES)
             assert lines[0].all() and (lines == lines[:, :1]).all()
     assert 0 in counts and len(counts) > 2
-
-
-def test_it_passes_gymnasiums_checker():
-    check_env(
-        gymnasium.make("Snooker-v0", action="discrete", noise="professional").unwrapped,
-        skip_render_check=True,
-    )

@@ -51,15 +51,6 @@ def test_alone_a_miss_and_a_foul_give_the_table_back():
     assert not np.array_equal(env.positions[BLUE], before)  # from where the balls lie
 
 
-def test_a_cue_ball_in_hand_stands_in_the_d_and_is_played_from_where_it_is_placed():
-    places = {1: (0.6, 1.4), BLACK: SPOTS[BLACK], CUE: (D_RADIUS / 2, -1.0475)}
-    env = frame_state(frame_env(opponent="ghost_ball"), places, {"in_hand": True})
-    assert env.in_hand and env.on_table[CUE]
-    twin = frame_state(frame_env(render_mode="ansi"), places, {"in_hand": True})
-    twin.step([-0.9, 0, 0, 0, -1.0, -1.0, 0])
-    assert np.allclose(twin.last_shot.at(0.0)[0][CUE], (-D_RADIUS, -1.0475))
-
-
 # Decisions
 
 
@@ -86,7 +77,7 @@ def test_without_the_option_the_agent_always_plays():
 def test_replacing_after_a_miss_brings_the_balls_back():
     env = sn.match_env(miss="clear_path")
     env.reset(seed=1)
-    offender = env.frame.striker
+    offender, before = env.frame.striker, env.positions.copy()
     env.step(np.array([-0.8, 0, 0, -0.5, 0.3, 0.2, 0]))  # at the bottom cushion, hitting nothing
     placed = 0.3 * D_RADIUS, -1.0475 - D_RADIUS * np.sqrt(1 - 0.3**2) * 0.6
     assert env.frame.choices == ("play", "play_again", "replace")
@@ -96,6 +87,7 @@ def test_replacing_after_a_miss_brings_the_balls_back():
     env.step(np.array([0, 0, 0, 0, 0, 0, 1.0]))
     assert env.strokes == 1 and np.allclose(env.positions[CUE], placed, rtol=0, atol=1e-15)
     assert env.frame.striker == offender and env.frame.in_hand
+    assert env.agent_selection == f"player_{offender}" and np.array_equal(before[1:], env.positions[1:])
 
 
 def test_a_free_ball_is_seen_and_scores():

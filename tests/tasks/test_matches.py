@@ -103,32 +103,6 @@ def test_the_length_of_a_match_says_that_it_is_one():
     refused(lambda: sn.match_env(task="frame", frames=3), "frames", "3", 'must be 7 with task="frame"')
 
 
-def test_pettingzoo_checks_a_match(capsys):
-    pytest.importorskip("pettingzoo")
-    from pettingzoo.test import api_test, seed_test
-
-    options = {
-        "task": "match",
-        "frames": 3,
-        "layout": "pots:easy",
-        "nominate": True,
-        "concede": True,
-        "aim": "target",
-    }
-    api_test(sn.match_env(**options, action="discrete"), num_cycles=100)
-    seed_test(lambda: sn.match_env(**options), num_cycles=50)
-    assert "Passed API test" in capsys.readouterr().out
-
-
-def test_gymnasium_checks_a_match():
-    from gymnasium.utils.env_checker import check_env
-
-    check_env(
-        SnookerEnv(task="match", layout="pots:easy", opponent="random", nominate=True, lot=True),
-        skip_render_check=True,
-    )
-
-
 # Who breaks
 
 

@@ -10,7 +10,6 @@ from gymnasium.utils.env_checker import check_env
 
 import snooker_env as sn
 from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.frame import Frame
 from snooker_env.game.referee import Stroke
 from snooker_env.tasks.options import MAX_STROKES
@@ -84,14 +83,6 @@ def test_random_play_with_all_defaults_ends_at_the_limit_and_starts_anew():
     assert len(ends) >= 3 and any(ends)
 
 
-def test_ppo_trains_on_frames_that_are_stopped():
-    stable_baselines3 = pytest.importorskip("stable_baselines3")
-    env = gymnasium.make("Snooker-v0", task="frame", opponent="random", max_strokes=30, layout="random:3")
-    stable_baselines3.PPO(
-        "MlpPolicy", env, n_steps=64, batch_size=64, n_epochs=1, seed=0, device="cpu"
-    ).learn(256)
-
-
 # The limit
 
 
@@ -160,8 +151,3 @@ def test_it_is_sound_for_gymnasium_and_round_trips():
         spec.kwargs = {"task": "frame", "max_strokes": limit}
         again = gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(spec.to_json()))
         assert again.unwrapped.options.max_strokes == limit
-
-
-def test_the_default_is_the_same_everywhere():
-    for made in (SnookerEnv(task="frame"), SnookerVectorEnv(task="frame"), sn.match_env()):
-        assert made.unwrapped.options.max_strokes == MAX_STROKES
