@@ -7,24 +7,14 @@ import pickle
 import numpy as np
 import pytest
 
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, PINK, SPOTS
 from snooker_env.game.frame import Frame
 from snooker_env.tasks.box_actions import MAX_SPEED, MIN_SPEED
 
 LAYOUTS = ("opened", "held_out", "break_off", "line_up", "colours", "random:0", "random:1", "random:15")
-INFO = {
-    "points": float,
-    "break": float,
-    "foul": bool,
-    "penalty": int,
-    "pots": int,
-    "fouls": int,
-    "first_ball": int,
-    "ball_on": int,
-    "events": int,
-    "seconds": float,
-}
+INFO = {"points": float, "break": float, "foul": bool, "seconds": float}
+INFO |= dict.fromkeys(("penalty", "pots", "fouls", "first_ball", "ball_on", "events"), int)
 COPIES = [
     pytest.param(copy.deepcopy, id="deepcopy"),
     pytest.param(lambda env: pickle.loads(pickle.dumps(env)), id="pickle"),

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
 
-from snooker_env import match_env
+from snooker_env import SnookerEnv, match_env
 from snooker_env.benchmark import FREE
-from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.tasks import observations
 from snooker_env.tasks.box_actions import AIMS
 from tests.tables import viewed

@@ -1,14 +1,14 @@
 """Are wrong arguments, actions, states and options refused, and does that change nothing?"""
 
 import json
+from functools import partial
 
 import gymnasium
 import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env import SnookerVectorEnv
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import Options, SnookerEnv, SnookerVectorEnv
 from snooker_env.tasks.options import NAMES
 from tests.refusals import FIDELITY, INF, NAN, WRONG_FIDELITIES, case, make, refused
 
@@ -101,6 +101,39 @@ def test_every_argument_of_the_environment_is_in_the_table_of_errors():
     with pytest.raises(TypeError, match="foul_play"):
         SnookerEnv(foul_play=True)
     refused(lambda: SnookerEnv("visit"), "options", "'visit'", "must be an Options or None")
+
+
+MATCHES = partial(sn.MatchVectorEnv, 2)
+OTHERS = [
+    (SnookerVectorEnv, {"options": "frame"}, "options = 'frame': must be an Options or None"),
+    (SnookerVectorEnv, {"threads": 0}, "threads"),
+    (SnookerVectorEnv, {"max_episode_steps": 0}, "max_episode_steps"),
+    (SnookerVectorEnv, {"render_mode": "human"}, "render_mode"),
+    (SnookerVectorEnv, {"autoreset_mode": "never"}, ".*never"),
+    (SnookerVectorEnv, {"num_envs": 0}, "num_envs"),
+    (MATCHES, {"seats": ({},)}, "seats = .*must be None, or two dicts"),
+    (
+        MATCHES,
+        {"seats": ({}, {"layout": "line_up"})},
+        r"key of seats\[1\] = 'layout': must be one of 'action'",
+    ),
+    (MATCHES, {"seats": ({"noise": "club"}, {"noise": "xx"})}, r"seats\[1\]\.noise = 'xx': must be"),
+    (MATCHES, {"opponent": "random"}, "options = .*opponent='random'"),
+    (MATCHES, {"autoreset_mode": "SameStep"}, "autoreset_mode = "),
+    (sn.match_env, {"reward": "pots"}, "reward = "),
+    (sn.match_env, {"render_mode": "x"}, "render_mode = "),
+    (sn.match_env, {"options": Options()}, ".*a match has two players"),
+    (sn.match_env, {"options": Options(task="frame", opponent="random")}, ".*a match has two players"),
+    (sn.match_env, {"task": "frame", "frames": 3}, 'frames = 3: must be 7 with task="frame"'),
+]
+
+
+@pytest.mark.parametrize(("make", "arguments", "says"), OTHERS)
+def test_wrong_arguments_of_many_tables_and_of_matches(make, arguments, says):
+    if make is not SnookerVectorEnv:
+        pytest.importorskip("pettingzoo")
+    with pytest.raises(ValueError, match=f"^{says}"):
+        make(**arguments)
 
 
 PLAYED = {

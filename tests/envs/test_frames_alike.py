@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env import SnookerVectorEnv
 from snooker_env.envs.match import PLAYERS
-from snooker_env.envs.vector import SnookerVectorEnv
 from tests.tables import plain
 
 pytest.importorskip("pettingzoo")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import SnookerEnv
 from snooker_env.tasks.noise import Noise
 
 Z = (0.0, 0.0, 0.0)
@@ -58,18 +58,12 @@ def test_inputs_of_a_shot_are_left_as_they_are(many):
 def test_any_real_dtype_and_memory_order_gives_the_same_shot():
     r, v, w = np.array([(0.0, 0.0), (0.5, 0.0625)]), np.array([(2.0, 0.0), (0.0, 0.0)]), np.ones((2, 3))
     want = sn.simulate(r, v, w).positions
-    for change in (
-        np.asfortranarray,
-        list,
-        lambda a: a.astype(np.float32),
-        lambda a: a.astype(">f8"),
-        lambda a: a[::-1][::-1],
-    ):
+    others = (lambda a: a.astype(np.float32), lambda a: a.astype(">f8"), lambda a: a[::-1][::-1])
+    for change in (np.asfortranarray, list, *others):
         assert np.array_equal(sn.simulate(change(r), change(v), change(w)).positions, want)
-    whole = sn.simulate(
-        np.zeros((1, 2), np.int32), np.array([(1, 0)], np.uint8), np.zeros((1, 3), np.int64)
-    ).positions
-    assert np.array_equal(whole, sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [Z]).positions)
+    whole = np.zeros((1, 2), np.int32), np.array([(1, 0)], np.uint8), np.zeros((1, 3), np.int64)
+    want = sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [Z]).positions
+    assert np.array_equal(sn.simulate(*whole).positions, want)
 
 
 def test_dicts_given_as_arguments_are_left_as_they_are():

@@ -188,14 +188,6 @@ def test_a_state_repeats_its_errors_and_a_seed_draws_others():
     assert ends[0] == ends[1] and len(set(ends)) == 51 and ends[-1] == ends[2 + 7]
 
 
-@pytest.mark.parametrize(
-    ("options", "field"), [({"reward": "pots"}, "reward"), ({"render_mode": "x"}, "render_mode")]
-)
-def test_wrong_arguments_are_refused(options, field):
-    with pytest.raises(ValueError, match=f"^{field} = "):
-        sn.match_env(**options)
-
-
 def test_pettingzoo_is_loaded_only_when_asked_for_and_its_lack_is_explained():
     code = (
         "import sys, snooker_env as sn\n"

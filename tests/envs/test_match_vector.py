@@ -120,15 +120,7 @@ def test_seats_differ_in_actions_and_errors():
     assert places[1] == places[3] == places[5] and len({tuple(place) for place in places[::2]}) == 3
 
 
-def test_wrong_arguments_are_refused():
-    for wrong, says in (
-        ({"seats": ({},)}, r"seats = .*must be None, or two dicts"),
-        ({"seats": ({}, {"layout": "line_up"})}, r"key of seats\[1\] = 'layout': must be one of 'action'"),
-        ({"opponent": "random"}, r"options = .*opponent='random'"),
-        ({"autoreset_mode": "SameStep"}, "autoreset_mode = "),
-    ):
-        with pytest.raises(ValueError, match=says):
-            sn.MatchVectorEnv(2, **wrong)
+def test_a_reset_is_needed_and_actions_are_one_array_a_seat():
     tables = sn.MatchVectorEnv(2, threads=1)
     with pytest.raises(gymnasium.error.ResetNeeded):
         tables.step(np.zeros((2, 7)))

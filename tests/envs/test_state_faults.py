@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env import SnookerEnv, SnookerVectorEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.frame import Frame, Saved
 from snooker_env.game.referee import FULL_TABLE, Stroke

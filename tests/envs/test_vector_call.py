@@ -8,7 +8,7 @@ import pytest
 from gymnasium.vector import AutoresetMode
 
 import snooker_env  # noqa: F401 - registers the id
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import SnookerEnv
 from snooker_env.envs.vector import NOT_OF_A_TABLE, SnookerVectorEnv
 from tests.envs.test_vector import actions_of, native, same, sync
 from tests.refusals import refused

@@ -75,24 +75,15 @@ def test_the_weights_are_those_of_the_noise_else_of_the_nearest():
 
 def test_a_value_says_more_for_a_better_player():
     at = held_out(30)
-    values = [
-        sn.player("planner_30").at({"noise": level}).search.value(at).mean()
-        for level in ("none", "professional", "club")
-    ]
+    players = (sn.player("planner_30").at({"noise": n}) for n in ("none", "professional", "club"))
+    values = [player.search.value(at).mean() for player in players]
     assert values[0] > values[1] > 1.5 * values[2] > 0
 
 
 def test_planner_search_best_pot_and_ghost_ball_make_points_in_this_order():
-    points = {
-        name: summary(play_visits(sn.player(name), 60, threads=1))["points_a_visit"]
-        for name in ("planner_60", "search_60", "best_pot_60", "ghost_ball")
-    }
-    assert (
-        points["planner_60"]
-        > 1.1 * points["search_60"]
-        > 1.5 * points["best_pot_60"]
-        > 1.5 * points["ghost_ball"]
-    )
+    players = map(sn.player, ("planner_60", "search_60", "best_pot_60", "ghost_ball"))
+    points = [summary(play_visits(player, 60, threads=1))["points_a_visit"] for player in players]
+    assert points[0] > 1.1 * points[1] > 1.5 * points[2] > 1.5 * points[3]
 
 
 def test_without_errors_search_clears_tables():

@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+from itertools import pairwise
 
 import gymnasium
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import BallOn
 from snooker_env.game.ruling import Foul
+from snooker_env.replays.bars import bars, standing_bar
 from snooker_env.replays.words import FOUL_WORDS, foul_words
 from tests.refusals import refused
 
@@ -68,10 +70,8 @@ def test_the_next_stroke_starts_where_the_last_one_left_the_table(strokes):
     for played, this, following in zip(strokes, data, data[1:], strict=False):
         if played.over:
             continue
-        end, there = (
-            places_at(this, np.inf if this["duration"] == 0 else this["duration"]),
-            set(this["on_table"]) - set(this["pots"]),
-        )
+        end = places_at(this, this["duration"] or np.inf)
+        there = set(this["on_table"]) - set(this["pots"])
         if this["after"] is not None:
             end, there = numbers(this["after"]["places"], "f8", 2), set(this["after"]["on_table"])
         assert there == set(following["on_table"])
@@ -150,13 +150,8 @@ def test_a_replay_of_a_replay_takes_another_title(strokes):
 
 
 def test_a_bare_shot_and_other_tables():
-    shot = sn.simulate(
-        [(0.0, -0.5), (0.1, 0.3)],
-        [(0.4, 3.0), (0, 0)],
-        [(0, 0, 0)] * 2,
-        table="pool9",
-        physics={"R": 0.028575},
-    )
+    places, pool = [(0.0, -0.5), (0.1, 0.3)], {"table": "pool9", "physics": {"R": 0.028575}}
+    shot = sn.simulate(places, [(0.4, 3.0), (0, 0)], [(0, 0, 0)] * 2, **pool)
     replay = sn.replay(shot, title="pool")
     data = replay.to_dict()
     assert data["players"] == [] and data["scene"]["lines"] is None and data["R"] == 0.028575
@@ -244,12 +239,8 @@ def test_what_is_no_replay_is_refused(source, words):
 
 def test_bad_arguments_are_refused(strokes, tmp_path):
     other = sn.simulate([(0.0, 0.0)], [(1.0, 0)], [(0, 0, 0)], table="tight")
-    refused(
-        lambda: sn.replay([strokes[0], other]),
-        "strokes[1]",
-        "another table",
-        "must be on the table of the first",
-    )
+    both = [strokes[0], other]
+    refused(lambda: sn.replay(both), "strokes[1]", "another table", "must be on the table of the first")
     refused(lambda: sn.replay(strokes, players=["a", "b", "c"]), "players", "'c'", "at most two")
     refused(lambda: sn.replay(strokes, players=["a", "b"]), "players", "2 names", "one for a visit")
     refused(lambda: sn.replay(strokes, title="\ud800"), "title", "ud800", "surrogate")
@@ -257,12 +248,8 @@ def test_bad_arguments_are_refused(strokes, tmp_path):
     refused(lambda: sn.replay([strokes[0], slower]), "strokes[1]", "other physics", "spin_decel")
     refused(lambda: sn.replay(strokes, title=3), "title", "3", "must be a str")
     refused(lambda: sn.replay(strokes, tmp_path / "break.exe"), "suffix", ".exe", ".html")
-    refused(
-        lambda: sn.replay(strokes[0]).save(tmp_path / "a.html", fps=3),
-        "path",
-        "a.html",
-        "must end in .mp4 or .gif",
-    )
+    save = sn.replay(strokes[0]).save
+    refused(lambda: save(tmp_path / "a.html", fps=3), "path", "a.html", "must end in .mp4 or .gif")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -274,10 +261,12 @@ def test_files_are_written_whole(strokes, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["break.html", "break.json"]
 
 
+def made():
+    return gymnasium.make("Snooker-v0", action="discrete")
+
+
 def test_the_wrapper_writes_each_wanted_episode(tmp_path):
-    env = sn.RecordReplay(
-        gymnasium.make("Snooker-v0", action="discrete"), tmp_path / "new", lambda k: k != 1, suffix=".json"
-    )
+    env = sn.RecordReplay(made(), tmp_path / "new", lambda k: k != 1, suffix=".json")
     lengths = []
     for k in range(3):
         env.reset(seed=k)
@@ -292,11 +281,7 @@ def test_the_wrapper_writes_each_wanted_episode(tmp_path):
 
 
 def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
-    env = sn.RecordReplay(
-        gymnasium.wrappers.Autoreset(gymnasium.make("Snooker-v0", action="discrete")),
-        tmp_path,
-        suffix=".json",
-    )
+    env = sn.RecordReplay(gymnasium.wrappers.Autoreset(made()), tmp_path, suffix=".json")
     env.reset(seed=1)
     ends = 0
     while ends < 3:
@@ -318,15 +303,82 @@ def test_the_wrapper_refuses_at_once_what_it_could_not_write(tmp_path, wrong, wo
 
 
 def test_the_wrapper_writes_what_was_cut_short(tmp_path):
-    env = sn.RecordReplay(
-        gymnasium.make("Snooker-v0", action="discrete"), tmp_path, suffix=".json", name_prefix="cut"
-    )
-    env.reset(seed=1)
-    env.step(67)
-    env.reset(seed=2)
-    env.step(67)
+    env = sn.RecordReplay(made(), tmp_path, suffix=".json", name_prefix="cut")
+    for seed in (1, 2):
+        env.reset(seed=seed)
+        env.step(67)
     env.close()
     assert [p.name for p in env.paths] == ["cut-episode-0.json", "cut-episode-1.json"]
-    refused(
-        lambda: sn.RecordReplay(gymnasium.make("CartPole-v1"), tmp_path), "env", "CartPoleEnv", "Snooker-v0"
-    )
+    other = gymnasium.make("CartPole-v1")
+    refused(lambda: sn.RecordReplay(other, tmp_path), "env", "CartPoleEnv", "Snooker-v0")
+
+
+# Score bars and the referee's words follow the ``Frame`` after each stroke
+
+
+FRAMES = (("ghost_ball", "colours", "none"), ("random", "colours", "club"), ("ghost_ball", "line_up", "club"))
+
+
+@pytest.fixture(scope="module", params=FRAMES)
+def frame(request):
+    """A whole frame's strokes, and the frame after each of the agent's steps."""
+    options = dict(zip(("opponent", "layout", "noise"), request.param, strict=True))
+    rules = {"task": "frame", "action": "discrete", "miss": "clear_path", "max_strokes": 120}
+    env = sn.SnookerEnv(**rules, **options)
+    env.keep_history = True
+    env.reset(seed=7)
+    rng, seen, ended = np.random.default_rng(7), [], False
+    while not ended:
+        action = int(rng.choice(np.flatnonzero(env.action_masks())))
+        _, _, terminated, truncated, _ = env.step(action)
+        seen.append((len(env.history), env.frame))
+        ended = terminated or truncated
+    return env, seen
+
+
+def test_scores_follow_the_frame(frame):
+    env, seen = frame
+    made = bars(env.history, ("A", "B"))
+    assert len(made) == len(env.history) > 3
+    for count, state in seen:
+        if count:
+            assert made[count - 1][1].scores == state.scores
+    for (_, after), (before, _) in pairwise(made):
+        assert before.scores == after.scores
+    assert {during.striker for during, _ in made} <= {0, 1}
+
+
+def test_a_break_is_the_sum_of_its_strokes(frame):
+    env, _ = frame
+    run, last = 0, None
+    for played, (before, after) in zip(env.history, bars(env.history, ("A", "B")), strict=True):
+        run = run if played.player == last else 0
+        assert before.break_points == run and after.break_points == run + played.points
+        potted = np.sum(played.shot.potted >= 0) if played.points else 0
+        assert len(after.potted) - len(before.potted) == potted
+        if played.points and run:
+            assert f"break of {run + played.points}" in after.words
+        run, last = run + played.points, played.player if played.points else None
+
+
+def test_the_end_is_shown(frame):
+    env, seen = frame
+    last, state = bars(env.history, ("Ada", "Bo"))[-1][1], seen[-1][1]
+    if state.winner is not None:
+        assert f"Frame to {('Ada', 'Bo')[state.winner]}" in last.words
+        assert f"{state.scores[state.winner]}-{state.scores[1 - state.winner]}" in last.words
+
+
+def test_the_bar_of_a_table_as_it_stands():
+    env = sn.SnookerEnv(action="discrete")
+    env.keep_history = True
+    env.reset(seed=1)
+    start = standing_bar(env.tables, 0, ("Ada",))
+    assert (start.scores, start.break_points, start.ball_on, start.reds_left) == ((0,), 0, "red", 15)
+    assert start.points_on == 147
+    env.step(67)
+    kept = bars(env.history, ("Ada",))[-1][1]
+    now = standing_bar(env.tables, 0, ("Ada",), kept)
+    assert now == kept and now.scores == (1,) and now.potted == kept.potted != ()
+    assert env.ball_on == BallOn.ANY_COLOUR
+    assert standing_bar(env.tables, 0, ()).players == ()

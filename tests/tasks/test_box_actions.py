@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, BallOn
 from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS as R

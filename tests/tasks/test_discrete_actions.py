@@ -1,22 +1,15 @@
 """Does ``action="discrete"`` play the shot it names, with an aim that sends the object ball at the pocket?"""
 
-import gymnasium
 import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import SnookerEnv
 from snooker_env.game import pots
 from snooker_env.game.balls import mask_of
 from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 
 R = 0.02625
-
-
-def native(n, **options):
-    return gymnasium.make_vec(
-        "Snooker-v0", n, vectorization_mode="vector_entry_point", action="discrete", **options
-    )
 
 
 def test_the_numbers_count_pots_speeds_sides_and_tops():
@@ -40,17 +33,13 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         speed, side, top = int(rng.integers(4, 9)), int(rng.integers(3)), int(rng.integers(5))
         env = SnookerEnv(action="discrete", layout="random:1", physics=physics)
         env.reset(seed=0)
-        env.tables.positions[0], env.tables.on_table[0], env.tables.game[0, :3] = (
-            positions,
-            on_table,
-            (1, 0, 0),
-        )
+        env.tables.positions[0], env.tables.on_table[0] = positions, on_table
+        env.tables.game[0, :3] = 1, 0, 0
         env.step(choice_of(0, speed, side, top))
         v, w = env._record.buffers.v[0, 0], env._record.buffers.w[0, 0]
         start = env._record.buffers.shots[0]
-        shot = sn.simulate(
-            [cue, ball], [start[:2], (0, 0)], [start[2:5], (0, 0, 0)], table=None, physics=constants
-        )
+        v1, w1 = [start[:2], (0, 0)], [start[2:5], (0, 0, 0)]
+        shot = sn.simulate([cue, ball], v1, w1, table=None, physics=constants)
         hit = shot.events[shot.events["kind"] == sn.EventKind.BALL_BALL]
         rolls = shot.events[(shot.events["kind"] == sn.EventKind.ROLL) & (shot.events["i"] == 1)]
         assert len(hit) and v.shape == (2,) and w.shape == (3,)
@@ -65,32 +54,19 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
 
 
 def test_solved_aims_pot_more_than_straight_lines():
-    made = {}
-    for action in ("discrete", "box"):
-        env = gymnasium.make_vec(
-            "Snooker-v0",
-            400,
-            vectorization_mode="vector_entry_point",
-            action=action,
-            aim="target",
-            layout="pots:medium",
-            physics="match",
-        )
+    speed, made = 2 * (SPEEDS[4] - 0.2) / 6.8 - 1, []
+    for action, stroke in (("discrete", choice_of(0, 4, 1, 2)), ("box", (speed, 0.0, 0.0, 0.0))):
+        options = {"action": action, "aim": "target", "layout": "pots:medium", "physics": "match"}
+        env = sn.SnookerVectorEnv(400, **options)
         env.reset(seed=0)
-        speed = 2 * (SPEEDS[4] - 0.2) / 6.8 - 1
-        strokes = (
-            np.full(400, choice_of(0, 4, 1, 2))
-            if action == "discrete"
-            else np.tile((speed, 0.0, 0.0, 0.0), (400, 1))
-        )
-        made[action] = (env.step(strokes)[1] > 0).mean()
-    assert made["discrete"] > 0.95 > made["box"] + 0.1
+        made.append((env.step(np.array([stroke] * 400))[1] > 0).mean())
+    assert made[0] > 0.95 > made[1] + 0.1
 
 
 def test_masks_offer_the_pots_there_are():
-    env = native(200, layout="random:1")
+    env = sn.SnookerVectorEnv(200, action="discrete", layout="random:1")
     env.reset(seed=0)
-    visits, masks = env.unwrapped.tables, env.unwrapped.action_masks()
+    visits, masks = env.tables, env.action_masks()
     assert masks.shape == (200, SIZE)
     counts = set()
     for k in range(200):

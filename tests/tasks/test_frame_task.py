@@ -8,7 +8,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
 
 import snooker_env as sn
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.ruling import AUTO
 from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
@@ -243,12 +243,27 @@ def test_of_two_players_the_one_who_waits_has_no_break_no_choice_and_no_free_bal
     assert [match.infos[name]["break"] for name in match.possible_agents] == [33.0, 0.0]
 
 
-@pytest.mark.parametrize(("lead", "needs"), [(14, False), (19, False), (20, True)])
-def test_a_free_ball_is_worth_the_ball_on(lead, needs):
-    """Pink and black are left: 13 points, and 6 for the free ball."""
+PINK_AND_BLACK = {CUE: (0.0, 0.3), PINK: (0.0, 0.9), BLACK: SPOTS[BLACK]}
+FREE = {"ball_on": BallOn.PINK, "free_ball": True}
+ONLY_BLACK, LAST = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}, {"ball_on": BallOn.BLACK}
+
+
+@pytest.mark.parametrize(
+    ("places", "frame", "available", "lead", "needs"),
+    [
+        *[
+            (PINK_AND_BLACK, FREE, 13 + 6, lead, needs)
+            for lead, needs in ((14, False), (19, False), (20, True))
+        ],
+        *[(ONLY_BLACK, LAST, 7, lead, needs) for lead, needs in ((0, False), (7, False), (8, True))],
+    ],
+)
+def test_snookers_are_needed_by_who_trails_by_more_than_is_left(places, frame, available, lead, needs):
+    """A free ball is worth the ball on."""
     env = frame_env(aim="absolute")
-    places = {CUE: (0.0, 0.3), PINK: (0.0, 0.9), BLACK: SPOTS[BLACK]}
-    frame = {"ball_on": BallOn.PINK, "scores": (10, 10 + lead), "free_ball": True}
-    observation, info = env.reset(options={"state": frame_state(env, places, frame).get_state()})
-    assert info["needs_snookers"] is needs and info["free_ball"]
-    assert observation[-len(FRAME_ENTRIES) + FRAME_ENTRIES.index("available")] == pytest.approx(19 / 155)
+    state = frame_state(env, places, frame | {"scores": (10, 10 + lead)}).get_state()
+    observation, info = env.reset(options={"state": state})
+    assert info["needs_snookers"] is needs and info["free_ball"] == ("free_ball" in frame)
+    names = dict(zip(FRAME_ENTRIES, observation[-len(FRAME_ENTRIES) :].tolist(), strict=True))
+    assert names["available"] == pytest.approx(available / 155)
+    assert names["lead"] == pytest.approx(-lead / (lead + 147))

@@ -1,17 +1,18 @@
 """Whose stroke is it in ``task="frame"``, what may he decide, and what is it worth?"""
 
-import json
-
 import gymnasium
 import numpy as np
 import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
+from snooker_env.game.frame import Frame
+from snooker_env.game.referee import Stroke
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import D_RADIUS
 from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
-from tests.tables import PLACES, frame_env, frame_state
+from snooker_env.tasks.options import MAX_STROKES
+from tests.tables import PLACES, frame_env, frame_state, plain
 
 TO_BLUE = 0.0
 """Absolute aim along +x."""
@@ -82,7 +83,7 @@ def test_replacing_after_a_miss_brings_the_balls_back():
     placed = 0.3 * D_RADIUS, -1.0475 - D_RADIUS * np.sqrt(1 - 0.3**2) * 0.6
     assert env.frame.choices == ("play", "play_again", "replace")
     assert not np.allclose(env.positions[CUE], placed)
-    after = json.loads(json.dumps(env.get_state()))
+    after = plain(env.get_state())
     env.set_state(after)
     env.step(np.array([0, 0, 0, 0, 0, 0, 1.0]))
     assert env.strokes == 1 and np.allclose(env.positions[CUE], placed, rtol=0, atol=1e-15)
@@ -98,8 +99,8 @@ def test_a_free_ball_is_seen_and_scores():
     _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
     assert (reward, info["points"], env.ball_on) == (1.0, 1.0, BallOn.ANY_COLOUR)
     assert np.array_equal(env.positions[BLUE], SPOTS[BLACK])  # it came back; its own spot is taken
-    plain = frame_state(frame_env(opponent="ghost_ball"), places, FOULED)
-    assert not plain.on >> BLUE & 1
+    other = frame_state(frame_env(opponent="ghost_ball"), places, FOULED)
+    assert not other.on >> BLUE & 1
 
 
 # Rewards
@@ -115,10 +116,8 @@ def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
         for reward in ("points", "win"):
             env = frame_env(opponent=opponent, reward=reward, layout=layout, noise="club")
             _, info = env.reset(seed=seed)
-            broke, before = (
-                broke + (info["opponent_score"] + info["score"] > 0),
-                before + (info["winner"] >= 0),
-            )
+            broke += info["opponent_score"] + info["score"] > 0
+            before += info["winner"] >= 0
             rng, total, over = np.random.default_rng(seed), 0.0, False
             while not over:
                 _, r, terminated, _, info = env.step(rng.uniform(-1, 1, 7))
@@ -141,7 +140,7 @@ def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost(
             continue
         won += 1
         assert info["winner"] == 1 and info["opponent_strokes"] > 0 and env.over
-        state = json.loads(json.dumps(env.get_state()))
+        state = plain(env.get_state())
         for start in (None, state):
             if start:
                 env.reset(options={"state": start})
@@ -159,16 +158,12 @@ def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost(
 # What a step returns
 
 
-ON_BLACK = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}
-
-
 @pytest.mark.parametrize("strokes", [5, 9])
 def test_a_frame_that_ends_by_the_rules_with_its_last_stroke_is_not_stopped(strokes):
-    frame = {"ball_on": BallOn.BLACK, "scores": (20, 0)}
-    env = frame_state(frame_env(aim="absolute", max_strokes=10), ON_BLACK, frame, strokes=strokes)
-    for _ in range(40):  # along the pot, a little to both sides of it
-        aim = np.arctan2(0.3, 0.3) / np.pi + np.random.default_rng(_).uniform(-0.01, 0.01)
-        env = frame_state(env, ON_BLACK, frame, strokes=strokes)
+    places, frame = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}, {"ball_on": BallOn.BLACK, "scores": (20, 0)}
+    env = frame_env(aim="absolute", max_strokes=10)
+    for aim in 0.25 + np.random.default_rng(0).uniform(-0.01, 0.01, 40):  # to both sides of the pot
+        frame_state(env, places, frame, strokes=strokes)
         _, _, terminated, truncated, info = env.step([-0.4, 0, 0, aim, 0, 0, 0])
         if terminated:
             assert not truncated and info["winner"] == 0 and info["strokes"] == strokes + 1
@@ -177,40 +172,105 @@ def test_a_frame_that_ends_by_the_rules_with_its_last_stroke_is_not_stopped(stro
     assert terminated
 
 
-@pytest.mark.parametrize(("lead", "needs"), [(0, False), (7, False), (8, True)])
-def test_snookers_are_needed_by_who_trails_by_more_than_is_left(lead, needs):
-    """Only the black is left, seven points; and the observation shows them."""
-    env = frame_env(aim="absolute")
-    plain = frame_state(env, ON_BLACK, {"ball_on": BallOn.BLACK, "scores": (10, 10 + lead)}).get_state()
-    observation, info = env.reset(options={"state": plain})
-    assert info["needs_snookers"] is needs
-    names = dict(zip(FRAME_ENTRIES, observation[-len(FRAME_ENTRIES) :].tolist(), strict=True))
-    assert names["available"] == pytest.approx(7 / 155)
-    assert names["lead"] == pytest.approx(-lead / (lead + 147))
-
-
 def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():
-    for env in (
-        frame_env(render_mode="ansi"),
-        sn.match_env(render_mode="ansi"),
-        sn.SnookerVectorEnv(2, task="frame", render_mode="ansi"),
-    ):
+    many, text = sn.SnookerVectorEnv(2, task="frame", render_mode="ansi"), {"render_mode": "ansi"}
+    for env, size in ((frame_env(**text), 7), (sn.match_env(**text), 7), (many, (2, 4))):
         assert env.render() and env.get_state()
-        with pytest.raises(
-            gymnasium.error.ResetNeeded, match=r"^call reset|^the frame has not begun: call reset"
-        ):
-            env.step(np.zeros((2, 4)) if isinstance(env, sn.SnookerVectorEnv) else np.zeros(7))
+        with pytest.raises(gymnasium.error.ResetNeeded, match=r"^call reset|^the frame has not begun: call"):
+            env.step(np.zeros(size))
     assert frame_env().frame.phase == "stroke" and frame_env().over
 
 
-# A colour that is named
+# A frame that goes nowhere is stopped by the referee, and no score that play reaches breaks it
 
 
-def test_a_colour_named_that_is_not_struck_first_costs_the_higher_of_the_two():
-    """Blue lies in the way: fair when nothing or blue was named; when black was named it costs seven."""
-    places = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
-    for named, penalty in ((-1, 0), (BLUE, 0), (PINK, 6), (BLACK, 7)):
-        env = frame_state(frame_env(aim="absolute"), places, {"ball_on": BallOn.ANY_COLOUR})
-        env.tables.nominated[0] = named
-        _, _, _, _, info = env.step([-0.9, 0, 0, TO_BLUE, 0, 0, 0])
-        assert (info["penalty"], info["fouls"]) == (penalty, Foul.WRONG_FIRST if penalty else 0), named
+FOUL = np.array([-1.0, 0, 0, -0.5, 0, 0, -1], np.float32)
+"""Straight down the table, as softly as can be, and the other is to play again after his foul."""
+
+
+# Scores
+
+
+def test_fouls_without_end_score_without_end():
+    """A rule has no ceiling: a hundred fouls around what the first version could count to, and beyond."""
+    for scores in ((9_980, 0), (0, 9_980), (9_800, 9_800), (2**53, 2**40)):
+        frame = Frame(scores=scores, miss="clear_path")
+        for _ in range(200):
+            frame, _ = frame.play(Stroke(), clear_path=True)
+            frame = Frame.from_dict(plain(frame.to_dict())).choose("play_again")
+        assert sum(frame.scores) == sum(scores) + 800
+
+
+def test_a_match_of_fouls_and_orders_to_play_again_ends_by_itself():
+    pytest.importorskip("pettingzoo")
+    env = sn.match_env(layout="random:2")
+    env.reset(seed=1)
+    state = env.get_state()
+    env.reset(options={"state": state | {"frame": state["frame"] | {"scores": [9_990, 9_990]}}})
+    for _ in range(2000):  # a turn is a stroke, or gives the table over
+        env.step(FOUL)
+        assert not any(env.terminations.values())
+        if any(env.truncations.values()):
+            break
+    assert env.strokes == MAX_STROKES == 1000 and all(env.truncations.values())
+    assert sum(env.frame.scores) >= 19_980 + 4 * 900 and env.infos["player_0"]["strokes"] == 1000
+    assert all(env.observation_spaces[player].contains(env.observe(player)) for player in env.possible_agents)
+
+
+# The limit
+
+
+@pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
+def test_the_referee_stops_the_frame_after_the_very_stroke(opponent):
+    env, cut = frame_env(opponent=opponent, max_strokes=6), 0
+    for seed in range(12):
+        _, info = env.reset(seed=seed)
+        played, rng = info["strokes"], np.random.default_rng(seed)
+        assert played < 6
+        while True:
+            obs, _, terminated, truncated, info = env.step(rng.uniform(-1, 1, 7))
+            played += (info["events"] > 0 or info["seconds"] > 0) + info["opponent_strokes"]
+            assert info["strokes"] == played <= 6 and env.observation_space.contains(obs)
+            assert truncated == (played == 6 and not terminated) and type(truncated) is bool
+            if terminated or truncated:
+                break
+        assert terminated or info["winner"] == -1
+        before = plain(env.get_state())
+        with pytest.raises(gymnasium.error.ResetNeeded):
+            env.step(np.zeros(7))
+        assert plain(env.get_state()) == before
+        cut += truncated and env.frame.striker == 1
+        other = frame_env(opponent=opponent, max_strokes=6)
+        other.set_state(before)  # in the middle of a visit of the opponent, too
+        assert other.over and plain(other.get_state()) == before
+        with pytest.raises(ValueError, match=r"state\.strokes = 6: must be below max_strokes = 6"):
+            other.reset(options={"state": before})
+    assert (cut > 0) == (opponent != "none")  # alone the agent is always to play
+
+
+def test_the_strokes_are_counted_on_from_a_state():
+    env, other = (frame_env(max_strokes=9) for _ in range(2))
+    env.reset(seed=1)
+    for _ in range(4):
+        env.step(FOUL)
+    state = plain(env.get_state())
+    assert state["strokes"] == 4
+    assert other.reset(options={"state": state})[1]["strokes"] == 4
+    assert [other.step(FOUL)[3] for _ in range(5)] == [False] * 4 + [True]
+    assert other.reset()[1]["strokes"] == 0
+    endless = frame_env(max_strokes=None)
+    endless.reset(options={"state": state | {"strokes": 10**6}})
+    assert not endless.step(FOUL)[3]
+
+
+def test_a_frame_that_is_stopped_in_the_opening_visit_is_reported_by_the_next_step():
+    """After the opponent's break-off the agent plays nothing, and is paid what the opponent scored."""
+    env, opened = frame_env(opponent="random", max_strokes=1), 0
+    for seed in range(10):
+        _, info = env.reset(seed=seed)
+        opened += info["strokes"]
+        _, reward, terminated, truncated, after = env.step(FOUL)
+        assert (terminated, truncated, after["strokes"]) == (False, True, 1) and after["winner"] == -1
+        assert reward == after["score"] - after["opponent_score"]
+        assert info["strokes"] == 0 or after["events"] == 0
+    assert 0 < opened < 10

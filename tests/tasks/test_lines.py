@@ -40,11 +40,8 @@ def first_met(positions, on_table, angles):
     to = positions - positions[0]
     along = to[:, 0] * np.cos(angles)[:, None] + to[:, 1] * np.sin(angles)[:, None]
     across2 = (to**2).sum(1) - along**2
-    runs = np.where(
-        on_table & (along > 0.0) & (across2 < 4 * R * R),
-        along - np.sqrt(np.maximum(0.0, 4 * R * R - across2)),
-        np.inf,
-    )
+    met = on_table & (along > 0.0) & (across2 < 4 * R * R)
+    runs = np.where(met, along - np.sqrt(np.maximum(0.0, 4 * R * R - across2)), np.inf)
     runs[:, 0] = np.inf
     return np.where(np.isfinite(runs.min(1)), runs.argmin(1), 0)
 
@@ -56,13 +53,12 @@ def test_windows_are_the_directions_in_which_a_ball_on_is_met_first(kind):
         positions, on_table = layout(kind, np.random.default_rng(seed))
         on = mask_of(range(1, 16)) if seed % 3 else mask_of([BLUE, BROWN, 3])
         found = windows_of(positions, on_table, on)
-        off = np.abs((angles[:, None] - found.mean(1) + np.pi) % (2 * np.pi) - np.pi) - 0.5 * (
-            found[:, 1] - found[:, 0]
-        )
+        half = 0.5 * (found[:, 1] - found[:, 0])
+        off = np.abs((angles[:, None] - found.mean(1) + np.pi) % (2 * np.pi) - np.pi) - half
         sure = np.abs(off).min(1) > 1e-9 if len(found) else np.ones(len(angles), bool)
         met = first_met(positions, on_table, angles)
         assert np.array_equal((off < 0.0).any(1)[sure], ((on >> met) & 1 == 1)[sure])
-        assert (np.diff(found[:, 1] - found[:, 0]) <= 0.0).all()
+        assert (np.diff(half) <= 0.0).all()
 
 
 def test_what_is_seen_is_offered_from_thin_on_either_side_to_full():
@@ -72,10 +68,8 @@ def test_what_is_seen_is_offered_from_thin_on_either_side_to_full():
     assert found[:, 0] == pytest.approx([0.0, -lines.THIN * half, lines.THIN * half], abs=1e-12)
     positions[2], on_table[2] = (-0.6, 0.3), True  # another red: the widest window first
     found, wide = lines_of(positions, on_table, mask_of([1, 2])), np.arctan2(0.3, -0.6)
-    other = np.arcsin(2 * R / np.hypot(0.6, 0.3))
-    assert found[:, 0] == pytest.approx(
-        [wide, wide - lines.THIN * other, wide + lines.THIN * other, 0.0], abs=1e-12
-    )
+    thin = lines.THIN * np.arcsin(2 * R / np.hypot(0.6, 0.3))
+    assert found[:, 0] == pytest.approx([wide, wide - thin, wide + thin, 0.0], abs=1e-12)
 
 
 def test_reds_all_round_are_one_window():
@@ -95,7 +89,6 @@ def test_the_break_off_is_thin_at_the_end_reds_where_they_are_seen():
         aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
         met = first_met(positions, on_table, aims)
         assert met[0] == ends[0] and ((met >= 1) & (met <= 15)).all()
-    positions[CUE] = 0.25, -1.0475
     positions[CUE] = 0.0, -1.15  # behind the brown: what it sees of the pack, if anything
     aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
     assert len(aims) and BROWN not in first_met(positions, on_table, aims)
@@ -113,11 +106,7 @@ def test_the_break_off_is_thin_at_the_end_reds_where_they_are_seen():
     ],
 )
 def test_there_is_a_fair_choice_and_a_fair_target(kind, n, least, target):
-    """Every choice aimed at the nearest ball on: none was fair at any break-off, and in 85 % of the snookers.
-
-    In frames the target line leads full at balls in the mouth of a pocket as well, and then the cue ball
-    follows them.
-    """
+    """In frames the target line leads full at balls in the mouth of a pocket too, which the cue ball follows."""
     found = fair.measured(kind, n, seed=0)
     assert found["tables"] > 0.7 * n and found["with_a_fair_choice"] >= least and found["target"] >= target
     assert found["target_at"]["3.6"] >= target - 0.1 and found["fair_choices"] > 0.6
@@ -126,11 +115,8 @@ def test_there_is_a_fair_choice_and_a_fair_target(kind, n, least, target):
 def test_an_escape_is_solved_for_the_stroke_that_is_played():
     """Speed, side and top turn the cue ball at a cushion; all choices of one line meet the red."""
     env = sn.SnookerEnv(action="discrete", physics="match", render_mode="ansi")
-    table_state(
-        env,
-        {CUE: (0.0, -0.5), BLUE: (0.0, 0.0), 1: (0.0, 0.6), 16: (0.15, 0.0), 17: (-0.15, 0.0)},
-        BallOn.RED,
-    )
+    wall = {16: (0.15, 0.0), BLUE: (0.0, 0.0), 17: (-0.15, 0.0)}
+    table_state(env, {CUE: (0.0, -0.5), 1: (0.0, 0.6), **wall}, BallOn.RED)
     state, aims, met = env.get_state(), [], 0
     picks = [choice_of(0, speed, side, top) for speed in (3, 5, 7) for side in range(3) for top in range(5)]
     for pick in picks:

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
-from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env import SnookerEnv, SnookerVectorEnv
 from snooker_env.tasks.saved_models import SavedModel
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_POINTS, Crew
@@ -49,15 +48,6 @@ def test_what_a_callable_answers_is_checked(answer, says):
         [env.reset(seed=seed) for seed in range(10)]
 
 
-def test_what_a_callable_itself_raises_is_left_as_it_is():
-    def opponent(observation, rng):
-        raise ValueError("my own fault")
-
-    env = frame_env(opponent=opponent)
-    with pytest.raises(ValueError, match=r"^my own fault$"):
-        [env.reset(seed=seed) for seed in range(10)]
-
-
 @pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
 def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
     """His turn was cut short: the agent's next action is not his, and the next episode begins as ever."""
@@ -70,7 +60,7 @@ def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
     env, miss, failing = frame_env(opponent=opponent), [-0.9, 0, 0, 1.0, 0, 0, 0], False
     frame_state(env, PLACES, {})
     failing = True
-    with pytest.raises(error, match="no turn"):
+    with pytest.raises(error, match=r"^no turn$"):
         env.step(miss)
     with pytest.raises(gymnasium.error.ResetNeeded):
         env.step(miss)
@@ -90,10 +80,8 @@ def test_the_ghost_ball_player_pots_what_is_there():
     tables, player = env.tables, env.tables.seats[1].player
     for seed in range(60):
         env.reset(seed=seed)
-        out = tables.output()
-        tables.turn(
-            lambda which, buffers: player.prepare(tables, which, None, buffers), out, Crew(ShotBuffers(1))
-        )
+        out, crew = tables.output(), Crew(ShotBuffers(1))
+        tables.turn(lambda which, buffers: player.prepare(tables, which, None, buffers), out, crew)
         potted += out.reals[0, I_POINTS]
     assert potted > 30
 
@@ -110,8 +98,7 @@ def test_the_ghost_ball_player_beats_the_random_one():
     assert wins >= 7
 
 
-# models from files
-# ------------------------------------------------------------------------------------------------------------
+# Models from files
 
 
 @pytest.fixture(scope="module")
@@ -119,14 +106,15 @@ def saved(tmp_path_factory):
     """Files of untrained models: of a visit, of choices, with another view, of another environment."""
     sb3, contrib = pytest.importorskip("stable_baselines3"), pytest.importorskip("sb3_contrib")
     folder = tmp_path_factory.mktemp("saved")
-    sb3.PPO("MlpPolicy", SnookerEnv(), seed=1, device="cpu").save(folder / "visit.zip")
-    sb3.PPO("MultiInputPolicy", SnookerEnv(observation="balls"), device="cpu").save(folder / "balls.zip")
-    sb3.PPO("MlpPolicy", SnookerEnv(elevation=True), device="cpu").save(folder / "elevation.zip")
-    sb3.PPO("MlpPolicy", "Pendulum-v1", device="cpu").save(folder / "pendulum.zip")
-    contrib.MaskablePPO("MlpPolicy", SnookerEnv(action="discrete"), device="cpu").save(folder / "choices.zip")
-    contrib.RecurrentPPO("MlpLstmPolicy", SnookerEnv(placement=True), device="cpu").save(
-        folder / "recurrent.zip"
-    )
+    for name, learner, policy, env in (
+        ("visit", sb3.PPO, "MlpPolicy", SnookerEnv()),
+        ("balls", sb3.PPO, "MultiInputPolicy", SnookerEnv(observation="balls")),
+        ("elevation", sb3.PPO, "MlpPolicy", SnookerEnv(elevation=True)),
+        ("pendulum", sb3.PPO, "MlpPolicy", "Pendulum-v1"),
+        ("choices", contrib.MaskablePPO, "MlpPolicy", SnookerEnv(action="discrete")),
+        ("recurrent", contrib.RecurrentPPO, "MlpLstmPolicy", SnookerEnv(placement=True)),
+    ):
+        learner(policy, env, seed=1, device="cpu").save(folder / f"{name}.zip")
     return folder
 
 
@@ -149,16 +137,13 @@ def test_a_saved_model_may_play(tmp_path, task, name):
     for decision in (False, True):
         env = SnookerEnv(task="frame", opponent=path, trust=True, decision=decision, **options)
         network = env.tables.seats[1].player.player.seen._network
-        assert all(
-            (a == b).all() for a, b in zip(network.parameters(), trained.policy.parameters(), strict=True)
-        )
+        pairs = zip(network.parameters(), trained.policy.parameters(), strict=True)
+        assert all((a == b).all() for a, b in pairs)
         runs = []
         for one in (env, copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
             one.reset(seed=2)
-            out = [one.step(np.zeros(one.action_space.shape)) for _ in range(3) if not one.over]
-            runs.append(out)
-        assert data_equivalence(runs[0], runs[1], exact=True)
-        assert data_equivalence(runs[0], runs[2], exact=True)
+            runs.append([one.step(np.zeros(one.action_space.shape)) for _ in range(3) if not one.over])
+        assert all(data_equivalence(runs[0], run, exact=True) for run in runs[1:])
 
 
 @pytest.mark.parametrize(
@@ -194,21 +179,13 @@ def test_callables_see_masks(tmp_path):
     class Many:
         def many(self, seen, generators, masks):
             assert np.array_equal(seen["action_mask"], masks)
-            return [
-                one({name: part[k] for name, part in seen.items()}, rng) for k, rng in enumerate(generators)
-            ]
+            rows = ({name: part[k] for name, part in seen.items()} for k in range(len(masks)))
+            return list(map(one, rows, generators))
 
     runs = []
     for opponent in (one, Many()):
-        env = SnookerVectorEnv(
-            6,
-            threads=1,
-            task="frame",
-            action="discrete",
-            observation="masked",
-            layout="random:1",
-            opponent=opponent,
-        )
+        options = {"task": "frame", "action": "discrete", "observation": "masked", "layout": "random:1"}
+        env = SnookerVectorEnv(6, threads=1, opponent=opponent, **options)
         out = [env.reset(seed=1)[0]]
         for _ in range(5):
             out.append(env.step(env.action_masks().argmax(axis=1))[0])
@@ -257,17 +234,12 @@ def test_nothing_of_a_model_runs_without_consent(saved, tmp_path, weights):
     "change", [{"_shape": [121]}, {":type:": "<class 'gymnasium.spaces.box.Box'>", "_shape": [121]}]
 )
 def test_a_model_that_holds_other_than_it_says_is_refused_when_made(saved, tmp_path, change):
-    path = rezipped(
-        saved / "pendulum.zip",
-        tmp_path / "model.zip",
-        data=edited(lambda found: found["observation_space"].update(change)),
-    )
-    path = rezipped(
-        path, tmp_path / "lie.zip", data=edited(lambda found: found["action_space"].update({"_shape": [4]}))
-    )
-    with pytest.raises(
-        ValueError, match=r"opponent = .*: must be a model whose spaces are those that its file describes"
-    ):
+    def lie(data):
+        data["observation_space"].update(change)
+        data["action_space"].update({"_shape": [4]})
+
+    path = rezipped(saved / "pendulum.zip", tmp_path / "lie.zip", data=edited(lie))
+    with pytest.raises(ValueError, match="must be a model whose spaces are those that its file describes"):
         SnookerEnv(task="frame", opponent=path, trust=True)
 
 
@@ -285,9 +257,7 @@ def test_a_model_that_holds_other_than_it_says_is_refused_when_made(saved, tmp_p
 )
 def test_a_file_that_holds_nothing_sound_is_refused(saved, tmp_path, change):
     file = bombed(saved / "visit.zip", tmp_path / "model.zip", tmp_path / "mark", change=change)
-    with pytest.raises(
-        ValueError, match=r"^opponent = '.*model.zip': must be a model saved by Stable-Baselines3 \("
-    ):
+    with pytest.raises(ValueError, match=r"^opponent = '.*model.zip': must be a model saved by Stable-Base"):
         SnookerEnv(task="frame", opponent=str(file), trust=True)
     assert not (tmp_path / "mark").exists()
 
@@ -307,9 +277,7 @@ def test_a_file_that_is_none_of_stable_baselines_is_refused(tmp_path, content):
     with zipfile.ZipFile(tmp_path / "large.zip", "w", zipfile.ZIP_DEFLATED) as made:
         made.writestr("data", bytes(2**28 + 1))
     for name in ("plain", "data", "large"):
-        with pytest.raises(
-            ValueError, match=rf"^opponent = '.*{name}.zip': must be a model saved by Stable-Baselines3 \("
-        ):
+        with pytest.raises(ValueError, match=rf"^opponent = '.*{name}.zip': must be a model saved by Stable"):
             SnookerEnv(task="frame", opponent=str(tmp_path / f"{name}.zip"), trust=True)
 
 

@@ -4,7 +4,7 @@ import gymnasium
 import numpy as np
 import pytest
 
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, N_BALLS, PINK, REFEREE_TOUCH, SPOTS, YELLOW, BallOn
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS as R
