@@ -154,6 +154,8 @@ def test_a_match_goes_on_from_its_state_bit_for_bit():
             assert other.rewards == env.rewards
             assert other.observe("player_1").tobytes() == env.observe("player_1").tobytes()
     assert state is not None and sum(state["frames"]) == 1 and max(env.get_state()["frames"]) == 3
+    before = plain(other.get_state())
     for field, wrong in (("frames", [3, 0]), ("first_break", 2), ("frames", 1), ("best_of", 3)):
         with pytest.raises(ValueError, match=rf"state\.{field}"):
             other.reset(options={"state": state | {field: wrong}})
+    assert plain(other.get_state()) == before

@@ -38,13 +38,12 @@ def test_inputs_of_a_shot_are_left_as_they_are(many):
     r, v, w = frozen([(0.0, 0.0), (0.3, 0.01)], [(2.0, 0.0), (0.0, 0.0)], np.ones((2, 3)))
     here = np.array([True, True])
     here.setflags(write=False)
-    if many:
-        # no memory of their own: writing would show
+    if many:  # no memory of their own: writing would show
         r, v, w, here = (np.broadcast_to(a, (3, *a.shape)) for a in (r, v, w, here))
-        before = [a.copy() for a in (r, v, w, here)]
+    before = [a.copy() for a in (r, v, w, here)]
+    if many:
         out = sn.simulate_batch(r, v, w, on_table=here, events=True)
     else:
-        before = [a.copy() for a in (r, v, w, here)]
         out = sn.simulate(r, v, w, on_table=here)
         times = np.array([0.0, 0.5])
         out.at(times)[0][:] = 9.0

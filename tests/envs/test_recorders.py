@@ -10,10 +10,11 @@ from gymnasium.wrappers.vector import RecordVideo as VectorRecordVideo
 
 import snooker_env as sn
 from snooker_env.envs.pictures import PictureSource, recorder_asking
+from snooker_env.tasks import stroke
 from tests.envs.test_vector import native
 
 pytest.importorskip("pygame")
-pytest.importorskip("moviepy")
+moviepy = pytest.importorskip("moviepy")
 SMALL = {"render_mode": "rgb_array", "action": "discrete", "render_size": (320, 180)}
 ALL = {"episode_trigger": lambda k: True, "disable_logger": True}
 
@@ -58,9 +59,7 @@ def test_record_video_of_gymnasium_films_each_stroke(tmp_path):
     assert all(frame.shape == (180, 320, 3) for frame in env.recorded_frames)
     env.close()
     film = next((tmp_path / "films").glob("*.mp4"))
-    from moviepy import VideoFileClip
-
-    with VideoFileClip(str(film)) as clip:
+    with moviepy.VideoFileClip(str(film)) as clip:
         assert clip.duration == pytest.approx(expected / 30, abs=0.1)
 
 
@@ -85,10 +84,8 @@ def test_vector_record_video_films_all_tables_at_once(tmp_path):
     envs.close()
 
 
-@pytest.mark.parametrize("ours", [False, True])
-def test_the_recorder_of_stable_baselines_films_each_stroke(tmp_path, ours):
-    sb3 = pytest.importorskip("snooker_env.sb3")
-    env = filmed(sb3.SnookerVecEnv(1, **SMALL) if ours else None, tmp_path)
+def test_the_recorder_of_stable_baselines_films_each_stroke(tmp_path):
+    env = filmed(pytest.importorskip("snooker_env.sb3").SnookerVecEnv(1, **SMALL), tmp_path)
     seconds = alone().step(67)[4]["seconds"]
     env.step(np.array([67]))
     assert len(env.recorded_frames) == 1 + pictures_of(seconds) + 1
@@ -145,7 +142,6 @@ def test_the_stroke_that_ends_an_episode_is_filmed_where_the_reset_is_inside_the
 
 def test_shots_with_long_logs_are_kept_each_on_its_own_table(monkeypatch):
     """A shot that is played again with more room leaves its neighbours' strokes alone."""
-    from snooker_env.tasks import stroke
 
     def strokes(log):
         with monkeypatch.context() as patched:

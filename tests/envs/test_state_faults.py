@@ -170,9 +170,6 @@ def test_every_fault_of_a_frame_alone(name, frame_states):
     assert refusals > 300 and taken > 15
 
 
-# One by one: what the issue named, and what must fit
-
-
 def changed(state, **parts):
     state = copy.deepcopy(state)
     for path, value in parts.items():
@@ -238,25 +235,6 @@ def test_faults_of_a_frame_in_which_a_miss_was_called(parts, field, value, allow
     state = changed(frame_states["a miss"], **parts)
     refused(lambda: env.reset(seed=8, options={"state": state}), field, value, allowed)
     assert frozen(env.get_state()) == before and env.np_random_seed == 1
-
-
-def test_the_position_to_which_a_frame_returns_is_always_on_the_table(frame_states):
-    """The saved layout, moved ball by ball: refused, or the balls lie there after "replace"."""
-    env = sn.match_env(**{key: FRAME[key] for key in ("miss", "noise", "layout", "aim")})
-    env.reset(seed=1)
-    state, rng, moved = frame_states["a miss"], np.random.default_rng(5), 0
-    for _ in range(200):
-        new, ball = copy.deepcopy(state), int(rng.integers(22))
-        new["frame"]["saved"]["layout"][0][ball] = rng.uniform(-2, 2, 2).tolist()
-        try:
-            env.set_state(new)
-        except ValueError as error:
-            assert str(error).startswith("state.frame.saved.")
-            continue
-        env.step(np.array([0, 0, 0, 0, 0, 0, 1.0]))  # gives the table back, with the balls replaced
-        sn.Table.preset("match").check(env.positions, sn.Physics.preset("paper").R, on_table=env.on_table)
-        moved += 1
-    assert 20 < moved < 180
 
 
 def test_a_layout_is_kept_by_the_rule_of_the_miss_only():

@@ -111,9 +111,6 @@ def test_hundreds_of_steps_for_any_number_of_threads_and_any_chunks(threads, chu
     assert check_equal(33, AutoresetMode.SAME_STEP, 250, **options)[0] > 4000
 
 
-# Seeds
-
-
 def test_seeds_none_int_and_list():
     env = native(4)
     a, _ = env.reset(seed=7)
@@ -153,9 +150,6 @@ def test_wrong_masks_are_refused(mask):
     env.reset(seed=1)
     with pytest.raises(ValueError, match="reset_mask"):
         env.reset(options={"reset_mask": mask})
-
-
-# The contract
 
 
 @pytest.mark.parametrize("observation", OBSERVATIONS)
@@ -219,9 +213,6 @@ def test_it_must_be_reset_first():
         env.step(np.zeros((3, 4)))
 
 
-# States, copies, pictures, errors
-
-
 @pytest.mark.parametrize("copied", COPIES)
 def test_copies_play_on_alike(copied):
     env = native(20, noise="club", threads=2)
@@ -276,9 +267,6 @@ def test_a_shot_that_cannot_be_computed_names_its_table(monkeypatch, threads):
     env.reset()
 
 
-# Seeds and states together
-
-
 @pytest.mark.parametrize("seed", [None, 40, [3, None, 8, None]])
 def test_a_state_with_seeds_is_what_single_tables_make_of_it(seed):
     """Each seed draws the errors of its table anew; a table without one repeats those of the state."""
@@ -309,8 +297,6 @@ def test_a_wrong_seed_or_state_changes_no_table():
             env.reset(seed=seed, options=options)
         assert env.get_state() == before and env.np_random_seed == seeds
 
-
-# Forks
 
 forks = pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on Windows")
 

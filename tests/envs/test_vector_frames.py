@@ -1,5 +1,6 @@
 """Do native vector frames play, bit for bit, what ``SyncVectorEnv`` plays, with all that goes with them?"""
 
+import gymnasium
 import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
@@ -118,9 +119,6 @@ def test_states_go_from_one_table_to_many_and_back(options):
             many.reset(options=wrong)
 
 
-# One place for all options
-
-
 def test_options_are_checked_once_and_taken_by_every_environment():
     keywords = {"task": "frame", "layout": "random:2", "noise": "club", "decision": True}
     options = Options(**keywords)
@@ -154,21 +152,28 @@ def test_a_match_takes_them_too():
     assert sn.match_env().action_space("player_0").shape == (7,)
 
 
-# Arrays that are given
+def arrays_for(space):
+    """Arrays of a space's form that nothing has been written into."""
+    if isinstance(space, gymnasium.spaces.Dict):
+        return {name: arrays_for(part) for name, part in space.items()}
+    return np.full(space.shape, 9, space.dtype)
+
+
+MASKED_VISIT = {"action": "discrete", "observation": "masked"}
 
 
 @pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize("options", [{"layout": "random:2"}, FRAME | {"layout": "random:0"}])
+@pytest.mark.parametrize(
+    "options",
+    [{"layout": "random:2"}, FRAME | {"layout": "random:0"}, MASKED_VISIT, {"observation": "balls"}],
+)
 def test_results_are_written_into_the_arrays_given(mode, options):
     n = 6
     plain, written = native(n, autoreset_mode=mode, **options), native(n, autoreset_mode=mode, **options)
-    out = {
-        "observations": np.full(plain.observation_space.shape, 9.0, np.float32),
-        "rewards": np.full(n, 9.0),
-        "terminations": np.ones(n, bool),
-        "truncations": np.ones(n, bool),
-    }
-    first = written.reset(seed=1, out={"observations": out["observations"]})
+    seen = {"observations": arrays_for(plain.observation_space)}
+    others = {"rewards": np.full(n, 9.0), "terminations": np.ones(n, bool), "truncations": np.ones(n, bool)}
+    out = seen | others
+    first = written.reset(seed=1, out=seen)
     assert first[0] is out["observations"] and same(plain.reset(seed=1), first)
     rng = np.random.default_rng(0)
     for _ in range(12):
@@ -178,8 +183,8 @@ def test_results_are_written_into_the_arrays_given(mode, options):
         assert all(same(x, y) for x, y in zip(want, got, strict=True))
         done = want[2] | want[3]
         if mode == AutoresetMode.DISABLED and done.any():
-            mask, into = {"reset_mask": done.copy()}, {"observations": out["observations"]}
-            assert same(plain.reset(options=mask), written.reset(options=mask, out=into))
+            mask = {"reset_mask": done.copy()}
+            assert same(plain.reset(options=mask), written.reset(options=mask, out=seen))
 
 
 def test_arrays_that_share_memory_are_refused():
@@ -189,29 +194,11 @@ def test_arrays_that_share_memory_are_refused():
         env.step(np.zeros((4, 4)), out={"terminations": both, "truncations": both})
 
 
-@pytest.mark.parametrize(
-    ("options", "parts"),
-    [
-        ({"action": "discrete", "observation": "masked"}, {"observations": (121,), "action_mask": (540,)}),
-        ({"observation": "balls"}, {"balls": (22, 5), "state": (11,)}),
-    ],
-    ids=["masked", "balls"],
-)
-def test_observations_of_several_parts_are_written_too(options, parts):
-    env, plain = (native(3, autoreset_mode=AutoresetMode.SAME_STEP, **options) for _ in range(2))
-    kinds = {name: np.int8 if name == "action_mask" else np.float32 for name in parts}
-    out = {"observations": {name: np.zeros((3, *shape), kinds[name]) for name, shape in parts.items()}}
-    got, _ = env.reset(seed=1, out=out)
-    assert got is out["observations"] and same(got, plain.reset(seed=1)[0])
-    rng = np.random.default_rng(0)
-    for _ in range(3):
-        a = actions_of(plain, rng)
-        written, want = env.step(a, out=out), plain.step(a)
-        assert written[0] is out["observations"] and all(map(same, written, want))
-    name, shape = list(parts.items())[1]
-    out["observations"][name] = np.zeros((3, *shape), bool)
-    what = f"array of bool and shape {(3, *shape)}"
-    refused(lambda: env.reset(out=out), f'out["observations.{name}"]', what, "must be a C-contiguous")
+def test_a_part_of_the_observations_that_cannot_be_written_into_is_refused():
+    env = native(3, observation="balls")
+    out = arrays_for(env.observation_space) | {"state": np.zeros((3, 11), bool)}
+    field, value = 'out["observations.state"]', "array of bool and shape (3, 11)"
+    refused(lambda: env.reset(out={"observations": out}), field, value, "must be a C-contiguous")
 
 
 @pytest.mark.parametrize(

@@ -99,9 +99,15 @@ def test_elevation_of_nothing_is_the_short_action():
         assert np.array_equal(long.step([*a, -1.0])[0], short.step(a)[0])
 
 
+CORNERS = [(a, b) for a in (1.0, -1.0, 0.99, -0.99) for b in (-1.0, 0.0, 1.0)]
+
+
 @pytest.mark.parametrize("elevation", [False, True])
-@pytest.mark.parametrize(("a", "b"), [(0.0, -1.0), (0.0, 1.0), (-0.5, 0.0), (0.25, 0.5), (-0.8, -1.0)])
+@pytest.mark.parametrize(
+    ("a", "b"), [(0.0, -1.0), (0.0, 1.0), (-0.5, 0.0), (0.25, 0.5), (-0.8, -1.0), *CORNERS]
+)
 def test_placement_puts_the_ball_in_hand_where_it_says(a, b, elevation):
+    """The yellow and the green stand on the D's corners, the brown between them: no place overlaps a ball."""
     env = SnookerEnv(layout="break_off", placement=True, elevation=elevation, render_mode="ansi")
     assert env.action_space.shape == (6 + elevation,)
     obs, _ = env.reset(seed=1)
@@ -113,8 +119,9 @@ def test_placement_puts_the_ball_in_hand_where_it_says(a, b, elevation):
     want = (D_RADIUS * a, BAULK_Y - depth)
     if np.hypot(*(SPOTS[16:19] - want).T).min() > 2 * R + 2e-4:
         assert placed == pytest.approx(want, abs=1e-12)
-    else:  # the brown's spot is taken: the nearest place where it is clear of it
+    elif a == 0.0:  # the brown's spot is taken: the nearest place where it is clear of it
         assert 2 * R < np.hypot(*(placed - SPOTS[18])) < 2 * R + 2e-4
+    assert np.hypot(*(env.last_shot.at(0.0)[0][1:] - placed).T).min() >= 2 * R - 1e-6
     assert np.hypot(placed[0], placed[1] - BAULK_Y) <= D_RADIUS + 1e-12 and placed[1] <= BAULK_Y
     assert not np.array_equal(placed, before)
 
@@ -134,17 +141,6 @@ def test_placement_is_for_a_ball_in_hand_only():
     here = plain.positions[CUE].copy()
     plain.step([0, 0, 0, 0.5])
     assert np.array_equal(plain.last_shot.at(0.0)[0][CUE], here)
-
-
-@pytest.mark.parametrize("a", [1.0, -1.0, 0.99, -0.99])
-@pytest.mark.parametrize("b", [-1.0, 0.0, 1.0])
-def test_no_placement_overlaps_a_ball(a, b):
-    """The yellow and the green stand on the D's corners."""
-    env = SnookerEnv(layout="break_off", placement=True, render_mode="ansi")
-    env.reset(seed=1)
-    env.step([-1.0, 0, 0, 0.5, a, b])
-    start = env.last_shot.at(0.0)[0]
-    assert np.hypot(*(start[1:] - start[CUE]).T).min() >= 2 * R - 1e-6
 
 
 def straight(rng):

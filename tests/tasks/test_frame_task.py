@@ -149,9 +149,6 @@ def test_every_argument_is_documented():
     assert set(inspect.signature(SnookerEnv).parameters) == arguments
 
 
-# Limits
-
-
 @pytest.mark.parametrize("observation", ["flat", "balls"])
 def test_the_layout_that_replace_restores_is_within_its_space(observation):
     """A ball may rest in the mouth of a middle pocket, farther out than the cushions' noses."""
@@ -191,9 +188,6 @@ def test_a_nomination_does_not_outlive_its_frame():
         env.tables.nominated[0] = PINK
         env.reset(options=start)
         assert env.tables.nominated[0] == AUTO
-
-
-# Infos
 
 
 def test_the_break_at_the_end_of_a_frame_is_the_players_own():

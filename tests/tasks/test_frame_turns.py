@@ -52,9 +52,6 @@ def test_alone_a_miss_and_a_foul_give_the_table_back():
     assert not np.array_equal(env.positions[BLUE], before)  # from where the balls lie
 
 
-# Decisions
-
-
 FOULED = {"phase": "choice", "striker": 0, "scores": (0, 4)}
 
 
@@ -101,9 +98,6 @@ def test_a_free_ball_is_seen_and_scores():
     assert np.array_equal(env.positions[BLUE], SPOTS[BLACK])  # it came back; its own spot is taken
     other = frame_state(frame_env(opponent="ghost_ball"), places, FOULED)
     assert not other.on >> BLUE & 1
-
-
-# Rewards
 
 
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
@@ -155,9 +149,6 @@ def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost(
     assert won > 10
 
 
-# What a step returns
-
-
 @pytest.mark.parametrize("strokes", [5, 9])
 def test_a_frame_that_ends_by_the_rules_with_its_last_stroke_is_not_stopped(strokes):
     places, frame = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}, {"ball_on": BallOn.BLACK, "scores": (20, 0)}
@@ -188,9 +179,6 @@ FOUL = np.array([-1.0, 0, 0, -0.5, 0, 0, -1], np.float32)
 """Straight down the table, as softly as can be, and the other is to play again after his foul."""
 
 
-# Scores
-
-
 def test_fouls_without_end_score_without_end():
     """A rule has no ceiling: a hundred fouls around what the first version could count to, and beyond."""
     for scores in ((9_980, 0), (0, 9_980), (9_800, 9_800), (2**53, 2**40)):
@@ -215,9 +203,6 @@ def test_a_match_of_fouls_and_orders_to_play_again_ends_by_itself():
     assert env.strokes == MAX_STROKES == 1000 and all(env.truncations.values())
     assert sum(env.frame.scores) >= 19_980 + 4 * 900 and env.infos["player_0"]["strokes"] == 1000
     assert all(env.observation_spaces[player].contains(env.observe(player)) for player in env.possible_agents)
-
-
-# The limit
 
 
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])

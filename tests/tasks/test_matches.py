@@ -6,7 +6,6 @@ import pytest
 import snooker_env as sn
 from snooker_env import SnookerEnv
 from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
-from tests.refusals import refused
 from tests.tables import frame_env
 
 NAMES = ("frames_won", "opponent_frames", "frames_needed", "broke")
@@ -79,25 +78,11 @@ def test_a_frame_that_is_stopped_truncates_the_match():
     assert ends == [(False, False)] * 4 + [(False, True)]
 
 
-def test_a_state_belongs_to_matches_of_its_length():
-    short, long = (SnookerEnv(task="match", frames=n) for n in (3, 5))
-    short.reset(seed=1)
-    long.reset(seed=2)
-    before = long.get_state()
-    state = short.get_state()
-    allowed = "must be 5, as this environment plays"
-    refused(lambda: long.reset(options={"state": state}), "state.best_of", "3", allowed)
-    assert long.get_state() == before
-
-
 def test_the_length_of_a_match_says_that_it_is_one():
     pytest.importorskip("pettingzoo")
     env = sn.match_env(frames=3)
     assert env.options.task == "match" and env.options.rules.frames == 3
     assert sn.match_env().options.task == "frame"
-
-
-# Who breaks
 
 
 def test_reset_says_who_breaks_and_the_errors_do_not_depend_on_it():

@@ -100,9 +100,6 @@ def test_masks_allow_what_may_be_nominated():
     refused(lambda: env.step(3780), "action", "3780", "must be an integer in [0, 3780)")
 
 
-# Declarations
-
-
 SAID = {"concede": True, "claim": True, "lot": True}
 CHOICES = {"action": "discrete", "decision": False, "placement": False}
 

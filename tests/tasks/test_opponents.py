@@ -98,9 +98,6 @@ def test_the_ghost_ball_player_beats_the_random_one():
     assert wins >= 7
 
 
-# Models from files
-
-
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
     """Files of untrained models: of a visit, of choices, with another view, of another environment."""
@@ -146,16 +143,14 @@ def test_a_saved_model_may_play(tmp_path, task, name):
         assert all(data_equivalence(runs[0], run, exact=True) for run in runs[1:])
 
 
-@pytest.mark.parametrize(
-    ("own", "nominate"),
-    [({}, False), ({"task": "frame"}, False), ({"task": "frame", "nominate": True}, True)],
-)
-def test_a_saved_model_that_sees_masks_may_play(tmp_path, own, nominate):
+@pytest.mark.parametrize("own", [{}, {"task": "frame"}, {"task": "frame", "nominate": True}])
+def test_a_saved_model_that_sees_masks_may_play(tmp_path, own):
     """A model of visits, with 540 choices, plays in a frame with more as it does on what it sees."""
     contrib = pytest.importorskip("sb3_contrib")
     masked = {"action": "discrete", "observation": "masked"}
     made = contrib.MaskablePPO("MultiInputPolicy", SnookerEnv(**masked, **own), seed=1, device="cpu")
     made.save(tmp_path / "model.zip")
+    nominate = own.get("nominate", False)
     options = {"task": "frame", "layout": "random:2", "concede": not nominate, "nominate": nominate, **masked}
     env = SnookerVectorEnv(5, threads=1, opponent=str(tmp_path / "model.zip"), trust=True, **options)
     seen = env.tables.seats[1].player.player.seen
@@ -230,12 +225,10 @@ def test_nothing_of_a_model_runs_without_consent(saved, tmp_path, weights):
     assert (tmp_path / "mark").exists()  # these bombs are sharp
 
 
-@pytest.mark.parametrize(
-    "change", [{"_shape": [121]}, {":type:": "<class 'gymnasium.spaces.box.Box'>", "_shape": [121]}]
-)
+@pytest.mark.parametrize("change", [{}, {":type:": "<class 'gymnasium.spaces.box.Box'>"}])
 def test_a_model_that_holds_other_than_it_says_is_refused_when_made(saved, tmp_path, change):
     def lie(data):
-        data["observation_space"].update(change)
+        data["observation_space"].update({"_shape": [121]} | change)
         data["action_space"].update({"_shape": [4]})
 
     path = rezipped(saved / "pendulum.zip", tmp_path / "lie.zip", data=edited(lie))
@@ -265,7 +258,8 @@ def test_a_file_that_holds_nothing_sound_is_refused(saved, tmp_path, change):
 def test_a_small_file_that_unpacks_to_gigabytes_is_not_unpacked(tmp_path):
     with zipfile.ZipFile(tmp_path / "model.zip", "w", zipfile.ZIP_DEFLATED) as file:
         file.writestr("data", b"{}" + b" " * 2**26)
-    with pytest.raises(ValueError, match="data is larger than 67108864 bytes"):
+    says = r"^opponent = '.*model.zip': must be a model saved by Stable-Baselines3 \(.*data is larger than 67108864"
+    with pytest.raises(ValueError, match=says):
         SnookerEnv(task="frame", opponent=str(tmp_path / "model.zip"))
 
 
@@ -274,9 +268,7 @@ def test_a_file_that_is_none_of_stable_baselines_is_refused(tmp_path, content):
     (tmp_path / "plain.zip").write_bytes(content)
     with zipfile.ZipFile(tmp_path / "data.zip", "w") as made:
         made.writestr("data", content)
-    with zipfile.ZipFile(tmp_path / "large.zip", "w", zipfile.ZIP_DEFLATED) as made:
-        made.writestr("data", bytes(2**28 + 1))
-    for name in ("plain", "data", "large"):
+    for name in ("plain", "data"):
         with pytest.raises(ValueError, match=rf"^opponent = '.*{name}.zip': must be a model saved by Stable"):
             SnookerEnv(task="frame", opponent=str(tmp_path / f"{name}.zip"), trust=True)
 

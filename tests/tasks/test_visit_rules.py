@@ -176,8 +176,6 @@ def test_reward_kinds(name, rewards):
     assert got == list(rewards) and all(type(r) is float for r in got)
 
 
-# A touching ball
-
 AWAY, INTO, GRAZE = 1.0, 0.0, 0.5
 
 
