@@ -168,15 +168,9 @@ def wrong_actions(n):
 
 
 WRONG_ACTIONS = [
-    *[
-        (kind, action, "action", *says)
-        for kind, n in (("plain", 4), ("long", 7))
-        for action, *says in wrong_actions(n)
-    ],
-    *[
-        ("choices", w, "action", "", "must be an integer in [0, 540)")
-        for w in (-1, 540, 0.5, None, "3", [1, 2])
-    ],
+    *[("plain", action, "action", *says) for action, *says in wrong_actions(4)],
+    *[("long", action, "action", *says) for action, *says in wrong_actions(7)],
+    *[("choices", w, "action", "", "an integer in [0, 540)") for w in (-1, 540, 0.5, None, "3", [1, 2])],
     *[("match", w, "action", "", "must") for w in (np.zeros(4), np.full(7, 1.1), np.full(7, NAN))],
     ("matches", [[0.0] * 7, [2.0] * 7], "actions[1]", "2.0", "must be finite"),
     ("many", [[0.0] * 4, [0.0] * 4, [0.0, NAN, 0.0, 0.0]], "actions[2]", "[0.0, nan, 0.0, 0.0]", BOUNDS),
@@ -231,13 +225,8 @@ STATES = [
     case(lambda s: {"in_hand": "no"}, "state.in_hand", "'no'", "must be True or False"),
     case(lambda s: {"over": 2}, "state.over", "2", "must be True or False"),
     case(lambda s: {"stream": [1, 2, 3]}, "state.stream", "[1, 2, 3]", "must be two integers"),
-    case(
-        lambda s: {"stream": [1, -2]},
-        "state.stream[1]",
-        "-2",
-        "must be an integer in [0, 18446744073709551615]",
-    ),
-    case(lambda s: {"stream": [2**64, 0]}, "state.stream[0]", "18446744073709551616", "must be an integer"),
+    case(lambda s: {"stream": [1, -2]}, "state.stream[1]", "-2", f"must be an integer in [0, {2**64 - 1}]"),
+    case(lambda s: {"stream": [2**64, 0]}, "state.stream[0]", str(2**64), "must be an integer"),
     case(lambda s: {"rng": {}}, "state.rng", "{}", "must be"),
     case(lambda s: {"on_table": [False, *s["on_table"][1:]]}, "state.on_table", "False", "cue ball"),
     case(lambda s: {"spin": 1}, "state", "'spin'", "must be", "unknown key"),

@@ -87,9 +87,8 @@ def player(env, strokes=2):
         for k in range(strokes):
             if env.over:
                 return
-            observation, reward, *_, info = env.step(
-                np.random.default_rng(k).uniform(-1, 1, env.action_space.shape)
-            )
+            action = np.random.default_rng(k).uniform(-1, 1, env.action_space.shape)
+            observation, reward, *_, info = env.step(action)
             assert env.observation_space.contains(observation) and np.isfinite([reward, info["break"]]).all()
 
     return play
@@ -182,35 +181,17 @@ def changed(state, **parts):
 
 
 SAVED = "state.frame.saved"
+LAID = "frame__saved__layout"
+OTHER_ON = {"frame__saved__on_table": 1 << BLACK, "frame__saved__ball_on": 7}
 MISS = [
     ({"frame__striker": 1}, "state.frame.striker", "1", "must be 0, the agent"),
-    ({"frame__saved__layout": None}, f"{SAVED}.layout", "None", "must be positions and on_table"),
-    (
-        {"frame__saved__layout": [[[5, 5]] * 22, [True] * 22]},
-        f"{SAVED}.layout[0][0]",
-        "(5.0, 5.0)",
-        "on the table",
-    ),
-    (
-        {"frame__saved__layout": [[[0, 0]] * 22, [True] * 22]},
-        f"{SAVED}.layout[0]",
-        "balls 0 and 1",
-        "overlap",
-    ),
-    (
-        {"frame__saved__on_table": 1 << BLACK, "frame__saved__ball_on": 7},
-        SAVED,
-        "a position",
-        "must have the balls",
-    ),
+    ({LAID: None}, f"{SAVED}.layout", "None", "must be positions and on_table"),
+    ({LAID: [[[5, 5]] * 22, [True] * 22]}, f"{SAVED}.layout[0][0]", "(5.0, 5.0)", "must be on the table"),
+    ({LAID: [[[0, 0]] * 22, [True] * 22]}, f"{SAVED}.layout[0]", "balls 0 and 1", "overlap"),
+    (OTHER_ON, SAVED, "a position", "must have the balls on_table"),
     ({"frame__saved": {}}, SAVED, "on_table", "must have exactly the fields"),
     ({"frame__phase": "lot"}, "state.frame.phase", "lot", "must"),
-    (
-        {"frame__scores": [0, 2**53]},
-        "state.frame.scores[1]",
-        str(2**53),
-        "must be an integer in [0, 9007199254740991]",
-    ),
+    ({"frame__scores": [0, 2**53]}, "state.frame.scores[1]", str(2**53), "must be an integer in [0, 900719"),
     ({"frame__scores": [0, 1, 2]}, "state.frame.scores", "(0, 1, 2)", "must be a tuple of two integers"),
     ({"frame__failures": 3}, "state.frame.failures", "3", "must be an integer in [0, 2]"),
     ({"frame__break_points": 20}, "state.frame.break_points", "20", "must be"),
@@ -218,12 +199,7 @@ MISS = [
     ({"rng__state__state": 2**128}, "state.rng", str(2**128), "must be the state of a PCG64"),
     ({"rng__state__inc": 1.0}, "state.rng.state.inc", "1.0", "must be of type int"),
     ({"strokes": 1000}, "state.strokes", "1000", "must be below max_strokes = 1000: there is no shot left"),
-    (
-        {"ball_on": 1},
-        "state",
-        "'ball_on'",
-        "must be a state of get_state() here, with the keys ['frame', 'positions',",
-    ),
+    ({"ball_on": 1}, "state", "'ball_on'", "of get_state() here, with the keys ['frame', 'positions',"),
 ]
 
 

@@ -79,8 +79,9 @@ def test_any_colour_after_a_red_is_worth_its_value_and_comes_back(colour):
 
 def test_the_last_colour_after_the_last_red_comes_back_before_the_sequence():
     env = SnookerEnv()
-    places = {ball: SPOTS[ball] for ball in range(YELLOW, N_BALLS)} | {CUE: (0.3, 0.0), 1: BESIDE}
-    table_state(env, places, BallOn.RED)
+    table_state(
+        env, {ball: SPOTS[ball] for ball in range(YELLOW, N_BALLS)} | {1: BESIDE, CUE: (0.3, 0.0)}, BallOn.RED
+    )
     pot(env, 1)
     assert env.ball_on == BallOn.ANY_COLOUR
     pot(env, YELLOW)
@@ -88,8 +89,7 @@ def test_the_last_colour_after_the_last_red_comes_back_before_the_sequence():
 
 
 def test_a_miss_ends_the_visit_without_a_foul():
-    env = racked()
-    pot(env, 1)
+    env = SnookerEnv()
     table_state(env, {CUE: (0.0, -0.5), 2: (0.0, 0.6), BLACK: (0.6, 1.0)}, BallOn.RED, points=8)
     _, reward, terminated, truncated, info = env.step([-0.8, 0.0, 0.0, 0.5])
     assert (reward, terminated, truncated, info["foul"], info["penalty"]) == (0.0, True, False, False, 0)
@@ -97,16 +97,9 @@ def test_a_miss_ends_the_visit_without_a_foul():
     assert info["break"] == 8.0 == env.points and info["fouls"] == 0 and env.on_table[[CUE, 2, BLACK]].all()
 
 
-FAR = (0.6, 0.6)
+FAR, STRAIGHT = (0.6, 0.6), [-0.6, 0, 0, 0.5]
 WRONG_BALL = [
-    (
-        {CUE: (0.0, -0.5), 2: FAR, ball: (0.0, 0.3)},
-        BallOn.RED,
-        [-0.6, 0, 0, 0.5],
-        Foul.WRONG_FIRST,
-        value,
-        ball,
-    )
+    ({CUE: (0.0, -0.5), 2: FAR, ball: (0.0, 0.3)}, BallOn.RED, STRAIGHT, Foul.WRONG_FIRST, value, ball)
     for ball, value in ((16, 4), (17, 4), (18, 4), (19, 5), (20, 6), (21, 7))
 ]
 NO_BALL = [
@@ -229,14 +222,12 @@ TOUCHED = {
 }
 
 
-@pytest.mark.parametrize(
-    ("places", "speed", "aim", "foul", "penalty", "first"), TOUCHED.values(), ids=TOUCHED
-)
-def test_what_a_touching_ball_allows(places, speed, aim, foul, penalty, first):
+@pytest.mark.parametrize(("places", "speed", "aim", "foul", "worth", "first"), TOUCHED.values(), ids=TOUCHED)
+def test_what_a_touching_ball_allows(places, speed, aim, foul, worth, first):
     env = SnookerEnv(reward="points_and_fouls")
     table_state(env, {CUE: (0.0, 0.3), BLUE: (-0.4, 1.2)} | places, BallOn.RED)
     info = env.step([speed, 0.0, 0.0, aim])[4]
-    assert info["penalty"] == penalty and first in (None, info["first_ball"])
+    assert info["penalty"] == worth and first in (None, info["first_ball"])
     assert info["fouls"] & Foul.PUSH if foul == Foul.PUSH else info["fouls"] == foul
 
 
