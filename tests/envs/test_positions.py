@@ -7,7 +7,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import BallOn
-from snooker_env.planning import Planner, Positions
+from snooker_env.planning import Positions
 from tests.refusals import refused
 from tests.tables import plain
 
@@ -37,22 +37,6 @@ def test_a_visit_starts_where_the_position_says(position, form):
     assert np.array_equal(observation, Positions.of(position).observations()[0])
     with pytest.raises(ValueError, match=r"keys of options = \['state', 'position'\]: must be only one"):
         env.reset(options={"state": env.get_state(), "position": position})
-
-
-def test_points_of_the_break_go_on():
-    """A stroke that Planner plays from the position leaves the environment where the planner says."""
-    env = sn.SnookerEnv(action="discrete")
-    env.reset(seed=1, **start(MID_BREAK))
-    scored = 0
-    for choice in np.flatnonzero(env.action_masks())[::7].tolist():
-        env.reset(**start(MID_BREAK))
-        out = Planner(env.options).play(MID_BREAK, rows=[0], actions=[choice])
-        _, reward, ended, _, info = env.step(choice)
-        assert reward == out.points[0] and ended != out.goes_on[0]
-        assert info["break"] == 33 + reward
-        assert np.array_equal(env.positions, out.afterstates.positions[0])
-        scored += reward > 0
-    assert scored
 
 
 def ends(env, seeds, position=MID_BREAK):
@@ -201,13 +185,11 @@ def test_other_mistakes_are_named():
     env, many = sn.SnookerEnv(), sn.SnookerVectorEnv(2, threads=1)
     two = "must be a list of 2 positions"
     grey = {"position": changed(grey=[0, 0])}
-    for one, options, field, value, allowed in (
-        (env, grey, 'keys of options["position"]', "'grey'", "must be one of 'cue'"),
-        (many, {"positions": MID_BREAK}, 'options["positions"]', "Position", two),
-        (many, {"positions": [MID_BREAK]}, 'options["positions"]', "list of 1", two),
-        (env, {"positions": [MID_BREAK]}, "options", "'positions'", "must be one of 'state', 'position'"),
-    ):
-        refused(partial(one.reset, options=options), field, value, allowed)
+    reset, reset_many = (lambda **o: env.reset(options=o)), (lambda **o: many.reset(options=o))
+    refused(partial(reset, **grey), 'keys of options["position"]', "'grey'", "must be one of 'cue'")
+    refused(lambda: reset_many(positions=MID_BREAK), 'options["positions"]', "Position", two)
+    refused(lambda: reset_many(positions=[MID_BREAK]), 'options["positions"]', "list of 1", two)
+    refused(lambda: reset(positions=[MID_BREAK]), "options", "'positions'", "must be one of 'state', 'pos")
 
 
 def test_who_breaks_is_said_only_where_balls_are_dealt():

@@ -165,11 +165,3 @@ def test_a_picture_shows_no_stroke_of_another_table():
     env.step(67)
     env.unwrapped.set_state(state)
     assert np.array_equal(env.render(), plain) and env.unwrapped.history == []
-
-
-def test_keeping_history_later_keeps_the_last_shot():
-    env = alone()
-    env.step(67)
-    shot = env.last_shot
-    env.keep_history = True
-    assert env.last_shot is shot and env.history == []

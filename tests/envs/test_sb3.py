@@ -141,13 +141,10 @@ def test_a_seed_draws_new_errors_from_a_state():
 
 
 def test_without_stable_baselines_one_line_says_how_to_get_it():
-    code = (
-        "import sys\nsys.modules['stable_baselines3'] = None\n"
-        "try: import snooker_env.sb3\nexcept ImportError as error: print(error)\n"
-    )
+    lacking = "import sys\nsys.modules['stable_baselines3'] = None"
+    code = f"{lacking}\ntry: import snooker_env.sb3\nexcept ImportError as error: print(error)"
     needs = "snooker_env.sb3 needs Stable-Baselines3; install it, in the clone"
-    wanted = f'{needs} {ROOT}, with: pip install -e ".[train]"'
-    assert python(code)[0].strip() == wanted
+    assert python(code)[0].strip() == f'{needs} {ROOT}, with: pip install -e ".[train]"'
 
 
 def test_attributes():

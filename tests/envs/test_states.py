@@ -125,15 +125,6 @@ def test_copies_play_on_alike_and_apart(copied, render_mode, screen):
         one.close()
 
 
-@pytest.mark.parametrize("copied", COPIES)
-def test_a_wrapped_environment_is_copied_with_its_state(copied):
-    env = gymnasium.make("Snooker-v0", noise="club", layout="random:6")
-    env.reset(seed=1)
-    twin = copied(env)
-    assert json.dumps(twin.unwrapped.get_state()) == json.dumps(env.unwrapped.get_state())
-    assert shots(twin.unwrapped) == shots(env.unwrapped)
-
-
 def test_a_reset_is_needed_first_and_after_the_end():
     env = SnookerEnv(layout="random:3")
     with pytest.raises(gymnasium.error.ResetNeeded):

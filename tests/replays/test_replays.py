@@ -190,7 +190,8 @@ def test_history_is_kept_on_request_and_starts_anew():
     env.step(67)
     assert env.history == [] and env.last_shot is not None and not len(env.last_shot.segments)
     refused(lambda: sn.replay(env), "source", "keeps no history", "keep_history = True")
-    env.keep_history = True
+    shot, env.keep_history = env.last_shot, True
+    assert env.last_shot is shot and env.history == []
     env.reset(seed=1)
     refused(lambda: sn.replay(env), "source", "without a stroke", "at least one")
     env.step(67)

@@ -20,27 +20,6 @@ CHOICE_SEEN, FREE_BALL_SEEN = (SIZE + FRAME_ENTRIES.index(name) for name in ("ch
 """Where an observation says that a decision is open, and that there is a free ball."""
 
 
-def test_a_step_ends_when_the_agent_is_to_play_or_the_frame_is_over():
-    env = frame_env(opponent="random", layout="random:3")
-    for seed in range(10):
-        env.reset(seed=seed)
-        while not env.over:
-            assert env.frame.striker == 0
-            _, _, terminated, truncated, info = env.step(env.action_space.sample())
-            assert terminated == env.over and truncated is False
-            assert (info["winner"] >= 0) == terminated
-        with pytest.raises(gymnasium.error.ResetNeeded):
-            env.step(np.zeros(7))
-
-
-def test_the_agent_stays_while_it_scores_and_the_opponent_comes_after_a_miss():
-    env = frame_state(frame_env(opponent="ghost_ball"), PLACES, {})
-    _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
-    assert (reward, info["points"], info["opponent_strokes"], env.ball_on) == (1.0, 1.0, 0, BallOn.ANY_COLOUR)
-    _, _, _, _, info = env.step([-0.9, 0, 0, 1.0, 0, 0, 0])
-    assert info["points"] == 0.0 and info["opponent_strokes"] > 0
-
-
 def test_alone_a_miss_and_a_foul_give_the_table_back():
     places = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
     env = frame_state(frame_env(aim="absolute"), places, {})

@@ -160,12 +160,8 @@ def test_anywhere_it_stands_behind_an_easy_pot(layout):
 
 def test_after_the_last_miss_of_six_reds_it_places_the_cue_ball_anywhere():
     tables = dealt(1, game="six_red", miss="clear_path", layout="random:3")
-    tables.game[0, [columns.PHASE, columns.MISS_CALLED, columns.MISSES, columns.SAVED]] = (
-        columns.CHOICE,
-        1,
-        5,
-        1,
-    )
+    tables.game[0, [columns.MISS_CALLED, columns.SAVED]] = 1
+    tables.game[0, [columns.PHASE, columns.MISSES]] = columns.CHOICE, 5
     before = tables.positions[0, CUE].copy()
     fouls, *_ = turn(tables)
     assert not fouls[0] and tables.game[0, columns.PHASE] != columns.CHOICE
