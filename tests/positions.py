@@ -2,12 +2,11 @@
 
 from snooker_env import SnookerVectorEnv
 from snooker_env.planning import prospects_of
+from tests.tables import begun
 
 
 def tables(n, seed=0, **options):
-    env = SnookerVectorEnv(n, **options)
-    env.reset(seed=seed)
-    return env
+    return begun(SnookerVectorEnv(n, **options), seed)
 
 
 def chances_by_width(at, spread):

@@ -23,6 +23,12 @@ PLACES = {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], P
 """Red 1 can be potted along the target line, red 2 is out of the way."""
 
 
+def begun(env, seed=1, **more):
+    """The environment after a reset."""
+    env.reset(seed=seed, **more)
+    return env
+
+
 def layout(places):
     """Balls {id: (x, y)} and nothing else on the table, as the parts of a state."""
     positions = SPOTS.copy()

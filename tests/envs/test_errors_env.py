@@ -11,6 +11,7 @@ import snooker_env as sn
 from snooker_env import Options, SnookerEnv, SnookerVectorEnv
 from snooker_env.tasks.options import NAMES
 from tests.refusals import FIDELITY, INF, NAN, WRONG_FIDELITIES, case, make, refused
+from tests.tables import begun
 
 NOT_A_NAME = ("", 3, None, True, b"x")
 NOT_A_TRUTH = (0, 1, None, "yes", 0.5, [True])
@@ -198,8 +199,7 @@ def test_wrong_actions_change_nothing(kind, action, field, value, allowed):
 
 @pytest.fixture(scope="module")
 def saved():
-    env = SnookerEnv(layout="random:5")
-    env.reset(seed=5)
+    env = begun(SnookerEnv(layout="random:5"), 5)
     return env.get_state()
 
 

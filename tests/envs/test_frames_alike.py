@@ -8,7 +8,7 @@ import pytest
 import snooker_env as sn
 from snooker_env import SnookerVectorEnv
 from snooker_env.envs.match import PLAYERS
-from tests.tables import plain
+from tests.tables import begun, plain
 
 pytest.importorskip("pettingzoo")
 
@@ -30,8 +30,7 @@ class Played:
     """A random frame or match: the actions of both players, and what player 0 was shown at its turns."""
 
     def __init__(self, options, seed):
-        env = sn.match_env(**options)
-        env.reset(seed=seed)
+        env = begun(sn.match_env(**options), seed)
         self.key = _key(env.np_random)
         self.actions, self.seen = ([], []), []
         self.total, rng = 0.0, np.random.default_rng(seed)
@@ -104,8 +103,7 @@ def check_alike(options, seeds):
         assert _end(env.get_state()) == one.end
         assert {name: info[name] for name in one.info} == one.info
     n = len(seeds)
-    tables = SnookerVectorEnv(n, **options, opponent=Other(played), threads=1)
-    tables.reset(seed=list(seeds))
+    tables = begun(SnookerVectorEnv(n, **options, opponent=Other(played), threads=1), list(seeds))
     totals, over = np.zeros(n), np.zeros(n, bool)
     for step in range(max(1, *(len(one.actions[0]) for one in played))):
         actions = np.array([one.action(step) for one in played])

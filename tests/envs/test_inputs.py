@@ -8,6 +8,7 @@ import pytest
 import snooker_env as sn
 from snooker_env import SnookerEnv
 from snooker_env.tasks.noise import Noise
+from tests.tables import begun
 
 Z = (0.0, 0.0, 0.0)
 
@@ -80,8 +81,7 @@ def test_dicts_given_as_arguments_are_left_as_they_are():
 
 
 def test_actions_and_states_given_are_left_as_they_are_and_not_kept():
-    env = SnookerEnv(layout="random:4")
-    env.reset(seed=2)
+    env = begun(SnookerEnv(layout="random:4"), 2)
     action = np.zeros(4, np.float32)
     action.setflags(write=False)
     positions, here = np.array(env.get_state()["positions"]), np.array(env.get_state()["on_table"])

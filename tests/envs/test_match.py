@@ -9,7 +9,7 @@ from snooker_env.game.balls import CUE
 from snooker_env.render import window
 from snooker_env.tasks import observations
 from tests.processes import ROOT, python
-from tests.tables import PLACES, frame_state, plain
+from tests.tables import PLACES, begun, frame_state, plain
 
 pytest.importorskip("pettingzoo")
 from pettingzoo.test import api_test, render_test, seed_test
@@ -135,8 +135,7 @@ def test_a_state_of_a_frame_that_has_ended_ends_at_once(limit, why):
 
 
 def test_a_state_repeats_its_errors_and_a_seed_draws_others():
-    env = sn.match_env(aim="target", noise="professional", layout="random:6")
-    env.reset(seed=2)
+    env = begun(sn.match_env(aim="target", noise="professional", layout="random:6"), 2)
     state, ends = plain(env.get_state()), []
     for seed in (None, None, *range(50), 7):
         env.reset(seed=seed, options={"state": state})

@@ -8,7 +8,7 @@ import pytest
 
 import snooker_env as sn
 from tests.envs.test_frames_alike import KINDS, PLAIN
-from tests.tables import plain
+from tests.tables import begun, plain
 
 pytest.importorskip("pettingzoo")
 
@@ -65,8 +65,7 @@ def test_each_table_plays_as_a_match_alone(kind, threads):
 
 
 def test_tables_that_have_ended_stand_still_until_they_are_reset():
-    tables = sn.MatchVectorEnv(4, layout="random:0", max_strokes=6, threads=1, reward="win")
-    tables.reset(seed=0)
+    tables = begun(sn.MatchVectorEnv(4, layout="random:0", max_strokes=6, threads=1, reward="win"), 0)
     for _ in range(6):
         out = tables.step(np.tile([-0.9, 0, 0, 0.5, 0, 0, 0], (4, 1)))
     assert out[3].all()
@@ -81,8 +80,7 @@ def test_tables_that_have_ended_stand_still_until_they_are_reset():
 
 
 def test_a_saved_state_plays_on_whoever_is_to_play():
-    tables = sn.MatchVectorEnv(N, **PLAIN, layout="random:3", threads=2)
-    tables.reset(seed=3)
+    tables = begun(sn.MatchVectorEnv(N, **PLAIN, layout="random:3", threads=2), 3)
     tables.step(np.full((N, 7), -0.3))
     states = plain(tables.get_state())
     again = sn.MatchVectorEnv(N, **PLAIN, layout="random:3", threads=1)

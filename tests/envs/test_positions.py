@@ -9,7 +9,7 @@ import snooker_env as sn
 from snooker_env.game.balls import BallOn
 from snooker_env.planning import Positions
 from tests.refusals import refused
-from tests.tables import plain
+from tests.tables import begun, plain
 
 BALLS = {"cue": (0.1, -0.6), "reds": [(0.3, 0.5), (-0.2, 0.9)], "blue": (0.0, 0.0), "black": (0.0, 1.4605)}
 MID_BREAK = sn.Position(**BALLS, on="any colour", points=33)
@@ -65,8 +65,7 @@ def test_random_numbers_are_those_of_the_seed_or_go_on(task):
 @pytest.mark.parametrize("opponent", ["none", "random"])
 @pytest.mark.parametrize("position", [MID_BREAK, IN_HAND], ids=["mid-break", "in hand"])
 def test_in_a_frame_the_agent_plays_the_position(opponent, position):
-    env = sn.SnookerEnv(task="frame", opponent=opponent, **OPTIONS)
-    env.reset(seed=3)
+    env = begun(sn.SnookerEnv(task="frame", opponent=opponent, **OPTIONS), 3)
     env.step(np.zeros(4))  # the frame before leaves nothing behind
     _, info = env.reset(seed=1, **start(position))
     assert is_there(env, position)
@@ -93,8 +92,7 @@ def test_in_a_match_player_0_plays_the_position():
         assert np.array_equal(match.positions, MID_BREAK.arrays()[0])
         assert match.infos["player_0"]["break"] == 33
         stream = match.get_state()["stream"]
-        other = sn.match_env(noise="club")
-        other.reset(seed=seed)
+        other = begun(sn.match_env(noise="club"), seed)
         assert stream[0] == other.get_state()["stream"][0]
         match.reset(options={"position": MID_BREAK.to_dict()})
         assert match.get_state()["stream"] == stream
@@ -122,8 +120,7 @@ def test_many_tables_start_from_one_position_or_from_one_each():
 
 
 def test_a_mask_keeps_the_other_tables():
-    env = sn.SnookerVectorEnv(3, threads=1, task="frame", opponent="ghost_ball", noise="club")
-    env.reset(seed=2)
+    env = begun(sn.SnookerVectorEnv(3, threads=1, task="frame", opponent="ghost_ball", noise="club"), 2)
     before = env.get_state()
     mask = np.array([False, True, False])
     env.reset(options={"reset_mask": mask, "positions": [MID_BREAK, IN_HAND, MID_BREAK]})

@@ -12,6 +12,7 @@ import snooker_env as sn
 from snooker_env.envs.pictures import PictureSource, recorder_asking
 from snooker_env.tasks import stroke
 from tests.envs.test_vector import native
+from tests.tables import begun
 
 pytest.importorskip("pygame")
 moviepy = pytest.importorskip("moviepy")
@@ -30,9 +31,7 @@ def made(**options):
 
 def alone():
     """The same table without a recorder."""
-    env = sn.SnookerEnv(action="discrete")
-    env.reset(seed=1)
-    return env
+    return begun(sn.SnookerEnv(action="discrete"))
 
 
 def filmed(tables, folder):
@@ -146,8 +145,7 @@ def test_shots_with_long_logs_are_kept_each_on_its_own_table(monkeypatch):
     def strokes(log):
         with monkeypatch.context() as patched:
             patched.setattr(stroke.ShotBuffers.__init__, "__defaults__", (log,))
-            envs = sn.SnookerVectorEnv(4, render_mode="ansi", action="discrete", threads=1)
-            envs.reset(seed=1)
+            envs = begun(sn.SnookerVectorEnv(4, render_mode="ansi", action="discrete", threads=1))
             envs.step(np.full(4, 67))
             return [[(p.shot.positions, len(p.shot.events), p.points) for p in t] for t in envs._recent]
 

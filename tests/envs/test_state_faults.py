@@ -14,7 +14,7 @@ from snooker_env.game.frame import Frame, Saved
 from snooker_env.game.referee import FULL_TABLE, Stroke
 from tests.mutations import at, frozen, kind_of, mutations, names_it
 from tests.refusals import refused
-from tests.tables import PLACES, frame_env, frame_state, plain
+from tests.tables import PLACES, begun, frame_env, frame_state, plain
 
 FRAME = {"opponent": "random", "miss": "clear_path", "noise": "club", "layout": "random:3", "aim": "target"}
 WANTED = {
@@ -105,15 +105,13 @@ def loader(env, seed):
 
 @pytest.mark.parametrize("layout", ["random:3", "break_off", "colours"])
 def test_every_fault_of_a_visit(layout):
-    env = SnookerEnv(layout=layout, noise="club", placement=layout == "break_off")
-    env.reset(seed=3)
+    env = begun(SnookerEnv(layout=layout, noise="club", placement=layout == "break_off"), 3)
     refusals, taken = attack(plain(env.get_state()), loader(env, None), env.get_state, play=player(env))
     assert refusals > 500 and taken > 30
 
 
 def test_every_fault_of_a_visit_in_the_vector_environment():
-    env = SnookerVectorEnv(2, layout="random:3", noise="club")
-    env.reset(seed=3)
+    env = begun(SnookerVectorEnv(2, layout="random:3", noise="club"), 3)
     sound = plain(env.get_state()[1])
     for how in (lambda state: {"state": state}, lambda state: {"states": [sound, state]}):
         refusals, taken = attack(sound, lambda state, how=how: env.reset(options=how(state)), env.get_state)
@@ -130,8 +128,7 @@ def test_every_fault_of_a_frame(name, frame_states):
 @pytest.mark.parametrize("name", ["in_hand", "a miss", "replaced"])
 def test_every_fault_of_a_match(name, frame_states):
     pytest.importorskip("pettingzoo")
-    env = sn.match_env(**{key: FRAME[key] for key in ("miss", "noise", "layout", "aim")})
-    env.reset(seed=1)
+    env = begun(sn.match_env(**{key: FRAME[key] for key in ("miss", "noise", "layout", "aim")}))
 
     def play():
         spaces = env.observation_spaces
@@ -210,8 +207,7 @@ MISS = [
 
 @pytest.mark.parametrize(("parts", "field", "value", "allowed"), MISS)
 def test_faults_of_a_frame_in_which_a_miss_was_called(parts, field, value, allowed, frame_states):
-    env = frame_env(**FRAME)
-    env.reset(seed=1)
+    env = begun(frame_env(**FRAME))
     before = frozen(env.get_state())
     state = changed(frame_states["a miss"], **parts)
     refused(lambda: env.reset(seed=8, options={"state": state}), field, value, allowed)
@@ -219,8 +215,7 @@ def test_faults_of_a_frame_in_which_a_miss_was_called(parts, field, value, allow
 
 
 def test_a_layout_is_kept_by_the_rule_of_the_miss_only():
-    env = sn.match_env()
-    env.reset(seed=1)
+    env = begun(sn.match_env())
     env.step(np.array([-0.8, 0, 0, -0.5, 0, 0, 0]))  # at the bottom cushion, hitting nothing
     state = plain(env.get_state())
     assert state["frame"]["phase"] == "choice" and state["frame"]["saved"]["layout"] is None
@@ -273,8 +268,7 @@ def test_parts_of_a_frame_that_do_not_fit_together_are_refused(fields, field):
 
 def test_the_highest_break_is_within_the_observation_space():
     """A free ball and the colour after it, then 147: no state offers more, and that one is taken."""
-    env = SnookerEnv()
-    env.reset(seed=1)
+    env = begun(SnookerEnv())
     state = env.get_state()
     for ball_on, most in ((BallOn.RED, 8), (BallOn.ANY_COLOUR, 1)):
         highest, more = (state | {"ball_on": int(ball_on), "points": points} for points in (most, most + 1))
@@ -284,8 +278,7 @@ def test_the_highest_break_is_within_the_observation_space():
 
 def test_a_state_with_nothing_left_to_play_is_for_looking_only(frame_states):
     over = Frame.from_dict(frame_states["a break"]["frame"]).concede(0).to_dict()
-    env = frame_env(**FRAME)
-    env.reset(seed=1)
+    env = begun(frame_env(**FRAME))
     ended, stopped = frame_states["a break"] | {"frame": over}, frame_states["in_hand"] | {"strokes": 1000}
     for state, field in ((ended, "phase"), (stopped, "strokes")):
         before = frozen(env.get_state())

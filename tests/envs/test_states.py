@@ -11,7 +11,7 @@ from gymnasium.utils.env_checker import data_equivalence
 
 from snooker_env import SnookerEnv
 from snooker_env.game.balls import BallOn
-from tests.tables import COPIES, drawn, jsonable, plain, viewed
+from tests.tables import COPIES, begun, drawn, jsonable, plain, viewed
 
 
 def shots(env, n=5):
@@ -71,8 +71,7 @@ FRAME = {"task": "frame", "opponent": "ghost_ball", "miss": "clear_path"}
 @pytest.mark.parametrize("arguments", [{}, {"task": "frame"}, FRAME], ids=["visit", "alone", "frame"])
 def test_a_state_repeats_its_errors_and_a_seed_draws_others(arguments):
     arguments = {"noise": "professional", "layout": "random:6"} | arguments
-    env = SnookerEnv(**arguments)
-    env.reset(seed=3)
+    env = begun(SnookerEnv(**arguments), 3)
     state = plain(env.get_state())
     assert len(set(ends_from(env, state, [None] * 20))) == 1
     ends = ends_from(env, state, range(300))
@@ -83,8 +82,7 @@ def test_a_state_repeats_its_errors_and_a_seed_draws_others(arguments):
     env.reset(seed=7, options={"state": state})
     kept = env.get_state()
     assert {key for key in state if kept[key] != state[key]} == {"rng", "stream"}
-    fresh = SnookerEnv(**arguments)
-    fresh.reset(seed=7)
+    fresh = begun(SnookerEnv(**arguments), 7)
     # the key that a visit of that seed has
     assert "task" in arguments or kept["stream"] == [fresh.get_state()["stream"][0], 0]
 

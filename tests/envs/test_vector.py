@@ -13,7 +13,7 @@ from gymnasium.vector import AutoresetMode
 import snooker_env as sn
 from snooker_env import SnookerEnv, SnookerVectorEnv
 from snooker_env.tasks import OBSERVATIONS, stroke
-from tests.tables import COPIES, viewed
+from tests.tables import COPIES, begun, viewed
 
 MODES = list(AutoresetMode)
 
@@ -146,8 +146,7 @@ def test_a_mask_resets_only_those():
 
 @pytest.mark.parametrize("mask", [[True, False], np.array([True]), np.array([1, 0]), np.zeros(2, bool)])
 def test_wrong_masks_are_refused(mask):
-    env = native(2)
-    env.reset(seed=1)
+    env = begun(native(2))
     with pytest.raises(ValueError, match="reset_mask"):
         env.reset(options={"reset_mask": mask})
 
@@ -206,8 +205,7 @@ def test_it_must_be_reset_first():
         env.step(np.zeros((3, 4)))
     with pytest.raises(gymnasium.error.ResetNeeded, match="table 1"):
         env.reset(options={"reset_mask": np.array([True, False, True])})
-    env = native(3, autoreset_mode=AutoresetMode.DISABLED)
-    env.reset(seed=0)
+    env = begun(native(3, autoreset_mode=AutoresetMode.DISABLED), 0)
     env.step(np.full((3, 4), -1.0))  # as soft as can be: all miss
     with pytest.raises(gymnasium.error.ResetNeeded, match="table 0 is over"):
         env.step(np.zeros((3, 4)))
@@ -215,8 +213,7 @@ def test_it_must_be_reset_first():
 
 @pytest.mark.parametrize("copied", COPIES)
 def test_copies_play_on_alike(copied):
-    env = native(20, noise="club", threads=2)
-    env.reset(seed=3)
+    env = begun(native(20, noise="club", threads=2), 3)
     a = np.random.default_rng(0).uniform(-1, 1, (20, 4))
     env.step(a)
     twin = copied(env)
@@ -227,12 +224,10 @@ def test_copies_play_on_alike(copied):
 
 def test_pictures_of_all_tables():
     pytest.importorskip("pygame")
-    env = native(2, render_mode="rgb_array")
-    env.reset(seed=0)
+    env = begun(native(2, render_mode="rgb_array"), 0)
     first, second = env.render()
     assert first.dtype == np.uint8 and first.ndim == 3 and not np.array_equal(first, second)
-    env = native(2, render_mode="ansi")
-    env.reset(seed=0)
+    env = begun(native(2, render_mode="ansi"), 0)
     assert "break 0" in env.render()[0]
 
 
@@ -242,11 +237,9 @@ def test_a_log_that_is_too_short_is_enlarged(monkeypatch):
     for log in (512, 3):
         with monkeypatch.context() as patch:
             patch.setattr(stroke.ShotBuffers.__init__, "__defaults__", (log,))
-            env = native(20, noise="club", aim="target", autoreset_mode=AutoresetMode.SAME_STEP)
-            env.reset(seed=3)
+            env = begun(native(20, noise="club", aim="target", autoreset_mode=AutoresetMode.SAME_STEP), 3)
             runs.append([env.step(np.full((20, 4), 0.1))[:4] for _ in range(4)])
-            single = SnookerEnv(noise="club", aim="target")
-            single.reset(seed=3)
+            single = begun(SnookerEnv(noise="club", aim="target"), 3)
             single.step(np.full(4, 0.1))
             runs[-1].append((single.last_shot.events.tobytes(), single.last_shot.positions))
     assert same(*runs)
@@ -255,8 +248,7 @@ def test_a_log_that_is_too_short_is_enlarged(monkeypatch):
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_shot_that_cannot_be_computed_names_its_table(monkeypatch, threads):
     monkeypatch.setattr(stroke, "MAX_EVENTS", 40)
-    env = native(40, threads=threads)
-    env.reset(seed=0)
+    env = begun(native(40, threads=threads), 0)
     before = env.tables.positions.copy()
     with pytest.raises(sn.SimulationError, match=r"the shot on table \d+ did not come to rest") as info:
         env.step(np.full((40, 4), 0.9))
@@ -287,8 +279,7 @@ def test_a_state_with_seeds_is_what_single_tables_make_of_it(seed):
 
 
 def test_a_wrong_seed_or_state_changes_no_table():
-    env = native(3, noise="club")
-    env.reset(seed=1)
+    env = begun(native(3, noise="club"))
     before, seeds = env.get_state(), env.np_random_seed
     good, spoilt = before[0], before[0] | {"points": 400}
     states = ([4, -1, 5], {}), ([4, 5, -1], {"state": good}), (9, {"states": [good, good, spoilt]})
@@ -304,8 +295,7 @@ forks = pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on Windows")
 @forks
 def test_processes_forked_while_threads_are_kept_play_on():
     """AsyncVectorEnv forks; the threads of a vector environment in the parent do no harm."""
-    env = native(32, threads=2)
-    env.reset(seed=0)
+    env = begun(native(32, threads=2), 0)
     a = np.zeros((32, 4), np.float32)
     want = env.step(a)[0]
     forked = gymnasium.vector.AsyncVectorEnv([lambda: gymnasium.make("Snooker-v0")] * 2, context="fork")
@@ -321,8 +311,7 @@ def test_processes_forked_while_threads_are_kept_play_on():
 @forks
 def test_an_environment_that_has_played_on_threads_plays_on_in_a_forked_process():
     """A child has none of its parent's threads; waiting for them would be for ever."""
-    env = native(64, threads=2)
-    env.reset(seed=3)
+    env = begun(native(64, threads=2), 3)
     a = np.zeros((64, 4))
     env.step(a)
     mine, yours = os.pipe()

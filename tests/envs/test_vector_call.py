@@ -12,6 +12,7 @@ from snooker_env import SnookerEnv
 from snooker_env.envs.vector import NOT_OF_A_TABLE, SnookerVectorEnv
 from tests.envs.test_vector import actions_of, native, same, sync
 from tests.refusals import refused
+from tests.tables import begun
 
 N = 4
 OPTIONS = {
@@ -90,8 +91,7 @@ def test_every_method_is_served_or_refused_by_name():
 
 @pytest.mark.parametrize("name", sorted(NOT_OF_A_TABLE))
 def test_what_belongs_to_all_tables_is_refused(name):
-    env = SnookerVectorEnv(2)
-    env.reset(seed=1)
+    env = begun(SnookerVectorEnv(2))
     before = pickle.dumps(env.get_state())
     refused(lambda: env.call(name), "name", repr(name), f"; use {NOT_OF_A_TABLE[name]}")
     refused(lambda: env.get_attr(name), "name", repr(name), "that a table has for itself")
@@ -120,8 +120,7 @@ def test_nothing_can_be_set():
 
 
 def test_what_is_given_is_the_callers_own():
-    env = SnookerVectorEnv(2, layout="random:3")
-    env.reset(seed=1)
+    env = begun(SnookerVectorEnv(2, layout="random:3"))
     for a in (*env.call("positions"), *env.call("on_table")):
         a[:] = 0
     assert env.call("on_table")[0].sum() == 10 and np.abs(env.call("positions")[0]).sum() > 1

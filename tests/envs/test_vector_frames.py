@@ -10,6 +10,7 @@ from snooker_env import SnookerEnv, SnookerVectorEnv
 from snooker_env.tasks.options import Options
 from tests.envs.test_vector import MODES, actions_of, check_equal, native, same
 from tests.refusals import refused
+from tests.tables import begun
 
 
 def policy(observation, rng):
@@ -215,8 +216,7 @@ def test_a_part_of_the_observations_that_cannot_be_written_into_is_refused():
     ],
 )
 def test_arrays_that_cannot_be_written_into_are_refused_before_anything_is_played(out, field):
-    env = native(3, noise="club")
-    env.reset(seed=1)
+    env = begun(native(3, noise="club"))
     before = env.get_state()
     with pytest.raises(ValueError) as info:
         env.step(np.zeros((3, 4)), out=out)

@@ -10,27 +10,25 @@ import snooker_env as sn
 from snooker_env.planning import Planner, Position, Positions
 from snooker_env.players import FRAMES, VISITS, SeenPlayer, Strokes, decided, decision_seeds
 from snooker_env.players.resolver import BUILT_IN
+from tests.positions import tables
 from tests.processes import copy_of_package, python
+from tests.tables import begun
 
 SEARCHING = ("best_pot_30", "search_30", "planner_30", "planner_value_30", "planner_policy_30")
 NAMES = ("random", "ghost_ball", *SEARCHING)
 
 
 def of_visits(n, layout="random:6", seed=5):
-    tables = sn.SnookerVectorEnv(n, layout=layout, threads=1)
-    tables.reset(seed=seed)
-    return Positions.of(tables)
+    return Positions.of(tables(n, seed, layout=layout, threads=1))
 
 
 def of_frames(n, steps=6):
     """Positions of frames in all phases: after fouls, with free balls, in hand."""
     options = {"task": "frame", "opponent": "ghost_ball", "noise": "club", "decision": True}
-    tables = sn.SnookerVectorEnv(n, threads=1, **options)
-    tables.reset(seed=3)
-    rng = np.random.default_rng(0)
+    env, rng = tables(n, 3, threads=1, **options), np.random.default_rng(0)
     for _ in range(steps):
-        tables.step(rng.uniform(-1, 1, tables.action_space.shape).astype(np.float32))
-    return Positions.of(tables)
+        env.step(rng.uniform(-1, 1, env.action_space.shape).astype(np.float32))
+    return Positions.of(env)
 
 
 def same(one, other):
@@ -130,15 +128,13 @@ def test_what_sees_observations_plays_as_in_the_environment(seen):
     masks = tables.action_masks() if seen is First else None
     tables.step(seen().act(observations, masks, np.arange(n)))
     strokes = SeenPlayer(seen()).at({}).play(at, np.arange(n))
-    other = sn.SnookerVectorEnv(n, layout="random:6", threads=1, **VISITS)
-    other.reset(seed=5)
+    other = begun(sn.SnookerVectorEnv(n, layout="random:6", threads=1, **VISITS), 5)
     other.step(strokes.actions(other.options, at))
     assert np.allclose(other.tables.positions, tables.tables.positions, atol=1e-6)
 
 
 def test_a_player_plays_on_tables_with_a_seed_for_each_decision():
-    tables = sn.SnookerVectorEnv(5, task="frame", noise="professional", opponent="none", **FRAMES)
-    tables.reset(seed=1)
+    tables = begun(sn.SnookerVectorEnv(5, task="frame", noise="professional", opponent="none", **FRAMES))
     player, going = sn.player("ghost_ball").at(tables), np.array([True, False, True, True, False])
     actions = decided(player, tables, going, decision_seeds(0, np.arange(5), 0))
     assert not actions[~going].any() and actions[going].any(axis=1).all()

@@ -12,12 +12,11 @@ from snooker_env.planning.stroke_search import schedule
 from snooker_env.players import weights
 from snooker_env.players.search import BUDGET, KINDS
 from snooker_env.tasks import LEVELS, Noise
+from tests.positions import tables
 
 
 def held_out(n=4, seed=2):
-    tables = sn.SnookerVectorEnv(n, layout="held_out", threads=1)
-    tables.reset(seed=seed)
-    return Positions.of(tables)
+    return Positions.of(tables(n, seed, layout="held_out", threads=1))
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -16,6 +16,7 @@ from snooker_env.game.ruling import Foul
 from snooker_env.replays.bars import bars, standing_bar
 from snooker_env.replays.words import FOUL_WORDS, foul_words
 from tests.refusals import refused
+from tests.tables import begun
 
 
 def numbers(text, kind, columns):
@@ -185,8 +186,7 @@ def test_a_frame_and_a_match_name_both_players():
 
 
 def test_history_is_kept_on_request_and_starts_anew():
-    env = sn.SnookerEnv(action="discrete")
-    env.reset(seed=1)
+    env = begun(sn.SnookerEnv(action="discrete"))
     env.step(67)
     assert env.history == [] and env.last_shot is not None and not len(env.last_shot.segments)
     refused(lambda: sn.replay(env), "source", "keeps no history", "keep_history = True")

@@ -11,7 +11,7 @@ from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.geometry import BAULK_Y, D_RADIUS, POCKET_AIMS
 from snooker_env.tasks.box_actions import MAX_ELEVATION, TARGET_SPAN
-from tests.tables import after_strike, speed_of, table_state
+from tests.tables import after_strike, begun, speed_of, table_state
 
 
 def standing(**options):
@@ -136,8 +136,7 @@ def test_placement_is_for_a_ball_in_hand_only():
         assert np.array_equal(env.last_shot.at(0.0)[0][CUE], here)
     assert len(ends) == 1
     # without placement the ball lies where the layout put it
-    plain = SnookerEnv(layout="break_off", render_mode="ansi")
-    plain.reset(seed=3)
+    plain = begun(SnookerEnv(layout="break_off", render_mode="ansi"), 3)
     here = plain.positions[CUE].copy()
     plain.step([0, 0, 0, 0.5])
     assert np.array_equal(plain.last_shot.at(0.0)[0][CUE], here)

@@ -8,6 +8,7 @@ from snooker_env import SnookerEnv
 from snooker_env.game import pots
 from snooker_env.game.balls import mask_of
 from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
+from tests.tables import begun
 
 R = 0.02625
 
@@ -31,8 +32,7 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         if not len(found) or np.hypot(*(cue - ball)) < 0.2 or found[0, 4] < 0.3:
             continue
         speed, side, top = int(rng.integers(4, 9)), int(rng.integers(3)), int(rng.integers(5))
-        env = SnookerEnv(action="discrete", layout="random:1", physics=physics)
-        env.reset(seed=0)
+        env = begun(SnookerEnv(action="discrete", layout="random:1", physics=physics), 0)
         env.tables.positions[0], env.tables.on_table[0] = positions, on_table
         env.tables.game[0, :3] = 1, 0, 0
         env.step(choice_of(0, speed, side, top))
@@ -57,15 +57,13 @@ def test_solved_aims_pot_more_than_straight_lines():
     speed, made = 2 * (SPEEDS[4] - 0.2) / 6.8 - 1, []
     for action, stroke in (("discrete", choice_of(0, 4, 1, 2)), ("box", (speed, 0.0, 0.0, 0.0))):
         options = {"action": action, "aim": "target", "layout": "pots:medium", "physics": "match"}
-        env = sn.SnookerVectorEnv(400, **options)
-        env.reset(seed=0)
+        env = begun(sn.SnookerVectorEnv(400, **options), 0)
         made.append((env.step(np.array([stroke] * 400))[1] > 0).mean())
     assert made[0] > 0.95 > made[1] + 0.1
 
 
 def test_masks_offer_the_pots_there_are():
-    env = sn.SnookerVectorEnv(200, action="discrete", layout="random:1")
-    env.reset(seed=0)
+    env = begun(sn.SnookerVectorEnv(200, action="discrete", layout="random:1"), 0)
     visits, masks = env.tables, env.action_masks()
     assert masks.shape == (200, SIZE)
     counts = set()

@@ -15,7 +15,7 @@ from snooker_env.geometry import HALF_LENGTH, HALF_WIDTH
 from snooker_env.tasks import observations
 from snooker_env.tasks.observations import FRAME_ENTRIES
 from snooker_env.tasks.options import NAMES
-from tests.tables import frame_env, frame_state, plain, viewed
+from tests.tables import begun, frame_env, frame_state, plain, viewed
 
 SOFT = [-1.0, 0, 0, 0.5, 0, 0, 0]
 """A soft stroke up the table (with ``aim="absolute"``)."""
@@ -53,8 +53,7 @@ def test_the_spaces_grow_and_those_of_a_visit_do_not():
 def test_the_default_layout_is_that_of_the_task():
     assert SnookerEnv().options.rules.plan.name == "opened"
     assert frame_env().options.rules.plan.name == "break_off"
-    env = frame_env(layout="colours")
-    env.reset(seed=0)
+    env = begun(frame_env(layout="colours"), 0)
     assert env.ball_on == BallOn.YELLOW and not env.in_hand
 
 
@@ -120,8 +119,7 @@ def test_six_reds_are_racked():
 
 
 def test_the_place_anywhere_is_a_share_of_the_table():
-    env = SnookerEnv(task="frame", game="shoot_out", placement=True)
-    env.reset(seed=1)
+    env = begun(SnookerEnv(task="frame", game="shoot_out", placement=True))
     env.step(np.array([-1, 0, 0, -0.5, 0, 0], np.float32))  # softly away from the reds: a foul
     assert env.frame.anywhere and env.frame.in_hand
     env.keep_history = True
@@ -181,8 +179,7 @@ def test_who_plays_alone_stays_at_the_table_after_a_decision(decision):
 
 def test_a_nomination_does_not_outlive_its_frame():
     """An error in a stroke, or in an opponent, may leave one behind."""
-    env = frame_env()
-    env.reset(seed=1)
+    env = begun(frame_env())
     position = sn.Position(cue=(0.0, 0.0), black=(0.3, 0.3), on="black")
     for start in ({}, {"state": env.get_state()}, {"position": position}):
         env.tables.nominated[0] = PINK

@@ -12,7 +12,7 @@ from snooker_env.game.ruling import Foul
 from snooker_env.geometry import D_RADIUS
 from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
 from snooker_env.tasks.options import MAX_STROKES
-from tests.tables import PLACES, frame_env, frame_state, plain
+from tests.tables import PLACES, begun, frame_env, frame_state, plain
 
 TO_BLUE = 0.0
 """Absolute aim along +x."""
@@ -52,8 +52,7 @@ def test_without_the_option_the_agent_always_plays():
 
 
 def test_replacing_after_a_miss_brings_the_balls_back():
-    env = sn.match_env(miss="clear_path")
-    env.reset(seed=1)
+    env = begun(sn.match_env(miss="clear_path"))
     offender, before = env.frame.striker, env.positions.copy()
     env.step(np.array([-0.8, 0, 0, -0.5, 0.3, 0.2, 0]))  # at the bottom cushion, hitting nothing
     placed = 0.3 * D_RADIUS, -1.0475 - D_RADIUS * np.sqrt(1 - 0.3**2) * 0.6
@@ -170,8 +169,7 @@ def test_fouls_without_end_score_without_end():
 
 def test_a_match_of_fouls_and_orders_to_play_again_ends_by_itself():
     pytest.importorskip("pettingzoo")
-    env = sn.match_env(layout="random:2")
-    env.reset(seed=1)
+    env = begun(sn.match_env(layout="random:2"))
     state = env.get_state()
     env.reset(options={"state": state | {"frame": state["frame"] | {"scores": [9_990, 9_990]}}})
     for _ in range(2000):  # a turn is a stroke, or gives the table over

@@ -14,6 +14,7 @@ from snooker_env.tasks.ghost_ball import GhostBallOpponent
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import AIM, CUE_SPEED, ShotBuffers
 from snooker_env.tasks.tables import I_FOULS, I_POINTS, Crew
+from tests.tables import begun
 
 PLAYER = GhostBallOpponent()
 
@@ -120,8 +121,7 @@ def test_a_constant_action_that_never_plays_after_a_foul_wins_few_frames(speed, 
     """Softly along the target line it won 77 of 100 frames, while "ghost_ball" struck at random; harder
     strokes along that line pot balls and win 18 to 35."""
     options = {"task": "frame", "aim": "target", "decision": True, "miss": "clear_path"}
-    tables = sn.SnookerVectorEnv(100, threads=1, opponent="ghost_ball", **options)
-    tables.reset(seed=0)
+    tables = begun(sn.SnookerVectorEnv(100, threads=1, opponent="ghost_ball", **options), 0)
     action, won, over = np.tile([speed, 0.0, 0.0, 0.0, decision], (100, 1)), 0, np.zeros(100, bool)
     while not over.all():
         _, _, terminated, truncated, info = tables.step(action)

@@ -6,7 +6,7 @@ import pytest
 import snooker_env as sn
 from snooker_env import SnookerEnv
 from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
-from tests.tables import frame_env
+from tests.tables import begun, frame_env
 
 NAMES = ("frames_won", "opponent_frames", "frames_needed", "broke")
 FRAMES_SEEN = [SIZE + FRAME_ENTRIES.index(name) for name in NAMES]
@@ -72,8 +72,7 @@ def test_points_of_a_match_are_those_of_both_players_over_its_frames():
 
 
 def test_a_frame_that_is_stopped_truncates_the_match():
-    env = frame_env(task="match", max_strokes=5)
-    env.reset(seed=1)
+    env = begun(frame_env(task="match", max_strokes=5))
     ends = [env.step([-1.0, 0, 0, 0.9, 0, 0, 0])[2:4] for _ in range(5)]
     assert ends == [(False, False)] * 4 + [(False, True)]
 

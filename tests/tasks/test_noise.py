@@ -11,7 +11,7 @@ from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics.cue import strike
 from snooker_env.tasks.noise import LEVELS, Noise, executed
 from tests.kernels import from_python
-from tests.tables import after_strike, speed_of, table_state
+from tests.tables import after_strike, begun, speed_of, table_state
 
 _executed = from_python(executed)
 
@@ -102,13 +102,11 @@ def test_noise_reaches_the_table():
 
 
 def test_no_noise_draws_nothing():
-    env = SnookerEnv(layout="random:3")
-    env.reset(seed=1)
+    env = begun(SnookerEnv(layout="random:3"))
     before = env.get_state()
     env.step(np.zeros(4))
     assert env.get_state()["stream"] == before["stream"] and env.get_state()["rng"] == before["rng"]
-    noisy = SnookerEnv(layout="random:3", noise={"offset_mm": 1e-9})
-    noisy.reset(seed=1)
+    noisy = begun(SnookerEnv(layout="random:3", noise={"offset_mm": 1e-9}))
     noisy.step(np.zeros(4))
     assert noisy.get_state()["stream"] == [before["stream"][0], before["stream"][1] + 3]
     assert Noise().silent and not any(Noise(**{f: 1e-9}).silent for f in Noise.__dataclass_fields__)

@@ -11,7 +11,7 @@ from snooker_env.geometry import BAULK_Y, D_RADIUS
 from snooker_env.tasks import declarations, discrete_actions
 from tests.refusals import refused
 from tests.tables import PLACES as STANDING
-from tests.tables import frame_env, frame_state, layout, plain
+from tests.tables import begun, frame_env, frame_state, layout, plain
 
 COLOURS = {CUE: (0.0, -0.5), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
 PLACES = COLOURS | {1: (0.6, 1.4), YELLOW: SPOTS[YELLOW]}
@@ -157,8 +157,7 @@ def test_the_built_in_players_play_with_everything_said(opponent, action):
     """They nominate, begin at the lot, and do not concede."""
     options = SAID | {"task": "match", "frames": 3, "nominate": True, "layout": "pots:easy", "aim": "target"}
     many = {"opponent": opponent, "autoreset_mode": "SameStep", "threads": 1}
-    tables = sn.SnookerVectorEnv(20, action=action, **options, **many)
-    tables.reset(seed=1)
+    tables = begun(sn.SnookerVectorEnv(20, action=action, **options, **many))
     rng, ended = np.random.default_rng(0), 0
     for _ in range(40):
         if action == "discrete":
@@ -187,8 +186,7 @@ def test_to_concede_costs_what_is_left_on_the_table():
 
 
 def test_from_the_start_it_costs_147():
-    env = sn.SnookerEnv(task="frame", concede=True)
-    env.reset(seed=1)
+    env = begun(sn.SnookerEnv(task="frame", concede=True))
     assert env.step([0.0] * 4 + [-1.0])[1] == -147.0
 
 
@@ -208,8 +206,7 @@ def test_of_two_players_the_other_one_gets_it(striker):
 
 @pytest.mark.parametrize(("reward", "expected"), [("win", -1.0), ("frames", -1.0), ("points", -(147 + LEFT))])
 def test_of_a_match_each_frame_given_up_is_paid_once(reward, expected):
-    env = sn.SnookerEnv(task="match", frames=3, concede=True, aim="target", reward=reward)
-    env.reset(seed=1)
+    env = begun(sn.SnookerEnv(task="match", frames=3, concede=True, aim="target", reward=reward))
     total = env.step([0.0] * 4 + [-1.0])[1]
     state = env.get_state()
     assert state["frames"] == [0, 1]

@@ -15,7 +15,7 @@ from snooker_env.tasks.saved_models import SavedModel
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_POINTS, Crew
 from tests.bombs import bombed, edited, rezipped
-from tests.tables import PLACES, frame_env, frame_state
+from tests.tables import PLACES, begun, frame_env, frame_state
 from tests.torch_threads import deciding_on_one_thread
 
 
@@ -89,8 +89,7 @@ def test_the_ghost_ball_player_pots_what_is_there():
 def test_the_ghost_ball_player_beats_the_random_one():
     wins = 0
     for seed in range(8):
-        env = frame_env(opponent="ghost_ball", decision=False)
-        env.reset(seed=seed)
+        env = begun(frame_env(opponent="ghost_ball", decision=False), seed)
         rng = np.random.default_rng(seed)
         while not env.over:
             env.step(rng.uniform(-1, 1, 6))

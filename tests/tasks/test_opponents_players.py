@@ -18,7 +18,7 @@ from snooker_env.players import Strokes
 from snooker_env.tasks import OpponentPool
 from snooker_env.tasks.declarations import CONCEDES
 from snooker_env.tasks.stroke import ShotBuffers
-from tests.tables import COPIES, PLACES, frame_env, frame_state, plain
+from tests.tables import COPIES, PLACES, begun, frame_env, frame_state, plain
 
 MISS = [-0.9, 0, 0, 1.0, 0, 0, 0]
 HIDDEN = {CUE: (0.3, 0.3), 1: (0.3, 1.2), GREEN: (0.3, 0.6), BLACK: SPOTS[BLACK]}
@@ -103,8 +103,7 @@ def test_to_change_sides_twice_changes_nothing():
 def test_one_call_serves_all_tables_that_wait():
     player = Soft()
     options = {"task": "frame", "opponent": player, "layout": "random:3", "aim": "target"}
-    tables = sn.SnookerVectorEnv(16, threads=2, **options)
-    tables.reset(seed=0)
+    tables = begun(sn.SnookerVectorEnv(16, threads=2, **options), 0)
     player.calls.clear()
     _, _, _, _, info = tables.step(np.tile(MISS[:4], (16, 1)))
     assert len(player.calls) == info["opponent_strokes"].max() and len(player.calls[0][0]) > 8
@@ -195,8 +194,7 @@ def test_a_player_plays_alike_again_whatever_other_tables_do(n):
         assert np.array_equal(one[0], all_of_them[0][0]) and one[1] == all_of_them[1][0]
         if env.over:
             break
-        again = sn.SnookerEnv(**options)
-        again.reset(seed=99)
+        again = begun(sn.SnookerEnv(**options), 99)
         again.set_state(plain(state))
         assert data_equivalence(again.step(MISS[:4])[:4], one[:4], exact=True)
 
@@ -245,8 +243,7 @@ def test_any_opponent_plays_matches_and_stable_baselines_tables(name):
     opponent = {"player": Soft(), "pool": OpponentPool(["ghost_ball", Soft(), "best_pot"])}.get(name, name)
     options = {"task": "match", "frames": 3, "layout": "pots:easy", "aim": "target", "max_strokes": 20}
     options["opponent"] = opponent
-    env = sn.SnookerEnv(**options)
-    env.reset(seed=1)
+    env = begun(sn.SnookerEnv(**options))
     over = strokes = steps = 0
     while not over and steps < 100:
         _, _, terminated, truncated, info = env.step(MISS[:4])
@@ -302,8 +299,7 @@ def test_options_hold_text_and_objects_come_beside_them():
 
 @pytest.mark.parametrize("copied", COPIES)
 def test_copies_of_an_environment_play_on_alike(copied):
-    env = frame_env(opponent=Soft(), layout="random:2", noise="club")
-    env.reset(seed=2)
+    env = begun(frame_env(opponent=Soft(), layout="random:2", noise="club"), 2)
     twin = copied(env)
     assert data_equivalence(twin.step(MISS)[:4], env.step(MISS)[:4], exact=True)
 
@@ -376,8 +372,7 @@ def test_the_same_seed_meets_the_same_opponent_alone_and_among_others():
     many.reset(seed=5)
     out = [many.step(np.tile(DOWN, (6, 1))) for _ in range(3)]
     for k in range(6):
-        env = sn.SnookerEnv(opponent=OpponentPool(pool), **FRAME)
-        env.reset(seed=5 + k)
+        env = begun(sn.SnookerEnv(opponent=OpponentPool(pool), **FRAME), 5 + k)
         for observation, reward, terminated, _, _ in out:
             one = env.step(DOWN)
             assert np.array_equal(one[0], observation[k]) and one[1] == reward[k] and one[2] == terminated[k]

@@ -14,6 +14,7 @@ from snooker_env.game.opened import bank, kept
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.table_fit import fitted
 from tests.refusals import refused
+from tests.tables import begun
 
 MATCH = Table.preset("match")
 EVERY = (*LAYOUTS, "random:0", "random:15", "pots:easy", "pots:medium", "pots:hard")
@@ -61,8 +62,7 @@ def test_some_opened_tables_do_not_fit_other_pockets():
 @pytest.mark.parametrize("layout", EVERY)
 @pytest.mark.parametrize("name", FIT)
 def test_every_layout_fits_every_table_that_is_accepted(name, layout):
-    env = SnookerVectorEnv(256, table=FIT[name], layout=layout)
-    env.reset(seed=11)
+    env = begun(SnookerVectorEnv(256, table=FIT[name], layout=layout), 11)
     FIT[name].check(env.tables.positions, BALL_RADIUS, "positions", env.tables.on_table)
 
 
@@ -96,8 +96,7 @@ def test_others_stand_in_for_the_opened_tables_that_do_not_fit_and_no_other_deal
 def test_the_tables_that_did_not_fit_can_be_dealt_in_frames_and_matches_too():
     """What an environment deals, it takes back as a state."""
     for task in ("visit", "frame"):
-        env = SnookerEnv(task=task, layout="opened", table="tight")
-        env.reset(seed=1)
+        env = begun(SnookerEnv(task=task, layout="opened", table="tight"))
         env.set_state(env.get_state())
         assert env.options.rules.plan.unfit
     assert sn.match_env(table="tight", layout="opened").unwrapped.options.rules.plan.unfit  # pyright: ignore[reportAttributeAccessIssue]
@@ -135,8 +134,7 @@ def test_shots_on_a_table_of_ones_own_are_played_on_it():
     """A copy of the match table gives the same rewards and places as the preset, one without pockets none."""
     ends = []
     for table in ("match", changed("unbounded"), FIT["no pockets"]):
-        env = SnookerVectorEnv(64, table=table, layout="random:10")
-        env.reset(seed=3)
+        env = begun(SnookerVectorEnv(64, table=table, layout="random:10"), 3)
         rewards = env.step(np.random.default_rng(0).uniform(-1, 1, (64, 4)).astype(np.float32))[1]
         ends.append((rewards, env.tables.positions.copy()))
     assert np.array_equal(ends[0][0], ends[1][0]) and np.array_equal(ends[0][1], ends[1][1])
