@@ -4,13 +4,18 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from benchmarks import fair
 from snooker_env import SnookerEnv
 from snooker_env.game import pots
-from snooker_env.game.balls import mask_of
-from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
-from tests.tables import begun
-
-R = 0.02625
+from snooker_env.game.balls import BLACK, BLUE, BROWN, CUE, N_BALLS, SPOTS, BallOn, mask_of
+from snooker_env.game.layouts import layout
+from snooker_env.game.pots import POT_COLUMNS
+from snooker_env.game.ruling import Foul
+from snooker_env.geometry import BALL_RADIUS as R
+from snooker_env.kernels import LINE_ROWS, entry
+from snooker_env.tasks import CHOICES, choice_of, lines, windows
+from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
+from tests.tables import begun, table_state
 
 
 def test_the_numbers_count_pots_speeds_sides_and_tops():
@@ -73,7 +78,162 @@ def test_masks_offer_the_pots_there_are():
         counts.add(n)
         if n:
             assert masks[k].sum() == STROKES * n and masks[k, : STROKES * n].all()
-        else:  # other lines stand for them, see test_lines.py
+        else:  # other lines stand for them, see below
             lines = masks[k].reshape(POTS, STROKES)
             assert lines[0].all() and (lines == lines[:, :1]).all()
     assert 0 in counts and len(counts) > 2
+
+
+# Where there is no direct pot, the lines offered are real strokes, and the windows exact
+
+
+@entry
+def _windows(positions, on_table, on, touching, out):
+    return windows.open_windows(positions, on_table, on, touching, out)
+
+
+@entry
+def _lines(positions, on_table, on, found):
+    return lines.find_lines(positions, on_table, on, found)
+
+
+def windows_of(positions, on_table, on, touching=0):
+    out = np.empty((windows.MOST_EDGES, 3))
+    return out[: _windows(positions, on_table, on, touching, out), :2]
+
+
+def lines_of(positions, on_table, on):
+    found = np.empty((LINE_ROWS, POT_COLUMNS))
+    return found[: _lines(positions, on_table, on, found), : lines.LINE_WORTH]
+
+
+def first_met(positions, on_table, angles):
+    """The ball met first in each direction, typed anew in NumPy; 0 for none."""
+    to = positions - positions[0]
+    along = to[:, 0] * np.cos(angles)[:, None] + to[:, 1] * np.sin(angles)[:, None]
+    across2 = (to**2).sum(1) - along**2
+    met = on_table & (along > 0.0) & (across2 < 4 * R * R)
+    runs = np.where(met, along - np.sqrt(np.maximum(0.0, 4 * R * R - across2)), np.inf)
+    runs[:, 0] = np.inf
+    return np.where(np.isfinite(runs.min(1)), runs.argmin(1), 0)
+
+
+@pytest.mark.parametrize("kind", ["break_off", "opened", "random:6", "line_up", "snookered"])
+def test_windows_are_the_directions_in_which_a_ball_on_is_met_first(kind):
+    angles = np.linspace(-np.pi, np.pi, 20_000, endpoint=False)
+    for seed in range(12):
+        positions, on_table = layout(kind, np.random.default_rng(seed))
+        on = mask_of(range(1, 16)) if seed % 3 else mask_of([BLUE, BROWN, 3])
+        found = windows_of(positions, on_table, on)
+        half = 0.5 * (found[:, 1] - found[:, 0])
+        off = np.abs((angles[:, None] - found.mean(1) + np.pi) % (2 * np.pi) - np.pi) - half
+        sure = np.abs(off).min(1) > 1e-9 if len(found) else np.ones(len(angles), bool)
+        met = first_met(positions, on_table, angles)
+        assert np.array_equal((off < 0.0).any(1)[sure], ((on >> met) & 1 == 1)[sure])
+        assert (np.diff(half) <= 0.0).all()
+
+
+def test_what_is_seen_is_offered_from_thin_on_either_side_to_full():
+    positions, on_table = SPOTS.copy(), np.isin(np.arange(N_BALLS), (CUE, 1, BLACK))
+    positions[CUE], positions[1] = (0.0, 0.0), (1.0, 0.0)
+    found, half = lines_of(positions, on_table, mask_of([1])), np.arcsin(2 * R)
+    assert found[:, 0] == pytest.approx([0.0, -lines.THIN * half, lines.THIN * half], abs=1e-12)
+    positions[2], on_table[2] = (-0.6, 0.3), True  # another red: the widest window first
+    found, wide = lines_of(positions, on_table, mask_of([1, 2])), np.arctan2(0.3, -0.6)
+    thin = lines.THIN * np.arcsin(2 * R / np.hypot(0.6, 0.3))
+    assert found[:, 0] == pytest.approx([wide, wide - thin, wide + thin, 0.0], abs=1e-12)
+
+
+def test_reds_all_round_are_one_window():
+    positions, on_table = np.zeros((N_BALLS, 2)), np.arange(N_BALLS) < 16
+    angles = np.arange(15) * 2.0 * np.pi / 15.0
+    positions[1:16] = 8.0 * R * np.column_stack([np.cos(angles), np.sin(angles)])
+    ((low, high),) = windows_of(positions, on_table, mask_of(range(1, 16)))
+    assert high - low == pytest.approx(2.0 * np.pi)
+    aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
+    assert len(aims) and (first_met(positions, on_table, aims) > 0).all()
+
+
+def test_the_break_off_is_thin_at_the_end_reds_where_they_are_seen():
+    positions, on_table = layout("break_off", np.random.default_rng(0))
+    for x, ends in ((0.18, (15, 11)), (-0.18, (11, 15))):
+        positions[CUE] = x, -1.0475
+        aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
+        met = first_met(positions, on_table, aims)
+        assert met[0] == ends[0] and ((met >= 1) & (met <= 15)).all()
+    positions[CUE] = 0.0, -1.15  # behind the brown: what it sees of the pack, if anything
+    aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
+    assert len(aims) and BROWN not in first_met(positions, on_table, aims)
+
+
+@pytest.mark.parametrize(
+    ("kind", "n", "least", "target"),
+    [
+        ("break_off", 40, 1.0, 1.0),
+        ("break_off_six_red", 40, 1.0, 1.0),
+        ("break_off_shoot_out", 40, 1.0, 1.0),
+        ("snookered", 60, 0.95, 0.95),
+        ("snookered_match", 30, 0.95, 0.95),
+        ("frames", 100, 0.99, 0.85),
+    ],
+)
+def test_there_is_a_fair_choice_and_a_fair_target(kind, n, least, target):
+    """In frames the target line leads full at balls in the mouth of a pocket too, which the cue ball follows."""
+    found = fair.measured(kind, n, seed=0)
+    assert found["tables"] > 0.7 * n and found["with_a_fair_choice"] >= least and found["target"] >= target
+    assert found["target_at"]["3.6"] >= target - 0.1 and found["fair_choices"] > 0.6
+
+
+def test_an_escape_is_solved_for_the_stroke_that_is_played():
+    """Speed, side and top turn the cue ball at a cushion; all choices of one line meet the red."""
+    env = sn.SnookerEnv(action="discrete", physics="match", render_mode="ansi")
+    wall = {16: (0.15, 0.0), BLUE: (0.0, 0.0), 17: (-0.15, 0.0)}
+    table_state(env, {CUE: (0.0, -0.5), 1: (0.0, 0.6), **wall}, BallOn.RED)
+    state, aims, met = env.get_state(), [], 0
+    picks = [choice_of(0, speed, side, top) for speed in (3, 5, 7) for side in range(3) for top in range(5)]
+    for pick in picks:
+        env.set_state(state)
+        met += env.step(pick)[4]["first_ball"] == 1
+        v = env.last_shot.at(0.0)[1][CUE]
+        aims.append(np.arctan2(v[1], v[0]))
+    assert met >= 0.8 * len(picks) and np.ptp(aims) > 0.05
+
+
+def test_choices_over_cushions_are_the_same_strokes_as_actions():
+    env = sn.SnookerEnv(action="discrete", layout="snookered", render_mode="ansi")
+    for seed in range(6):
+        env.reset(seed=seed)
+        at = sn.planning.Positions.of(env)
+        picks = np.flatnonzero(env.action_masks())[::50]
+        aims = sn.planning.as_actions(at, np.zeros(len(picks), int), picks)[:, 3] * np.pi
+        state = env.get_state()
+        for pick, aim in zip(picks, aims, strict=True):
+            env.set_state(state)
+            env.step(pick)
+            v = env.last_shot.at(0.0)[1][CUE]
+            assert np.exp(1j * aim) == pytest.approx(np.exp(1j * np.arctan2(v[1], v[0])), abs=1e-6)
+
+
+def touching(ball, others):
+    """The fouls of all choices, and the lines, where the cue ball touches a ball on its right; red is on."""
+    tables = fair.dealt(CHOICES, 0, action="discrete")
+    positions, on_table = SPOTS.copy(), np.isin(np.arange(N_BALLS), (CUE, BLACK, ball, *others))
+    positions[CUE], positions[ball] = (0.3, 0.3), (0.3 + 2 * R + 1e-5, 0.3)
+    for i, place in others.items():
+        positions[i] = place
+    tables.positions[0], tables.on_table[0], tables.game[0, fair.IN_HAND] = positions, on_table, 0
+    assert not fair.has_pot(tables, 0)
+    offered = np.flatnonzero(tables.action_masks()[0])
+    found = fair.fouls(tables, fair.states(tables, [0])[0], offered[:, None].astype(float))
+    return found, lines_of(positions, on_table, mask_of(range(1, 16)))
+
+
+def test_a_touching_ball_on_is_played_away_from():
+    found, aims = touching(1, {})
+    assert (np.cos(aims[:, 0]) < 0.0).all() and not (found & Foul.PUSH).any() and (found == 0).mean() > 0.7
+
+
+def test_a_touching_ball_that_is_not_on_is_not_moved():
+    """The blue touches the cue ball on the way to the only red."""
+    found, aims = touching(BLUE, {1: (0.8, 0.3)})
+    assert (np.cos(aims[:, 0]) < 0.0).all() and not (found & Foul.PUSH).any() and (found == 0).mean() > 0.3
