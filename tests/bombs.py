@@ -1,5 +1,4 @@
-"""How does a test see that nothing of a model's file was run? A sound file in which every pickle leaves a
-mark when it is loaded."""
+"""How does a test see that nothing of a model's file was run? Its pickles leave a mark when loaded."""
 
 import base64
 import io
@@ -20,8 +19,7 @@ class Bomb:
 
 
 def rezipped(source, target, **parts):
-    """Copy a zip with some of its parts changed: name (with _ for .) -> a function of the old bytes, or None
-    to leave it out."""
+    """A copy of a zip with parts changed: name (_ for .) -> a function of the bytes, None to leave out."""
     with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
         for name in old.namelist():
             change = parts.get(name.replace(".", "_"), lambda data: data)
@@ -42,8 +40,7 @@ def edited(change):
 
 
 def bombed(source, target, mark, weights=False, change=lambda found: None):
-    """A copy of an SB3 file whose pickles are bombs, those of policy.pth too if ``weights``; ``change(data)``
-    changes the rest."""
+    """A copy of an SB3 file with bombs as pickles, also in policy.pth if ``weights``; ``change`` does the rest."""
     bomb = pickle.dumps(Bomb(mark), protocol=2)
 
     def fill(found):

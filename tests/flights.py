@@ -1,5 +1,4 @@
-"""When is a ball in the air over a pocket? Between its DROP and the RETURN or POT that follows; its energy is
-then not all in the plane."""
+"""When is a ball in the air over a pocket, and its energy not all in the plane?"""
 
 import numpy as np
 

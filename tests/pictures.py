@@ -1,9 +1,4 @@
-"""Can a chart be read? Sizes of its text where a README shows it, texts that overlap or are cut off, and
-whether it has a title.
-
-``unreadable(figure)`` names what is wrong with a matplotlib figure; ``saved_figures`` catches those that a
-command saves.
-"""
+"""Can a chart be read? Sizes of its text on a page, texts that overlap or are cut off, its title."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,8 +11,7 @@ from matplotlib.text import Text
 README = 880
 """Pixels of a page's width."""
 LEAST = 10.5
-"""Pixels from line to line of the smallest text there: 9 and more from the top of a capital to the foot of a
-g."""
+"""Pixels from line to line of the smallest text: 9 and more from the top of a capital to the foot of a g."""
 
 
 @contextmanager
@@ -65,8 +59,7 @@ def _is_drawn(text, figure):
 
 
 def overlap(a, b, room=1.0):
-    """Do two rectangles (4, 2), each ``room`` pixels smaller all around, lie on each other? By the separating
-    axes of both."""
+    """Do two rectangles (4, 2), each ``room`` pixels smaller all around, overlap? By the axes of both."""
     for edges in (a, b):
         for k in (0, 1):
             way = edges[k + 1] - edges[k]

@@ -1,5 +1,4 @@
-"""What do tests of play share? Positions, a game called as a request calls it, and a connection to its
-server."""
+"""What do tests of play share? Positions, a game called as a request calls it, a connection."""
 
 import http.client
 import json
@@ -10,23 +9,13 @@ from snooker_env.play.seats import Seats
 from snooker_env.play.service import Service
 from snooker_env.play.session import Session
 
-EASY = {
-    "cue": [0.326, 1.031],
-    "reds": [[0.6, 1.4], [-0.5, 0.2]],
-    "pink": [0.0, 0.89225],
-    "black": [0.0, 1.4605],
-}
+RED = [0.6, 1.4]
+EASY = {"cue": [0.326, 1.031], "reds": [RED, [-0.5, 0.2]], "pink": [0.0, 0.89225], "black": [0.0, 1.4605]}
 """Red 1 lies straight before the top right pocket, red 2 out of the way."""
 STRAIGHT = atan2(0.369, 0.274)
 """The aim [rad] that pots it."""
-COVERED = {
-    "cue": [0.0, -0.5],
-    "reds": [[0.6, 1.4]],
-    "blue": [0.3, -0.5],
-    "pink": [0.6, -0.5],
-    "black": [-0.6, -0.9],
-    "on": "any_colour",
-}
+COLOURS = {"blue": [0.3, -0.5], "pink": [0.6, -0.5], "black": [-0.6, -0.9]}
+COVERED = {"cue": [0.0, -0.5], "reds": [RED], **COLOURS, "on": "any_colour"}
 """Along +x the blue lies before the pink; the black is in sight."""
 
 
@@ -38,15 +27,13 @@ class Asked:
 
     def __call__(self, name, **fields):
         """A POST."""
-        return json.loads(
-            json.dumps(
-                routes.answer(self.service, routes.POST[name], json.loads(json.dumps(fields))),
-                allow_nan=False,
-            )
-        )
+        return self._answer(routes.POST[name], json.loads(json.dumps(fields)))
 
     def get(self, name, **fields):
-        return json.loads(json.dumps(routes.answer(self.service, routes.GET[name], fields), allow_nan=False))
+        return self._answer(routes.GET[name], fields)
+
+    def _answer(self, route, fields):
+        return json.loads(json.dumps(routes.answer(self.service, route, fields), allow_nan=False))
 
     @property
     def session(self):

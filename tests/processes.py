@@ -14,24 +14,12 @@ CACHE = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "NUMBA_DISABLE_JIT")
 
 
 def python(code, *, at=ROOT, warn="error::UserWarning", **variables):
-    """What a fresh interpreter prints; ``at``: the folder that holds the package, ``variables``: of the
-    environment, None to unset."""
-    env = os.environ | {
-        "PYTHONPATH": str(at),
-        "PYTHONDONTWRITEBYTECODE": "1",
-        "PYTHONWARNINGS": warn,
-        "SNOOKER_ENV_QUIET": "1",
-    }
-    env = {k: v for k, v in (env | variables).items() if v is not None}
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=at,
-        env=env,
-        capture_output=True,
-        text=True,
-        timeout=280,
-        check=False,
-    )
+    """What a fresh interpreter prints; ``at``: the package's folder; variables that are None are unset."""
+    usual = {"PYTHONPATH": str(at), "PYTHONWARNINGS": warn}
+    usual |= {"PYTHONDONTWRITEBYTECODE": "1", "SNOOKER_ENV_QUIET": "1"}
+    env = {k: v for k, v in (os.environ | usual | variables).items() if v is not None}
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, cwd=at, env=env, capture_output=True, text=True, timeout=280)
     assert done.returncode == 0, done.stderr[-3000:]
     return done.stdout, done.stderr
 

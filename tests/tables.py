@@ -1,43 +1,53 @@
 """How does a test of the environment set up a table, strike, and compare what comes back bit for bit?"""
 
-import numpy as np
+import copy
+import json
+import pickle
 
-from snooker_env.envs.snooker import SnookerEnv
+import numpy as np
+import pytest
+
+from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, PINK, SPOTS
 from snooker_env.game.frame import Frame
 from snooker_env.tasks.box_actions import MAX_SPEED, MIN_SPEED
 
 LAYOUTS = ("opened", "held_out", "break_off", "line_up", "colours", "random:0", "random:1", "random:15")
-INFO = {
-    "points": float,
-    "break": float,
-    "foul": bool,
-    "penalty": int,
-    "pots": int,
-    "fouls": int,
-    "first_ball": int,
-    "ball_on": int,
-    "events": int,
-    "seconds": float,
-}
+INFO = {"points": float, "break": float, "foul": bool, "seconds": float}
+INFO |= dict.fromkeys(("penalty", "pots", "fouls", "first_ball", "ball_on", "events"), int)
+COPIES = [
+    pytest.param(copy.deepcopy, id="deepcopy"),
+    pytest.param(lambda env: pickle.loads(pickle.dumps(env)), id="pickle"),
+]
 PLACES = {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], PINK: SPOTS[PINK]}
 """Red 1 can be potted along the target line, red 2 is out of the way."""
 
 
+def begun(env, seed=1, **more):
+    """The environment after a reset."""
+    env.reset(seed=seed, **more)
+    return env
+
+
+def layout(places):
+    """Balls {id: (x, y)} and nothing else on the table, as the parts of a state."""
+    positions = SPOTS.copy()
+    for ball, place in places.items():
+        positions[ball] = place
+    return {"positions": positions.tolist(), "on_table": [ball in places for ball in range(N_BALLS)]}
+
+
+def plain(state):
+    """What JSON makes of it."""
+    return json.loads(json.dumps(state))
+
+
 def table_state(env, places, ball_on, points=0, **fields):
     """Put balls {id: (x, y)} and nothing else on the table."""
-    positions, on_table = SPOTS.copy(), [False] * N_BALLS
-    for ball, place in places.items():
-        positions[ball], on_table[ball] = place, True
     if not env.np_random_seed:
         env.reset(seed=1)
-    state = env.get_state() | {
-        "positions": positions.tolist(),
-        "on_table": on_table,
-        "ball_on": int(ball_on),
-        "points": points,
-    }
-    env.set_state(state | {"in_hand": False, "over": False} | fields)
+    game = {"ball_on": int(ball_on), "points": points, "in_hand": False, "over": False}
+    env.set_state(env.get_state() | layout(places) | game | fields)
 
 
 def viewed(observation):
@@ -57,23 +67,12 @@ def frame_env(**options):
 
 
 def frame_state(env, places, frame, **state):
-    """Put balls {id: (x, y)} and nothing else on the table, in the middle of a ``Frame`` given by its
-    fields."""
-    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
-    for ball, place in places.items():
-        positions[ball], on_table[ball] = place, True
+    """Put balls {id: (x, y)} and nothing else on the table, in a ``Frame`` given by its fields."""
     env.reset(seed=1)
     mask = sum(1 << ball for ball in places if ball)
     fields = {"on_table": mask, "in_hand": False, "miss": env.options.miss} | frame
-    plain = Frame(**fields).to_dict()
-    saved = {
-        "positions": positions.tolist(),
-        "on_table": on_table.tolist(),
-        "frame": plain,
-        "unpaid": 0,
-        "due": False,
-    }
-    env.reset(options={"state": env.get_state() | saved | state})
+    parts = layout(places) | {"frame": Frame(**fields).to_dict(), "unpaid": 0, "due": False}
+    env.reset(options={"state": plain(env.get_state() | parts | state)})
     return env
 
 

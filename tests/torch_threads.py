@@ -1,5 +1,4 @@
-"""On how many threads of PyTorch does a network decide? For tests of those who play with networks of
-Stable-Baselines3."""
+"""On how many threads of PyTorch does a network of Stable-Baselines3 decide?"""
 
 from contextlib import contextmanager
 
@@ -9,8 +8,7 @@ import torch
 
 @contextmanager
 def deciding_on_one_thread(network):
-    """Fails unless the network is asked meanwhile, each time on one thread; the three threads from before are
-    there again afterwards."""
+    """Fails unless the network is asked, each time on one thread, with three before and afterwards."""
     found, usual, predict = [], torch.get_num_threads(), network.predict
 
     def counted(*arguments, **options):

@@ -1,5 +1,4 @@
-"""Which tests need a trainer that is no dependency of the others? Skipped without it, unless ``.ci/run`` says
-that it must be there."""
+"""Which tests need a trainer that others do not? Skipped without it, unless ``.ci/run`` forbids that."""
 
 import importlib
 import os
@@ -8,6 +7,5 @@ import pytest
 
 
 def needed(name):
-    """The module of that name. With SNOOKER_TRAINERS in the environment a missing one is an error and no
-    reason to skip."""
+    """The module of that name; with SNOOKER_TRAINERS in the environment it must not be missing."""
     return importlib.import_module(name) if os.environ.get("SNOOKER_TRAINERS") else pytest.importorskip(name)

@@ -1,16 +1,17 @@
-"""Are wrong arguments, actions, states and options of the environment refused, and does that change
-nothing?"""
+"""Are wrong arguments, actions, states and options refused, and does that change nothing?"""
 
-import copy
 import json
+from functools import partial
 
 import gymnasium
 import numpy as np
 import pytest
 
-from snooker_env.envs.snooker import SnookerEnv
+import snooker_env as sn
+from snooker_env import Options, SnookerEnv, SnookerVectorEnv
 from snooker_env.tasks.options import NAMES
 from tests.refusals import FIDELITY, INF, NAN, WRONG_FIDELITIES, case, make, refused
+from tests.tables import begun
 
 NOT_A_NAME = ("", 3, None, True, b"x")
 NOT_A_TRUTH = (0, 1, None, "yes", 0.5, [True])
@@ -22,7 +23,9 @@ NOISE = "must be one of 'none', 'professional', 'amateur', 'club', 'robot', 'oly
 REWARDS = "must be one of 'points', 'points_and_fouls', 'pots', 'legal'"
 FLAGS = ("elevation", "placement", "decision", "trust", "nominate", "concede", "claim", "lot", "one_stroke")
 DEVIATIONS = ("aim_deg", "speed_rel", "speed_abs", "offset_mm", "elevation_deg")
-FRAME = {"task": "frame"}
+OPPONENTS = "'none', 'random', 'ghost_ball', "
+RENDER_MODES = "must be one of 'human', 'rgb_array', 'ansi'"
+FRAME, DISCRETE = {"task": "frame"}, {"action": "discrete"}
 WRONG = [
     ({}, "task", "must be one of 'visit', 'frame'", (*NOT_A_NAME, "frames", "Visit", ["visit"], {})),
     ({}, "aim", "must be one of 'absolute', 'target'", (*NOT_A_NAME, "relative", "Target", ["target"], {})),
@@ -40,16 +43,26 @@ WRONG = [
     *[({}, field, "must be True or False", NOT_A_TRUTH) for field in FLAGS],
     (FRAME, "trust", "must be True or False", (1, None, "yes")),
     (FRAME, "says", "must be a sequence of some of", ("lot", 3, None)),
-    (FRAME, "opponent", "'none', 'random', 'ghost_ball', ", ("", "Random", 3, None, True, ["x"])),
-    (FRAME, "opponent", "'none', 'random', 'ghost_ball', ", ("model",)),
+    (FRAME, "opponent", OPPONENTS, ("", "Random", "model", 3, None, True, ["x"])),
     (FRAME, "opponent", "must be a model saved by Stable-Baselines3", ("missing.zip",)),
     (FRAME, "miss", "must be one of 'off', 'clear_path'", ("on", None, True)),
-    (FRAME, "reward", "must be one of 'points', 'win'", ("pots", "wins")),
-    (FRAME, "max_strokes", "must be an integer in [1,", (0, "9", True)),
+    (FRAME, "reward", "must be one of 'points', 'win'", ("pots", "wins", "frames")),
+    (FRAME, "max_strokes", "must be an integer in [1, 1000000000]", (0, -1, 1.5, "9", True, 10**9 + 1, NAN)),
     (FRAME, "one_stroke", 'must be False with task="frame"', (True,)),
-    ({}, "max_strokes", 'must be 1000 with task="visit"', (None,)),
-    ({}, "render_mode", "must be one of 'human', 'rgb_array', 'ansi'", ("", "Human", "depth_array")),
-    ({}, "render_mode", "must be one of 'human', 'rgb_array', 'ansi'", (3, True, ["ansi"])),
+    (FRAME, "frames", 'must be 7 with task="frame"', (5,)),
+    (FRAME, "game", "must be one of", ("pool",)),
+    (FRAME | {"game": "shoot_out"}, "miss", "must be", ("clear_path",)),
+    (FRAME | {"game": "six_red"}, "time_to_play", "must be", (5.0,)),
+    (FRAME | {"game": "shoot_out"}, "time_to_play", "must be", (0.0, 15.001)),  # none would be in time
+    (FRAME | DISCRETE, "decision", "must be False", (True,)),
+    ({"task": "match"}, "frames", "must be odd", (2,)),
+    ({"task": "match"}, "frames", "must be", (0, True, "7")),
+    (DISCRETE, "elevation", "must be False", (True,)),
+    (DISCRETE, "placement", "must be False", (True,)),
+    ({}, "observation", 'must be "flat" or "balls" with action="box": a Box has no masks', ("masked",)),
+    (FRAME, "observation", 'must be "flat" or "balls" with action="box": a Box has no masks', ("masked",)),
+    ({}, "max_strokes", 'must be 1000 with task="visit"', (None, 50)),
+    ({}, "render_mode", RENDER_MODES, ("", "Human", "depth_array", 3, True, ["ansi"])),
     ({}, "opponent", "must be 'none' with task=\"visit\"", ("random",)),
     ({}, "miss", "must be 'off' with task=\"visit\"", ("clear_path",)),
     *[({}, field, 'must be False with task="visit"', (True,)) for field in FLAGS[2:8]],
@@ -91,103 +104,129 @@ def test_every_argument_of_the_environment_is_in_the_table_of_errors():
     refused(lambda: SnookerEnv("visit"), "options", "'visit'", "must be an Options or None")
 
 
-ENVS = {
-    "plain": {"layout": "random:3"},
-    "long": {"layout": "break_off", "elevation": True, "placement": True},
-}
-ACTIONS = [
-    case([0.0] * 3, "action", "shape (3,)", "must have shape ({size},)", "short"),
-    case([0.0] * 8, "action", "shape (8,)", "must have shape ({size},)", "long"),
-    case(0.0, "action", "shape ()", "must have shape ({size},)", "scalar"),
-    case(None, "action", "None", "must have shape ({size},)", "none"),
-    case(lambda n: [[0.0] * n], "action", "shape (1, ", "must have shape ({size},)", "row"),
-    case(
-        lambda n: [0.0] * (n - 1) + [1.0000001],
-        "action",
-        "1.0000001",
-        "must be finite and within [-1, 1]",
-        "above",
+MATCHES = partial(sn.MatchVectorEnv, 2)
+OTHERS = [
+    (SnookerVectorEnv, {"options": "frame"}, "options = 'frame': must be an Options or None"),
+    (SnookerVectorEnv, {"threads": 0}, "threads"),
+    (SnookerVectorEnv, {"max_episode_steps": 0}, "max_episode_steps"),
+    (SnookerVectorEnv, {"render_mode": "human"}, "render_mode"),
+    (SnookerVectorEnv, {"autoreset_mode": "never"}, ".*never"),
+    (SnookerVectorEnv, {"num_envs": 0}, "num_envs"),
+    (MATCHES, {"seats": ({},)}, "seats = .*must be None, or two dicts"),
+    (
+        MATCHES,
+        {"seats": ({}, {"layout": "line_up"})},
+        r"key of seats\[1\] = 'layout': must be one of 'action'",
     ),
-    case(lambda n: [-1.5] + [0.0] * (n - 1), "action", "-1.5", "must be finite and within [-1, 1]", "below"),
-    case(lambda n: [NAN] + [0.0] * (n - 1), "action", "nan", "must be finite and within [-1, 1]", "nan"),
-    case(lambda n: [0.0] * (n - 1) + [INF], "action", "inf", "must be finite and within [-1, 1]", "inf"),
-    case(
-        lambda n: np.array([-128] + [0] * (n - 1), np.int8),
-        "action",
-        "-128",
-        "must be finite and within [-1, 1]",
-        "lowest integer",
-    ),
-    case(lambda n: ["a"] * n, "action", "'a'", "must have shape", "text"),
-    case(lambda n: np.zeros(n, complex), "action", "0", "must have shape", "complex"),
+    (MATCHES, {"seats": ({"noise": "club"}, {"noise": "xx"})}, r"seats\[1\]\.noise = 'xx': must be"),
+    (MATCHES, {"opponent": "random"}, "options = .*opponent='random'"),
+    (MATCHES, {"autoreset_mode": "SameStep"}, "autoreset_mode = "),
+    (sn.match_env, {"reward": "pots"}, "reward = "),
+    (sn.match_env, {"render_mode": "x"}, "render_mode = "),
+    (sn.match_env, {"options": Options()}, ".*a match has two players"),
+    (sn.match_env, {"options": Options(task="frame", opponent="random")}, ".*a match has two players"),
+    (sn.match_env, {"task": "frame", "frames": 3}, 'frames = 3: must be 7 with task="frame"'),
 ]
 
 
-@pytest.mark.parametrize("kind", ENVS)
-@pytest.mark.parametrize(("wrong", "field", "value", "allowed"), ACTIONS)
-def test_wrong_actions_change_nothing(kind, wrong, field, value, allowed):
-    env = SnookerEnv(noise="club", **ENVS[kind])
+@pytest.mark.parametrize(("make", "arguments", "says"), OTHERS)
+def test_wrong_arguments_of_many_tables_and_of_matches(make, arguments, says):
+    if make is not SnookerVectorEnv:
+        pytest.importorskip("pettingzoo")
+    with pytest.raises(ValueError, match=f"^{says}"):
+        make(**arguments)
+
+
+PLAYED = {
+    "plain": lambda: SnookerEnv(noise="club", layout="random:3"),
+    "long": lambda: SnookerEnv(noise="club", layout="break_off", elevation=True, placement=True),
+    "choices": lambda: SnookerEnv(action="discrete"),
+    "many": lambda: SnookerVectorEnv(3, noise="club"),
+    "many choices": lambda: SnookerVectorEnv(3, action="discrete"),
+    "match": lambda: sn.match_env(),
+    "matches": lambda: sn.MatchVectorEnv(2, threads=1),
+}
+BOUNDS = "must be finite and within [-1, 1]"
+
+
+def wrong_actions(n):
+    """(action, what the message shows, what it allows) where n numbers are wanted."""
+    zeros, shape = [0.0] * (n - 1), f"must have shape ({n},)"
+    return [
+        ([0.0] * 3, "shape (3,)", shape),
+        ([0.0] * 8, "shape (8,)", shape),
+        (0.0, "shape ()", shape),
+        (None, "None", shape),
+        ([[0.0] * n], "shape (1, ", shape),
+        ([*zeros, 1.0000001], "1.0000001", BOUNDS),
+        ([-1.5, *zeros], "-1.5", BOUNDS),
+        ([NAN, *zeros], "nan", BOUNDS),
+        ([*zeros, INF], "inf", BOUNDS),
+        (np.array([-128] + [0] * (n - 1), np.int8), "-128", BOUNDS),
+        (["a"] * n, "'a'", "must have shape"),
+        (np.zeros(n, complex), "0", "must have shape"),
+    ]
+
+
+WRONG_ACTIONS = [
+    *[("plain", action, "action", *says) for action, *says in wrong_actions(4)],
+    *[("long", action, "action", *says) for action, *says in wrong_actions(7)],
+    *[("choices", w, "action", "", "an integer in [0, 540)") for w in (-1, 540, 0.5, None, "3", [1, 2])],
+    *[("match", w, "action", "", "must") for w in (np.zeros(4), np.full(7, 1.1), np.full(7, NAN))],
+    ("matches", [[0.0] * 7, [2.0] * 7], "actions[1]", "2.0", "must be finite"),
+    ("many", [[0.0] * 4, [0.0] * 4, [0.0, NAN, 0.0, 0.0]], "actions[2]", "[0.0, nan, 0.0, 0.0]", BOUNDS),
+    ("many", [[0.0] * 4, [0.0, 0.0, 0.0, 1.0001], [0.0] * 4], "actions[1]", "1.0001", BOUNDS),
+    ("many", [[-INF, 0.0, 0.0, 0.0], [2.0] * 4, [0.0] * 4], "actions[0]", "-inf", BOUNDS),
+    ("many", np.zeros((2, 4)), "actions", "shape (2, 4)", "must have shape (3, 4)"),
+    ("many", np.zeros((3, 5)), "actions", "shape (3, 5)", "must have shape (3, 4)"),
+    *[("many", w, "actions", "", "must have shape") for w in (np.zeros(4), None, [[0.0] * 4, [0.0]])],
+    *[("many", w, "actions", "", "real numbers") for w in ([["a"] * 4] * 3, np.zeros((3, 4), bool))],
+    ("many choices", np.array([0, 540, 1]), "actions[1]", "540", "must be in [0, 540)"),
+    ("many choices", np.zeros((3, 4)), "actions", "", "must be 3 integers"),
+]
+
+
+@pytest.mark.parametrize(("kind", "action", "field", "value", "allowed"), WRONG_ACTIONS)
+def test_wrong_actions_change_nothing(kind, action, field, value, allowed):
+    if "match" in kind:
+        pytest.importorskip("pettingzoo")
+    env = PLAYED[kind]()
     env.reset(seed=1)
     before = json.dumps(env.get_state())
-    size = env.action_space.shape[0]
-    refused(
-        lambda: env.step(wrong(size) if callable(wrong) else wrong), field, value, allowed.format(size=size)
-    )
+    refused(lambda: env.step(action), field, value, allowed)
     assert json.dumps(env.get_state()) == before
 
 
 @pytest.fixture(scope="module")
 def saved():
-    env = SnookerEnv(layout="random:5")
-    env.reset(seed=5)
+    env = begun(SnookerEnv(layout="random:5"), 5)
     return env.get_state()
 
 
-def with_positions(state, **places):
-    positions = copy.deepcopy(state["positions"])
-    for ball, place in places.items():
-        positions[int(ball[1:])] = list(place)
-    return {"positions": positions}
+def with_ball(k, state, place):
+    return {"positions": [*state["positions"][:k], list(place), *state["positions"][k + 1 :]]}
 
 
+HERE = "must be a state of get_state() here"
+BALL = "state.positions[3]"
 STATES = [
     case(lambda s: {"positions": s["positions"][:21]}, "state.positions", "shape (21, 2)", "(22, 2)"),
-    case(lambda s: with_positions(s, b3=(NAN, 0.0)), "state.positions[3, 0]", "nan", "must be finite"),
+    case(lambda s: with_ball(3, s, (NAN, 0.0)), "state.positions[3, 0]", "nan", "must be finite"),
     case(lambda s: {"on_table": [1] * 22}, "state.on_table", "int64", "must be bool of shape (22,)"),
-    case(lambda s: {"on_table": [True] * 21}, "state.on_table", "shape (21,)", "must be bool of shape (22,)"),
-    case(lambda s: {"positions": "x"}, "state.positions", "'x'", "(22, 2)"),
-    case(
-        lambda s: with_positions(s, b3=(1.5, 0.0)), "state.positions[3]", "(1.5, 0.0)", "must be on the table"
-    ),
-    case(
-        lambda s: with_positions(s, b3=(0.889, 0.0)), "state.positions[3]", "(0.889, 0.0)", "is over a pocket"
-    ),
-    case(
-        lambda s: with_positions(s, b3=(0.88, 0.6)),
-        "state.positions[3]",
-        "(0.88, 0.6)",
-        "overlaps the cushion",
-    ),
-    case(lambda s: with_positions(s, b3=s["positions"][2]), "state.positions", "balls 2 and 3", "overlap"),
+    case(lambda s: with_ball(3, s, (1.5, 0.0)), BALL, "(1.5, 0.0)", "must be on the table"),
+    case(lambda s: with_ball(3, s, (0.889, 0.0)), BALL, "(0.889, 0.0)", "is over a pocket"),
+    case(lambda s: with_ball(3, s, (0.88, 0.6)), BALL, "(0.88, 0.6)", "overlaps the cushion"),
+    case(lambda s: with_ball(3, s, s["positions"][2]), "state.positions", "balls 2 and 3", "overlap"),
+    case(lambda s: with_ball(9, s, (0.0, 1e300)), "state.positions[9]", "1e+300", "must be within 1000 m"),
     case(lambda s: {"ball_on": 8}, "state.ball_on", "8", "must be"),
-    case(lambda s: {"ball_on": "red"}, "state.ball_on", "'red'", "must be"),
     case(lambda s: {"ball_on": 7}, "state.ball_on", "BLACK", "while reds are on the table"),
     case(lambda s: {"ball_on": -1}, "state.ball_on", "NOTHING", "must"),
-    case(lambda s: {"points": -3}, "state.points", "-3", "must be an integer"),
     case(lambda s: {"points": 2.7}, "state.points", "2.7", "must be an integer"),
-    case(lambda s: {"points": None}, "state.points", "None", "must be an integer"),
     case(lambda s: {"in_hand": "no"}, "state.in_hand", "'no'", "must be True or False"),
     case(lambda s: {"over": 2}, "state.over", "2", "must be True or False"),
-    case(lambda s: {"stream": None}, "state.stream", "None", "must be two integers"),
     case(lambda s: {"stream": [1, 2, 3]}, "state.stream", "[1, 2, 3]", "must be two integers"),
-    case(
-        lambda s: {"stream": [1, -2]},
-        "state.stream[1]",
-        "-2",
-        "must be an integer in [0, 18446744073709551615]",
-    ),
-    case(lambda s: {"stream": [2**64, 0]}, "state.stream[0]", "18446744073709551616", "must be an integer"),
-    case(lambda s: {"rng": None}, "state.rng", "None", "must be"),
+    case(lambda s: {"stream": [1, -2]}, "state.stream[1]", "-2", f"must be an integer in [0, {2**64 - 1}]"),
+    case(lambda s: {"stream": [2**64, 0]}, "state.stream[0]", str(2**64), "must be an integer"),
     case(lambda s: {"rng": {}}, "state.rng", "{}", "must be"),
     case(lambda s: {"on_table": [False, *s["on_table"][1:]]}, "state.on_table", "False", "cue ball"),
     case(lambda s: {"spin": 1}, "state", "'spin'", "must be", "unknown key"),
@@ -197,41 +236,16 @@ STATES = [
 @pytest.mark.parametrize("how", ["set_state", "reset"])
 @pytest.mark.parametrize(("change", "field", "value", "allowed"), STATES)
 def test_wrong_states(saved, how, change, field, value, allowed):
-    env = SnookerEnv(layout="random:5")
-    state = copy.deepcopy(saved)
-    state |= change(state)
-    refused(
-        lambda: env.set_state(state) if how == "set_state" else env.reset(options={"state": state}),
-        field,
-        value,
-        allowed,
-    )
-
-
-@pytest.mark.parametrize(
-    "key", ["positions", "on_table", "ball_on", "in_hand", "points", "over", "stream", "rng"]
-)
-def test_a_state_with_a_part_missing(saved, key):
-    state = {k: v for k, v in saved.items() if k != key}
-    refused(
-        lambda: SnookerEnv().set_state(state),
-        "state",
-        f"a dict without ['{key}']",
-        "must be a state of get_state() here",
-    )
+    env, state = SnookerEnv(layout="random:5"), saved | change(saved)
+    call = {"set_state": lambda: env.set_state(state), "reset": lambda: env.reset(options={"state": state})}
+    refused(call[how], field, value, allowed)
 
 
 @pytest.mark.parametrize(
     ("options", "field", "value", "allowed"),
     [
         case({"sate": 1}, "options", "'sate'", "must be one of 'state'"),
-        case(
-            {"state": {}},
-            "state",
-            "a dict without ['ball_on', 'in_hand', 'on_table'",
-            "must be a state of get_state() here",
-            "empty state",
-        ),
+        case({"state": {}}, "state", "a dict without ['ball_on', 'in_hand', 'on_table'", HERE, "empty state"),
         case({3: 1}, "options", "3", "must be one of 'state'"),
         case({"state": None}, "state", "None", "must be a state of get_state()"),
         case({"state": 3}, "state", "3", "must be a state of get_state()"),

@@ -1,5 +1,4 @@
-"""Do frames and matches go the same way in ``SnookerEnv``, ``SnookerVectorEnv`` and ``MatchEnv``? Random
-play, replayed bit for bit."""
+"""Do frames and matches go alike in ``SnookerEnv``, ``SnookerVectorEnv`` and ``MatchEnv``, bit for bit?"""
 
 import json
 
@@ -7,32 +6,31 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env import SnookerVectorEnv
 from snooker_env.envs.match import PLAYERS
-from snooker_env.envs.vector import SnookerVectorEnv
+from tests.tables import begun, plain
 
 pytest.importorskip("pettingzoo")
 
 PLAIN = {"aim": "target", "noise": "club", "placement": True, "decision": True}
 SAID = {"nominate": True, "concede": True, "claim": True, "lot": True}
+CHOICES = {"action": "discrete", "noise": "amateur"}
+FRAMES = {"layout": "colours", "reward": "frames", "miss": "clear_path"}
 KINDS = {
     "plain": PLAIN | {"task": "frame", "layout": "random:1"},
     "miss": PLAIN | {"task": "frame", "layout": "random:2", "miss": "clear_path", "reward": "win"},
     "everything said": PLAIN | SAID | {"task": "frame", "layout": "random:1", "miss": "clear_path"},
     "a match": PLAIN | SAID | {"task": "match", "frames": 3, "layout": "random:0", "max_strokes": 90},
-    "frames of a match": PLAIN
-    | {"task": "match", "frames": 5, "layout": "colours", "reward": "frames", "miss": "clear_path"},
-    "discrete": SAID
-    | {"task": "match", "frames": 3, "layout": "random:1", "action": "discrete", "noise": "amateur"},
+    "frames of a match": PLAIN | FRAMES | {"task": "match", "frames": 5},
+    "discrete": SAID | CHOICES | {"task": "match", "frames": 3, "layout": "random:1"},
 }
 
 
 class Played:
-    """One random frame or match of two players: the actions of each, and what player 0 was shown whenever it
-    was its turn."""
+    """A random frame or match: the actions of both players, and what player 0 was shown at its turns."""
 
     def __init__(self, options, seed):
-        env = sn.match_env(**options)
-        env.reset(seed=seed)
+        env = begun(sn.match_env(**options), seed)
         self.key = _key(env.np_random)
         self.actions, self.seen = ([], []), []
         self.total, rng = 0.0, np.random.default_rng(seed)
@@ -46,12 +44,14 @@ class Played:
         self.seen.append(env.observe(PLAYERS[0]).tobytes())
         self.end = _end(env.get_state())
         self.ended = any(env.terminations.values()), any(env.truncations.values())
+        names = {"score", "opponent_score", "winner", "frames_won", "strokes", "frame"}
         info = env.infos[PLAYERS[0]]
-        self.info = {
-            name: info[name]
-            for name in info
-            if name in ("score", "opponent_score", "winner", "frames_won", "strokes", "frame")
-        }
+        self.info = {name: info[name] for name in names & set(info)}
+
+    def action(self, step):
+        """That of player 0 at its turn, and any one where it had none or the end has come."""
+        mine = self.actions[0]
+        return mine[step] if step < len(mine) else 0 * (mine or self.actions[1])[0]
 
     def _action(self, env, rng):
         if env.options.action == "discrete":
@@ -67,8 +67,7 @@ class Played:
 
 
 def _key(rng):
-    """What identifies the generator of a table: its state after the key of the table's stream was drawn from
-    it."""
+    """What identifies a table's generator: its state after the key of its stream was drawn."""
     return json.dumps(rng.bit_generator.state, default=str)
 
 
@@ -82,11 +81,7 @@ class Other:
 
     def __init__(self, played):
         self.left = {one.key: iter(one.actions[1]) for one in played}
-        self.nothing = (
-            0
-            if isinstance((played[0].actions[0] + played[0].actions[1])[0], int)
-            else 0.0 * played[0].actions[0][0]
-        )
+        self.nothing = 0 * (played[0].actions[0] + played[0].actions[1])[0]
 
     def __call__(self, observation, rng):
         return next(self.left[_key(rng)], self.nothing)
@@ -98,34 +93,27 @@ def check_alike(options, seeds):
         env = sn.SnookerEnv(**options, opponent=Other([one]))
         shown, _ = env.reset(seed=seed)
         seen, total = [shown.tobytes()], 0.0
-        # if the opponent has ended it in its first visit, any action
-        for action in one.actions[0] or [0 * one.actions[1][0]]:
-            shown, reward, terminated, truncated, info = env.step(action)
+        for step in range(max(1, len(one.actions[0]))):
+            shown, reward, terminated, truncated, info = env.step(one.action(step))
             seen.append(shown.tobytes())
             total += reward
         if one.actions[0]:
             assert seen == one.seen
-        assert (
-            (terminated, truncated) == one.ended and total == one.total and _end(env.get_state()) == one.end
-        )
+        assert (terminated, truncated) == one.ended and total == one.total
+        assert _end(env.get_state()) == one.end
         assert {name: info[name] for name in one.info} == one.info
     n = len(seeds)
-    tables = SnookerVectorEnv(n, **options, opponent=Other(played), threads=1)
-    tables.reset(seed=list(seeds))
+    tables = begun(SnookerVectorEnv(n, **options, opponent=Other(played), threads=1), list(seeds))
     totals, over = np.zeros(n), np.zeros(n, bool)
-    for step in range(max(len(one.actions[0]) or 1 for one in played)):
-        actions = [
-            one.actions[0][step] if step < len(one.actions[0]) else 0 * (one.actions[0] or one.actions[1])[0]
-            for one in played
-        ]
-        shown, rewards, terminated, truncated, info = tables.step(np.array(actions))
+    for step in range(max(1, *(len(one.actions[0]) for one in played))):
+        actions = np.array([one.action(step) for one in played])
+        shown, rewards, terminated, truncated, info = tables.step(actions)
         totals += np.where(over, 0.0, rewards)
         for k in np.flatnonzero((terminated | truncated) & ~over).tolist():
             one, over[k] = played[k], True
             assert step + 1 == max(1, len(one.actions[0])) and shown[k].tobytes() == one.seen[-1]
-            assert (bool(terminated[k]), bool(truncated[k])) == one.ended and _end(
-                tables.get_state()[k]
-            ) == one.end
+            assert (bool(terminated[k]), bool(truncated[k])) == one.ended
+            assert _end(tables.get_state()[k]) == one.end
             assert {name: info[name][k].item() for name in one.info} == one.info
     assert over.all() and totals.tolist() == [one.total for one in played]
     return played
@@ -156,20 +144,16 @@ def test_a_match_goes_on_from_its_state_bit_for_bit():
         action[-1] = abs(action[-1])
         env.step(action)
         if state is None and env.infos["player_0"]["frame"] == 1 and env.strokes > 3:
-            state = json.loads(json.dumps(env.get_state()))
+            state = plain(env.get_state())
             other.reset(options={"state": state})
         elif state is not None:
             other.step(action)
-            assert (
-                json.dumps(other.get_state()) == json.dumps(env.get_state()) and other.rewards == env.rewards
-            )
+            assert json.dumps(other.get_state()) == json.dumps(env.get_state())
+            assert other.rewards == env.rewards
             assert other.observe("player_1").tobytes() == env.observe("player_1").tobytes()
     assert state is not None and sum(state["frames"]) == 1 and max(env.get_state()["frames"]) == 3
-    for change, field in (
-        ({"frames": [3, 0]}, "state.frames"),
-        ({"first_break": 2}, "state.first_break"),
-        ({"frames": 1}, "state.frames"),
-        ({"best_of": 3}, "state.best_of"),
-    ):
-        with pytest.raises(ValueError, match=field.replace(".", r"\.")):
-            other.reset(options={"state": state | change})
+    before = plain(other.get_state())
+    for field, wrong in (("frames", [3, 0]), ("first_break", 2), ("frames", 1), ("best_of", 3)):
+        with pytest.raises(ValueError, match=rf"state\.{field}"):
+            other.reset(options={"state": state | {field: wrong}})
+    assert plain(other.get_state()) == before

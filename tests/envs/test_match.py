@@ -1,78 +1,50 @@
-"""Is the match of two players a sound PettingZoo environment, and whose turn is it? PettingZoo's own tests,
-turns, decisions, states."""
+"""Is the match of two players a sound PettingZoo environment, and whose turn is it?"""
 
 import json
-import subprocess
-import sys
-import warnings
-from pathlib import Path
 
 import gymnasium
 import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.game.balls import BLACK, CUE, N_BALLS, PINK, SPOTS
-from snooker_env.game.frame import Frame
+from snooker_env.game.balls import CUE
 from snooker_env.render import window
 from snooker_env.tasks import observations
+from tests.envs.test_frames_alike import KINDS, PLAIN
+from tests.processes import ROOT, python
+from tests.tables import PLACES, begun, frame_state, plain
 
 pytest.importorskip("pettingzoo")
 from pettingzoo.test import api_test, render_test, seed_test
 
-ROOT = Path(__file__).parents[2]
+WIN = {"layout": "colours", "aim": "target", "reward": "win"}
+CHOICES = {"action": "discrete", "layout": "random:2"}
+MATCH = {"frames": 3, "layout": "pots:easy", "nominate": True, "concede": True}
 
 
-@pytest.fixture
-def strict():
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        yield
-
-
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"aim": "target"},
-        {"max_strokes": 20},
-        {"layout": "colours", "aim": "target", "reward": "win"},
-        {"action": "discrete", "layout": "random:2"},
-    ],
-)
+@pytest.mark.parametrize("options", [{"aim": "target"}, {"max_strokes": 20}, WIN, CHOICES, MATCH | CHOICES])
 def test_pettingzoo_checks_its_interface(options, strict, capsys):
     api_test(sn.match_env(**options), num_cycles=200)
     assert "Passed API test" in capsys.readouterr().out
 
 
 MASKED = {"action": "discrete", "observation": "masked"}
+SAID = {"nominate": True, "concede": True, "claim": True, "lot": True}
 
 
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"observation": "balls"},
-        MASKED,
-        MASKED | {"nominate": True, "concede": True, "claim": True, "lot": True},
-        MASKED | {"frames": 3},
-    ],
-)
+@pytest.mark.parametrize("options", [{"observation": "balls"}, MASKED, MASKED | SAID, MASKED | {"frames": 3}])
 def test_pettingzoo_checks_its_interface_with_dicts_of_observations(options, capsys):
-    """Its random players take the mask from the observation. It warns of every Dict observation, and its own
-    key has no plural."""
+    """Random players take the mask from the observation. PettingZoo warns of every Dict observation."""
     with pytest.warns(UserWarning, match="Observation"):
         api_test(sn.match_env(layout="random:3", **options), num_cycles=80)
     assert "Passed API test" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
-    "options", [{}, {"action": "discrete"}, {"action": "discrete", "observation": "masked"}, {"frames": 3}]
-)
+@pytest.mark.parametrize("options", [{}, {"action": "discrete"}, MASKED, {"frames": 3}])
 def test_nothing_is_observed_before_the_first_reset(options):
     env = sn.match_env(**options)
     for look in (lambda: env.observe("player_0"), env.last, lambda: env.agent_selection):
-        with pytest.raises(
-            AttributeError, match=r"^agent_selection cannot be read before reset\(\): call reset\(\)"
-        ):
+        with pytest.raises(AttributeError, match=r"^agent_selection cannot be read before reset\(\): call"):
             look()
     if "action" in options:
         with pytest.raises(AttributeError, match=r"before reset\(\)"):
@@ -85,22 +57,18 @@ def test_nothing_is_observed_before_the_first_reset(options):
 
 def test_masked_observations_of_both_players_hold_their_masks():
     """All 0 for the player whose turn it is not, and for both at the end, as in the infos."""
-    env, plain = (
-        sn.match_env(action="discrete", observation=kind, layout="random:0", noise="club")
-        for kind in ("masked", "flat")
-    )
-    env.reset(seed=2), plain.reset(seed=2)
+    options = {"action": "discrete", "layout": "random:0", "noise": "club"}
+    env, flat = (sn.match_env(observation=kind, **options) for kind in ("masked", "flat"))
+    env.reset(seed=2), flat.reset(seed=2)
     rng, turns = np.random.default_rng(0), set()
     while True:
         for name in env.possible_agents:
             seen, mask = env.observe(name), env.action_mask(name)
-            assert np.array_equal(seen["observations"], plain.observe(name)) and env.observation_space(
-                name
-            ).contains(seen)
+            assert np.array_equal(seen["observations"], flat.observe(name))
+            assert env.observation_space(name).contains(seen)
             assert seen["action_mask"].dtype == np.int8 and np.array_equal(seen["action_mask"], mask)
-            assert np.array_equal(mask, env.infos[name]["action_mask"]) and np.array_equal(
-                mask, plain.action_mask(name)
-            )
+            assert np.array_equal(mask, env.infos[name]["action_mask"])
+            assert np.array_equal(mask, flat.action_mask(name))
             over = any(env.terminations.values())
             assert mask.any() == (name == env.agent_selection and not over)
             seen["action_mask"][:] = 1  # it is the caller's own
@@ -108,14 +76,15 @@ def test_masked_observations_of_both_players_hold_their_masks():
             break
         turns.add(env.agent_selection)
         action = int(rng.choice(np.flatnonzero(env.action_mask(env.agent_selection))))
-        env.step(action), plain.step(action)
+        env.step(action), flat.step(action)
     assert len(turns) == 2
     with pytest.raises(ValueError, match="a Box has no masks"):
         sn.match_env().action_mask("player_0")
 
 
-def test_pettingzoo_checks_its_seeds(strict):
-    seed_test(lambda: sn.match_env(aim="target", noise="club", layout="random:3"), num_cycles=60)
+@pytest.mark.parametrize("options", [{"noise": "club", "layout": "random:3"}, MATCH])
+def test_pettingzoo_checks_its_seeds(options, strict):
+    seed_test(lambda: sn.match_env(aim="target", **options), num_cycles=60)
 
 
 def test_pettingzoo_checks_its_pictures(monkeypatch):
@@ -125,111 +94,13 @@ def test_pettingzoo_checks_its_pictures(monkeypatch):
     render_test(sn.match_env)
 
 
-def random_play(env, seed, steps):
-    """Random turns; yields (player before, its reward for the step, table's frame before, frame after)."""
-    env.reset(seed=seed)
-    rng = np.random.default_rng(seed)
-    for _ in range(steps):
-        if not env.agents or any(env.terminations.values()):
-            return
-        player, before = env.agent_selection, env.frame
-        env.step(rng.uniform(-1, 1, 7).astype(np.float32))
-        yield player, before, env.frame
-
-
-def test_the_same_player_stays_selected_while_it_scores_and_no_longer():
-    env, stayed, changed = sn.match_env(aim="target", layout="random:10"), 0, 0
-    for seed in range(8):
-        for player, before, after in random_play(env, seed, 400):
-            if after.phase == "over" or before.phase == "choice" or after.respotted_black:
-                continue
-            scored = env.infos[player]["points"] > 0
-            assert (env.agent_selection == player) == scored
-            stayed, changed = stayed + scored, changed + (not scored)
-    assert stayed > 50 and changed > 50
-
-
-def test_whole_matches_end_for_both_and_somebody_wins():
-    for reward in ("points", "win"):
-        env = sn.match_env(aim="target", layout="random:3", reward=reward)
-        totals = dict.fromkeys(env.possible_agents, 0.0)
-        env.reset(seed=4)
-        env.action_space("player_0").seed(4), env.action_space("player_1").seed(4)
-        for player in env.agent_iter():
-            _, gained, terminated, truncated, info = env.last()
-            totals[player] += gained
-            frame = env.frame
-            env.step(None if terminated or truncated else env.action_space(player).sample())
-        assert not env.agents and frame.phase == "over" and info["winner"] == frame.winner
-        want = frame.scores if reward == "points" else (frame.winner == 0, frame.winner == 1)
-        assert totals == {"player_0": float(want[0] - want[1]), "player_1": float(want[1] - want[0])}
-
-
-def test_a_match_may_be_cut_short():
-    env = sn.match_env(max_strokes=7)
-    env.reset(seed=1)
-    while not any(env.truncations.values()):
-        env.step(np.zeros(7, np.float32))
-    assert env.strokes == 7 and all(env.truncations.values()) and not any(env.terminations.values())
-
-
-def put(env, places, **fields):
-    """Balls {id: (x, y)} and nothing else on the table, in a ``Frame`` with these fields."""
-    positions, on_table = SPOTS.copy(), np.zeros(N_BALLS, bool)
-    for ball, place in places.items():
-        positions[ball], on_table[ball] = place, True
-    mask = sum(1 << ball for ball in places if ball)
-    frame = Frame(**{"on_table": mask, "in_hand": False, "miss": env.options.miss} | fields)
-    env.reset(seed=1)
-    state = env.get_state() | {
-        "positions": positions.tolist(),
-        "on_table": on_table.tolist(),
-        "frame": frame.to_dict(),
-    }
-    env.reset(options={"state": json.loads(json.dumps(state))})
-    return env
-
-
-PLACES = {CUE: (0.3, 1.1), 1: (0.6, 1.4), 2: (-0.5, 0.2), BLACK: SPOTS[BLACK], PINK: SPOTS[PINK]}
-
-
-@pytest.mark.parametrize(
-    ("decision", "turn", "played"),
-    [(0.0, "player_1", True), (1.0, "player_1", True), (-1.0, "player_0", False)],
-)
-def test_the_decision_after_a_foul_is_part_of_the_action(decision, turn, played):
-    """Player 1 comes to the table after a foul: an easy pot if it plays; or player 0 has to play again."""
-    env = put(sn.match_env(aim="target"), PLACES, phase="choice", striker=1, scores=(0, 4))
-    assert env.agent_selection == "player_1" and env.infos["player_1"]["choice"]
-    before = env.positions.tobytes()
-    env.step(np.array([-0.5, 0, 0, 0, 0, 0, decision], np.float32))
-    assert env.agent_selection == turn and (env.positions.tobytes() != before) == played
-    assert env.rewards == (
-        {"player_0": -1.0, "player_1": 1.0} if played else {"player_0": 0.0, "player_1": 0.0}
-    )
-    assert env.strokes == played
-
-
-def test_after_a_miss_the_balls_may_be_replaced():
-    env = sn.match_env(miss="clear_path", layout="break_off")
-    env.reset(seed=3)
-    offender, before = env.agent_selection, env.positions.copy()
-    # with the reds in sight, into the bottom cushion
-    env.step(np.array([-0.9, 0, 0, -0.5, 0.6, -1.0, 0], np.float32))
-    assert env.frame.miss_called and env.agent_selection != offender
-    moved = env.positions.copy()
-    env.step(np.array([0, 0, 0, 0, 0, 0, 1.0], np.float32))
-    assert env.agent_selection == offender and not np.array_equal(moved, env.positions)
-    assert np.array_equal(before[1:], env.positions[1:]) and env.frame.in_hand
-
-
 @pytest.mark.parametrize(
     ("x", "back", "place"),
     [(0.0, -1.0, (0.0, -1.0475)), (0.0, 1.0, (0.0, -1.3395)), (-1.0, 0.3, (-0.292, -1.0475))],
 )
 def test_the_place_in_the_d_is_part_of_the_action(x, back, place):
     env = sn.match_env(render_mode="ansi")
-    put(env, PLACES | {CUE: (0.1, -1.2)}, in_hand=True)
+    frame_state(env, PLACES | {CUE: (0.1, -1.2)}, {"in_hand": True})
     env.step(np.array([-0.5, 0, 0, 0.2, x, back, 0], np.float32))
     assert env.last_shot.at(0.0)[0][CUE] == pytest.approx(place, abs=1e-6)
     moved = env.positions[CUE].copy()
@@ -238,7 +109,7 @@ def test_the_place_in_the_d_is_part_of_the_action(x, back, place):
 
 
 def test_each_player_sees_its_own_side():
-    env = put(sn.match_env(), PLACES, striker=1, scores=(31, 62))
+    env = frame_state(sn.match_env(), PLACES, {"striker": 1, "scores": (31, 62)})
     mine, theirs = env.observe("player_0"), env.observe("player_1")
     assert np.array_equal(mine[:121], theirs[:121]) and mine.shape == (121 + len(observations.FRAME_ENTRIES),)
     assert mine[121:124] == pytest.approx([31 / 178, 62 / 209, -31 / 178])
@@ -248,31 +119,14 @@ def test_each_player_sees_its_own_side():
     assert not np.array_equal(env.observe("player_0"), mine)
 
 
-def test_a_saved_match_plays_on_bit_for_bit():
-    env = sn.match_env(aim="target", noise="club", miss="clear_path")
-    list(random_play(env, 1, 10))
-    assert not any(env.terminations.values())
-    other, text = sn.match_env(aim="target", noise="club", miss="clear_path"), json.dumps(env.get_state())
-    other.reset(options={"state": json.loads(text)})
-    for k in range(30):
-        action = np.random.default_rng(k).uniform(-1, 1, 7)
-        if any(env.terminations.values()):
-            break
-        env.step(action), other.step(action)
-        assert (
-            json.dumps(env.get_state()) == json.dumps(other.get_state())
-            and env.agent_selection == other.agent_selection
-        )
-        assert env.rewards == other.rewards
-
-
 @pytest.mark.parametrize(("limit", "why"), [(1000, "terminations"), (1, "truncations")])
 def test_a_state_of_a_frame_that_has_ended_ends_at_once(limit, why):
     env, other = (sn.match_env(aim="target", layout="random:1", max_strokes=limit) for _ in range(2))
-    for _ in random_play(env, 1, 1000):
-        if any(env.truncations.values()):
-            break
-    other.reset(options={"state": json.loads(json.dumps(env.get_state()))})
+    env.reset(seed=1)
+    rng = np.random.default_rng(1)
+    while not (any(env.terminations.values()) or any(env.truncations.values())):
+        env.step(rng.uniform(-1, 1, 7))
+    other.reset(options={"state": plain(env.get_state())})
     assert getattr(env, why) == getattr(other, why) == {"player_0": True, "player_1": True}
     assert other.observe("player_0").tobytes() == env.observe("player_0").tobytes()
     for player in other.agent_iter():
@@ -282,9 +136,8 @@ def test_a_state_of_a_frame_that_has_ended_ends_at_once(limit, why):
 
 
 def test_a_state_repeats_its_errors_and_a_seed_draws_others():
-    env = sn.match_env(aim="target", noise="professional", layout="random:6")
-    env.reset(seed=2)
-    state, ends = json.loads(json.dumps(env.get_state())), []
+    env = begun(sn.match_env(aim="target", noise="professional", layout="random:6"), 2)
+    state, ends = plain(env.get_state()), []
     for seed in (None, None, *range(50), 7):
         env.reset(seed=seed, options={"state": state})
         changed = {key for key, value in env.get_state().items() if value != state[key]}
@@ -294,40 +147,125 @@ def test_a_state_repeats_its_errors_and_a_seed_draws_others():
     assert ends[0] == ends[1] and len(set(ends)) == 51 and ends[-1] == ends[2 + 7]
 
 
-@pytest.mark.parametrize(
-    ("options", "field"),
-    [
-        ({"reward": "pots"}, "reward"),
-        ({"render_mode": "x"}, "render_mode"),
-    ],
-)
-def test_wrong_arguments_are_refused(options, field):
-    with pytest.raises(ValueError, match=f"^{field} = "):
-        sn.match_env(**options)
-
-
-@pytest.mark.parametrize("action", [np.zeros(4), np.full(7, 1.1), np.full(7, np.nan)])
-def test_wrong_actions_change_nothing(action):
-    env = sn.match_env()
-    env.reset(seed=1)
-    before = json.dumps(env.get_state())
-    with pytest.raises(ValueError, match=r"^action = "):
-        env.step(action)
-    assert json.dumps(env.get_state()) == before
-
-
 def test_pettingzoo_is_loaded_only_when_asked_for_and_its_lack_is_explained():
-    code = (
-        "import sys, snooker_env as sn\n"
-        "assert 'pettingzoo' not in sys.modules\n"
-        "sys.modules['pettingzoo'] = None\n"
-        "try: sn.match_env()\n"
-        "except ImportError as error: print(error)\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=120
-    )
-    assert (
-        done.stdout.strip()
-        == f'match_env needs PettingZoo; install it, in the clone {ROOT}, with: pip install -e ".[multi]"'
-    )
+    lacking = "assert 'pettingzoo' not in sys.modules\nsys.modules['pettingzoo'] = None"
+    code = f"import sys, snooker_env as sn\n{lacking}\ntry: sn.match_env()\nexcept ImportError as e: print(e)"
+    needs = f'match_env needs PettingZoo; install it, in the clone {ROOT}, with: pip install -e ".[multi]"'
+    assert python(code)[0].strip() == needs
+
+
+# Two players on many tables play what ``match_env`` plays; seats may differ
+
+
+N = 9
+
+
+def actions_of(options, rng, masks):
+    """Random actions on N tables: near a pot, or available choices."""
+    if options.get("action") == "discrete":
+        return np.array([rng.choice(np.flatnonzero(mask)) for mask in masks])
+    longer = sum(bool(options.get(name)) for name in ("nominate", "decision", "concede"))
+    a = rng.uniform(-1, 1, (N, 6 + longer))
+    a[:, 1:4] *= 0.3
+    if options.get("concede"):
+        a[:, -1] = np.where(rng.random(N) < 0.98, np.abs(a[:, -1]), a[:, -1])
+    return a
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("threads", [1, 2])
+def test_each_table_plays_as_a_match_alone(kind, threads):
+    options, rng = KINDS[kind], np.random.default_rng(1)
+    tables = sn.MatchVectorEnv(N, **options, threads=threads)
+    alone = [sn.match_env(**options) for _ in range(N)]
+    observations, infos = tables.reset(seed=5)
+    [one.reset(seed=5 + k) for k, one in enumerate(alone)]
+    ended, strokes = np.zeros(N, bool), 0
+    for _ in range(160):
+        for k, one in enumerate(alone):
+            name = one.agent_selection
+            assert infos["striker"][k] == tables.strikers[k] == one.possible_agents.index(name)
+            assert observations[k].tobytes() == one.observe(name).tobytes()
+        discrete = options.get("action") == "discrete"
+        actions = actions_of(options, rng, tables.action_masks() if discrete else None)
+        observations, rewards, terminated, truncated, infos = tables.step(actions)
+        for k, one in enumerate(alone):
+            if ended[k]:
+                assert not rewards[k].any()
+            else:
+                one.step(int(actions[k]) if discrete else actions[k])
+                assert rewards[k].tolist() == list(one.rewards.values())
+                info = one.infos["player_0"]
+                assert all(infos[name][k] == info[name] for name in set(info) & set(infos))
+                strokes += 1
+            assert terminated[k] == one.terminations["player_0"]
+            assert truncated[k] == one.truncations["player_0"]
+            keys = ("positions", "on_table", "frame", "strokes", "stream")
+            state = tables.get_state()[k]
+            assert {key: state[key] for key in keys} == {key: one.get_state()[key] for key in keys}
+        ended = terminated | truncated
+        if ended.all():
+            break
+    assert strokes > 300 and ended.any()
+
+
+def test_tables_that_have_ended_stand_still_until_they_are_reset():
+    tables = begun(sn.MatchVectorEnv(4, layout="random:0", max_strokes=6, threads=1, reward="win"), 0)
+    for _ in range(6):
+        out = tables.step(np.tile([-0.9, 0, 0, 0.5, 0, 0, 0], (4, 1)))
+    assert out[3].all()
+    before = json.dumps(tables.get_state())
+    _, rewards, terminated, truncated, _ = tables.step(np.zeros((4, 7)))
+    assert json.dumps(tables.get_state()) == before and not rewards.any() and truncated.all()
+    assert not terminated.any()
+    _, infos = tables.reset(options={"reset_mask": np.array([True, False, False, True]), "breaker": 1})
+    assert infos["_strokes"].tolist() == [True, False, False, True]
+    assert tables.strikers[[0, 3]].tolist() == [1, 1]
+    assert tables.step(np.zeros((4, 7)))[3].tolist() == [False, True, True, False]
+
+
+def test_a_saved_state_plays_on_whoever_is_to_play():
+    tables = begun(sn.MatchVectorEnv(N, **PLAIN, layout="random:3", threads=2), 3)
+    tables.step(np.full((N, 7), -0.3))
+    states = plain(tables.get_state())
+    again = sn.MatchVectorEnv(N, **PLAIN, layout="random:3", threads=1)
+    seen, _ = again.reset(options={"states": states})
+    assert set(tables.strikers.tolist()) == {0, 1}
+    assert np.array_equal(seen[tables.strikers == 1], tables.observe(1)[tables.strikers == 1])
+    for one, other in zip(tables.step(np.zeros((N, 7)))[:4], again.step(np.zeros((N, 7)))[:4], strict=True):
+        assert np.array_equal(one, other)
+
+
+def test_seats_differ_in_actions_and_errors():
+    """Player 1 has choices, and exact strokes: from one position on one seed they are always the same."""
+    seats = ({}, {"action": "discrete", "noise": "none"})
+    tables = sn.MatchVectorEnv(N, seats=seats, layout="random:3", noise="club", threads=2)
+    alone = [sn.match_env(seats=seats, layout="random:3", noise="club") for _ in range(N)]
+    tables.reset(seed=1, options={"breaker": np.arange(N) % 2})
+    [one.reset(seed=1 + k, options={"breaker": k % 2}) for k, one in enumerate(alone)]
+    assert alone[0].action_space("player_0") == gymnasium.spaces.Box(-1.0, 1.0, (7,))
+    assert alone[0].action_space("player_1").n == 540
+    for _ in range(6):
+        for one in alone:
+            if not (one.terminations["player_0"] or one.truncations["player_0"]):
+                one.step(67 if one.agent_selection == "player_1" else np.full(7, 0.1))
+        tables.step((np.full((N, 7), 0.1), np.full(N, 67)))
+        assert all(np.array_equal(tables.tables.positions[k], one.positions) for k, one in enumerate(alone))
+    places = []
+    for seed in range(3):
+        for breaker in (0, 1):
+            one = sn.match_env(seats=seats, layout="random:3", noise="club")
+            one.reset(seed=7, options={"breaker": breaker})
+            state = one.get_state()
+            one.reset(seed=seed, options={"state": state})
+            one.step(67 if breaker else [-0.5, 0, 0, 0.5, 0, 0, 0])
+            places.append(one.positions[0].tolist())
+    assert places[1] == places[3] == places[5] and len({tuple(place) for place in places[::2]}) == 3
+
+
+def test_a_reset_is_needed_and_actions_are_one_array_a_seat():
+    tables = sn.MatchVectorEnv(2, threads=1)
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        tables.step(np.zeros((2, 7)))
+    with pytest.raises(ValueError, match="must be two arrays"):
+        sn.MatchVectorEnv(2, seats=({}, {"action": "discrete"}), threads=1).step(np.zeros((2, 7)))

@@ -1,5 +1,4 @@
-"""Do recorders get the motion of the strokes? The recorders of Gymnasium and Stable-Baselines3 as they are,
-on one table and on many."""
+"""Do the recorders of Gymnasium and Stable-Baselines3, as they are, get the motion of the strokes?"""
 
 from itertools import pairwise
 
@@ -11,27 +10,42 @@ from gymnasium.wrappers.vector import RecordVideo as VectorRecordVideo
 
 import snooker_env as sn
 from snooker_env.envs.pictures import PictureSource, recorder_asking
+from snooker_env.tasks import stroke
+from tests.envs.test_vector import native
+from tests.tables import begun
 
 pytest.importorskip("pygame")
-pytest.importorskip("moviepy")
-FPS = 30
-SMALL = {"render_size": (320, 180)}
-
-
-HOLD = 15
+moviepy = pytest.importorskip("moviepy")
+SMALL = {"render_mode": "rgb_array", "action": "discrete", "render_size": (320, 180)}
+ALL = {"episode_trigger": lambda k: True, "disable_logger": True}
 
 
 def pictures_of(seconds):
     """How many pictures a shot has: one every 1/30 s, its end, and half a second of the table after it."""
-    return len(np.arange(0.0, seconds, 1 / FPS)) + 1 + HOLD
+    return len(np.arange(0.0, seconds, 1 / 30)) + 1 + 15
 
 
 def made(**options):
-    return gymnasium.make("Snooker-v0", render_mode="rgb_array", action="discrete", **SMALL, **options)
+    return gymnasium.make("Snooker-v0", **SMALL, **options)
+
+
+def alone():
+    """The same table without a recorder."""
+    return begun(sn.SnookerEnv(action="discrete"))
+
+
+def filmed(tables, folder):
+    """The recorder of Stable-Baselines3 on tables that have begun."""
+    vec_env = pytest.importorskip("stable_baselines3.common.vec_env")
+    tables = tables or vec_env.DummyVecEnv([made])
+    env = vec_env.VecVideoRecorder(tables, str(folder), lambda step: step == 0, video_length=10**6)
+    env.seed(1)
+    env.reset()
+    return env
 
 
 def test_record_video_of_gymnasium_films_each_stroke(tmp_path):
-    env = RecordVideo(made(), str(tmp_path / "films"), episode_trigger=lambda k: True, disable_logger=True)
+    env = RecordVideo(made(), str(tmp_path / "films"), **ALL)
     env.reset(seed=1)
     assert len(env.recorded_frames) == 1
     expected = 1
@@ -44,19 +58,12 @@ def test_record_video_of_gymnasium_films_each_stroke(tmp_path):
     assert all(frame.shape == (180, 320, 3) for frame in env.recorded_frames)
     env.close()
     film = next((tmp_path / "films").glob("*.mp4"))
-    from moviepy import VideoFileClip
-
-    with VideoFileClip(str(film)) as clip:
-        assert clip.duration == pytest.approx(expected / FPS, abs=0.1)
+    with moviepy.VideoFileClip(str(film)) as clip:
+        assert clip.duration == pytest.approx(expected / 30, abs=0.1)
 
 
 def test_the_opponents_strokes_are_filmed_too(tmp_path):
-    env = RecordVideo(
-        made(task="frame", opponent="ghost_ball"),
-        str(tmp_path / "films"),
-        episode_trigger=lambda k: True,
-        disable_logger=True,
-    )
+    env = RecordVideo(made(task="frame", opponent="ghost_ball"), str(tmp_path / "films"), **ALL)
     env.reset(seed=2)
     before = len(env.recorded_frames)
     env.step(67)
@@ -68,17 +75,7 @@ def test_the_opponents_strokes_are_filmed_too(tmp_path):
 
 
 def test_vector_record_video_films_all_tables_at_once(tmp_path):
-    envs = gymnasium.make_vec(
-        "Snooker-v0",
-        num_envs=2,
-        vectorization_mode="vector_entry_point",
-        render_mode="rgb_array",
-        action="discrete",
-        **SMALL,
-    )
-    envs = VectorRecordVideo(
-        envs, str(tmp_path / "films"), episode_trigger=lambda k: True, video_length=10**6, disable_logger=True
-    )
+    envs = VectorRecordVideo(native(2, **SMALL), str(tmp_path / "films"), video_length=10**6, **ALL)
     envs.reset(seed=1)
     info = envs.step(np.array([67, 67]))[4]
     assert len(envs.recorded_frames) == 1 + pictures_of(max(info["seconds"])) + 1
@@ -86,22 +83,9 @@ def test_vector_record_video_films_all_tables_at_once(tmp_path):
     envs.close()
 
 
-@pytest.mark.parametrize("native", [False, True])
-def test_the_recorder_of_stable_baselines_films_each_stroke(tmp_path, native):
-    sb3 = pytest.importorskip("stable_baselines3.common.vec_env")
-    from snooker_env.sb3 import SnookerVecEnv
-
-    tables = (
-        SnookerVecEnv(1, render_mode="rgb_array", action="discrete", **SMALL)
-        if native
-        else sb3.DummyVecEnv([made])
-    )
-    env = sb3.VecVideoRecorder(tables, str(tmp_path / "films"), lambda step: step == 0, video_length=10**6)
-    env.seed(1)
-    env.reset()
-    single = sn.SnookerEnv(action="discrete")
-    single.reset(seed=1)
-    seconds = single.step(67)[4]["seconds"]
+def test_the_recorder_of_stable_baselines_films_each_stroke(tmp_path):
+    env = filmed(pytest.importorskip("snooker_env.sb3").SnookerVecEnv(1, **SMALL), tmp_path)
+    seconds = alone().step(67)[4]["seconds"]
     env.step(np.array([67]))
     assert len(env.recorded_frames) == 1 + pictures_of(seconds) + 1
     env.close()
@@ -146,36 +130,24 @@ def test_a_film_that_breaks_off_leaves_no_picture_behind():
 
 
 def test_the_stroke_that_ends_an_episode_is_filmed_where_the_reset_is_inside_the_step(tmp_path):
-    sb3 = pytest.importorskip("stable_baselines3.common.vec_env")
-    env = sb3.VecVideoRecorder(
-        sb3.DummyVecEnv([made]), str(tmp_path), lambda step: step == 0, video_length=10**6
-    )
-    env.seed(1)
-    env.reset()
-    single = sn.SnookerEnv(action="discrete")
-    single.reset(seed=1)
-    expected, ended = 1, False
+    env, single, expected, ended = filmed(None, tmp_path), alone(), 1, False
     while not ended:
-        seconds, ended = (lambda r: (r[4]["seconds"], r[2]))(single.step(67))
+        _, _, ended, _, info = single.step(67)
         assert env.step(np.array([67]))[2][0] == ended
-        expected += pictures_of(seconds) + 1
+        expected += pictures_of(info["seconds"]) + 1
         assert len(env.recorded_frames) == expected
     env.close()
 
 
 def test_shots_with_long_logs_are_kept_each_on_its_own_table(monkeypatch):
     """A shot that is played again with more room leaves its neighbours' strokes alone."""
-    from snooker_env.tasks import stroke
 
     def strokes(log):
         with monkeypatch.context() as patched:
             patched.setattr(stroke.ShotBuffers.__init__, "__defaults__", (log,))
-            envs = sn.SnookerVectorEnv(4, render_mode="ansi", action="discrete", threads=1)
-            envs.reset(seed=1)
+            envs = begun(sn.SnookerVectorEnv(4, render_mode="ansi", action="discrete", threads=1))
             envs.step(np.full(4, 67))
-            return [
-                [(p.shot.positions, len(p.shot.events), p.points) for p in table] for table in envs._recent
-            ]
+            return [[(p.shot.positions, len(p.shot.events), p.points) for p in t] for t in envs._recent]
 
     long, short = strokes(512), strokes(8)
     assert len({table[0][1] for table in long}) > 1 and max(table[0][1] for table in long) > 8
@@ -184,20 +156,10 @@ def test_shots_with_long_logs_are_kept_each_on_its_own_table(monkeypatch):
 
 
 def test_a_picture_shows_no_stroke_of_another_table():
-    """After set_state, and where a new episode has begun within the step, nothing is drawn of the last
-    stroke."""
+    """After set_state, and where a step has begun a new episode, the last stroke is not drawn."""
     env = made()
     env.reset(seed=1)
     state, plain = env.unwrapped.get_state(), env.render()
     env.step(67)
     env.unwrapped.set_state(state)
     assert np.array_equal(env.render(), plain) and env.unwrapped.history == []
-
-
-def test_keeping_history_later_keeps_the_last_shot():
-    env = sn.SnookerEnv(action="discrete")
-    env.reset(seed=1)
-    env.step(67)
-    shot = env.last_shot
-    env.keep_history = True
-    assert env.last_shot is shot and env.history == []

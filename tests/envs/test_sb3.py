@@ -1,7 +1,4 @@
-"""Is ``SnookerVecEnv`` to Stable-Baselines3 what ``DummyVecEnv`` of monitored single tables is, and does PPO
-run on it?"""
-
-import warnings
+"""Is ``SnookerVecEnv`` what ``DummyVecEnv`` of monitored single tables is, and does PPO run on it?"""
 
 import numpy as np
 import pytest
@@ -12,7 +9,7 @@ from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.evaluation import evaluate_policy
 
 from agents.features.views import training_tables
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import SnookerEnv
 from snooker_env.planning.learned import pot_view
 from snooker_env.sb3 import SnookerVecEnv
 from snooker_env.tasks.tables import COUNTS, REALS
@@ -34,16 +31,17 @@ def equal(a, b):
     return np.array_equal(a, b) and getattr(a, "dtype", None) == getattr(b, "dtype", None)
 
 
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"aim": "target", "noise": "club", "layout": "random:5"},
-        {"aim": "target", "observation": "balls", "layout": "random:5", "reward": "points_and_fouls"},
-        {"aim": "target", "max_episode_steps": 2, "layout": "random:3"},
-        {"action": "discrete", "observation": "masked", "max_episode_steps": 2, "layout": "random:3"},
-    ],
-    ids=["flat", "balls", "limit", "masked"],
-)
+TARGET = {"aim": "target"}
+CHOICES = {"action": "discrete", "observation": "masked"}
+OPTIONS = {
+    "flat": TARGET | {"noise": "club", "layout": "random:5"},
+    "balls": TARGET | {"observation": "balls", "layout": "random:5", "reward": "points_and_fouls"},
+    "limit": TARGET | {"max_episode_steps": 2, "layout": "random:3"},
+    "masked": CHOICES | {"max_episode_steps": 2, "layout": "random:3"},
+}
+
+
+@pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
 def test_it_gives_what_dummy_vec_env_gives(options):
     """Observations, rewards, ends, infos, terminal observations, episodes: all but the clock."""
     ours, theirs = both(6, **options)
@@ -83,21 +81,16 @@ def test_a_seed_at_the_start_is_as_one_given_later():
 
 @pytest.mark.parametrize("seed", [-1, 1.0, "1", True, [1, 2], 2**63])
 def test_wrong_seeds_are_refused(seed):
-    refused(
-        lambda: SnookerVecEnv(2, seed=seed),
-        "seed",
-        repr(seed),
-        "must be an integer in [0, 9223372036854775807]",
-    )
+    allowed = "must be an integer in [0, 9223372036854775807]"
+    refused(lambda: SnookerVecEnv(2, seed=seed), "seed", repr(seed), allowed)
 
 
 def test_infos_are_empty_unless_something_is_to_say():
     env = SnookerVecEnv(8)
     env.reset()
     _, _, done, infos = env.step(np.zeros((8, 4), np.float32))
-    assert [set(info) for info in infos] == [
-        {"episode", "terminal_observation", "TimeLimit.truncated"} if d else set() for d in done
-    ]
+    keys = {"episode", "terminal_observation", "TimeLimit.truncated"}
+    assert [set(info) for info in infos] == [keys if d else set() for d in done]
     assert env.reset_infos == [{}] * 8
 
 
@@ -108,9 +101,7 @@ def test_terminal_observations_stay_what_they_were():
     infos = env.step(a)[3]
     kept = [info["terminal_observation"].copy() for info in infos]
     following = env.step(a)[3]
-    assert all(
-        np.array_equal(info["terminal_observation"], old) for info, old in zip(infos, kept, strict=True)
-    )
+    assert equal(kept, [info["terminal_observation"] for info in infos])
     assert not np.array_equal(following[0]["terminal_observation"], kept[0])
 
 
@@ -127,11 +118,7 @@ def test_states_are_saved_and_restored():
     assert env.env_method("get_state", indices=[1])[0]["stream"] == env.env_method("get_state")[1]["stream"]
     env.set_options([{"state": states[0]}, {}, {"state": states[2]}])
     # not the whole of another's state
-    with pytest.raises(
-        ValueError,
-        match=r"^keys of options\[1\] = \[\]: must be \"state\", \"position\" or \"breaker\" alone",
-    ):
-        env.reset()
+    refused(env.reset, "keys of options[1]", "[]", 'must be "state", "position" or "breaker" alone')
     env.set_options({"layout": 1})
     with pytest.raises(ValueError, match="options"):
         env.reset()
@@ -154,29 +141,20 @@ def test_a_seed_draws_new_errors_from_a_state():
 
 
 def test_without_stable_baselines_one_line_says_how_to_get_it():
-    code = (
-        "import sys\nsys.modules['stable_baselines3'] = None\n"
-        "try: import snooker_env.sb3\nexcept ImportError as error: print(error)\n"
-    )
+    lacking = "import sys\nsys.modules['stable_baselines3'] = None"
+    code = f"{lacking}\ntry: import snooker_env.sb3\nexcept ImportError as error: print(error)"
     needs = "snooker_env.sb3 needs Stable-Baselines3; install it, in the clone"
-    wanted = f'{needs} {ROOT}, with: pip install -e ".[train]"'
-    assert python(code)[0].strip() == wanted
+    assert python(code)[0].strip() == f'{needs} {ROOT}, with: pip install -e ".[train]"'
 
 
 def test_attributes():
     env = SnookerVecEnv(2)
-    assert (
-        env.get_attr("num_envs") == [2, 2]
-        and env.has_attr("options")
-        and not env.has_attr("no_such")
-        and not env.has_attr("last_shot")
-    )
+    assert env.get_attr("num_envs") == [2, 2] and env.has_attr("options") and not env.has_attr("no_such")
+    assert not env.has_attr("last_shot")
     env.seed(3)
     env.reset()
     assert env.get_attr("np_random_seed", [1]) == [4] and env.get_attr("points") == [0, 0]
-    assert [p.tobytes() for p in env.get_attr("positions")] == [
-        p.tobytes() for p in env.tables.tables.positions
-    ]
+    assert np.array_equal(env.get_attr("positions"), env.tables.tables.positions)
     with pytest.raises(AttributeError, match="cannot be set"):
         env.set_attr("observation", "balls")
     with pytest.raises(ValueError, match="method_name"):
@@ -188,15 +166,13 @@ def test_attributes():
 
 
 @pytest.mark.parametrize("observation", ["flat", "balls"])
-def test_ppo_and_sac_learn_on_it_without_a_warning(observation):
+def test_ppo_and_sac_learn_on_it_without_a_warning(observation, strict):
     policy = "MlpPolicy" if observation == "flat" else "MultiInputPolicy"
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        env = SnookerVecEnv(8, observation=observation, aim="target")
-        model = PPO(policy, env, n_steps=16, batch_size=64, n_epochs=1, seed=0, device="cpu").learn(256)
-        assert model.num_timesteps == 256 and len(model.ep_info_buffer) > 0 and "l" in model.ep_info_buffer[0]
-        SAC(policy, env, learning_starts=16, buffer_size=100, seed=0, device="cpu").learn(64)
-        evaluate_policy(model, env, n_eval_episodes=4)
+    env = SnookerVecEnv(8, observation=observation, aim="target")
+    model = PPO(policy, env, n_steps=16, batch_size=64, n_epochs=1, seed=0, device="cpu").learn(256)
+    assert model.num_timesteps == 256 and len(model.ep_info_buffer) > 0 and "l" in model.ep_info_buffer[0]
+    SAC(policy, env, learning_starts=16, buffer_size=100, seed=0, device="cpu").learn(64)
+    evaluate_policy(model, env, n_eval_episodes=4)
     env.close()
 
 

@@ -1,8 +1,6 @@
-"""Is every fault of a saved state refused by its name, with nothing changed? Every field of every kind of
-state, spoilt in every way."""
+"""Is every fault of a saved state refused by its name, with nothing changed?"""
 
 import copy
-import json
 from dataclasses import replace
 from functools import partial
 
@@ -10,16 +8,14 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env import SnookerEnv, SnookerVectorEnv
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
 from snooker_env.game.frame import Frame, Saved
 from snooker_env.game.referee import FULL_TABLE, Stroke
 from tests.mutations import at, frozen, kind_of, mutations, names_it
 from tests.refusals import refused
-from tests.tables import PLACES, frame_env, frame_state
+from tests.tables import PLACES, begun, frame_env, frame_state, plain
 
-NAN, INF = float("nan"), float("inf")
 FRAME = {"opponent": "random", "miss": "clear_path", "noise": "club", "layout": "random:3", "aim": "target"}
 WANTED = {
     "in_hand": lambda f: f.in_hand and f.phase == "stroke",
@@ -30,10 +26,6 @@ WANTED = {
     "a free ball": lambda f: f.free_ball,
 }
 """Frames to be in the middle of, at the agent's turn."""
-
-
-def plain(state):
-    return json.loads(json.dumps(state))
 
 
 @pytest.fixture(scope="module")
@@ -65,8 +57,7 @@ def must_be_refused(path, value, old, root):
 
 
 def attack(state, load, saved, root="state", play=lambda: None):
-    """Load every mutation: it is refused by name with nothing changed, or it is played. Counts (refused,
-    taken)."""
+    """Load every mutation: refused by name with nothing changed, or played. Counts (refused, taken)."""
     counts = [0, 0]
     load(state)
     good = frozen(saved())
@@ -96,9 +87,8 @@ def player(env, strokes=2):
         for k in range(strokes):
             if env.over:
                 return
-            observation, reward, *_, info = env.step(
-                np.random.default_rng(k).uniform(-1, 1, env.action_space.shape)
-            )
+            action = np.random.default_rng(k).uniform(-1, 1, env.action_space.shape)
+            observation, reward, *_, info = env.step(action)
             assert env.observation_space.contains(observation) and np.isfinite([reward, info["break"]]).all()
 
     return play
@@ -115,15 +105,13 @@ def loader(env, seed):
 
 @pytest.mark.parametrize("layout", ["random:3", "break_off", "colours"])
 def test_every_fault_of_a_visit(layout):
-    env = SnookerEnv(layout=layout, noise="club", placement=layout == "break_off")
-    env.reset(seed=3)
+    env = begun(SnookerEnv(layout=layout, noise="club", placement=layout == "break_off"), 3)
     refusals, taken = attack(plain(env.get_state()), loader(env, None), env.get_state, play=player(env))
     assert refusals > 500 and taken > 30
 
 
 def test_every_fault_of_a_visit_in_the_vector_environment():
-    env = SnookerVectorEnv(2, layout="random:3", noise="club")
-    env.reset(seed=3)
+    env = begun(SnookerVectorEnv(2, layout="random:3", noise="club"), 3)
     sound = plain(env.get_state()[1])
     for how in (lambda state: {"state": state}, lambda state: {"states": [sound, state]}):
         refusals, taken = attack(sound, lambda state, how=how: env.reset(options=how(state)), env.get_state)
@@ -140,8 +128,7 @@ def test_every_fault_of_a_frame(name, frame_states):
 @pytest.mark.parametrize("name", ["in_hand", "a miss", "replaced"])
 def test_every_fault_of_a_match(name, frame_states):
     pytest.importorskip("pettingzoo")
-    env = sn.match_env(**{key: FRAME[key] for key in ("miss", "noise", "layout", "aim")})
-    env.reset(seed=1)
+    env = begun(sn.match_env(**{key: FRAME[key] for key in ("miss", "noise", "layout", "aim")}))
 
     def play():
         spaces = env.observation_spaces
@@ -151,17 +138,16 @@ def test_every_fault_of_a_match(name, frame_states):
             assert all(spaces[player].contains(env.observe(player)) for player in env.possible_agents)
 
     def whole():
-        return [
-            env.get_state(),
-            env.agent_selection,
-            env.rewards,
-            env.infos,
-            env.terminations,
-            env.truncations,
-        ]
+        seen = env.rewards, env.infos, env.terminations, env.truncations
+        return env.get_state(), env.agent_selection, *seen
 
-    refusals, taken = attack(frame_states[name], env.set_state, whole, play=play)
+    def load(state):
+        env.reset(seed=9, options={"state": state})
+
+    how = env.set_state if name == "a miss" else load
+    refusals, taken = attack(frame_states[name], how, whole, play=play)
     assert refusals > 800 and taken > 50
+    refused(lambda: env.reset(options=[1]), "options", "[1]", "must be None")
 
 
 @pytest.mark.parametrize("name", [*WANTED, "a re-spotted black"])
@@ -185,9 +171,6 @@ def test_every_fault_of_a_frame_alone(name, frame_states):
     assert refusals > 300 and taken > 15
 
 
-# One by one: what the issue named, and what must fit
-
-
 def changed(state, **parts):
     state = copy.deepcopy(state)
     for path, value in parts.items():
@@ -199,123 +182,63 @@ def changed(state, **parts):
     return state
 
 
+SAVED = "state.frame.saved"
+LAID = "frame__saved__layout"
+OTHER_ON = {"frame__saved__on_table": 1 << BLACK, "frame__saved__ball_on": 7}
 MISS = [
     ({"frame__striker": 1}, "state.frame.striker", "1", "must be 0, the agent"),
-    ({"frame__saved__layout": None}, "state.frame.saved.layout", "None", "must be positions and on_table"),
-    (
-        {"frame__saved__layout": [[[5, 5]] * 22, [True] * 22]},
-        "state.frame.saved.layout[0][0]",
-        "(5.0, 5.0)",
-        "must be on the table",
-    ),
-    (
-        {"frame__saved__layout": [[[0, 0]] * 22, [True] * 22]},
-        "state.frame.saved.layout[0]",
-        "balls 0 and 1",
-        "overlap",
-    ),
-    (
-        {"frame__saved__on_table": 1 << BLACK, "frame__saved__ball_on": 7},
-        "state.frame.saved",
-        "a position",
-        "must have the balls on_table",
-    ),
-    ({"frame__saved__in_hand": 1}, "state.frame.saved.in_hand", "1", "must be True or False"),
-    ({"frame__saved": 3}, "state.frame.saved", "3", "must be a dict with the fields"),
-    ({"frame__saved": {}}, "state.frame.saved", "on_table", "must have exactly the fields"),
-    ({"frame__respotted_black": NAN}, "state.frame.respotted_black", "nan", "must be True or False"),
+    ({LAID: None}, f"{SAVED}.layout", "None", "must be positions and on_table"),
+    ({LAID: [[[5, 5]] * 22, [True] * 22]}, f"{SAVED}.layout[0][0]", "(5.0, 5.0)", "must be on the table"),
+    ({LAID: [[[0, 0]] * 22, [True] * 22]}, f"{SAVED}.layout[0]", "balls 0 and 1", "overlap"),
+    (OTHER_ON, SAVED, "a position", "must have the balls on_table"),
+    ({"frame__saved": {}}, SAVED, "on_table", "must have exactly the fields"),
     ({"frame__phase": "lot"}, "state.frame.phase", "lot", "must"),
-    ({"frame__scores": 3}, "state.frame.scores", "3", "must be a tuple of two integers"),
-    (
-        {"frame__scores": [0, 2**53]},
-        "state.frame.scores[1]",
-        "9007199254740992",
-        "must be an integer in [0, 9007199254740991]",
-    ),
+    ({"frame__scores": [0, 2**53]}, "state.frame.scores[1]", str(2**53), "must be an integer in [0, 900719"),
     ({"frame__scores": [0, 1, 2]}, "state.frame.scores", "(0, 1, 2)", "must be a tuple of two integers"),
     ({"frame__failures": 3}, "state.frame.failures", "3", "must be an integer in [0, 2]"),
     ({"frame__break_points": 20}, "state.frame.break_points", "20", "must be"),
     ({"frame__warned": True}, "state.frame.warned", "True", "must be False"),
-    (
-        {"rng__state__state": 2**128},
-        "state.rng",
-        "340282366920938463463374607431768211456",
-        "must be the state of a PCG64",
-    ),
+    ({"rng__state__state": 2**128}, "state.rng", str(2**128), "must be the state of a PCG64"),
     ({"rng__state__inc": 1.0}, "state.rng.state.inc", "1.0", "must be of type int"),
-    ({"strokes": -1}, "state.strokes", "-1", "must be an integer"),
     ({"strokes": 1000}, "state.strokes", "1000", "must be below max_strokes = 1000: there is no shot left"),
-    (
-        {"ball_on": 1},
-        "state",
-        "'ball_on'",
-        "must be a state of get_state() here, with the keys ['frame', 'positions', 'on_table',",
-    ),
+    ({"ball_on": 1}, "state", "'ball_on'", "of get_state() here, with the keys ['frame', 'positions',"),
 ]
 
 
 @pytest.mark.parametrize(("parts", "field", "value", "allowed"), MISS)
 def test_faults_of_a_frame_in_which_a_miss_was_called(parts, field, value, allowed, frame_states):
-    env = frame_env(**FRAME)
-    env.reset(seed=1)
+    env = begun(frame_env(**FRAME))
     before = frozen(env.get_state())
     state = changed(frame_states["a miss"], **parts)
     refused(lambda: env.reset(seed=8, options={"state": state}), field, value, allowed)
     assert frozen(env.get_state()) == before and env.np_random_seed == 1
 
 
-def test_the_position_to_which_a_frame_returns_is_always_on_the_table(frame_states):
-    """The saved layout, moved ball by ball: refused, or the balls lie there after "replace"."""
-    env = sn.match_env(**{key: FRAME[key] for key in ("miss", "noise", "layout", "aim")})
-    env.reset(seed=1)
-    state, rng, moved = frame_states["a miss"], np.random.default_rng(5), 0
-    for _ in range(200):
-        new, ball = copy.deepcopy(state), int(rng.integers(22))
-        new["frame"]["saved"]["layout"][0][ball] = rng.uniform(-2, 2, 2).tolist()
-        try:
-            env.set_state(new)
-        except ValueError as error:
-            assert str(error).startswith("state.frame.saved.")
-            continue
-        env.step(np.array([0, 0, 0, 0, 0, 0, 1.0]))  # gives the table back, with the balls replaced
-        sn.Table.preset("match").check(env.positions, sn.Physics.preset("paper").R, on_table=env.on_table)
-        moved += 1
-    assert 20 < moved < 180
-
-
 def test_a_layout_is_kept_by_the_rule_of_the_miss_only():
-    env = sn.match_env()
-    env.reset(seed=1)
+    env = begun(sn.match_env())
     env.step(np.array([-0.8, 0, 0, -0.5, 0, 0, 0]))  # at the bottom cushion, hitting nothing
     state = plain(env.get_state())
     assert state["frame"]["phase"] == "choice" and state["frame"]["saved"]["layout"] is None
     env.set_state(state)
     state["frame"]["saved"]["layout"] = [state["positions"], state["on_table"]]
-    refused(
-        lambda: env.set_state(state), "state.frame.saved.layout", "a layout", 'must be None with miss = "off"'
-    )
+    refused(lambda: env.set_state(state), f"{SAVED}.layout", "a layout", 'must be None with miss = "off"')
+
+
+PINK_LEFT, BLACK_LEFT = ({CUE: (0, 0), ball: SPOTS[ball]} for ball in (PINK, BLACK))
 
 
 @pytest.mark.parametrize(
     ("places", "frame", "field"),
     [
-        (PLACES, {"in_hand": True}, "state.frame.in_hand"),
-        ({CUE: (0, 0), BLUE: (0.5, 0.5), PINK: SPOTS[PINK]}, {"ball_on": BallOn.PINK}, "state.frame.ball_on"),
-        (
-            {CUE: (0, 0), PINK: SPOTS[PINK]},
-            {"ball_on": BallOn.PINK, "break_points": 150},
-            "state.frame.break_points",
-        ),
-        (
-            {CUE: (0, 0), BLACK: SPOTS[BLACK]},
-            {"ball_on": BallOn.BLACK, "respotted_black": True, "scores": (7, 8)},
-            "state.frame.respotted",
-        ),
-        (PLACES, {"free_ball": True, "break_points": 3}, "state.frame.break_points"),
+        (PLACES, {"in_hand": True}, "in_hand"),
+        (PINK_LEFT | {BLUE: (0.5, 0.5)}, {"ball_on": BallOn.PINK}, "ball_on"),
+        (PINK_LEFT, {"ball_on": BallOn.PINK, "break_points": 150}, "break_points"),
+        (BLACK_LEFT, {"ball_on": BallOn.BLACK, "respotted_black": True, "scores": (7, 8)}, "respotted"),
+        (PLACES, {"free_ball": True, "break_points": 3}, "break_points"),
     ],
 )
 def test_what_the_rules_exclude_is_refused(places, frame, field):
-    with pytest.raises(ValueError, match=field):
+    with pytest.raises(ValueError, match=f"state.frame.{field}"):
         frame_state(frame_env(), places, frame)
 
 
@@ -345,8 +268,7 @@ def test_parts_of_a_frame_that_do_not_fit_together_are_refused(fields, field):
 
 def test_the_highest_break_is_within_the_observation_space():
     """A free ball and the colour after it, then 147: no state offers more, and that one is taken."""
-    env = SnookerEnv()
-    env.reset(seed=1)
+    env = begun(SnookerEnv())
     state = env.get_state()
     for ball_on, most in ((BallOn.RED, 8), (BallOn.ANY_COLOUR, 1)):
         highest, more = (state | {"ball_on": int(ball_on), "points": points} for points in (most, most + 1))
@@ -354,26 +276,11 @@ def test_the_highest_break_is_within_the_observation_space():
         refused(partial(env.set_state, more), "state.points", str(most + 1), f"must be at most {most}")
 
 
-def test_a_ball_off_the_table_is_not_endlessly_far_away():
-    env = SnookerEnv(layout="random:3")
-    env.reset(seed=1)
-    state = plain(env.get_state())
-    refused(
-        lambda: env.set_state(changed(state, positions__9__1=1e300)),
-        "state.positions[9]",
-        "1e+300",
-        "must be within 1000 m",
-    )
-
-
 def test_a_state_with_nothing_left_to_play_is_for_looking_only(frame_states):
     over = Frame.from_dict(frame_states["a break"]["frame"]).concede(0).to_dict()
-    env = frame_env(**FRAME)
-    env.reset(seed=1)
-    for state, field in (
-        (frame_states["a break"] | {"frame": over}, "phase"),
-        (frame_states["in_hand"] | {"strokes": 1000}, "strokes"),
-    ):
+    env = begun(frame_env(**FRAME))
+    ended, stopped = frame_states["a break"] | {"frame": over}, frame_states["in_hand"] | {"strokes": 1000}
+    for state, field in ((ended, "phase"), (stopped, "strokes")):
         before = frozen(env.get_state())
         with pytest.raises(ValueError, match=f"{field} = .*no shot"):
             env.reset(options={"state": state})
@@ -382,35 +289,12 @@ def test_a_state_with_nothing_left_to_play_is_for_looking_only(frame_states):
         assert env.over and frozen(env.get_state()) == frozen(state)
 
 
-def test_a_match_takes_nothing_from_a_state_whose_end_is_wrong(frame_states):
-    env = sn.match_env(miss="clear_path")
-    env.reset(seed=4)
-    before = frozen(env.get_state())
-    for wrong in (
-        {"rng": {}},
-        {"strokes": None},
-        {"rng": frame_states["in_hand"]["rng"] | {"has_uint32": 2**40}},
-    ):
-        with pytest.raises(ValueError, match=r"^state\."):
-            env.set_state(frame_states["in_hand"] | wrong)
-        with pytest.raises(ValueError, match=r"^state\."):
-            env.reset(seed=9, options={"state": frame_states["in_hand"] | wrong})
-        assert frozen(env.get_state()) == before
-    refused(lambda: env.reset(options=[1]), "options", "[1]", "must be None")
-
-
 def test_fields_of_a_frame_are_checked_when_it_is_made():
-    for wrong in (
-        {"in_hand": 1},
-        {"free_ball": None},
-        {"warned": "no"},
-        {"failures": True},
-        {"on_table": 3},
-        {"winner": True, "phase": "over"},
-    ):
+    kinds = {"in_hand": 1, "free_ball": None, "warned": "no", "failures": True, "on_table": 3}
+    for wrong in (*({name: value} for name, value in kinds.items()), {"winner": True, "phase": "over"}):
         with pytest.raises(ValueError, match=" = "):
             Frame(**wrong)
     frame = Frame(striker=np.int64(1), in_hand=np.bool_(False), scores=(np.int64(3), 4))
-    assert json.dumps(frame.to_dict()) and frame == Frame(striker=1, in_hand=False, scores=(3, 4))
+    assert frozen(frame.to_dict()) and frame == Frame(striker=1, in_hand=False, scores=(3, 4))
     with pytest.raises(ValueError, match="saved = 3"):
         replace(frame, saved=3)

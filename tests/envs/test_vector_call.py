@@ -3,32 +3,25 @@
 import inspect
 import pickle
 
-import gymnasium
 import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
 import snooker_env  # noqa: F401 - registers the id
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import SnookerEnv
 from snooker_env.envs.vector import NOT_OF_A_TABLE, SnookerVectorEnv
-from tests.envs.test_vector import same
+from tests.envs.test_vector import actions_of, native, same, sync
 from tests.refusals import refused
+from tests.tables import begun
 
 N = 4
-OPTIONS = [
-    {},
-    {"action": "discrete", "layout": "random:3", "noise": "club"},
-    {"action": "discrete", "observation": "masked", "layout": "random:2", "task": "frame"},
-    {
-        "aim": "target",
-        "placement": True,
-        "observation": "balls",
-        "table": "tight",
-        "render_mode": "ansi",
-        "layout": "break_off",
-    },
-]
-IDS = ["plain", "discrete", "masked", "target"]
+OPTIONS = {
+    "plain": {},
+    "discrete": {"action": "discrete", "layout": "random:3", "noise": "club"},
+    "masked": {"action": "discrete", "observation": "masked", "layout": "random:2", "task": "frame"},
+    "target": {"aim": "target", "placement": True, "observation": "balls", "table": "tight"}
+    | {"render_mode": "ansi", "layout": "break_off"},
+}
 METHODS = {"get_state", "action_masks", "has_wrapper_attr"}
 """What takes a call and changes nothing."""
 
@@ -39,13 +32,7 @@ def public(env):
 
 
 def both(mode=AutoresetMode.SAME_STEP, **options):
-    ours = gymnasium.make_vec(
-        "Snooker-v0", N, vectorization_mode="vector_entry_point", autoreset_mode=mode, **options
-    )
-    theirs = gymnasium.make_vec(
-        "Snooker-v0", N, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **options
-    )
-    return ours, theirs
+    return native(N, autoreset_mode=mode, **options), sync(N, mode, **options)
 
 
 def alike(a, b):
@@ -62,14 +49,13 @@ def alike(a, b):
 
 
 def differences(ours, theirs):
-    """Which public names of a table are not the same; those of shared state are ``Tables``, compared by their
-    arrays."""
+    """Which public names of a table are not the same; shared state is ``Tables``, compared by its arrays."""
     wrong = []
     for name in public(SnookerEnv()):
         if name in NOT_OF_A_TABLE:
             continue
         arguments = ("positions",) if name == "has_wrapper_attr" else ()
-        if name == "action_masks" and ours.single_action_space.__class__.__name__ == "Box":
+        if name == "action_masks" and ours.options.action == "box":
             for env in (ours, theirs):
                 with pytest.raises(ValueError, match="a Box has no masks"):
                     env.call(name)
@@ -84,7 +70,7 @@ def differences(ours, theirs):
     return wrong
 
 
-@pytest.mark.parametrize("options", OPTIONS, ids=IDS)
+@pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
 @pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
 def test_each_table_has_all_that_a_single_environment_has(mode, options):
     ours, theirs = both(mode, **options)
@@ -92,11 +78,7 @@ def test_each_table_has_all_that_a_single_environment_has(mode, options):
     assert differences(ours, theirs) == []
     rng = np.random.default_rng(0)
     for _ in range(6):
-        a = (
-            rng.integers(0, ours.single_action_space.n, N)
-            if "action" in options
-            else rng.uniform(-1, 1, ours.action_space.shape)
-        )
+        a = actions_of(ours, rng)
         ours.step(a), theirs.step(a)
     assert differences(ours, theirs) == []
 
@@ -109,8 +91,7 @@ def test_every_method_is_served_or_refused_by_name():
 
 @pytest.mark.parametrize("name", sorted(NOT_OF_A_TABLE))
 def test_what_belongs_to_all_tables_is_refused(name):
-    env = SnookerVectorEnv(2)
-    env.reset(seed=1)
+    env = begun(SnookerVectorEnv(2))
     before = pickle.dumps(env.get_state())
     refused(lambda: env.call(name), "name", repr(name), f"; use {NOT_OF_A_TABLE[name]}")
     refused(lambda: env.get_attr(name), "name", repr(name), "that a table has for itself")
@@ -119,20 +100,15 @@ def test_what_belongs_to_all_tables_is_refused(name):
 
 @pytest.mark.parametrize("name", ["_work", "__class__", 3, None])
 def test_what_is_not_public_is_refused(name):
-    refused(
-        lambda: SnookerVectorEnv(2).call(name),
-        "name",
-        repr(name),
-        "must be something public that a table has for itself",
-    )
+    allowed = "must be something public that a table has for itself"
+    refused(lambda: SnookerVectorEnv(2).call(name), "name", repr(name), allowed)
 
 
 def test_what_is_not_there_is_not_there():
     for env in both():
-        with pytest.raises(AttributeError, match="no_such"):
-            env.call("no_such")
-        with pytest.raises(AttributeError, match="no_such"):
-            env.get_attr("no_such")
+        for look in (env.call, env.get_attr):
+            with pytest.raises(AttributeError, match="no_such"):
+                look("no_such")
 
 
 def test_nothing_can_be_set():
@@ -144,8 +120,7 @@ def test_nothing_can_be_set():
 
 
 def test_what_is_given_is_the_callers_own():
-    env = SnookerVectorEnv(2, layout="random:3")
-    env.reset(seed=1)
+    env = begun(SnookerVectorEnv(2, layout="random:3"))
     for a in (*env.call("positions"), *env.call("on_table")):
         a[:] = 0
     assert env.call("on_table")[0].sum() == 10 and np.abs(env.call("positions")[0]).sum() > 1

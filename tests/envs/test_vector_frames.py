@@ -1,18 +1,16 @@
-"""Do native vector frames play, bit for bit, what ``SyncVectorEnv`` plays? All autoreset modes, threads,
-opponents, actions, limits."""
+"""Do native vector frames play, bit for bit, what ``SyncVectorEnv`` plays, with all that goes with them?"""
 
+import gymnasium
 import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
 import snooker_env as sn
-from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.tasks import threads as crew
-from snooker_env.tasks.discrete_actions import SIZE
+from snooker_env import SnookerEnv, SnookerVectorEnv
 from snooker_env.tasks.options import Options
 from tests.envs.test_vector import MODES, actions_of, check_equal, native, same
 from tests.refusals import refused
+from tests.tables import begun
 
 
 def policy(observation, rng):
@@ -23,8 +21,7 @@ def policy(observation, rng):
 
 
 class Many:
-    """The same opponent, which says that it can be asked for many tables at once and counts how often it
-    is."""
+    """The same opponent, which can be asked for many tables at once, and counts how often it is."""
 
     def __init__(self):
         self.calls = 0
@@ -39,67 +36,31 @@ class Many:
 
 
 FULL = {"decision": True, "placement": True, "aim": "target", "noise": "club"}
+GHOST = {"opponent": "ghost_ball"}
+MASKED = {"action": "discrete", "observation": "masked", "layout": "random:1"}
 OPTIONS = {
     "alone": {"layout": "opened", "miss": "clear_path"},
     "alone, few balls": {"layout": "random:0", "aim": "target", "noise": "professional", "max_strokes": 25},
     "random": FULL | {"opponent": "random", "layout": "random:1", "miss": "clear_path"},
-    "ghost_ball": {
-        "opponent": "ghost_ball",
-        "layout": "random:1",
-        "aim": "target",
-        "observation": "balls",
-        "reward": "win",
-    },
-    "ghost_ball breaks": FULL | {"opponent": "ghost_ball", "max_episode_steps": 4},
+    "ghost_ball": GHOST | {"layout": "random:1", "aim": "target", "observation": "balls", "reward": "win"},
+    "ghost_ball breaks": FULL | GHOST | {"max_episode_steps": 4},
     "callable": FULL | {"opponent": policy, "layout": "random:0", "max_strokes": 15},
-    "discrete": {
-        "opponent": "random",
-        "layout": "colours",
-        "action": "discrete",
-        "noise": "amateur",
-        "max_strokes": 30,
-    },
-    "masked": {
-        "opponent": "ghost_ball",
-        "layout": "random:1",
-        "action": "discrete",
-        "observation": "masked",
-        "nominate": True,
-        "concede": True,
-        "miss": "clear_path",
-        "max_strokes": 20,
-    },
-    "masked, alone": {
-        "layout": "random:1",
-        "action": "discrete",
-        "observation": "masked",
-        "max_strokes": 12,
-        "max_episode_steps": 9,
-    },
-    "discrete, ghost_ball": {
-        "opponent": "ghost_ball",
-        "layout": "random:2",
-        "action": "discrete",
-        "max_episode_steps": 5,
-    },
+    "discrete": {"opponent": "random", "layout": "colours", "action": "discrete", "noise": "amateur"}
+    | {"max_strokes": 30},
+    "masked": GHOST | MASKED | {"nominate": True, "concede": True, "miss": "clear_path", "max_strokes": 20},
+    "masked, alone": MASKED | {"max_strokes": 12, "max_episode_steps": 9},
+    "discrete, ghost_ball": GHOST | {"layout": "random:2", "action": "discrete", "max_episode_steps": 5},
 }
 
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("options", OPTIONS.values(), ids=OPTIONS)
-def test_they_equal_sync_vector_env(mode, options):
-    ends, *_, infos = check_equal(9, mode, 45, task="frame", **options)
+def test_they_equal_sync_vector_env(mode, options, monkeypatch):
+    monkeypatch.setattr("snooker_env.tasks.threads.CHUNK", 4)
+    ends, *_, infos = check_equal(9, mode, 45, threads=3, task="frame", **options)
     strokes = sum(info["opponent_strokes"].sum() for info in infos)
     assert ends > 0 or options["layout"] == "opened"
     assert (strokes > 100) == ("opponent" in options)
-
-
-@pytest.mark.parametrize("threads", [1, 2, 3])
-@pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball", policy])
-def test_any_number_of_threads_and_any_chunks_give_the_same(threads, opponent, monkeypatch):
-    monkeypatch.setattr(crew, "CHUNK", 16)
-    options = FULL | {"opponent": opponent, "layout": "random:3", "max_strokes": 9}
-    check_equal(50, AutoresetMode.SAME_STEP, 8, threads=threads, task="frame", **options)
 
 
 def test_a_player_of_many_tables_is_called_once_for_all_that_wait():
@@ -115,12 +76,9 @@ def test_a_player_of_many_tables_is_called_once_for_all_that_wait():
         longest = int(np.max(got[4]["opponent_strokes"]))
         # rounds, not tables: handing over and new frames may add a few
         assert 0 < many.calls - before <= 2 * longest + 6
-    wrong = SnookerVectorEnv(
-        4, task="frame", opponent=type("Short", (), {"__call__": lambda *_: None, "many": lambda *_: []})()
-    )
-    with pytest.raises(
-        ValueError, match=r"opponent's actions = \[\]: must be \d+, one for each table that waits"
-    ):
+    short = type("Short", (), {"__call__": lambda *_: None, "many": lambda *_: []})()
+    wrong = SnookerVectorEnv(4, task="frame", opponent=short)
+    with pytest.raises(ValueError, match=r"^opponent's actions = \[\]: must be \d+, one for each table that"):
         [wrong.reset(seed=seed) for seed in range(5)]
 
 
@@ -135,14 +93,11 @@ def test_an_error_of_an_opponent_asks_for_a_reset():
         env.step(np.zeros((4, 4)))
 
 
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"noise": "club", "aim": "target", "layout": "random:6"},
-        FULL | {"task": "frame", "opponent": "random", "miss": "clear_path", "layout": "random:3"},
-    ],
-    ids=["visit", "frame"],
-)
+VISIT = {"noise": "club", "aim": "target", "layout": "random:6"}
+FRAME = FULL | {"task": "frame", "opponent": "random", "miss": "clear_path", "layout": "random:3"}
+
+
+@pytest.mark.parametrize("options", [VISIT, FRAME])
 def test_states_go_from_one_table_to_many_and_back(options):
     one, many = SnookerEnv(**options), SnookerVectorEnv(3, **options)
     one.reset(seed=4)
@@ -165,34 +120,26 @@ def test_states_go_from_one_table_to_many_and_back(options):
             many.reset(options=wrong)
 
 
-# One place for all options
-
-
 def test_options_are_checked_once_and_taken_by_every_environment():
-    options = Options(task="frame", layout="random:2", noise="club", decision=True)
     keywords = {"task": "frame", "layout": "random:2", "noise": "club", "decision": True}
+    options = Options(**keywords)
     for one, other in (
         (SnookerEnv(options), SnookerEnv(**keywords)),
         (SnookerVectorEnv(2, options), SnookerVectorEnv(2, **keywords)),
     ):
         assert one.options == other.options == options and same(one.reset(seed=2), other.reset(seed=2))
-    assert (
-        Options().but(task="frame") == Options(task="frame")
-        and Options(task="frame").but(task="visit").rules.plan.name == "opened"
-    )
+    assert Options().but(task="frame") == Options(task="frame")
+    assert Options(task="frame").but(task="visit").rules.plan.name == "opened"
     level = {"aim_deg": 0.1}
     frozen = Options(noise=level)
     level["aim_deg"] = 5.0  # what is given may change: what is played does not
-    assert frozen.rules.noise.aim_deg == frozen.but(aim="target").rules.noise.aim_deg == 0.1 and hash(
-        frozen
-    ) == hash(Options(noise={"aim_deg": 0.1}))
+    assert frozen.rules.noise.aim_deg == frozen.but(aim="target").rules.noise.aim_deg == 0.1
+    assert hash(frozen) == hash(Options(noise={"aim_deg": 0.1}))
     changed = options.but(noise="none")
     assert changed.noise == "none" and options.noise == "club" and changed.rules.noise.silent
     with pytest.raises(AttributeError):
         options.noise = "none"  # pyright: ignore[reportAttributeAccessIssue]
-    with pytest.raises(
-        ValueError, match=r"options = an Options: must be None with the keywords \['layout'\]"
-    ):
+    with pytest.raises(ValueError, match=r"options = an Options: must be None with the keywords \['layout'"):
         SnookerEnv(options, layout="colours")
     for make in (SnookerEnv, lambda **k: SnookerVectorEnv(2, **k), Options):
         with pytest.raises(TypeError, match="layuot"):
@@ -202,64 +149,43 @@ def test_options_are_checked_once_and_taken_by_every_environment():
 def test_a_match_takes_them_too():
     pytest.importorskip("pettingzoo")
     env = sn.match_env(Options(task="frame", layout="random:2", aim="target"))
-    assert env.action_space("player_0").shape == (4,) and sn.match_env().action_space("player_0").shape == (
-        7,
-    )
-    for wrong in (Options(), Options(task="frame", opponent="random")):
-        with pytest.raises(ValueError, match="a match has two players"):
-            sn.match_env(wrong)
+    assert env.action_space("player_0").shape == (4,)
+    assert sn.match_env().action_space("player_0").shape == (7,)
 
 
-# Discrete actions in frames and matches
+def arrays_for(space):
+    """Arrays of a space's form that nothing has been written into."""
+    if isinstance(space, gymnasium.spaces.Dict):
+        return {name: arrays_for(part) for name, part in space.items()}
+    return np.full(space.shape, 9, space.dtype)
 
 
-def test_discrete_actions_and_their_masks_in_a_frame():
-    env = SnookerEnv(task="frame", action="discrete", layout="random:2", opponent="ghost_ball")
-    env.reset(seed=1)
-    for step in range(30):
-        masks = env.action_masks()
-        assert masks.shape == (SIZE,) and masks.any() and masks[:135].all()
-        if env.step(int(np.flatnonzero(masks)[step % masks.sum()]))[2]:
-            break
-    assert env.frame.scores != (0, 0)
-
-
-# Arrays that are given
+MASKED_VISIT = {"action": "discrete", "observation": "masked"}
 
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize(
-    "options", [{"layout": "random:2"}, {"task": "frame", "layout": "random:0", "opponent": "random"}]
+    "options",
+    [{"layout": "random:2"}, FRAME | {"layout": "random:0"}, MASKED_VISIT, {"observation": "balls"}],
 )
 def test_results_are_written_into_the_arrays_given(mode, options):
     n = 6
     plain, written = native(n, autoreset_mode=mode, **options), native(n, autoreset_mode=mode, **options)
-    out = {
-        "observations": np.full(plain.observation_space.shape, 9.0, np.float32),
-        "rewards": np.full(n, 9.0),
-        "terminations": np.ones(n, bool),
-        "truncations": np.ones(n, bool),
-    }
-    first = written.reset(seed=1, out={"observations": out["observations"]})
+    seen = {"observations": arrays_for(plain.observation_space)}
+    others = {"rewards": np.full(n, 9.0), "terminations": np.ones(n, bool), "truncations": np.ones(n, bool)}
+    out = seen | others
+    first = written.reset(seed=1, out=seen)
     assert first[0] is out["observations"] and same(plain.reset(seed=1), first)
     rng = np.random.default_rng(0)
     for _ in range(12):
         a = actions_of(plain, rng)
         want, got = plain.step(a), written.step(a, out=out)
-        assert (
-            got[0] is out["observations"]
-            and got[1] is out["rewards"]
-            and got[2] is out["terminations"]
-            and got[3] is out["truncations"]
-        )
+        assert all(part is into for part, into in zip(got, out.values(), strict=False))
         assert all(same(x, y) for x, y in zip(want, got, strict=True))
         done = want[2] | want[3]
         if mode == AutoresetMode.DISABLED and done.any():
             mask = {"reset_mask": done.copy()}
-            assert same(
-                plain.reset(options=mask),
-                written.reset(options=mask, out={"observations": out["observations"]}),
-            )
+            assert same(plain.reset(options=mask), written.reset(options=mask, out=seen))
 
 
 def test_arrays_that_share_memory_are_refused():
@@ -269,29 +195,11 @@ def test_arrays_that_share_memory_are_refused():
         env.step(np.zeros((4, 4)), out={"terminations": both, "truncations": both})
 
 
-@pytest.mark.parametrize(
-    ("options", "parts"),
-    [
-        ({"action": "discrete", "observation": "masked"}, {"observations": (121,), "action_mask": (540,)}),
-        ({"observation": "balls"}, {"balls": (22, 5), "state": (11,)}),
-    ],
-    ids=["masked", "balls"],
-)
-def test_observations_of_several_parts_are_written_too(options, parts):
-    env, plain = (native(3, autoreset_mode=AutoresetMode.SAME_STEP, **options) for _ in range(2))
-    kinds = {name: np.int8 if name == "action_mask" else np.float32 for name in parts}
-    out = {"observations": {name: np.zeros((3, *shape), kinds[name]) for name, shape in parts.items()}}
-    got, _ = env.reset(seed=1, out=out)
-    assert got is out["observations"] and same(got, plain.reset(seed=1)[0])
-    rng = np.random.default_rng(0)
-    for _ in range(3):
-        a = actions_of(plain, rng)
-        written, want = env.step(a, out=out), plain.step(a)
-        assert written[0] is out["observations"] and all(map(same, written, want))
-    name, shape = list(parts.items())[1]
-    out["observations"][name] = np.zeros((3, *shape), bool)
-    what = f"array of bool and shape {(3, *shape)}"
-    refused(lambda: env.reset(out=out), f'out["observations.{name}"]', what, "must be a C-contiguous")
+def test_a_part_of_the_observations_that_cannot_be_written_into_is_refused():
+    env = native(3, observation="balls")
+    out = arrays_for(env.observation_space) | {"state": np.zeros((3, 11), bool)}
+    field, value = 'out["observations.state"]', "array of bool and shape (3, 11)"
+    refused(lambda: env.reset(out={"observations": out}), field, value, "must be a C-contiguous")
 
 
 @pytest.mark.parametrize(
@@ -308,12 +216,10 @@ def test_observations_of_several_parts_are_written_too(options, parts):
     ],
 )
 def test_arrays_that_cannot_be_written_into_are_refused_before_anything_is_played(out, field):
-    env = native(3, noise="club")
-    env.reset(seed=1)
+    env = begun(native(3, noise="club"))
     before = env.get_state()
     with pytest.raises(ValueError) as info:
         env.step(np.zeros((3, 4)), out=out)
     assert str(info.value).startswith(f"{field} = ") and env.get_state() == before
-    refused(
-        lambda: env.reset(out={"rewards": np.zeros(3)}), "out", "'rewards'", "must be one of 'observations'"
-    )
+    out = {"rewards": np.zeros(3)}
+    refused(lambda: env.reset(out=out), "out", "'rewards'", "must be one of 'observations'")

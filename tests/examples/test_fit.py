@@ -1,5 +1,4 @@
-"""Does the fit of one's own data find the constants? Made-up data come back, published ones agree, bad files
-are refused in one line."""
+"""Does the fit of one's own data find the constants, and refuse bad files in one line?"""
 
 import importlib.util
 import re
@@ -19,22 +18,15 @@ ROWS = 60
 
 
 def inputs(kind):
-    """What is set in made-up measurements."""
+    """What is set in made-up measurements: the speed first, then others within their ranges."""
     rng = np.random.default_rng(5)
-    speed = rng.uniform(0.4, 3.5, ROWS)
-    if kind == "throw":
-        return {
-            "cut_deg": rng.uniform(5, 75, ROWS),
-            "speed_m_s": speed,
-            "topspin_rad_s": rng.uniform(-30, 60, ROWS),
-        }
-    if kind == "cushion":
-        return {
-            "incident_m_s": speed,
-            "incident_deg": rng.uniform(-60, 60, ROWS),
-            "side_rad_s": rng.uniform(-40, 40, ROWS),
-        }
-    return {"speed_m_s": speed, "topspin_rad_s": rng.uniform(-50, 80, ROWS)}
+    others = {
+        "throw": {"cut_deg": (5, 75), "topspin_rad_s": (-30, 60)},
+        "cushion": {"incident_deg": (-60, 60), "side_rad_s": (-40, 40)},
+        "cloth": {"topspin_rad_s": (-50, 80)},
+    }
+    ranges = {"incident_m_s" if kind == "cushion" else "speed_m_s": (0.4, 3.5)} | others[kind]
+    return {name: rng.uniform(*limits, ROWS) for name, limits in ranges.items()}
 
 
 TRUE = {
@@ -49,10 +41,8 @@ def measured(kind, constants, noise=0.5, seed=1):
     columns, what = inputs(kind), fitting.KINDS[kind]
     model = what.predict(columns, sn.Physics.preset("match", **constants))
     rng = np.random.default_rng(seed)
-    return columns | {
-        name: model[name] + noise * column.error * rng.normal(size=ROWS)
-        for name, column in what.measured.items()
-    }
+    errors = {name: noise * column.error * rng.normal(size=ROWS) for name, column in what.measured.items()}
+    return columns | {name: model[name] + error for name, error in errors.items()}
 
 
 @pytest.mark.parametrize("kind", TRUE)
@@ -63,42 +53,16 @@ def test_made_up_data_come_back(kind):
         low, high = fitted.intervals[name]
         assert low < true < high and high - low < 0.5 * true, (name, fitted.values[name], low, high)
     exact = fitting.fit(kind, measured(kind, TRUE[kind], noise=0.0))
-    assert exact.values == pytest.approx(TRUE[kind], rel=1e-3)
-    assert [getattr(exact.physics, name) for name in TRUE[kind]] == pytest.approx(
-        list(TRUE[kind].values()), rel=1e-3
-    )
-
-
-@pytest.mark.parametrize("kind", TRUE)
-def test_a_model_of_the_wrong_sign_finds_nothing(kind, monkeypatch):
-    """The test above can fail: turn the sign of what is measured, of an angle or of a speed, and the
-    constants are lost."""
-    what, name = (
-        fitting.KINDS[kind],
-        {"throw": "throw_deg", "cushion": "rebound_deg", "cloth": "distance_m"}[kind],
-    )
-
-    def turned(columns, physics):
-        out = what.predict(columns, physics)
-        return out | {name: -out[name]}
-
-    data = measured(kind, TRUE[kind])
-    monkeypatch.setitem(fitting.KINDS, kind, what._replace(predict=turned))
-    fitted = fitting.fit(kind, data)
-    ends = [(name, fitted.intervals[name]) for name in TRUE[kind]]
-    assert any(
-        interval is None or not interval[0] < TRUE[kind][name] < interval[1] for name, interval in ends
-    )
-    assert np.sqrt(np.mean(fitted.residuals[name] ** 2)) > 4 * what.measured[name].error
+    found = {name: getattr(exact.physics, name) for name in TRUE[kind]}
+    assert found == exact.values == pytest.approx(TRUE[kind], rel=1e-3)
 
 
 def test_marlow_s_law_comes_back():
     true = {"a": 0.02, "b": 0.1, "c": 1.2}
     data = measured("throw", {"mu_bb": tuple(true.values()), "e_b": 0.93}, noise=0.02)
     fitted = fitting.fit("throw", data, fixed={"e_b": 0.93}, law="marlow")
-    assert fitted.values == pytest.approx(true, rel=0.1) and fitted.physics.mu_bb == pytest.approx(
-        tuple(fitted.values.values())
-    )
+    assert fitted.values == pytest.approx(true, rel=0.1)
+    assert fitted.physics.mu_bb == pytest.approx(tuple(fitted.values.values()))
 
 
 def test_bootstrap_and_covariance_agree():
@@ -110,8 +74,7 @@ def test_bootstrap_and_covariance_agree():
 
 
 def test_domenech_s_throw_gives_a_tenth():
-    """The known fit of ``benchmarks.paper``: a constant friction of 0.10 agrees with these 52 shots, 0.05
-    does not."""
+    """A constant friction of 0.10 agrees with these 52 shots, 0.05 does not, as in ``benchmarks.paper``."""
     columns = fitting.read(DATA / "throw_domenech2023.csv", "throw", {"speed_m_s": 0.8})
     fitted = fitting.fit("throw", columns, fixed=DOMENECH)
     low, high = fitted.intervals["mu_bb"]
@@ -120,33 +83,19 @@ def test_domenech_s_throw_gives_a_tenth():
 
 
 def test_the_cushion_of_match_is_what_the_rebounds_give():
-    fitted = fitting.fit(
-        "cushion", fitting.read(DATA / "cushion_rebound.csv", "cushion"), fixed={"e_c": 0.98}
-    )
-    match = sn.Physics.preset("match")
-    assert fitted.values == pytest.approx(
-        {"e_c_knee": match.e_c_knee, "e_c_power": match.e_c_power}, abs=0.01
-    )
-
-
-def test_a_constant_at_the_end_of_its_range_has_no_interval():
-    fitted = fitting.fit("cushion", fitting.read(DATA / "cushion_rebound.csv", "cushion"))
+    """Free, e_c is at the end of its range, and has no interval."""
+    columns = fitting.read(DATA / "cushion_rebound.csv", "cushion")
+    fitted, match = fitting.fit("cushion", columns, fixed={"e_c": 0.98}), sn.Physics.preset("match")
+    found = {"e_c_knee": match.e_c_knee, "e_c_power": match.e_c_power}
+    assert fitted.values == pytest.approx(found, abs=0.01)
+    fitted = fitting.fit("cushion", columns)
     assert fitted.values["e_c"] == pytest.approx(1.0, abs=1e-4) and fitted.intervals["e_c"] is None
     assert fitted.intervals["e_c_power"] is not None
 
 
 def test_the_command_prints_a_line_that_runs(capsys):
-    fitting.main(
-        [
-            "throw",
-            str(DATA / "throw_domenech2023.csv"),
-            "--column",
-            "speed_m_s=0.8",
-            "--fix",
-            "R=0.0305",
-            "e_b=0.968",
-        ]
-    )
+    options = ["--column", "speed_m_s=0.8", "--fix", "R=0.0305", "e_b=0.968"]
+    fitting.main(["throw", str(DATA / "throw_domenech2023.csv"), *options])
     line = re.search(r"^physics = .*$", capsys.readouterr().out, re.M)[0]
     scope = {"sn": sn}
     exec(line, scope)
@@ -157,17 +106,11 @@ def test_the_command_prints_a_line_that_runs(capsys):
 GOOD = "cut_deg,speed_m_s,throw_deg\n"
 BAD = {
     "no line": ("", r"= no line: must have a line of names"),
-    "an unknown column": (
-        "cut,throw_deg\n10,1\n",
-        r"line 1, column = 'cut': must be one of 'cut_deg', 'speed_m_s'",
-    ),
+    "an unknown column": ("cut,throw_deg\n10,1\n", r"line 1, column = 'cut': must be one of 'cut_deg', 'sp"),
     "a column twice": ("cut_deg,cut_deg\n", r"columns = \['cut_deg', 'cut_deg'\]: must be different"),
     "a word": (GOOD + "10,1,fast\n", r"line 2, throw_deg = 'fast': must be a number"),
     "not finite": (GOOD + "10,1,nan\n", r"line 2, throw_deg = nan: must be a finite number in \[-45, 45\]"),
-    "out of range": (
-        GOOD + "# mine\n\n95,1,1\n",
-        r"line 4, cut_deg = 95\.0: must be a finite number in \[0, 89\.9\]",
-    ),
+    "out of range": (GOOD + "# mine\n\n95,1,1\n", r"line 4, cut_deg = 95\.0: must be .* in \[0, 89\.9\]"),
     "too few values": (GOOD + "10,1\n", r"line 2 = 2 values: must be 3: cut_deg, speed_m_s, throw_deg"),
     "no speed": ("cut_deg,throw_deg\n10,1\n", r"must hold speed_m_s, or --column speed_m_s=VALUE"),
     "nothing measured": ("cut_deg,speed_m_s\n10,1\n", r"must hold one of throw_deg, object_speed_m_s"),
@@ -176,14 +119,18 @@ BAD = {
 }
 
 
+def refused_in_one_line(arguments, says):
+    with pytest.raises(SystemExit) as refused:
+        fitting.main(["throw", *arguments])
+    assert re.search(says, str(refused.value)) and "\n" not in str(refused.value)
+
+
 @pytest.mark.parametrize("name", BAD)
 def test_a_bad_file_is_refused_in_one_line(name, tmp_path):
     text, says = BAD[name]
     file = tmp_path / "mine.csv"
     file.write_text(text)
-    with pytest.raises(SystemExit) as refused:
-        fitting.main(["throw", str(file)])
-    assert re.search(says, str(refused.value)) and "\n" not in str(refused.value)
+    refused_in_one_line([str(file)], says)
 
 
 @pytest.mark.parametrize(
@@ -192,10 +139,7 @@ def test_a_bad_file_is_refused_in_one_line(name, tmp_path):
         (["no such.csv"], r"file = 'no such\.csv': must be a CSV file in UTF-8"),
         (["--fix", "mu=1"], r"--fix = 'mu': must be one of"),
         (["--fix", "R"], r"--fix = 'R': must be NAME=VALUE"),
-        (
-            ["--fix", "mu_bb=0.1", "--column", "speed_m_s=1"],
-            r"constants = all fixed: must leave something to fit",
-        ),
+        (["--fix", "mu_bb=0.1", "--column", "speed_m_s=1"], "constants = all fixed: must leave something"),
         (["--column", "cut=1"], r"--column = 'cut': must be one of"),
         (["--column", "cut_deg=1"], r"--column = 'cut_deg': must not be a column of the file"),
         (["--bootstrap", "-1"], r"--bootstrap = -1: must be an integer in \[0, 100000\]"),
@@ -203,6 +147,4 @@ def test_a_bad_file_is_refused_in_one_line(name, tmp_path):
 )
 def test_a_bad_option_is_refused_in_one_line(arguments, says):
     file = [] if arguments[0].endswith(".csv") else [str(DATA / "throw_domenech2023.csv")]
-    with pytest.raises(SystemExit) as refused:
-        fitting.main(["throw", *file, *arguments])
-    assert re.search(says, str(refused.value)) and "\n" not in str(refused.value)
+    refused_in_one_line([*file, *arguments], says)

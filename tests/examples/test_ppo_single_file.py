@@ -40,15 +40,11 @@ def test_masked_choices_are_never_drawn_and_cost_nothing():
     policy = agent.policy(rows, masks)
     drawn = policy.sample((50,))
     assert masks.expand(50, 64, 540).gather(2, drawn[..., None]).all()
-    assert (
-        policy.probs[~masks].max() == 0.0
-        and torch.isfinite(policy.entropy()).all()
-        and policy.entropy()[0] == 0.0
-    )
+    assert policy.probs[~masks].max() == 0.0 and torch.isfinite(policy.entropy()).all()
+    assert policy.entropy()[0] == 0.0
     (policy.entropy().sum() + policy.log_prob(drawn[0]).sum()).backward()
-    assert torch.isfinite(rows.grad).all() and all(
-        torch.isfinite(p.grad).all() for p in agent.actor.parameters()
-    )
+    assert torch.isfinite(rows.grad).all()
+    assert all(torch.isfinite(p.grad).all() for p in agent.actor.parameters())
     none = agent.policy(rows, torch.zeros(64, 540, dtype=torch.bool))
     assert torch.isfinite(none.entropy()).all() and torch.isfinite(none.log_prob(none.sample())).all()
 
@@ -61,11 +57,8 @@ def test_it_learns_and_its_file_is_played_by_our_protocol(tmp_path, capsys):
     first = float(lines[0].partition(" shots, ")[2].partition(" ")[0])
     assert len(lines) == 7 and points > 1.7 * first
     player = load_player(tmp_path / "p.npz")
-    assert (
-        player.model.num_timesteps == 57344
-        and player.model.recipe == "single file"
-        and player.model.seed == 1
-    )
+    assert player.model.num_timesteps == 57344 and player.model.recipe == "single file"
+    assert player.model.seed == 1
     assert summary(play_visits(player, 200))["points_a_visit"] > 6.0  # untrained: 4.6, random 2.6
     tables = SnookerVectorEnv(5, threads=1, action="discrete")
     rows, _ = tables.reset(seed=3)

@@ -1,5 +1,4 @@
-"""Does TorchRL collect what the tables play, and does its PPO run? Rollouts against single tables, and a
-short training."""
+"""Does TorchRL collect what the tables play, and does its PPO run?"""
 
 import numpy as np
 import torch
@@ -39,10 +38,8 @@ def test_a_rollout_is_what_single_tables_play():
             if not terminated or after["observations"].any():
                 assert np.array_equal(after["observations"].numpy(), seen["observations"])
                 assert np.array_equal(after["action_mask"].numpy(), seen["action_mask"].astype(bool))
-            assert (
-                after["reward"].item() == reward
-                and after["done"].item() == after["terminated"].item() == terminated
-            )
+            assert after["reward"].item() == reward
+            assert after["done"].item() == after["terminated"].item() == terminated
             if terminated:
                 ends, (seen, _) = ends + 1, env.reset()
     assert ends > 100

@@ -10,41 +10,30 @@ import snooker_env as sn
 from snooker_env.planning import Planner, Position, Positions
 from snooker_env.players import FRAMES, VISITS, SeenPlayer, Strokes, decided, decision_seeds
 from snooker_env.players.resolver import BUILT_IN
+from tests.positions import tables
+from tests.processes import copy_of_package, python
+from tests.tables import begun
 
-NAMES = (
-    "random",
-    "ghost_ball",
-    "best_pot_30",
-    "search_30",
-    "planner_30",
-    "planner_value_30",
-    "planner_policy_30",
-)
+SEARCHING = ("best_pot_30", "search_30", "planner_30", "planner_value_30", "planner_policy_30")
+NAMES = ("random", "ghost_ball", *SEARCHING)
 
 
 def of_visits(n, layout="random:6", seed=5):
-    tables = sn.SnookerVectorEnv(n, layout=layout, threads=1)
-    tables.reset(seed=seed)
-    return Positions.of(tables)
+    return Positions.of(tables(n, seed, layout=layout, threads=1))
 
 
 def of_frames(n, steps=6):
     """Positions of frames in all phases: after fouls, with free balls, in hand."""
-    tables = sn.SnookerVectorEnv(
-        n, task="frame", opponent="ghost_ball", noise="club", decision=True, threads=1
-    )
-    tables.reset(seed=3)
-    rng = np.random.default_rng(0)
+    options = {"task": "frame", "opponent": "ghost_ball", "noise": "club", "decision": True}
+    env, rng = tables(n, 3, threads=1, **options), np.random.default_rng(0)
     for _ in range(steps):
-        tables.step(rng.uniform(-1, 1, tables.action_space.shape).astype(np.float32))
-    return Positions.of(tables)
+        env.step(rng.uniform(-1, 1, env.action_space.shape).astype(np.float32))
+    return Positions.of(env)
 
 
 def same(one, other):
-    return all(
-        np.array_equal(getattr(one, name), getattr(other, name), equal_nan=True)
-        for name in ("values", "place", "nominate", "decision", "declare")
-    )
+    names = ("values", "place", "nominate", "decision", "declare")
+    return all(np.array_equal(getattr(one, n), getattr(other, n), equal_nan=True) for n in names)
 
 
 def test_the_package_alone_has_its_players():
@@ -54,11 +43,7 @@ def test_the_package_alone_has_its_players():
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("where", ["visits", "break_off", "frames"])
 def test_equal_positions_and_seeds_give_equal_strokes_however_many_are_asked_for(name, where):
-    at = {
-        "visits": lambda: of_visits(9),
-        "break_off": lambda: of_visits(3, "break_off"),
-        "frames": lambda: of_frames(9),
-    }[where]()
+    at = of_frames(9) if where == "frames" else of_visits(9) if where == "visits" else of_visits(3, where)
     at = at[~at.over]
     rules = {"noise": "professional"} | ({"task": "frame"} if where == "frames" else {})
     player, seeds = sn.player(name).at(rules), np.arange(len(at)) % 3
@@ -71,7 +56,7 @@ def test_equal_positions_and_seeds_give_equal_strokes_however_many_are_asked_for
     assert same(pickle.loads(pickle.dumps(player)).play(at, seeds), together)
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if n != "ghost_ball"])
+@pytest.mark.parametrize("name", ["random", *SEARCHING])
 def test_another_seed_may_give_another_stroke_and_ranks_begin_with_what_is_played(name):
     at, player = of_visits(8), sn.player(name).at({"noise": "club"})
     seeds = np.arange(8)
@@ -93,15 +78,7 @@ def test_strokes_become_actions_that_mean_them(options):
     """The encoder and the decoder: through an environment and back."""
     options = sn.Options(**options)
     rng, at = np.random.default_rng(2), of_visits(40, "break_off")
-    values = np.stack(
-        [
-            rng.uniform(0.2, 7, 40),
-            *rng.uniform(-0.3, 0.3, (2, 40)),
-            rng.uniform(-3.1, 3.1, 40),
-            rng.uniform(0, 0.5, 40),
-        ],
-        1,
-    )
+    values = rng.uniform((0.2, -0.3, -0.3, -3.1, 0.0), (7.0, 0.3, 0.3, 3.1, 0.5), (40, 5))
     values[:, 4] *= options.elevation
     strokes = Strokes(values)
     decoded, start = Planner(options).strokes_of(at, np.arange(len(at)), strokes.actions(options, at))
@@ -151,15 +128,13 @@ def test_what_sees_observations_plays_as_in_the_environment(seen):
     masks = tables.action_masks() if seen is First else None
     tables.step(seen().act(observations, masks, np.arange(n)))
     strokes = SeenPlayer(seen()).at({}).play(at, np.arange(n))
-    other = sn.SnookerVectorEnv(n, layout="random:6", threads=1, **VISITS)
-    other.reset(seed=5)
+    other = begun(sn.SnookerVectorEnv(n, layout="random:6", threads=1, **VISITS), 5)
     other.step(strokes.actions(other.options, at))
     assert np.allclose(other.tables.positions, tables.tables.positions, atol=1e-6)
 
 
 def test_a_player_plays_on_tables_with_a_seed_for_each_decision():
-    tables = sn.SnookerVectorEnv(5, task="frame", noise="professional", opponent="none", **FRAMES)
-    tables.reset(seed=1)
+    tables = begun(sn.SnookerVectorEnv(5, task="frame", noise="professional", opponent="none", **FRAMES))
     player, going = sn.player("ghost_ball").at(tables), np.array([True, False, True, True, False])
     actions = decided(player, tables, going, decision_seeds(0, np.arange(5), 0))
     assert not actions[~going].any() and actions[going].any(axis=1).all()
@@ -169,15 +144,10 @@ def test_a_player_plays_on_tables_with_a_seed_for_each_decision():
 
 def test_seeds_of_decisions_depend_on_the_table_and_the_decision_alone():
     many = decision_seeds(7, np.arange(1000), 3)
-    assert (
-        np.array_equal(decision_seeds(7, np.arange(400, 500), 3), many[400:500])
-        and len(set(many.tolist())) == 1000
-    )
-    assert (
-        not np.array_equal(decision_seeds(7, np.arange(1000), 4), many)
-        and many.min() >= 0
-        and many.max() < 2**32
-    )
+    assert np.array_equal(decision_seeds(7, np.arange(400, 500), 3), many[400:500])
+    assert len(set(many.tolist())) == 1000
+    assert not np.array_equal(decision_seeds(7, np.arange(1000), 4), many) and many.min() >= 0
+    assert many.max() < 2**32
     assert np.array_equal(decision_seeds(7, np.arange(3), np.array([3, 4, 5]))[:1], many[:1])
 
 
@@ -207,3 +177,72 @@ def test_positions_of_one_kind_are_enough():
     position = Position(cue=(0.0, 0.9), black=(0.4, 1.3))
     player = sn.player("search_30").at({"noise": "none"})
     assert same(player.play(position, [1]), player.play([position.to_dict()], [1]))
+
+
+# What is said with a stroke is one of its codes
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        ({"nominate": [99]}, r"nominate\[0\] = 99: must be one of"),
+        ({"nominate": [16.7]}, r"nominate\[0\] = 16.7: must be one of"),
+        ({"decision": [9]}, r"decision\[0\] = 9: must be one of"),
+        ({"declare": [-4]}, r"declare\[0\] = -4: must be one of"),
+        ({"place": [(5.0, 5.0)]}, r"place\[0\] = \[5.0, 5.0\]: must be on the table"),
+        ({"place": [(0.1, np.nan)]}, r"place\[0\] = \[0.1, nan\]: must be on the table"),
+    ],
+)
+def test_what_is_said_is_one_of_its_codes(wrong, says):
+    with pytest.raises(ValueError, match=says):
+        Strokes(np.array([[2.0, 0.0, 0.0, 1.5, 0.0]]), **wrong)
+
+
+@pytest.mark.parametrize("name", ["planner_0", "search_3", "search_20000000"])
+def test_a_budget_that_is_none_names_who_it_is(name):
+    says = f" = '{name}': must end in a number of simulated shots from 8"
+    with pytest.raises(ValueError, match=f"^player{says}"):
+        sn.player(name)
+    with pytest.raises(ValueError, match=f"^opponent{says}"):
+        sn.SnookerEnv(task="frame", opponent=name)
+
+
+def test_a_seed_that_is_no_number_is_refused():
+    with pytest.raises(ValueError, match=r"^seed = 1\.5: must be an int, None, or 2 of them"):
+        sn.SnookerVectorEnv(2).reset(seed=1.5)
+
+
+# Without agents, PyTorch and Stable-Baselines3, as in a wheel
+
+ALONE = """if True:
+    import importlib.abc, sys
+
+    class Barred(importlib.abc.MetaPathFinder):
+        def find_spec(self, name, path=None, target=None):
+            if name.partition(".")[0] in "agents commands torch stable_baselines3 sb3_contrib yaml".split():
+                raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+    sys.meta_path.insert(0, Barred())
+    import numpy as np, snooker_env as sn
+    from snooker_env.benchmark import play_visits
+
+    assert sn.__file__.startswith(sys.argv[1]), sn.__file__
+    position = sn.Position(cue=(0.1, 0.3), reds=[(0.4, 1.2)], black=(0.0, 1.4605))
+    print(sn.players())
+    print(sn.advise(position, agent="planner", samples=20, visits=2, n=1))
+    env = sn.SnookerEnv(task="frame", opponent="planner", noise="professional")
+    env.reset(seed=0)
+    replies, over = 0, False
+    while not replies and not over:
+        _, _, over, _, info = env.step([-0.5, 0.0, 0.0, 0.5])
+        replies += info["opponent_strokes"]
+    print(replies > 0, play_visits("planner_30", 2).points.sum() > 0)
+"""
+
+
+def test_the_planner_plays_in_the_package_alone(tmp_path):
+    copy_of_package(tmp_path)
+    code = f"import sys; sys.argv[1:] = [{str(tmp_path)!r}]\n{ALONE}"
+    out = python(code, at=tmp_path)[0].strip().splitlines()
+    assert out[0] == "['random', 'ghost_ball', 'best_pot', 'search', 'planner']" and "m/s" in "".join(out)
+    assert out[-1] == "True True"

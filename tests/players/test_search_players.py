@@ -1,5 +1,4 @@
-"""Do the players that search play what their names say, each with its own value and proposals, and how
-well?"""
+"""Do the players that search play what their names say, and how well?"""
 
 import numpy as np
 import pytest
@@ -13,23 +12,19 @@ from snooker_env.planning.stroke_search import schedule
 from snooker_env.players import weights
 from snooker_env.players.search import BUDGET, KINDS
 from snooker_env.tasks import LEVELS, Noise
+from tests.positions import tables
 
 
 def held_out(n=4, seed=2):
-    tables = sn.SnookerVectorEnv(n, layout="held_out", threads=1)
-    tables.reset(seed=seed)
-    return Positions.of(tables)
+    return Positions.of(tables(n, seed, layout="held_out", threads=1))
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_name_may_end_in_a_number_of_shots(kind):
     for name, budget in ((kind, BUDGET), (f"{kind}_8", 8), (f"{kind}_2000", 2000)):
         player = sn.player(name)
-        assert (player.kind, player.budget, player.name) == (
-            kind,
-            budget,
-            kind if budget == BUDGET else f"{kind}_{budget}",
-        )
+        assert (player.kind, player.budget) == (kind, budget)
+        assert player.name == (kind if budget == BUDGET else f"{kind}_{budget}")
 
 
 def test_each_kind_has_its_value_and_its_proposals():
@@ -71,33 +66,23 @@ def test_the_weights_are_those_of_the_noise_else_of_the_nearest():
     for level in weights.levels():
         assert weights.level_for(LEVELS[level]) == level
     # by the ratio of the errors of direction
-    assert (
-        weights.level_for(Noise(aim_deg=10.0)) == "club" and weights.level_for(Noise(aim_deg=1e-5)) == "none"
-    )
+    assert weights.level_for(Noise(aim_deg=10.0)) == "club"
+    assert weights.level_for(Noise(aim_deg=1e-5)) == "none"
     with pytest.raises(ValueError, match="level = 'robot': must be one of none, professional"):
         weights.learned_at("robot")
 
 
 def test_a_value_says_more_for_a_better_player():
     at = held_out(30)
-    values = [
-        sn.player("planner_30").at({"noise": level}).search.value(at).mean()
-        for level in ("none", "professional", "club")
-    ]
+    players = (sn.player("planner_30").at({"noise": n}) for n in ("none", "professional", "club"))
+    values = [player.search.value(at).mean() for player in players]
     assert values[0] > values[1] > 1.5 * values[2] > 0
 
 
 def test_planner_search_best_pot_and_ghost_ball_make_points_in_this_order():
-    points = {
-        name: summary(play_visits(sn.player(name), 60, threads=1))["points_a_visit"]
-        for name in ("planner_60", "search_60", "best_pot_60", "ghost_ball")
-    }
-    assert (
-        points["planner_60"]
-        > 1.1 * points["search_60"]
-        > 1.5 * points["best_pot_60"]
-        > 1.5 * points["ghost_ball"]
-    )
+    players = map(sn.player, ("planner_60", "search_60", "best_pot_60", "ghost_ball"))
+    points = [summary(play_visits(player, 60, threads=1))["points_a_visit"] for player in players]
+    assert points[0] > 1.1 * points[1] > 1.5 * points[2] > 1.5 * points[3]
 
 
 def test_without_errors_search_clears_tables():

@@ -1,9 +1,10 @@
-"""Does a replay hold what was played? Its data decoded here by the format's own words, its words, its files,
-and what is refused."""
+"""Does a replay hold what was played? Its data decoded here by the format's own words."""
 
 import base64
 import json
 import re
+from functools import partial
+from itertools import pairwise
 
 import gymnasium
 import numpy as np
@@ -12,10 +13,10 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import BallOn
 from snooker_env.game.ruling import Foul
+from snooker_env.replays.bars import bars, standing_bar
 from snooker_env.replays.words import FOUL_WORDS, foul_words
 from tests.refusals import refused
-
-GONE, REST, ROLL, SLIDE, FALLING, BEND = range(6)
+from tests.tables import begun
 
 
 def numbers(text, kind, columns):
@@ -34,12 +35,17 @@ def places_at(stroke, t):
     return places
 
 
-def visit(seed, strokes=40, **options):
-    """The strokes of visits one after the other, the softest plain pots."""
-    env = sn.SnookerEnv(action="discrete", **options)
+def keeping(seed=1, **options):
+    """A table that has begun and keeps its history."""
+    env = sn.SnookerEnv(**options)
     env.keep_history = True
     env.reset(seed=seed)
-    kept = []
+    return env
+
+
+def visit(seed, strokes=40, **options):
+    """The strokes of visits one after the other, the softest plain pots."""
+    env, kept = keeping(seed, action="discrete", **options), []
     while len(kept) + len(env.history) < strokes:
         if env.step(67)[2]:
             kept += env.history
@@ -69,10 +75,8 @@ def test_the_next_stroke_starts_where_the_last_one_left_the_table(strokes):
     for played, this, following in zip(strokes, data, data[1:], strict=False):
         if played.over:
             continue
-        end, there = (
-            places_at(this, np.inf if this["duration"] == 0 else this["duration"]),
-            set(this["on_table"]) - set(this["pots"]),
-        )
+        end = places_at(this, this["duration"] or np.inf)
+        there = set(this["on_table"]) - set(this["pots"])
         if this["after"] is not None:
             end, there = numbers(this["after"]["places"], "f8", 2), set(this["after"]["on_table"])
         assert there == set(following["on_table"])
@@ -84,8 +88,7 @@ def test_the_next_stroke_starts_where_the_last_one_left_the_table(strokes):
 @pytest.fixture(scope="module")
 def fouls():
     """Strokes without aim: most are fouls."""
-    env, kept = sn.SnookerEnv(), []
-    env.keep_history = True
+    env, kept = keeping(), []
     env.action_space.seed(0)
     for seed in range(12):
         env.reset(seed=seed)
@@ -102,10 +105,8 @@ def test_what_the_referee_said_is_recorded(strokes, fouls):
         assert stroke["points"] == played.points and stroke["penalty"] == played.penalty
         assert stroke["score"] == list(played.scores)
         if played.fouls:
-            assert (
-                stroke["words"].startswith(f"Foul, {played.penalty}: ")
-                and stroke["fouls"] == foul_words(played.fouls) != []
-            )
+            assert stroke["words"].startswith(f"Foul, {played.penalty}: ")
+            assert stroke["fouls"] == foul_words(played.fouls) != []
         elif played.points:
             assert f"potted, {played.points}" in stroke["words"]
         else:
@@ -124,14 +125,10 @@ def test_the_cue_as_struck_sets_the_cue_ball_off(strokes):
         np.testing.assert_allclose(spins[0], w, rtol=0, atol=1e-9)
 
 
-def test_thirty_strokes_are_small(strokes):
-    page = sn.replay(strokes).html()
-    assert len(strokes) == 30 and len(page.encode()) < 200_000
-
-
 def test_the_page_holds_everything_and_asks_for_nothing(strokes):
+    assert len(strokes) == 30 and len(sn.replay(strokes).html().encode()) < 200_000
     page = sn.replay(strokes[:2], title="</script><b>&", players=["</script>"]).html()
-    assert "{{" not in page.replace("{{", "", 0) or not re.search(r"\{\{(title|module|data)\}\}", page)
+    assert not re.search(r"\{\{(title|module|data)\}\}", page)
     assert not re.search(r"""(src|href)\s*=\s*["']?(https?:)?//""", page) and "@import" not in page
     assert page.count("</script>") == page.count("<script") and "&lt;/script&gt;&lt;b&gt;&amp;" in page
     data = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', page, re.DOTALL)
@@ -148,19 +145,13 @@ def test_places_to_fill_in_that_a_title_names_are_left_alone(strokes):
 def test_a_replay_of_a_replay_takes_another_title(strokes):
     first = sn.replay(strokes[:2], title="one", players=["A"])
     second = sn.replay(first, title="two")
-    assert (second.title, second.players, len(second)) == ("two", ("A",), 2) and sn.replay(
-        first
-    ).title == "one"
+    assert (second.title, second.players, len(second)) == ("two", ("A",), 2)
+    assert sn.replay(first).title == "one"
 
 
 def test_a_bare_shot_and_other_tables():
-    shot = sn.simulate(
-        [(0.0, -0.5), (0.1, 0.3)],
-        [(0.4, 3.0), (0, 0)],
-        [(0, 0, 0)] * 2,
-        table="pool9",
-        physics={"R": 0.028575},
-    )
+    places, pool = [(0.0, -0.5), (0.1, 0.3)], {"table": "pool9", "physics": {"R": 0.028575}}
+    shot = sn.simulate(places, [(0.4, 3.0), (0, 0)], [(0, 0, 0)] * 2, **pool)
     replay = sn.replay(shot, title="pool")
     data = replay.to_dict()
     assert data["players"] == [] and data["scene"]["lines"] is None and data["R"] == 0.028575
@@ -178,9 +169,7 @@ def test_spins_at_rest_are_kept():
 
 
 def test_a_frame_and_a_match_name_both_players():
-    env = sn.SnookerEnv(task="frame", opponent="ghost_ball", action="discrete", layout="pots:easy")
-    env.keep_history = True
-    env.reset(seed=1)
+    env = keeping(task="frame", opponent="ghost_ball", action="discrete", layout="pots:easy")
     for _ in range(6):
         if env.step(int(np.flatnonzero(env.action_masks())[0]))[2]:
             break
@@ -192,18 +181,17 @@ def test_a_frame_and_a_match_name_both_players():
     match = sn.match_env()
     match.keep_history = True
     match.reset(seed=1)
-    for _ in range(5):
-        match.step(match.action_space(match.agent_selection).sample())
+    match.step(np.zeros(7))
     assert len(sn.replay(match)) == len(match.history) > 0
 
 
 def test_history_is_kept_on_request_and_starts_anew():
-    env = sn.SnookerEnv(action="discrete")
-    env.reset(seed=1)
+    env = begun(sn.SnookerEnv(action="discrete"))
     env.step(67)
     assert env.history == [] and env.last_shot is not None and not len(env.last_shot.segments)
     refused(lambda: sn.replay(env), "source", "keeps no history", "keep_history = True")
-    env.keep_history = True
+    shot, env.keep_history = env.last_shot, True
+    assert env.last_shot is shot and env.history == []
     env.reset(seed=1)
     refused(lambda: sn.replay(env), "source", "without a stroke", "at least one")
     env.step(67)
@@ -217,14 +205,11 @@ def test_history_is_kept_on_request_and_starts_anew():
 
 
 def test_keeping_history_changes_no_result():
-    def run(keep):
-        env = sn.SnookerEnv(task="frame", opponent="ghost_ball", noise="club", action="discrete")
-        env.keep_history = keep
-        seen = [env.reset(seed=4)[0]]
-        seen += [env.step(int(np.flatnonzero(env.action_masks())[7]))[0] for _ in range(5)]
-        return np.stack(seen)
-
-    assert np.array_equal(run(True), run(False))
+    options = {"task": "frame", "opponent": "ghost_ball", "noise": "club", "action": "discrete"}
+    env, other = keeping(**options), sn.SnookerEnv(**options)
+    other.reset(seed=1)
+    for choice in range(5):
+        assert np.array_equal(env.step(choice)[0], other.step(choice)[0])
 
 
 def test_a_position_is_shown_as_it_stands():
@@ -234,26 +219,12 @@ def test_a_position_is_shown_as_it_stands():
     assert numbers(stroke["start"], "f8", 2)[[0, 1, 21]].tolist() == [[0.1, -1.2], [0.3, 0.4], [0.0, 1.4605]]
 
 
-@pytest.mark.parametrize(
-    ("source", "words"),
-    [
-        (3, ("source", "int", "must be a Shot")),
-        ([], ("strokes", "[]", "at least one")),
-        ([1], ("strokes[0]", "int", "must be a Shot")),
-    ],
-)
-def test_what_is_no_replay_is_refused(source, words):
-    refused(lambda: sn.replay(source), *words)
-
-
 def test_bad_arguments_are_refused(strokes, tmp_path):
+    refused(lambda: sn.replay(3), "source", "int", "must be a Shot")
+    refused(lambda: sn.replay([]), "strokes", "[]", "at least one")
+    refused(lambda: sn.replay([1]), "strokes[0]", "int", "must be a Shot")
     other = sn.simulate([(0.0, 0.0)], [(1.0, 0)], [(0, 0, 0)], table="tight")
-    refused(
-        lambda: sn.replay([strokes[0], other]),
-        "strokes[1]",
-        "another table",
-        "must be on the table of the first",
-    )
+    refused(lambda: sn.replay([strokes[0], other]), "strokes[1]", "another table", "must be on the table of")
     refused(lambda: sn.replay(strokes, players=["a", "b", "c"]), "players", "'c'", "at most two")
     refused(lambda: sn.replay(strokes, players=["a", "b"]), "players", "2 names", "one for a visit")
     refused(lambda: sn.replay(strokes, title="\ud800"), "title", "ud800", "surrogate")
@@ -261,12 +232,8 @@ def test_bad_arguments_are_refused(strokes, tmp_path):
     refused(lambda: sn.replay([strokes[0], slower]), "strokes[1]", "other physics", "spin_decel")
     refused(lambda: sn.replay(strokes, title=3), "title", "3", "must be a str")
     refused(lambda: sn.replay(strokes, tmp_path / "break.exe"), "suffix", ".exe", ".html")
-    refused(
-        lambda: sn.replay(strokes[0]).save(tmp_path / "a.html", fps=3),
-        "path",
-        "a.html",
-        "must end in .mp4 or .gif",
-    )
+    save = sn.replay(strokes[0]).save
+    refused(lambda: save(tmp_path / "a.html", fps=3), "path", "a.html", "must end in .mp4 or .gif")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -278,10 +245,12 @@ def test_files_are_written_whole(strokes, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["break.html", "break.json"]
 
 
+def made():
+    return gymnasium.make("Snooker-v0", action="discrete")
+
+
 def test_the_wrapper_writes_each_wanted_episode(tmp_path):
-    env = sn.RecordReplay(
-        gymnasium.make("Snooker-v0", action="discrete"), tmp_path / "new", lambda k: k != 1, suffix=".json"
-    )
+    env = sn.RecordReplay(made(), tmp_path / "new", lambda k: k != 1, suffix=".json")
     lengths = []
     for k in range(3):
         env.reset(seed=k)
@@ -296,11 +265,7 @@ def test_the_wrapper_writes_each_wanted_episode(tmp_path):
 
 
 def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
-    env = sn.RecordReplay(
-        gymnasium.wrappers.Autoreset(gymnasium.make("Snooker-v0", action="discrete")),
-        tmp_path,
-        suffix=".json",
-    )
+    env = sn.RecordReplay(gymnasium.wrappers.Autoreset(made()), tmp_path, suffix=".json")
     env.reset(seed=1)
     ends = 0
     while ends < 3:
@@ -309,28 +274,139 @@ def test_the_wrapper_above_a_wrapper_that_resets_writes_each_episode(tmp_path):
     assert [p.name for p in env.paths] == [f"snooker-episode-{k}.json" for k in range(3)]
 
 
-@pytest.mark.parametrize(
-    ("wrong", "words"),
-    [
-        ({"players": ["a", "b"]}, ("players", "'a', 'b'", "one name")),
-        ({"name_prefix": "a/b"}, ("name_prefix", "a/b", "without folders")),
-        ({"suffix": ".txt"}, ("suffix", ".txt", ".html")),
-    ],
-)
-def test_the_wrapper_refuses_at_once_what_it_could_not_write(tmp_path, wrong, words):
-    refused(lambda: sn.RecordReplay(gymnasium.make("Snooker-v0"), tmp_path, **wrong), *words)
+def test_the_wrapper_refuses_at_once_what_it_could_not_write(tmp_path):
+    make = partial(sn.RecordReplay, made(), tmp_path)
+    refused(partial(make, players=["a", "b"]), "players", "'a', 'b'", "one name")
+    refused(partial(make, name_prefix="a/b"), "name_prefix", "a/b", "without folders")
+    refused(partial(make, suffix=".txt"), "suffix", ".txt", ".html")
+    other = partial(sn.RecordReplay, gymnasium.make("CartPole-v1"), tmp_path)
+    refused(other, "env", "CartPoleEnv", "Snooker-v0")
 
 
 def test_the_wrapper_writes_what_was_cut_short(tmp_path):
-    env = sn.RecordReplay(
-        gymnasium.make("Snooker-v0", action="discrete"), tmp_path, suffix=".json", name_prefix="cut"
-    )
-    env.reset(seed=1)
-    env.step(67)
-    env.reset(seed=2)
-    env.step(67)
+    env = sn.RecordReplay(made(), tmp_path, suffix=".json", name_prefix="cut")
+    for seed in (1, 2):
+        env.reset(seed=seed)
+        env.step(67)
     env.close()
     assert [p.name for p in env.paths] == ["cut-episode-0.json", "cut-episode-1.json"]
-    refused(
-        lambda: sn.RecordReplay(gymnasium.make("CartPole-v1"), tmp_path), "env", "CartPoleEnv", "Snooker-v0"
-    )
+
+
+# Score bars and the referee's words follow the ``Frame`` after each stroke
+
+
+FRAMES = (("ghost_ball", "colours", "none"), ("random", "colours", "club"), ("ghost_ball", "line_up", "club"))
+
+
+@pytest.fixture(scope="module", params=FRAMES)
+def frame(request):
+    """A whole frame's strokes, and the frame after each of the agent's steps."""
+    options = dict(zip(("opponent", "layout", "noise"), request.param, strict=True))
+    rules = {"task": "frame", "action": "discrete", "miss": "clear_path", "max_strokes": 120}
+    env = keeping(7, **rules, **options)
+    rng, seen, ended = np.random.default_rng(7), [], False
+    while not ended:
+        action = int(rng.choice(np.flatnonzero(env.action_masks())))
+        _, _, terminated, truncated, _ = env.step(action)
+        seen.append((len(env.history), env.frame))
+        ended = terminated or truncated
+    return env, seen
+
+
+def test_scores_follow_the_frame(frame):
+    env, seen = frame
+    made = bars(env.history, ("A", "B"))
+    assert len(made) == len(env.history) > 3
+    for count, state in seen:
+        if count:
+            assert made[count - 1][1].scores == state.scores
+    for (_, after), (before, _) in pairwise(made):
+        assert before.scores == after.scores
+    assert {during.striker for during, _ in made} <= {0, 1}
+
+
+def test_a_break_is_the_sum_of_its_strokes(frame):
+    env, _ = frame
+    run, last = 0, None
+    for played, (before, after) in zip(env.history, bars(env.history, ("A", "B")), strict=True):
+        run = run if played.player == last else 0
+        assert before.break_points == run and after.break_points == run + played.points
+        potted = np.sum(played.shot.potted >= 0) if played.points else 0
+        assert len(after.potted) - len(before.potted) == potted
+        if played.points and run:
+            assert f"break of {run + played.points}" in after.words
+        run, last = run + played.points, played.player if played.points else None
+
+
+def test_the_end_is_shown(frame):
+    env, seen = frame
+    last, state = bars(env.history, ("Ada", "Bo"))[-1][1], seen[-1][1]
+    if state.winner is not None:
+        assert f"Frame to {('Ada', 'Bo')[state.winner]}" in last.words
+        assert f"{state.scores[state.winner]}-{state.scores[1 - state.winner]}" in last.words
+
+
+def test_the_bar_of_a_table_as_it_stands():
+    env = keeping(action="discrete")
+    start = standing_bar(env.tables, 0, ("Ada",))
+    assert (start.scores, start.break_points, start.ball_on, start.reds_left) == ((0,), 0, "red", 15)
+    assert start.points_on == 147
+    env.step(67)
+    kept = bars(env.history, ("Ada",))[-1][1]
+    now = standing_bar(env.tables, 0, ("Ada",), kept)
+    assert now == kept and now.scores == (1,) and now.potted == kept.potted != ()
+    assert env.ball_on == BallOn.ANY_COLOUR
+    assert standing_bar(env.tables, 0, ()).players == ()
+
+
+# Films: their pictures, length and colours, and what cannot be written
+
+
+SMALL = {"size": (320, 180), "fps": 10.0}
+
+
+@pytest.fixture(scope="module")
+def replay():
+    pytest.importorskip("pygame")
+    pytest.importorskip("imageio_ffmpeg")
+    env = keeping(action="discrete")
+    env.step(67)
+    env.step(67)
+    return sn.replay(env)
+
+
+def test_the_pictures_show_the_motion_and_then_the_table(replay):
+    pictures = list(replay.frames(**SMALL))
+    moving = [len(np.arange(0.0, shot.duration, 0.1)) + 1 for shot in replay.shots]
+    assert len(pictures) == sum(moving) + 2 * 8  # 0.8 s after each stroke
+    assert all(picture.shape == (180, 320, 3) and picture.dtype == np.uint8 for picture in pictures)
+    assert np.array_equal(pictures[moving[0]], pictures[moving[0] + 7])
+    assert not np.array_equal(pictures[3], pictures[4])
+    fast = list(replay.frames(**SMALL, speed=4.0))
+    assert len(fast) == sum(len(np.arange(0.0, shot.duration, 0.4)) + 1 for shot in replay.shots) + 2 * 8
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".mp4"])
+def test_every_ball_keeps_its_colour(replay, tmp_path, suffix):
+    """In a GIF too, which has 256 colours: small balls must not lose theirs to the cloth."""
+    imageio, render = (pytest.importorskip(name) for name in ("imageio.v3", "snooker_env.render.view"))
+    size = (1280, 720)
+    file = replay.save(tmp_path / f"film{suffix}", size=size, fps=5.0)
+    film, first = imageio.imread(file, index=0), next(replay.frames(size=size, fps=5.0))
+    view = render.View.of(sn.Table.preset("match"), size=size)
+    for place in replay.shots[0].at(0.0)[0]:
+        x, y = np.rint(view(place)).astype(int)
+        around = slice(y - 1, y + 2), slice(x - 1, x + 2), slice(3)
+        seen, drawn = (picture[around].astype(int).mean(axis=(0, 1)) for picture in (film, first))
+        # a video halves the resolution of colours
+        assert np.abs(seen - drawn).max() < 60, (place, seen, drawn)
+    assert [p.name for p in tmp_path.iterdir()] == [file.name]
+
+
+def test_what_no_film_can_be_is_refused(replay, tmp_path):
+    refused(lambda: replay.save(tmp_path / "a.mp4", size=(321, 180)), "size", "(321, 180)", "both even")
+    refused(lambda: replay.save(tmp_path / "a.gif", fps=0), "fps", "0", "must be")
+    refused(lambda: replay.save(tmp_path / "a.gif", speed=-1), "speed", "-1", "must be")
+    with pytest.raises(OSError, match="nowhere"):
+        replay.save(tmp_path / "nowhere" / "a.mp4", **SMALL)
+    assert list(tmp_path.iterdir()) == []

@@ -1,26 +1,31 @@
-"""What does an action mean? Aim, speed, tip, elevation and placement, read from the ball as it leaves the
-tip."""
+"""What does an action mean? Read from the ball as it leaves the tip."""
 
 import math
 
 import numpy as np
 import pytest
 
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, BallOn
 from snooker_env.game.pots import pots
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.geometry import BAULK_Y, D_RADIUS, POCKET_AIMS
 from snooker_env.tasks.box_actions import MAX_ELEVATION, TARGET_SPAN
-from tests.tables import after_strike, speed_of, table_state
+from tests.tables import after_strike, begun, speed_of, table_state
+
+
+def standing(**options):
+    """A table with little on it."""
+    env = SnookerEnv(render_mode="ansi", **options)
+    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    return env
 
 
 @pytest.mark.parametrize("side", [0.0, 1.0, -1.0, 0.5])
 @pytest.mark.parametrize("aim", [-1.0, -0.75, -0.3, 0.0, 0.1, 0.5, 0.99])
 def test_absolute_aim_is_the_direction_in_which_the_ball_leaves(side, aim):
     """Also with side spin: the squirt is compensated, so the cue itself points elsewhere."""
-    env = SnookerEnv(render_mode="ansi")
-    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    env = standing()
     v, w = after_strike(env, [0.0, side, 0.0, aim])
     direction = math.pi * float(np.float32(aim))
     assert math.remainder(math.atan2(v[1], v[0]) - direction, 2 * math.pi) == pytest.approx(0.0, abs=1e-9)
@@ -34,22 +39,17 @@ def shot_of(env, *action_and_table):
 
 
 def test_squirt_is_what_is_compensated():
-    """With the same action, but no end mass to speak of in the formula, the cue's own direction is another
-    one."""
-    heavy, light = (SnookerEnv(physics={"end_mass_ratio": ratio}) for ratio in (5.0, 1e9))
-    cues = []
-    for env in (heavy, light):
-        cues.append(shot_of(env, [0, 1, 0, 0.25], SPOTS, np.ones(N_BALLS, bool), 2)[3])
-    assert cues[1] == pytest.approx(math.pi / 4, abs=1e-8)
-    assert cues[0] - cues[1] == pytest.approx(
-        -math.atan(2.5 * 0.5 * math.sqrt(0.75) / (1 + 5 + 2.5 * 0.75)), abs=1e-8
-    )
+    """The same action with hardly an end mass in the formula: the cue's own direction is another one."""
+    envs = (SnookerEnv(physics={"end_mass_ratio": ratio}) for ratio in (5.0, 1e9))
+    heavy, light = (shot_of(env, [0, 1, 0, 0.25], SPOTS, np.ones(N_BALLS, bool), 2)[3] for env in envs)
+    assert light == pytest.approx(math.pi / 4, abs=1e-8)
+    squirt = math.atan(2.5 * 0.5 * math.sqrt(0.75) / (1 + 5 + 2.5 * 0.75))
+    assert heavy - light == pytest.approx(-squirt, abs=1e-8)
 
 
 @pytest.mark.parametrize(("a", "speed"), [(-1.0, 0.2), (1.0, 7.0), (0.0, 3.6), (-0.5, 1.9)])
 def test_speed_is_linear_between_its_ends(a, speed):
-    env = SnookerEnv(render_mode="ansi")
-    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    env = standing()
     assert np.hypot(*after_strike(env, [a, 0, 0, 0.3])[0]) == pytest.approx(speed, rel=1e-12)
 
 
@@ -67,14 +67,12 @@ def test_speed_is_linear_between_its_ends(a, speed):
 )
 def test_the_tip_stays_on_the_disc_within_the_miscue_limit(side, top, b, t):
     """A pair outside is drawn back along its own direction, one inside is as it is."""
-    env = SnookerEnv(render_mode="ansi")
-    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
+    env = standing()
     _, w = after_strike(env, [0.0, side, top, 0.0])
     scale = 2.5 * speed_of(0.0) / R
     cue = -shot_of(env, [0, side, top, 0], env.positions, env.on_table, 2)[3]
-    assert cue == pytest.approx(
-        math.atan(2.5 * b * math.sqrt(1 - b * b) / (1 + 30 + 2.5 * (1 - b * b))), abs=1e-4
-    )
+    squirt = math.atan(2.5 * b * math.sqrt(1 - b * b) / (1 + 30 + 2.5 * (1 - b * b)))
+    assert cue == pytest.approx(squirt, abs=1e-4)
     assert w[2] / scale == pytest.approx(b, abs=1e-4)
     assert w[1] / scale == pytest.approx(t, abs=1e-4)  # rolling along +x is a positive turn about +y
     assert np.hypot(*w[1:]) / scale <= 0.5 * (1 + 1e-12)
@@ -82,9 +80,8 @@ def test_the_tip_stays_on_the_disc_within_the_miscue_limit(side, top, b, t):
 
 @pytest.mark.parametrize(("a", "degrees"), [(-1.0, 0.0), (0.0, 15.0), (1.0, 30.0)])
 def test_elevation_lengthens_the_action_and_takes_speed(a, degrees):
-    env = SnookerEnv(elevation=True, render_mode="ansi")
+    env = standing(elevation=True)
     assert env.action_space.shape == (5,) and SnookerEnv().action_space.shape == (4,)
-    table_state(env, {CUE: (0.1, -0.5), 1: (0.6, 1.2)}, BallOn.RED)
     v, w = after_strike(env, [0.0, 1.0, 0.0, 0.0, a])
     angle = math.radians(degrees)
     assert math.radians(30) == MAX_ELEVATION
@@ -102,9 +99,15 @@ def test_elevation_of_nothing_is_the_short_action():
         assert np.array_equal(long.step([*a, -1.0])[0], short.step(a)[0])
 
 
+CORNERS = [(a, b) for a in (1.0, -1.0, 0.99, -0.99) for b in (-1.0, 0.0, 1.0)]
+
+
 @pytest.mark.parametrize("elevation", [False, True])
-@pytest.mark.parametrize(("a", "b"), [(0.0, -1.0), (0.0, 1.0), (-0.5, 0.0), (0.25, 0.5), (-0.8, -1.0)])
+@pytest.mark.parametrize(
+    ("a", "b"), [(0.0, -1.0), (0.0, 1.0), (-0.5, 0.0), (0.25, 0.5), (-0.8, -1.0), *CORNERS]
+)
 def test_placement_puts_the_ball_in_hand_where_it_says(a, b, elevation):
+    """The yellow and the green stand on the D's corners, the brown between them: no place overlaps a ball."""
     env = SnookerEnv(layout="break_off", placement=True, elevation=elevation, render_mode="ansi")
     assert env.action_space.shape == (6 + elevation,)
     obs, _ = env.reset(seed=1)
@@ -116,8 +119,9 @@ def test_placement_puts_the_ball_in_hand_where_it_says(a, b, elevation):
     want = (D_RADIUS * a, BAULK_Y - depth)
     if np.hypot(*(SPOTS[16:19] - want).T).min() > 2 * R + 2e-4:
         assert placed == pytest.approx(want, abs=1e-12)
-    else:  # the brown's spot is taken: the nearest place where it is clear of it
+    elif a == 0.0:  # the brown's spot is taken: the nearest place where it is clear of it
         assert 2 * R < np.hypot(*(placed - SPOTS[18])) < 2 * R + 2e-4
+    assert np.hypot(*(env.last_shot.at(0.0)[0][1:] - placed).T).min() >= 2 * R - 1e-6
     assert np.hypot(placed[0], placed[1] - BAULK_Y) <= D_RADIUS + 1e-12 and placed[1] <= BAULK_Y
     assert not np.array_equal(placed, before)
 
@@ -132,22 +136,10 @@ def test_placement_is_for_a_ball_in_hand_only():
         assert np.array_equal(env.last_shot.at(0.0)[0][CUE], here)
     assert len(ends) == 1
     # without placement the ball lies where the layout put it
-    plain = SnookerEnv(layout="break_off", render_mode="ansi")
-    plain.reset(seed=3)
+    plain = begun(SnookerEnv(layout="break_off", render_mode="ansi"), 3)
     here = plain.positions[CUE].copy()
     plain.step([0, 0, 0, 0.5])
     assert np.array_equal(plain.last_shot.at(0.0)[0][CUE], here)
-
-
-@pytest.mark.parametrize("a", [1.0, -1.0, 0.99, -0.99])
-@pytest.mark.parametrize("b", [-1.0, 0.0, 1.0])
-def test_no_placement_overlaps_a_ball(a, b):
-    """The yellow and the green stand on the D's corners."""
-    env = SnookerEnv(layout="break_off", placement=True, render_mode="ansi")
-    env.reset(seed=1)
-    env.step([-1.0, 0, 0, 0.5, a, b])
-    start = env.last_shot.at(0.0)[0]
-    assert np.hypot(*(start[1:] - start[CUE]).T).min() >= 2 * R - 1e-6
 
 
 def straight(rng):
@@ -163,6 +155,12 @@ def straight(rng):
             return ball, cue, math.atan2(d[1], d[0])
 
 
+def astray_of(env, direction):
+    """The angle between the cue ball's way off the tip and a direction."""
+    v = env.last_shot.at(0.0)[1][CUE]
+    return math.remainder(math.atan2(v[1], v[0]) - direction, 2 * math.pi)
+
+
 def test_target_aim_of_nothing_pots_a_straight_ball():
     """a = 0 is the line of the best pot: any straight pot goes in, 3 degrees off it does not."""
     env = SnookerEnv(aim="target", render_mode="ansi")
@@ -176,17 +174,13 @@ def test_target_aim_of_nothing_pots_a_straight_ball():
         table_state(env, {CUE: cue, 1: ball, BLACK: black}, BallOn.RED)
         before = env.get_state()
         info = env.step([-0.4, 0.0, -0.3, 0.0])[4]
-        v = env.last_shot.at(0.0)[1][CUE]
-        assert math.remainder(math.atan2(v[1], v[0]) - direction, 2 * math.pi) == pytest.approx(0.0, abs=1e-6)
+        assert astray_of(env, direction) == pytest.approx(0.0, abs=1e-6)
         assert info["pots"] == 1 and info["first_ball"] == 1
         assert env.last_shot.potted[1] >= 0
         for a in (-1.0, 1.0):
             env.set_state(before)
             tried, astray = tried + 1, astray + (env.step([-0.4, 0.0, -0.3, a])[4]["pots"] == 0)
-            v = env.last_shot.at(0.0)[1][CUE]
-            assert math.remainder(
-                math.atan2(v[1], v[0]) - direction - a * TARGET_SPAN, 2 * math.pi
-            ) == pytest.approx(0.0, abs=1e-6)
+            assert astray_of(env, direction + a * TARGET_SPAN) == pytest.approx(0.0, abs=1e-6)
     assert tried > 50 and astray > 0.8 * tried
 
 
@@ -195,14 +189,8 @@ def test_target_aim_without_a_pot_is_at_the_middle_of_what_is_seen():
     # the black hides half of the red: no pot there
     table_state(env, {CUE: (0.0, 1.0), 1: (0.0, 1.7), BLACK: (0.05, 1.3)}, BallOn.RED)
     assert len(pots(env.positions, env.on_table, env.on)) == 0
-    left, edge = (
-        math.pi / 2 + math.asin(2 * R / 0.7),
-        math.atan2(0.3, 0.05) + math.asin(2 * R / math.hypot(0.05, 0.3)),
-    )
-    middle = 0.5 * (left + edge)
-    assert shot_of(env, [0, 0, 0, 0.0], env.positions, env.on_table, env.on)[3] == pytest.approx(
-        middle, abs=1e-12
-    )
-    assert shot_of(env, [0, 0, 0, -0.5], env.positions, env.on_table, env.on)[3] == pytest.approx(
-        middle - TARGET_SPAN / 2
-    )
+    left = math.pi / 2 + math.asin(2 * R / 0.7)
+    edge = math.atan2(0.3, 0.05) + math.asin(2 * R / math.hypot(0.05, 0.3))
+    for a in (0.0, -0.5):
+        aim = shot_of(env, [0, 0, 0, a], env.positions, env.on_table, env.on)[3]
+        assert aim == pytest.approx(0.5 * (left + edge) + a * TARGET_SPAN, abs=1e-12)

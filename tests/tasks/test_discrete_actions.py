@@ -1,38 +1,32 @@
 """Does ``action="discrete"`` play the shot it names, with an aim that sends the object ball at the pocket?"""
 
-import gymnasium
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env
 
 import snooker_env as sn
-from snooker_env.envs.snooker import SnookerEnv
+from benchmarks import fair
+from snooker_env import SnookerEnv
 from snooker_env.game import pots
-from snooker_env.game.balls import mask_of
-from snooker_env.tasks import discrete_actions
-from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
-
-R = 0.02625
-
-
-def native(n, **options):
-    return gymnasium.make_vec(
-        "Snooker-v0", n, vectorization_mode="vector_entry_point", action="discrete", **options
-    )
+from snooker_env.game.balls import BLACK, BLUE, BROWN, CUE, N_BALLS, SPOTS, BallOn, mask_of
+from snooker_env.game.layouts import layout
+from snooker_env.game.pots import POT_COLUMNS
+from snooker_env.game.ruling import Foul
+from snooker_env.geometry import BALL_RADIUS as R
+from snooker_env.kernels import LINE_ROWS, entry
+from snooker_env.tasks import CHOICES, choice_of, lines, windows
+from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
+from tests.tables import begun, table_state
 
 
 def test_the_numbers_count_pots_speeds_sides_and_tops():
     assert len(SPEEDS) * len(SIDES) * len(TOPS) == STROKES and SIZE == POTS * STROKES
-    assert (
-        choice_of(0, 0, 0, 0) == 0
-        and choice_of(POTS - 1, len(SPEEDS) - 1, len(SIDES) - 1, len(TOPS) - 1) == SIZE - 1
-    )
+    assert choice_of(0, 0, 0, 0) == 0
+    assert choice_of(POTS - 1, len(SPEEDS) - 1, len(SIDES) - 1, len(TOPS) - 1) == SIZE - 1
 
 
 @pytest.mark.parametrize("physics", ["paper", "match"])
 def test_the_object_ball_rolls_at_the_pocket(physics):
-    """Judged by the engine, which the solver does not use: two balls on unbounded cloth, the aim as the
-    environment struck it."""
+    """Judged by the engine, which the solver does not use: two balls on unbounded cloth."""
     rng = np.random.default_rng(1)
     constants, worst, seen = sn.Physics.preset(physics), [], 0
     while seen < 60:
@@ -43,19 +37,14 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
         if not len(found) or np.hypot(*(cue - ball)) < 0.2 or found[0, 4] < 0.3:
             continue
         speed, side, top = int(rng.integers(4, 9)), int(rng.integers(3)), int(rng.integers(5))
-        env = SnookerEnv(action="discrete", layout="random:1", physics=physics)
-        env.reset(seed=0)
-        env.tables.positions[0], env.tables.on_table[0], env.tables.game[0, :3] = (
-            positions,
-            on_table,
-            (1, 0, 0),
-        )
+        env = begun(SnookerEnv(action="discrete", layout="random:1", physics=physics), 0)
+        env.tables.positions[0], env.tables.on_table[0] = positions, on_table
+        env.tables.game[0, :3] = 1, 0, 0
         env.step(choice_of(0, speed, side, top))
         v, w = env._record.buffers.v[0, 0], env._record.buffers.w[0, 0]
         start = env._record.buffers.shots[0]
-        shot = sn.simulate(
-            [cue, ball], [start[:2], (0, 0)], [start[2:5], (0, 0, 0)], table=None, physics=constants
-        )
+        v1, w1 = [start[:2], (0, 0)], [start[2:5], (0, 0, 0)]
+        shot = sn.simulate([cue, ball], v1, w1, table=None, physics=constants)
         hit = shot.events[shot.events["kind"] == sn.EventKind.BALL_BALL]
         rolls = shot.events[(shot.events["kind"] == sn.EventKind.ROLL) & (shot.events["i"] == 1)]
         assert len(hit) and v.shape == (2,) and w.shape == (3,)
@@ -70,48 +59,17 @@ def test_the_object_ball_rolls_at_the_pocket(physics):
 
 
 def test_solved_aims_pot_more_than_straight_lines():
-    made = {}
-    for action in ("discrete", "box"):
-        env = gymnasium.make_vec(
-            "Snooker-v0",
-            400,
-            vectorization_mode="vector_entry_point",
-            action=action,
-            aim="target",
-            layout="pots:medium",
-            physics="match",
-        )
-        env.reset(seed=0)
-        speed = 2 * (SPEEDS[4] - 0.2) / 6.8 - 1
-        strokes = (
-            np.full(400, choice_of(0, 4, 1, 2))
-            if action == "discrete"
-            else np.tile((speed, 0.0, 0.0, 0.0), (400, 1))
-        )
-        made[action] = (env.step(strokes)[1] > 0).mean()
-    assert made["discrete"] > 0.95 > made["box"] + 0.1
-
-
-@pytest.mark.parametrize("noise", ["none", "club"])
-def test_one_table_and_many_play_alike(noise):
-    many, ones = native(5, noise=noise), [SnookerEnv(action="discrete", noise=noise) for _ in range(5)]
-    observations, _ = many.reset(seed=3)
-    rng = np.random.default_rng(0)
-    for k, one in enumerate(ones):
-        assert np.array_equal(one.reset(seed=3 + k)[0], observations[k])
-    masks = many.unwrapped.action_masks()
-    chosen = np.array([rng.choice(np.flatnonzero(m)) for m in masks])
-    observations, rewards, *_ = many.step(chosen)
-    for k, one in enumerate(ones):
-        assert np.array_equal(one.tables.action_masks()[0], masks[k])
-        observation, reward, *_ = one.step(chosen[k])
-        assert np.array_equal(observation, observations[k]) and reward == rewards[k]
+    speed, made = 2 * (SPEEDS[4] - 0.2) / 6.8 - 1, []
+    for action, stroke in (("discrete", choice_of(0, 4, 1, 2)), ("box", (speed, 0.0, 0.0, 0.0))):
+        options = {"action": action, "aim": "target", "layout": "pots:medium", "physics": "match"}
+        env = begun(sn.SnookerVectorEnv(400, **options), 0)
+        made.append((env.step(np.array([stroke] * 400))[1] > 0).mean())
+    assert made[0] > 0.95 > made[1] + 0.1
 
 
 def test_masks_offer_the_pots_there_are():
-    env = native(200, layout="random:1")
-    env.reset(seed=0)
-    visits, masks = env.unwrapped.tables, env.unwrapped.action_masks()
+    env = begun(sn.SnookerVectorEnv(200, action="discrete", layout="random:1"), 0)
+    visits, masks = env.tables, env.action_masks()
     assert masks.shape == (200, SIZE)
     counts = set()
     for k in range(200):
@@ -120,46 +78,162 @@ def test_masks_offer_the_pots_there_are():
         counts.add(n)
         if n:
             assert masks[k].sum() == STROKES * n and masks[k, : STROKES * n].all()
-        else:  # other lines stand for them, see test_lines.py
+        else:  # other lines stand for them, see below
             lines = masks[k].reshape(POTS, STROKES)
             assert lines[0].all() and (lines == lines[:, :1]).all()
     assert 0 in counts and len(counts) > 2
 
 
-def test_it_passes_gymnasiums_checker():
-    check_env(
-        gymnasium.make("Snooker-v0", action="discrete", noise="professional").unwrapped,
-        skip_render_check=True,
-    )
+# Where there is no direct pot, the lines offered are real strokes, and the windows exact
 
 
-@pytest.mark.parametrize("wrong", [-1, SIZE, 0.5, None, "3", [1, 2]])
-def test_wrong_choices_change_nothing(wrong):
-    env = SnookerEnv(action="discrete")
-    env.reset(seed=0)
-    before = env.get_state()
-    with pytest.raises(ValueError, match=r"action = .*must be an integer in \[0, 540\)"):
-        env.step(wrong)
-    assert env.get_state() == before
+@entry
+def _windows(positions, on_table, on, touching, out):
+    return windows.open_windows(positions, on_table, on, touching, out)
 
 
-def test_wrong_choices_of_many_name_the_table():
-    env = native(3)
-    env.reset(seed=0)
-    with pytest.raises(ValueError, match=r"actions\[1\] = 540: must be in \[0, 540\)"):
-        env.step(np.array([0, 540, 1]))
-    with pytest.raises(ValueError, match="must be 3 integers"):
-        env.step(np.zeros((3, 4)))
+@entry
+def _lines(positions, on_table, on, found):
+    return lines.find_lines(positions, on_table, on, found)
 
 
-def test_what_does_not_go_together_is_refused():
-    for name in ("elevation", "placement"):
-        with pytest.raises(ValueError, match=f"{name} = True: must be False"):
-            SnookerEnv(action="discrete", **{name: True})
-    with pytest.raises(ValueError, match="decision = True: must be False"):
-        SnookerEnv(action="discrete", task="frame", decision=True)
-    with pytest.raises(ValueError, match="action = 'plain'"):
-        SnookerEnv(action="plain")
-    with pytest.raises(ValueError, match="a Box has no masks"):
-        SnookerEnv().action_masks()
-    assert SnookerEnv(action="discrete").action_space.n == discrete_actions.SIZE
+def windows_of(positions, on_table, on, touching=0):
+    out = np.empty((windows.MOST_EDGES, 3))
+    return out[: _windows(positions, on_table, on, touching, out), :2]
+
+
+def lines_of(positions, on_table, on):
+    found = np.empty((LINE_ROWS, POT_COLUMNS))
+    return found[: _lines(positions, on_table, on, found), : lines.LINE_WORTH]
+
+
+def first_met(positions, on_table, angles):
+    """The ball met first in each direction, typed anew in NumPy; 0 for none."""
+    to = positions - positions[0]
+    along = to[:, 0] * np.cos(angles)[:, None] + to[:, 1] * np.sin(angles)[:, None]
+    across2 = (to**2).sum(1) - along**2
+    met = on_table & (along > 0.0) & (across2 < 4 * R * R)
+    runs = np.where(met, along - np.sqrt(np.maximum(0.0, 4 * R * R - across2)), np.inf)
+    runs[:, 0] = np.inf
+    return np.where(np.isfinite(runs.min(1)), runs.argmin(1), 0)
+
+
+@pytest.mark.parametrize("kind", ["break_off", "opened", "random:6", "line_up", "snookered"])
+def test_windows_are_the_directions_in_which_a_ball_on_is_met_first(kind):
+    angles = np.linspace(-np.pi, np.pi, 20_000, endpoint=False)
+    for seed in range(12):
+        positions, on_table = layout(kind, np.random.default_rng(seed))
+        on = mask_of(range(1, 16)) if seed % 3 else mask_of([BLUE, BROWN, 3])
+        found = windows_of(positions, on_table, on)
+        half = 0.5 * (found[:, 1] - found[:, 0])
+        off = np.abs((angles[:, None] - found.mean(1) + np.pi) % (2 * np.pi) - np.pi) - half
+        sure = np.abs(off).min(1) > 1e-9 if len(found) else np.ones(len(angles), bool)
+        met = first_met(positions, on_table, angles)
+        assert np.array_equal((off < 0.0).any(1)[sure], ((on >> met) & 1 == 1)[sure])
+        assert (np.diff(half) <= 0.0).all()
+
+
+def test_what_is_seen_is_offered_from_thin_on_either_side_to_full():
+    positions, on_table = SPOTS.copy(), np.isin(np.arange(N_BALLS), (CUE, 1, BLACK))
+    positions[CUE], positions[1] = (0.0, 0.0), (1.0, 0.0)
+    found, half = lines_of(positions, on_table, mask_of([1])), np.arcsin(2 * R)
+    assert found[:, 0] == pytest.approx([0.0, -lines.THIN * half, lines.THIN * half], abs=1e-12)
+    positions[2], on_table[2] = (-0.6, 0.3), True  # another red: the widest window first
+    found, wide = lines_of(positions, on_table, mask_of([1, 2])), np.arctan2(0.3, -0.6)
+    thin = lines.THIN * np.arcsin(2 * R / np.hypot(0.6, 0.3))
+    assert found[:, 0] == pytest.approx([wide, wide - thin, wide + thin, 0.0], abs=1e-12)
+
+
+def test_reds_all_round_are_one_window():
+    positions, on_table = np.zeros((N_BALLS, 2)), np.arange(N_BALLS) < 16
+    angles = np.arange(15) * 2.0 * np.pi / 15.0
+    positions[1:16] = 8.0 * R * np.column_stack([np.cos(angles), np.sin(angles)])
+    ((low, high),) = windows_of(positions, on_table, mask_of(range(1, 16)))
+    assert high - low == pytest.approx(2.0 * np.pi)
+    aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
+    assert len(aims) and (first_met(positions, on_table, aims) > 0).all()
+
+
+def test_the_break_off_is_thin_at_the_end_reds_where_they_are_seen():
+    positions, on_table = layout("break_off", np.random.default_rng(0))
+    for x, ends in ((0.18, (15, 11)), (-0.18, (11, 15))):
+        positions[CUE] = x, -1.0475
+        aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
+        met = first_met(positions, on_table, aims)
+        assert met[0] == ends[0] and ((met >= 1) & (met <= 15)).all()
+    positions[CUE] = 0.0, -1.15  # behind the brown: what it sees of the pack, if anything
+    aims = lines_of(positions, on_table, mask_of(range(1, 16)))[:, 0]
+    assert len(aims) and BROWN not in first_met(positions, on_table, aims)
+
+
+@pytest.mark.parametrize(
+    ("kind", "n", "least", "target"),
+    [
+        ("break_off", 40, 1.0, 1.0),
+        ("break_off_six_red", 40, 1.0, 1.0),
+        ("break_off_shoot_out", 40, 1.0, 1.0),
+        ("snookered", 60, 0.95, 0.95),
+        ("snookered_match", 30, 0.95, 0.95),
+        ("frames", 100, 0.99, 0.85),
+    ],
+)
+def test_there_is_a_fair_choice_and_a_fair_target(kind, n, least, target):
+    """In frames the target line leads full at balls in the mouth of a pocket too, which the cue ball follows."""
+    found = fair.measured(kind, n, seed=0)
+    assert found["tables"] > 0.7 * n and found["with_a_fair_choice"] >= least and found["target"] >= target
+    assert found["target_at"]["3.6"] >= target - 0.1 and found["fair_choices"] > 0.6
+
+
+def test_an_escape_is_solved_for_the_stroke_that_is_played():
+    """Speed, side and top turn the cue ball at a cushion; all choices of one line meet the red."""
+    env = sn.SnookerEnv(action="discrete", physics="match", render_mode="ansi")
+    wall = {16: (0.15, 0.0), BLUE: (0.0, 0.0), 17: (-0.15, 0.0)}
+    table_state(env, {CUE: (0.0, -0.5), 1: (0.0, 0.6), **wall}, BallOn.RED)
+    state, aims, met = env.get_state(), [], 0
+    picks = [choice_of(0, speed, side, top) for speed in (3, 5, 7) for side in range(3) for top in range(5)]
+    for pick in picks:
+        env.set_state(state)
+        met += env.step(pick)[4]["first_ball"] == 1
+        v = env.last_shot.at(0.0)[1][CUE]
+        aims.append(np.arctan2(v[1], v[0]))
+    assert met >= 0.8 * len(picks) and np.ptp(aims) > 0.05
+
+
+def test_choices_over_cushions_are_the_same_strokes_as_actions():
+    env = sn.SnookerEnv(action="discrete", layout="snookered", render_mode="ansi")
+    for seed in range(6):
+        env.reset(seed=seed)
+        at = sn.planning.Positions.of(env)
+        picks = np.flatnonzero(env.action_masks())[::50]
+        aims = sn.planning.as_actions(at, np.zeros(len(picks), int), picks)[:, 3] * np.pi
+        state = env.get_state()
+        for pick, aim in zip(picks, aims, strict=True):
+            env.set_state(state)
+            env.step(pick)
+            v = env.last_shot.at(0.0)[1][CUE]
+            assert np.exp(1j * aim) == pytest.approx(np.exp(1j * np.arctan2(v[1], v[0])), abs=1e-6)
+
+
+def touching(ball, others):
+    """The fouls of all choices, and the lines, where the cue ball touches a ball on its right; red is on."""
+    tables = fair.dealt(CHOICES, 0, action="discrete")
+    positions, on_table = SPOTS.copy(), np.isin(np.arange(N_BALLS), (CUE, BLACK, ball, *others))
+    positions[CUE], positions[ball] = (0.3, 0.3), (0.3 + 2 * R + 1e-5, 0.3)
+    for i, place in others.items():
+        positions[i] = place
+    tables.positions[0], tables.on_table[0], tables.game[0, fair.IN_HAND] = positions, on_table, 0
+    assert not fair.has_pot(tables, 0)
+    offered = np.flatnonzero(tables.action_masks()[0])
+    found = fair.fouls(tables, fair.states(tables, [0])[0], offered[:, None].astype(float))
+    return found, lines_of(positions, on_table, mask_of(range(1, 16)))
+
+
+def test_a_touching_ball_on_is_played_away_from():
+    found, aims = touching(1, {})
+    assert (np.cos(aims[:, 0]) < 0.0).all() and not (found & Foul.PUSH).any() and (found == 0).mean() > 0.7
+
+
+def test_a_touching_ball_that_is_not_on_is_not_moved():
+    """The blue touches the cue ball on the way to the only red."""
+    found, aims = touching(BLUE, {1: (0.8, 0.3)})
+    assert (np.cos(aims[:, 0]) < 0.0).all() and not (found & Foul.PUSH).any() and (found == 0).mean() > 0.3

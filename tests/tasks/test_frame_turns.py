@@ -1,7 +1,4 @@
-"""Whose stroke is it in ``task="frame"``, what may he decide, and what is it worth? Turns, decisions after a
-foul, rewards."""
-
-import json
+"""Whose stroke is it in ``task="frame"``, what may he decide, and what is it worth?"""
 
 import gymnasium
 import numpy as np
@@ -9,10 +6,13 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, BallOn
+from snooker_env.game.frame import Frame
+from snooker_env.game.referee import Stroke
 from snooker_env.game.ruling import Foul
 from snooker_env.geometry import D_RADIUS
 from snooker_env.tasks.observations import FRAME_ENTRIES, SIZE
-from tests.tables import PLACES, frame_env, frame_state
+from snooker_env.tasks.options import MAX_STROKES
+from tests.tables import PLACES, begun, frame_env, frame_state, plain
 
 TO_BLUE = 0.0
 """Absolute aim along +x."""
@@ -20,52 +20,15 @@ CHOICE_SEEN, FREE_BALL_SEEN = (SIZE + FRAME_ENTRIES.index(name) for name in ("ch
 """Where an observation says that a decision is open, and that there is a free ball."""
 
 
-def test_a_step_ends_when_the_agent_is_to_play_or_the_frame_is_over():
-    env = frame_env(opponent="random", layout="random:3")
-    for seed in range(10):
-        env.reset(seed=seed)
-        while not env.over:
-            assert env.frame.striker == 0
-            _, _, terminated, truncated, info = env.step(env.action_space.sample())
-            assert terminated == env.over and truncated is False
-            assert (info["winner"] >= 0) == terminated
-        with pytest.raises(gymnasium.error.ResetNeeded):
-            env.step(np.zeros(7))
-
-
-def test_the_agent_stays_while_it_scores_and_the_opponent_comes_after_a_miss():
-    env = frame_state(frame_env(opponent="ghost_ball"), PLACES, {})
-    _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
-    assert (reward, info["points"], info["opponent_strokes"], env.ball_on) == (1.0, 1.0, 0, BallOn.ANY_COLOUR)
-    _, _, _, _, info = env.step([-0.9, 0, 0, 1.0, 0, 0, 0])
-    assert info["points"] == 0.0 and info["opponent_strokes"] > 0
-
-
 def test_alone_a_miss_and_a_foul_give_the_table_back():
     places = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
     env = frame_state(frame_env(aim="absolute"), places, {})
     before = env.positions[BLUE].copy()
     _, reward, terminated, _, info = env.step([-0.9, 0, 0, TO_BLUE, 0, 0, 0])
-    assert (reward, info["fouls"], info["opponent_score"], info["opponent_strokes"]) == (
-        -5.0,
-        Foul.WRONG_FIRST,
-        5.0,
-        0,
-    )
+    assert (reward, info["fouls"], info["opponent_score"]) == (-5.0, Foul.WRONG_FIRST, 5.0)
+    assert info["opponent_strokes"] == 0
     assert not terminated and not env.frame.free_ball and env.frame.phase == "stroke"
     assert not np.array_equal(env.positions[BLUE], before)  # from where the balls lie
-
-
-def test_a_cue_ball_in_hand_stands_in_the_d_and_is_played_from_where_it_is_placed():
-    places = {1: (0.6, 1.4), BLACK: SPOTS[BLACK], CUE: (D_RADIUS / 2, -1.0475)}
-    env = frame_state(frame_env(opponent="ghost_ball"), places, {"in_hand": True})
-    assert env.in_hand and env.on_table[CUE]
-    twin = frame_state(frame_env(render_mode="ansi"), places, {"in_hand": True})
-    twin.step([-0.9, 0, 0, 0, -1.0, -1.0, 0])
-    assert np.allclose(twin.last_shot.at(0.0)[0][CUE], (-D_RADIUS, -1.0475))
-
-
-# Decisions
 
 
 FOULED = {"phase": "choice", "striker": 0, "scores": (0, 4)}
@@ -89,54 +52,44 @@ def test_without_the_option_the_agent_always_plays():
 
 
 def test_replacing_after_a_miss_brings_the_balls_back():
-    env = sn.match_env(miss="clear_path")
-    env.reset(seed=1)
-    offender = env.frame.striker
+    env = begun(sn.match_env(miss="clear_path"))
+    offender, before = env.frame.striker, env.positions.copy()
     env.step(np.array([-0.8, 0, 0, -0.5, 0.3, 0.2, 0]))  # at the bottom cushion, hitting nothing
     placed = 0.3 * D_RADIUS, -1.0475 - D_RADIUS * np.sqrt(1 - 0.3**2) * 0.6
-    assert env.frame.choices == ("play", "play_again", "replace") and not np.allclose(
-        env.positions[CUE], placed
-    )
-    after = json.loads(json.dumps(env.get_state()))
+    assert env.frame.choices == ("play", "play_again", "replace")
+    assert not np.allclose(env.positions[CUE], placed)
+    after = plain(env.get_state())
     env.set_state(after)
     env.step(np.array([0, 0, 0, 0, 0, 0, 1.0]))
     assert env.strokes == 1 and np.allclose(env.positions[CUE], placed, rtol=0, atol=1e-15)
     assert env.frame.striker == offender and env.frame.in_hand
+    assert env.agent_selection == f"player_{offender}" and np.array_equal(before[1:], env.positions[1:])
 
 
 def test_a_free_ball_is_seen_and_scores():
     places = {CUE: (0.3, 1.1), BLUE: (0.6, 1.4), 1: (-0.5, -1.2), PINK: SPOTS[PINK], BLACK: (0.0, 0.0)}
     env = frame_state(frame_env(opponent="ghost_ball"), places, FOULED | {"free_ball": True})
-    assert (
-        env.on >> BLUE & 1
-        and env.on >> 1 & 1
-        and env.tables.observe(np.zeros(1, np.int64), 0)[0][FREE_BALL_SEEN] == 1.0
-    )
+    assert env.on >> BLUE & 1 and env.on >> 1 & 1
+    assert env.tables.observe(np.zeros(1, np.int64), 0)[0][FREE_BALL_SEEN] == 1.0
     _, reward, _, _, info = env.step([-0.5, 0, 0, 0, 0, 0, 0])
     assert (reward, info["points"], env.ball_on) == (1.0, 1.0, BallOn.ANY_COLOUR)
     assert np.array_equal(env.positions[BLUE], SPOTS[BLACK])  # it came back; its own spot is taken
-    plain = frame_state(frame_env(opponent="ghost_ball"), places, FOULED)
-    assert not plain.on >> BLUE & 1
-
-
-# Rewards
+    other = frame_state(frame_env(opponent="ghost_ball"), places, FOULED)
+    assert not other.on >> BLUE & 1
 
 
 @pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
 @pytest.mark.parametrize("layout", ["random:2", "pots:easy", "colours"])
 def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
-    """From the first stroke of the frame, which may be the opponent's, to the last one, which may be in his
-    first visit."""
+    """From the first stroke, which may be the opponent's, to the last, which may be in his first visit."""
     broke, before = 0, 0
     for seed in range(15):
         totals = {}
         for reward in ("points", "win"):
             env = frame_env(opponent=opponent, reward=reward, layout=layout, noise="club")
             _, info = env.reset(seed=seed)
-            broke, before = (
-                broke + (info["opponent_score"] + info["score"] > 0),
-                before + (info["winner"] >= 0),
-            )
+            broke += info["opponent_score"] + info["score"] > 0
+            before += info["winner"] >= 0
             rng, total, over = np.random.default_rng(seed), 0.0, False
             while not over:
                 _, r, terminated, _, info = env.step(rng.uniform(-1, 1, 7))
@@ -145,14 +98,12 @@ def test_points_add_up_to_the_difference_and_win_says_who_won(opponent, layout):
             totals[reward] = total
         assert totals["points"] == info["score"] - info["opponent_score"] and info["winner"] >= 0
         assert totals["win"] == (1.0 if info["winner"] == 0 else -1.0)
-    assert (broke > 0) == (opponent != "none") and (
-        before > 0 or opponent != "ghost_ball" or layout != "pots:easy"
-    )
+    assert (broke > 0) == (opponent != "none")
+    assert before > 0 or opponent != "ghost_ball" or layout != "pots:easy"
 
 
 def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost():
-    """Nothing is dealt again: the reset shows that it is lost, the next step plays nothing and reports it; a
-    state keeps that."""
+    """Nothing is dealt again: the reset shows that it is lost, the next step plays nothing and reports it."""
     env, won = frame_env(opponent="ghost_ball", layout="pots:easy", reward="win"), 0
     for seed in range(60):
         observation, info = env.reset(seed=seed)
@@ -161,38 +112,27 @@ def test_a_frame_that_the_opponent_wins_in_his_first_visit_is_one_that_was_lost(
             continue
         won += 1
         assert info["winner"] == 1 and info["opponent_strokes"] > 0 and env.over
-        state = json.loads(json.dumps(env.get_state()))
+        state = plain(env.get_state())
         for start in (None, state):
             if start:
                 env.reset(options={"state": start})
             same, reward, terminated, truncated, after = env.step(env.action_space.sample())
-            assert (reward, terminated, truncated) == (-1.0, True, False) and np.array_equal(
-                same, observation
-            )
-            assert (after["strokes"], after["opponent_strokes"], after["events"]) == (
-                info["strokes"],
-                0,
-                0,
-            ) and after["winner"] == 1
+            assert (reward, terminated, truncated) == (-1.0, True, False)
+            assert np.array_equal(same, observation)
+            assert (after["strokes"], after["opponent_strokes"], after["events"]) == (info["strokes"], 0, 0)
+            assert after["winner"] == 1
             assert np.array_equal(before, env.positions)
             with pytest.raises(gymnasium.error.ResetNeeded):
                 env.step(env.action_space.sample())
     assert won > 10
 
 
-# What a step returns
-
-
-ON_BLACK = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}
-
-
 @pytest.mark.parametrize("strokes", [5, 9])
 def test_a_frame_that_ends_by_the_rules_with_its_last_stroke_is_not_stopped(strokes):
-    frame = {"ball_on": BallOn.BLACK, "scores": (20, 0)}
-    env = frame_state(frame_env(aim="absolute", max_strokes=10), ON_BLACK, frame, strokes=strokes)
-    for _ in range(40):  # along the pot, a little to both sides of it
-        aim = np.arctan2(0.3, 0.3) / np.pi + np.random.default_rng(_).uniform(-0.01, 0.01)
-        env = frame_state(env, ON_BLACK, frame, strokes=strokes)
+    places, frame = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}, {"ball_on": BallOn.BLACK, "scores": (20, 0)}
+    env = frame_env(aim="absolute", max_strokes=10)
+    for aim in 0.25 + np.random.default_rng(0).uniform(-0.01, 0.01, 40):  # to both sides of the pot
+        frame_state(env, places, frame, strokes=strokes)
         _, _, terminated, truncated, info = env.step([-0.4, 0, 0, aim, 0, 0, 0])
         if terminated:
             assert not truncated and info["winner"] == 0 and info["strokes"] == strokes + 1
@@ -201,42 +141,98 @@ def test_a_frame_that_ends_by_the_rules_with_its_last_stroke_is_not_stopped(stro
     assert terminated
 
 
-@pytest.mark.parametrize(("lead", "needs"), [(0, False), (7, False), (8, True)])
-def test_snookers_are_needed_by_who_trails_by_more_than_is_left(lead, needs):
-    """Only the black is left, seven points; and the observation shows them."""
-    env = frame_env(aim="absolute")
-    plain = frame_state(env, ON_BLACK, {"ball_on": BallOn.BLACK, "scores": (10, 10 + lead)}).get_state()
-    observation, info = env.reset(options={"state": plain})
-    assert info["needs_snookers"] is needs
-    names = dict(zip(FRAME_ENTRIES, observation[-len(FRAME_ENTRIES) :].tolist(), strict=True))
-    assert names["available"] == pytest.approx(7 / 155) and names["lead"] == pytest.approx(
-        -lead / (lead + 147)
-    )
-
-
 def test_before_the_first_reset_a_frame_can_be_read_and_nothing_is_played():
-    for env in (
-        frame_env(render_mode="ansi"),
-        sn.match_env(render_mode="ansi"),
-        sn.SnookerVectorEnv(2, task="frame", render_mode="ansi"),
-    ):
+    many, text = sn.SnookerVectorEnv(2, task="frame", render_mode="ansi"), {"render_mode": "ansi"}
+    for env, size in ((frame_env(**text), 7), (sn.match_env(**text), 7), (many, (2, 4))):
         assert env.render() and env.get_state()
-        with pytest.raises(
-            gymnasium.error.ResetNeeded, match=r"^call reset|^the frame has not begun: call reset"
-        ):
-            env.step(np.zeros((2, 4)) if isinstance(env, sn.SnookerVectorEnv) else np.zeros(7))
+        with pytest.raises(gymnasium.error.ResetNeeded, match=r"^call reset|^the frame has not begun: call"):
+            env.step(np.zeros(size))
     assert frame_env().frame.phase == "stroke" and frame_env().over
 
 
-# A colour that is named
+# A frame that goes nowhere is stopped by the referee, and no score that play reaches breaks it
 
 
-def test_a_colour_named_that_is_not_struck_first_costs_the_higher_of_the_two():
-    """Blue lies in the way: struck when nothing or blue was named it is fair, and when black was named it
-    costs black's seven."""
-    places = {CUE: (0.0, -0.5), 1: (0.6, 1.4), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
-    for named, penalty in ((-1, 0), (BLUE, 0), (PINK, 6), (BLACK, 7)):
-        env = frame_state(frame_env(aim="absolute"), places, {"ball_on": BallOn.ANY_COLOUR})
-        env.tables.nominated[0] = named
-        _, _, _, _, info = env.step([-0.9, 0, 0, TO_BLUE, 0, 0, 0])
-        assert (info["penalty"], info["fouls"]) == (penalty, Foul.WRONG_FIRST if penalty else 0), named
+FOUL = np.array([-1.0, 0, 0, -0.5, 0, 0, -1], np.float32)
+"""Straight down the table, as softly as can be, and the other is to play again after his foul."""
+
+
+def test_fouls_without_end_score_without_end():
+    """A rule has no ceiling: a hundred fouls around what the first version could count to, and beyond."""
+    for scores in ((9_980, 0), (0, 9_980), (9_800, 9_800), (2**53, 2**40)):
+        frame = Frame(scores=scores, miss="clear_path")
+        for _ in range(200):
+            frame, _ = frame.play(Stroke(), clear_path=True)
+            frame = Frame.from_dict(plain(frame.to_dict())).choose("play_again")
+        assert sum(frame.scores) == sum(scores) + 800
+
+
+def test_a_match_of_fouls_and_orders_to_play_again_ends_by_itself():
+    pytest.importorskip("pettingzoo")
+    env = begun(sn.match_env(layout="random:2"))
+    state = env.get_state()
+    env.reset(options={"state": state | {"frame": state["frame"] | {"scores": [9_990, 9_990]}}})
+    for _ in range(2000):  # a turn is a stroke, or gives the table over
+        env.step(FOUL)
+        assert not any(env.terminations.values())
+        if any(env.truncations.values()):
+            break
+    assert env.strokes == MAX_STROKES == 1000 and all(env.truncations.values())
+    assert sum(env.frame.scores) >= 19_980 + 4 * 900 and env.infos["player_0"]["strokes"] == 1000
+    assert all(env.observation_spaces[player].contains(env.observe(player)) for player in env.possible_agents)
+
+
+@pytest.mark.parametrize("opponent", ["none", "random", "ghost_ball"])
+def test_the_referee_stops_the_frame_after_the_very_stroke(opponent):
+    env, cut = frame_env(opponent=opponent, max_strokes=6), 0
+    for seed in range(12):
+        _, info = env.reset(seed=seed)
+        played, rng = info["strokes"], np.random.default_rng(seed)
+        assert played < 6
+        while True:
+            obs, _, terminated, truncated, info = env.step(rng.uniform(-1, 1, 7))
+            played += (info["events"] > 0 or info["seconds"] > 0) + info["opponent_strokes"]
+            assert info["strokes"] == played <= 6 and env.observation_space.contains(obs)
+            assert truncated == (played == 6 and not terminated) and type(truncated) is bool
+            if terminated or truncated:
+                break
+        assert terminated or info["winner"] == -1
+        before = plain(env.get_state())
+        with pytest.raises(gymnasium.error.ResetNeeded):
+            env.step(np.zeros(7))
+        assert plain(env.get_state()) == before
+        cut += truncated and env.frame.striker == 1
+        other = frame_env(opponent=opponent, max_strokes=6)
+        other.set_state(before)  # in the middle of a visit of the opponent, too
+        assert other.over and plain(other.get_state()) == before
+        with pytest.raises(ValueError, match=r"state\.strokes = 6: must be below max_strokes = 6"):
+            other.reset(options={"state": before})
+    assert (cut > 0) == (opponent != "none")  # alone the agent is always to play
+
+
+def test_the_strokes_are_counted_on_from_a_state():
+    env, other = (frame_env(max_strokes=9) for _ in range(2))
+    env.reset(seed=1)
+    for _ in range(4):
+        env.step(FOUL)
+    state = plain(env.get_state())
+    assert state["strokes"] == 4
+    assert other.reset(options={"state": state})[1]["strokes"] == 4
+    assert [other.step(FOUL)[3] for _ in range(5)] == [False] * 4 + [True]
+    assert other.reset()[1]["strokes"] == 0
+    endless = frame_env(max_strokes=None)
+    endless.reset(options={"state": state | {"strokes": 10**6}})
+    assert not endless.step(FOUL)[3]
+
+
+def test_a_frame_that_is_stopped_in_the_opening_visit_is_reported_by_the_next_step():
+    """After the opponent's break-off the agent plays nothing, and is paid what the opponent scored."""
+    env, opened = frame_env(opponent="random", max_strokes=1), 0
+    for seed in range(10):
+        _, info = env.reset(seed=seed)
+        opened += info["strokes"]
+        _, reward, terminated, truncated, after = env.step(FOUL)
+        assert (terminated, truncated, after["strokes"]) == (False, True, 1) and after["winner"] == -1
+        assert reward == after["score"] - after["opponent_score"]
+        assert info["strokes"] == 0 or after["events"] == 0
+    assert 0 < opened < 10

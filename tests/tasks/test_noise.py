@@ -5,14 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import Physics, SnookerEnv
 from snooker_env.game.balls import CUE, BallOn
 from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics.cue import strike
-from snooker_env.physics.parameters import Physics
 from snooker_env.tasks.noise import LEVELS, Noise, executed
 from tests.kernels import from_python
-from tests.tables import after_strike, speed_of, table_state
+from tests.tables import after_strike, begun, speed_of, table_state
 
 _executed = from_python(executed)
 
@@ -20,12 +19,8 @@ _executed = from_python(executed)
 def drawn(noise, n, speed, side, top, aim, elevation):
     """So many shots as executed, from one stream: (n, 5)."""
     stream, packed = np.array([7, 0], np.uint64), noise.pack(R)
-    return np.array(
-        [
-            _executed(float(speed), float(side), float(top), float(aim), float(elevation), packed, stream)
-            for _ in range(n)
-        ]
-    )
+    shot = map(float, (speed, side, top, aim, elevation))
+    return np.array([_executed(*numbers, packed, stream) for numbers in [tuple(shot)] * n])
 
 
 def test_noise_has_the_deviations_that_it_says():
@@ -42,27 +37,21 @@ def test_noise_has_the_deviations_that_it_says():
     assert (np.abs(normal) > 3).mean(axis=0) == pytest.approx([0.0027] * 5, abs=0.002)
 
 
+WIDTHS = {  # of the aim [deg] and of a speed of 3 m/s
+    "none": (0.0, 0.0),
+    "professional": (0.025, 0.0525),
+    "amateur": (0.034, 0.075),
+    "club": (0.08, 0.12),
+    "robot": (0.033, 0.24),
+    "olympiad": (0.125, 0.075),
+}
+
+
 @pytest.mark.parametrize("name", LEVELS)
 def test_each_level_is_as_wide_as_written(name):
-    wide = {
-        "none": 0,
-        "professional": 0.025,
-        "amateur": 0.034,
-        "club": 0.08,
-        "robot": 0.033,
-        "olympiad": 0.125,
-    }[name]
     draws = drawn(LEVELS[name], 4000, 3.0, 0, 0, 1.0, 0.2)
-    assert np.degrees(draws[:, 3].std()) == pytest.approx(wide, rel=0.05, abs=1e-12)
-    fast = {
-        "none": 0,
-        "professional": 0.0525,
-        "amateur": 0.075,
-        "club": 0.12,
-        "robot": 0.24,
-        "olympiad": 0.075,
-    }[name]
-    assert draws[:, 0].std() == pytest.approx(fast, rel=0.05)
+    widths = np.degrees(draws[:, 3].std()), draws[:, 0].std()
+    assert widths == pytest.approx(WIDTHS[name], rel=0.05, abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -82,17 +71,14 @@ def test_the_total_direction_error_in_figures():
     """TP A.31 for a small offset b: (5/2) b / (1 + m_r + 5/2)."""
     assert Noise(aim_deg=0.3).direction_deg() == pytest.approx(0.3)
     assert Noise(offset_mm=1.0).direction_deg() == pytest.approx(math.degrees(2.5 / 26.25 / 33.5))
-    assert Noise(aim_deg=0.3, offset_mm=4.0).direction_deg({"end_mass_ratio": 0.0}) == pytest.approx(
-        math.hypot(0.3, math.degrees(2.5 * 4.0 / 26.25 / 3.5))
-    )
-    assert Noise(offset_mm=300.0).direction_deg() == pytest.approx(
-        300 * Noise(offset_mm=1.0).direction_deg()
-    )  # off the ball: still a number
+    both = math.hypot(0.3, math.degrees(2.5 * 4.0 / 26.25 / 3.5))
+    level = Noise(aim_deg=0.3, offset_mm=4.0)
+    assert level.direction_deg({"end_mass_ratio": 0.0}) == pytest.approx(both)
+    millimetre, far = (Noise(offset_mm=offset).direction_deg() for offset in (1.0, 300.0))
+    assert far == pytest.approx(300 * millimetre)  # off the ball: still a number
     assert LEVELS["olympiad"].direction_deg() == pytest.approx(0.149, abs=5e-4)
-    errors = [
-        LEVELS[name].direction_deg()
-        for name in ("none", "professional", "robot", "amateur", "club", "olympiad")
-    ]
+    names = ("none", "professional", "robot", "amateur", "club", "olympiad")
+    errors = [LEVELS[name].direction_deg() for name in names]
     assert errors == sorted(errors) and errors[1] < 0.05
 
 
@@ -116,13 +102,11 @@ def test_noise_reaches_the_table():
 
 
 def test_no_noise_draws_nothing():
-    env = SnookerEnv(layout="random:3")
-    env.reset(seed=1)
+    env = begun(SnookerEnv(layout="random:3"))
     before = env.get_state()
     env.step(np.zeros(4))
     assert env.get_state()["stream"] == before["stream"] and env.get_state()["rng"] == before["rng"]
-    noisy = SnookerEnv(layout="random:3", noise={"offset_mm": 1e-9})
-    noisy.reset(seed=1)
+    noisy = begun(SnookerEnv(layout="random:3", noise={"offset_mm": 1e-9}))
     noisy.step(np.zeros(4))
     assert noisy.get_state()["stream"] == [before["stream"][0], before["stream"][1] + 3]
     assert Noise().silent and not any(Noise(**{f: 1e-9}).silent for f in Noise.__dataclass_fields__)

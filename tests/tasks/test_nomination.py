@@ -1,24 +1,20 @@
-"""What is a colour that was nominated worth, and what may be nominated and declared when? Box, discrete
-actions, masks."""
+"""What is a nominated colour worth, and what may be nominated and declared when?"""
 
 import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.game.balls import BLACK, BLUE, CUE, PINK, SPOTS, YELLOW, BallOn
+from snooker_env.game.balls import BLACK, BLUE, BROWN, CUE, GREEN, PINK, SPOTS, YELLOW, BallOn, mask_of
+from snooker_env.game.paths import paths
 from snooker_env.game.ruling import AUTO, Foul
+from snooker_env.geometry import BAULK_Y, D_RADIUS
 from snooker_env.tasks import declarations, discrete_actions
 from tests.refusals import refused
-from tests.tables import frame_env, frame_state
+from tests.tables import PLACES as STANDING
+from tests.tables import begun, frame_env, frame_state, layout, plain
 
-PLACES = {
-    CUE: (0.0, -0.5),
-    1: (0.6, 1.4),
-    BLUE: (0.3, -0.5),
-    PINK: SPOTS[PINK],
-    BLACK: SPOTS[BLACK],
-    YELLOW: SPOTS[YELLOW],
-}
+COLOURS = {CUE: (0.0, -0.5), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
+PLACES = COLOURS | {1: (0.6, 1.4), YELLOW: SPOTS[YELLOW]}
 TO_BLUE, TO_NOTHING = 0.0, -0.8
 ANY = {"ball_on": BallOn.ANY_COLOUR}
 
@@ -58,12 +54,9 @@ def test_without_nomination_a_stroke_at_nothing_costs_seven_and_the_colour_struc
 
 
 def test_the_potting_line_is_that_of_the_ball_nominated():
-    env = frame_state(frame_env(nominate=True), PLACES, ANY)
-    struck = []
-    for part in (3, 4):
-        env = frame_state(env, PLACES, ANY)
-        struck.append(env.step([-0.5, 0, 0, 0, 0, 0, named(part), 0])[4]["first_ball"])
-    assert struck == [BLUE, PINK]
+    for part, ball in ((3, BLUE), (4, PINK)):
+        env = frame_state(frame_env(nominate=True), PLACES, ANY)
+        assert env.step([-0.5, 0, 0, 0, 0, 0, named(part), 0])[4]["first_ball"] == ball
 
 
 FREE = {"phase": "stroke", "free_ball": True, "scores": (0, 4)}
@@ -71,16 +64,14 @@ FREE = {"phase": "stroke", "free_ball": True, "scores": (0, 4)}
 
 @pytest.mark.parametrize(("part", "penalty"), [(0, 5), (4, 0), (1, 5), (6, 5)])
 def test_a_free_ball_is_nominated_or_declined(part, penalty):
-    """With reds on: the blue struck first is fair as the free ball, else it costs its five; a free ball
-    itself has the value of a red."""
+    """With reds on: the blue struck first is fair as the free ball, worth a red, else it costs its five."""
     env = frame_state(frame_env(aim="absolute", nominate=True), PLACES, FREE)
     assert env.step([-0.9, 0, 0, TO_BLUE, 0, 0, named(part, 7), 0])[4]["penalty"] == penalty
 
 
 def test_the_ball_on_itself_as_the_free_ball_declines_it():
-    places = {CUE: (0.0, -0.5), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
     for part, penalty in ((0, 0), (4, 0), (5, 5), (6, 5)):  # blue is on
-        env = frame_state(frame_env(aim="absolute", nominate=True), places, FREE | {"ball_on": BallOn.BLUE})
+        env = frame_state(frame_env(aim="absolute", nominate=True), COLOURS, FREE | {"ball_on": BallOn.BLUE})
         assert env.step([-0.9, 0, 0, TO_BLUE, 0, 0, named(part, 7), 0])[4]["penalty"] == penalty, part
 
 
@@ -102,38 +93,28 @@ def test_masks_allow_what_may_be_nominated():
     assert blocks(frame_state(env, PLACES, {})) == [0]
     assert blocks(frame_state(env, PLACES, ANY)) == [1, 4, 5, 6]  # green and brown are not on the table
     assert blocks(frame_state(env, PLACES, FREE)) == [0, 1, 4, 5, 6]
-    colours = {CUE: (0.0, -0.5), BLUE: (0.3, -0.5), PINK: SPOTS[PINK], BLACK: SPOTS[BLACK]}
-    assert blocks(frame_state(env, colours, FREE | {"ball_on": BallOn.BLUE})) == [0, 5, 6]
-    env = frame_state(env, PLACES, ANY)
+    assert blocks(frame_state(env, COLOURS, FREE | {"ball_on": BallOn.BLUE})) == [0, 5, 6]
     for n, ball in ((4, BLUE), (5, PINK)):
         env = frame_state(env, PLACES, ANY)
         assert env.step(540 * n + 67)[4]["first_ball"] == ball
     refused(lambda: env.step(3780), "action", "3780", "must be an integer in [0, 3780)")
 
 
-# Declarations
-
-
 SAID = {"concede": True, "claim": True, "lot": True}
-ONLY_BLACK = {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}
+CHOICES = {"action": "discrete", "decision": False, "placement": False}
 
 
 @pytest.mark.parametrize("only", ["concede", "claim", "lot"])
 def test_each_declaration_alone_lengthens_the_action_by_one(only):
-    assert frame_env(**{only: True}).action_space.shape == (8,) and frame_env(**SAID).action_space.shape == (
-        8,
-    )
+    assert frame_env(**{only: True}).action_space.shape == (8,)
+    assert frame_env(**SAID).action_space.shape == (8,)
     assert sn.SnookerEnv(task="frame", action="discrete", **{only: True}).action_space.n == 541
 
 
 def test_who_concedes_loses_without_a_stroke():
-    for action, say in (("box", [0] * 7 + [-0.7]), ("discrete", 540)):
-        given = {} if action == "box" else {"decision": False, "placement": False}
-        env = frame_state(
-            frame_env(action=action, opponent="ghost_ball", reward="win", **SAID, **given),
-            PLACES,
-            {"scores": (50, 0)},
-        )
+    for options, say in (({}, [0] * 7 + [-0.7]), (CHOICES, 540)):
+        env = frame_env(opponent="ghost_ball", reward="win", **SAID | options)
+        frame_state(env, PLACES, {"scores": (50, 0)})
         _, reward, terminated, _, info = env.step(say)
         assert (reward, terminated, info["winner"], info["events"]) == (-1.0, True, 1, 0)
     env = frame_state(frame_env(claim=True), PLACES, {})
@@ -142,39 +123,24 @@ def test_who_concedes_loses_without_a_stroke():
 
 @pytest.mark.parametrize(("scores", "won"), [((20, 12), True), ((20, 13), False)])
 def test_the_frame_is_claimed_with_the_black_left_and_more_than_seven_ahead(scores, won):
-    for action in ("box", "discrete"):
-        given = {} if action == "box" else {"decision": False, "placement": False}
-        env = frame_state(
-            frame_env(action=action, **SAID, **given), ONLY_BLACK, {"ball_on": BallOn.BLACK, "scores": scores}
-        )
-        if action == "discrete":
-            assert env.action_masks()[540:].tolist() == [True, won, False]
-        _, _, terminated, _, info = env.step([-1.0] + [0] * 6 + [0.7] if action == "box" else 541)
+    for options in ({}, CHOICES):
+        env, frame = frame_env(**SAID | options), {"ball_on": BallOn.BLACK, "scores": scores}
+        frame_state(env, {CUE: (0.3, 1.1), BLACK: (0.6, 1.4)}, frame)
+        assert not options or env.action_masks()[540:].tolist() == [True, won, False]
+        _, _, terminated, _, info = env.step(541 if options else [-1.0] + [0] * 6 + [0.7])
         assert (terminated and info["events"] == 0) == won and (not won or info["winner"] == 0)
 
 
-@pytest.mark.parametrize("action", ["box", "discrete"])
-def test_the_winner_of_the_lot_says_who_begins(action):
+@pytest.mark.parametrize("options", [{}, CHOICES])
+def test_the_winner_of_the_lot_says_who_begins(options):
     pytest.importorskip("pettingzoo")
-    given = {} if action == "box" else {"placement": False, "decision": False}
-    level = {
-        "phase": "lot",
-        "respotted_black": True,
-        "ball_on": BallOn.BLACK,
-        "scores": (20, 20),
-        "in_hand": True,
-        "striker": 1,
-    }
+    black = {"phase": "lot", "respotted_black": True, "ball_on": BallOn.BLACK}
+    level = black | {"scores": (20, 20), "in_hand": True, "striker": 1}
     places = {CUE: (0.0, -1.2), BLACK: SPOTS[BLACK]}
     for other in (False, True):
-        env = sn.match_env(action=action, lot=True, **given)
-        env.reset(seed=1)
-        state = frame_state(sn.SnookerEnv(task="frame"), places, {"ball_on": BallOn.BLACK}).get_state()
-        frame = state["frame"] | level
-        env.reset(options={"state": state | {"frame": frame}})
-        observation = env.observe("player_1")
-        assert env.agent_selection == "player_1" and observation[121 + 12] == 1.0
-        if action == "discrete":
+        env = frame_state(sn.match_env(lot=True, **options), places, level)
+        assert env.agent_selection == "player_1" and env.observe("player_1")[121 + 12] == 1.0
+        if options:
             assert env.action_mask("player_1")[-1] == 1
             env.step(540 if other else 0)
         else:
@@ -182,32 +148,141 @@ def test_the_winner_of_the_lot_says_who_begins(action):
         assert env.strokes == (not other) and env.frame.phase != "lot"
         assert not other or env.agent_selection == "player_0"
     with pytest.raises(ValueError, match=r"state\.frame\.phase"):
-        sn.match_env().reset(options={"state": state | {"frame": frame}})
+        frame_state(sn.match_env(), places, level)
 
 
-def test_the_built_in_players_play_with_everything_said():
+@pytest.mark.parametrize("opponent", ["random", "ghost_ball"])
+@pytest.mark.parametrize("action", ["box", "discrete"])
+def test_the_built_in_players_play_with_everything_said(opponent, action):
     """They nominate, begin at the lot, and do not concede."""
-    for opponent in ("random", "ghost_ball"):
-        for action in ("box", "discrete"):
-            options = {
-                "task": "match",
-                "frames": 3,
-                "nominate": True,
-                "layout": "pots:easy",
-                "action": action,
-                "aim": "target",
-            } | SAID
-            tables = sn.SnookerVectorEnv(
-                20, **options, opponent=opponent, autoreset_mode="SameStep", threads=1
-            )
-            tables.reset(seed=1)
-            rng, ended = np.random.default_rng(0), 0
-            for _ in range(40):
-                if action == "discrete":
-                    masks = tables.action_masks()
-                    masks[:, 3780] = False
-                    a = np.array([rng.choice(np.flatnonzero(mask)) for mask in masks])
-                else:
-                    a = rng.uniform(-1, 1, (20, 6)) * (1, 0.3, 0.3, 1, 1, 0.6)
-                ended += int(tables.step(a)[2].sum())
-            assert ended > 3
+    options = SAID | {"task": "match", "frames": 3, "nominate": True, "layout": "pots:easy", "aim": "target"}
+    many = {"opponent": opponent, "autoreset_mode": "SameStep", "threads": 1}
+    tables = begun(sn.SnookerVectorEnv(20, action=action, **options, **many))
+    rng, ended = np.random.default_rng(0), 0
+    for _ in range(40):
+        if action == "discrete":
+            masks = tables.action_masks()
+            masks[:, 3780] = False
+            a = np.array([rng.choice(np.flatnonzero(mask)) for mask in masks])
+        else:
+            a = rng.uniform(-1, 1, (20, 6)) * (1, 0.3, 0.3, 1, 1, 0.6)
+        ended += int(tables.step(a)[2].sum())
+    assert ended > 3
+
+
+# What it costs to give a frame up: with points as the reward, those that are left on the table
+
+
+LEFT = 2 * 8 + 6 + 7
+"""On the table of ``STANDING``: two reds, pink and black."""
+GIVES_UP = [0.0] * 7 + [-1.0]
+
+
+def test_to_concede_costs_what_is_left_on_the_table():
+    env = frame_state(frame_env(concede=True, opponent="ghost_ball"), STANDING, {"scores": (10, 30)})
+    _, reward, terminated, _, info = env.step(GIVES_UP)
+    assert (reward, terminated, info["winner"]) == (-LEFT, True, 1)
+    assert (info["score"], info["opponent_score"]) == (10.0, 30.0)  # the score stands
+
+
+def test_from_the_start_it_costs_147():
+    env = begun(sn.SnookerEnv(task="frame", concede=True))
+    assert env.step([0.0] * 4 + [-1.0])[1] == -147.0
+
+
+def test_what_was_not_paid_yet_is_paid_with_it():
+    env = frame_env(concede=True, opponent="ghost_ball")
+    state = frame_state(env, STANDING, {"scores": (10, 30)}).get_state() | {"unpaid": -5}
+    env.reset(options={"state": plain(state)})
+    assert env.step(GIVES_UP)[1] == -5 - LEFT
+
+
+@pytest.mark.parametrize("striker", [0, 1])
+def test_of_two_players_the_other_one_gets_it(striker):
+    match = frame_state(sn.match_env(concede=True), STANDING, {"scores": (10, 30), "striker": striker})
+    match.step(GIVES_UP)
+    assert match.rewards == {f"player_{striker}": -LEFT, f"player_{1 - striker}": LEFT}
+
+
+@pytest.mark.parametrize(("reward", "expected"), [("win", -1.0), ("frames", -1.0), ("points", -(147 + LEFT))])
+def test_of_a_match_each_frame_given_up_is_paid_once(reward, expected):
+    env = begun(sn.SnookerEnv(task="match", frames=3, concede=True, aim="target", reward=reward))
+    total = env.step([0.0] * 4 + [-1.0])[1]
+    state = env.get_state()
+    assert state["frames"] == [0, 1]
+    frame = state["frame"] | {"on_table": 2 | 4 | 1 << PINK | 1 << BLACK, "in_hand": False}
+    env.reset(options={"state": state | layout(STANDING) | {"frame": frame}})
+    total += env.step([0.0] * 4 + [-1.0])[1]
+    assert total == {"frames": 2 * expected}.get(reward, expected)
+
+
+# A miss with the cue ball in hand is judged from every place where it could have been put
+
+
+TABLE = sn.Table.preset("match")
+CUSHIONS = {"noses": TABLE.noses, "jaws": TABLE.jaws}
+RED = (0.0, 0.5)
+BEHIND_THE_BROWN = [-0.6, 0.0, 0.0, 0.5, 0.0, 1.0, 0.0]
+"""A stroke straight up the table from the back of the D, into the brown."""
+WALL = {ball: (0.0525 * k, 0.9) for k, ball in enumerate((GREEN, YELLOW, BLUE, PINK, BLACK), -2)}
+"""Five colours side by side: a red right behind them is seen from nowhere in the D."""
+
+
+def table(places, cue=None):
+    parts = layout(places if cue is None else places | {CUE: cue})
+    return np.array(parts["positions"]), np.array(parts["on_table"])
+
+
+def asks_again(observation, rng):
+    """An opponent who has the balls replaced whenever he may."""
+    return [-0.9, 0.0, 0.0, 0.9, 0.0, 0.0, 1.0]
+
+
+@pytest.mark.parametrize("miss", ["clear_path", "attempt"])
+def test_who_hides_in_hand_is_sent_back_warned_and_loses_the_frame(miss):
+    """It is given up then: the red, the brown and the black that are left are paid for as well."""
+    env = frame_env(aim="absolute", miss=miss, opponent=asks_again)
+    places = {1: RED, BROWN: SPOTS[BROWN], BLACK: SPOTS[BLACK], CUE: (0.18, BAULK_Y)}
+    frame_state(env, places, {"in_hand": True})
+    for failures, warned in ((1, False), (2, True)):
+        info = env.step(BEHIND_THE_BROWN)[4]
+        assert (info["opponent_score"], info["failures"], info["warned"]) == (4 * failures, failures, warned)
+        assert env.in_hand
+    _, reward, terminated, _, info = env.step(BEHIND_THE_BROWN)
+    assert terminated and (info["opponent_score"], info["winner"]) == (12.0, 1)
+    assert reward == -4 - (8 + 4 + 7)
+
+
+@pytest.mark.parametrize(("wall", "called"), [(WALL, False), ({}, True)])
+def test_who_can_see_no_ball_on_from_all_of_the_d_is_not_called(wall, called):
+    places = {1: (0.0, 0.96), BROWN: SPOTS[BROWN], CUE: (0.18, BAULK_Y), BLACK: SPOTS[BLACK], **wall}
+    match = frame_state(sn.match_env(aim="absolute", miss="clear_path"), places, {"in_hand": True})
+    match.step(BEHIND_THE_BROWN)
+    assert (match.frame.phase, match.frame.scores, match.frame.miss_called) == ("choice", (0, 4), called)
+
+
+def test_paths_in_hand_are_those_of_the_best_place():
+    """Without the cue ball on the table it is in hand, as in the test for a snooker."""
+    hidden = {1: RED, BROWN: SPOTS[BROWN]}
+    assert paths(*table(hidden, (0.0, BAULK_Y - 0.29)), mask_of([1]), **CUSHIONS) == (False, False)
+    assert paths(*table(hidden), mask_of([1]), **CUSHIONS) == (True, True)
+    walled = table({1: (0.0, 0.96), **WALL})
+    assert paths(*walled, mask_of([1]), **CUSHIONS) == (False, False)
+    assert paths(*walled, mask_of([1]), anywhere=True, **CUSHIONS) == (True, True)  # from above
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_place_of_the_d_sees_more(seed):
+    """Where some place of the D has a clear path, so has the cue ball in hand; touching a ball is none."""
+    rng, met = np.random.default_rng(seed), set()
+    for _ in range(12):
+        at = rng.uniform((-0.5, 0.5), (0.5, 1.3))
+        beside = at + rng.uniform((-0.12, -0.3), (0.12, -0.06), (4, 2))
+        places = {1: at, **dict(zip((GREEN, YELLOW, BLUE, PINK), beside, strict=True))}
+        x = rng.uniform(-D_RADIUS, D_RADIUS, 60)
+        d = np.column_stack([x, BAULK_Y - rng.uniform(0, 1, 60) * np.sqrt(D_RADIUS**2 - x**2)])
+        found = np.array([paths(*table(places, place), mask_of([1]), **CUSHIONS) for place in d]).any(axis=0)
+        in_hand = np.array(paths(*table(places), mask_of([1]), **CUSHIONS))
+        assert (in_hand >= found).all()
+        met |= {tuple(in_hand.tolist())}
+    assert len(met) > 1

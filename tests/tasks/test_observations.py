@@ -1,14 +1,16 @@
 """Do observations and infos say what lies on the table, and are they the caller's own?"""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
-from snooker_env.envs.snooker import SnookerEnv
+from snooker_env import SnookerEnv
 from snooker_env.game.balls import BLACK, CUE, N_BALLS, SPOTS, BallOn
 from snooker_env.tasks import observations, table_fit
 from tests.refusals import refused
-from tests.tables import INFO, LAYOUTS, drawn, frame_env, table_state, viewed
+from tests.tables import INFO, LAYOUTS, drawn, table_state, viewed
 
 
 @pytest.mark.parametrize("observation", observations.OBSERVATIONS)
@@ -43,21 +45,15 @@ def describe(env):
         sequence = env.ball_on > 1 and ball == env.ball_on + 14
         may = {BallOn.RED: 1 <= ball < 16, BallOn.ANY_COLOUR: ball >= 16}.get(env.ball_on, sequence)
         rows.append([x / 0.889, y / 1.7845, env.on_table[ball], values[ball] / 7, may and env.on_table[ball]])
-    state = [
-        env.on_table[1:16].sum() / 15,
-        *(env.ball_on == k for k in range(8)),
-        env.in_hand,
-        env.points / 155,
-    ]
+    on = [env.ball_on == k for k in range(8)]
+    state = [env.on_table[1:16].sum() / 15, *on, env.in_hand, env.points / 155]
     return np.array(rows, np.float32), np.array(state, np.float32)
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_observations_say_where_the_balls_lie_and_what_is_on(layout):
-    flat, rows = (
-        SnookerEnv(layout=layout, aim="target"),
-        SnookerEnv(layout=layout, aim="target", observation="balls"),
-    )
+    kinds = ("flat", "balls")
+    flat, rows = (SnookerEnv(layout=layout, aim="target", observation=kind) for kind in kinds)
     assert set(rows.observation_space.spaces) == {"balls", "state"}
     for seed in range(6):
         a, b = flat.reset(seed=seed)[0], rows.reset(seed=seed)[0]
@@ -73,23 +69,20 @@ def test_observations_say_where_the_balls_lie_and_what_is_on(layout):
 
 
 OF_FRAMES = {"task": "frame", "opponent": "random", "max_strokes": 40}
+SAID = {"nominate": True, "concede": True, "claim": True, "lot": True, "miss": "clear_path"}
+MASKED = {
+    "opened": {},
+    "colours": {"layout": "colours", "noise": "club"},
+    "black": {"layout": "random:0"},
+    "frame": OF_FRAMES | {"layout": "random:1"},
+    "all that is said": OF_FRAMES | SAID,
+    "match": OF_FRAMES | {"task": "match", "frames": 3, "layout": "random:0"},
+}
 
 
-@pytest.mark.parametrize(
-    "options",
-    [
-        {},
-        {"layout": "colours", "noise": "club"},
-        {"layout": "random:0"},
-        OF_FRAMES | {"layout": "random:1"},
-        OF_FRAMES | {"nominate": True, "concede": True, "claim": True, "lot": True, "miss": "clear_path"},
-        OF_FRAMES | {"task": "match", "frames": 3, "layout": "random:0"},
-    ],
-    ids=["opened", "colours", "black", "frame", "all that is said", "match"],
-)
+@pytest.mark.parametrize("options", MASKED.values(), ids=MASKED)
 def test_masked_observations_hold_the_flat_one_and_the_available_choices(options):
-    """Also at the end of an episode, where at least one choice stays available: no learner divides by
-    nothing."""
+    """Also at the end, where at least one choice stays available: no learner divides by nothing."""
     flat, masked = (SnookerEnv(action="discrete", observation=kind, **options) for kind in ("flat", "masked"))
     assert set(masked.observation_space.spaces) == {"observations", "action_mask"}
     assert masked.observation_space["observations"] == flat.observation_space
@@ -100,12 +93,10 @@ def test_masked_observations_hold_the_flat_one_and_the_available_choices(options
         done = False
         while True:
             assert np.array_equal(a, b["observations"]) and a.dtype == b["observations"].dtype
-            assert b["action_mask"].dtype == np.int8 and np.array_equal(
-                b["action_mask"], masked.action_masks()
-            )
-            assert np.array_equal(
-                flat.action_masks(), masked.action_masks()
-            ) and masked.observation_space.contains(b)
+            assert b["action_mask"].dtype == np.int8
+            assert np.array_equal(b["action_mask"], masked.action_masks())
+            assert np.array_equal(flat.action_masks(), masked.action_masks())
+            assert masked.observation_space.contains(b)
             assert b["action_mask"].any()
             kinds.add(b["action_mask"].tobytes())
             if done:
@@ -119,16 +110,9 @@ def test_masked_observations_hold_the_flat_one_and_the_available_choices(options
     assert ends == 12 and len(kinds) > 1
 
 
-def test_masked_observations_need_discrete_actions():
-    for make in (SnookerEnv, frame_env):
-        says = 'must be "flat" or "balls" with action="box": a Box has no masks'
-        refused(lambda make=make: make(observation="masked"), "observation", "'masked'", says)
-    refused(
-        lambda: observations.shaped("masked", np.zeros((2, 121), np.float32)),
-        "masks",
-        "None",
-        "must be the available choices",
-    )
+def test_masked_observations_need_masks():
+    shaped = partial(observations.shaped, "masked", np.zeros((2, 121), np.float32))
+    refused(shaped, "masks", "None", "must be the available choices")
 
 
 def test_infos_have_the_same_keys_and_types_at_all_times():
@@ -147,34 +131,22 @@ def test_infos_have_the_same_keys_and_types_at_all_times():
     assert all(len(values) > 1 for values in seen.values()), seen  # none of them is a constant
 
 
-@pytest.mark.parametrize(
-    ("place", "seen"),
-    [
-        ((0.889 + 0.008, 0.033), (0.897 / 0.889, 0.033 / 1.7845)),
-        ((-0.897, -0.033), (-0.897 / 0.889, -0.033 / 1.7845)),
-    ],
-)
-def test_a_ball_at_rest_in_the_mouth_of_a_pocket_is_seen_where_it_lies(place, seen):
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("kind", ["flat", "balls"])
+def test_a_ball_at_rest_in_the_mouth_of_a_pocket_is_seen_where_it_lies(kind, side):
     """Past the noses."""
-    for kind in ("flat", "balls"):
-        env = SnookerEnv(observation=kind)
-        table_state(env, {CUE: (0.0, 0.0), 1: place, BLACK: SPOTS[BLACK]}, BallOn.RED)
-        observation, _ = env.reset(options={"state": env.get_state()})
-        assert env.observation_space.contains(observation)
-        row = observation["balls"][1] if kind == "balls" else observation[5:10]
-        assert np.allclose(row[:2], seen, atol=1e-7, rtol=0) and abs(row[0]) > 1
+    env = SnookerEnv(observation=kind)
+    table_state(env, {CUE: (0.0, 0.0), 1: (side * 0.897, side * 0.033), BLACK: SPOTS[BLACK]}, BallOn.RED)
+    observation, _ = env.reset(options={"state": env.get_state()})
+    assert env.observation_space.contains(observation)
+    row = observation["balls"][1] if kind == "balls" else observation[5:10]
+    assert np.allclose(row[:2], (side * 0.897 / 0.889, side * 0.033 / 1.7845), atol=1e-7, rtol=0)
 
 
 def test_a_table_with_deeper_mouths_than_observations_reach_is_refused(monkeypatch):
     """On snooker's own table a ball can rest 11 mm past the noses."""
-    for reach, fits in ((1.014, True), (1.012, False)):
-        monkeypatch.setattr(table_fit, "REACH", reach)
-        if fits:
-            SnookerEnv(table="match")
-        else:
-            refused(
-                lambda: SnookerEnv(table="match"),
-                "table",
-                "match",
-                "past the noses, where observations end (one can 0.0117 m",
-            )
+    monkeypatch.setattr(table_fit, "REACH", 1.014)
+    SnookerEnv(table="match")
+    monkeypatch.setattr(table_fit, "REACH", 1.012)
+    ends = "past the noses, where observations end (one can 0.0117 m"
+    refused(lambda: SnookerEnv(table="match"), "table", "match", ends)

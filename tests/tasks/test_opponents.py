@@ -10,13 +10,12 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
-from snooker_env.envs.snooker import SnookerEnv
-from snooker_env.envs.vector import SnookerVectorEnv
+from snooker_env import SnookerEnv, SnookerVectorEnv
 from snooker_env.tasks.saved_models import SavedModel
 from snooker_env.tasks.stroke import ShotBuffers
 from snooker_env.tasks.tables import I_POINTS, Crew
 from tests.bombs import bombed, edited, rezipped
-from tests.tables import PLACES, frame_env, frame_state
+from tests.tables import PLACES, begun, frame_env, frame_state
 from tests.torch_threads import deciding_on_one_thread
 
 
@@ -49,15 +48,6 @@ def test_what_a_callable_answers_is_checked(answer, says):
         [env.reset(seed=seed) for seed in range(10)]
 
 
-def test_what_a_callable_itself_raises_is_left_as_it_is():
-    def opponent(observation, rng):
-        raise ValueError("my own fault")
-
-    env = frame_env(opponent=opponent)
-    with pytest.raises(ValueError, match=r"^my own fault$"):
-        [env.reset(seed=seed) for seed in range(10)]
-
-
 @pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
 def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
     """His turn was cut short: the agent's next action is not his, and the next episode begins as ever."""
@@ -70,7 +60,7 @@ def test_after_an_error_of_the_opponent_nobody_plays_for_him(error):
     env, miss, failing = frame_env(opponent=opponent), [-0.9, 0, 0, 1.0, 0, 0, 0], False
     frame_state(env, PLACES, {})
     failing = True
-    with pytest.raises(error, match="no turn"):
+    with pytest.raises(error, match=r"^no turn$"):
         env.step(miss)
     with pytest.raises(gymnasium.error.ResetNeeded):
         env.step(miss)
@@ -90,10 +80,8 @@ def test_the_ghost_ball_player_pots_what_is_there():
     tables, player = env.tables, env.tables.seats[1].player
     for seed in range(60):
         env.reset(seed=seed)
-        out = tables.output()
-        tables.turn(
-            lambda which, buffers: player.prepare(tables, which, None, buffers), out, Crew(ShotBuffers(1))
-        )
+        out, crew = tables.output(), Crew(ShotBuffers(1))
+        tables.turn(lambda which, buffers: player.prepare(tables, which, None, buffers), out, crew)
         potted += out.reals[0, I_POINTS]
     assert potted > 30
 
@@ -101,8 +89,7 @@ def test_the_ghost_ball_player_pots_what_is_there():
 def test_the_ghost_ball_player_beats_the_random_one():
     wins = 0
     for seed in range(8):
-        env = frame_env(opponent="ghost_ball", decision=False)
-        env.reset(seed=seed)
+        env = begun(frame_env(opponent="ghost_ball", decision=False), seed)
         rng = np.random.default_rng(seed)
         while not env.over:
             env.step(rng.uniform(-1, 1, 6))
@@ -110,24 +97,20 @@ def test_the_ghost_ball_player_beats_the_random_one():
     assert wins >= 7
 
 
-# models from files
-# ------------------------------------------------------------------------------------------------------------
-
-
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory):
-    """Untrained models' files: of this environment's visit, of its discrete choices, with another view, of
-    another environment."""
+    """Files of untrained models: of a visit, of choices, with another view, of another environment."""
     sb3, contrib = pytest.importorskip("stable_baselines3"), pytest.importorskip("sb3_contrib")
     folder = tmp_path_factory.mktemp("saved")
-    sb3.PPO("MlpPolicy", SnookerEnv(), seed=1, device="cpu").save(folder / "visit.zip")
-    sb3.PPO("MultiInputPolicy", SnookerEnv(observation="balls"), device="cpu").save(folder / "balls.zip")
-    sb3.PPO("MlpPolicy", SnookerEnv(elevation=True), device="cpu").save(folder / "elevation.zip")
-    sb3.PPO("MlpPolicy", "Pendulum-v1", device="cpu").save(folder / "pendulum.zip")
-    contrib.MaskablePPO("MlpPolicy", SnookerEnv(action="discrete"), device="cpu").save(folder / "choices.zip")
-    contrib.RecurrentPPO("MlpLstmPolicy", SnookerEnv(placement=True), device="cpu").save(
-        folder / "recurrent.zip"
-    )
+    for name, learner, policy, env in (
+        ("visit", sb3.PPO, "MlpPolicy", SnookerEnv()),
+        ("balls", sb3.PPO, "MultiInputPolicy", SnookerEnv(observation="balls")),
+        ("elevation", sb3.PPO, "MlpPolicy", SnookerEnv(elevation=True)),
+        ("pendulum", sb3.PPO, "MlpPolicy", "Pendulum-v1"),
+        ("choices", contrib.MaskablePPO, "MlpPolicy", SnookerEnv(action="discrete")),
+        ("recurrent", contrib.RecurrentPPO, "MlpLstmPolicy", SnookerEnv(placement=True)),
+    ):
+        learner(policy, env, seed=1, device="cpu").save(folder / f"{name}.zip")
     return folder
 
 
@@ -150,30 +133,23 @@ def test_a_saved_model_may_play(tmp_path, task, name):
     for decision in (False, True):
         env = SnookerEnv(task="frame", opponent=path, trust=True, decision=decision, **options)
         network = env.tables.seats[1].player.player.seen._network
-        assert all(
-            (a == b).all() for a, b in zip(network.parameters(), trained.policy.parameters(), strict=True)
-        )
+        pairs = zip(network.parameters(), trained.policy.parameters(), strict=True)
+        assert all((a == b).all() for a, b in pairs)
         runs = []
         for one in (env, copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
             one.reset(seed=2)
-            out = [one.step(np.zeros(one.action_space.shape)) for _ in range(3) if not one.over]
-            runs.append(out)
-        assert data_equivalence(runs[0], runs[1], exact=True) and data_equivalence(
-            runs[0], runs[2], exact=True
-        )
+            runs.append([one.step(np.zeros(one.action_space.shape)) for _ in range(3) if not one.over])
+        assert all(data_equivalence(runs[0], run, exact=True) for run in runs[1:])
 
 
-@pytest.mark.parametrize(
-    ("own", "nominate"),
-    [({}, False), ({"task": "frame"}, False), ({"task": "frame", "nominate": True}, True)],
-)
-def test_a_saved_model_that_sees_masks_may_play(tmp_path, own, nominate):
-    """One of visits, with 540 choices, plays in a frame with more; its choices are those of the same model on
-    what it sees."""
+@pytest.mark.parametrize("own", [{}, {"task": "frame"}, {"task": "frame", "nominate": True}])
+def test_a_saved_model_that_sees_masks_may_play(tmp_path, own):
+    """A model of visits, with 540 choices, plays in a frame with more as it does on what it sees."""
     contrib = pytest.importorskip("sb3_contrib")
     masked = {"action": "discrete", "observation": "masked"}
     made = contrib.MaskablePPO("MultiInputPolicy", SnookerEnv(**masked, **own), seed=1, device="cpu")
     made.save(tmp_path / "model.zip")
+    nominate = own.get("nominate", False)
     options = {"task": "frame", "layout": "random:2", "concede": not nominate, "nominate": nominate, **masked}
     env = SnookerVectorEnv(5, threads=1, opponent=str(tmp_path / "model.zip"), trust=True, **options)
     seen = env.tables.seats[1].player.player.seen
@@ -197,21 +173,13 @@ def test_callables_see_masks(tmp_path):
     class Many:
         def many(self, seen, generators, masks):
             assert np.array_equal(seen["action_mask"], masks)
-            return [
-                one({name: part[k] for name, part in seen.items()}, rng) for k, rng in enumerate(generators)
-            ]
+            rows = ({name: part[k] for name, part in seen.items()} for k in range(len(masks)))
+            return list(map(one, rows, generators))
 
     runs = []
     for opponent in (one, Many()):
-        env = SnookerVectorEnv(
-            6,
-            threads=1,
-            task="frame",
-            action="discrete",
-            observation="masked",
-            layout="random:1",
-            opponent=opponent,
-        )
+        options = {"task": "frame", "action": "discrete", "observation": "masked", "layout": "random:1"}
+        env = SnookerVectorEnv(6, threads=1, opponent=opponent, **options)
         out = [env.reset(seed=1)[0]]
         for _ in range(5):
             out.append(env.step(env.action_masks().argmax(axis=1))[0])
@@ -256,21 +224,14 @@ def test_nothing_of_a_model_runs_without_consent(saved, tmp_path, weights):
     assert (tmp_path / "mark").exists()  # these bombs are sharp
 
 
-@pytest.mark.parametrize(
-    "change", [{"_shape": [121]}, {":type:": "<class 'gymnasium.spaces.box.Box'>", "_shape": [121]}]
-)
+@pytest.mark.parametrize("change", [{}, {":type:": "<class 'gymnasium.spaces.box.Box'>"}])
 def test_a_model_that_holds_other_than_it_says_is_refused_when_made(saved, tmp_path, change):
-    path = rezipped(
-        saved / "pendulum.zip",
-        tmp_path / "model.zip",
-        data=edited(lambda found: found["observation_space"].update(change)),
-    )
-    path = rezipped(
-        path, tmp_path / "lie.zip", data=edited(lambda found: found["action_space"].update({"_shape": [4]}))
-    )
-    with pytest.raises(
-        ValueError, match=r"opponent = .*: must be a model whose spaces are those that its file describes"
-    ):
+    def lie(data):
+        data["observation_space"].update({"_shape": [121]} | change)
+        data["action_space"].update({"_shape": [4]})
+
+    path = rezipped(saved / "pendulum.zip", tmp_path / "lie.zip", data=edited(lie))
+    with pytest.raises(ValueError, match="must be a model whose spaces are those that its file describes"):
         SnookerEnv(task="frame", opponent=path, trust=True)
 
 
@@ -288,9 +249,7 @@ def test_a_model_that_holds_other_than_it_says_is_refused_when_made(saved, tmp_p
 )
 def test_a_file_that_holds_nothing_sound_is_refused(saved, tmp_path, change):
     file = bombed(saved / "visit.zip", tmp_path / "model.zip", tmp_path / "mark", change=change)
-    with pytest.raises(
-        ValueError, match=r"^opponent = '.*model.zip': must be a model saved by Stable-Baselines3 \("
-    ):
+    with pytest.raises(ValueError, match=r"^opponent = '.*model.zip': must be a model saved by Stable-Base"):
         SnookerEnv(task="frame", opponent=str(file), trust=True)
     assert not (tmp_path / "mark").exists()
 
@@ -298,7 +257,8 @@ def test_a_file_that_holds_nothing_sound_is_refused(saved, tmp_path, change):
 def test_a_small_file_that_unpacks_to_gigabytes_is_not_unpacked(tmp_path):
     with zipfile.ZipFile(tmp_path / "model.zip", "w", zipfile.ZIP_DEFLATED) as file:
         file.writestr("data", b"{}" + b" " * 2**26)
-    with pytest.raises(ValueError, match="data is larger than 67108864 bytes"):
+    says = r"^opponent = '.*model.zip': must be a model saved by Stable-Baselines3 \(.*data is larger than 67108864"
+    with pytest.raises(ValueError, match=says):
         SnookerEnv(task="frame", opponent=str(tmp_path / "model.zip"))
 
 
@@ -307,12 +267,8 @@ def test_a_file_that_is_none_of_stable_baselines_is_refused(tmp_path, content):
     (tmp_path / "plain.zip").write_bytes(content)
     with zipfile.ZipFile(tmp_path / "data.zip", "w") as made:
         made.writestr("data", content)
-    with zipfile.ZipFile(tmp_path / "large.zip", "w", zipfile.ZIP_DEFLATED) as made:
-        made.writestr("data", bytes(2**28 + 1))
-    for name in ("plain", "data", "large"):
-        with pytest.raises(
-            ValueError, match=rf"^opponent = '.*{name}.zip': must be a model saved by Stable-Baselines3 \("
-        ):
+    for name in ("plain", "data"):
+        with pytest.raises(ValueError, match=rf"^opponent = '.*{name}.zip': must be a model saved by Stable"):
             SnookerEnv(task="frame", opponent=str(tmp_path / f"{name}.zip"), trust=True)
 
 

@@ -1,9 +1,7 @@
-"""May any player be the opponent, seen from its own side and asked once for all tables? Strokes, seeds, what
-is said, errors."""
+"""May any player be the opponent, seen from its own side and asked once for all tables?"""
 
 import copy
-import json
-import pickle
+from typing import ClassVar
 
 import gymnasium
 import numpy as np
@@ -11,26 +9,19 @@ import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
 import snooker_env as sn
+from snooker_env.game import frame_columns as columns
 from snooker_env.game.balls import BLACK, CUE, GREEN, SPOTS, BallOn
-from snooker_env.game.frame_columns import (
-    BREAKER,
-    COLUMNS,
-    PLAY_AGAIN,
-    REPLACE,
-    SCORE_0,
-    SCORE_1,
-    STRIKER,
-    WINNER,
-)
+from snooker_env.game.frame_columns import PLAY_AGAIN, REPLACE, STRIKER
 from snooker_env.game.sides import swapped
 from snooker_env.geometry import BALL_RADIUS, BAULK_Y
 from snooker_env.players import Strokes
 from snooker_env.tasks import OpponentPool
 from snooker_env.tasks.declarations import CONCEDES
 from snooker_env.tasks.stroke import ShotBuffers
-from tests.tables import PLACES, frame_env, frame_state
+from tests.tables import COPIES, PLACES, begun, frame_env, frame_state, plain
 
 MISS = [-0.9, 0, 0, 1.0, 0, 0, 0]
+HIDDEN = {CUE: (0.3, 0.3), 1: (0.3, 1.2), GREEN: (0.3, 0.6), BLACK: SPOTS[BLACK]}
 
 
 class Soft:
@@ -46,10 +37,8 @@ class Soft:
     def play(self, positions, seeds):
         self.calls.append((positions, np.array(seeds)))
         n = len(positions)
-        return Strokes(
-            np.tile([0.5, 0.0, 0.0, np.pi / 2, 0.0], (n, 1)),
-            **{k: np.full((n, *np.shape(v)), v) for k, v in self.said.items()},
-        )
+        said = {k: np.full((n, *np.shape(v)), v) for k, v in self.said.items()}
+        return Strokes(np.tile([0.5, 0.0, 0.0, np.pi / 2, 0.0], (n, 1)), **said)
 
 
 class Drawing(Soft):
@@ -65,19 +54,18 @@ class Drawing(Soft):
 class Sees:
     """Acts on the observations of a visit, or of a frame."""
 
+    options: ClassVar = {}
+
     def __init__(self, **options):
-        self.options, self.seen = options, []
+        self.options, self.seen = options or self.options, []
 
     def act(self, observations, masks, seeds):
         self.seen.append(observations)
-        return (
-            np.argmax(masks, axis=1) if masks is not None else np.tile([-0.9, 0.0, 0.0, 1.0], (len(seeds), 1))
-        )
+        return np.tile(MISS[:4], (len(seeds), 1)) if masks is None else np.argmax(masks, axis=1)
 
 
 def asked(env):
-    """The opponent's turn on the first table, up to the strike: the buffers of the shot, and the tables with
-    a stroke."""
+    """The opponent's turn on the first table, up to the strike: (its buffers, the tables with a stroke)."""
     one, opponent, buffers = np.zeros(1, np.int64), env.tables.seats[1].player, ShotBuffers(1)
     which = opponent.prepare(env.tables, one, opponent.ask(env.tables, one, [None]), buffers)
     return buffers, which.tolist()
@@ -103,21 +91,19 @@ def test_an_object_that_acts_sees_observations():
 
 def test_to_change_sides_twice_changes_nothing():
     rng = np.random.default_rng(0)
-    game = rng.integers(0, 2, (50, COLUMNS))
-    game[:, WINNER] = rng.integers(-1, 2, 50)
+    game = rng.integers(0, 2, (50, columns.COLUMNS))
+    game[:, columns.WINNER] = rng.integers(-1, 2, 50)
     other = swapped(game)
-    assert np.array_equal(swapped(other), game) and np.array_equal(other[:, SCORE_0], game[:, SCORE_1])
-    assert (other[:, BREAKER] == 1 - game[:, BREAKER]).all() and (
-        (other[:, WINNER] < 0) == (game[:, WINNER] < 0)
-    ).all()
+    assert np.array_equal(swapped(other), game)
+    assert np.array_equal(other[:, columns.SCORE_0], game[:, columns.SCORE_1])
+    assert (other[:, columns.BREAKER] == 1 - game[:, columns.BREAKER]).all()
+    assert ((other[:, columns.WINNER] < 0) == (game[:, columns.WINNER] < 0)).all()
 
 
 def test_one_call_serves_all_tables_that_wait():
     player = Soft()
-    tables = sn.SnookerVectorEnv(
-        16, threads=2, task="frame", opponent=player, layout="random:3", aim="target"
-    )
-    tables.reset(seed=0)
+    options = {"task": "frame", "opponent": player, "layout": "random:3", "aim": "target"}
+    tables = begun(sn.SnookerVectorEnv(16, threads=2, **options), 0)
     player.calls.clear()
     _, _, _, _, info = tables.step(np.tile(MISS[:4], (16, 1)))
     assert len(player.calls) == info["opponent_strokes"].max() and len(player.calls[0][0]) > 8
@@ -141,27 +127,18 @@ def test_it_places_the_cue_ball_and_nominates():
 
 
 def test_it_decides_after_a_foul_and_may_concede():
-    hidden = {CUE: (0.3, 0.3), 1: (0.3, 1.2), GREEN: (0.3, 0.6), BLACK: SPOTS[BLACK]}
     foul = [-0.9, 0, 0, -0.5, 0, 0, 0]  # away from all balls: snookered behind the green
-    env = frame_state(frame_env(opponent=Soft(decision=PLAY_AGAIN), aim="absolute"), hidden, {})
+    env = frame_state(frame_env(opponent=Soft(decision=PLAY_AGAIN), aim="absolute"), HIDDEN, {})
     _, _, _, _, info = env.step(foul)
-    assert (
-        info["foul"]
-        and env.frame.striker == 0
-        and env.frame.phase == "stroke"
-        and info["opponent_strokes"] == 0
-    )
+    assert info["foul"] and env.frame.striker == 0 and env.frame.phase == "stroke"
+    assert info["opponent_strokes"] == 0
     # a free ball is void for an offender who plays again
     assert not env.frame.free_ball and env.ball_on == BallOn.RED
-    env = frame_state(
-        frame_env(opponent=Soft(decision=REPLACE), aim="absolute", miss="clear_path"), PLACES, {}
-    )
+    replaces = frame_env(opponent=Soft(decision=REPLACE), aim="absolute", miss="clear_path")
+    env = frame_state(replaces, PLACES, {})
     env.step(foul)
-    assert (
-        env.positions[CUE].tolist() == list(PLACES[CUE])
-        and env.frame.warned is False
-        and env.frame.failures == 1
-    )
+    assert env.positions[CUE].tolist() == list(PLACES[CUE]) and env.frame.warned is False
+    assert env.frame.failures == 1
     env = frame_state(frame_env(opponent=Soft(declare=CONCEDES), aim="absolute"), PLACES, {})
     _, _, terminated, _, info = env.step(foul)
     assert terminated and info["winner"] == 0 and info["opponent_strokes"] == 0
@@ -182,9 +159,8 @@ def test_without_a_place_in_its_action_it_stands_where_ghost_ball_would(anywhere
 
 def test_with_a_free_ball_any_colour_is_on_for_a_player_of_visits():
     """Snookered by a foul on the only red: a player blind to the free ball strikes at the hidden red."""
-    places = {CUE: (0.3, 0.3), 1: (0.3, 1.2), GREEN: (0.3, 0.6), BLACK: SPOTS[BLACK]}
     one = Sees(action="discrete")
-    env = frame_state(frame_env(opponent=one), places, {"striker": 0, "phase": "choice", "free_ball": True})
+    env = frame_state(frame_env(opponent=one), HIDDEN, {"striker": 0, "phase": "choice", "free_ball": True})
     env.tables.game[0, STRIKER] = 1  # the opponent has the free ball
     buffers, _ = asked(env)
     assert one.seen[-1][0, 110 + 1] == 1.0 and env.frame.free_ball and env.ball_on == BallOn.RED
@@ -195,15 +171,8 @@ def test_with_a_free_ball_any_colour_is_on_for_a_player_of_visits():
     "name", ["best_pot", "search_30", "planner_30", "tests.tasks.test_opponents_players:Soft"]
 )
 def test_a_name_may_play(name):
-    env = gymnasium.make(
-        "Snooker-v0",
-        task="frame",
-        opponent=name,
-        layout="pots:easy",
-        noise="none",
-        max_strokes=4,
-        aim="target",
-    )
+    options = {"layout": "pots:easy", "noise": "none", "max_strokes": 4, "aim": "target"}
+    env = gymnasium.make("Snooker-v0", task="frame", opponent=name, **options)
     env = gymnasium.make(gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json()))
     for seed in range(3):
         env.reset(seed=seed)
@@ -225,9 +194,8 @@ def test_a_player_plays_alike_again_whatever_other_tables_do(n):
         assert np.array_equal(one[0], all_of_them[0][0]) and one[1] == all_of_them[1][0]
         if env.over:
             break
-        again = sn.SnookerEnv(**options)
-        again.reset(seed=99)
-        again.set_state(json.loads(json.dumps(state)))
+        again = begun(sn.SnookerEnv(**options), 99)
+        again.set_state(plain(state))
         assert data_equivalence(again.step(MISS[:4])[:4], one[:4], exact=True)
 
 
@@ -235,10 +203,7 @@ def test_a_player_plays_alike_again_whatever_other_tables_do(n):
     ("answer", "says"),
     [
         (None, r"opponent Wrong: play\(...\) = a NoneType: must be 1 Strokes, one for each position"),
-        (
-            Strokes(np.tile([1.0, 0, 0, 0, 0], (3, 1))),
-            r"opponent Wrong: play\(...\) = 3 Strokes: must be 1 Strokes",
-        ),
+        (Strokes([[1.0, 0, 0, 0, 0]] * 3), r"opponent Wrong: play\(...\) = 3 Strokes: must be 1 Strokes"),
     ],
 )
 def test_what_a_player_answers_is_checked_and_it_is_named(answer, says):
@@ -263,18 +228,9 @@ def test_an_error_of_a_player_names_it(error, kind):
     env = frame_env(opponent=Failing())
     with pytest.raises(kind) as info:
         [env.reset(seed=seed) for seed in range(10)]
-    assert (
-        str(info.value) == f"opponent Failing raised {type(error).__name__}: {error}"
-        and info.value.__cause__ is error
-    )
-
-
-def test_the_end_of_a_program_is_no_error_of_a_player():
-    class Stopped(Soft):
-        def play(self, positions, seeds):
-            raise KeyboardInterrupt
-
-    env = frame_env(opponent=Stopped())
+    assert str(info.value) == f"opponent Failing raised {type(error).__name__}: {error}"
+    assert info.value.__cause__ is error
+    error = KeyboardInterrupt()  # the end of a program is no error of a player
     with pytest.raises(KeyboardInterrupt):
         [env.reset(seed=seed) for seed in range(10)]
 
@@ -285,16 +241,9 @@ def test_any_opponent_plays_matches_and_stable_baselines_tables(name):
     from snooker_env.sb3 import SnookerVecEnv
 
     opponent = {"player": Soft(), "pool": OpponentPool(["ghost_ball", Soft(), "best_pot"])}.get(name, name)
-    options = {
-        "task": "match",
-        "frames": 3,
-        "opponent": opponent,
-        "layout": "pots:easy",
-        "aim": "target",
-        "max_strokes": 20,
-    }
-    env = sn.SnookerEnv(**options)
-    env.reset(seed=1)
+    options = {"task": "match", "frames": 3, "layout": "pots:easy", "aim": "target", "max_strokes": 20}
+    options["opponent"] = opponent
+    env = begun(sn.SnookerEnv(**options))
     over = strokes = steps = 0
     while not over and steps < 100:
         _, _, terminated, truncated, info = env.step(MISS[:4])
@@ -311,26 +260,29 @@ def test_any_opponent_plays_matches_and_stable_baselines_tables(name):
     assert ended > 0 and strokes > 0
 
 
-def test_a_name_that_nobody_has_is_refused_with_the_names():
-    for name in ("tests.tasks.test_opponents_players:Nobody", ""):
-        with pytest.raises(ValueError, match=r"^opponent = "):
-            frame_env(opponent=name)
-    with pytest.raises(
-        ValueError,
-        match=r"^opponent = 'serch': must be one of 'none', 'random', 'ghost_ball', .*MODULE:CLASS",
-    ):
-        frame_env(opponent="serch")
+class SeesNothing(Sees):
+    options: ClassVar = {"nix": 1}
 
 
-def test_what_is_no_player_is_refused():
-    for wrong, says in (
+OPTIONS_OF = "key of the options of player "
+
+
+@pytest.mark.parametrize(
+    ("opponent", "says"),
+    [
+        (f"{__name__}:Nobody", "opponent = "),
+        ("", "opponent = "),
+        ("serch", "opponent = 'serch': must be one of 'none', 'random', 'ghost_ball', .*MODULE:CLASS"),
         (Soft, r"opponent = <class '.*Soft'>: must be an instance and not the class: Soft\(...\)"),
-        (OpponentPool, r"opponent = <class '.*OpponentPool'>: must be an instance"),
+        (OpponentPool, "opponent = <class '.*OpponentPool'>: must be an instance"),
         (7, "opponent = 7: must be one of 'none', 'random', 'ghost_ball', the name of another player"),
-        (Sees(noise="club"), "key of the options of player Sees = 'noise': must be one of 'action'"),
-    ):
-        with pytest.raises(ValueError, match=f"^{says}"):
-            frame_env(opponent=wrong)
+        (Sees(noise="club"), f"{OPTIONS_OF}Sees = 'noise': must be one of 'action'"),
+        (f"{__name__}:SeesNothing", f"opponent = '.*SeesNothing': {OPTIONS_OF}SeesNothing"),
+    ],
+)
+def test_what_is_no_player_is_refused(opponent, says):
+    with pytest.raises(ValueError, match=f"^{says}"):
+        frame_env(opponent=opponent)
 
 
 def test_options_hold_text_and_objects_come_beside_them():
@@ -341,40 +293,154 @@ def test_options_hold_text_and_objects_come_beside_them():
     with pytest.raises(ValueError, match=r"^opponent = 'object': must come with the object"):
         sn.SnookerEnv(env.options)
     again = sn.SnookerVectorEnv(2, env.options, opponent=Soft())
-    assert (
-        again.options == env.options
-        and sn.SnookerEnv(sn.Options(task="frame"), opponent=Soft()).options.opponent == "object"
-    )
+    assert again.options == env.options
+    assert sn.SnookerEnv(sn.Options(task="frame"), opponent=Soft()).options.opponent == "object"
 
 
-def test_copies_of_an_environment_play_on_alike():
-    env = frame_env(opponent=Soft(), layout="random:2", noise="club")
-    env.reset(seed=2)
-    copies = copy.deepcopy(env), pickle.loads(pickle.dumps(env))
-    first = env.step(MISS)
-    assert all(data_equivalence(one.step(MISS)[:4], first[:4], exact=True) for one in copies)
+@pytest.mark.parametrize("copied", COPIES)
+def test_copies_of_an_environment_play_on_alike(copied):
+    env = begun(frame_env(opponent=Soft(), layout="random:2", noise="club"), 2)
+    twin = copied(env)
+    assert data_equivalence(twin.step(MISS)[:4], env.step(MISS)[:4], exact=True)
 
 
 def test_says_and_the_flags_are_two_spellings():
     options = sn.Options(task="frame", decision=True, says=["lot"])
     assert options.says == ("decision", "lot") and options.decision and not options.nominate
-    assert options == sn.Options(task="frame", lot=True, says=("decision",)) and options.but(
-        decision=False
-    ).says == ("lot",)
+    assert options == sn.Options(task="frame", lot=True, says=("decision",))
+    assert options.but(decision=False).says == ("lot",)
     assert options.but(says=("claim",)).says == ("claim",) and options.but(noise="club").says == options.says
-    assert (
-        sn.SnookerEnv(options).action_space
-        == sn.SnookerEnv(task="frame", decision=True, lot=True).action_space
-    )
+    flags = sn.SnookerEnv(task="frame", decision=True, lot=True)
+    assert sn.SnookerEnv(options).action_space == flags.action_space
 
 
 def test_groups_hold_every_option_once():
     groups = [sn.Options.group(name) for name in ("task", "action", "view", "shot", "frame")]
     names = [name for group in groups for name in group]
-    assert len(names) == len(set(names)) == 21 and set(sn.Options.group("action", "visit")) == {
-        "action",
-        "aim",
-        "elevation",
-        "placement",
-    }
+    assert len(names) == len(set(names)) == 21
+    assert set(sn.Options.group("action", "visit")) == {"action", "aim", "elevation", "placement"}
     assert all(getattr(sn.Options(), name) == default for group in groups for name, default in group.items())
+
+
+# A pool draws an opponent for each table and frame, from its own stream, and keeps it in the state
+
+DOWN = np.array([-0.9, 0.0, 0.0, 1.0])
+
+
+def named(name, seen):
+    """A callable that notes who played."""
+
+    def play(observation, rng):
+        seen.append(name)
+        return DOWN
+
+    return play
+
+
+FRAME = {"task": "frame", "layout": "random:2"}
+
+
+def frames(pool, n=1, **options):
+    return sn.SnookerVectorEnv(n, threads=2, opponent=pool, **FRAME, **options)
+
+
+def test_one_is_drawn_for_each_frame_in_proportion_to_the_weights():
+    tables = frames(OpponentPool(["random", "ghost_ball", "random"], weights=[1, 2, 0]), 300)
+    tables.reset(seed=0)
+    tables.step(np.tile(DOWN, (300, 1)))
+    drawn = np.bincount(tables.tables.game[:, columns.OPPONENT], minlength=4)
+    assert drawn[3] == 0 and 70 < drawn[1] < 130 and drawn[2] > 150
+
+
+def test_he_plays_the_whole_frame():
+    seen = []
+    tables = frames(OpponentPool([named("a", seen), named("b", seen)]), max_strokes=30)
+    by_frame = set()
+    for seed in range(12):
+        tables.reset(seed=seed)
+        seen.clear()
+        for _ in range(5):
+            tables.step(DOWN[None])
+        assert len(set(seen)) == 1
+        by_frame |= set(seen)
+    assert by_frame == {"a", "b"}
+
+
+def test_the_same_seed_meets_the_same_opponent_alone_and_among_others():
+    pool = ["random", "ghost_ball"]
+    many = frames(OpponentPool(pool), 6)
+    many.reset(seed=5)
+    out = [many.step(np.tile(DOWN, (6, 1))) for _ in range(3)]
+    for k in range(6):
+        env = begun(sn.SnookerEnv(opponent=OpponentPool(pool), **FRAME), 5 + k)
+        for observation, reward, terminated, _, _ in out:
+            one = env.step(DOWN)
+            assert np.array_equal(one[0], observation[k]) and one[1] == reward[k] and one[2] == terminated[k]
+            if one[2]:
+                break
+
+
+def test_a_saved_state_keeps_the_opponent():
+    pool = OpponentPool(["random", "ghost_ball"])
+    env, again = (sn.SnookerEnv(opponent=pool, **FRAME) for _ in range(2))
+    for seed in range(6):
+        env.reset(seed=seed)
+        env.step(DOWN)
+        if env.over:
+            continue
+        state = plain(env.get_state())
+        assert state["opponent"] in (0, 1, 2)
+        again.set_state(state)
+        first, second = env.step(DOWN), again.step(DOWN)
+        assert np.array_equal(first[0], second[0]) and env.get_state() == again.get_state()
+
+
+def test_members_may_be_added_while_frames_go_on():
+    seen = []
+    pool = OpponentPool([named("old", seen)])
+    tables = frames(pool, 8, max_strokes=6)
+    tables.reset(seed=0)
+    pool.add(named("new", seen))
+    pool.set_weight(0, 0.0)
+    seen.clear()
+    for _ in range(12):
+        tables.step(np.tile(DOWN, (8, 1)))
+    assert "new" in seen
+    seen.clear()
+    tables.reset(seed=100)
+    tables.step(np.tile(DOWN, (8, 1)))
+    assert set(seen) == {"new"} and copy.deepcopy(pool).weights == (0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (lambda: OpponentPool([]), r"members = \[\]: must hold one"),
+        (lambda: OpponentPool(["random"], weights=[0]), r"weights = \[0\]: must hold a number above 0"),
+        (lambda: OpponentPool(["random"], weights=[]), ".*weight"),
+        (lambda: OpponentPool(["random"], weights=[-1.0]), ".*weight"),
+        *[(lambda m=member: OpponentPool([m]), "member = ") for member in (OpponentPool(), "none", None)],
+        (lambda: frames(OpponentPool(["nobody"])), ".*opponent = 'nobody'"),
+    ],
+)
+def test_what_is_no_pool_is_refused(call, says):
+    with pytest.raises(ValueError, match=f"^{says}"):
+        call()
+
+
+def test_weights_and_an_empty_pool():
+    assert OpponentPool().members == ()
+    assert OpponentPool(["random", "ghost_ball"], weights=[0, 1]).weights == (0.0, 1.0)
+    empty = frames(OpponentPool(), 2)
+    with pytest.raises(ValueError, match="must have a member with a weight above 0"):
+        [(empty.reset(seed=seed), empty.step(np.tile(DOWN, (2, 1)))) for seed in range(5)]
+
+
+def test_a_wrong_member_is_named():
+    name = r"^members\[1\] of the OpponentPool: opponent = 'foo': must be one of 'none', 'random', 'ghost_ball', "
+    with pytest.raises(ValueError, match=name):
+        frames(OpponentPool(["random", "foo"]))
+    tables = frames(pool := OpponentPool(["random"]), 2)
+    pool.add("foo")
+    with pytest.raises(ValueError, match=name):
+        [(tables.reset(seed=seed), tables.step(np.tile(DOWN, (2, 1)))) for seed in range(5)]
