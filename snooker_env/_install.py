@@ -1,5 +1,4 @@
-"""How is a missing library reported? With the line that installs it where this package runs: in a clone, or
-installed from a wheel."""
+"""How is a missing library reported? With the line that installs it, in a clone or from a wheel."""
 
 from pathlib import Path
 

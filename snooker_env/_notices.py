@@ -1,5 +1,4 @@
-"""What is reported of compiling, unless ``SNOOKER_ENV_QUIET=1``? A line on stderr before a compile of over a
-second, and the progress of a warm-up; nothing of loading from the cache."""
+"""What is reported of compiling, unless ``SNOOKER_ENV_QUIET=1``? On stderr, each compile of over a second."""
 
 import os
 import sys

@@ -1,5 +1,4 @@
-"""Under which names does Gymnasium know the environments? Read by the package, or alone by
-``_autoregister.py``; it imports nothing."""
+"""Which ids does Gymnasium know? Read by the package, or alone by ``_autoregister.py``; imports nothing."""
 
 from typing import Any
 
@@ -22,11 +21,7 @@ ENTRY_POINTS = {
 
 
 def register(registration: Any) -> None:
-    """Register the ids with Gymnasium's module ``registration``, but for those that are there already: a
-    second import stays silent.
-
-    String entry points keep the import light and the spec JSON-able.
-    """
+    """Register with Gymnasium's module the ids that it lacks; string entry points keep it light."""
     for name, (one, many) in ENTRY_POINTS.items():
         if name not in registration.registry:
             registration.register(id=name, entry_point=one, vector_entry_point=many)

@@ -1,8 +1,4 @@
-"""Which types do the annotations share? Arrays by what they hold, what callers may pass for them, and closed
-sets of names.
-
-An annotation says what an array holds; the docstring says its shape and units.
-"""
+"""Which types do the annotations share? An annotation says what an array holds; docstrings say its shape."""
 
 from collections.abc import Sequence
 from typing import Any, Literal, Protocol, TypeAlias
@@ -40,8 +36,7 @@ Place: TypeAlias = tuple[float, float]
 
 # Names.
 Fidelity: TypeAlias = Literal["fast", "standard", "reference"] | str
-"""How impacts are solved. Any str is allowed because of ``"euler:N"``, the paper's own scheme with N
-steps."""
+"""How impacts are solved. Any str is allowed: ``"euler:N"`` is the paper's own scheme with N steps."""
 Solver: TypeAlias = tuple[int, int]
 """A fidelity as the kernels read it: a code, and the N of ``"euler:N"`` or 0."""
 PhysicsName: TypeAlias = Literal["paper", "match"]

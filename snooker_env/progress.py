@@ -97,8 +97,7 @@ class Progress:
             raise self._error
 
     def at(self, done: int, figures: str = "") -> None:
-        """Note how much of ``total`` is done, and ``figures`` to be said with it: round, loss, points.
-        OSError if the output takes no more (closed, disk full)."""
+        """Note how much is done, and ``figures`` to say with it. OSError if the output takes no more."""
         if self._error is not None:
             raise self._error
         now, measured = time.perf_counter(), self._measured

@@ -1,5 +1,4 @@
-"""How does Stable-Baselines3 train on many tables at once? ``SnookerVecEnv``: its ``VecEnv`` on the native
-vector environment.
+"""How does Stable-Baselines3 train on many tables? ``SnookerVecEnv``, on the native vector environment.
 
 from snooker_env.sb3 import SnookerVecEnv
 MaskablePPO("MlpPolicy", SnookerVecEnv(64, action="discrete")).learn(100_000)
@@ -79,8 +78,7 @@ class SnookerVecEnv(VecEnv):
         self._actions = None
         self.episode_returns: NDArray[np.float64] = np.zeros(num_envs)
         self.episode_lengths: NDArray[np.int64] = np.zeros(num_envs, np.int64)
-        """Rewards and steps so far of the episodes going on: (n,) each. No state of a table holds them: save
-        them with its state."""
+        """Rewards and steps so far, (n,) each: no state of a table holds them, save them with it."""
         self._start = time.time()
         if seed is not None:
             self.seed(seed)
@@ -88,10 +86,8 @@ class SnookerVecEnv(VecEnv):
     def reset(self) -> Observation:
         """Begin new episodes on all tables, with the seeds and options set before; returns the observations.
 
-        ``set_options([{"state": ...}, ...])`` starts from states, ``set_options([{"position": ...}, ...])``
-        from positions, one for each table; ``set_options([{"breaker": 0}, ...])`` says who breaks. States
-        hold their random streams; after a call of ``seed`` too, those of the seeds replace them. ValueError
-        if the options differ between tables in kind, or are invalid.
+        ``set_options([{"state": ...}, ...])``, or "position" or "breaker": one for each table. Of a state's
+        random stream and a seed, the seed holds. ValueError if the options differ in kind, or are invalid.
         """
         options = None
         if any(self._options):
@@ -115,8 +111,7 @@ class SnookerVecEnv(VecEnv):
         self._actions = actions
 
     def step_wait(self) -> tuple[Observation, Singles, Bools, list[dict[str, Any]]]:
-        """Play the stored actions. Returns observations, rewards float32 (num_envs,), dones bool (num_envs,)
-        and one info for each table."""
+        """Play the stored actions: observations, rewards float32 (n,), dones bool (n,), infos."""
         observation, rewards, terminated, truncated, info = self.tables.step(self._actions)
         done = terminated | truncated
         self.episode_returns += rewards
@@ -144,8 +139,7 @@ class SnookerVecEnv(VecEnv):
         return self.tables.render()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """Read an attribute for some tables: one that all share, or one of each table, as ``points``.
-        AttributeError if there is none."""
+        """Read what all tables share, or what each has, as ``points``; AttributeError if there is none."""
         if attr_name in ("observation_space", "action_space"):  # of one table
             return [getattr(self.tables, f"single_{attr_name}") for _ in self._get_indices(indices)]
         if hasattr(self.tables, attr_name) and attr_name not in ("np_random", "np_random_seed"):
@@ -165,8 +159,7 @@ class SnookerVecEnv(VecEnv):
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
     ) -> list[Any]:
-        """Call ``get_state`` or ``action_masks`` for some tables, without arguments; ValueError for another
-        method: none belongs to one table."""
+        """Call ``get_state`` or ``action_masks`` for some tables; ValueError for another method."""
         choice("method_name", method_name, ("get_state", "action_masks"))
         each = getattr(self.tables, method_name)()
         return [each[k] for k in self._get_indices(indices)]

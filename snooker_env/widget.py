@@ -1,6 +1,4 @@
-"""How does a replay play in a notebook, its time synchronised to Python and back? As a widget of anywidget.
-
-A result of ``sn.replay`` shows itself without this module, but in a frame that Python cannot control."""
+"""How does a replay play in a notebook, synchronised to Python and back? As a widget of anywidget."""
 
 from functools import cache
 from typing import Any, Literal

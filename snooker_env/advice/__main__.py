@@ -1,5 +1,4 @@
-"""What would a player do at a position in a file?
-``python -m snooker_env.advice --position FILE --agent NAME`` prints its strokes."""
+"""``python -m snooker_env.advice --position FILE --agent NAME``: what would a player do in a position?"""
 
 import argparse
 import json

@@ -1,5 +1,4 @@
-"""What would a player do here, and how would it turn out? ``advise`` returns ranked strokes; ``stroke_of``
-the one that it would play."""
+"""What would a player do here, and how would it turn out? ``advise``, and ``stroke_of`` for one stroke."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -138,8 +137,7 @@ def advise(
 
 
 def _ranked(asked: Player, practice: Practice, at: Positions, seed: int) -> judging.Rankings:
-    """The player's strokes in the one position ``at``, best first, with its scores: its ranking, or the one
-    that it plays."""
+    """The player's ranking in the one position ``at``, best first with scores, or the one that it plays."""
     bound, shown = asked.at(practice.options), _shown(at)
     rank = getattr(bound, "rank", None)
     strokes, scores = (bound.play(shown, [seed]), None) if rank is None else rank(shown, [seed])[0]
@@ -153,8 +151,7 @@ def _ranked(asked: Player, practice: Practice, at: Positions, seed: int) -> judg
 
 
 def _shown(at: Positions) -> Positions:
-    """What a player is asked: the stroke to come, without a choice before it or a cue ball that may stand
-    outside the D."""
+    """What a player is asked: the stroke to come, with no choice before it and the cue ball within the D."""
     return at.as_visits() if at.choice[0] or at.lot[0] or at.anywhere[0] else at
 
 

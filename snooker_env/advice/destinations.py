@@ -1,5 +1,4 @@
-"""Where do the balls of a stroke stop? ``destinations``: cue ball and object ball under many execution
-errors, as points and as a map."""
+"""Where do the balls of a stroke stop under execution errors? As points and as a map."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -64,10 +63,9 @@ class Destinations:
     def density(self, cell: float = 0.05, ball: str = "cue") -> dict[str, Any]:
         """Return a density map of where a ball stops, as shares of all samples in square cells.
 
-        ``cell``: side of a cell [m], in [0.005, 1]; default 0.05. ``ball``: the cue ball (default) or the
-        object ball. Returns "x0", "y0": the corner of the first cell [m]; "cell" [m]; "nx", "ny": numbers of
-        cells; "values": a list of ny rows of nx numbers. The values add up to the share of the samples in
-        which the ball stayed on the table. ValueError if an argument is out of range.
+        ``cell``: side of a cell [m], in [0.005, 1]. ``ball``: "cue" or "ball", the object ball. Returns
+        "x0", "y0": the corner of the first cell [m]; "cell" [m]; "nx", "ny": numbers of cells; "values": ny
+        rows of nx numbers, whose sum is the share of samples in which the ball stayed on the table.
         """
         number("cell", cell, 0.005, 1.0)
         places = getattr(self, choice("ball", ball, ("cue", "ball")))
@@ -79,10 +77,7 @@ class Destinations:
         return {"x0": x0, "y0": y0, "cell": float(cell), "nx": nx, "ny": ny, "values": values.tolist()}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the result as JSON types.
-
-        Returns all attributes by name; points as lists, rounded to a tenth of a millimetre.
-        """
+        """Return all attributes by name as JSON types; points as lists, rounded to 0.1 mm."""
         clouds = {name: getattr(self, name).round(4).tolist() for name in ("cue", "ball")}
         names = ("samples", "object_ball", "potted", "in_off", "foul", "scored", "points")
         return {name: getattr(self, name) for name in names} | clouds

@@ -1,5 +1,4 @@
-"""How does a stroke turn out under execution errors? Chances, expected points and stopping points, on common
-noise samples."""
+"""How does a stroke turn out under execution errors? Chances, points and stops, on common noise samples."""
 
 from dataclasses import replace
 from math import hypot, sqrt
@@ -26,8 +25,7 @@ Z = 1.959964
 
 
 def wilson(made: int, tries: int) -> tuple[float, float]:
-    """The 95 % interval of a probability of which ``made`` of ``tries`` samples were successes (Wilson
-    1927)."""
+    """The 95 % interval of a probability with ``made`` successes in ``tries`` samples (Wilson 1927)."""
     share, z2 = made / tries, Z * Z / tries
     middle = (share + 0.5 * z2) / (1.0 + z2)
     half = Z * sqrt(share * (1.0 - share) / tries + 0.25 * z2 / tries) / (1.0 + z2)
@@ -37,8 +35,7 @@ def wilson(made: int, tries: int) -> tuple[float, float]:
 def points_expected(
     points: NDArray[np.float64], goes_on: NDArray[np.bool_], rest: NDArray[np.float64]
 ) -> tuple[float, tuple[float, float]]:
-    """Mean points of a visit and its 95 % interval, from (samples,) of the first stroke and the ``rest``
-    (visits,) where it goes on."""
+    """Mean points of a visit and its 95 % interval: first strokes (samples,), and the ``rest`` (visits,)."""
     n, follows = len(points), float(rest.mean()) if len(rest) else 0.0
     share, each = float(goes_on.mean()), points + goes_on * follows
     mean = float(each.mean())
@@ -85,8 +82,7 @@ def _joined(positions: list[Positions]) -> Positions:
 def _trial(
     practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool
 ) -> tuple[str, int, int, int, str]:
-    """Kind, ball, pocket, first ball and words of stroke k; ``hidden``: no straight path leads to a ball
-    on."""
+    """Kind, ball, pocket, first ball and words of stroke k; ``hidden``: no straight path to a ball on."""
     first, pocket, how = int(trial.first[k]), -1, ""
     ball, (x, y) = first, starts.positions[k, CUE].tolist()
     dx, dy = (starts.positions[k, max(0, first)] - (x, y)).tolist()
@@ -117,8 +113,7 @@ def distinct(strokes: list[Tried]) -> list[Tried]:
 def fair(
     practice: Practice, strokes: list[Tried], n: int, *, samples: int, visits: int, seed: int
 ) -> list[Suggestion]:
-    """The first n of the strokes that are no foul without errors, nor in most samples, by their figure: the
-    preferred kind first."""
+    """The first n strokes that are fair without errors and in most samples, the preferred kind first."""
     waiting, out = [one for one in strokes if one.kind not in FOULS], []
     while waiting and len(out) < n:
         some, waiting = waiting[: n - len(out)], waiting[n - len(out) :]
@@ -187,8 +182,7 @@ def judged(
 
 
 def _cloud(places: NDArray[np.float64]) -> tuple[tuple[float, float] | None, float | None]:
-    """The mean of points (m, 2) and the root of their mean square distance from it; None, None if there are
-    no points."""
+    """The mean of points (m, 2) and their root mean square distance from it; None, None without points."""
     if not len(places):
         return None, None
     x, y = places.mean(axis=0).tolist()
@@ -198,8 +192,7 @@ def _cloud(places: NDArray[np.float64]) -> tuple[tuple[float, float] | None, flo
 def _rest(
     practice: Practice, stops: Stops, n: int, tries: int, visits: int, seed: int
 ) -> list[NDArray[np.float64]]:
-    """For each of n strokes: the points that followed in the first ``visits`` of its samples in which the
-    visit went on."""
+    """For each of n strokes: the points that followed in the first ``visits`` samples that went on."""
     rows = [k * tries + np.flatnonzero(stops.goes_on[k * tries : (k + 1) * tries])[:visits] for k in range(n)]
     numbers = np.concatenate([np.arange(len(each)) for each in rows]).astype(np.int64)
     rest = played_on(practice, stops.afterstates[np.concatenate(rows).astype(np.int64)], numbers, seed)

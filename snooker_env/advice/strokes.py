@@ -1,5 +1,4 @@
-"""What is one stroke? ``CueStroke``: speed, tip, aim, elevation and, with the cue ball in hand, its place;
-validated, and as an action."""
+"""What is one stroke? ``CueStroke``: speed, tip, aim, elevation and place; validated, and as an action."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
@@ -84,10 +83,9 @@ class CueStroke:
 
     @classmethod
     def of(cls, stroke: "StrokeLike") -> "CueStroke":
-        """Convert an argument to a ``CueStroke``.
+        """Convert a dict with fields of ``CueStroke``, or an object with such attributes, to a ``CueStroke``.
 
-        ``stroke``: a dict with fields of ``CueStroke``, or an object with such attributes. Returns the
-        argument itself if it is one already. ValueError if a field is unknown, missing or out of range.
+        ValueError if a field is unknown, missing or out of range.
         """
         if isinstance(stroke, cls):
             return stroke
@@ -108,29 +106,21 @@ class CueStroke:
         return cls(**values)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the stroke as JSON types.
-
-        Returns fields and their values; ``CueStroke(**fields)`` makes the stroke again.
-        """
+        """Return the fields as JSON types; ``CueStroke(**fields)`` makes the stroke again."""
         return asdict(self) | {"place": self.place and list(self.place)}
 
     def numbers(self) -> NDArray[np.float64]:
-        """Return the stroke as a row of numbers, without its place.
-
-        Returns float64 (5,). Speed [m/s], side, top, aim [rad], elevation [rad].
-        """
+        """Return float64 (5,): speed [m/s], side, top, aim [rad], elevation [rad]."""
         return np.array([self.speed, self.side, self.top, self.aim, self.elevation])
 
     def action(
         self, *, elevation: bool = False, placement: bool = False, decision: bool = False
     ) -> NDArray[np.float32]:
-        """Return the stroke as an action of an environment with ``aim="absolute"`` and the given options.
+        """Return the stroke as an action of an environment with ``aim="absolute"``: float32 (k,) in [-1, 1].
 
-        ``elevation``: whether the action holds the elevation; default False. ``placement``: whether the
-        action holds the place in the D; default False. A stroke without a place puts the cue ball in the
-        middle of the baulk line. ``decision``: whether the action holds the decision after a foul; default
-        False. The decision is to play. Returns float32 (k,), with k from 4 to 8. The action, in [-1, 1].
-        ValueError if the cue is raised and the action does not hold the elevation.
+        ``elevation``, ``placement``, ``decision``: whether the action holds these. Without a place the cue
+        ball is put in the middle of the baulk line; the decision is to play. ValueError for a raised cue
+        that the action does not hold.
         """
         form = Actions("absolute", elevation, placement, Physics(), ("decision",) if decision else ())
         places = None if self.place is None else [self.place]
@@ -142,8 +132,7 @@ StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any
 
 
 def cue_strokes(strokes: Strokes, at: Positions) -> list[CueStroke]:
-    """The strokes that a player plays in the one position ``at``, with a place in the D if the cue ball is in
-    hand."""
+    """A player's strokes in the one position ``at``, with a place in the D if the cue ball is in hand."""
     in_hand, (here, *_) = bool(at.in_hand[0]), at.positions[0].tolist()
     out = []
     for (speed, side, top, aim, elevation), place in zip(strokes.values.tolist(), strokes.place, strict=True):

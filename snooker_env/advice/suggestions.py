@@ -1,5 +1,4 @@
-"""What does advice hold? ``Suggestion``, one stroke with its outcomes, and ``Advice``, a sequence of them, as
-data and in words."""
+"""What does advice hold? ``Suggestion``: a stroke with its outcomes; ``Advice``: a sequence of them."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -90,8 +89,7 @@ class Suggestion(CueStroke):
 
     @property
     def figure(self) -> float:
-        """What strokes of its kind are ordered by: the expected points of a pot, otherwise the share without
-        a foul."""
+        """What its kind is ordered by: a pot's expected points, otherwise the share without a foul."""
         return self.points if self.kind == "pot" else self.chance
 
     @property
@@ -102,10 +100,7 @@ class Suggestion(CueStroke):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the suggestion as JSON types.
-
-        Returns all attributes by name; pairs as lists.
-        """
+        """Return all attributes by name as JSON types; pairs as lists."""
         return {
             name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()
         }
@@ -182,10 +177,7 @@ class Advice(Sequence[Suggestion]):
         return f"{whose}{parts.capitalize()}:"
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the advice as JSON types.
-
-        Returns all attributes by name; the position and the suggestions as dicts.
-        """
+        """Return all attributes by name as JSON types; the position and the suggestions as dicts."""
         kept = {
             name: getattr(self, name)
             for name in ("agent", "own", "order", "noise", "samples", "visits", "seed")

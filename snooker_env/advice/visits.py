@@ -1,5 +1,4 @@
-"""How does a visit go on? A fast player continues many visits at once under execution errors, stroke after
-stroke, to their end.
+"""How does a visit go on? A fast player continues many at once, with execution errors, to their end.
 
 1. It tries twelve strokes at the two widest pots, once each and without errors. The value of a stroke is the
    chance of its pot, by the rule of thumb, times its points plus the value of the position left.
@@ -7,8 +6,7 @@ stroke, to their end.
 3. Where there is no direct pot, so it chooses among strokes at what it sees of the balls on, or escapes.
 
 This is a shallow search, made to play hundreds of visits in a second. From open tables under professional
-noise it scores about 58 points a visit; "planner_500" scores about 120. So the points of advice are those of
-a good player, not of the best.
+noise it scores about 58 points a visit; "planner_500" about 120.
 """
 
 import numpy as np
@@ -20,8 +18,7 @@ from ..tasks.discrete_actions import SIDES, STROKES, choice_of
 from .practice import GOING_ON, Practice, keys
 
 PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(2) for s in (1, 3, 5) for t in (1, 3)])
-"""The choices that are tried: 1.3, 2.3 and 3.6 m/s, tip 0.2 R above and below the middle. Without errors,
-more extreme strokes are overestimated."""
+"""Choices tried: 1.3, 2.3 and 3.6 m/s, tip 0.2 R up or down. Without errors, extremes are overestimated."""
 BEST = 3
 """Number of strokes that meet noise samples."""
 
@@ -29,8 +26,7 @@ BEST = 3
 def played_on(
     practice: Practice, left: Positions, visits: NDArray[np.int64], seed: int
 ) -> NDArray[np.float64]:
-    """Points (n,) of the rest of n visits from the positions ``left``; those with equal numbers ``visits``
-    (n,) meet equal errors."""
+    """Points (n,) of the rest of n visits from ``left``; equal numbers ``visits`` (n,) meet equal errors."""
     total, going, number = np.zeros(len(left)), np.arange(len(left)), 0
     most = int(visits.max()) + 1 if len(visits) else 0
     while len(going):

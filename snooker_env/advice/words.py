@@ -1,9 +1,4 @@
-"""How is a stroke described in words? Balls, pockets, spin and chances in the game's terms, as "blue, right
-middle, 1.8 m/s, screw".
-
-Left and right are as seen from the baulk end, facing the black end: right is the yellow side (+x), left the
-green side.
-"""
+"""How is a stroke described in words? Seen from the baulk end: right is the yellow side (+x)."""
 
 from math import copysign, cos, degrees, inf, sin, sqrt
 
@@ -13,9 +8,7 @@ from ..physics.parameters import Physics
 from .strokes import CueStroke
 
 POCKET_WORDS = ("green pocket", "yellow pocket", "right middle", "top right", "top left", "left middle")
-"""Names of the pockets in words, in the order of ``snooker_env.POCKETS``: the corners at the baulk end by the
-colour beside them, those at the black end "top".
-"""
+"""Names of ``snooker_env.POCKETS`` in words: baulk corners by the colour beside them, black's "top"."""
 _STILL = 0.1
 """Tip offsets over R up to this count as the middle of the ball."""
 _FAR_OFF = 0.3
@@ -34,8 +27,7 @@ def ball_words(ball: int) -> str:
 
 
 def rolling(speed: float, top: float, distance: float, physics: Physics) -> float:
-    """Surface speed of a struck ball's rotation over its speed after a distance [m]: 1 for rolling, 0 for
-    stun, < 0 for backspin."""
+    """R w / v of a struck ball after a distance [m]: 1 for rolling, 0 for stun, < 0 for backspin."""
     # It slides until it rolls: v falls by mu_s g t, and R w, at first 5/2 v times the tip's height, grows by
     # 5/2 mu_s g t.
     brake = physics.mu_s * physics.g
@@ -88,8 +80,7 @@ def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics) ->
 
 
 def cushion_words(x: float, y: float, aim: float) -> str:
-    """The cushion that a ball at (x, y), sent in the direction ``aim`` [rad], meets: left, right, top (the
-    black end) or baulk."""
+    """The cushion that a ball at (x, y) meets in the direction ``aim`` [rad]; "top" is the black end."""
     dx, dy = cos(aim), sin(aim)
     to_side = (HALF_WIDTH - x * copysign(1.0, dx)) / max(abs(dx), 1e-9)
     to_end = (HALF_LENGTH - y * copysign(1.0, dy)) / max(abs(dy), 1e-9)
@@ -99,8 +90,7 @@ def cushion_words(x: float, y: float, aim: float) -> str:
 
 
 def contact_words(x: float, y: float, aim: float) -> str:
-    """How full a ball at the offset (x, y) is struck by a cue ball that runs straight in the direction
-    ``aim`` [rad]."""
+    """How full a ball at the offset (x, y) is struck by a cue ball running straight along ``aim`` [rad]."""
     aside = (y * cos(aim) - x * sin(aim)) / (2.0 * BALL_RADIUS)
     for far, words in (
         (0.12, "full"),
@@ -115,8 +105,7 @@ def contact_words(x: float, y: float, aim: float) -> str:
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
-    """What a stroke does when played as intended. ``how``: the first cushion of an escape, or how full a ball
-    is struck."""
+    """What a stroke does without errors. ``how``: an escape's first cushion, or how full a ball is struck."""
     if kind == "pot":
         how = (
             ""

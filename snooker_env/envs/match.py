@@ -1,5 +1,4 @@
-"""How do two agents play a frame or match against each other? PettingZoo's AEC interface around one table of
-``tasks.frame``."""
+"""How do two agents play a frame or match? PettingZoo's AEC interface around one table of ``tasks.frame``."""
 
 import copy
 from collections.abc import Mapping, Sequence
@@ -173,8 +172,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         return observations.shaped(self.options.observation, rows[0], masks)
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
-        """Return the available choices of a player, int8 (choices,): all 0 unless it is the player's turn.
-        ValueError with ``action="box"``."""
+        """Return a player's available choices, int8 (choices,), 0 out of turn; ValueError without choices."""
         side = PLAYERS.index(agent)
         if not isinstance(self.tables.seats[side].actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
@@ -187,8 +185,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Begin a new frame; without a seed the random stream goes on.
 
-        ``options``: "state", "position" or "breaker", see Start and end. Other keys are ignored, because
-        PettingZoo's own tests pass some. ValueError if one of these is invalid.
+        ``options``: see Start and end, else ValueError; other keys are ignored: PettingZoo's tests pass some.
         """
         if isinstance(options, dict):
             options = {key: options[key] for key in ONE if key in options}
@@ -222,8 +219,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self.infos = {name: self._info(striker, k) for k, name in enumerate(PLAYERS)}
 
     def step(self, action: Action) -> None:
-        """Play the action of the selected player: float (k,) within [-1, 1], or a choice; None once it has
-        terminated or is truncated.
+        """Play the action of the selected player, None once it has terminated or is truncated.
 
         ValueError for an action outside the space, ResetNeeded if no player is left: then nothing is played.
         SimulationError if the shot cannot be computed.

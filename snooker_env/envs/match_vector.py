@@ -1,5 +1,4 @@
-"""How do two players meet on thousands of tables, both stepped by the caller? ``match_env`` on many tables,
-as kernels."""
+"""How do two players meet on thousands of tables? ``match_env`` on many tables, as kernels."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -86,8 +85,7 @@ class MatchVectorEnv(SnookerVectorEnv):
 
     @property
     def strikers(self) -> Ints:
-        """Whose turn it is on each table: int64 (num_envs,), 0 or 1; of a frame that has ended, whose turn
-        was the last."""
+        """Whose turn it is, or was at the end, on each table: int64 (num_envs,), 0 or 1."""
         return self.tables.game[:, STRIKER].copy()
 
     def reset(
@@ -103,9 +101,8 @@ class MatchVectorEnv(SnookerVectorEnv):
     ) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
         """Play one turn on each table, see ``SnookerVectorEnv.step``; without ``out``.
 
-        ``actions`` are the strikers'. With seats whose actions differ, two such arrays, one for each player,
-        of which the striker's rows are read. Observations are of the players whose turn it is now; rewards
-        float64 (num_envs, 2).
+        ``actions`` are the strikers'; with seats whose actions differ two such arrays, one for each player.
+        Observations are of the players whose turn it is now; rewards float64 (num_envs, 2).
         """
         _refuse_out(out)
         tables = self.tables
@@ -135,8 +132,7 @@ class MatchVectorEnv(SnookerVectorEnv):
         return super()._shaped(written, None)
 
     def action_masks(self) -> Bools:
-        """Return the available choices of the strikers, bool (num_envs, choices); ValueError unless both
-        players have the same discrete actions."""
+        """Return the strikers' choices, bool (num_envs, choices); ValueError unless both have the same."""
         if not self._alike or not isinstance(self.tables.seats[0].actions, Choices):
             words = 'must be "discrete" for both players: a Box has no masks'
             raise refuse("action", self.options.action, words)

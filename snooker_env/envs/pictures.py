@@ -1,5 +1,4 @@
-"""How does an environment show itself? A picture for "rgb_array", text for "ansi", a window with the moving
-shot for "human"."""
+"""How does an environment show itself? As a picture, as text, or in a window with the moving shot."""
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -42,10 +41,8 @@ class PictureSource:
     """The pictures of one environment: the current one or, for a recorder, first those of the motion.
 
     ``RecordVideo`` of Gymnasium and ``VecVideoRecorder`` of Stable-Baselines3 call ``render()`` once after
-    each step, in a method named ``_capture_frame``, and append the result to their film. A step here is a
-    whole shot, so a visit would become a film of a fifth of a second, and no recorder accepts a list of
-    pictures. So ``render()``, called by such a method, calls it back once for each picture of the motion; the
-    recorder's own call then returns the last one.
+    each step, in a method named ``_capture_frame``. A step here is a whole shot, and no recorder accepts a
+    list. So ``render()``, called by such a method, calls it back for each picture of the motion.
     """
 
     def __init__(self) -> None:
@@ -66,10 +63,7 @@ class PictureSource:
 
 
 class Pictures:
-    """The pictures of one environment. A window belongs to one process; a copy of the environment has none.
-
-    ``size``: width and height [pixels]; ``players``: their names on the score bar.
-    """
+    """The pictures of one environment, ``size`` [pixels], ``players`` on the bar; a copy has no window."""
 
     def __init__(
         self, table: Table, mode: str | None, size: Sequence[int] = SIZE, players: tuple[str, ...] = ()
@@ -104,8 +98,7 @@ class Pictures:
         return None
 
     def render_all(self, tables: Tables, recent: list[list[Played]]) -> tuple[Picture, ...]:
-        """``render`` for many tables at once. They move at the same time, and all wait for the longest
-        motion."""
+        """``render`` for many tables: they move at the same time and wait for the longest motion."""
         if self.mode != "rgb_array":
             return tuple(self.render(tables, k, strokes, []) for k, strokes in enumerate(recent))
 
@@ -121,8 +114,7 @@ class Pictures:
         return self._source.picture(motion, still)
 
     def require_display(self) -> None:
-        """RuntimeError if a stroke is to be shown in a window and there is no display. A reset does without:
-        Gymnasium's ``check_env`` resets an environment of each mode, on servers too."""
+        """RuntimeError if a stroke needs a window and there is no display; a reset needs none."""
         if self.mode == "human":
             from ..render.window import require_display
 

@@ -1,5 +1,4 @@
-"""How do thousands of tables play side by side? The native vector environment of ``Snooker-v0``: steps as
-kernels, on several threads.
+"""How do thousands of tables play side by side? As kernels, on several threads.
 
 gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")
 """
@@ -172,9 +171,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         """Begin new episodes on all tables, or on some; ``options`` and ``out``: see the class.
 
         Table k draws from seed + k, or from element k of a list; without a seed the streams go on. Returns
-        observations float32 (num_envs, k), or a dict of such arrays, and infos: an array for each key, and
-        under "_key" which tables it holds for. ValueError for invalid options, ResetNeeded if a table outside
-        the mask has never been reset.
+        observations and infos: an array for each key, and under "_key" which tables it holds for. ValueError
+        for invalid options, ResetNeeded if a table outside the mask has never been reset.
         """
         options, tables = known_options(options, MANY), self.tables
         seeds, wanted = seeds_of(seed, self.num_envs), mask_of(options, self.num_envs)
@@ -245,8 +243,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return self.tables.action_masks()
 
     def render(self) -> tuple[Picture, ...]:
-        """Return a picture of each table, as ``SnookerEnv.render``. A recorder gets the motion of all of them
-        at once."""
+        """Return a picture of each table, as ``SnookerEnv.render``; a recorder gets all motion at once."""
         return self._pictures.render_all(self.tables, self._recent)
 
     def close_extras(self, **kwargs: Any) -> None:
@@ -261,8 +258,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     @property
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
-        """The NumPy generator of each table, a tuple. Each is used once, for the key of its table's random
-        stream."""
+        """Each table's NumPy generator, used once: for the key of the table's random stream."""
         for k, generator in enumerate(self._generators):
             if generator is None:
                 self._generators[k], self._generator_seeds[k] = seeding.np_random(None)
@@ -277,18 +273,16 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     # ------------------------------------------------------------------------------------------------
 
     def get_state(self) -> list[dict[str, Any]]:
-        """Return the state of each table, a list of dicts, as ``SnookerEnv.get_state``.
-
-        ``reset(options={"states": states})`` restores them. They do not hold steps towards
-        ``max_episode_steps``.
-        """
+        """Return the state of each table, for ``reset(options={"states": states})``; it counts no steps."""
         return [
             self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)
         ]
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """Read an attribute or call a method of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call``
-        does. ValueError if the name does not belong to one table, AttributeError if there is none."""
+        """Read or call something of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call`` does.
+
+        ValueError if the name does not belong to one table, AttributeError if there is none.
+        """
         if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
             instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
             words = "must be something public that a table has for itself"

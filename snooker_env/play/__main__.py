@@ -1,5 +1,4 @@
-"""How is the page opened? ``python -m snooker_env.play``: a server on this machine's own address, and the
-browser on its page."""
+"""``python -m snooker_env.play``: a server on this machine's own address, and the browser on its page."""
 
 import argparse
 import json
@@ -49,8 +48,7 @@ def _arguments(argv: list[str] | None) -> argparse.Namespace:
 
 
 def service_of(args: argparse.Namespace) -> Any:
-    """The game for the command line's arguments: a ``Service``. ValueError or OSError if something is
-    invalid."""
+    """The game for the command line's arguments; ValueError or OSError if something is invalid."""
     import numpy as np
 
     from ..players import player
@@ -79,8 +77,7 @@ def service_of(args: argparse.Namespace) -> Any:
 
 
 def warm_up(service: Any) -> None:
-    """Compile everything that a stroke and a question need, so that nobody waits for it in the middle of a
-    game."""
+    """Compile what a stroke and a question need, so that nobody waits in the middle of a game."""
     from ..advice import CueStroke
     from . import questions
     from .report import report

@@ -1,5 +1,4 @@
-"""Which paths to the pockets are open, and what blocks the others? Straight lines to each pocket for every
-ball on."""
+"""Which paths to the pockets are open, and what blocks the others? Straight lines for every ball on."""
 
 from dataclasses import asdict, dataclass
 from math import acos, atan2, degrees, erf, hypot, radians, sqrt
@@ -40,8 +39,7 @@ class Line:
     tolerance: float
     """Largest error of the aim; 0 unless the line is open."""
     chance: float | None
-    """Approximate probability that a player with the seat's noise keeps within the tolerance; None without
-    noise."""
+    """Approximate probability, with the seat's noise, of keeping within the tolerance; None without noise."""
 
     def to_dict(self) -> dict[str, Any]:
         """The line as JSON types."""
@@ -67,8 +65,7 @@ class Line:
 
 
 def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
-    """All lines to pockets for the balls in the mask ``on``; ``positions``: the table, with a free ball once
-    more for the colours."""
+    """Lines to pockets for the balls ``on``; ``positions``: the table, with a free ball also for colours."""
     errors = LEVELS[noise]
     sigma = 0.0 if errors.silent else radians(errors.direction_deg())
     tolerances = {}

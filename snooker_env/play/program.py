@@ -1,5 +1,4 @@
-"""How does an external program play? JSON lines: the state of ``docs/play/protocol.md`` on its standard
-input, a stroke on its output.
+"""How does an external program play? JSON lines: a state on its standard input, a stroke on its output.
 
 The program is started at the first question and answers all of them. For each stroke it gets one line, the
 object of ``GET api/state`` with a "seed" for what it draws, and answers with one line, an object as
@@ -88,10 +87,9 @@ class ProgramPlayer(BoundPlayer):
         self._noise: Any = choice("noise", options.noise, tuple(LEVELS))
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """Return what the program answers in each of n positions.
+        """Return what the program answers in each of n positions; it is told the ``seeds``, int (n,).
 
-        ``positions``: the n positions. ``seeds``: int (n,), the program is told them. Returns n strokes and
-        what is said with them. AgentError if the program ends, is too slow, or its answer is no stroke.
+        AgentError if the program ends, is too slow, or its answer is no stroke.
         """
         _ = self.options  # it must be bound
         at = Positions.of(positions)

@@ -1,5 +1,4 @@
-"""What would be played, and where would the balls stop? Questions about the next stroke, answered on copies
-of the table."""
+"""What would be played, and where would the balls stop? Questions answered on copies of the table."""
 
 from typing import Any
 
@@ -25,8 +24,7 @@ MOST_SUGGESTIONS = 10
 
 
 def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
-    """The direction in which the cue ball must leave to pot a ball, with throw and swerve; ``asked``: {"pot":
-    [ball, pocket]}."""
+    """The direction of the cue ball that pots a ball, with throw; ``asked``: {"pot": [ball, pocket]}."""
     pair = asked.get("pot") if isinstance(asked, dict) and set(asked) == {"pot"} else None
     if not isinstance(pair, list) or len(pair) != 2:
         raise refuse("aim_at", asked, 'must be {"pot": [ball, pocket]}, as {"pot": ["blue", "middle right"]}')
@@ -48,8 +46,7 @@ def exact(session: Session, stroke: CueStroke) -> Shot:
 
 
 def paths(shot: Shot) -> dict[str, Any]:
-    """The paths of a shot's balls: points [m], rounded to a tenth of a millimetre; and the ball struck first,
-    the pots and the duration."""
+    """Paths of a shot's balls [m], rounded to 0.1 mm; the ball struck first, the pots and the duration."""
     events = shot.events
     hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
     lines = ball_paths(shot, range(len(shot.positions)), step=0.04)
@@ -64,8 +61,7 @@ def paths(shot: Shot) -> dict[str, Any]:
 def scatter(
     session: Session, stroke: CueStroke, *, noise: NoiseName, samples: int, seed: int
 ) -> dict[str, Any]:
-    """Where cue ball and object ball stop when the stroke is played many times with execution errors; and its
-    paths without them."""
+    """Where cue ball and object ball stop under execution errors, and the paths without them."""
     shot = exact(session, stroke)
     stops = destinations(session.planned(), stroke, noise=noise, samples=samples, seed=seed)
     return paths(shot) | {
@@ -82,8 +78,7 @@ def scatter(
 def suggestions(
     session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int
 ) -> dict[str, Any]:
-    """Strokes of the agent in words and data, each with its paths without errors; whose they are, and by what
-    they are ordered."""
+    """Strokes of the agent in words and data, with paths without errors; whose they are, and their order."""
     choice("agent", agent, seats.agents)
     advice = advise(
         session.planned(), agent=seats.players[agent], noise=noise, n=n, samples=samples, seed=seed

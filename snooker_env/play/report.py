@@ -1,9 +1,7 @@
-"""What is on the table, and what may be done? The game as JSON types for the page and for programs, and as
-plain text.
+"""What is on the table, and what may be done? The game as JSON types for page and programs, and as text.
 
-``table_after`` says what table and scoreboard are after one act. The state of the game is that of its last
-act, and what may be done now. A stroke is sent with the tables before and after it, so that whoever shows it
-needs nothing else.
+The state of the game is that of its last act, and what may be done now. A stroke is sent with the tables
+before and after it, so that whoever shows it needs nothing else.
 """
 
 from typing import Any

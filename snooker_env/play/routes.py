@@ -1,8 +1,6 @@
-"""Which requests does the server answer, and how? Each route of the protocol: its fields, checked, and its
-action.
+"""Which requests does the server answer, and how? ``docs/play/protocol.md`` describes every route.
 
-A handler takes the fields of one request as plain JSON types and returns JSON types. A ValueError names an
-invalid field. ``docs/play/protocol.md`` describes every route.
+A handler takes the checked fields of a request and returns JSON types; a ValueError names an invalid field.
 """
 
 import re
@@ -31,8 +29,7 @@ Handler = Callable[[Service, dict[str, Any]], Any]
 
 @dataclass(frozen=True)
 class Route:
-    """One route: what answers it, with JSON types or with a ``str``, an HTML page; and the fields that a
-    request may have."""
+    """What answers a route, with JSON types or a ``str``, an HTML page; and the fields a request may have."""
 
     handler: Handler
     fields: tuple[str, ...] = ()

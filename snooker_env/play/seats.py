@@ -1,8 +1,6 @@
-"""Who sits at the table? Persons, and agents by name: some of the package, and those named when the page was
-started.
+"""Who sits at the table? Persons, and agents by name: some of the package, and those named at the start.
 
-An agent is asked for one stroke at a time, on a copy of the frame, without execution errors, which are drawn
-when the stroke is played.
+An agent is asked for one stroke at a time, on a copy of the frame, without execution errors.
 """
 
 from collections.abc import Mapping
@@ -63,8 +61,7 @@ class Seats:
         return self.label(0), self.label(1)
 
     def decided(self, name: str, session: Session) -> Strokes:
-        """What an agent does in the current frame: a decision after a foul, a declaration, or a stroke.
-        ``session`` is not changed."""
+        """What an agent does in the frame: a decision, a declaration or a stroke, without changing it."""
         options = session.options_with(session.noise[session.frame.striker])
         decided = self.players[name].at(options).play(session.position, session.tables.game[:, STROKES])
         if not isinstance(decided, Strokes) or len(decided) != 1:

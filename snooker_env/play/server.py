@@ -1,5 +1,4 @@
-"""How does the game answer a browser or a program? A small HTTP server on this machine's own address, for
-those who have its token.
+"""How does the game answer a browser or a program? A small HTTP server, for those who have its token.
 
 Every request is checked before anything is done: the token in its path, in constant time; ``Host``, so that
 no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method,
@@ -72,8 +71,7 @@ class RefusedError(Exception):
 
 
 class TimedReader:
-    """A connection for ``http.server`` with limits: bytes in a head, and ``REQUEST`` seconds from the first
-    byte of a request."""
+    """A connection for ``http.server``: limited bytes in a head, and ``REQUEST`` seconds for a request."""
 
     def __init__(self, connection: socket.socket):
         self._socket, self._held = connection, b""
@@ -165,8 +163,7 @@ class PlayHandler(BaseHTTPRequestHandler):
         raise AttributeError(name)
 
     def finish(self) -> None:
-        """Read the rest of a refused request: closing a connection with unread bytes would lose the
-        answer."""
+        """Read the rest of a refused request: closing with unread bytes would lose the answer."""
         with suppress(OSError):
             self.connection.shutdown(socket.SHUT_WR)
             self.connection.settimeout(0.2)
@@ -312,8 +309,7 @@ class PlayHandler(BaseHTTPRequestHandler):
 
 
 def parsed(raw: bytes) -> dict[str, Any]:
-    """The JSON object in a body; RefusedError for anything else, including NaN, Infinity and repeated
-    names."""
+    """The JSON object in a body; RefusedError for others, NaN, Infinity and repeated names."""
     try:
         fields = (
             json.loads(raw.decode("utf-8"), parse_constant=_no_number, object_pairs_hook=_once) if raw else {}

@@ -1,9 +1,7 @@
-"""How do a page, a program and thinking agents share one game? Behind one lock: each act is atomic, and
-agents think on copies.
+"""How do a page, a program and thinking agents share one game? Behind one lock; agents think on copies.
 
 A number, the revision, grows with every change; a request that waits for a change names the last revision it
-has seen. The agent's thread is notified when it is its turn, and its stroke is dropped if the game has
-changed in the meantime.
+has seen. An agent's stroke is dropped if the game has changed in the meantime.
 """
 
 import threading
@@ -38,8 +36,7 @@ class Service:
     """One game, its seats, and the thread in which agents think."""
 
     paused: bool
-    """Whether an agent whose turn it is waits for ``go_on``: after an undo, a load or a position set up, and
-    between two agents."""
+    """Whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents."""
     trouble: str
     """Why the last agent did not play, or ""."""
 
@@ -70,8 +67,7 @@ class Service:
     def acting(
         self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False
     ) -> Iterator[Session]:
-        """The game, for changing it. ``pause``: an agent to play then waits; ``any_turn``: not refused in an
-        agent's turn."""
+        """The game, for changing it. ``pause``: agents then wait; ``any_turn``: also in an agent's turn."""
         with self._changed:
             if revision not in (None, self.revision):
                 raise StaleError
@@ -85,8 +81,7 @@ class Service:
 
     @contextmanager
     def asking(self, revision: int | None = None) -> Iterator[Session]:
-        """A copy of the game for trial strokes; ``BusyError`` for too many questions, ``StaleError`` for an
-        old revision."""
+        """A copy for trial strokes; ``BusyError``: too many questions, ``StaleError``: an old revision."""
         if not self._asking.acquire(timeout=10.0):
             raise BusyError("other questions are being answered")
         try:

@@ -1,10 +1,8 @@
-"""What is the game on the page? One frame in memory, played by the package's own functions, with a list of
-acts to undo and redo.
+"""What is the game on the page? One frame in memory, with a list of acts to undo and redo.
 
-``Session`` plays the strokes and decisions of the current striker, with the noise of that seat. ``seats.py``
-says who sits there, ``service.py`` handles threads. Each act is an ``Act`` in a list; undo and redo move in
-it. A state holds the random stream, so a stroke that is undone and played again meets the same execution
-errors.
+``Session`` plays the strokes and decisions of the current striker, with the noise of that seat. Each act is
+an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so a stroke that is undone
+and played again meets the same execution errors.
 """
 
 from dataclasses import dataclass, replace
@@ -56,14 +54,12 @@ class Act:
 
 
 class Session:
-    """A frame that can be played, set up, undone, saved and loaded; ``layout`` deals it, ``seed`` is that of
-    all random numbers."""
+    """A frame to play, set up, undo, save and load; ``seed``: of all random numbers."""
 
     noise: list[NoiseName]
     """Execution errors of each seat: names of ``snooker_env.tasks.LEVELS``."""
     practice: bool
-    """Alone at the table: the turn always returns to player 0, and after a foul the balls stay as they
-    lie."""
+    """Alone at the table: player 0 has every turn, and after a foul the balls stay as they lie."""
     acts: list[Act]
     at: int
     """Number of acts that count; the following ones were undone."""
@@ -118,8 +114,7 @@ class Session:
         return Positions.of(cast(Any, self))  # it has tables, as environments have
 
     def planned(self, *, free_ball: bool = False) -> Positions:
-        """The position of the next stroke for planning, as one of a visit; with ``free_ball`` every colour is
-        on instead of the ball on."""
+        """The next stroke's position, as one of a visit; with ``free_ball`` every colour is on instead."""
         frame, tables = self.frame, self.tables
         if frame.phase == "over":
             raise refuse("phase", "over", "must not be over: there is no stroke to play")
@@ -179,8 +174,7 @@ class Session:
             raise refuse("nominate", NAMES[nominated], allowed)
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
-        """Play the stroke from where the cue ball lies; ``nominated``: a colour, AUTO for the one first
-        struck, or DECLINED."""
+        """Play the stroke; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
         self.check_stroke(nominated)
         before, tables = self.state, self.tables
         striker = self.frame.striker
@@ -231,8 +225,7 @@ class Session:
         return self._ended("concede", frame.concede(frame.striker))
 
     def claim(self) -> Act:
-        """End the frame: the striker, more than seven points ahead with the black alone on the table, claims
-        it."""
+        """The striker, more than seven points ahead with the black alone on the table, claims the frame."""
         return self._ended("claim", self.frame.claim())
 
     def _ended(self, what: str, after: Frame) -> Act:
@@ -241,8 +234,7 @@ class Session:
         return self._did(Act(what, self.state, striker))
 
     def place(self, x: float, y: float) -> tuple[float, float]:
-        """Put the cue ball in hand on the free place of the D nearest to (x, y), and return that place. It
-        may be moved again."""
+        """Put the cue ball in hand on the free place of the D nearest to (x, y), and return that place."""
         frame = self.frame
         if not frame.in_hand or frame.phase != "stroke":
             raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
@@ -260,8 +252,7 @@ class Session:
         free_ball: bool,
         check: bool = False,
     ) -> None:
-        """Put the balls as in a position. ``check``: only validate it. ValueError names the ball or the
-        field."""
+        """Put the balls as in a position, or only ``check`` it. ValueError names the ball or the field."""
         positions, on_table, _ = position.arrays()
         mask = mask_of_present(on_table) & ~1
         for i in np.flatnonzero(~on_table):

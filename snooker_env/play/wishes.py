@@ -1,8 +1,4 @@
-"""Which stroke does a request contain? Its fields checked, in SI units and names.
-
-Nothing is corrected: a tip beyond the miscue limit or a speed out of range is refused, and the message says
-what is allowed.
-"""
+"""Which stroke does a request contain? Its fields checked, in SI units and names; nothing is corrected."""
 
 from typing import Any
 
@@ -13,8 +9,7 @@ from ..geometry import POCKETS
 
 
 def stroke_in(fields: dict[str, Any], aim: float | None = None) -> CueStroke:
-    """The stroke in a request: "speed", "aim" (unless passed separately), "side", "top", "elevation";
-    ValueError if invalid."""
+    """The stroke in a request, its "aim" unless passed separately; ValueError if invalid."""
     for name in ("speed",) if aim is not None else ("speed", "aim"):
         if name not in fields:
             raise refuse(

@@ -1,8 +1,4 @@
-"""How is the game described without a picture? In plain words: balls, ball on, lines to pockets, what was
-done, what is to be done.
-
-Left and right are as seen from the baulk end: right is the yellow side, +x; the black end is +y.
-"""
+"""How is the game described without a picture? In plain words, seen from the baulk end: right is +x."""
 
 from math import hypot
 
@@ -89,8 +85,7 @@ def where(ball: int, x: float, y: float) -> str:
 
 
 def table_text(places: dict[int, tuple[float, float]], on: int, lines: list[Line], facts: list[str]) -> str:
-    """The whole description; ``places``: of the balls on the table, ``on``: mask of those that may be struck
-    first."""
+    """The whole description; ``places``: of the balls, ``on``: mask of those that may be struck first."""
     text = [*facts, ""]
     text.append(
         "Balls (x to the right, y to the black end, metres from the middle of the table; * may be struck first):"

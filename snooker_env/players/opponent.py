@@ -1,5 +1,4 @@
-"""How does a player sit opposite the agent of a frame? Asked once for all tables that wait; its strokes are
-carried out as they are."""
+"""How does a player sit opposite the agent of a frame? Asked once for all tables that wait."""
 
 from collections.abc import Sequence
 from pathlib import Path

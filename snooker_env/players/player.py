@@ -1,6 +1,5 @@
-"""What is a player? A function of positions and a seed: it sees where the balls lie and says what it plays.
+"""What is a player? A function of positions and a seed, bound once (``at``), then asked (``play``).
 
-A ``Player`` is bound once to where it plays (``at``) and then asked for any number of positions (``play``).
 It keeps nothing between two calls: the same position and seed give the same stroke, whether asked for one
 table or a thousand.
 """
@@ -156,7 +155,8 @@ class Strokes:
         ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. ``at``: the n
         positions, on which the meaning of a place and a nomination depends. ValueError if the environment
         reads other actions, or a raised cue, a decision or a declaration that they do not hold; a place and a
-        nomination that they do not hold are left out."""
+        nomination that they do not hold are left out.
+        """
         box = options.rules.actions
         if not isinstance(box, Actions) or box.aim != "absolute":
             what = f"action={options.action!r}, aim={options.aim!r}"
@@ -247,12 +247,12 @@ class Player(Protocol):
     def at(self, rules: RulesLike) -> "Player":
         """Return a new player bound to physics, table, fidelity, noise and, for frames, the game.
 
-        How an environment's actions are read does not matter: strokes are the same everywhere. ValueError if
-        the options are invalid, or the player cannot play under them."""
+        Strokes do not depend on how actions are read. ValueError if the player cannot play under the options.
+        """
         ...
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """Return what it does in each of n positions, of visits or of frames as the striker sees them.
+        """Return what it does in n positions, of visits or of frames as the striker sees them.
 
         ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once.
         """

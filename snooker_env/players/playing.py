@@ -1,5 +1,4 @@
-"""How does a player play on tables? Its strokes as actions of an environment that reads strokes, with a seed
-for each decision."""
+"""How does a player play on tables? Its strokes as actions, with a seed for each decision."""
 
 from typing import Any
 

@@ -1,5 +1,4 @@
-"""Which player does a name stand for? The only place that answers: built in, installed by others, your class,
-a model, a program."""
+"""Which player does a name stand for? The only place that answers."""
 
 import importlib
 import importlib.util
@@ -16,11 +15,9 @@ from .player import Player
 from .search import BUDGET, LEAST, MOST, SearchPlayer
 
 GROUP = "snooker_env.players"
-"""Entry points of this group name players of other packages: NAME = MODULE:MAKER, called without
-arguments."""
+"""Entry points for players of other packages: NAME = MODULE:MAKER, called without arguments."""
 READERS = "snooker_env.models"
-"""Entry points of this group read files of models: MODULE:READER, called with the path; None if the file is
-not theirs."""
+"""Entry points that read models: MODULE:READER, called with a path; None if the file is not theirs."""
 BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner")
 """The players in the package."""
 RENAMED = {"lookahead": "search"}

@@ -1,5 +1,4 @@
-"""How does a model of Stable-Baselines3 or sb3-contrib play? Its ``.zip``, checked before any code in it
-runs, as a ``Seen``."""
+"""How does a model of Stable-Baselines3 or sb3-contrib play? Its checked ``.zip``, as a ``Seen``."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,9 +19,7 @@ _VIEW = "must be a model trained on the observation of a visit or a frame, and n
 
 @dataclass(frozen=True)
 class FittingModel:
-    """A model's file whose spaces are those of an environment with these options.
-
-    ``saved``: the file, of which nothing was unpickled. ``options``: how it sees and acts, see ``Seen``."""
+    """A model's file, not unpickled, with fitting ``options``: how it sees and acts, see ``Seen``."""
 
     saved: SavedModel
     options: dict[str, Any]

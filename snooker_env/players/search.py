@@ -1,12 +1,9 @@
-"""How do players search? By the rule of thumb, for the pot alone, or with a learned value and policy, by one
-``StrokeSearch``.
+"""How do players search? By one ``StrokeSearch``; a name may end in simulated shots: ``search_2000``.
 
 * ``search`` judges positions by the rule of thumb and looks at strokes spread evenly over the pots.
-* ``planner`` judges by the learned value and looks at the strokes that the learned policy proposes. It has
-  weights for several levels of execution errors and takes those of the level that it plays under.
+* ``planner`` judges by the learned value and looks at the strokes that the learned policy proposes. It takes
+  the weights of the level of execution errors that it plays under.
 * ``best_pot`` plays the likeliest pot without regard to what follows.
-
-A name may end in a number of simulated shots a decision: ``search_2000``.
 """
 
 from typing import Any
@@ -34,8 +31,7 @@ RANKED = 40
 
 
 class SearchPlayer(BoundPlayer):
-    """The best stroke of a ``StrokeSearch``; a planner's ``learned`` policy and value are by default the
-    package's."""
+    """The best stroke of a ``StrokeSearch``; ``learned``: a planner's, by default the package's."""
 
     def __init__(self, kind: str, budget: int = BUDGET, learned: Learned | None = None):
         self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"

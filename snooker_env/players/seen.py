@@ -1,5 +1,4 @@
-"""How does a network play? It sees observations and answers with actions; one adapter makes a player of
-it."""
+"""How does a network play? It sees observations and answers with actions; an adapter makes a player."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol, runtime_checkable
@@ -35,8 +34,7 @@ from .player import Strokes
 from .simple import BoundPlayer, placed
 
 OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")
-"""Options that say how a network sees and acts; with a miss rule it sees the layout that "replace"
-restores."""
+"""How a network sees and acts; with a miss rule it sees the layout that "replace" restores."""
 
 
 @runtime_checkable
@@ -60,7 +58,8 @@ class Seen(Protocol):
         """Return n actions, for n observations, of the kinds that ``options`` say.
 
         ``masks``: bool (n, choices) with ``action="discrete"``, else None. ``seeds``, int64 (n,): equal rows
-        and seeds must give equal actions, however many are asked for."""
+        and seeds must give equal actions, however many are asked for.
+        """
         ...
 
 

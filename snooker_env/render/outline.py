@@ -1,5 +1,4 @@
-"""Which parts of a table never move, and where are they? Cushions, falls, holes and snooker's lines, in
-metres. Table frame: origin at the table's centre, +x to the yellow side, +y to the black end."""
+"""Which parts of a table never move, and where are they? Cushions, falls, holes and lines [m]."""
 
 from dataclasses import dataclass
 from functools import lru_cache

@@ -1,5 +1,4 @@
-"""Which colours does everything have? One table for pygame, matplotlib and the browser. Each ball differs
-from the cloth by at least 25 in CIEDE2000, so that it is easy to see."""
+"""Which colours does everything have? Each ball is easy to see: 25 or more from the cloth in CIEDE2000."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,9 +25,8 @@ PALETTE: dict[str, tuple[int, int, int]] = {
     "text": (240, 240, 236),
     "text_quiet": (164, 170, 184),
 }
-"""Colours by name, (red, green, blue), 0 to 255. ``cloth_edge``: the cloth where it bends over a fall;
-``line``: the lines and spots; ``nose``: the edge of a cushion that balls meet; ``path_edge``: the outline
-of a path; ``lamp``: its reflection in a ball; ``bar``: the score bar."""
+"""Colours by name, (red, green, blue), 0 to 255. ``cloth_edge``: the cloth over a fall; ``nose``: the edge
+that balls meet; ``path_edge``: a path's outline; ``lamp``: its reflection; ``bar``: the score bar."""
 
 COLOURS: NDArray[np.uint8] = np.array(
     [(252, 248, 234)]

@@ -1,5 +1,4 @@
-"""What is there to draw? A table, its lines, balls and overlays, in metres and without a drawing library.
-Table frame: origin at the centre, +x to the yellow side, +y to the black end."""
+"""What is there to draw? A table, its lines, balls and overlays, in metres, without a drawing library."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass

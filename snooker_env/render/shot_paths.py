@@ -1,6 +1,4 @@
-"""What does a diagram show of a shot? Paths in pieces that slide or roll, contacts and speeds, and the tip.
-The lines between a piece's points are within ``STRAY`` of it: a rolling ball moves straight, a sliding one
-on a parabola."""
+"""What does a diagram show of a shot? Paths within ``STRAY``, contacts, speeds, and the tip."""
 
 from collections.abc import Iterator
 from typing import Literal, NamedTuple

@@ -1,5 +1,4 @@
-"""How is a table drawn with matplotlib? By a ``Sketch``: axes in metres, a point (x, y) at ``ax.plot(y, x)``,
-all on the table's own colours, so that light and dark pages show it alike."""
+"""How is a table drawn with matplotlib? By a ``Sketch``: a point (x, y) [m] is at ``ax.plot(y, x)``."""
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 

@@ -1,6 +1,5 @@
 """How is a ball oriented at any time of a shot? Its spin, integrated once, as unit quaternions (w, x, y, z).
-q is the rotation since the start: a vector v of the ball is q v q* in the table frame. Spins are in the
-table frame too, so a short step's rotation is multiplied from the left."""
+q is the rotation since the start: v of the ball is q v q* in the table frame, as spins are."""
 
 import numpy as np
 

@@ -1,5 +1,4 @@
-"""What does the score bar show at each stroke? Two bars for each stroke: one during it, and one after the
-referee's decision."""
+"""What does the score bar show? During each stroke, and after the referee's decision."""
 
 from collections.abc import Iterable, Sequence
 
@@ -12,8 +11,7 @@ from .words import on_words, pots_of, sentence
 
 
 def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreBar, ScoreBar]]:
-    """For each stroke of one episode, in order: the bar during it and the bar after it. ``players``: their
-    names."""
+    """The bars during and after each stroke of one episode, in order; ``players``: their names."""
     made, names = [], tuple(players)
     potted: list[int] | None = []  # in this break; None: it began before the first recorded stroke
     run = 0

@@ -1,5 +1,4 @@
-"""What is a replay? Strokes in their order, as data, as a page that any browser plays from disk, and as a
-film."""
+"""What is a replay? Strokes in their order, as a page for any browser, as data, and as a film."""
 
 import html
 import json
@@ -136,7 +135,7 @@ class Replay:
         return f"Replay({len(self)} strokes, {self.title!r})"
 
     def to_dict(self) -> dict[str, Any]:
-        """The replay as JSON types, in the format of docs/play/replay.md; treat what is inside as read-only.
+        """The replay as JSON types, see docs/play/replay.md; treat what is inside as read-only.
 
         ValueError if a shot has no path, or more than 22 balls.
         """
@@ -186,8 +185,7 @@ class Replay:
         """Write the replay, whole or not at all, in the format of the suffix; returns the path.
 
         ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra
-        ``render``; ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (by default a GIF has 15
-        pictures of 640 x 360 a second).
+        ``render``; ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF: 15, 640 x 360).
         ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra.
         """
         target = Path(path)

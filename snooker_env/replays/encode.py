@@ -1,9 +1,7 @@
-"""How is a stroke encoded for a browser? As the closed forms of its phases of motion: small, and exact at
-every time.
+"""How is a stroke encoded for a browser? As the closed forms of its phases of motion (docs/play/replay.md).
 
 The numbers of a path are binary in base64. Positions, velocities and accelerations have 64 bits, so that the
-browser computes the same positions as ``Shot.at``. Spins have 32 bits, because they are only displayed.
-docs/play/replay.md describes the format.
+browser computes the same positions as ``Shot.at``; spins, which are only displayed, 32.
 """
 
 import base64
@@ -32,8 +30,7 @@ def packed(values: Any, kind: str) -> str:
 
 
 def encoded_shot(shot: Shot) -> dict[str, Any]:
-    """The motion of a shot, up to the key "pots". ValueError if it has no path, or more balls than
-    snooker."""
+    """The motion of a shot, up to "pots". ValueError if it has no path, or more balls than snooker."""
     n = len(shot.positions)
     if n > N_BALLS:
         raise refuse_what("shot", f"{n} balls", f"must have at most {N_BALLS}: their colours are snooker's")

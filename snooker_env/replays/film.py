@@ -1,5 +1,4 @@
-"""How does a replay become a film? Picture after picture is sent to the encoder, so that only one is in
-memory at a time."""
+"""How does a replay become a film? Picture by picture sent to the encoder: one at a time is in memory."""
 
 import subprocess
 from collections.abc import Callable, Iterable, Iterator
@@ -32,10 +31,7 @@ USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif":
 
 
 def shown(
-    strokes: Iterable[Shot | Played],
-    table: Table,
-    players: tuple[str, ...],
-    title: str,
+    strokes: Iterable[Shot | Played], table: Table, players: tuple[str, ...], title: str
 ) -> Iterator[tuple[Film, Scene]]:
     """For each stroke its film, and the table after it with the referee's words."""
     strokes = list(strokes)
@@ -67,10 +63,7 @@ def filmed(
 
 
 def frames(
-    films: Iterable[tuple[Film, Scene]],
-    fps: float,
-    speed: float,
-    size: tuple[int, int],
+    films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: tuple[int, int]
 ) -> Iterator[NDArray[np.uint8]]:
     """The pictures of what ``shown`` gives."""
     from ..render.pygame_view import rgb_array

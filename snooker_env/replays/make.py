@@ -1,5 +1,4 @@
-"""How is a replay made? From a shot, from several, from the strokes of an episode, or from the environment
-that played it."""
+"""How is a replay made? From shots, the strokes of an episode, or the environment that played it."""
 
 from collections.abc import Iterable
 from pathlib import Path

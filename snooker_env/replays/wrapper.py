@@ -1,5 +1,4 @@
-"""How are an environment's episodes written to files? ``RecordReplay``: a wrapper that writes a replay for
-each wanted episode."""
+"""How are an environment's episodes written to files? ``RecordReplay`` writes a replay for each."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path

@@ -1,10 +1,8 @@
-"""Which weights does the package hold? Value and policy of the planner, one file for each noise level, plain
-NumPy arrays.
+"""Which weights does the package hold? Value and policy of the planner, one file for each noise level.
 
-``python -m agents.export`` writes them from the models that ``train.py`` made. A file holds
-``policy/LAYER/weight`` and ``policy/LAYER/bias`` for each layer of a ``StrokePolicy``, and
-``value/LAYER/weight`` (members, out, in) and ``value/LAYER/bias`` (members, out) for each layer of a
-``LearnedValue``. Reading them runs no code.
+``python -m agents.export`` writes them from the models that ``train.py`` made. A file holds the NumPy arrays
+``policy/LAYER/weight`` and ``policy/LAYER/bias`` of a ``StrokePolicy``, and ``value/LAYER/weight`` (members,
+out, in) and ``value/LAYER/bias`` (members, out) of a ``LearnedValue``. Reading them runs no code.
 """
 
 from collections.abc import Mapping
