@@ -15,17 +15,13 @@ def refuse(field: str, value: Any, allowed: str) -> ValueError:
 
     Parameters
     ----------
-    field : str
-        Name of the argument, as the caller writes it.
-    value : any
-        The value; the message shows its ``repr``.
-    allowed : str
-        What is allowed: "must be ...".
+    field, value, allowed
+        Name of the argument, as the caller writes it; its value, shown by its ``repr``; and "must be ...".
 
     Returns
     -------
     ValueError
-        Not raised yet.
+        The error.
 
     Examples
     --------
@@ -43,17 +39,13 @@ def refuse_what(field: str, what: str, allowed: str) -> ValueError:
 
     Parameters
     ----------
-    field : str
-        Name of the argument, as the caller writes it.
-    what : str
-        Description of the value.
-    allowed : str
-        What is allowed: "must be ...".
+    field, what, allowed
+        As in ``refuse``, with a description of the value.
 
     Returns
     -------
     ValueError
-        Not raised yet.
+        The error.
 
     Examples
     --------
@@ -71,10 +63,8 @@ def number(
 
     Parameters
     ----------
-    field : str
-        Name of the argument, for the message.
-    value : any
-        The value to check.
+    field, value
+        Name of the argument, for the message, and its value.
     low, high : float
         Ends of the range [low, high]; infinite by default.
     open_low : bool
@@ -147,12 +137,8 @@ def choice(field: str, value: Any, options: Collection[str]) -> str:
 
     Parameters
     ----------
-    field : str
-        Name of the argument, for the message.
-    value : any
-        The value to check.
-    options : collection of str
-        The names that are allowed.
+    field, value, options
+        Name of the argument, for the message; its value; and the names that are allowed.
 
     Returns
     -------
@@ -175,12 +161,8 @@ def integer(field: str, value: Any, low: float, high: float) -> int:
 
     Parameters
     ----------
-    field : str
-        Name of the argument, for the message.
-    value : any
-        The value to check.
-    low, high : int
-        Ends of the range [low, high].
+    field, value, low, high
+        Name of the argument, for the message; its value; and the ends of the range [low, high].
 
     Returns
     -------
@@ -215,10 +197,8 @@ def truth(field: str, value: Any) -> bool:
 
     Parameters
     ----------
-    field : str
-        Name of the argument, for the message.
-    value : any
-        The value to check.
+    field, value
+        Name of the argument, for the message, and its value.
 
     Returns
     -------

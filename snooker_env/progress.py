@@ -28,12 +28,8 @@ class Progress:
 
     Parameters
     ----------
-    what : str
-        The work, in words.
-    total : int
-        How much of it there is.
-    unit : str
-        Of what, in the plural.
+    what, total, unit
+        The work, in words; how much of it there is; and of what, in the plural.
     done : int
         How much was done before, by a run that is resumed.
     to : text stream, optional

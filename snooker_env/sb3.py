@@ -39,14 +39,12 @@ class SnookerVecEnv(VecEnv):
 
     Parameters
     ----------
-    num_envs : int
-        Number of tables, in [1, 2**24].
+    num_envs, **kwargs
+        As in ``SnookerVectorEnv``, without ``autoreset_mode``.
     seed : int, optional
         Table k begins with seed + k, as after ``seed(seed)``. Default None: random.
     info_keys : sequence of str, optional
         Keys of the environment's info to include; default none.
-    **kwargs
-        All other arguments of ``SnookerVectorEnv`` except ``autoreset_mode``.
 
     Examples
     --------

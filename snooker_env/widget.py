@@ -26,23 +26,22 @@ def replay_widget(
 ) -> Any:
     """Make a widget that plays a replay in a notebook: JupyterLab, VS Code, Colab or marimo.
 
-    Its traits are synchronised in both directions: ``stroke`` (from 0), ``time`` within it [s] (below 0
-    before the strike; not updated while it plays), and ``playing``. Setting ``stroke`` alone goes to its
-    beginning.
+    Its traits are synchronised in both directions: ``stroke`` (from 0; setting it alone goes to its
+    beginning), ``time`` within it [s] (below 0 before the strike; not updated while it plays), and
+    ``playing``.
 
     Parameters
     ----------
     source : Replay, Shot, sequence of Shot or Played, Position, or environment
         Anything that ``snooker_env.replay`` takes.
-    speed : float, optional
-        Speed of the replay over that of the shot, in [0.1, 8]; default 1.
-    playing : bool, optional
-        Whether it starts at once; default False.
-    paths, ghosts, labels : bool, optional
-        Whether paths (default True), balls at their impacts (default True) and letters on balls (default
-        False) are shown at first.
-    spin : {"off", "cue", "all"}, optional
-        The balls whose rotation is shown at first; default "cue".
+    speed : float
+        Speed of the replay over that of the shot, in [0.1, 8].
+    playing : bool
+        Whether it starts at once.
+    paths, ghosts, labels : bool
+        Whether paths, balls at their impacts and letters on balls are shown at first.
+    spin : {"off", "cue", "all"}
+        The balls whose rotation is shown at first.
 
     Returns
     -------

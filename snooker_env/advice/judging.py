@@ -97,42 +97,38 @@ def _trial(
     else:
         kind, how = "contact", contact_words(dx, dy, stroke.aim)
     distance = None if first < 0 else max(0.0, hypot(dx, dy) - 2.0 * BALL_RADIUS)
-    words = f"{what_words(kind, ball, pocket, first, how)}, {stroke_words(stroke, distance, practice.options.rules.physics)}"
-    return kind, ball, pocket, first, words
+    what = what_words(kind, ball, pocket, first, how)
+    return (
+        kind,
+        ball,
+        pocket,
+        first,
+        f"{what}, {stroke_words(stroke, distance, practice.options.rules.physics)}",
+    )
 
 
 def distinct(strokes: list[Tried]) -> list[Tried]:
     """Only the first of several strokes with equal descriptions, apart from the speed of a pot."""
-    read = [
-        one.words.replace(f"{one.stroke.speed:.1f} m/s", "") if one.kind == "pot" else one.words
-        for one in strokes
-    ]
-    return [one for k, one in enumerate(strokes) if read[k] not in read[:k]]
+    first = {}
+    for one in strokes:
+        speed = f"{one.stroke.speed:.1f} m/s" if one.kind == "pot" else ""
+        first.setdefault(one.words.replace(speed, ""), one)
+    return list(first.values())
 
 
-def fair(
-    practice: Practice, strokes: list[Tried], n: int, *, samples: int, visits: int, seed: int
-) -> list[Suggestion]:
+def fair(practice: Practice, strokes: list[Tried], n: int, **how: int) -> list[Suggestion]:
     """The first n strokes that are fair without errors and in most samples, the preferred kind first."""
     waiting, out = [one for one in strokes if one.kind not in FOULS], []
     while waiting and len(out) < n:
         some, waiting = waiting[: n - len(out)], waiting[n - len(out) :]
-        out += [
-            one
-            for one in judged(practice, some, samples=samples, visits=visits, seed=seed)
-            if one.foul <= 0.5
-        ]
+        out += [one for one in judged(practice, some, **how) if one.foul <= 0.5]
     return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))
 
 
-def least_bad(
-    practice: Practice, strokes: list[Tried], *, samples: int, visits: int, seed: int
-) -> Suggestion:
+def least_bad(practice: Practice, strokes: list[Tried], **how: int) -> Suggestion:
     """The stroke that is fair in most samples, where none is fair."""
-    worst = min(
-        judged(practice, strokes, samples=samples, visits=visits, seed=seed), key=lambda one: one.foul
-    )
-    return replace(worst, words=f"no fair stroke found: {worst.words}")
+    best = min(judged(practice, strokes, **how), key=lambda one: one.foul)
+    return replace(best, words=f"no fair stroke found: {best.words}")
 
 
 def judged(
@@ -141,11 +137,9 @@ def judged(
     """Strokes with their outcomes under execution errors, in their order."""
     n = len(strokes)
     tries, again = (1, min(1, visits)) if practice.sure else (samples, visits)
-    noise, rows = keys(seed, JUDGING, tries), np.stack([one.stroke.numbers() for one in strokes])
-    starts = _joined([one.start for one in strokes])
-    stops = practice.play(
-        starts, np.repeat(np.arange(n), tries), np.repeat(rows, tries, 0), np.tile(noise, n)
-    )
+    rows, starts = [one.stroke.numbers() for one in strokes], _joined([one.start for one in strokes])
+    each, noise = np.repeat(np.arange(n), tries), np.tile(keys(seed, JUDGING, tries), n)
+    stops = practice.play(starts, each, np.repeat(rows, tries, 0), noise)
     rest = _rest(practice, stops, n, tries, again, seed)
     out = []
     for k, one in enumerate(strokes):
@@ -158,14 +152,8 @@ def judged(
         middle, spread = _cloud(stops.places[mine, CUE][stayed])
         out.append(
             Suggestion(
-                **{
-                    name: getattr(one.stroke, name)
-                    for name in ("speed", "aim", "side", "top", "elevation", "place")
-                },
-                kind=one.kind,
-                ball=one.ball,
-                pocket=one.pocket,
-                first=one.first,
+                **vars(one.stroke),
+                **{name: getattr(one, name) for name in ("kind", "ball", "pocket", "first", "score")},
                 chance=chance,
                 chance_interval=(chance, chance) if practice.sure else wilson(int(made.sum()), tries),
                 points=points,
@@ -174,7 +162,6 @@ def judged(
                 in_off=float((~stayed).mean()),
                 stops=middle,
                 spread=spread,
-                score=one.score,
                 words=f"{one.words}, {figures_words(one.kind, chance, points)}",
             )
         )

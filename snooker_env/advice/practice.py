@@ -51,7 +51,7 @@ class Practice:
 
 
 def practice_of(noise: NoiseLike, options: Any = None, source: Any = None) -> Practice:
-    """The practice table for a noise and ``options``; None: those of an environment ``source``, if it is one."""
+    """The practice table for a noise and ``options``; None: those of an environment ``source``."""
     if options is None:
         options = getattr(bare(source), "options", None)
         options = options if isinstance(options, Options) else {}
@@ -73,9 +73,8 @@ def one_position(source: Any) -> Positions:
     """The one position in a source, with no points in its visit; ValueError if there is not one to play."""
     tables = getattr(bare(source), "tables", None)
     if isinstance(tables, Tables) and not tables.begun.all():
-        raise refuse_what(
-            "position", "an environment before reset()", "must have a position: call reset() first"
-        )
+        words = "must have a position: call reset() first"
+        raise refuse_what("position", "an environment before reset()", words)
     at = Positions.of(source)
     if len(at) != 1:
         raise refuse_what("position", f"{len(at)} positions", "must be one position")

@@ -20,30 +20,21 @@ from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
 
 @dataclass(frozen=True, kw_only=True)
 class CueStroke:
-    """One stroke as a player intends it. It is validated when it is made, and it is immutable.
+    """One stroke as a player intends it, immutable; ValueError for a number not finite or out of range.
 
     Parameters
     ----------
     speed : float
         Cue speed [m/s], in [0.2, 7].
     aim : float
-        Direction in which the cue ball leaves [rad], anticlockwise from +x. Squirt is compensated, as a
-        player does: with side, the cue points in a slightly different direction. ``aim="absolute"`` of an
-        action means the same.
-    side : float, optional
-        Tip offset to the right over R, as the player sees it; default 0. The point (side, top) must lie
-        within a disc of radius 0.5.
-    top : float, optional
-        Tip offset upwards over R; default 0.
-    elevation : float, optional
-        Elevation of the butt [rad], from 0 (default) to 30 degrees.
+        Direction in which the cue ball leaves [rad], anticlockwise from +x, as ``aim="absolute"`` of an
+        action. Squirt is compensated: with side, the cue points in a slightly different direction.
+    side, top : float
+        Tip offsets to the right and upwards over R, as the player sees it, within a disc of radius 0.5.
+    elevation : float
+        Elevation of the butt [rad], from 0 to 30 degrees.
     place : (float, float), optional
         Where in the D a cue ball in hand is placed first [m]. Default None: it is played from where it lies.
-
-    Raises
-    ------
-    ValueError
-        If a number is not finite or out of range.
 
     Examples
     --------
@@ -66,20 +57,14 @@ class CueStroke:
         for name in ("side", "top"):
             put(name, number(name, getattr(self, name), -FARTHEST, FARTHEST))
         if hypot(self.side, self.top) > FARTHEST + 1e-9:
-            raise refuse_what(
-                "side, top",
-                f"({self.side:g}, {self.top:g})",
-                f"must lie within the disc of radius {FARTHEST}",
-            )
+            allowed = f"must lie within the disc of radius {FARTHEST}"
+            raise refuse_what("side, top", f"({self.side:g}, {self.top:g})", allowed)
         put("elevation", number("elevation", self.elevation, 0.0, MAX_ELEVATION))
         if self.place is not None:
             put("place", tuple(array("place", self.place, (2,)).tolist()))
             if not within_d(*self.place):
-                raise refuse_what(
-                    "place",
-                    f"({self.place[0]:g}, {self.place[1]:g})",
-                    "must be on or within the lines of the D",
-                )
+                place = f"({self.place[0]:g}, {self.place[1]:g})"
+                raise refuse_what("place", place, "must be on or within the lines of the D")
 
     @classmethod
     def of(cls, stroke: "StrokeLike") -> "CueStroke":
@@ -98,11 +83,8 @@ class CueStroke:
             values = {name: getattr(stroke, name) for name in names if hasattr(stroke, name)}
         for name in ("speed", "aim"):
             if name not in values:
-                raise refuse_what(
-                    "stroke",
-                    f"a {type(stroke).__name__} without {name!r}",
-                    "must be a CueStroke or a dict of its fields",
-                )
+                what = f"a {type(stroke).__name__} without {name!r}"
+                raise refuse_what("stroke", what, "must be a CueStroke or a dict of its fields")
         return cls(**values)
 
     def to_dict(self) -> dict[str, Any]:

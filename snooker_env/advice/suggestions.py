@@ -1,7 +1,7 @@
 """What does advice hold? ``Suggestion``: a stroke with its outcomes; ``Advice``: a sequence of them."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any, overload
 
 from .._types import Place
@@ -15,45 +15,32 @@ class Suggestion(CueStroke):
 
     Attributes
     ----------
-    speed : float
-        Cue speed [m/s], see ``CueStroke``.
-    aim : float
-        Direction in which the cue ball leaves [rad].
-    side, top : float
-        Tip offsets over R, to the right and up.
-    elevation : float
-        Elevation of the butt [rad].
-    place : (float, float) or None
-        Where in the D the cue ball is placed first [m]; None if it is not in hand.
+    speed, aim, side, top, elevation, place
+        As in ``CueStroke``.
     kind : {"pot", "contact", "escape", "in-off", "foul"}
         What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores
         nothing; what it is worth as a safety is not judged. "escape": the same where no straight path leads
         to a ball on. "in-off": it loses the cue ball. "foul": any other foul.
     ball : int
-        Id of the ball that it pots without errors or, if none, of the ball that it strikes first; -1 if it
-        strikes nothing.
+        Id of the ball that it pots without errors or, if none, strikes first; -1 if it strikes nothing.
     pocket : int
         Pocket of that ball, an index into ``snooker_env.POCKETS``; -1 if it is not potted.
     first : int
         Id of the ball that it strikes first without errors; -1 if none.
     chance : float
-        For a pot: the share of the samples in which that ball went into that pocket without a foul.
+        Of a pot: the share of the samples in which that ball went into that pocket without a foul.
         Otherwise: the share without a foul.
     chance_interval : (float, float)
         Wilson's 95 % interval of the chance; without noise, the chance itself twice.
     points : float
-        Expected points of the visit from this stroke on, when it is continued by the fast player of
-        ``snooker_env.advice.visits``.
+        Expected points of the visit from this stroke on, continued by the fast player of
+        ``snooker_env.advice.visits``; a stronger one may score more.
     points_interval : (float, float)
-        95 % interval of that mean. It covers the sampling error of the strokes and of the visits; a stronger
-        player may score more.
-    foul : float
-        Share of the samples in which the stroke was a foul, in [0, 1].
-    in_off : float
-        Share of the samples in which the cue ball was potted, in [0, 1].
+        95 % interval of that mean: the sampling error of the strokes and of the visits.
+    foul, in_off : float
+        Shares of the samples with a foul, and in which the cue ball was potted.
     stops : (float, float) or None
-        Mean stopping point of the cue ball [m] over the samples in which it stayed on the table; None if
-        there are none.
+        Mean stopping point of the cue ball [m] where it stayed on the table; None if it never did.
     spread : float or None
         Root of the mean square distance from that point [m].
     score : float or None
@@ -95,15 +82,11 @@ class Suggestion(CueStroke):
     @property
     def stroke(self) -> CueStroke:
         """The stroke alone, a ``CueStroke``."""
-        return CueStroke.of(
-            {name: getattr(self, name) for name in ("speed", "aim", "side", "top", "elevation", "place")}
-        )
+        return CueStroke.of({field.name: getattr(self, field.name) for field in fields(CueStroke)})
 
     def to_dict(self) -> dict[str, Any]:
         """Return all attributes by name as JSON types; pairs as lists."""
-        return {
-            name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()
-        }
+        return {name: list(x) if isinstance(x, tuple) else x for name, x in asdict(self).items()}
 
     def __str__(self) -> str:
         return self.words
@@ -122,21 +105,17 @@ class Advice(Sequence[Suggestion]):
     agent : str
         Name of the agent.
     own : bool
-        Whether the strokes are the agent's own; False where none of its own is fair, so that others were
-        judged, too.
+        Whether the strokes are the agent's own; False where none is fair, so that others were judged, too.
     noise : str or dict
         Execution errors: a level's name, or the fields of ``Noise``.
-    samples : int
-        How often each stroke was played.
-    visits : int
-        How many visits of each stroke were continued.
-    seed : int
-        Seed of the noise samples.
+    samples, visits, seed : int
+        As in ``advise``.
 
     Examples
     --------
     >>> import snooker_env as sn
-    >>> advice = sn.advise(sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605)), agent="search", noise="none", n=1)
+    >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
+    >>> advice = sn.advise(position, agent="search", noise="none", n=1)
     >>> len(advice), advice.agent
     (1, 'search')
     >>> print(advice)  # doctest: +ELLIPSIS
@@ -178,11 +157,9 @@ class Advice(Sequence[Suggestion]):
 
     def to_dict(self) -> dict[str, Any]:
         """Return all attributes by name as JSON types; the position and the suggestions as dicts."""
-        kept = {
-            name: getattr(self, name)
-            for name in ("agent", "own", "order", "noise", "samples", "visits", "seed")
-        }
-        return {"position": self.position.to_dict(), **kept, "suggestions": [one.to_dict() for one in self]}
+        names = ("agent", "own", "order", "noise", "samples", "visits", "seed")
+        kept = {"position": self.position.to_dict(), **{name: getattr(self, name) for name in names}}
+        return {**kept, "suggestions": [one.to_dict() for one in self]}
 
     def __str__(self) -> str:
         return "\n".join([self.order, *(f"{k}. {one.words}" for k, one in enumerate(self, 1))])

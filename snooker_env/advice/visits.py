@@ -46,9 +46,8 @@ def _choose(practice: Practice, at: Positions) -> NDArray[np.float64]:
     strokes, worth = np.zeros((n, len(PICKS), 5)), np.full((n, len(PICKS)), -1.0)
     strokes[rows, places] = practice.chosen(at, rows, choices)
     _, chances = practice.prospects(at)
-    worth[rows, places] = chances[rows, choices // STROKES] * _led_to(
-        practice, at, rows, strokes[rows, places], None
-    )
+    led_to = _led_to(practice, at, rows, strokes[rows, places], None)
+    worth[rows, places] = chances[rows, choices // STROKES] * led_to
     # each position has at least six
     best = np.argsort(-worth, axis=1, kind="stable")[:, : 1 if practice.sure else BEST]
     finalists = np.take_along_axis(strokes, best[:, :, None], 1)

@@ -1,6 +1,7 @@
 """How is a stroke described in words? Seen from the baulk end: right is the yellow side (+x)."""
 
-from math import copysign, cos, degrees, inf, sin, sqrt
+from bisect import bisect_left
+from math import copysign, cos, degrees, sin, sqrt
 
 from ..game.balls import NAMES
 from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
@@ -17,6 +18,8 @@ _STUN = 0.25
 """A ball whose rotation is within this share of its speed arrives without spin."""
 _SIDE = 0.05
 """Tip offsets over R from which side is mentioned."""
+_FULLNESS = (0.38, 0.62, 0.87)
+"""Offsets of a ball over its diameter up to which it is struck three-quarter, half or quarter."""
 RAISED = 0.05
 """Elevation [rad] from which a raised cue is mentioned."""
 
@@ -92,29 +95,17 @@ def cushion_words(x: float, y: float, aim: float) -> str:
 def contact_words(x: float, y: float, aim: float) -> str:
     """How full a ball at the offset (x, y) is struck by a cue ball running straight along ``aim`` [rad]."""
     aside = (y * cos(aim) - x * sin(aim)) / (2.0 * BALL_RADIUS)
-    for far, words in (
-        (0.12, "full"),
-        (0.38, "three-quarter ball"),
-        (0.62, "half-ball"),
-        (0.87, "quarter-ball"),
-        (inf, "thin"),
-    ):
-        if abs(aside) <= far:
-            return words if far < 0.2 else f"{words} on the {'right' if aside > 0 else 'left'}"
-    raise AssertionError(aside)
+    if abs(aside) <= 0.12:
+        return "full"
+    words = ("three-quarter ball", "half-ball", "quarter-ball", "thin")[bisect_left(_FULLNESS, abs(aside))]
+    return f"{words} on the {'right' if aside > 0 else 'left'}"
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
     """What a stroke does without errors. ``how``: an escape's first cushion, or how full a ball is struck."""
     if kind == "pot":
-        how = (
-            ""
-            if ball == first
-            else " by a plant"
-            if first <= 15 and ball <= 15
-            else f" off the {ball_words(first)}"
-        )
-        return f"{ball_words(ball)}{how}, {POCKET_WORDS[pocket]}"
+        how = " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_words(first)}"
+        return f"{ball_words(ball)}{'' if ball == first else how}, {POCKET_WORDS[pocket]}"
     if kind == "in-off":
         return f"in-off from the {ball_words(first)}" if first >= 0 else "in-off, nothing struck"
     if kind == "foul":
@@ -127,9 +118,7 @@ def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> 
 def figures_words(kind: str, chance: float, points: float) -> str:
     """The figures of a stroke: chance and points expected of a pot, otherwise how often it is fair."""
     if kind != "pot":
-        unjudged = (
-            "; no pot intended, its worth as a safety is not judged" if kind in ("contact", "escape") else ""
-        )
-        return f"fair {100.0 * chance:.0f} %{unjudged}"
+        unjudged = "; no pot intended, its worth as a safety is not judged"
+        return f"fair {100.0 * chance:.0f} %{unjudged if kind in ('contact', 'escape') else ''}"
     scored = f"{points:.0f}" if points >= 9.5 else f"{points:.1f}".removesuffix(".0")
     return f"chance {100.0 * chance:.0f} %, {scored} point{'' if scored == '1' else 's'} expected"

@@ -25,25 +25,17 @@ class MatchVectorEnv(SnookerVectorEnv):
     A step is one turn on each table, of the player whose turn it is there: ``strikers``. Observations are
     those of the strikers, from their own side; infos have the keys of ``SnookerEnv`` as player 0 sees them,
     with the last stroke of either player, and "striker". Rewards are float64 (n, 2), one for each player;
-    they sum to zero.
-
-    A table whose frame or match has ended stands still until ``reset(options={"reset_mask": ...})``: its
-    actions are ignored, its rewards are 0, and its flags stay.
+    they sum to zero. A table whose frame or match has ended stands still until
+    ``reset(options={"reset_mask": ...})``: its actions are ignored, its rewards are 0, and its flags stay.
 
     Parameters
     ----------
-    num_envs : int, optional
-        Number of tables, in [1, 2**24]; default 1.
-    options : Options, optional
-        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the
-        keywords.
+    num_envs, options, **keywords
+        As in ``SnookerVectorEnv``, with ``task="frame"`` or "match" and no opponent, and without
+        ``autoreset_mode`` and ``max_episode_steps``. As in ``match_env`` box actions hold placement and
+        decision by default, and with ``frames`` the task is "match".
     seats : (dict, dict), optional
-        What differs for each player: options of its actions, and "noise", its execution errors. Default None:
-        nothing.
-    **keywords
-        ``threads``, ``render_mode`` and ``render_size`` of ``SnookerVectorEnv``, and the keywords of
-        ``Options`` in place of ``options``. As in ``match_env`` box actions hold placement and decision by
-        default, and with ``frames`` the task is "match".
+        What differs for each player: options of its actions, and "noise", its execution errors.
 
     Examples
     --------

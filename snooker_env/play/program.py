@@ -53,14 +53,9 @@ class ProgramPlayer(BoundPlayer):
     Parameters
     ----------
     command : str
-        The command line, split as by a shell; no shell runs it.
-    timeout : float, optional
-        The longest time of an answer [s], in (0, 1e6]; default 60.
-
-    Raises
-    ------
-    ValueError
-        If the command is empty, or the timeout is out of range.
+        The command line, split as by a shell; no shell runs it. ValueError if it is empty.
+    timeout : float
+        The longest time of an answer [s], in (0, 1e6].
 
     Examples
     --------

@@ -51,11 +51,10 @@ class Strokes:
     nominate : numpy.ndarray, optional
         int64 (n,). Id of the colour nominated after a red or as a free ball; 0: the free ball is declined; -1
         (default): the colour first struck.
-    decision : numpy.ndarray, optional
+    decision, declare : numpy.ndarray, optional
         int64 (n,). After a foul of the opponent: PLAY (default), PLAY_AGAIN, REPLACE or PLACE_ANYWHERE of
-        ``game.frame_columns``.
-    declare : numpy.ndarray, optional
-        int64 (n,). SAYS_NOTHING (default), CONCEDES, CLAIMS or OTHER_BEGINS of ``tasks.declarations``.
+        ``game.frame_columns``; SAYS_NOTHING (default), CONCEDES, CLAIMS or OTHER_BEGINS of
+        ``tasks.declarations``.
 
     Examples
     --------
@@ -212,10 +211,8 @@ class Ranked(NamedTuple):
 
     Attributes
     ----------
-    strokes : Strokes
-        m strokes.
-    scores : numpy.ndarray or None
-        float64 (m,). The player's own scores, or None if it has none.
+    strokes, scores
+        m ``Strokes``, and the player's own scores, float64 (m,), or None if it has none.
 
     Examples
     --------
@@ -233,8 +230,8 @@ class Ranked(NamedTuple):
 class Player(Protocol):
     """A player: a function of positions and a seed.
 
-    A player may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position; the first
-    stroke is the one that ``play`` returns. Advice shows it.
+    It may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position, first of all
+    the stroke that ``play`` returns. Advice shows it.
 
     Examples
     --------

@@ -20,12 +20,9 @@ def decision_seeds(seed: int, tables: Ints, decision: int | Ints) -> Ints:
 
     Parameters
     ----------
-    seed : int
-        Of the player.
-    tables : array_like
-        int (n,). A number for each table, such as the seed that it was dealt from.
-    decision : int or array_like
-        Number of the decision, of all tables or of each.
+    seed, tables, decision
+        The player's, an int; a number for each table, int (n,), such as the seed that it was dealt from; the
+        number of the decision, of all tables or of each.
 
     Returns
     -------
@@ -56,14 +53,10 @@ def decided(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats:
 
     Parameters
     ----------
-    player : Player
-        The player, bound.
-    tables : SnookerVectorEnv
-        n tables, made with ``VISITS`` or ``FRAMES``.
-    going : numpy.ndarray
-        bool (n,). The tables on which it is asked.
-    seeds : numpy.ndarray
-        int64 (n,). Of the decision on each table.
+    player, tables
+        The player, bound, and n tables, made with ``VISITS`` or ``FRAMES``.
+    going, seeds : numpy.ndarray
+        The tables on which it is asked, bool (n,), and the seeds of these decisions, int64 (n,).
 
     Returns
     -------

@@ -59,22 +59,17 @@ def player(name: Any, *, trust: bool = False) -> Player:
         * a name of ``players()``, for players that search optionally with a number of simulated shots
           ("planner_500") and for a planner with a model ("planner@runs/ppo_value-0");
         * "MODULE:CLASS" of a player of your own, made without arguments; its module is imported;
-        * a model's ``.zip`` of Stable-Baselines3 or sb3-contrib, or a training run's folder or files of
-          ``train.py``;
+        * a ``.zip`` of Stable-Baselines3 or sb3-contrib, or a run's folder or files of ``train.py``;
         * "program:COMMAND", an external program (docs/play/protocol.md);
         * a player, or an object with ``options`` and ``act(observations, masks, seeds)``.
-    trust : bool, optional
-        Whether code in a model's ``.zip`` may run; default False.
+    trust : bool
+        Whether code in a model's ``.zip`` may run.
 
     Returns
     -------
     Player
-        The player, not yet bound: ``player(name).at(options).play(positions, seeds)``.
-
-    Raises
-    ------
-    ValueError
-        If nothing has that name, the file holds no player, or it holds code and ``trust`` is False.
+        Not yet bound: ``player(name).at(options).play(positions, seeds)``. ValueError if nothing has that
+        name, the file holds no player, or it holds code and ``trust`` is False.
 
     Examples
     --------

@@ -38,10 +38,8 @@ def compare(
         Axes for each shot; None makes a new figure.
     cues : sequence of mapping or None, optional
         How each cue ball was struck, as ``cue`` in ``plot``.
-    view : "table", "shot" or ((float, float), (float, float))
-        The part of the table to show, as in ``plot`` [m]; "shot": as much as all shots need.
-    **options
-        Other options of ``plot``.
+    view, **options
+        As in ``plot``; "shot": as much of the table as all shots need.
 
     Returns
     -------

@@ -55,14 +55,9 @@ def density_of(
 
     Parameters
     ----------
-    points : float64 (m, 2)
-        Places [m].
-    low, high : float64 (2,)
-        Two opposite corners of the rectangle [m].
-    bandwidth : float
-        Standard deviation of the kernels [m].
-    cell : float
-        Size of a cell [m]; the cells fill the rectangle exactly, so theirs differs a little.
+    points, low, high, bandwidth, cell
+        Places, float64 (m, 2); two opposite corners of the rectangle, float64 (2,); standard deviation of the
+        kernels; and size of a cell, a little different where the cells fill the rectangle [m].
 
     Returns
     -------
@@ -100,10 +95,8 @@ def level_of(values: Floats, share: float) -> float:
 
     Parameters
     ----------
-    values : float64 (nx, ny)
-        Densities, as of ``density_of`` [1/m^2].
-    share : float
-        Share of the total, from 0 to 1.
+    values, share
+        Densities, as of ``density_of`` [1/m^2], and the share, from 0 to 1.
 
     Returns
     -------
@@ -154,10 +147,8 @@ def density(
         Standard deviation of the Gaussian kernels [m], in [0.0001, 1]; None: Scott's rule.
     colour : sequence of int
         Red, green and blue of the map, 0 to 255.
-    view : "table", "shot" or ((float, float), (float, float))
-        The part of the table to show, as in ``plot`` [m]; "shot": as much as the points need.
-    title : str
-        Title at the top left.
+    view, title
+        As in ``plot``; "shot": as much of the table as the points need.
 
     Returns
     -------

@@ -74,8 +74,7 @@ def fan(
     """Draw the cue ball's paths of one pot, played with every pair of a top and a side.
 
     As in Fig. 1 of the paper. Of the aims that pot the ball, which squirt and throw change, the middle one is
-    played. The colour of a path is its top, from screw (blue) to follow (red); the sign at its end is its
-    side.
+    played. A path's colour is its top, from screw (blue) to follow (red); the sign at its end is its side.
 
     Parameters
     ----------

@@ -24,14 +24,13 @@ SUFFIXES = (".html", ".json", ".mp4", ".gif")
 
 
 class Replay:
-    """A sequence of strokes that can be shown as a page, in a notebook, or as a film.
-
-    ``snooker_env.replay`` makes replays from shots, histories, positions and environments.
+    """A sequence of strokes, of ``snooker_env.replay``, shown as a page, in a notebook, or as a film.
 
     Parameters
     ----------
     strokes : iterable of Shot or Played
-        The strokes in the order in which they were played; at least one, each with its path.
+        The strokes in the order in which they were played; at least one, each with its path. ValueError if
+        they differ in ball radius, spin deceleration or table.
     title : str, optional
         Title of the page.
     players : iterable of str, optional
@@ -41,19 +40,8 @@ class Replay:
 
     Attributes
     ----------
-    strokes : tuple of Shot or Played
-        The strokes.
-    title : str
-        The title.
-    players : tuple of str
-        Names of the players; none for bare shots.
-    table : Table
-        The table.
-
-    Raises
-    ------
-    ValueError
-        If there is no stroke, or strokes differ in ball radius, spin deceleration or table.
+    strokes, title, players, table
+        As tuples of Shot or Played and of names, the latter empty for bare shots, str and ``Table``.
 
     Examples
     --------

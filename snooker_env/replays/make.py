@@ -45,14 +45,8 @@ def replay(
     Returns
     -------
     Replay
-        The replay.
-
-    Raises
-    ------
-    ValueError
-        If there is nothing to show, a shot has no path, or an argument is invalid.
-    OSError
-        If the file cannot be written.
+        ValueError if there is nothing to show, a shot has no path, or an argument is invalid; OSError if the
+        file cannot be written.
 
     Examples
     --------

@@ -14,22 +14,21 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     """Records the strokes of ``Snooker-v0`` and writes each wanted episode as a replay.
 
     The files are ``FOLDER/PREFIX-episode-0.html``, and so on. An episode is written when it ends, or when the
-    next one or ``close()`` cuts it short. An episode without a stroke gives no file. No render mode is
-    needed. An existing file of that name is overwritten.
+    next one or ``close()`` cuts it short; one without a stroke gives no file. No render mode is needed. An
+    existing file of that name is overwritten.
 
     Parameters
     ----------
     env : gymnasium.Env
-        ``Snooker-v0``, wrapped or not.
+        ``Snooker-v0`` with one table, wrapped or not; else ValueError.
     folder : str or Path
         Folder of the files; it is created if it does not exist.
     episode_trigger : callable, optional
-        ``episode_trigger(number) -> bool``: whether to write the episode with this number, from 0. Default
-        None: all.
-    name_prefix : str, optional
-        Beginning of the files' names; default "snooker".
-    suffix : {".html", ".json", ".mp4", ".gif"}, optional
-        Format of the files, see ``Replay.save``; default ".html".
+        ``episode_trigger(number) -> bool``: whether to write the episode with this number, from 0. None: all.
+    name_prefix : str
+        Beginning of the files' names.
+    suffix : {".html", ".json", ".mp4", ".gif"}
+        Format of the files, see ``Replay.save``.
     players : iterable of str, optional
         Names of the players, see ``snooker_env.replay``.
 
@@ -37,11 +36,6 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     ----------
     paths : list of Path
         The files written so far.
-
-    Raises
-    ------
-    ValueError
-        If the environment is not one of this package with one table.
 
     Examples
     --------
