@@ -27,10 +27,8 @@ def _register(registration):
             exec(compile(file.read(), path, "exec"), names)
         names["register"](registration)
     except Exception as error:
-        print(
-            f"snooker_env: its environments are not registered: {type(error).__name__}: {error}",
-            file=sys.stderr,
-        )
+        why = f"{type(error).__name__}: {error}"
+        print(f"snooker_env: its environments are not registered: {why}", file=sys.stderr)
 
 
 class _Finder:

@@ -97,38 +97,30 @@ def number(
 def _wanted(shape):
     """A shape as text, with letters for the lengths that are free."""
     free = iter("bn" if shape.count(-1) == 2 else "n")
-    return (
-        "("
-        + ", ".join(next(free) if s == -1 else str(s) for s in shape)
-        + ("," if len(shape) == 1 else "")
-        + ")"
-    )
+    sizes = ", ".join(next(free) if s == -1 else str(s) for s in shape)
+    return f"({sizes},)" if len(shape) == 1 else f"({sizes})"
 
 
 def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, unit: str = "") -> Floats:
     """A new finite C-ordered float64 array of this shape (-1: any length), all within ``most`` [unit]."""
+    bad = refuse(field, value, f"must be real numbers of shape {_wanted(shape)}")
     try:
         raw = np.asarray(value)
     except (TypeError, ValueError):
-        raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}") from None
+        raise bad from None
     if raw.dtype.kind not in "iuf" or (isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value)):
-        raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}")
+        raise bad
     if raw.dtype.itemsize > 8:
         with np.errstate(over="ignore"):  # a wider number may become infinite, which is refused below
             raw = raw.astype(np.float64)
     a = np.array(raw, dtype=np.float64, order="C")
-    if a.shape != shape and (
-        a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True))
-    ):
+    if a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True)):
         raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {_wanted(shape)}")
     sound = np.isfinite(a) if most == np.inf else np.abs(a) <= most
     if not sound.all():
-        at = tuple(int(k) for k in np.argwhere(~sound)[0])
-        raise refuse(
-            f"{field}{list(at)}",
-            float(a[at]),
-            "must be finite" + (f", within {most:,g} {unit} of zero" if most < np.inf else ""),
-        )
+        at = tuple(np.argwhere(~sound)[0].tolist())
+        within = f", within {most:,g} {unit} of zero" if most < np.inf else ""
+        raise refuse(f"{field}{list(at)}", float(a[at]), f"must be finite{within}")
     return a
 
 

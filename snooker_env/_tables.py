@@ -8,11 +8,8 @@ def text_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1
     widths = [max(len(row[c]) for row in [head, *rows]) for c in range(len(head))]
 
     def line(row):
-        cells = [
-            cell.ljust(w) if c < left else cell.rjust(w)
-            for c, (cell, w) in enumerate(zip(row, widths, strict=True))
-        ]
-        return "  ".join(cells).rstrip()
+        cells = enumerate(zip(row, widths, strict=True))
+        return "  ".join(x.ljust(w) if c < left else x.rjust(w) for c, (x, w) in cells).rstrip()
 
     return [line(head), "-" * (sum(widths) + 2 * (len(widths) - 1)), *map(line, rows)]
 

@@ -118,13 +118,9 @@ class Progress:
 
     def _keep_saying(self):
         while self._error is None and not self._ended.wait(REDRAWN if self._terminal else EVERY):
-            left = self.left
+            left, elapsed = self.left, f"{_clock(time.perf_counter() - self._began)} elapsed"
             still = "" if left == float("inf") else f"{_clock(left)} left"
-            self._write(
-                self._state(
-                    self._speed(self.rate), f"{_clock(time.perf_counter() - self._began)} elapsed", still
-                )
-            )
+            self._write(self._state(self._speed(self.rate), elapsed, still))
 
     def _state(self, *times):
         """The line: work, figures, and on a terminal first the times: it may be cut."""
@@ -136,9 +132,8 @@ class Progress:
         return ", ".join(part for part in parts if part)
 
     def _speed(self, rate):
-        return (
-            f"{rate:,.{0 if rate >= 10.0 else 1 if rate >= 1.0 else 2}f} {self._unit}/s" if rate > 0.0 else ""
-        )
+        digits = 0 if rate >= 10.0 else 1 if rate >= 1.0 else 2
+        return f"{rate:,.{digits}f} {self._unit}/s" if rate > 0.0 else ""
 
     def _write(self, text, last=False):
         """Write a line; the error of an output that takes no more is kept for ``at`` to raise."""

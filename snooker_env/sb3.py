@@ -92,10 +92,9 @@ class SnookerVecEnv(VecEnv):
             key = next((key for key in ("position", "breaker") if key in self._options[0]), "state")
             for k, each in enumerate(self._options):
                 if set(each) != {key}:
-                    words = (
-                        '"state", "position" or "breaker" alone, the same for each table, or nothing for all'
-                    )
-                    raise refuse(f"keys of options[{k}]", list(each), f"must be {words}")
+                    words = "alone, the same for each table, or nothing for all"
+                    allowed = f'must be "state", "position" or "breaker" {words}'
+                    raise refuse(f"keys of options[{k}]", list(each), allowed)
             options = {key if key == "breaker" else f"{key}s": [each[key] for each in self._options]}
         observation, info = self.tables.reset(seed=self._seeds, options=options)
         self.reset_infos = [{key: info[key][k] for key in self.info_keys} for k in range(self.num_envs)]
@@ -150,9 +149,8 @@ class SnookerVecEnv(VecEnv):
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         """Refuse with AttributeError: the tables share everything. Make another ``SnookerVecEnv`` instead."""
-        raise AttributeError(
-            f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv"
-        )
+        words = "the tables share everything; make another SnookerVecEnv"
+        raise AttributeError(f"{attr_name} cannot be set: {words}")
 
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any

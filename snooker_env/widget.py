@@ -59,9 +59,8 @@ def replay_widget(
     (0, False)
     """
     options = {"speed": number("speed", speed, 0.1, 8.0), "spin": choice("spin", spin, SPINS)}
-    options |= {
-        name: truth(name, value) for name, value in (("paths", paths), ("ghosts", ghosts), ("labels", labels))
-    }
+    shown = {"paths": paths, "ghosts": ghosts, "labels": labels}
+    options |= {name: truth(name, value) for name, value in shown.items()}
     return _widget_class()(data=replay(source).to_dict(), options=options, playing=truth("playing", playing))
 
 

@@ -116,11 +116,9 @@ def destinations(
     integer("seed", seed, 0, 2**63)
     practice, struck = practice_of(noise, options, position), CueStroke.of(stroke)
     start, row = played_from(one_position(position), struck), struck.numbers()[None]
-    ball, tries = (
-        int(practice.play(start, np.zeros(1, np.int64), row).first[0]),
-        1 if practice.sure else samples,
-    )
+    tries = 1 if practice.sure else samples
     rows = np.zeros(tries, np.int64)
+    ball = int(practice.play(start, rows[:1], row).first[0])
     stops = practice.play(start, rows, np.repeat(row, tries, 0), keys(seed, JUDGING, tries))
     stayed = stops.potted[:, CUE] < 0
     here = stops.potted[:, ball] < 0 if ball > 0 else np.zeros(tries, np.bool_)

@@ -75,9 +75,8 @@ def breakers_of(options: dict[str, Any], tables: Tables) -> dict[str, Ints]:
         return {}
     breaker, field, n = options["breaker"], 'options["breaker"]', tables.n
     for start in (key for key in STARTS if key in options):
-        raise refuse(
-            field, breaker, f'must be left out with "{start}": it says who breaks where balls are dealt'
-        )
+        words = f'must be left out with "{start}": it says who breaks where balls are dealt'
+        raise refuse(field, breaker, words)
     if not isinstance(tables, Frames) or len(tables.seats) == 1:
         raise refuse(field, breaker, "must be left out: there is no opponent, and nothing is drawn")
     if isinstance(breaker, list | tuple | np.ndarray) and np.ndim(breaker) > 0:
@@ -186,9 +185,8 @@ def arrays_of(
                 _check_array(f"observations.{part}", a[part], box.shape, box.dtype.type)
             continue
         if any(np.may_share_memory(a, other) for other in arrays.values()):
-            raise refuse_what(
-                f'out["{name}"]', "an array", "must not share memory with another one that is given"
-            )
+            words = "must not share memory with another one that is given"
+            raise refuse_what(f'out["{name}"]', "an array", words)
         output, dtype = OUTPUTS[name]
         _check_array(name, a, (n, size) if name == "observations" else (n,), dtype)
         arrays[output] = a

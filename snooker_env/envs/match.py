@@ -124,9 +124,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self.np_random, _ = seeding.np_random()
         self._selected: str | None = None
         self._record, self._keyed, self._last = Record(full=render_mode is not None), False, None
-        self._pictures = Pictures(
-            self.options.rules.table, render_mode, render_size, ("Player 1", "Player 2")
-        )
+        names = ("Player 1", "Player 2")
+        self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)
 
     @property
     def agent_selection(self) -> str:
@@ -225,9 +224,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         SimulationError if the shot cannot be computed.
         """
         if not self.agents:
-            raise gymnasium.error.ResetNeeded(
-                f"the frame {self.tables.unplayable}: call reset() before step()"
-            )
+            what = f"the frame {self.tables.unplayable}"
+            raise gymnasium.error.ResetNeeded(f"{what}: call reset() before step()")
         name: Any = self.agent_selection  # of PettingZoo's own type
         if self.terminations[name] or self.truncations[name]:
             self._was_dead_step(action)
@@ -237,15 +235,13 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self._pictures.require_display()
         crew = Crew(self._record.buffers, (), self._watch)
         self._record.begin_step()
-        played = self.tables.turn(
-            lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers, striker), out, crew
-        )[0]
+        prepare = lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers, striker)  # noqa: E731
+        played = self.tables.turn(prepare, out, crew)[0]
         self._last = out if played else None
         self._cumulative_rewards[name] = 0.0
         gained, winner = self.tables.pay(0), self.frame.winner
-        self.rewards = {
-            player: frame_reward(self.options.reward, gained, winner, k) for k, player in enumerate(PLAYERS)
-        }
+        each = (frame_reward(self.options.reward, gained, winner, k) for k in range(2))
+        self.rewards = dict(zip(PLAYERS, each, strict=True))
         self._account(striker)
         self._accumulate_rewards()
         self._show(played=bool(played))

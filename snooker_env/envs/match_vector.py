@@ -69,8 +69,7 @@ class MatchVectorEnv(SnookerVectorEnv):
         self.single_action_space = one if self._alike else spaces.Tuple((one, other))
         self.action_space = batch_space(self.single_action_space, self.num_envs)
 
-    def _game_of(self, options: Options | None, keywords: dict[str, Any]) -> tuple[Options, Any]:
-        return match_options(options, keywords), None
+    _game_of = staticmethod(lambda options, keywords: (match_options(options, keywords), None))
 
     def _tables_of(self, opponent: Any, limit: int) -> Tables:
         return match_tables(self.options, self._differences, self.num_envs)
@@ -102,9 +101,8 @@ class MatchVectorEnv(SnookerVectorEnv):
             words = "must be two arrays, one for each player: their seats differ"
             raise refuse_what("actions", f"a {type(actions).__name__}", words)
         each = [actions, actions] if self._alike else actions
-        checked = [
-            seat.actions.check_many(a, self.num_envs) for seat, a in zip(tables.seats, each, strict=True)
-        ]
+        pairs = zip(tables.seats, each, strict=True)
+        checked = [seat.actions.check_many(a, self.num_envs) for seat, a in pairs]
         self._require_begun()
         written = tables.output()
         with self._playing():

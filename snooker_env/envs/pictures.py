@@ -85,9 +85,8 @@ class Pictures:
         """
         if self.mode is None:
             modes = '"rgb_array", "ansi" or "human"'
-            gymnasium.logger.warn(
-                f"render() without render_mode; make the environment with render_mode={modes}"
-            )
+            how = f"make the environment with render_mode={modes}"
+            gymnasium.logger.warn(f"render() without render_mode; {how}")
         if self.mode == "rgb_array":
             motion = lambda: chain.from_iterable(self._motion(*some) for some in recent)  # noqa: E731
             return self._source.picture(motion, lambda: self._still(tables, k, history))
@@ -151,19 +150,17 @@ class Pictures:
             yield filmed(self.table, history[k], *shown[k])
 
     def _motion(self, history: list[Played], recent: int) -> Iterator[NDArray[np.uint8]]:
-        from ..render.pygame_view import rgb_array
-
         for film, after in self._films(history, recent):
-            for scene in film.scenes(FPS):
-                yield rgb_array(scene, size=self.size)
-            still = rgb_array(after, size=self.size)
-            for _ in range(HOLD):
-                yield still
+            yield from map(self._picture, film.scenes(FPS))
+            yield from [self._picture(after)] * HOLD
 
     def _still(self, tables, k, history):
+        return self._picture(self._scene(tables, k, history))
+
+    def _picture(self, scene):
         from ..render.pygame_view import rgb_array
 
-        return rgb_array(self._scene(tables, k, history), size=self.size)
+        return rgb_array(scene, size=self.size)
 
     def _scene(self, tables, k, history):
         from ..render.scene import ball_paths, contacts, scene
@@ -182,16 +179,8 @@ class Pictures:
             if shot.on_table[0] and np.array_equal(shot.positions[0], tables.positions[k][0]):
                 turns = {0: Turning(shot, 0).at(shot.duration)}
         bar = standing_bar(tables, k, self.players, last)
-        return scene(
-            self.table,
-            tables.positions[k],
-            tables.on_table[k],
-            paths=paths,
-            ghosts=ghosts,
-            turns=turns,
-            text=tables.text(k),
-            bar=bar,
-        )
+        over: Any = {"paths": paths, "ghosts": ghosts, "turns": turns, "text": tables.text(k), "bar": bar}
+        return scene(self.table, tables.positions[k], tables.on_table[k], **over)
 
 
 def checked_size(size: Any) -> tuple[int, int]:

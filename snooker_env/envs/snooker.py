@@ -145,9 +145,8 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         a = self.options.rules.actions.check(action)
         tables = self.tables
         if tables.finished()[0]:
-            raise gymnasium.error.ResetNeeded(
-                f"the {self.options.task} {tables.unplayable}: call reset() before step()"
-            )
+            what = f"the {self.options.task} {tables.unplayable}"
+            raise gymnasium.error.ResetNeeded(f"{what}: call reset() before step()")
         self._pictures.require_display()
         out = tables.output()
         self._record.begin_step()

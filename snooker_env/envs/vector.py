@@ -151,9 +151,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         """The strokes of each table in the last step or reset, if they are shown."""
         self._crew = Threads(threads, watch=None if render_mode is None else self._saw)
 
-    def _game_of(self, options: Options | None, keywords: dict[str, Any]) -> tuple[Options, Any]:
-        """The options, and who sits opposite the agent."""
-        return game_of(options, keywords)
+    _game_of = staticmethod(game_of)
+    """The options, and who sits opposite the agent."""
 
     def _tables_of(self, opponent: Any, limit: int) -> Tables:
         return tables_of(self.options, opponent, self.num_envs, limit)
@@ -218,9 +217,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         mode = self.autoreset_mode
         if mode == AutoresetMode.DISABLED and self._done.any():
             what, k = self.options.task, int(np.argmax(self._done))
-            raise gymnasium.error.ResetNeeded(
-                f'the {what} on table {k} is over: reset(options={{"reset_mask": ...}}) before step()'
-            )
+            first = 'reset(options={"reset_mask": ...}) before step()'
+            raise gymnasium.error.ResetNeeded(f"the {what} on table {k} is over: {first}")
         same_step = mode == AutoresetMode.SAME_STEP
         waiting = self._done if mode == AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, np.bool_)
         written = self.tables.output(last=same_step, arrays=arrays)
@@ -274,9 +272,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     def get_state(self) -> list[dict[str, Any]]:
         """Return the state of each table, for ``reset(options={"states": states})``; it counts no steps."""
-        return [
-            self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)
-        ]
+        each = enumerate(self.np_random)
+        return [self.tables.get_state(k) | {"rng": one.bit_generator.state} for k, one in each]
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """Read or call something of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call`` does.

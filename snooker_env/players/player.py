@@ -101,10 +101,8 @@ class Strokes:
             object.__setattr__(self, name, array.astype(default.dtype))
         sound = np.isnan(self.place).all(1) | (np.abs(self.place) <= (HALF_WIDTH, HALF_LENGTH)).all(1)
         if not sound.all():
-            k = int(np.argmin(sound))
-            raise refuse(
-                f"place[{k}]", self.place[k].tolist(), "must be on the table, or NaN and NaN for none"
-            )
+            k, allowed = int(np.argmin(sound)), "must be on the table, or NaN and NaN for none"
+            raise refuse(f"place[{k}]", self.place[k].tolist(), allowed)
 
     def __len__(self) -> int:
         return len(self.values)

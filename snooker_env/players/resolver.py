@@ -26,9 +26,7 @@ OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")
 """MODULE:CLASS."""
 PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"
 """How names of programs begin, and their player, which is loaded as an entry point is."""
-_SEARCHING = re.compile(
-    r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d+))?(?:@(.+))?"
-)
+_SEARCHING = re.compile(r"(best_pot|search|lookahead|planner(?:_value|_policy)?)(?:_(\d+))?(?:@(.+))?")
 
 
 def players() -> list[str]:

@@ -80,11 +80,8 @@ class SavedNetwork:
         actions = []
         with one_thread():
             for k in range(len(seeds)):
-                row = (
-                    {name: part[k] for name, part in observations.items()}
-                    if isinstance(observations, dict)
-                    else observations[k]
-                )
+                flat = not isinstance(observations, dict)
+                row = observations[k] if flat else {name: part[k] for name, part in observations.items()}
                 masked = {"action_masks": masks[k]} if self._masked and masks is not None else {}
                 actions.append(self._network.predict(row, deterministic=True, **masked)[0])
         space = self._network.action_space
@@ -99,9 +96,8 @@ def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = 
     except Exception as error:
         raise refuse(field, str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
     if ours:
-        raise refuse(
-            field,
-            str(path),
-            "must be read in a clone of the repository, without options: it is a model or a run of train.py",
+        words = (
+            "must be read in a clone of the repository, without options: it is a model or a run of train.py"
         )
+        raise refuse(field, str(path), words)
     return SeenPlayer(SavedNetwork(FittingModel.of(path, options, field), trust), name=str(path))

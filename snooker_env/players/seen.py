@@ -93,9 +93,8 @@ class SeenPlayer(BoundPlayer):
     def __init__(self, seen: Any, options: Mapping[str, Any] | None = None, name: str | None = None):
         sees = dict(getattr(seen, "options", {}) if options is None else options)
         self.seen, self.name = seen, name or type(seen).__name__
-        self.frames = (
-            choice(f"task of player {self.name}", sees.pop("task", "visit"), ("visit", "frame")) == "frame"
-        )
+        task = choice(f"task of player {self.name}", sees.pop("task", "visit"), ("visit", "frame"))
+        self.frames = task == "frame"
         for key in sees:
             choice(f"key of the options of player {self.name}", key, OPTIONS)
         if not self.frames:
@@ -108,10 +107,9 @@ class SeenPlayer(BoundPlayer):
         """Read its options with the physics of ``options``; ValueError if they are no environment's."""
         same: dict[str, Any] = {name: getattr(options, name) for name in Options.group("shot")}
         if self.frames:
-            match = (
-                {"task": "match", "frames": options.frames} if options.task == "match" else {"task": "frame"}
-            )
-            same |= match | {name: getattr(options, name) for name in Options.group("frame")}
+            match = {"frames": options.frames} if options.task == "match" else {}
+            same |= {"task": "match" if match else "frame"} | match
+            same |= {name: getattr(options, name) for name in Options.group("frame")}
         self._rules = Options(**same | self.sees).rules
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
@@ -129,9 +127,8 @@ class SeenPlayer(BoundPlayer):
         shown = shown.copy()
         shown.game[decision == PLACE_ANYWHERE, IN_HAND] = shown.game[decision == PLACE_ANYWHERE, ANYWHERE] = 1
         values, start = decoded(self._rules, shown, rows, actions, nominate)
-        return Strokes(
-            values, np.where(self._puts(shown), start.positions[:, 0], places), nominate, decision, declare
-        )
+        places = np.where(self._puts(shown), start.positions[:, 0], places)
+        return Strokes(values, places, nominate, decision, declare)
 
     def _puts(self, at: Positions) -> Bools:
         """Where its action places the cue ball: bool (n, 1)."""
@@ -164,9 +161,8 @@ class SeenPlayer(BoundPlayer):
         try:
             actions = np.asarray(answer)
             if actions.ndim == 0 or len(actions) != n:
-                raise refuse_what(
-                    "actions", f"array of shape {actions.shape}", f"must be {n}, one for each position"
-                )
+                allowed = f"must be {n}, one for each position"
+                raise refuse_what("actions", f"array of shape {actions.shape}", allowed)
             return rules.actions.check_many(actions, n)
         except ValueError as error:
             raise ValueError(f"player {self.name}: {error}") from None

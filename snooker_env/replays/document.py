@@ -63,11 +63,8 @@ class Replay:
         self.strokes: tuple[Shot | Played, ...] = tuple(strokes)
         for k, stroke in enumerate(self.strokes):
             if not isinstance(stroke, Shot | Played):
-                raise refuse_what(
-                    f"strokes[{k}]",
-                    f"a {type(stroke).__name__}",
-                    "must be a Shot, or a stroke of env.history",
-                )
+                allowed = "must be a Shot, or a stroke of env.history"
+                raise refuse_what(f"strokes[{k}]", f"a {type(stroke).__name__}", allowed)
         if not self.strokes:
             raise refuse("strokes", [], "must hold at least one stroke")
         self.title: str = checked_text("title", title)
@@ -77,16 +74,11 @@ class Replay:
             allowed = "must be two names for a frame, one for a visit, none for bare shots"
             raise refuse_what("players", f"{len(names)} names", allowed)
         self.players: tuple[str, ...] = names or usual
-        for k, shot in enumerate(self.shots):
-            if (shot.physics.R, shot.physics.spin_decel) != (
-                self.shots[0].physics.R,
-                self.shots[0].physics.spin_decel,
-            ):
-                raise refuse_what(
-                    f"strokes[{k}]",
-                    "a shot with other physics",
-                    "must have the R and the spin_decel of the first",
-                )
+        constants = [(shot.physics.R, shot.physics.spin_decel) for shot in self.shots]
+        for k, these in enumerate(constants):
+            if these != constants[0]:
+                allowed = "must have the R and the spin_decel of the first"
+                raise refuse_what(f"strokes[{k}]", "a shot with other physics", allowed)
         tables = [shot.table for shot in self.shots if shot.table is not None]
         if table is not None:
             self.table: Table = Table.of(table)
@@ -94,22 +86,15 @@ class Replay:
             self.table = tables[0] if tables else Table.preset("match")
             for k, other in enumerate(tables):
                 if not _same(other, self.table):
-                    raise refuse_what(
-                        f"strokes[{k}]",
-                        "a shot on another table",
-                        "must be on the table of the first, or pass table=...",
-                    )
+                    allowed = "must be on the table of the first, or pass table=..."
+                    raise refuse_what(f"strokes[{k}]", "a shot on another table", allowed)
         self._data: dict[str, Any] | None = None
 
     def _usual_players(self) -> tuple[str, ...]:
-        judged = [stroke for stroke in self.strokes if isinstance(stroke, Played)]
-        return (
-            ("Player 1", "Player 2")
-            if judged and len(judged[0].scores) == 2
-            else ("Player",)
-            if judged
-            else ()
-        )
+        judged = next((stroke for stroke in self.strokes if isinstance(stroke, Played)), None)
+        if judged is None:
+            return ()
+        return ("Player 1", "Player 2") if len(judged.scores) == 2 else ("Player",)
 
     @property
     def shots(self) -> list[Shot]:
@@ -206,6 +191,5 @@ def checked_players(players: Any) -> tuple[str, ...]:
 
 
 def _same(a: Table, b: Table) -> bool:
-    return a is b or all(
-        np.array_equal(x, y) for x, y in ((a.noses, b.noses), (a.jaws, b.jaws), (a.falls, b.falls))
-    )
+    parts = ("noses", "jaws", "falls")
+    return a is b or all(np.array_equal(getattr(a, name), getattr(b, name)) for name in parts)

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse_what
-from .._types import Floats
 from ..game.balls import N_BALLS
 from ..physics import cloth
 from ..simulation import Shot
@@ -24,9 +23,8 @@ _WHICH = [cloth.SEGMENT_BALL, cloth.SEGMENT_STATE]
 
 def packed(values: Any, kind: str) -> str:
     """Numbers as base64 of little-endian ``kind``: "f8", "f4" or "u1", row after row."""
-    return base64.b64encode(np.ascontiguousarray(values, np.dtype(kind).newbyteorder("<")).tobytes()).decode(
-        "ascii"
-    )
+    little = np.ascontiguousarray(values, np.dtype(kind).newbyteorder("<"))
+    return base64.b64encode(little.tobytes()).decode("ascii")
 
 
 def encoded_shot(shot: Shot) -> dict[str, Any]:
@@ -35,11 +33,8 @@ def encoded_shot(shot: Shot) -> dict[str, Any]:
     if n > N_BALLS:
         raise refuse_what("shot", f"{n} balls", f"must have at most {N_BALLS}: their colours are snooker's")
     if not len(shot.segments):
-        raise refuse_what(
-            "shot",
-            "a Shot without its path",
-            "must be of sn.simulate, or of an environment with keep_history = True",
-        )
+        allowed = "must be of sn.simulate, or of an environment with keep_history = True"
+        raise refuse_what("shot", "a Shot without its path", allowed)
     first, states = shot.segments[:n], shot.segments[:, cloth.SEGMENT_STATE]
     idle = (states == cloth.REST) | (states == cloth.GONE)
     # at rest from the start: its place is in ``start``
@@ -64,18 +59,9 @@ def encoded_shot(shot: Shot) -> dict[str, Any]:
 def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, Any]:
     """One stroke of a replay. For a bare ``Shot``, the parts that come from the referee are empty."""
     if isinstance(item, Shot):
-        return encoded_shot(item) | {
-            "cue": None,
-            "player": None,
-            "ball_on": None,
-            "points": 0,
-            "penalty": 0,
-            "fouls": [],
-            "words": "",
-            "score": [],
-            "break": 0,
-            "after": None,
-        }
+        empty = dict.fromkeys(("cue", "player", "ball_on", "after"))
+        none = {"points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0}
+        return encoded_shot(item) | empty | none
     shot = item.shot
     return encoded_shot(shot) | {
         "cue": item.cue,
@@ -94,15 +80,7 @@ def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, A
 def _after(item: Played) -> dict[str, Any] | None:
     """The table before the next stroke, if it differs from the balls at rest."""
     on_table = item.on_table
-    same = np.array_equal(on_table, item.shot.on_table) and np.array_equal(
-        item.positions[on_table], item.shot.positions[on_table]
-    )
-    return (
-        None
-        if same
-        else {"places": packed(_places(item.positions), "f8"), "on_table": np.flatnonzero(on_table).tolist()}
-    )
-
-
-def _places(positions: Floats) -> Floats:
-    return np.asarray(positions, np.float64)
+    same = np.array_equal(item.positions[on_table], item.shot.positions[on_table])
+    if same and np.array_equal(on_table, item.shot.on_table):
+        return None
+    return {"places": packed(item.positions, "f8"), "on_table": np.flatnonzero(on_table).tolist()}

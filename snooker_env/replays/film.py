@@ -2,6 +2,7 @@
 
 import subprocess
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -51,15 +52,8 @@ def filmed(
     where, on_table = (stroke.positions, stroke.on_table) if judged else (shot.positions, shot.on_table)
     placed = judged and not np.array_equal(stroke.positions[0], shot.positions[0])
     turns = {0: UNTURNED} if placed else last.turns
-    over = {
-        "ball_radius": shot.physics.R,
-        "paths": last.paths,
-        "ghosts": last.ghosts,
-        "turns": turns,
-        "bar": after,
-        "text": text,
-    }
-    return film, scene(table, where, on_table, **over)
+    over: Any = {"paths": last.paths, "ghosts": last.ghosts, "turns": turns, "bar": after, "text": text}
+    return film, scene(table, where, on_table, ball_radius=shot.physics.R, **over)
 
 
 def frames(
@@ -72,9 +66,7 @@ def frames(
     for film, after in films:
         for picture in film.scenes(fps, speed):
             yield rgb_array(picture, size=size)
-        still = rgb_array(after, size=size)
-        for _ in range(round(PAUSE * fps)):
-            yield still
+        yield from [rgb_array(after, size=size)] * round(PAUSE * fps)
 
 
 def write_film(
@@ -102,26 +94,14 @@ def _rate(field: str, value: Any) -> float:
 
 def _encode(pictures: Iterator[NDArray[np.uint8]], path: Path, fps: float, size: tuple[int, int]) -> None:
     if path.suffix.lower() != ".gif":
-        _pipe(
-            _in_video_colours(pictures),
-            "yuv420p",
-            size,
-            fps,
-            ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "26", "-threads", "1", *HD],
-            path,
-        )
+        wanted = ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "26", "-threads", "1", *HD]
+        _pipe(_in_video_colours(pictures), "yuv420p", size, fps, wanted, path)
         return
     first = next(pictures)
     colours = path.with_name(f"{path.stem}.colours.png")
     try:
-        _pipe(
-            iter([_swatches(first)]),
-            "rgb24",
-            (256, 256),
-            1.0,
-            ["-vf", "palettegen=stats_mode=single"],
-            colours,
-        )
+        wanted = ["-vf", "palettegen=stats_mode=single"]
+        _pipe(iter([_swatches(first)]), "rgb24", (256, 256), 1.0, wanted, colours)
         chosen = ["-i", str(colours), "-lavfi", "paletteuse=dither=none:diff_mode=rectangle", "-loop", "0"]
         _pipe(chain([first], pictures), "rgb24", size, fps, chosen, path)
     finally:
@@ -140,13 +120,10 @@ def _in_video_colours(pictures: Iterator[NDArray[np.uint8]]) -> Iterator[NDArray
 def _swatches(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """A picture's colours as a picture (256, 256, 3), rare ones enlarged: a ball's colour matters."""
     coarse = (picture >> 2).astype(np.uint32)
-    codes, counts = np.unique(
-        (coarse[..., 0] << 12) | (coarse[..., 1] << 6) | coarse[..., 2], return_counts=True
-    )
+    codes, counts = np.unique(coarse @ np.array([1 << 12, 1 << 6, 1], np.uint32), return_counts=True)
     share = np.cumsum(counts**0.25)
-    taken = codes[
-        np.searchsorted(share, np.linspace(0.0, share[-1], 256 * 256, endpoint=False), side="right")
-    ]
+    even = np.linspace(0.0, share[-1], 256 * 256, endpoint=False)
+    taken = codes[np.searchsorted(share, even, side="right")]
     shades = np.stack([taken >> 12, (taken >> 6) & 63, taken & 63], axis=-1)
     return ((shades << 2) | 2).astype(np.uint8).reshape(256, 256, 3)
 
@@ -169,16 +146,14 @@ def _pipe(
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
         assert encoder.stdin is not None and encoder.stderr is not None
         try:
-            for picture in pictures:
-                encoder.stdin.write(np.ascontiguousarray(picture).data)
-            encoder.stdin.close()
-            complaint = encoder.stderr.read().decode(errors="replace")
-        except BrokenPipeError:
-            complaint = encoder.stderr.read().decode(errors="replace")
+            with suppress(BrokenPipeError):
+                for picture in pictures:
+                    encoder.stdin.write(np.ascontiguousarray(picture).data)
+                encoder.stdin.close()
+            complaint = encoder.stderr.read().decode(errors="replace").strip()
         except BaseException:
             encoder.kill()
             raise
     if encoder.returncode:
-        raise OSError(
-            f"the film could not be written: {complaint.strip() or f'ffmpeg ended with {encoder.returncode}'}"
-        )
+        why = complaint or f"ffmpeg ended with {encoder.returncode}"
+        raise OSError(f"the film could not be written: {why}")

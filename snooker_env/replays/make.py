@@ -58,13 +58,10 @@ def replay(
     >>> sn.replay(env, title="one stroke")
     Replay(1 strokes, 'one stroke')
     """
+    strokes: Any
     if isinstance(source, Replay):
-        strokes, title, players, table = (
-            source.strokes,
-            title or source.title,
-            players or source.players,
-            table or source.table,
-        )
+        strokes, title, players = source.strokes, title or source.title, players or source.players
+        table = table or source.table
     else:
         strokes = _strokes(source, table)
     made = Replay(strokes, title=title, players=players, table=table)
@@ -76,14 +73,8 @@ def replay(
 def _still(position: Position, table: TableLike) -> Shot:
     """The shot in which nothing moves."""
     places, on_table, _ = position.arrays()
-    nothing = np.zeros((len(places), 3))
-    return simulate(
-        places,
-        nothing[:, :2],
-        nothing,
-        table=Table.of("match" if table is None else table),
-        on_table=on_table,
-    )
+    nothing, table = np.zeros((len(places), 3)), Table.of("match" if table is None else table)
+    return simulate(places, nothing[:, :2], nothing, table, on_table=on_table)
 
 
 def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
@@ -97,14 +88,9 @@ def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
     if not hasattr(env, "history"):
         raise refuse_what("source", f"a {type(source).__name__}", _ALLOWED)
     if not env.keep_history:
-        raise refuse_what(
-            "source",
-            "an environment that keeps no history",
-            "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in "
-            "sn.RecordReplay",
-        )
+        words = "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in "
+        raise refuse_what("source", "an environment that keeps no history", f"{words}sn.RecordReplay")
     if not env.history:
-        raise refuse_what(
-            "source", "an environment without a stroke since its reset", "must have played at least one"
-        )
+        what = "an environment without a stroke since its reset"
+        raise refuse_what("source", what, "must have played at least one")
     return env.history

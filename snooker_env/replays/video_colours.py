@@ -22,12 +22,9 @@ def _fill(rgb, luma, cb, cr):
             red = green = blue = 0
             for di in range(2):
                 for dj in range(2):
-                    r, g, b = (
-                        int(rgb[2 * i + di, 2 * j + dj, 0]),
-                        int(rgb[2 * i + di, 2 * j + dj, 1]),
-                        int(rgb[2 * i + di, 2 * j + dj, 2]),
-                    )
-                    luma[2 * i + di, 2 * j + dj] = 16 + ((11966 * r + 40254 * g + 4064 * b + _HALF) >> 16)
+                    row, column = 2 * i + di, 2 * j + dj
+                    r, g, b = int(rgb[row, column, 0]), int(rgb[row, column, 1]), int(rgb[row, column, 2])
+                    luma[row, column] = 16 + ((11966 * r + 40254 * g + 4064 * b + _HALF) >> 16)
                     red, green, blue = red + r, green + g, blue + b
             cb[i, j] = 128 + ((-6596 * red - 22188 * green + 28784 * blue + 4 * _HALF) >> 18)
             cr[i, j] = 128 + ((28784 * red - 26145 * green - 2639 * blue + 4 * _HALF) >> 18)
@@ -37,9 +34,6 @@ def to_video(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """The bytes (3 h w / 2,) of a picture (h, w, 3), one plane after the other: ffmpeg's format yuv420p."""
     height, width = picture.shape[:2]
     out = np.empty(3 * height * width // 2, np.uint8)
-    luma, chroma = (
-        out[: height * width].reshape(height, width),
-        out[height * width :].reshape(2, height // 2, width // 2),
-    )
-    _fill(np.ascontiguousarray(picture), luma, chroma[0], chroma[1])
+    luma, chroma = out[: height * width], out[height * width :].reshape(2, height // 2, width // 2)
+    _fill(np.ascontiguousarray(picture), luma.reshape(height, width), chroma[0], chroma[1])
     return out

@@ -61,29 +61,19 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         suffix: str = ".html",
         players: Iterable[str] = (),
     ):
-        gymnasium.utils.RecordConstructorArgs.__init__(
-            self,
-            folder=str(folder),
-            episode_trigger=episode_trigger,
-            name_prefix=name_prefix,
-            suffix=suffix,
-            players=players,
-        )
+        arguments = {"episode_trigger": episode_trigger, "name_prefix": name_prefix, "suffix": suffix}
+        gymnasium.utils.RecordConstructorArgs.__init__(self, folder=str(folder), players=players, **arguments)
         super().__init__(env)
         inner = env.unwrapped
         if not hasattr(inner, "keep_history"):
             raise refuse_what("env", f"a {type(inner).__name__}", "must be a Snooker-v0 of one table")
         inner.keep_history = True  # type: ignore[attr-defined]
         self.paths: list[Path] = []
-        self._folder, self._prefix, self._suffix = (
-            Path(folder),
-            name_prefix,
-            choice("suffix", suffix, SUFFIXES),
-        )
+        self._folder, self._prefix = Path(folder), name_prefix
+        self._suffix = choice("suffix", suffix, SUFFIXES)
         if not isinstance(name_prefix, str) or Path(name_prefix + suffix).name != name_prefix + suffix:
-            raise refuse(
-                "name_prefix", name_prefix, "must be the beginning of a file's name, without folders"
-            )
+            words = "must be the beginning of a file's name, without folders"
+            raise refuse("name_prefix", name_prefix, words)
         frame = inner.options.task != "visit"  # type: ignore[attr-defined]
         self._wanted, self._players = episode_trigger, checked_players(players)
         if len(self._players) not in (0, 1 + frame):
