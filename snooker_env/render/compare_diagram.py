@@ -66,9 +66,8 @@ def compare(
     for k, shot in enumerate(shots):
         if shot.table is not table:
             raise refuse_what(f"shots[{k}].table", "another table", "must be that of shots[0]")
-    region = region_of(
-        view, np.concatenate([area(shot) for shot in shots]), Table.of(None) if table is None else table
-    )
+    points = np.concatenate([area(shot) for shot in shots])
+    region = region_of(view, points, Table.of(None) if table is None else table)
     caption = options.pop("caption", "full" if len(shots) == 1 else "short")
     if axes is None:
         n = len(shots)
@@ -76,9 +75,6 @@ def compare(
         high = wide * (region.height / region.width + CAPTIONS.get(caption, 0.0))
         figure = pyplot().figure(figsize=(WIDTH, WIDTH * high), facecolor=rgb("floor"))
         axes = [figure.add_axes((k * (wide + _GAP), 0.0, wide, 1.0)) for k in range(n)]
-    seen: Any = np.array(region).reshape(2, 2)
+    over: Any = options | {"view": np.array(region).reshape(2, 2), "caption": caption}
     each = zip(shots, axes, labels or [""] * len(shots), cues or [None] * len(shots), strict=True)
-    return tuple(
-        plot(shot, ax, cue=cue, view=seen, title=label, caption=caption, **options)
-        for shot, ax, label, cue in each
-    )
+    return tuple(plot(shot, ax, cue=cue, title=title, **over) for shot, ax, title, cue in each)

@@ -83,10 +83,7 @@ def density_of(
         half = int(min(np.ceil(_REACH * bandwidth / size[axis]), n[axis]))
         bell = np.exp(-0.5 * (np.arange(-half, half + 1) * size[axis] / bandwidth) ** 2)
         wide = np.pad(values, [(half, half) if k == axis else (0, 0) for k in range(2)], mode="symmetric")
-        bell /= bell.sum()
-        values = np.apply_along_axis(
-            lambda line, bell=bell: np.convolve(line, bell, mode="valid"), axis, wide
-        )
+        values = np.apply_along_axis(np.convolve, axis, wide, bell / bell.sum(), mode="valid")
     return values, size
 
 
@@ -215,20 +212,12 @@ def _draw_cloud(sketch, points, bandwidth, shares, colour):
         low, high = np.maximum(low, bounds[:, 0] + sketch.R), np.minimum(high, bounds[:, 1] - sketch.R)
     values, size = density_of(points.clip(low, high), low, high, bandwidth)
     strength = values / values.max()
-    picture = np.empty((*values.shape, 4))
-    picture[..., :3] = np.array(rgb(colour)[:3]) + (1 - np.array(rgb(colour)[:3])) * (
-        0.55 * strength[..., None] ** 3
-    )
+    picture, ink = np.empty((*values.shape, 4)), np.array(rgb(colour)[:3])
+    picture[..., :3] = ink + (1 - ink) * 0.55 * strength[..., None] ** 3
     picture[..., 3] = 0.95 * (1 - np.exp(-5 * strength))
-    image = AxesImage(
-        sketch.ax,
-        extent=(low[1], high[1], high[0], low[0]),
-        origin="upper",
-        interpolation="bilinear",
-        zorder=3.0,
-    )
-    image.set_data(picture)
-    image.set_gid("density")
+    style: dict[str, Any] = {"origin": "upper", "interpolation": "bilinear", "zorder": 3.0}
+    image = AxesImage(sketch.ax, extent=(low[1], high[1], high[0], low[0]), **style)
+    image.set(data=picture, gid="density")
     sketch.ax.add_image(image)
     ys, xs = (low[k] + size[k] * (np.arange(values.shape[k]) + 0.5) for k in (1, 0))
     for share in sorted(shares):
@@ -251,6 +240,5 @@ def _label(sketch, lines, share, *, outer):
         stroke = [withStroke(linewidth=2.0, foreground=rgb("path_edge", 0.8))]
         away, side = (0.4, "left") if outer else (-0.4, "right")
         y += away * sketch.font / sketch.points_per_metre
-        sketch.text(
-            y, x, f"{100 * share:g} %", size=0.9, zorder=8.5, gid="share", path_effects=stroke, ha=side
-        )
+        style = {"zorder": 8.5, "gid": "share", "path_effects": stroke, "ha": side}
+        sketch.text(y, x, f"{100 * share:g} %", size=0.9, **style)

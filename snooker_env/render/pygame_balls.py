@@ -43,9 +43,8 @@ def draw_balls(surface: Any, scene: Scene, view: View) -> None:
     images += _mirrored(scene.positions[~lettered], over, where[~lettered], radius)
     for ball, place in zip(scene.ids[lettered].tolist(), where[lettered], strict=True):
         letter = _letter(ball, round(radius, 1))
-        images.append(
-            (letter, (round(place[0] - letter.get_width() / 2), round(place[1] - letter.get_height() / 2)))
-        )
+        x, y = place[0] - letter.get_width() / 2, place[1] - letter.get_height() / 2
+        images.append((letter, (round(x), round(y))))
     surface.fblits(images)
 
 
@@ -89,10 +88,7 @@ def _spotted(place, colour, radius, turn):
     d = np.hypot(x, y)
     nz = np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1))
     towards = matrix(turn) @ _SPOTS.T  # (3, 6) in the table frame: x down, y to the right, z to the eye
-    seen = np.max(
-        y[..., None] / radius * towards[0] + x[..., None] / radius * towards[1] + nz[..., None] * towards[2],
-        axis=-1,
-    )
+    seen = np.max(np.stack([y / radius, x / radius, nz], axis=-1) @ towards, axis=-1)
     spot = np.clip((seen - _SPOT) * radius * 3.4 + 0.5, 0, 1)[..., None]
     ink = np.array(COLOURS[1] if min(colour) > 120 else (250, 250, 245), dtype=np.float64)
     image = np.empty((*d.shape, 4))
@@ -134,11 +130,8 @@ def _lamp(half, radius, fx, fy):
     image = np.empty((*d.shape, 4))
     image[..., :3] = PALETTE["lamp"]
     small = min(1.0, 0.25 + radius / 12)  # fainter in a small ball, which it would hide
-    image[..., 3] = (
-        255
-        * small
-        * np.maximum(0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2)))
-    )
+    bright, glow = 0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2))
+    image[..., 3] = 255 * small * np.maximum(bright, glow)
     return surface_of(image)
 
 
@@ -181,13 +174,8 @@ def dot(ball: int, radius: float) -> Any:
         ring.blit(image, ((ring.get_width() - image.get_width()) // 2,) * 2)
         image = ring
     lamp = _lamp(max(1, round(0.8 * radius)), round(radius, 1), 2, 2)
-    image.blit(
-        lamp,
-        (
-            (image.get_width() - lamp.get_width()) // 2,
-            round(image.get_height() / 2 - lamp.get_height() / 2 - 0.35 * radius),
-        ),
-    )
+    row = round(image.get_height() / 2 - lamp.get_height() / 2 - 0.35 * radius)
+    image.blit(lamp, ((image.get_width() - lamp.get_width()) // 2, row))
     return image
 
 

@@ -25,13 +25,8 @@ def score_bar(bar: ScoreBar | None, text: str, width: int, height: int) -> Any:
     page.surface.fill(PALETTE["bar"])
     page.box(0, 0, width / page.unit, 2, "bar_edge")
     if bar is None or height < _SMALLEST:
-        page.text(
-            in_words(bar) if bar is not None else text,
-            33 if height >= _SMALLEST else 44,
-            _EDGE,
-            36,
-            room=width / page.unit - 2 * _EDGE,
-        )
+        words, size = in_words(bar) if bar is not None else text, 33 if height >= _SMALLEST else 44
+        page.text(words, size, _EDGE, 36, room=width / page.unit - 2 * _EDGE)
         return page.surface
     right = _right(page, bar, width / page.unit)
     middle = _players(page, bar, width / page.unit) if bar.players else right
@@ -61,10 +56,8 @@ class _Page:
 
     def box(self, x, y, width, height, ink):
         u = self.unit
-        self.surface.fill(
-            PALETTE[ink],
-            (round(x * u), round(y * u), round((x + width) * u) - round(x * u), max(1, round(height * u))),
-        )
+        left, right = round(x * u), round((x + width) * u)
+        self.surface.fill(PALETTE[ink], (left, round(y * u), right - left, max(1, round(height * u))))
 
     def text(self, text, size, x, y, *, ink="text", file=MEDIUM, anchor="midleft", room=None):
         """Write a line with its middle at height y; one that is too long ends in "…". Returns its width."""
@@ -87,11 +80,9 @@ class _Page:
         return line
 
     def ball(self, ball, x, y, radius):
-        image = dot(ball, radius * self.unit)
-        self.surface.blit(
-            image,
-            (round(x * self.unit - image.get_width() / 2), round(y * self.unit - image.get_height() / 2)),
-        )
+        image, u = dot(ball, radius * self.unit), self.unit
+        place = (round(x * u - image.get_width() / 2), round(y * u - image.get_height() / 2))
+        self.surface.blit(image, place)
 
 
 def _break(page, bar, end):
@@ -107,9 +98,8 @@ def _break(page, bar, end):
         for k, ball in enumerate(bar.potted):
             page.ball(ball, x + 9 + k * step, 36 if lines == 1 else 24, 9)
     if bar.words:
-        page.text(
-            bar.words, 24, x, 36 if lines == 1 else 52, ink="text" if lines == 1 else "text_quiet", room=room
-        )
+        y, ink = (36, "text") if lines == 1 else (52, "text_quiet")
+        page.text(bar.words, 24, x, y, ink=ink, room=room)
 
 
 def _players(page, bar, width):
@@ -127,16 +117,8 @@ def _players(page, bar, width):
         side, on = (-1, 1)[k], bar.striker == k
         _score(page, str(score), middle + side * (half + 2), half, on)
         x = middle + side * (2 * half + 24)
-        taken = page.text(
-            name,
-            36,
-            x,
-            37,
-            ink="text" if on or bar.striker is None else "text_quiet",
-            file=BOLD if on else MEDIUM,
-            anchor=("midright", "midleft")[k],
-            room=300,
-        )
+        ink, file = "text" if on or bar.striker is None else "text_quiet", BOLD if on else MEDIUM
+        taken = page.text(name, 36, x, 37, ink=ink, file=file, anchor=("midright", "midleft")[k], room=300)
         if on:
             _turn(page, x + side * (taken + 26), -side)
         begin.append(x + side * (taken + 40))
@@ -152,9 +134,8 @@ def _turn(page, x, side):
     """A triangle that points to the name of the player whose turn it is."""
     pygame, u = pygame_(), page.unit
     fine = pygame.Surface((40, 40), pygame.SRCALPHA, 32)
-    pygame.draw.polygon(
-        fine, PALETTE["bar_accent"], [(20 - 14 * side, 2), (20 - 14 * side, 38), (20 + 16 * side, 20)]
-    )
+    corners = [(20 - 14 * side, 2), (20 - 14 * side, 38), (20 + 16 * side, 20)]
+    pygame.draw.polygon(fine, PALETTE["bar_accent"], corners)
     small = pygame.transform.smoothscale(fine, (max(3, round(20 * u)), max(3, round(20 * u))))
     page.surface.blit(small, small.get_rect(center=(round(x * u), round(37 * u))))
 
@@ -185,10 +166,8 @@ def _column(page, label, value, end, balls=(), size=36, widest=""):
     """A value under its label, with room for ``widest`` so that nothing moves. Returns the next end."""
     step = 22 if len(balls) < 3 else 13
     taken = (step * (len(balls) - 1) + 30) if balls else 0
-    across = max(
-        page.width(label, 17, BOLD),
-        taken + max(page.width(text, size, BOLD, room=220) for text in (value, widest)),
-    )
+    wide = max(page.width(text, size, BOLD, room=220) for text in (value, widest))
+    across = max(page.width(label, 17, BOLD), taken + wide)
     start = end - across
     page.text(label, 17, start, 17, ink="text_quiet", file=BOLD)
     for k, ball in enumerate(balls):

@@ -57,10 +57,8 @@ def _piece(numbers, start, end, colour, width):
     if np.max(off) < 0.05:  # straight
         points = points[[0, -1]]
     margin = width / 2 + 1
-    low, high = (
-        np.floor(points.min(axis=0) - margin).astype(int),
-        np.ceil(points.max(axis=0) + margin).astype(int),
-    )
+    low = np.floor(points.min(axis=0) - margin).astype(int)
+    high = np.ceil(points.max(axis=0) + margin).astype(int)
     x, y = np.meshgrid(np.arange(low[0], high[0]) + 0.5, np.arange(low[1], high[1]) + 0.5)
     nearest, whose = np.full(x.shape, np.inf), np.zeros(x.shape, int)
     for k, ((ax, ay), (bx, by)) in enumerate(zip(points[:-1].tolist(), points[1:].tolist(), strict=True)):

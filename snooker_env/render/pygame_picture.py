@@ -21,16 +21,14 @@ def draw(scene: Scene, view: View) -> NDArray[np.uint8]:
     # draws into ``pixels``
     surface: Any = pygame_().image.frombuffer(pixels, (view.width, view.height), "RGB")
     surface.set_clip((0, 0, view.width, view.height - view.bar))
-    width = line_width(view.scale)
-    draw_lines(
-        surface, [(view(points), tuple(PALE[ball].tolist())) for ball, points in scene.paths.items()], width
-    )
+    width, aim = line_width(view.scale), PALETTE["aim"]
+    lines = [(view(points), tuple(PALE[ball].tolist())) for ball, points in scene.paths.items()]
+    draw_lines(surface, lines, width)
     if scene.aim is not None:
-        draw_lines(surface, [(view(scene.aim), PALETTE["aim"])], 0.8 * width)
+        draw_lines(surface, [(view(scene.aim), aim)], 0.8 * width)
     if scene.ghost is not None:
-        draw_lines(
-            surface, [(view(outline_of_a_ball(scene.ghost, scene.ball_radius)), PALETTE["aim"])], 0.6 * width
-        )
+        circle = outline_of_a_ball(scene.ghost, scene.ball_radius)
+        draw_lines(surface, [(view(circle), aim)], 0.6 * width)
     draw_balls(surface, scene, view)
     surface.set_clip(None)
     if scene.bar is not None or scene.text:

@@ -38,9 +38,8 @@ class ScoreBar:
         if len(self.players) > 2 or not all(isinstance(name, str) for name in self.players):
             raise refuse("players", self.players, "must be the names of at most two players")
         if len(self.scores) != len(self.players):
-            raise refuse(
-                "scores", self.scores, f"must hold one number for each of the {len(self.players)} players"
-            )
+            allowed = f"must hold one number for each of the {len(self.players)} players"
+            raise refuse("scores", self.scores, allowed)
         if self.striker is not None and self.striker not in range(len(self.players)):
             raise refuse("striker", self.striker, "must be None or an index of players")
         for ball in self.potted:
@@ -102,27 +101,18 @@ def scene(
         raise refuse("positions", f"array of shape {r.shape}", f"must hold at most {N_BALLS} balls")
     here = np.ones(len(r), bool) if on_table is None else np.array(on_table)
     if here.shape != (len(r),) or here.dtype != bool:
-        raise refuse(
-            "on_table", f"{here.dtype} array of shape {here.shape}", f"must be bool of shape ({len(r)},)"
-        )
+        what = f"{here.dtype} array of shape {here.shape}"
+        raise refuse("on_table", what, f"must be bool of shape ({len(r)},)")
     if bar is not None and not isinstance(bar, ScoreBar):
         raise refuse("bar", bar, "must be None or a ScoreBar")
     ids, table = np.flatnonzero(here), Table.of(table)
-    radius = (
-        (table.ball_radius or BALL_RADIUS)
-        if ball_radius is None
-        else number("ball_radius", ball_radius, 1e-3, 1)
-    )
-    paths, aim, ghost, ghosts, turns = _Overlays(**overlays)
-    aim = None if aim is None else array("aim", aim, (-1, 2))
-    ghost = None if ghost is None else array("ghost", ghost, (2,))
-    drawn = (
-        _by_ball("paths", paths, (-1, 2)),
-        aim,
-        ghost,
-        _by_ball("ghosts", ghosts, (-1, 2)),
-        _by_ball("turns", turns, (4,)),
-    )
+    usual = table.ball_radius or BALL_RADIUS
+    radius = usual if ball_radius is None else number("ball_radius", ball_radius, 1e-3, 1)
+    over = _Overlays(**overlays)
+    aim = None if over.aim is None else array("aim", over.aim, (-1, 2))
+    ghost = None if over.ghost is None else array("ghost", over.ghost, (2,))
+    paths, ghosts = (_by_ball(name, getattr(over, name), (-1, 2)) for name in ("paths", "ghosts"))
+    drawn = (paths, aim, ghost, ghosts, _by_ball("turns", over.turns, (4,)))
     return Scene(table, ids, r[ids], radius, *drawn, str(text), bar, bool(lettered))
 
 
@@ -163,15 +153,13 @@ def contacts(shot: Shot, ball: int = CUE) -> Floats:
 
 def _timed_contacts(shot, ball):
     """``contacts`` and their times (m,) [s]."""
-    met = shot.events[
-        (shot.events["kind"] == EventKind.BALL_BALL)
-        & ((shot.events["i"] == ball) | (shot.events["j"] == ball))
-    ]
-    kept = []
-    for place, time in zip(shot.at(met["time"])[0][:, ball].reshape(-1, 2), met["time"], strict=True):
-        if not kept or np.hypot(*(place - kept[-1][0])) > shot.physics.R:
-            kept.append((place, time))
-    return np.array([place for place, _ in kept]).reshape(-1, 2), np.array([time for _, time in kept])
+    met = shot.events[shot.events["kind"] == EventKind.BALL_BALL]
+    met = met[(met["i"] == ball) | (met["j"] == ball)]
+    places, kept = shot.at(met["time"])[0][:, ball].reshape(-1, 2), []
+    for k, place in enumerate(places):
+        if not kept or np.hypot(*(place - places[kept[-1]])) > shot.physics.R:
+            kept.append(k)
+    return places[kept], met["time"][kept]
 
 
 class Film:
@@ -188,11 +176,8 @@ class Film:
         **overlays: Any,
     ):
         self.duration: float = shot.duration
-        self._table, self._shot, self._overlays = (
-            Table.of(table),
-            shot,
-            {"ball_radius": shot.physics.R, **overlays},
-        )
+        self._table, self._shot = Table.of(table), shot
+        self._overlays: dict[str, Any] = {"ball_radius": shot.physics.R, **overlays}
         self._paths = _timed_paths(shot, trail, shot.duration)
         self._turning = {int(ball): Turning(shot, ball) for ball in spots}
         self._contacts = {int(ball): _timed_contacts(shot, ball) for ball in faded}
@@ -213,30 +198,11 @@ class Film:
                 paths[ball] = done
         turns = {ball: turning.at(t) for ball, turning in self._turning.items()}
         ghosts = {ball: places[times <= t] for ball, (places, times) in self._contacts.items()}
-        return scene(
-            self._table,
-            r,
-            self._gone_at > t,
-            **{"paths": paths, "turns": turns, "ghosts": ghosts, **self._overlays},
-        )
+        over = {"paths": paths, "turns": turns, "ghosts": ghosts} | self._overlays
+        return scene(self._table, r, self._gone_at > t, **over)
 
     def scenes(self, fps: float = 30.0, speed: float = 1.0) -> Iterator[Scene]:
         """One picture every speed / fps seconds of the shot's own time, and one of its end."""
         step = number("speed", speed, 0.0, open_low=True) / number("fps", fps, 0.0, open_low=True)
         for t in np.append(np.arange(0.0, self.duration, step), self.duration):
             yield self.at(float(t))
-
-
-def shot_scenes(
-    table: TableLike,
-    shot: Shot,
-    *,
-    fps: float = 30.0,
-    speed: float = 1.0,
-    trail: Iterable[int] = (CUE,),
-    spots: Iterable[int] = (),
-    faded: Iterable[int] = (),
-    **overlays: Any,
-) -> Iterator[Scene]:
-    """The scenes of the ``Film`` of a shot, whose other arguments these are."""
-    return Film(table, shot, trail=trail, spots=spots, faded=faded, **overlays).scenes(fps, speed)

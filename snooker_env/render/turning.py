@@ -40,23 +40,13 @@ def rotation(turn: Floats) -> Floats:
 def product(a: Floats, b: Floats) -> Floats:
     """The product of two quaternions (4,): the rotation ``b``, then ``a``."""
     (aw, ax, ay, az), (bw, bx, by, bz) = a.tolist(), b.tolist()
-    return np.array(
-        [
-            aw * bw - ax * bx - ay * by - az * bz,
-            aw * bx + ax * bw + ay * bz - az * by,
-            aw * by - ax * bz + ay * bw + az * bx,
-            aw * bz + ax * by - ay * bx + az * bw,
-        ]
-    )
+    w, x = aw * bw - ax * bx - ay * by - az * bz, aw * bx + ax * bw + ay * bz - az * by
+    y, z = aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw
+    return np.array([w, x, y, z])
 
 
 def matrix(q: Floats) -> Floats:
     """The rotation of a quaternion as a matrix (3, 3)."""
     w, x, y, z = q.tolist()
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])  # of the axis: across @ v is its product with v
+    return np.eye(3) + 2 * w * across + 2 * across @ across

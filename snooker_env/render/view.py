@@ -44,14 +44,8 @@ class View(NamedTuple):
             width, height = _checked(SIZE if size is None else size)
             bar = round(_BAR * min(height, width * SIZE[1] / SIZE[0]))
             scale = min((height - bar) / tall, width / wide)
-        return cls(
-            width,
-            height,
-            bar,
-            float(scale),
-            float(width / 2 - scale * middle_y),
-            float((height - bar) / 2 - scale * middle_x),
-        )
+        x, y = width / 2 - scale * middle_y, (height - bar) / 2 - scale * middle_x
+        return cls(width, height, bar, float(scale), float(x), float(y))
 
     def __call__(self, points: Floats) -> Floats:
         """Column and row of points (..., 2) [m]."""

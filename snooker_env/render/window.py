@@ -37,9 +37,7 @@ _INVISIBLE = ("dummy", "offscreen")  # drivers of SDL
 def display_missing() -> bool:
     """Whether nobody could see a window; ``SDL_VIDEODRIVER=dummy`` allows one without a screen (tests)."""
     linux = not (sys.platform.startswith("win") or sys.platform == "darwin")
-    return linux and not any(
-        os.environ.get(name) for name in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY")
-    )
+    return linux and not any(map(os.environ.get, ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY")))
 
 
 def require_display() -> None:
@@ -180,10 +178,8 @@ class Window:
         pygame = pygame_()
         self._screen = pygame.display.get_surface()  # a new one after the window was resized
         width, height = self._screen.get_size()
-        hint = self._hint
-        scene = dataclasses.replace(
-            scene, lettered=scene.lettered or self._letters, paths=scene.paths if self._paths else {}
-        )
+        hint, paths = self._hint, scene.paths if self._paths else {}
+        scene = dataclasses.replace(scene, lettered=scene.lettered or self._letters, paths=paths)
         pixels = draw(scene, View.of(scene.table, size=(max(width, 100), max(height - hint, 100))))
         self._screen.fill(PALETTE["floor"])
         self._screen.blit(pygame.image.frombuffer(pixels, pixels.shape[1::-1], "RGB"), (0, 0))

@@ -7,7 +7,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
 from snooker_env.render.pygame_view import Window, rgb_array
-from snooker_env.render.scene import Film, scene, shot_scenes
+from snooker_env.render.scene import Film, scene
 from snooker_env.render.window import SPEEDS, WAITING, require_display
 
 
@@ -36,7 +36,7 @@ def test_window_opens_lazily_plays_and_closes(dummy_screen, pot):
     window = Window(height=300)
     assert not window.is_open and not dummy_screen.display.get_init()
     window.close()
-    film = list(shot_scenes("match", pot, fps=10))
+    film = list(Film("match", pot).scenes(10))
     assert window.play(film, fps=1000) and window.is_open
     assert np.array_equal(picture(dummy_screen), rgb_array(film[-1], size=(518, 300)))
     window.close()
@@ -50,7 +50,7 @@ def test_window_heeds_its_close_button(dummy_screen, pot):
     window = Window(height=300)
     assert window.draw(scene("match", SPOTS))
     dummy_screen.event.post(dummy_screen.event.Event(dummy_screen.QUIT))
-    assert not window.play(shot_scenes("match", pot), fps=1000)
+    assert not window.play(Film("match", pot).scenes(), fps=1000)
     assert (
         not window.is_open and not window.draw(scene("match", SPOTS)) and not dummy_screen.display.get_init()
     )
@@ -90,7 +90,7 @@ class Pressed(Window):
 @pytest.mark.parametrize("kind", ["film", "scenes"])
 def test_a_film_runs_faster_and_slower_and_shows_its_end(dummy_screen, pot, kind):
     def made():
-        return Film("match", pot) if kind == "film" else shot_scenes("match", pot, fps=20)
+        return Film("match", pot) if kind == "film" else Film("match", pot).scenes(20)
 
     whole = int(np.ceil(pot.duration * 20)) + 1
     up, down = dummy_screen.K_UP, dummy_screen.K_DOWN
