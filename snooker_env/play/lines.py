@@ -17,7 +17,7 @@ MOST = 126
 """Largest number of lines: from 21 balls to 6 pockets."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Line:
     """A straight line from the cue ball through a ball to a pocket; lengths in metres, angles in radians."""
 
@@ -43,12 +43,8 @@ class Line:
 
     def to_dict(self) -> dict[str, Any]:
         """The line as JSON types."""
-        names = {
-            "ball": NAMES[self.ball],
-            "pocket": POCKETS[self.pocket],
-            "blocked_by": list(self.blocked_by),
-        }
-        return asdict(self) | names
+        names = {"ball": NAMES[self.ball], "pocket": POCKETS[self.pocket]}
+        return asdict(self) | names | {"blocked_by": list(self.blocked_by)}
 
     @property
     def words(self) -> str:
@@ -58,10 +54,8 @@ class Line:
             return way + (", ".join(self.blocked_by) + " in the way" if self.blocked_by else self.why)
         cut = "straight" if self.cut < radians(1.0) else f"cut {degrees(self.cut):.0f} deg"
         likely = "" if self.chance is None else f", chance {100 * self.chance:.0f} %"
-        return (
-            f"{way}open, {cut}, cue ball {self.to_ball:.2f} m, ball {self.to_pocket:.2f} m, aim {self.aim:.4f} rad, "
-            f"may err {degrees(self.tolerance):.2f} deg{likely}"
-        )
+        far = f"cue ball {self.to_ball:.2f} m, ball {self.to_pocket:.2f} m, aim {self.aim:.4f} rad"
+        return f"{way}open, {cut}, {far}, may err {degrees(self.tolerance):.2f} deg{likely}"
 
 
 def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
@@ -71,9 +65,8 @@ def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
     tolerances = {}
     for position in positions:
         some = pots(position, most=MOST)
-        for ball, pocket, tolerance in zip(
-            some.ball[0].tolist(), some.pocket[0].tolist(), some.tolerance[0].tolist(), strict=True
-        ):
+        columns = (each[0].tolist() for each in (some.ball, some.pocket, some.tolerance))
+        for ball, pocket, tolerance in zip(*columns, strict=True):
             if ball >= 0:
                 tolerances[ball, pocket] = tolerance
     at = positions[0]
@@ -88,9 +81,8 @@ def lines_of(positions: list[Positions], on: int, noise: str) -> list[Line]:
     skip: Any = np.column_stack([np.full(len(ways), CUE), balls])
     barred = obstructions(at, rows, places[balls], aims, ignore=skip)
     barred |= obstructions(at, rows, np.broadcast_to(places[CUE], ghosts.shape).copy(), ghosts, ignore=skip)
-    return [
-        _line(*way, places, ghosts[k], aims[k], barred[k], tolerances, sigma) for k, way in enumerate(ways)
-    ]
+    each = zip(ways, ghosts, aims, barred, strict=True)
+    return [_line(*way, places, *of_way, tolerances, sigma) for way, *of_way in each]
 
 
 def _line(ball, pocket, places, ghost, aim, barred, tolerances, sigma):
@@ -99,24 +91,12 @@ def _line(ball, pocket, places, ghost, aim, barred, tolerances, sigma):
     cos_cut = float(run @ way / max(far * on, 1e-12))
     cut = acos(min(1.0, max(-1.0, cos_cut)))
     tolerance = tolerances.get((ball, pocket), 0.0)
-    blocked = tuple(NAMES[i] for i in np.flatnonzero(barred))
-    why = (
-        "" if tolerance or blocked else "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
-    )
-    chance = erf(tolerance / (sigma * sqrt(2.0))) if sigma else None
-    return Line(
-        ball=ball,
-        pocket=pocket,
-        open=tolerance > 0.0,
-        blocked_by=() if tolerance else blocked,
-        why=why,
-        cut=cut,
-        to_ball=far,
-        to_pocket=on,
-        aim=atan2(run[1], run[0]),
-        tolerance=tolerance,
-        chance=chance if tolerance else None,
-    )
+    blocked = () if tolerance else tuple(NAMES[i] for i in np.flatnonzero(barred))
+    why = "cut too thin" if cos_cut <= 0.05 else "pocket too narrow from there"
+    why = "" if tolerance or blocked else why
+    chance = erf(tolerance / (sigma * sqrt(2.0))) if sigma and tolerance else None
+    aim = atan2(run[1], run[0])
+    return Line(ball, pocket, tolerance > 0.0, blocked, why, cut, far, on, aim, tolerance, chance)
 
 
 def _unit(v: Floats) -> Floats:

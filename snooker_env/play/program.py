@@ -128,11 +128,7 @@ class ProgramPlayer(BoundPlayer):
             for kept, layout in zip(table.saved, at.saved or (), strict=False):
                 kept[0] = layout[k]
             state = table.get_state(0)
-            game = {
-                "practice": False,
-                "noise": [self._noise] * 2,
-                "state": {name: state[name] for name in STATE},
-            }
+            game = {"practice": False, "noise": [self._noise] * 2, "state": {n: state[n] for n in STATE}}
             session.load({"format": "snooker-game", "version": 1, **game})
         else:
             position = at[k]
@@ -142,9 +138,8 @@ class ProgramPlayer(BoundPlayer):
 
     def _asked(self, seed: int) -> dict[str, Any]:
         """The program's answer to the table as it stands: an object."""
-        answer = self._lines.asked(
-            json.dumps(report(self._service) | {"seed": seed}, separators=(",", ":")).encode() + b"\n"
-        )
+        state = json.dumps(report(self._service) | {"seed": seed}, separators=(",", ":"))
+        answer = self._lines.asked(state.encode() + b"\n")
         try:
             return parsed(answer.strip())
         except RefusedError as error:
@@ -247,9 +242,7 @@ class _Lines:
                 self._taken.set()
 
 
-def _struck(
-    values: Any = (MIN_SPEED, 0.0, 0.0, 0.0, 0.0), place: Any = None, decision: int = PLAY
-) -> Strokes:
+def _struck(values: Any = (MIN_SPEED, 0, 0, 0, 0), place: Any = None, decision: int = PLAY) -> Strokes:
     """One stroke."""
     places: Any = None if place is None else np.array([place])
     return Strokes(np.array([values]), places, decision=np.array([decision]))

@@ -64,15 +64,8 @@ def scatter(
     """Where cue ball and object ball stop under execution errors, and the paths without them."""
     shot = exact(session, stroke)
     stops = destinations(session.planned(), stroke, noise=noise, samples=samples, seed=seed)
-    return paths(shot) | {
-        "cue": packed(stops.cue, "f4"),
-        "ball": packed(stops.ball, "f4"),
-        "samples": stops.samples,
-        "potted": stops.potted,
-        "in_off": stops.in_off,
-        "foul": stops.foul,
-        "points": stops.points,
-    }
+    figures = {name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "points")}
+    return paths(shot) | figures | {"cue": packed(stops.cue, "f4"), "ball": packed(stops.ball, "f4")}
 
 
 def suggestions(
@@ -80,10 +73,8 @@ def suggestions(
 ) -> dict[str, Any]:
     """Strokes of the agent in words and data, with paths without errors; whose they are, and their order."""
     choice("agent", agent, seats.agents)
-    advice = advise(
-        session.planned(), agent=seats.players[agent], noise=noise, n=n, samples=samples, seed=seed
-    )
-    out = []
+    how: Any = {"noise": noise, "n": n, "samples": samples, "seed": seed}
+    advice, out = advise(session.planned(), agent=seats.players[agent], **how), []
     for one in advice:
         twin = session.twin()
         if one.place is not None:

@@ -25,22 +25,16 @@ from .words import asked_words, freedom, last_words, table_text
 
 def scene(service: Service) -> dict[str, Any]:
     """The constant part: the table as it is drawn, limits of strokes, available players."""
-    rules = service.session.options_with("none").rules
+    with service.reading() as session:
+        rules = session.options_with("none").rules
+    limits = {"speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, MAX_ELEVATION]}
+    pockets = zip(POCKET_WORDS, POCKET_AIMS[:, :2].tolist(), strict=True)
     return {
         "scene": scene_data(rules.table),
         "R": rules.physics.R,
         "spin_decel": rules.physics.spin_decel,
-        "limits": {
-            "speed": [MIN_SPEED, MAX_SPEED],
-            "offset": FARTHEST,
-            "elevation": [0.0, MAX_ELEVATION],
-            "samples": MOST_SAMPLES,
-            "suggestions": MOST_SUGGESTIONS,
-        },
-        "pockets": [
-            {"name": name, "x": float(x), "y": float(y)}
-            for name, (x, y) in zip(POCKET_WORDS, POCKET_AIMS[:, :2], strict=True)
-        ],
+        "limits": limits | {"samples": MOST_SAMPLES, "suggestions": MOST_SUGGESTIONS},
+        "pockets": [{"name": name, "x": x, "y": y} for name, (x, y) in pockets],
         "agents": service.seats.agents,
         "players": service.seats.names,
         "noise": list(LEVELS),
@@ -75,9 +69,8 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
     acts, labels = service.session.acts, service.seats.labels
     played = acts[k].played
     assert played is not None
-    return encoded_stroke(played, labels) | {
-        "tables": [table_after(acts[k - 1], labels), table_after(acts[k], labels)]
-    }
+    tables = [table_after(act, labels) for act in acts[k - 1 : k + 1]]
+    return encoded_stroke(played, labels) | {"tables": tables}
 
 
 def report(service: Service) -> dict[str, Any]:
@@ -145,22 +138,19 @@ def _facts(session: Session, state: dict[str, Any], places: dict[int, tuple[floa
     facts.append(f"Score: {one} {state['scores'][0]}, {other} {state['scores'][1]}; break {state['break']}.")
     if state["phase"] == "over":
         return facts
-    facts.append(
-        f"{state['available']} points are left on the table, {reds} red{'' if reds == 1 else 's'} among the balls."
-    )
+    left = f"{state['available']} points are left on the table"
+    facts.append(f"{left}, {reds} red{'' if reds == 1 else 's'} among the balls.")
     if state["needs_snookers"]:
         facts.append("The striker needs penalty points to win.")
     if state["phase"] == "choice":
         facts.append("Choices: " + ", ".join(state["choices"]) + ".")
         return facts
     if state["nominations"]:
-        facts.append(
-            f"May be nominated: {', '.join(state['nominations'])}; without a nomination it is the colour first struck."
-        )
+        colours = ", ".join(state["nominations"])
+        facts.append(f"May be nominated: {colours}; without a nomination it is the colour first struck.")
     if state["in_hand"]:
-        facts.append(
-            "The cue ball may be placed anywhere in the D (x^2 + (y + 1.0475)^2 <= 0.292^2 and y <= -1.0475)."
-        )
+        where = "x^2 + (y + 1.0475)^2 <= 0.292^2 and y <= -1.0475"
+        facts.append(f"The cue ball may be placed anywhere in the D ({where}).")
     if state["snookered"]:
         facts.append("The cue ball is snookered: no ball on can be struck at both edges in a straight line.")
     return facts + freedom(places)

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from time import monotonic
 
+from .._check import refuse
 from ..advice.strokes import cue_strokes
 from ..game.frame_columns import PLAY_AGAIN, REPLACE
 from ..game.ruling import AUTO
@@ -72,9 +73,8 @@ class Service:
             if revision not in (None, self.revision):
                 raise StaleError
             if not any_turn and self.agent_to_play():
-                raise ValueError(
-                    f"turn = {self.seats.label(self.session.frame.striker)!r}: must be a person's: an agent is to play"
-                )
+                whose = self.seats.label(self.session.frame.striker)
+                raise refuse("turn", whose, "must be a person's: an agent is to play")
             yield self.session
             self.paused, self.trouble = pause, ""
             self._moved()

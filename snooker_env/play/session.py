@@ -65,15 +65,8 @@ class Session:
     """Number of acts that count; the following ones were undone."""
 
     def __init__(self, *, layout: str = "break_off", seed: int = 0):
-        self._options = Options(
-            task="frame",
-            placement=True,
-            decision=True,
-            elevation=True,
-            miss="clear_path",
-            max_strokes=None,
-            layout=layout,
-        )
+        box = {"placement": True, "decision": True, "elevation": True}
+        self._options = Options(task="frame", miss="clear_path", max_strokes=None, layout=layout, **box)
         self.noise, self.practice = ["none", "none"], False
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
         self._buffers = ShotBuffers(1, path=True)
@@ -119,11 +112,8 @@ class Session:
         if frame.phase == "over":
             raise refuse("phase", "over", "must not be over: there is no stroke to play")
         on = BallOn.ANY_COLOUR if free_ball else frame.ball_on
-        return Positions(
-            tables.positions.copy(),
-            tables.on_table.copy(),
-            [[int(on), int(frame.in_hand), frame.break_points, 0, 0]],
-        )
+        game = [[int(on), int(frame.in_hand), frame.break_points, 0, 0]]
+        return Positions(tables.positions.copy(), tables.on_table.copy(), game)
 
     def options_with(self, noise: NoiseName) -> Options:
         """The options of this frame for a player with these execution errors."""
@@ -161,12 +151,8 @@ class Session:
         """Raise ValueError unless a stroke may be played now, and that colour be nominated."""
         frame = self.frame
         if frame.phase != "stroke":
-            allowed = (
-                'must be "stroke": choose first (play, play_again or replace)'
-                if frame.phase == "choice"
-                else "must not be over"
-            )
-            raise refuse("phase", frame.phase, allowed)
+            choose = 'must be "stroke": choose first (play, play_again or replace)'
+            raise refuse("phase", frame.phase, choose if frame.phase == "choice" else "must not be over")
         declined = nominated == DECLINED and frame.free_ball
         if nominated != AUTO and not declined and nominated not in self.nominations():
             names = [NAMES[i] for i in self.nominations()]
@@ -244,39 +230,18 @@ class Session:
         return px, py
 
     def set_up(
-        self,
-        position: Position,
-        *,
-        scores: tuple[int, int],
-        striker: int,
-        free_ball: bool,
-        check: bool = False,
+        self, position: Position, *, scores: Any, striker: int, free_ball: bool, check: bool = False
     ) -> None:
         """Put the balls as in a position, or only ``check`` it. ValueError names the ball or the field."""
         positions, on_table, _ = position.arrays()
         mask = mask_of_present(on_table) & ~1
         for i in np.flatnonzero(~on_table):
             positions[i] = 0.0
-        frame = Frame(
-            scores=scores,
-            striker=striker,
-            breaker=striker,
-            break_points=position.points,
-            on_table=mask,
-            in_hand=position.in_hand,
-            ball_on=BallOn[str(position.on).upper()],
-            free_ball=free_ball,
-            miss="clear_path",
-        )
-        sound = self._checked(
-            {
-                "positions": positions.tolist(),
-                "on_table": on_table.tolist(),
-                "frame": frame.to_dict(),
-                "strokes": 0,
-                "stream": self.tables.streams[0].tolist(),
-            }
-        )
+        game: Any = {"scores": scores, "striker": striker, "breaker": striker, "free_ball": free_ball}
+        game |= {"break_points": position.points, "in_hand": position.in_hand, "on_table": mask}
+        frame = Frame(**game, ball_on=BallOn[str(position.on).upper()], miss="clear_path")
+        state = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
+        sound = self._checked(state | {"strokes": 0, "stream": self.tables.streams[0].tolist()})
         if not check:
             self.tables.set_state(0, sound)
             self._did(Act("set_up", self.state))
@@ -291,27 +256,18 @@ class Session:
 
     def save(self) -> dict[str, Any]:
         """The current game as JSON types."""
-        return {
-            "format": "snooker-game",
-            "version": 1,
-            "practice": self.practice,
-            "noise": list(self.noise),
-            "state": self.state,
-        }
+        game = {"practice": self.practice, "noise": list(self.noise), "state": self.state}
+        return {"format": "snooker-game", "version": 1, **game}
 
     def load(self, saved: Any) -> None:
         """Restore a result of ``save``. ValueError names what is invalid, and then nothing has changed."""
         fields = ("format", "version", "practice", "noise", "state")
         if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
-            raise refuse_what(
-                "saved", "something else", 'must be a saved game, with "format": "snooker-game"'
-            )
+            allowed = 'must be a saved game, with "format": "snooker-game"'
+            raise refuse_what("saved", "something else", allowed)
         if set(saved) != set(fields) or saved["version"] != 1 or saved["version"] is True:
-            raise refuse_what(
-                "saved",
-                f"version {saved.get('version')!r} with {sorted(saved)}",
-                f"must be version 1 with {list(fields)}",
-            )
+            what = f"version {saved.get('version')!r} with {sorted(saved)}"
+            raise refuse_what("saved", what, f"must be version 1 with {list(fields)}")
         noise = saved["noise"]
         if not isinstance(noise, list) or len(noise) != 2:
             raise refuse("saved.noise", noise, "must be two names")

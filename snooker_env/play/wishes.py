@@ -12,9 +12,8 @@ def stroke_in(fields: dict[str, Any], aim: float | None = None) -> CueStroke:
     """The stroke in a request, its "aim" unless passed separately; ValueError if invalid."""
     for name in ("speed",) if aim is not None else ("speed", "aim"):
         if name not in fields:
-            raise refuse(
-                name, None, 'must be given: {"speed": m/s, "aim": rad, "side": 0, "top": 0, "elevation": 0}'
-            )
+            form = '{"speed": m/s, "aim": rad, "side": 0, "top": 0, "elevation": 0}'
+            raise refuse(name, None, f"must be given: {form}")
     parts = {name: fields[name] for name in ("speed", "side", "top", "elevation") if name in fields}
     return CueStroke(aim=number("aim", fields["aim"], -1e6, 1e6) if aim is None else aim, **parts)
 

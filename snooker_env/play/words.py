@@ -30,11 +30,7 @@ def asked_words(frame: Frame, labels: tuple[str, str]) -> str:
     if frame.phase == "choice":
         miss = " and a miss" if frame.miss_called else ""
         return f"Foul{miss} by {labels[1 - frame.striker]}: {'choose' if who == 'You' else f'{who} chooses'}."
-    on = (
-        f"{on_words(frame.ball_on)}, and a free ball are"
-        if frame.free_ball
-        else f"{on_words(frame.ball_on)} is"
-    )
+    on = on_words(frame.ball_on) + (", and a free ball are" if frame.free_ball else " is")
     placing = "; the cue ball is in hand" if frame.in_hand else ""
     return f"{yours}: {on} on{placing}."
 
@@ -61,11 +57,8 @@ def where(ball: int, x: float, y: float) -> str:
         if hypot(x - spot[0], y - spot[1]) < 1e-3:
             return "on its spot" if ball == YELLOW + k else f"on the {NAMES[YELLOW + k]} spot"
     along = next(words for limit, words in _ALONG if y <= limit)
-    across = (
-        "on the centre line"
-        if abs(x) < 0.03
-        else f"{'far ' if abs(x) > 0.5 else ''}{'right' if x > 0 else 'left'}"
-    )
+    side = f"{'far ' if abs(x) > 0.5 else ''}{'right' if x > 0 else 'left'}"
+    across = "on the centre line" if abs(x) < 0.03 else side
     gaps = {
         "left cushion": x + HALF_WIDTH,
         "right cushion": HALF_WIDTH - x,
@@ -74,22 +67,15 @@ def where(ball: int, x: float, y: float) -> str:
     }
     near, gap = min(gaps.items(), key=lambda item: item[1])
     gap -= BALL_RADIUS
-    tight = (
-        f", tight on the {near}"
-        if gap < 0.003
-        else f", {100 * gap:.0f} cm from the {near}"
-        if gap < 0.12
-        else ""
-    )
-    return f"{along}, {across}{tight}"
+    if gap >= 0.12:
+        return f"{along}, {across}"
+    return f"{along}, {across}, {f'{100 * gap:.0f} cm from' if gap >= 0.003 else 'tight on'} the {near}"
 
 
 def table_text(places: dict[int, tuple[float, float]], on: int, lines: list[Line], facts: list[str]) -> str:
     """The whole description; ``places``: of the balls, ``on``: mask of those that may be struck first."""
-    text = [*facts, ""]
-    text.append(
-        "Balls (x to the right, y to the black end, metres from the middle of the table; * may be struck first):"
-    )
+    axes = "x to the right, y to the black end, metres from the middle of the table"
+    text = [*facts, "", f"Balls ({axes}; * may be struck first):"]
     for ball, (x, y) in places.items():
         racked = 0 < ball < YELLOW and hypot(x - SPOTS[ball, 0], y - SPOTS[ball, 1]) < 1e-6
         place = "in the rack" if racked else where(ball, x, y)
@@ -98,34 +84,24 @@ def table_text(places: dict[int, tuple[float, float]], on: int, lines: list[Line
         text += ["", "Lines to pockets (straight lines; throw and swerve are not in them):"]
         for ball in dict.fromkeys(line.ball for line in lines):
             mine = [line for line in lines if line.ball == ball]
-            shown = [line for line in mine if line.open] or sorted(mine, key=_how_shut)[:1]
-            text += [
-                f"  {NAMES[ball]}, {line.words}" for line in sorted(shown, key=lambda line: -line.tolerance)
-            ]
+            # the widest first; if none is open, the one that nearly is
+            shown = sorted((line for line in mine if line.open), key=lambda line: -line.tolerance)
+            shown = shown or [min(mine, key=lambda line: (len(line.blocked_by) or 9, line.cut))]
+            text += [f"  {NAMES[ball]}, {line.words}" for line in shown]
     return "\n".join(text)
-
-
-def _how_shut(line):
-    """Sorting key: lines that are nearly open come first."""
-    return len(line.blocked_by) or 9, line.cut
 
 
 def freedom(places: dict[int, tuple[float, float]]) -> list[str]:
     """The surroundings of the cue ball: touching balls, and the nearest ball."""
     if CUE not in places:
         return []
-    x, y = places[CUE]
-    text = []
-    near = sorted(
-        (hypot(px - x, py - y) - 2.0 * BALL_RADIUS, ball) for ball, (px, py) in places.items() if ball != CUE
-    )
+    (x, y), text = places[CUE], []
+    far = {ball: hypot(px - x, py - y) - 2.0 * BALL_RADIUS for ball, (px, py) in places.items()}
+    near = sorted((gap, ball) for ball, gap in far.items() if ball != CUE)
     touching = [NAMES[ball] for gap, ball in near if gap < 1e-6]
     if touching:
         text.append("Touching ball: " + ", ".join(touching) + ".")
     elif near and near[0][0] < 0.2:
-        text.append(
-            f"The ball nearest to the cue ball is {NAMES[near[0][1]]}, {100 * near[0][0]:.1f} cm away."
-        )
-    place = where(CUE, x, y)
-    text.append(f"The cue ball lies {place}.")
-    return text
+        gap, ball = near[0]
+        text.append(f"The ball nearest to the cue ball is {NAMES[ball]}, {100 * gap:.1f} cm away.")
+    return [*text, f"The cue ball lies {where(CUE, x, y)}."]
