@@ -12,8 +12,7 @@ and left middle. Left and right are as seen from the baulk end: right is the yel
 
 from .ask import advise, stroke_of
 from .destinations import Destinations, destinations
-from .strokes import CueStroke
-from .suggestions import Advice, Suggestion
+from .strokes import Advice, CueStroke, Suggestion
 from .words import POCKET_WORDS
 
 __all__ = [

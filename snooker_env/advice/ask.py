@@ -12,8 +12,7 @@ from ..players import player as player_of
 from ..tasks.noise import NoiseLike
 from . import judging
 from .practice import Practice, one_position, practice_of
-from .strokes import CueStroke, cue_strokes
-from .suggestions import Advice
+from .strokes import Advice, CueStroke, cue_strokes
 
 AGENT = "planner_500"
 """Who is asked if nobody is named: 120 points a visit, in a twentieth of a second."""

@@ -11,8 +11,7 @@ from ..game.balls import CUE
 from ..geometry import BALL_RADIUS
 from ..planning import Positions, Stops, clear_paths
 from .practice import JUDGING, Practice, keys, played_from
-from .strokes import CueStroke
-from .suggestions import Suggestion
+from .strokes import CueStroke, Suggestion
 from .visits import played_on
 from .words import RAISED, contact_words, cushion_words, figures_words, stroke_words, what_words
 

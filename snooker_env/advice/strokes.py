@@ -1,9 +1,9 @@
 """What is one stroke? ``CueStroke``: speed, tip, aim, elevation and place; validated, and as an action."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from math import hypot
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from .._check import array, choice, number, refuse_what
 from .._types import Place
 from ..game.in_hand import within_d
 from ..physics.parameters import Physics
-from ..planning import Positions
+from ..planning import Position, Positions
 from ..planning.strokes import FARTHEST, encoded
 from ..players import Strokes
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
@@ -123,3 +123,159 @@ def cue_strokes(strokes: Strokes, at: Positions) -> list[CueStroke]:
         tip = {"side": side / shrink, "top": top / shrink}
         out.append(CueStroke(speed=speed, aim=aim, **tip, elevation=elevation, place=put))
     return out
+
+
+@dataclass(frozen=True, kw_only=True)
+class Suggestion(CueStroke):
+    """A stroke, what it does when played as intended, and its outcomes under execution errors.
+
+    Attributes
+    ----------
+    speed, aim, side, top, elevation, place
+        As in ``CueStroke``.
+    kind : {"pot", "contact", "escape", "in-off", "foul"}
+        What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores
+        nothing; what it is worth as a safety is not judged. "escape": the same where no straight path leads
+        to a ball on. "in-off": it loses the cue ball. "foul": any other foul.
+    ball : int
+        Id of the ball that it pots without errors or, if none, strikes first; -1 if it strikes nothing.
+    pocket : int
+        Pocket of that ball, an index into ``snooker_env.POCKETS``; -1 if it is not potted.
+    first : int
+        Id of the ball that it strikes first without errors; -1 if none.
+    chance : float
+        Of a pot: the share of the samples in which that ball went into that pocket without a foul.
+        Otherwise: the share without a foul.
+    chance_interval : (float, float)
+        Wilson's 95 % interval of the chance; without noise, the chance itself twice.
+    points : float
+        Expected points of the visit from this stroke on, continued by the fast player of
+        ``snooker_env.advice.visits``; a stronger one may score more.
+    points_interval : (float, float)
+        95 % interval of that mean: the sampling error of the strokes and of the visits.
+    foul, in_off : float
+        Shares of the samples with a foul, and in which the cue ball was potted.
+    stops : (float, float) or None
+        Mean stopping point of the cue ball [m] where it stayed on the table; None if it never did.
+    spread : float or None
+        Root of the mean square distance from that point [m].
+    score : float or None
+        The agent's own score of the stroke, in its own unit: points for a search, a probability for a policy.
+    words : str
+        All this in one line of text.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
+    >>> suggestion = sn.advise(position, agent="search", noise="none", n=1)[0]
+    >>> suggestion.kind, suggestion.chance
+    ('pot', 1.0)
+    >>> print(suggestion)  # doctest: +ELLIPSIS
+    black, top left, ... m/s, ..., chance 100 %, 7 points expected
+    """
+
+    kind: str
+    ball: int
+    pocket: int
+    first: int
+    chance: float
+    chance_interval: tuple[float, float]
+    points: float
+    points_interval: tuple[float, float]
+    foul: float
+    in_off: float
+    stops: Place | None
+    spread: float | None
+    score: float | None
+    words: str
+
+    @property
+    def figure(self) -> float:
+        """What its kind is ordered by: a pot's expected points, otherwise the share without a foul."""
+        return self.points if self.kind == "pot" else self.chance
+
+    @property
+    def stroke(self) -> CueStroke:
+        """The stroke alone, a ``CueStroke``."""
+        return CueStroke.of({field.name: getattr(self, field.name) for field in fields(CueStroke)})
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all attributes by name as JSON types; pairs as lists."""
+        return {name: list(x) if isinstance(x, tuple) else x for name, x in asdict(self).items()}
+
+    def __str__(self) -> str:
+        return self.words
+
+
+@dataclass(frozen=True, kw_only=True)
+class Advice(Sequence[Suggestion]):
+    """The strokes that an agent would play in a position, best first: a sequence of ``Suggestion``.
+
+    Attributes
+    ----------
+    suggestions : tuple of Suggestion
+        The strokes.
+    position : Position
+        The position.
+    agent : str
+        Name of the agent.
+    own : bool
+        Whether the strokes are the agent's own; False where none is fair, so that others were judged, too.
+    noise : str or dict
+        Execution errors: a level's name, or the fields of ``Noise``.
+    samples, visits, seed : int
+        As in ``advise``.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
+    >>> advice = sn.advise(position, agent="search", noise="none", n=1)
+    >>> len(advice), advice.agent
+    (1, 'search')
+    >>> print(advice)  # doctest: +ELLIPSIS
+    Pots by points expected:
+    1. black, top left, ... m/s, ..., chance 100 %, 7 points expected
+    """
+
+    suggestions: tuple[Suggestion, ...]
+    position: Position
+    agent: str
+    own: bool
+    noise: str | dict[str, float]
+    samples: int
+    visits: int
+    seed: int
+
+    def __len__(self) -> int:
+        return len(self.suggestions)
+
+    @overload
+    def __getitem__(self, index: int) -> Suggestion: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Suggestion, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Suggestion | tuple[Suggestion, ...]:
+        return self.suggestions[index]
+
+    def __iter__(self) -> Iterator[Suggestion]:
+        return iter(self.suggestions)
+
+    @property
+    def order(self) -> str:
+        """Whose strokes these are if not the agent's own, and by what they are ordered, in words."""
+        by = {True: "pots by points expected", False: "strokes without a pot by how often they are fair"}
+        parts = ", then ".join(by[pot] for pot in dict.fromkeys(one.kind == "pot" for one in self))
+        whose = "" if self.own else f"{self.agent} has no fair stroke here; these are not its own. "
+        return f"{whose}{parts.capitalize()}:"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all attributes by name as JSON types; the position and the suggestions as dicts."""
+        names = ("agent", "own", "order", "noise", "samples", "visits", "seed")
+        kept = {"position": self.position.to_dict(), **{name: getattr(self, name) for name in names}}
+        return {**kept, "suggestions": [one.to_dict() for one in self]}
+
+    def __str__(self) -> str:
+        return "\n".join([self.order, *(f"{k}. {one.words}" for k, one in enumerate(self, 1))])

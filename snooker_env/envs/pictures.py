@@ -142,8 +142,8 @@ class Pictures:
 
     def _films(self, history: list[Played], recent: int) -> Iterator[Any]:
         """The last strokes: each as a film, and the table after it."""
-        from ..replays.bars import bars
         from ..replays.film import filmed
+        from ..replays.words import bars
 
         shown = bars(history, self.players)
         for k in range(len(history) - recent, len(history)):
@@ -163,9 +163,8 @@ class Pictures:
         return rgb_array(scene, size=self.size)
 
     def _scene(self, tables, k, history):
-        from ..render.scene import ball_paths, contacts, scene
-        from ..render.turning import Turning
-        from ..replays.bars import bars, standing_bar
+        from ..render.scene import Turning, ball_paths, contacts, scene
+        from ..replays.words import bars, standing_bar
 
         paths = ghosts = last = None
         turns = {0: np.array([1.0, 0.0, 0.0, 0.0])}  # spots as in films

@@ -40,8 +40,7 @@ def service_of(args: argparse.Namespace) -> Any:
 
     from ..players import player
     from .routes import position_of
-    from .seats import PERSON, Seats
-    from .service import Service
+    from .service import PERSON, Seats, Service
     from .session import Session
 
     seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]

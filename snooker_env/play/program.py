@@ -24,17 +24,15 @@ from ..game.balls import CUE
 from ..game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
 from ..planning import Positions
 from ..planning.positions import seeds_of
-from ..players.player import Strokes
-from ..players.simple import BoundPlayer
+from ..players.player import BoundPlayer, Strokes
 from ..tasks.box_actions import MIN_SPEED
 from ..tasks.frame import Frames
 from ..tasks.noise import LEVELS
 from ..tasks.options import Options
 from .report import report
 from .routes import STROKE, stroke_asked
-from .seats import Seats
 from .server import RefusedError, parsed
-from .service import Service
+from .service import Seats, Service
 from .session import STATE, Session
 
 LONGEST = 1 << 20

@@ -16,11 +16,10 @@ from ..render.scene import scene_data
 from ..replays.encode import encoded_stroke
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
 from ..tasks.noise import LEVELS
-from .lines import Line, lines_of
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import Service
 from .session import Act, Session
-from .words import asked_words, freedom, last_words, table_text
+from .words import Line, asked_words, freedom, last_words, lines_of, table_text
 
 
 def scene(service: Service) -> dict[str, Any]:

@@ -18,10 +18,10 @@ from ..replays import Replay
 from ..tasks.noise import LEVELS
 from ..tasks.states import MOST
 from . import questions
+from .questions import colour_named, place_asked, stroke_in
 from .report import report, scene, stroke_report
 from .service import Service, StaleError
 from .session import Session
-from .wishes import colour_named, place_asked, stroke_in
 
 STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")
 """Fields that define a stroke."""

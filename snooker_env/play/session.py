@@ -65,8 +65,8 @@ class Session:
     """Number of acts that count; the following ones were undone."""
 
     def __init__(self, *, layout: str = "break_off", seed: int = 0):
-        box = {"placement": True, "decision": True, "elevation": True}
-        self._options = Options(task="frame", miss="clear_path", max_strokes=None, layout=layout, **box)
+        box: Any = {"placement": True, "decision": True, "elevation": True, "max_strokes": None}
+        self._options = Options(task="frame", miss="clear_path", layout=layout, **box)
         self.noise, self.practice = ["none", "none"], False
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
         self._buffers = ShotBuffers(1, path=True)

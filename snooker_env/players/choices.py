@@ -10,8 +10,7 @@ from ..planning.positions import seeds_of
 from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS, choice_of
 from ..tasks.ghost_ball import geometric_strokes
 from ..tasks.options import Options
-from .player import Ranked, Strokes
-from .simple import BoundPlayer, placed, streams_of
+from .player import BoundPlayer, Ranked, Strokes, placed, streams_of
 
 MOST = 100
 """Most strokes of a ranking."""

@@ -15,8 +15,7 @@ from ..planning import Positions, StrokeSearch
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.policy_proposals import PolicyProposals
 from ..tasks.options import Options
-from .player import Ranked, Strokes
-from .simple import BoundPlayer, placed
+from .player import BoundPlayer, Ranked, Strokes, placed
 from .weights import Learned, learned_at, level_for
 
 BUDGET = 120

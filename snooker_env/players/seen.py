@@ -30,8 +30,7 @@ from ..tasks.observations import shaped
 from ..tasks.options import Options
 from ..tasks.saying import sayings
 from ..tasks.visit import Visits
-from .player import Strokes
-from .simple import BoundPlayer, placed
+from .player import BoundPlayer, Strokes, placed
 
 OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")
 """How a network sees and acts; with a miss rule it sees the layout that "replace" restores."""

@@ -83,7 +83,8 @@ def density_of(
         half = int(min(np.ceil(_REACH * bandwidth / size[axis]), n[axis]))
         bell = np.exp(-0.5 * (np.arange(-half, half + 1) * size[axis] / bandwidth) ** 2)
         wide = np.pad(values, [(half, half) if k == axis else (0, 0) for k in range(2)], mode="symmetric")
-        values = np.apply_along_axis(np.convolve, axis, wide, bell / bell.sum(), mode="valid")
+        smooth: Any = np.convolve
+        values = np.apply_along_axis(smooth, axis, wide, bell / bell.sum(), mode="valid")
     return values, size
 
 

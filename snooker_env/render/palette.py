@@ -36,7 +36,7 @@ COLOURS: NDArray[np.uint8] = np.array(
 )
 """Colours of the balls by id: uint8 (22, 3), red, green, blue; read-only."""
 PALE: NDArray[np.uint8] = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)
-"""Lighter colours, for paths on the cloth and letters on a dark terminal: uint8 (22, 3), read-only."""
+"""Lighter colours, for paths on the cloth: uint8 (22, 3), read-only."""
 LETTERS = "W" + "r" * 15 + "YGNBPK"
 """Letters by ball id: W the white cue ball, r a red; N is brown and K black, because B is blue."""
 

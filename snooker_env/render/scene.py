@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import array, integer, number, refuse
 from .._types import Flags, Floats, Ints, Vector, Vectors
@@ -14,10 +13,53 @@ from ..geometry import BALL_RADIUS
 from ..physics.engine import EventKind
 from ..physics.table import Table, TableLike
 from ..simulation import Shot
-from .outline import outline as outline  # a part of what there is to draw
+from .outline import outline as outline
 from .outline import scene_data as scene_data
-from .palette import COLOURS, LETTERS
-from .turning import Turning
+
+TURN_STEP = 1 / 240
+"""Time between stored rotations [s]: at 100 rad/s the ball turns by a quarter of a right angle in it."""
+
+
+class Turning:
+    """The rotation of one ball of a ``Shot``."""
+
+    def __init__(self, shot: Shot, ball: int):
+        self._shot, self._ball = shot, int(ball)
+        count = int(shot.duration / TURN_STEP) + 1
+        spins = shot.at((np.arange(count) + 0.5) * TURN_STEP)[2][:, self._ball]
+        turns = rotation(spins * TURN_STEP)
+        self._kept = np.empty((count + 1, 4))
+        self._kept[0] = 1.0, 0.0, 0.0, 0.0
+        for k in range(count):
+            self._kept[k + 1] = product(turns[k], self._kept[k])
+
+    def at(self, t: float) -> Floats:
+        """The unit quaternion (4,) at a time [s] from the start of the shot."""
+        k = min(int(t / TURN_STEP), len(self._kept) - 1)
+        rest = t - k * TURN_STEP
+        return product(rotation(self._shot.at(k * TURN_STEP + rest / 2)[2][self._ball] * rest), self._kept[k])
+
+
+def rotation(turn: Floats) -> Floats:
+    """The quaternion (..., 4) of a rotation about the axis ``turn`` (..., 3) by its length [rad]."""
+    turn = np.asarray(turn, dtype=np.float64)
+    angle = np.linalg.norm(turn, axis=-1, keepdims=True)
+    return np.concatenate([np.cos(angle / 2), turn * (np.sinc(angle / (2 * np.pi)) / 2)], axis=-1)
+
+
+def product(a: Floats, b: Floats) -> Floats:
+    """The product of two quaternions (4,): the rotation ``b``, then ``a``."""
+    (aw, ax, ay, az), (bw, bx, by, bz) = a.tolist(), b.tolist()
+    w, x = aw * bw - ax * bx - ay * by - az * bz, aw * bx + ax * bw + ay * bz - az * by
+    y, z = aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw
+    return np.array([w, x, y, z])
+
+
+def matrix(q: Floats) -> Floats:
+    """The rotation of a quaternion as a matrix (3, 3)."""
+    w, x, y, z = q.tolist()
+    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])  # of the axis: across @ v is its product with v
+    return np.eye(3) + 2 * w * across + 2 * across @ across
 
 
 @dataclass(frozen=True)
@@ -62,16 +104,6 @@ class Scene:
     text: str  # one line of status, shown without a bar
     bar: ScoreBar | None
     lettered: bool  # whether balls carry their letters, so that colours are not needed
-
-    @property
-    def colours(self) -> NDArray[np.uint8]:
-        """Colours of the balls: (k, 3) uint8, red, green, blue."""
-        return COLOURS[self.ids]
-
-    @property
-    def labels(self) -> tuple[str, ...]:
-        """One letter for each ball."""
-        return tuple(LETTERS[i] for i in self.ids)
 
 
 class _Overlays(NamedTuple):

@@ -211,15 +211,8 @@ class Sketch:
         add(Circle((y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), **style))
         for k in range(1, 13):
             away = 0.029 * k * R
-            add(
-                Circle(
-                    (y - away, x - away),
-                    R * (1 - 0.065 * k),
-                    fc=(1, 1, 1, 0.022),
-                    ec="none",
-                    zorder=7.0 + 0.005 * k,
-                )
-            )
+            style = {"fc": (1, 1, 1, 0.022), "ec": "none", "zorder": 7.0 + 0.005 * k}
+            add(Circle((y - away, x - away), R * (1 - 0.065 * k), **style))
         add(Circle((y - 0.36 * R, x - 0.40 * R), 0.17 * R, fc=rgb("lamp", 0.85), ec="none", zorder=7.1))
         self.keep_clear(np.asarray(place)[None], 2 * R)
         if label:

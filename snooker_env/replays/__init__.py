@@ -7,8 +7,7 @@
 2
 """
 
-from .document import Replay
-from .make import replay
+from .document import Replay, replay
 from .wrapper import RecordReplay
 
 __all__ = ["RecordReplay", "Replay", "replay"]

@@ -9,8 +9,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.render.scene import Film, ball_paths, contacts, scene
-from snooker_env.render.turning import Turning, matrix
+from snooker_env.render.scene import Film, Turning, ball_paths, contacts, matrix, scene
 
 
 @pytest.fixture(scope="module")

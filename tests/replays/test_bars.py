@@ -8,7 +8,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import BallOn
-from snooker_env.replays.bars import bars, standing_bar
+from snooker_env.replays.words import bars, standing_bar
 
 
 @pytest.fixture(

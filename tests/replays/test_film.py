@@ -43,7 +43,7 @@ def test_every_ball_keeps_its_colour(replay, tmp_path, suffix):
     file = replay.save(tmp_path / f"film{suffix}", size=size, fps=5.0)
     film, first = imageio.imread(file, index=0), next(replay.frames(size=size, fps=5.0))
     from snooker_env.physics.table import Table
-    from snooker_env.render.view import View
+    from snooker_env.render.table_picture import View
 
     view = View.of(Table.preset("match"), size=size)
     for place in replay.shots[0].at(0.0)[0]:

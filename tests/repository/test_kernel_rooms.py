@@ -44,4 +44,4 @@ def test_every_room_is_there_and_every_kernel_of_more_than_one_file_is_in_one():
         for p in outside
         if "@entry" in p.read_text() or "@kernel" in p.read_text()
     ]
-    assert made == ["replays/video_colours.py"]  # it has the folder of the whole package's hash
+    assert made == ["replays/film.py"]  # it has the folder of the whole package's hash
