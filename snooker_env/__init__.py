@@ -82,18 +82,14 @@ __all__ = [
 ]
 
 _LATER = {
-    "MatchVectorEnv": "envs.match_vector",
-    "Options": "tasks.options",
-    "SnookerEnv": "envs.snooker",
-    "SnookerVectorEnv": "envs.vector",
-    "Planner": "planning",
-    "Position": "planning",
-    "Positions": "planning",
-    "RecordReplay": "replays",
-    "Replay": "replays",
-    "replay": "replays",
-    "advise": "advice",
-    "player": "players",
+    **{"Options": "tasks.options", "advise": "advice", "player": "players"},
+    **{
+        "SnookerEnv": "envs.snooker",
+        "SnookerVectorEnv": "envs.vector",
+        "MatchVectorEnv": "envs.match_vector",
+    },
+    **dict.fromkeys(("Planner", "Position", "Positions"), "planning"),
+    **dict.fromkeys(("RecordReplay", "Replay", "replay"), "replays"),
 }
 """Modules of the names that are imported at their first use: simulating shots alone needs no environment."""
 

@@ -12,27 +12,21 @@ Singles: TypeAlias = NDArray[np.float32]
 Ints: TypeAlias = NDArray[np.int64]
 Words: TypeAlias = NDArray[np.uint64]
 Bools: TypeAlias = NDArray[np.bool_]
-Masks: TypeAlias = NDArray[np.int8]
-"""Available choices as observations hold them: 1 or 0."""
+Masks: TypeAlias = NDArray[np.int8]  # available choices as observations hold them: 1 or 0
 
 # What callers may pass: arrays, or nested sequences with as many levels as the array would have dimensions. A
 # str is none of these.
 Real: TypeAlias = float | np.floating[Any] | np.integer[Any]
 RealArray: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]
 Vector: TypeAlias = RealArray | Sequence[Real]
-Vectors: TypeAlias = RealArray | Sequence[Vector]
-"""Of two dimensions: (n, k)."""
-Batches: TypeAlias = RealArray | Sequence[Vectors]
-"""Of three dimensions: (b, n, k)."""
-Scalars: TypeAlias = Real | Vector
-"""One number for all, or one for each: shape () or (n,)."""
+Vectors: TypeAlias = RealArray | Sequence[Vector]  # of two dimensions: (n, k)
+Batches: TypeAlias = RealArray | Sequence[Vectors]  # of three dimensions: (b, n, k)
+Scalars: TypeAlias = Real | Vector  # one number for all, or one for each: shape () or (n,)
 Integers: TypeAlias = NDArray[np.integer[Any]] | Sequence[int | np.integer[Any]]
 Flag: TypeAlias = bool | np.bool_
 Flags: TypeAlias = Bools | Sequence[Flag]
-FlagRows: TypeAlias = Bools | Sequence[Flags]
-"""Of two dimensions: (b, n)."""
-Place: TypeAlias = tuple[float, float]
-"""x and y [m]."""
+FlagRows: TypeAlias = Bools | Sequence[Flags]  # of two dimensions: (b, n)
+Place: TypeAlias = tuple[float, float]  # x and y [m]
 
 # Names.
 Fidelity: TypeAlias = Literal["fast", "standard", "reference"] | str

@@ -10,14 +10,10 @@ from typing import Any, TextIO
 
 __all__ = ["Progress"]
 
-EVERY = 10.0
-"""Seconds between two lines of a file or pipe."""
-REDRAWN = 0.5
-"""Seconds between two states of the line on a terminal."""
-BAR = 20
-"""Characters of the bar on a terminal."""
-RECENT = 5.0
-"""Fewest seconds over which a rate is measured."""
+EVERY = 10.0  # seconds between two lines of a file or pipe
+REDRAWN = 0.5  # seconds between two states of the line on a terminal
+BAR = 20  # characters of the bar on a terminal
+RECENT = 5.0  # fewest seconds over which a rate is measured
 
 
 class Progress:

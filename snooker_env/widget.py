@@ -10,8 +10,7 @@ from .web import WEB, table_js
 
 __all__ = ["replay_widget"]
 
-SPINS = ("off", "cue", "all")
-"""The balls whose rotation is shown."""
+SPINS = ("off", "cue", "all")  # the balls whose rotation is shown
 
 
 def replay_widget(

@@ -14,12 +14,10 @@ from . import judging
 from .practice import Practice, one_position, practice_of
 from .strokes import Advice, CueStroke, cue_strokes
 
-AGENT = "planner_500"
-"""Who is asked if nobody is named: 120 points a visit, in a twentieth of a second."""
+AGENT = "planner_500"  # who is asked if nobody is named: 120 points a visit, in a twentieth of a second
 INSTEAD = "random"
 """Whose strokes are judged where none of an agent's is fair: many of the choices of ``action="discrete"``."""
-CONSIDERED = 8
-"""Ranked strokes that are examined for each stroke requested, so that enough of them differ."""
+CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so that enough of them differ
 
 
 def advise(

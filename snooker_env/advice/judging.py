@@ -15,12 +15,10 @@ from .strokes import CueStroke, Suggestion
 from .visits import played_on
 from .words import RAISED, contact_words, cushion_words, figures_words, stroke_words, what_words
 
-FOULS = ("foul", "in-off")
-"""Kinds of strokes that are fouls without errors."""
+FOULS = ("foul", "in-off")  # kinds of strokes that are fouls without errors
 Rankings: TypeAlias = list[tuple[CueStroke, float | None]]
 """Strokes, best first, each with the player's own score of it."""
-Z = 1.959964
-"""Standard deviations of a 95 % interval."""
+Z = 1.959964  # standard deviations of a 95 % interval
 
 
 def wilson(made: int, tries: int) -> tuple[float, float]:
@@ -50,14 +48,12 @@ class Tried(NamedTuple):
 
     stroke: CueStroke
     score: float | None
-    start: Positions
-    """The position that it is played from."""
+    start: Positions  # the position that it is played from
     kind: str
     ball: int
     pocket: int
     first: int
-    words: str
-    """What it does and how it is struck, in words."""
+    words: str  # what it does and how it is struck, in words
 
 
 def tried(practice: Practice, at: Positions, ranked: Rankings) -> list[Tried]:

@@ -10,18 +10,13 @@ from .strokes import CueStroke
 
 POCKET_WORDS = ("green pocket", "yellow pocket", "right middle", "top right", "top left", "left middle")
 """Names of ``snooker_env.POCKETS`` in words: baulk corners by the colour beside them, black's "top"."""
-_STILL = 0.1
-"""Tip offsets over R up to this count as the middle of the ball."""
-_FAR_OFF = 0.3
-"""From this offset on: "deep" screw, and "top" instead of follow."""
-_STUN = 0.25
-"""A ball whose rotation is within this share of its speed arrives without spin."""
-_SIDE = 0.05
-"""Tip offsets over R from which side is mentioned."""
+_STILL = 0.1  # tip offsets over R up to this count as the middle of the ball
+_FAR_OFF = 0.3  # from this offset on: "deep" screw, and "top" instead of follow
+_STUN = 0.25  # A ball whose rotation is within this share of its speed arrives without spin
+_SIDE = 0.05  # tip offsets over R from which side is mentioned
 _FULLNESS = (0.38, 0.62, 0.87)
 """Offsets of a ball over its diameter up to which it is struck three-quarter, half or quarter."""
-RAISED = 0.05
-"""Elevation [rad] from which a raised cue is mentioned."""
+RAISED = 0.05  # elevation [rad] from which a raised cue is mentioned
 
 
 def ball_words(ball: int) -> str:

@@ -18,8 +18,7 @@ from ..tasks.tables import Tables
 STARTS = ("state", "states", "position", "positions")
 """Keys of the reset options that say where an episode starts that is not dealt."""
 ONE = ("state", "position", "breaker")
-MANY = ("reset_mask", *STARTS, "breaker")
-"""Keys of the reset options of one table and of many."""
+MANY = ("reset_mask", *STARTS, "breaker")  # keys of the reset options of one table and of many
 OUTPUTS: dict[str, tuple[str, type[np.generic]]] = {
     "observations": ("observations", np.float32),
     "rewards": ("rewards", np.float64),
@@ -91,10 +90,8 @@ def breakers_of(options: dict[str, Any], tables: Tables) -> dict[str, Ints]:
 class Start:
     """The start of an episode that is not dealt: a valid state, or the arrays of a valid position."""
 
-    state: Any = None
-    """``states.State`` or ``states.FrameState``."""
-    arrays: tuple[Floats, Bools, Ints] | None = None
-    """``planning.Position.arrays``."""
+    state: Any = None  # ``states.State`` or ``states.FrameState``
+    arrays: tuple[Floats, Bools, Ints] | None = None  # ``planning.Position.arrays``
 
     @classmethod
     def of(

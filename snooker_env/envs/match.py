@@ -58,19 +58,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
 
     Parameters
     ----------
-    options : Options, optional
-        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the
-        keywords.
-    seats : (dict, dict), optional
-        What differs for each player: options of its actions, and "noise", its execution errors. Default None:
-        nothing.
-    render_mode : {"human", "rgb_array", "ansi"}, optional
-        How ``render`` shows the table; default None: not at all.
-    render_size : (int, int), optional
-        Width and height of pictures [pixels], each in [100, 8192]; default (1920, 1080).
-    **keywords
-        The keywords of ``Options``, in place of ``options``. Box actions hold placement and decision by
-        default, and with ``frames`` the task is "match".
+    options, seats, render_mode, render_size, **keywords
+        As in ``match_env``.
 
     Examples
     --------
@@ -84,12 +73,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     3
     """
 
-    metadata: dict[str, Any] = {  # noqa: RUF012
-        "name": "snooker_match_v0",
-        "render_modes": list(MODES),
-        "is_parallelizable": False,
-        "render_fps": FPS,
-    }
+    metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012
+    metadata |= {"name": "snooker_match_v0", "is_parallelizable": False}
 
     tables: Frames
     possible_agents: list[str]

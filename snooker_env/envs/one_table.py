@@ -27,12 +27,9 @@ class Record:
 
     def __init__(self, *, full: bool, last_shot: Shot | None = None):
         self.full = full
-        self.buffers = ShotBuffers(1, path=full)
-        """Work space in which the strokes are played."""
-        self.strokes: list[Played] = []
-        """Of both players; empty unless ``full``."""
-        self.last_shot: Shot | None = last_shot
-        """The agent's; with ``full``, that of either player."""
+        self.buffers = ShotBuffers(1, path=full)  # work space in which the strokes are played
+        self.strokes: list[Played] = []  # of both players; empty unless ``full``
+        self.last_shot: Shot | None = last_shot  # the agent's; with ``full``, that of either player
         self._before, self._rendered = 0, False
         self._ended: tuple[list[Played], int] = [], 0
 
@@ -64,8 +61,7 @@ class OneTable:
     """An environment with one table: ``SnookerEnv``, and ``MatchEnv`` with two players."""
 
     options: Options
-    tables: Tables
-    """The one table: ``tasks.tables.Tables``."""
+    tables: Tables  # the one table: ``tasks.tables.Tables``
     np_random: np.random.Generator
     render_mode: str | None
     _np_random_seed: int | None
@@ -129,7 +125,6 @@ class OneTable:
         return self.options.rules.noise
 
     # strokes
-    # ------------------------------------------------------------------------------------------------
 
     @property
     def last_shot(self) -> Shot | None:
@@ -171,7 +166,6 @@ class OneTable:
         self._pictures.close()
 
     # states
-    # ------------------------------------------------------------------------------------------------
 
     def get_state(self) -> dict[str, Any]:
         """Return everything between two shots as JSON types, see docs/environment/specification.md."""

@@ -16,10 +16,8 @@ from ..tasks.tables import Tables
 
 MODES = ("human", "rgb_array", "ansi")
 FPS = 30
-HOLD = 15
-"""Pictures of the table after each stroke of a film, with the referee's words."""
-SIZE = (1920, 1080)
-"""Default width and height of pictures [pixels], as in render.view."""
+HOLD = 15  # pictures of the table after each stroke of a film, with the referee's words
+SIZE = (1920, 1080)  # default width and height of pictures [pixels], as in render.table_picture
 
 
 Picture: TypeAlias = NDArray[np.uint8] | str | None

@@ -30,15 +30,10 @@ from .snooker import SnookerEnv
 
 PICTURES = ("rgb_array", "ansi")
 _ONE_TABLE = "simulate_batch, or SnookerEnv for one table"
-NOT_OF_A_TABLE = {
+NOT_OF_A_TABLE = dict.fromkeys(("last_shot", "history", "keep_history"), _ONE_TABLE) | {
+    **{name: name for name in ("step", "render", "close")},
     "reset": 'reset(options={"reset_mask": ...})',
-    "step": "step",
     "set_state": 'reset(options={"states": ...})',
-    "render": "render",
-    "close": "close",
-    "last_shot": _ONE_TABLE,
-    "history": _ONE_TABLE,
-    "keep_history": _ONE_TABLE,
     "spec": "the attribute spec",
     "unwrapped": "this environment",
     "get_wrapper_attr": "call",
@@ -77,8 +72,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     ----------
     num_envs : int, optional
         Number of tables, in [1, 2**24]; default 1.
-    options : Options, optional
-        The options, see ``SnookerEnv``. Default None: they are made from the keywords.
+    options, **keywords
+        The options, or their keywords, see ``SnookerEnv``.
     max_episode_steps : int, optional
         Number of steps after which an episode is truncated; default None: never.
     render_mode : {"rgb_array", "ansi"}, optional
@@ -89,8 +84,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         In [1, 1024]; default one for each available processor. Results do not depend on it.
     render_size : (int, int), optional
         Width and height of a table's picture [pixels], each in [100, 8192]; default (1920, 1080).
-    **keywords
-        The keywords of ``Options``, in place of ``options``.
 
     Examples
     --------
@@ -158,7 +151,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return tables_of(self.options, opponent, self.num_envs, limit)
 
     # Gymnasium's interface
-    # ------------------------------------------------------------------------------------------------
 
     def reset(
         self,
@@ -268,7 +260,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return tuple(self._generator_seeds) if self.np_random else ()
 
     # single tables
-    # ------------------------------------------------------------------------------------------------
 
     def get_state(self) -> list[dict[str, Any]]:
         """Return the state of each table, for ``reset(options={"states": states})``; it counts no steps."""
@@ -292,16 +283,13 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
             each.append(getattr(one, name))
         return tuple(one(*args, **kwargs) if callable(one) else one for one in each)
 
-    def get_attr(self, name: str) -> tuple[Any, ...]:
-        """Read an attribute of ``SnookerEnv`` for each table, see ``call``."""
-        return self.call(name)
+    get_attr = call
 
     def set_attr(self, name: str, values: Any) -> None:
         """Refuse with AttributeError: the tables share everything. Make another environment instead."""
         raise AttributeError(f"{name} cannot be set: the tables share everything; make another environment")
 
     # parts of reset and step
-    # ------------------------------------------------------------------------------------------------
 
     def _require_begun(self) -> None:
         if not self._begun.all():

@@ -10,8 +10,7 @@ from typing import Any
 from .._check import refuse_what
 from ..tasks.noise import LEVELS
 
-MOST_FILE = 1_000_000
-"""Largest size of a position's file [bytes]."""
+MOST_FILE = 1_000_000  # largest size of a position's file [bytes]
 
 
 def _arguments(argv: list[str] | None) -> argparse.Namespace:

@@ -35,10 +35,8 @@ from .server import RefusedError, parsed
 from .service import Seats, Service
 from .session import STATE, Session
 
-LONGEST = 1 << 20
-"""The longest answer [bytes]."""
-DECISIONS = {"play": PLAY, "play_again": PLAY_AGAIN, "replace": REPLACE}
-"""What the words of a "choice" mean."""
+LONGEST = 1 << 20  # the longest answer [bytes]
+DECISIONS = {"play": PLAY, "play_again": PLAY_AGAIN, "replace": REPLACE}  # what the words of a "choice" mean
 
 
 class AgentError(RuntimeError):

@@ -54,8 +54,7 @@ def pocket_named(field: str, value: Any) -> int:
     raise refuse(field, value, "must be one of " + ", ".join(map(repr, POCKETS)))
 
 
-MOST_SAMPLES = 2000
-"""Largest number of samples in one question: 40 ms of computing."""
+MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
 
 

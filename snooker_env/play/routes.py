@@ -23,8 +23,7 @@ from .report import report, scene, stroke_report
 from .service import Service, StaleError
 from .session import Session
 
-STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")
-"""Fields that define a stroke."""
+STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")  # fields that define a stroke
 Handler = Callable[[Service, dict[str, Any]], Any]
 
 

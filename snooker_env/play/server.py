@@ -30,14 +30,11 @@ SCRIPTS = ("table.js", *(f"{part}.js" for part in PARTS))
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_HEAD = 16_384
-MOST_BODY = 65_536
-"""Largest head and body of a request [bytes]; a saved game has about 3,000."""
-MOST_AT_ONCE = 32
-"""Largest number of connections; a browser keeps six."""
+MOST_BODY = 65_536  # largest head and body of a request [bytes]; a saved game has about 3,000
+MOST_AT_ONCE = 32  # largest number of connections; a browser keeps six
 _FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
 _HEAD = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\n"
-FULL = b"%sContent-Length: %d\r\n\r\n%s" % (_HEAD, len(_FULL), _FULL)
-"""The answer to further connections."""
+FULL = b"%sContent-Length: %d\r\n\r\n%s" % (_HEAD, len(_FULL), _FULL)  # the answer to further connections
 IDLE, REQUEST = 20.0, 10.0
 """How long a connection may wait for its next request, and a request for its end [s]."""
 HEADERS = {

@@ -20,15 +20,13 @@ from ..tasks.declarations import CLAIMS, CONCEDES
 from .session import DECLINED, Session
 
 PERSON = "person"
-OFFERED = (AGENT, "search_2000", "ghost_ball", "random")
-"""The agents that can always be chosen."""
+OFFERED = (AGENT, "search_2000", "ghost_ball", "random")  # the agents that can always be chosen
 
 
 class Seats:
     """The two seats, and the players that may take them: ``OFFERED``, and ``agents`` by name."""
 
-    who: list[str]
-    """``PERSON`` or the name of an agent, for each seat."""
+    who: list[str]  # ``PERSON`` or the name of an agent, for each seat
 
     def __init__(self, agents: Mapping[str, Player]):
         self.players: dict[str, Player] = dict(agents)
@@ -77,10 +75,8 @@ class Seats:
         return decided
 
 
-DECIDED = {PLAY_AGAIN: "play_again", REPLACE: "replace"}
-"""Decisions after a foul other than to play."""
-LONGEST_WAIT = 25.0
-"""How long a request may wait for a change [s]."""
+DECIDED = {PLAY_AGAIN: "play_again", REPLACE: "replace"}  # decisions after a foul other than to play
+LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
 
 
 class BusyError(RuntimeError):
@@ -94,10 +90,8 @@ class StaleError(RuntimeError):
 class Service:
     """One game, its seats, and the thread in which agents think."""
 
-    paused: bool
-    """Whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents."""
-    trouble: str
-    """Why the last agent did not play, or ""."""
+    paused: bool  # whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents
+    trouble: str  # why the last agent did not play, or ""
 
     def __init__(self, session: Session, seats: Seats):
         self.session: Session = session

@@ -32,10 +32,8 @@ from ..tasks.tables import Crew
 
 DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0}
 """Last component of an action for each choice after a foul."""
-DECLINED = 0
-"""The nomination of a player who does not use a free ball."""
-STATE = ("positions", "on_table", "frame", "strokes", "stream")
-"""Fields of the table in a saved game."""
+DECLINED = 0  # the nomination of a player who does not use a free ball
+STATE = ("positions", "on_table", "frame", "strokes", "stream")  # fields of the table in a saved game
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,26 +41,19 @@ class Act:
     """An act in the game: "new", "stroke", "choice", "set_up", "load", "concede" or "claim"."""
 
     what: str
-    state: dict[str, Any]
-    """The table after it, as JSON types."""
-    player: int | None = None
-    """Who did it."""
-    played: Played | None = None
-    """For a stroke: as it was struck, simulated and judged."""
-    detail: str = ""
-    """For a choice: the decision; for a stroke: the colour that was nominated."""
+    state: dict[str, Any]  # the table after it, as JSON types
+    player: int | None = None  # who did it
+    played: Played | None = None  # for a stroke: as it was struck, simulated and judged
+    detail: str = ""  # for a choice: the decision; for a stroke: the colour that was nominated
 
 
 class Session:
     """A frame to play, set up, undo, save and load; ``seed``: of all random numbers."""
 
-    noise: list[NoiseName]
-    """Execution errors of each seat: names of ``snooker_env.tasks.LEVELS``."""
-    practice: bool
-    """Alone at the table: player 0 has every turn, and after a foul the balls stay as they lie."""
+    noise: list[NoiseName]  # execution errors of each seat: names of ``snooker_env.tasks.LEVELS``
+    practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
     acts: list[Act]
-    at: int
-    """Number of acts that count; the following ones were undone."""
+    at: int  # number of acts that count; the following ones were undone
 
     def __init__(self, *, layout: str = "break_off", seed: int = 0):
         box: Any = {"placement": True, "decision": True, "elevation": True, "max_strokes": None}

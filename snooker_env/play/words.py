@@ -16,8 +16,7 @@ from ..replays.words import on_words, sentence
 from ..tasks.noise import LEVELS
 from .session import Act
 
-MOST = 126
-"""Largest number of lines: from 21 balls to 6 pockets."""
+MOST = 126  # largest number of lines: from 21 balls to 6 pockets
 
 
 @dataclass(frozen=True)
@@ -26,21 +25,16 @@ class Line:
 
     ball: int
     pocket: int
-    open: bool
-    """Whether the ball can be potted straight, by the geometry of straight lines."""
+    open: bool  # whether the ball can be potted straight, by the geometry of straight lines
     blocked_by: tuple[str, ...]
     """Names of the balls in the way of the ball to the pocket, or of the cue ball to the ball."""
     why: str
     """Any other reason why the line is not open: "cut too thin", "pocket too narrow from there"; else ""."""
-    cut: float
-    """Angle between the paths of the cue ball and of the ball."""
+    cut: float  # angle between the paths of the cue ball and of the ball
     to_ball: float
-    to_pocket: float
-    """Distances of the cue ball to the contact, and of the ball to the pocket."""
-    aim: float
-    """Direction of the cue ball's path, without throw and swerve."""
-    tolerance: float
-    """Largest error of the aim; 0 unless the line is open."""
+    to_pocket: float  # distances of the cue ball to the contact, and of the ball to the pocket
+    aim: float  # direction of the cue ball's path, without throw and swerve
+    tolerance: float  # largest error of the aim; 0 unless the line is open
     chance: float | None
     """Approximate probability, with the seat's noise, of keeping within the tolerance; None without noise."""
 

@@ -12,8 +12,7 @@ from ..tasks.ghost_ball import geometric_strokes
 from ..tasks.options import Options
 from .player import BoundPlayer, Ranked, Strokes, placed, streams_of
 
-MOST = 100
-"""Most strokes of a ranking."""
+MOST = 100  # most strokes of a ranking
 
 
 class ChoicePlayer(BoundPlayer):

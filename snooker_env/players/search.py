@@ -18,15 +18,12 @@ from ..tasks.options import Options
 from .player import BoundPlayer, Ranked, Strokes, placed
 from .weights import Learned, learned_at, level_for
 
-BUDGET = 120
-"""Simulated shots of a decision where the name does not say how many."""
+BUDGET = 120  # simulated shots of a decision where the name does not say how many
 KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")
 """``planner_value`` and ``planner_policy`` have one of the planner's two halves: what is each worth?"""
 
-LEAST, MOST = 8, 10**7
-"""The fewest and the most simulated shots of a decision."""
-RANKED = 40
-"""Most strokes of a ranking."""
+LEAST, MOST = 8, 10**7  # the fewest and the most simulated shots of a decision
+RANKED = 40  # most strokes of a ranking
 
 
 class SearchPlayer(BoundPlayer):
@@ -36,8 +33,7 @@ class SearchPlayer(BoundPlayer):
         self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"
         self.budget = integer("budget", budget, LEAST, MOST)
         self._learned, self.training_shots = learned, None if kind.startswith("planner") else 0
-        self.search: Any = None
-        """The ``StrokeSearch`` where it is bound; None before."""
+        self.search: Any = None  # the ``StrokeSearch`` where it is bound; None before
 
     def _bind(self, options: Options) -> None:
         self.search = search = StrokeSearch(options, self.budget, pots_only=self.kind == "best_pot")

@@ -12,8 +12,7 @@ from .outline import BAULK_LINE, D_ARC, SPOT_MARKS, extent, is_marked
 from .palette import LETTERS
 from .scene import Scene
 
-WIDTH = 100
-"""Default number of characters a line."""
+WIDTH = 100  # default number of characters a line
 
 _LEGEND = "W=cue  r=red (digit: several)  Y=yellow G=green N=brown B=blue P=pink K=black"
 _LINE, _ARC, _SPOT, _PATH, _AIM, _GHOST, _POCKET = "│", "·", "+", ".", "-", "o", "O"

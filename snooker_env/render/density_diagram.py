@@ -17,10 +17,8 @@ from .sketch import Sketch, is_closed, rgb
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-HEAT = (255, 176, 46)
-"""Colour of the map: red, green, blue."""
-CELL = 0.01
-"""Size of the cells of the map [m]."""
+HEAT = (255, 176, 46)  # colour of the map: red, green, blue
+CELL = 0.01  # size of the cells of the map [m]
 _REACH = 3.0  # a Gaussian kernel is cut off at this many bandwidths
 
 

@@ -52,10 +52,8 @@ def surface_of(rgba: Any) -> Any:
     return pygame_().image.frombuffer(image, image.shape[1::-1], "RGBA")
 
 
-_STEP = 3.0
-"""Distance between the points of a path [pixels]."""
-_POINTS = 16
-"""Points in a piece."""
+_STEP = 3.0  # distance between the points of a path [pixels]
+_POINTS = 16  # points in a piece
 _LONGEST = 1e5  # pixels: a longer path is not drawn
 
 
@@ -119,8 +117,7 @@ def _piece(numbers, start, end, colour, width):
     return surface_of(image), (int(low[0]), int(low[1]))
 
 
-PANEL = 0.55
-"""Length of a lamp [m]."""
+PANEL = 0.55  # length of a lamp [m]
 _FADED = 0.42
 _SPOT = np.cos(np.radians(17.0))
 _SPOTS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=np.float64)

@@ -25,10 +25,8 @@ from .table_picture import SIZE as SIZE
 from .table_picture import View as View
 from .table_picture import table_picture
 
-_ROWS = 72
-"""Lengths in this file are those of a bar 72 pixels high, as in a picture of 1080."""
-_SMALLEST = 36
-"""A lower bar is one line of text [pixels]."""
+_ROWS = 72  # lengths in this file are those of a bar 72 pixels high, as in a picture of 1080
+_SMALLEST = 36  # A lower bar is one line of text [pixels]
 _EDGE = 28
 _GAP = 30
 

@@ -31,10 +31,8 @@ if TYPE_CHECKING:
 View: TypeAlias = Literal["table", "shot"] | Sequence[Sequence[float]]
 """The part to show: all, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) [m]."""
 
-SLIDES = (255, 168, 36)
-"""Colour of the stripes of a path on which the ball slides."""
-DASHES = (0, (2.0, 1.6))
-"""Lengths of these stripes, in widths of the path."""
+SLIDES = (255, 168, 36)  # colour of the stripes of a path on which the ball slides
+DASHES = (0, (2.0, 1.6))  # lengths of these stripes, in widths of the path
 MOST_PATHS = 7
 """If more balls move, only paths of the cue ball, its first object ball and potted balls are wide."""
 
@@ -223,7 +221,6 @@ def _draw_cut(sketch, shot, contact):
 
 
 # the strip under the table
-# ------------------------------------------------------------------------------------------------------------
 
 
 def _tip(cue: Mapping[str, float] | None, shot: Shot, first: int | None) -> Tip | None:

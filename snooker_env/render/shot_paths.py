@@ -12,10 +12,8 @@ from ..physics.engine import EventKind
 from ..physics.parameters import Physics
 from ..simulation import Shot, check_path
 
-STRAY = 1e-4
-"""The largest distance of a path from the lines that are drawn [m]."""
-STILL = 1e-3
-"""A ball that moved less than this is drawn as one that did not move [m]."""
+STRAY = 1e-4  # the largest distance of a path from the lines that are drawn [m]
+STILL = 1e-3  # A ball that moved less than this is drawn as one that did not move [m]
 
 Kind = Literal["slide", "roll", "fall"]
 _KINDS: dict[int, Kind] = {SLIDE: "slide", ROLL: "roll", BEND: "roll", FALLING: "fall"}

@@ -14,12 +14,10 @@ from .palette import COLOURS, LETTERS, PALE, PALETTE
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-WIDTH = 8.3
-"""Width of a new figure [inches]: 830 pixels, the width of a README."""
+WIDTH = 8.3  # width of a new figure [inches]: 830 pixels, the width of a README
 PATH_WIDTH, OUTLINE = 2.16, 1.6
 """Width of a path [points], 3 pixels at 100 dpi, and by how much its dark outline is wider [points]."""
-TABLE = "snooker-table"
-"""The gid of the parts that a sketch draws once on its axes."""
+TABLE = "snooker-table"  # the gid of the parts that a sketch draws once on its axes
 CAPTIONS = {"full": 0.118, "short": 0.2, "none": 0.0}
 """Height of the strip of text over the picture's width: for wide axes, axes of half the width, and none."""
 

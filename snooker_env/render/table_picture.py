@@ -14,8 +14,7 @@ from ..physics.table import Table
 from .outline import BAULK_LINE, CUSHION, RAIL, SPOT_MARKS, Outline, extent, is_marked, outline
 from .palette import PALETTE
 
-SIZE = (1920, 1080)
-"""Default width and height of a picture [pixels]."""
+SIZE = (1920, 1080)  # default width and height of a picture [pixels]
 
 _MARGIN = 0.012  # floor shown around the rails [m]
 _BAR = 1 / 15  # part of the height for the score bar
@@ -64,10 +63,8 @@ def _checked(size):
     return integer("size", size[0], _LEAST, _MOST), integer("size", size[1], _LEAST, _MOST)
 
 
-LAMPS = 4
-"""Number of lamps over a table, in a row along its length."""
-LAMP_HEIGHT = 0.95
-"""Height of the lamps above the cloth [m]."""
+LAMPS = 4  # number of lamps over a table, in a row along its length
+LAMP_HEIGHT = 0.95  # height of the lamps above the cloth [m]
 
 _RIM = 0.020  # width of a pocket's leather [m]
 _ROUND = 0.085  # radius of the table's corners [m]

@@ -64,8 +64,7 @@ class Window:
         self._shut = False
         self._speed, self._paused, self._letters, self._paths = SPEEDS.index(1.0), False, False, True
         self._steps, self._skip, self._hint = 0, False, 0
-        self.status: str = ""
-        """The status in the window's last line."""
+        self.status: str = ""  # the status in the window's last line
 
     @property
     def is_open(self) -> bool:

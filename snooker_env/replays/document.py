@@ -116,16 +116,9 @@ class Replay:
         if self._data is None:
             strokes = [encoded_stroke(stroke, self.players) for stroke in self.strokes]
             physics = self.shots[0].physics
-            self._data = {
-                "format": FORMAT,
-                "version": VERSION,
-                "title": self.title,
-                "players": list(self.players),
-                "scene": scene_data(self.table),
-                "R": physics.R,
-                "spin_decel": physics.spin_decel,
-                "strokes": strokes,
-            }
+            self._data = {"format": FORMAT, "version": VERSION, "title": self.title}
+            self._data |= {"players": list(self.players), "scene": scene_data(self.table)}
+            self._data |= {"R": physics.R, "spin_decel": physics.spin_decel, "strokes": strokes}
         return dict(self._data)
 
     def html(self) -> str:

@@ -62,13 +62,10 @@ def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, A
         empty = dict.fromkeys(("cue", "player", "ball_on", "after"))
         none = {"points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0}
         return encoded_shot(item) | empty | none
-    shot = item.shot
-    return encoded_shot(shot) | {
-        "cue": item.cue,
-        "player": item.player,
+    same = {name: getattr(item, name) for name in ("cue", "player", "points", "penalty")}
+    return encoded_shot(item.shot) | {
+        **same,
         "ball_on": "free ball" if item.free_ball else on_words(item.ball_on),
-        "points": item.points,
-        "penalty": item.penalty,
         "fouls": foul_words(item.fouls),
         "words": sentence(item, players),
         "score": list(item.scores),

@@ -48,8 +48,7 @@ def to_video(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return out
 
 
-PAUSE = 0.8
-"""How long the table is shown after each stroke [s of the film]."""
+PAUSE = 0.8  # how long the table is shown after each stroke [s of the film]
 UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 SIZE = (1920, 1080)
 HD = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]

@@ -18,8 +18,7 @@ from ...planning.learned.stroke_policy import LAYERS, StrokePolicy
 from ...tasks.noise import LEVELS, Noise
 
 FOLDER = Path(__file__).parent
-VALUE_LAYERS = 3
-"""Layers of each network of a value."""
+VALUE_LAYERS = 3  # layers of each network of a value
 
 
 class Learned(NamedTuple):
