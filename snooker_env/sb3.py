@@ -8,7 +8,6 @@ import time
 
 import numpy as np
 from gymnasium.vector import AutoresetMode
-from numpy.typing import NDArray
 
 try:
     from stable_baselines3.common.monitor import Monitor
@@ -24,7 +23,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ._check import choice, integer, refuse
-from ._types import Bools, Observation, Singles
+from ._types import Bools, Floats, Ints, Observation, Singles
 from .envs.vector import SnookerVectorEnv
 
 __all__ = ["SnookerVecEnv"]
@@ -74,8 +73,8 @@ class SnookerVecEnv(VecEnv):
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
         self._actions = None
-        self.episode_returns: NDArray[np.float64] = np.zeros(num_envs)
-        self.episode_lengths: NDArray[np.int64] = np.zeros(num_envs, np.int64)
+        self.episode_returns: Floats = np.zeros(num_envs)
+        self.episode_lengths: Ints = np.zeros(num_envs, np.int64)
         """Rewards and steps so far, (n,) each: no state of a table holds them, save them with it."""
         self._start = time.time()
         if seed is not None:

@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import choice, integer, number
+from .._types import Floats
 from ..game.balls import CUE
 from ..geometry import HALF_LENGTH, HALF_WIDTH
 from ..planning.positions import PositionsLike
@@ -46,8 +46,8 @@ class Destinations:
 
     samples: int
     object_ball: int
-    cue: NDArray[np.float64] = field(repr=False)
-    ball: NDArray[np.float64] = field(repr=False)
+    cue: Floats = field(repr=False)
+    ball: Floats = field(repr=False)
     potted: float
     in_off: float
     foul: float

@@ -5,8 +5,8 @@ from math import hypot, sqrt
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .._types import Bools, Floats
 from ..game.balls import CUE
 from ..geometry import BALL_RADIUS
 from ..planning import Positions, Stops, clear_paths
@@ -29,9 +29,7 @@ def wilson(made: int, tries: int) -> tuple[float, float]:
     return max(0.0, min(share, middle - half)), min(1.0, max(share, middle + half))
 
 
-def points_expected(
-    points: NDArray[np.float64], goes_on: NDArray[np.bool_], rest: NDArray[np.float64]
-) -> tuple[float, tuple[float, float]]:
+def points_expected(points: Floats, goes_on: Bools, rest: Floats) -> tuple[float, tuple[float, float]]:
     """Mean points of a visit and its 95 % interval: first strokes (samples,), and the ``rest`` (visits,)."""
     n, follows = len(points), float(rest.mean()) if len(rest) else 0.0
     share, each = float(goes_on.mean()), points + goes_on * follows
@@ -163,7 +161,7 @@ def judged(
     return out
 
 
-def _cloud(places: NDArray[np.float64]) -> tuple[tuple[float, float] | None, float | None]:
+def _cloud(places: Floats) -> tuple[tuple[float, float] | None, float | None]:
     """The mean of points (m, 2) and their root mean square distance from it; None, None without points."""
     if not len(places):
         return None, None
@@ -171,9 +169,7 @@ def _cloud(places: NDArray[np.float64]) -> tuple[tuple[float, float] | None, flo
     return (x, y), float(np.sqrt(((places - (x, y)) ** 2).sum(axis=1).mean()))
 
 
-def _rest(
-    practice: Practice, stops: Stops, n: int, tries: int, visits: int, seed: int
-) -> list[NDArray[np.float64]]:
+def _rest(practice: Practice, stops: Stops, n: int, tries: int, visits: int, seed: int) -> list[Floats]:
     """For each of n strokes: the points that followed in the first ``visits`` samples that went on."""
     rows = [k * tries + np.flatnonzero(stops.goes_on[k * tries : (k + 1) * tries])[:visits] for k in range(n)]
     numbers = np.concatenate([np.arange(len(each)) for each in rows]).astype(np.int64)

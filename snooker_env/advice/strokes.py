@@ -6,10 +6,9 @@ from math import hypot
 from typing import Any, TypeAlias, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import array, choice, number, refuse_what
-from .._types import Place
+from .._types import Floats, Place, Singles
 from ..game.in_hand import within_d
 from ..physics.parameters import Physics
 from ..planning import Position, Positions
@@ -91,13 +90,11 @@ class CueStroke:
         """Return the fields as JSON types; ``CueStroke(**fields)`` makes the stroke again."""
         return asdict(self) | {"place": self.place and list(self.place)}
 
-    def numbers(self) -> NDArray[np.float64]:
+    def numbers(self) -> Floats:
         """Return float64 (5,): speed [m/s], side, top, aim [rad], elevation [rad]."""
         return np.array([self.speed, self.side, self.top, self.aim, self.elevation])
 
-    def action(
-        self, *, elevation: bool = False, placement: bool = False, decision: bool = False
-    ) -> NDArray[np.float32]:
+    def action(self, *, elevation: bool = False, placement: bool = False, decision: bool = False) -> Singles:
         """Return the stroke as an action of an environment with ``aim="absolute"``: float32 (k,) in [-1, 1].
 
         ``elevation``, ``placement``, ``decision``: whether the action holds these. Without a place the cue

@@ -10,8 +10,8 @@ noise it scores about 58 points a visit; "planner_500" about 120.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .._types import Floats, Ints, Words
 from ..planning import Positions, action_masks
 from ..planning.sobol import EVEN_SAMPLES
 from ..tasks.discrete_actions import SIDES, STROKES, choice_of
@@ -22,9 +22,7 @@ PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(2) for s i
 BEST = 3  # number of strokes that meet noise samples
 
 
-def played_on(
-    practice: Practice, left: Positions, visits: NDArray[np.int64], seed: int
-) -> NDArray[np.float64]:
+def played_on(practice: Practice, left: Positions, visits: Ints, seed: int) -> Floats:
     """Points (n,) of the rest of n visits from ``left``; equal numbers ``visits`` (n,) meet equal errors."""
     total, going, number = np.zeros(len(left)), np.arange(len(left)), 0
     most = int(visits.max()) + 1 if len(visits) else 0
@@ -37,7 +35,7 @@ def played_on(
     return total
 
 
-def _choose(practice: Practice, at: Positions) -> NDArray[np.float64]:
+def _choose(practice: Practice, at: Positions) -> Floats:
     """The strokes that the fast player plays in n positions: (n, 5)."""
     n = len(at)
     rows, places = np.nonzero(action_masks(at)[:, PICKS])
@@ -58,13 +56,7 @@ def _choose(practice: Practice, at: Positions) -> NDArray[np.float64]:
     return finalists[np.arange(n), brought.reshape(n, BEST, k).mean(axis=2).argmax(axis=1)]
 
 
-def _led_to(
-    practice: Practice,
-    at: Positions,
-    rows: NDArray[np.int64],
-    strokes: NDArray[np.float64],
-    samples: NDArray[np.uint64] | None,
-) -> NDArray[np.float64]:
+def _led_to(practice: Practice, at: Positions, rows: Ints, strokes: Floats, samples: Words | None) -> Floats:
     """Points of strokes plus the values of the positions left: (n,)."""
     stops = practice.play(at, rows, strokes, samples)
     return stops.points + stops.goes_on * practice.prospects(stops.afterstates)[0]

@@ -152,10 +152,7 @@ class OneTable:
         self._record.saw(self.tables, k, buffers, j, mine)
 
     def render(self) -> Picture:
-        """Return the table with the paths of the last shot, or None; recorders get the motion of the strokes.
-
-        uint8 (H, W, 3) with "rgb_array", str with "ansi".
-        """
+        """Return a ``Picture``, with the paths of the last shot; recorders get the motion of the strokes."""
         return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent())
 
     def _show(self, *, played: bool = False) -> None:

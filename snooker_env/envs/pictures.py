@@ -7,9 +7,9 @@ from typing import Any, TypeAlias
 
 import gymnasium
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import integer, refuse
+from .._types import Bytes
 from ..physics.table import Table
 from ..tasks.played import Played
 from ..tasks.tables import Tables
@@ -20,7 +20,7 @@ HOLD = 15  # pictures of the table after each stroke of a film, with the referee
 SIZE = (1920, 1080)  # default width and height of pictures [pixels], as in render.table_picture
 
 
-Picture: TypeAlias = NDArray[np.uint8] | str | None
+Picture: TypeAlias = Bytes | str | None
 """uint8 (H, W, 3) with "rgb_array", str with "ansi", else None."""
 
 
@@ -147,7 +147,7 @@ class Pictures:
         for k in range(len(history) - recent, len(history)):
             yield filmed(self.table, history[k], *shown[k])
 
-    def _motion(self, history: list[Played], recent: int) -> Iterator[NDArray[np.uint8]]:
+    def _motion(self, history: list[Played], recent: int) -> Iterator[Bytes]:
         for film, after in self._films(history, recent):
             yield from map(self._picture, film.scenes(FPS))
             yield from [self._picture(after)] * HOLD

@@ -45,18 +45,13 @@ def table_after(act: Act, labels: tuple[str, str]) -> dict[str, Any]:
     state, frame = act.state, Frame.from_dict(act.state["frame"])
     present = [ball for ball, on in enumerate(state["on_table"]) if on]
     over = frame.phase == "over"
-    return {
-        "phase": frame.phase,
-        "striker": frame.striker,
-        "breaker": frame.breaker,
+    names = ("phase", "striker", "breaker", "free_ball", "in_hand", "winner")
+    return {name: getattr(frame, name) for name in names} | {
         "scores": list(frame.scores),
         "break": frame.break_points,
         "ball_on": None if over else frame.ball_on.name.lower(),
-        "free_ball": frame.free_ball,
-        "in_hand": frame.in_hand,
         "reds": sum(0 < ball < YELLOW for ball in present),
         "available": 0 if over else frame.available,
-        "winner": frame.winner,
         "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in present},
         "words": asked_words(frame, labels),
         "last": last_words(act, labels),
@@ -77,8 +72,7 @@ def report(service: Service) -> dict[str, Any]:
     session, seats = service.session, service.seats
     frame, tables = session.frame, session.tables
     on = tables.on(0) if frame.phase == "stroke" else 0
-    hidden = _snookered(session, frame, on)
-    lines = _lines(session, frame, on)
+    hidden, lines = (_snookered(session, frame, on), _lines(session, frame, on)) if on else (False, [])
     state = table_after(session.acts[session.at - 1], seats.labels)
     state |= {
         "revision": service.revision,
@@ -106,8 +100,6 @@ def report(service: Service) -> dict[str, Any]:
 
 
 def _snookered(session: Session, frame: Frame, on: int) -> bool:
-    if not on:
-        return False
     tables = session.tables
     present = tables.on_table[0].copy()
     present[CUE] = not frame.in_hand
@@ -115,11 +107,7 @@ def _snookered(session: Session, frame: Frame, on: int) -> bool:
 
 
 def _lines(session: Session, frame: Frame, on: int) -> list[Line]:
-    if not on:
-        return []
-    positions = [session.planned()]
-    if frame.free_ball:
-        positions.append(session.planned(free_ball=True))
+    positions = [session.planned(free_ball=free) for free in ((False, True) if frame.free_ball else (False,))]
     return lines_of(positions, on, session.noise[frame.striker])
 
 

@@ -35,12 +35,10 @@ class Route:
     fields: tuple[str, ...] = ()
 
 
-def _state(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _state(service: Service, fields: dict[str, Any]) -> None:
     if "after" in fields:
         after, seconds = fields["after"], number("wait", fields.get("wait", 0.0), 0.0, 60.0)
         service.wait(integer("after", after, 0, MOST), seconds)
-    with service.reading():
-        return report(service)
 
 
 def _strokes(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -91,12 +89,12 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 def _place(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.acting() as session:
-        place = session.place(*place_asked("place", fields.get("place")))
+        place = list(session.place(*place_asked("place", fields.get("place"))))
     with service.reading():
-        return {"place": list(place), "state": report(service)}
+        return {"place": place, "state": report(service)}
 
 
-def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
     check = truth("check", fields.get("check", False))
     try:
         return _put(service, fields, check)
@@ -106,7 +104,7 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         return {"sound": False, "error": parts_of(error)}
 
 
-def _put(service: Service, fields: dict[str, Any], check: bool) -> dict[str, Any]:
+def _put(service: Service, fields: dict[str, Any], check: bool) -> dict[str, Any] | None:
     scores = fields.get("scores", [0, 0])
     if not isinstance(scores, list) or len(scores) != 2:
         raise refuse("scores", scores, "must be two integers")
@@ -116,9 +114,7 @@ def _put(service: Service, fields: dict[str, Any], check: bool) -> dict[str, Any
     position = position_of(fields.get("position"))
     with service.asking() if check else service.acting(pause=True, any_turn=True) as session:
         session.set_up(position, scores=points, striker=striker, free_ball=free, check=check)
-    if check:
-        return {"sound": True, "error": None}
-    return _state(service, {})
+    return {"sound": True, "error": None} if check else None
 
 
 def position_of(fields: Any) -> Position:
@@ -135,26 +131,24 @@ def position_of(fields: Any) -> Position:
     return Position(**fields | points)
 
 
-def _moved(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> dict[str, Any]:
+def _moved(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
     """Undo or redo until a person has a stroke or decision to make."""
     with service.acting(pause=True, any_turn=True) as session:
         people = not all(map(service.seats.is_agent, (0, 1)))
         while move(session) and people and service.agent_to_play():
             pass
-    return _state(service, {})
 
 
-def _new(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _new(service: Service, fields: dict[str, Any]) -> None:
     kinds = {"layout": str, "seed": int, "breaker": int}
     for name, kind in kinds.items():
         if name in fields and type(fields[name]) is not kind:
             raise refuse(name, fields[name], f"must be of type {kind.__name__}")
     with service.acting(any_turn=True) as session:
         session.new(**fields)
-    return _state(service, {})
 
 
-def _players(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _players(service: Service, fields: dict[str, Any]) -> None:
     noise, practice = fields.get("noise"), fields.get("practice")
     if noise is not None:
         if not isinstance(noise, list) or len(noise) != 2:
@@ -169,18 +163,11 @@ def _players(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
-    return _state(service, {})
 
 
-def _go(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    service.go_on()
-    return _state(service, {})
-
-
-def _concede(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _concede(service: Service, fields: dict[str, Any]) -> None:
     with service.acting() as session:
         session.concede()
-    return _state(service, {})
 
 
 def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -188,10 +175,9 @@ def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         return session.save()
 
 
-def _load(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _load(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(pause=True, any_turn=True) as session:
         session.load(fields.get("saved"))
-    return _state(service, {})
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -248,7 +234,7 @@ POST: dict[str, Route] = {
     "redo": Route(partial(_moved, move=Session.redo)),
     "new": Route(_new, ("layout", "seed", "breaker")),
     "players": Route(_players, ("players", "noise", "practice")),
-    "go": Route(_go),
+    "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede),
     "save": Route(_save),
     "load": Route(_load, ("saved",)),
@@ -264,12 +250,16 @@ def parts_of(error: ValueError) -> dict[str, Any]:
 
 
 def answer(service: Service, route: Route, fields: dict[str, Any]) -> Any:
-    """The answer of a route; ValueError for an unknown or invalid field."""
+    """The answer of a route, by default the state; ValueError for an unknown or invalid field."""
     for name in fields:
         if name not in route.fields:
             some = f"must be one of {list(route.fields)}"
             raise refuse("field", name, some if route.fields else "must be left out: there are no fields")
     try:
-        return route.handler(service, fields)
+        reply = route.handler(service, fields)
     except StaleError:
         return {"stale": True}
+    if reply is not None:
+        return reply
+    with service.reading():
+        return report(service)

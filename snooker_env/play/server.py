@@ -242,8 +242,8 @@ class PlayHandler(BaseHTTPRequestHandler):
         return parsed(raw)
 
     def _last(
-        self, status: int, message: str, field: str | None = None, value: Any = None, **headers: str
-    ) -> RefusedError:
+        self, status: int, message: str, field: Any = None, value: Any = None, **headers: str
+    ) -> Exception:
         """A refusal that closes the connection, because the rest of the request may not have been read."""
         self.close_connection = True
         refused = RefusedError(status, message, field, value)

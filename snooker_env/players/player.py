@@ -224,7 +224,7 @@ class Ranked(NamedTuple):
     """
 
     strokes: Strokes
-    scores: NDArray[np.float64] | None
+    scores: Floats | None
 
 
 @runtime_checkable

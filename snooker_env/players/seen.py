@@ -4,10 +4,9 @@ from collections.abc import Mapping
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import choice, refuse_what
-from .._types import Bools, Ints, Observation
+from .._types import Bools, Floats, Ints, Observation
 from ..game.balls import mask_of_present
 from ..game.frame_columns import (
     ANYWHERE,
@@ -133,7 +132,7 @@ class SeenPlayer(BoundPlayer):
         """Where its action places the cue ball: bool (n, 1)."""
         return (at.in_hand & bool(self._rules.actions.placement))[:, None]
 
-    def _shown(self, at: Positions, keys: Ints) -> tuple[Positions, NDArray[np.float64]]:
+    def _shown(self, at: Positions, keys: Ints) -> tuple[Positions, Floats]:
         """The positions as it sees them, and where cue balls in hand were placed for it (n, 2), else NaN."""
         none = np.full((len(at), 2), np.nan)
         if self.frames:
@@ -146,7 +145,7 @@ class SeenPlayer(BoundPlayer):
             visits.positions[anywhere], none[anywhere] = put.positions, places
         return visits, none
 
-    def _actions(self, at: Positions, keys: Ints) -> NDArray[np.float64]:
+    def _actions(self, at: Positions, keys: Ints) -> Floats:
         """Its checked actions in n positions; errors name it."""
         n, rules = len(at), self._rules
         tables: Any = (Frames if self.frames else Visits)(rules, 0)

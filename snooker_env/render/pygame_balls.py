@@ -1,8 +1,5 @@
-"""How are balls, paths and words drawn with pygame-ce? As pictures that are kept.
-
-A ball is shaded, with reflections of the lamps over the table and a faint shadow from each. A path is a line
-with a dark edge, smooth at every angle, in pieces: one that grows changes only at its end.
-"""
+"""How are balls, paths and words drawn with pygame-ce? As kept pictures: balls shaded, with reflections of the
+lamps and faint shadows; paths in pieces, so that one that grows changes only at its end."""
 
 import os
 from functools import lru_cache

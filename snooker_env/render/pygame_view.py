@@ -4,9 +4,7 @@ it, and the score bar as on television."""
 from functools import lru_cache
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from .._types import Bytes
 from ..game.balls import COLOUR_NAMES, YELLOW
 from .palette import PALE, PALETTE
 from .pygame_balls import (
@@ -22,8 +20,8 @@ from .pygame_balls import (
 )
 from .scene import Scene, ScoreBar
 from .table_picture import SIZE as SIZE
+from .table_picture import Size, table_picture
 from .table_picture import View as View
-from .table_picture import table_picture
 
 _ROWS = 72  # lengths in this file are those of a bar 72 pixels high, as in a picture of 1080
 _SMALLEST = 36  # A lower bar is one line of text [pixels]
@@ -190,7 +188,7 @@ def _column(page, label, value, end, balls=(), size=36, widest=""):
     return start - _GAP
 
 
-def draw(scene: Scene, view: View) -> NDArray[np.uint8]:
+def draw(scene: Scene, view: View) -> Bytes:
     """The picture of a scene in a view of its table: uint8 (height, width, 3), a new array."""
     pixels = table_picture(scene.table, view).copy()
     # draws into ``pixels``
@@ -211,9 +209,7 @@ def draw(scene: Scene, view: View) -> NDArray[np.uint8]:
     return pixels
 
 
-def rgb_array(
-    scene: Scene, height: int | None = None, *, size: tuple[int, int] | None = None
-) -> NDArray[np.uint8]:
+def rgb_array(scene: Scene, height: int | None = None, *, size: Size | None = None) -> Bytes:
     """The picture of a scene, uint8 (height, width, 3), of a size, or a height that gives the width."""
     pygame_()
     return draw(scene, View.of(scene.table, height, size))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from .._check import array, choice, integer, number, refuse, refuse_what, truth
-from .._types import Floats
+from .._types import Floats, Place
 from ..game.balls import N_BALLS, NAMES
 from ..physics.engine import EventKind
 from ..physics.table import Table
@@ -254,9 +254,7 @@ def tip_words(tip: Tip) -> str:
     return ", ".join(words) or "centre ball"
 
 
-def draw_tip(
-    sketch: Sketch, tip: Tip | None, middle: tuple[float, float], radius: float, limit: float
-) -> None:
+def draw_tip(sketch: Sketch, tip: Tip | None, middle: Place, radius: float, limit: float) -> None:
     """Where the tip struck the cue ball; ``middle``: (y, x) [m]; ``limit``: offset of a miscue over R."""
     from matplotlib.patches import Circle
 

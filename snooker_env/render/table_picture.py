@@ -2,18 +2,18 @@
 a signed distance [m] (negative inside); an edge covers a part of a pixel, smooth at every size."""
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import integer, refuse
-from .._types import Floats
+from .._types import Bytes, Floats
 from ..geometry import BAULK_Y, D_RADIUS
 from ..physics.table import Table
 from .outline import BAULK_LINE, CUSHION, RAIL, SPOT_MARKS, Outline, extent, is_marked, outline
 from .palette import PALETTE
 
+Size: TypeAlias = tuple[int, int]
 SIZE = (1920, 1080)  # default width and height of a picture [pixels]
 
 _MARGIN = 0.012  # floor shown around the rails [m]
@@ -33,7 +33,7 @@ class View(NamedTuple):
     y: float  # row of the origin
 
     @classmethod
-    def of(cls, table: Table, height: int | None = None, size: tuple[int, int] | None = None) -> "View":
+    def of(cls, table: Table, height: int | None = None, size: Size | None = None) -> "View":
         """``size`` (width, height): as large as fits; ``height``: that table's width; neither: ``SIZE``."""
         low, high = extent(table).T
         (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + _MARGIN), (low + high) / 2
@@ -71,7 +71,7 @@ _ROUND = 0.085  # radius of the table's corners [m]
 _INK = {name: np.array(rgb, dtype=np.float32) for name, rgb in PALETTE.items()}
 
 
-def lamps(table: Table) -> NDArray[np.float64]:
+def lamps(table: Table) -> Floats:
     """Places of the lamps over the table: (``LAMPS``, 2) [m]."""
     (low_x, high_x), (low_y, high_y) = extent(table)
     parts = (np.arange(LAMPS) + 0.5) / LAMPS
@@ -79,7 +79,7 @@ def lamps(table: Table) -> NDArray[np.float64]:
 
 
 @lru_cache(maxsize=8)
-def table_picture(table: Table, view: View) -> NDArray[np.uint8]:
+def table_picture(table: Table, view: View) -> Bytes:
     """The picture of a table without balls, read-only; the rows of the score bar show the floor."""
     canvas, parts = _Canvas(view, table), outline(table)
     canvas.image[:] = _INK["floor"]

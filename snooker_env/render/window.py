@@ -22,7 +22,7 @@ from .palette import PALETTE
 from .pygame_balls import BOLD, MEDIUM, pygame_, typeset
 from .pygame_view import draw
 from .scene import Film, Scene
-from .table_picture import SIZE, View
+from .table_picture import SIZE, Size, View
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 """Speeds that the user can choose, in multiples of the caller's."""
@@ -55,9 +55,7 @@ def _no_display(why):
 class Window:
     """A window with a table, opened by the first ``draw``; once closed by its user, shut until ``close``."""
 
-    def __init__(
-        self, height: int | None = None, title: str = "snooker", *, size: tuple[int, int] | None = None
-    ):
+    def __init__(self, height: int | None = None, title: str = "snooker", *, size: Size | None = None):
         View.of(Table.of(None), height, size)  # raises for a wrong size now, not when the window opens
         self._height, self._size, self._title = height, size, title
         self._screen: Any = None

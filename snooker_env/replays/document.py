@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import choice, refuse, refuse_what
 from .._files import write_atomic
+from .._types import Bytes
 from ..physics.table import Table, TableLike
 from ..planning import Position
 from ..render.scene import scene_data
@@ -138,7 +138,7 @@ class Replay:
 
     def frames(
         self, *, fps: float = 30.0, speed: float = 1.0, size: tuple[int, int] = (1920, 1080)
-    ) -> Iterator[NDArray[np.uint8]]:
+    ) -> Iterator[Bytes]:
         """The pictures of the film, each uint8 (height, width, 3): treat them as read-only.
 
         ``fps`` and ``speed`` (over that of the strokes) in (0, 1000], else ValueError; ``size``: width and

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import number, refuse
 from .._files import write_atomic
 from .._install import missing
 from .._jit import entry
+from .._types import Bytes
 from ..physics.table import Table
 from ..render.scene import Film, Scene, ScoreBar, scene
 from ..simulation import Shot
@@ -39,7 +39,7 @@ def _fill(rgb, luma, cb, cr):
             cr[i, j] = 128 + ((28784 * red - 26145 * green - 2639 * blue + 4 * _HALF) >> 18)
 
 
-def to_video(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def to_video(picture: Bytes) -> Bytes:
     """The bytes (3 h w / 2,) of a picture (h, w, 3), one plane after the other: ffmpeg's format yuv420p."""
     height, width = picture.shape[:2]
     out = np.empty(3 * height * width // 2, np.uint8)
@@ -82,9 +82,7 @@ def filmed(
     return film, scene(table, where, on_table, ball_radius=shot.physics.R, **over)
 
 
-def frames(
-    films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: tuple[int, int]
-) -> Iterator[NDArray[np.uint8]]:
+def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: Any) -> Iterator[Bytes]:
     """The pictures of what ``shown`` gives."""
     from ..render.pygame_view import rgb_array
 
@@ -96,12 +94,7 @@ def frames(
 
 
 def write_film(
-    pictures_of: Callable[..., Iterator[NDArray[np.uint8]]],
-    target: Path,
-    *,
-    fps: float | None = None,
-    speed: float = 1.0,
-    size: tuple[int, int] | None = None,
+    pictures_of: Callable[..., Any], target: Path, *, fps: Any = None, speed: float = 1.0, size: Any = None
 ) -> None:
     """Write the pictures of ``pictures_of(fps=, speed=, size=)`` to an .mp4 or .gif file."""
     usual_size, usual_fps = USUAL[target.suffix.lower()]
@@ -118,7 +111,7 @@ def _rate(field: str, value: Any) -> float:
     return number(field, value, 0.0, 1000.0, open_low=True)
 
 
-def _encode(pictures: Iterator[NDArray[np.uint8]], path: Path, fps: float, size: tuple[int, int]) -> None:
+def _encode(pictures: Iterator[Bytes], path: Path, fps: float, size: tuple[int, int]) -> None:
     if path.suffix.lower() != ".gif":
         wanted = ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "26", "-threads", "1", *HD]
         _pipe(_in_video_colours(pictures), "yuv420p", size, fps, wanted, path)
@@ -134,7 +127,7 @@ def _encode(pictures: Iterator[NDArray[np.uint8]], path: Path, fps: float, size:
         colours.unlink(missing_ok=True)
 
 
-def _in_video_colours(pictures: Iterator[NDArray[np.uint8]]) -> Iterator[NDArray[np.uint8]]:
+def _in_video_colours(pictures: Iterator[Bytes]) -> Iterator[Bytes]:
     """``to_video`` of each picture, computed once for a picture that is repeated."""
     last, made = None, np.empty(0, np.uint8)
     for picture in pictures:
@@ -143,7 +136,7 @@ def _in_video_colours(pictures: Iterator[NDArray[np.uint8]]) -> Iterator[NDArray
         yield made
 
 
-def _swatches(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def _swatches(picture: Bytes) -> Bytes:
     """A picture's colours as a picture (256, 256, 3), rare ones enlarged: a ball's colour matters."""
     coarse = (picture >> 2).astype(np.uint32)
     codes, counts = np.unique(coarse @ np.array([1 << 12, 1 << 6, 1], np.uint32), return_counts=True)
@@ -154,14 +147,7 @@ def _swatches(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
     return ((shades << 2) | 2).astype(np.uint8).reshape(256, 256, 3)
 
 
-def _pipe(
-    pictures: Iterator[NDArray[np.uint8]],
-    kind: str,
-    size: tuple[int, int],
-    fps: float,
-    wanted: list[str],
-    path: Path,
-) -> None:
+def _pipe(pictures, kind, size, fps, wanted, path):
     """Send pictures through ffmpeg into a file."""
     try:
         from imageio_ffmpeg import get_ffmpeg_exe

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..._check import refuse
+from ..._types import Singles
 from ...planning.learned.stroke_policy import LAYERS, StrokePolicy
 from ...tasks.noise import LEVELS, Noise
 
@@ -25,10 +25,10 @@ class Learned(NamedTuple):
     """What a planner has learned: a policy over strokes, and the layers of each network of its value."""
 
     policy: StrokePolicy
-    value: list[list[tuple[NDArray[np.float32], NDArray[np.float32]]]]
+    value: list[list[tuple[Singles, Singles]]]
 
 
-def learned_of(arrays: Mapping[str, NDArray[np.float32]]) -> Learned:
+def learned_of(arrays: Mapping[str, Singles]) -> Learned:
     """The policy and the value in the arrays of a file."""
     policy = {name: (arrays[f"policy/{name}/weight"], arrays[f"policy/{name}/bias"]) for name in LAYERS}
     layers = [(arrays[f"value/{k}/weight"], arrays[f"value/{k}/bias"]) for k in range(VALUE_LAYERS)]
