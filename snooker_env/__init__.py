@@ -1,5 +1,4 @@
-"""snooker_env: whole snooker shots, frictional impacts, and the Gymnasium environment ``Snooker-v0`` built on
-them.
+"""snooker_env: whole snooker shots, frictional impacts, and the Gymnasium environment ``Snooker-v0``.
 
 The public names are those in ``__all__`` of this package and of these modules. Everything else may change in
 any version:
@@ -10,8 +9,7 @@ any version:
 * ``snooker_env.geometry``: where everything on a table is, and how large
 * ``snooker_env.game``: balls, values, balls on, layouts and the tables that they deal
 * ``snooker_env.tasks``: what actions, observations and execution errors mean, in numbers
-* ``snooker_env.kernels``: for your own kernels: how they are compiled, and the inner kernels that they may
-  call
+* ``snooker_env.kernels``: for your own kernels: how they are compiled, and which they may call
 * ``snooker_env.checks``: reporting bad input as the package does
 * ``snooker_env.progress``: how far a long command is, for your own commands too
 * ``snooker_env.render``: the scene of a table, and its pictures
@@ -84,18 +82,14 @@ __all__ = [
 ]
 
 _LATER = {
-    "MatchVectorEnv": "envs.match_vector",
-    "Options": "tasks.options",
-    "SnookerEnv": "envs.snooker",
-    "SnookerVectorEnv": "envs.vector",
-    "Planner": "planning",
-    "Position": "planning",
-    "Positions": "planning",
-    "RecordReplay": "replays",
-    "Replay": "replays",
-    "replay": "replays",
-    "advise": "advice",
-    "player": "players",
+    **{"Options": "tasks.options", "advise": "advice", "player": "players"},
+    **{
+        "SnookerEnv": "envs.snooker",
+        "SnookerVectorEnv": "envs.vector",
+        "MatchVectorEnv": "envs.match_vector",
+    },
+    **dict.fromkeys(("Planner", "Position", "Positions"), "planning"),
+    **dict.fromkeys(("RecordReplay", "Replay", "replay"), "replays"),
 }
 """Modules of the names that are imported at their first use: simulating shots alone needs no environment."""
 

@@ -1,5 +1,4 @@
-"""How does ``gymnasium.make("Snooker-v0")`` work without importing snooker_env? The ids are registered as
-soon as Gymnasium is imported.
+"""How does ``gymnasium.make("Snooker-v0")`` work without importing snooker_env?
 
 Gymnasium 1.x reads no entry points of other packages, and many worker processes import nothing but Gymnasium.
 So an installation holds this file beside the package, as ``_snooker_env_autoregister.py``, and a ``.pth``
@@ -15,8 +14,7 @@ _REGISTRATION = "gymnasium.envs.registration"
 
 
 def _register(registration):
-    """What ``_registration.py`` of the package does, without importing the package. Gymnasium must work
-    whatever happens here."""
+    """Register without importing the package. Gymnasium must work whatever happens here."""
     from importlib import util  # not at the top: interpreters that never import Gymnasium do not pay for it
 
     try:
@@ -29,18 +27,15 @@ def _register(registration):
             exec(compile(file.read(), path, "exec"), names)
         names["register"](registration)
     except Exception as error:
-        print(
-            f"snooker_env: its environments are not registered: {type(error).__name__}: {error}",
-            file=sys.stderr,
-        )
+        why = f"{type(error).__name__}: {error}"
+        print(f"snooker_env: its environments are not registered: {why}", file=sys.stderr)
 
 
 class _Finder:
     """Waits for the import of Gymnasium's registration."""
 
     def find_spec(self, name, path=None, target=None):
-        """The module's own spec, its loader extended to register the ids at the end; None for all other
-        modules."""
+        """The module's own spec, its loader extended to register the ids; None for all other modules."""
         if name != _REGISTRATION:
             return None
         sys.meta_path.remove(self)

@@ -15,17 +15,13 @@ def refuse(field: str, value: Any, allowed: str) -> ValueError:
 
     Parameters
     ----------
-    field : str
-        Name of the argument, as the caller writes it.
-    value : any
-        The value; the message shows its ``repr``.
-    allowed : str
-        What is allowed: "must be ...".
+    field, value, allowed
+        Name of the argument, as the caller writes it; its value, shown by its ``repr``; and "must be ...".
 
     Returns
     -------
     ValueError
-        Not raised yet.
+        The error.
 
     Examples
     --------
@@ -43,17 +39,13 @@ def refuse_what(field: str, what: str, allowed: str) -> ValueError:
 
     Parameters
     ----------
-    field : str
-        Name of the argument, as the caller writes it.
-    what : str
-        Description of the value.
-    allowed : str
-        What is allowed: "must be ...".
+    field, what, allowed
+        As in ``refuse``, with a description of the value.
 
     Returns
     -------
     ValueError
-        Not raised yet.
+        The error.
 
     Examples
     --------
@@ -71,10 +63,8 @@ def number(
 
     Parameters
     ----------
-    field : str
-        Name of the argument, for the message.
-    value : any
-        The value to check.
+    field, value
+        Name of the argument, for the message, and its value.
     low, high : float
         Ends of the range [low, high]; infinite by default.
     open_low : bool
@@ -107,49 +97,32 @@ def number(
 def _wanted(shape):
     """A shape as text, with letters for the lengths that are free."""
     free = iter("bn" if shape.count(-1) == 2 else "n")
-    return (
-        "("
-        + ", ".join(next(free) if s == -1 else str(s) for s in shape)
-        + ("," if len(shape) == 1 else "")
-        + ")"
-    )
+    sizes = ", ".join(next(free) if s == -1 else str(s) for s in shape)
+    return f"({sizes},)" if len(shape) == 1 else f"({sizes})"
 
 
-_FLOAT = np.dtype(np.float64)
-
-
-def array(
-    field: str, value: Any, shape: tuple[int, ...], most: float | None = np.inf, unit: str = ""
-) -> Floats:
-    """A new finite C-ordered float64 array of this shape (-1: any length), all within ``most`` [unit].
-
-    ``most`` None: the numbers are checked elsewhere.
-    """
-    if type(value) is np.ndarray and value.dtype is _FLOAT:
-        a = value.copy()
-    else:
-        try:
-            raw = np.asarray(value)
-        except (TypeError, ValueError):
-            raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}") from None
-        if raw.dtype.kind not in "iuf" or (isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value)):
-            raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}")
-        with np.errstate(over="ignore"):  # a wider number may become infinite, which is refused
-            a = np.array(raw, dtype=np.float64, order="C")
-    if a.shape != shape and (
-        a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True))
-    ):
+def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, unit: str = "") -> Floats:
+    """A new finite C-ordered float64 array of this shape (-1: any length), all within ``most`` [unit]."""
+    bad = refuse(field, value, f"must be real numbers of shape {_wanted(shape)}")
+    try:
+        raw = np.asarray(value)
+    except (TypeError, ValueError):
+        raise bad from None
+    if raw.dtype.kind not in "iuf" or (isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value)):
+        raise bad
+    if raw.dtype.itemsize > 8:
+        with np.errstate(over="ignore"):  # a wider number may become infinite, which is refused below
+            raw = raw.astype(np.float64)
+    a = np.array(raw, dtype=np.float64, order="C")
+    if a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True)):
         raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {_wanted(shape)}")
     if most is None:
         return a
     sound = np.isfinite(a) if most == np.inf else np.abs(a) <= most
     if not sound.all():
-        at = tuple(int(k) for k in np.argwhere(~sound)[0])
-        raise refuse(
-            f"{field}{list(at)}",
-            float(a[at]),
-            "must be finite" + (f", within {most:,g} {unit} of zero" if most < np.inf else ""),
-        )
+        at = tuple(np.argwhere(~sound)[0].tolist())
+        within = f", within {most:,g} {unit} of zero" if most < np.inf else ""
+        raise refuse(f"{field}{list(at)}", float(a[at]), f"must be finite{within}")
     return a
 
 
@@ -158,12 +131,8 @@ def choice(field: str, value: Any, options: Collection[str]) -> str:
 
     Parameters
     ----------
-    field : str
-        Name of the argument, for the message.
-    value : any
-        The value to check.
-    options : collection of str
-        The names that are allowed.
+    field, value, options
+        Name of the argument, for the message; its value; and the names that are allowed.
 
     Returns
     -------
@@ -186,12 +155,8 @@ def integer(field: str, value: Any, low: float, high: float) -> int:
 
     Parameters
     ----------
-    field : str
-        Name of the argument, for the message.
-    value : any
-        The value to check.
-    low, high : int
-        Ends of the range [low, high].
+    field, value, low, high
+        Name of the argument, for the message; its value; and the ends of the range [low, high].
 
     Returns
     -------
@@ -226,10 +191,8 @@ def truth(field: str, value: Any) -> bool:
 
     Parameters
     ----------
-    field : str
-        Name of the argument, for the message.
-    value : any
-        The value to check.
+    field, value
+        Name of the argument, for the message, and its value.
 
     Returns
     -------

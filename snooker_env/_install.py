@@ -1,5 +1,4 @@
-"""How is a missing library reported? With the line that installs it where this package runs: in a clone, or
-installed from a wheel."""
+"""How is a missing library reported? With the line that installs it, in a clone or from a wheel."""
 
 from pathlib import Path
 
@@ -7,16 +6,7 @@ _CLONE = Path(__file__).parents[1]
 
 
 def missing(what: str, extra: str) -> ImportError:
-    """The error for a library that an extra of the package brings; not raised.
-
-    Examples
-    --------
-    >>> from snooker_env._install import missing
-    >>> raise missing("pictures need pygame-ce", "render")  # doctest: +ELLIPSIS
-    Traceback (most recent call last):
-    ...
-    ImportError: pictures need pygame-ce; install it...
-    """
+    """The error for a library that an extra of the package brings; not raised."""
     if (_CLONE / "pyproject.toml").is_file():
         return ImportError(f'{what}; install it, in the clone {_CLONE}, with: pip install -e ".[{extra}]"')
     return ImportError(f'{what}; install it with: pip install "snooker-env[{extra}]"')

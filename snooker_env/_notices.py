@@ -1,5 +1,4 @@
-"""What is reported of compiling, unless ``SNOOKER_ENV_QUIET=1``? A line on stderr before a compile of over a
-second, and the progress of a warm-up; nothing of loading from the cache."""
+"""What is reported of compiling, unless ``SNOOKER_ENV_QUIET=1``? On stderr, each compile of over a second."""
 
 import os
 import sys
@@ -46,7 +45,8 @@ class _WarmUp:
     def place(self):
         """Number of the next kernel and of all, for a line that is printed now."""
         self.spoke = True
-        return f"warm-up, kernel {1 + sum(bool(kernel.signatures) for kernel in self.kernels)} of {len(self.kernels)}: "
+        ready = sum(bool(kernel.signatures) for kernel in self.kernels)
+        return f"warm-up, kernel {1 + ready} of {len(self.kernels)}: "
 
 
 _running: list[_WarmUp] = []
@@ -60,9 +60,8 @@ def warming_up(kernels: Iterable[Any]) -> Iterator[None]:
     try:
         yield
         if _running[-1].spoke:
-            say(
-                f"warm-up: {len(_running[-1].kernels)} kernels ready after {time.perf_counter() - start:.0f} s"
-            )
+            elapsed = time.perf_counter() - start
+            say(f"warm-up: {len(_running[-1].kernels)} kernels ready after {elapsed:.0f} s")
     finally:
         _running.pop()
 

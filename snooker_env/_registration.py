@@ -1,5 +1,4 @@
-"""Under which names does Gymnasium know the environments? Read by the package, or alone by
-``_autoregister.py``; it imports nothing."""
+"""Which ids does Gymnasium know? Read by the package, or alone by ``_autoregister.py``; imports nothing."""
 
 from typing import Any
 
@@ -8,25 +7,16 @@ ENTRY_POINT = "snooker_env.envs.snooker:SnookerEnv"
 VECTOR_ENTRY_POINT = "snooker_env.envs.vector:SnookerVectorEnv"
 
 _TASKS = "snooker_env.benchmark.environments"
+_NAMES = ("Break", "BreakClub", "LineUp", "Colours", "PotHard", "Escape", "Frame")
 ENTRY_POINTS = {
     ID: (ENTRY_POINT, VECTOR_ENTRY_POINT),
-    "SnookerBreak-v0": (f"{_TASKS}:BreakEnv", f"{_TASKS}:BreakVectorEnv"),
-    "SnookerBreakClub-v0": (f"{_TASKS}:BreakClubEnv", f"{_TASKS}:BreakClubVectorEnv"),
-    "SnookerLineUp-v0": (f"{_TASKS}:LineUpEnv", f"{_TASKS}:LineUpVectorEnv"),
-    "SnookerColours-v0": (f"{_TASKS}:ColoursEnv", f"{_TASKS}:ColoursVectorEnv"),
-    "SnookerPotHard-v0": (f"{_TASKS}:PotHardEnv", f"{_TASKS}:PotHardVectorEnv"),
-    "SnookerEscape-v0": (f"{_TASKS}:EscapeEnv", f"{_TASKS}:EscapeVectorEnv"),
-    "SnookerFrame-v0": (f"{_TASKS}:FrameEnv", f"{_TASKS}:FrameVectorEnv"),
+    **{f"Snooker{name}-v0": (f"{_TASKS}:{name}Env", f"{_TASKS}:{name}VectorEnv") for name in _NAMES},
 }
 """Of each id the environment of one table, and that of many."""
 
 
 def register(registration: Any) -> None:
-    """Register the ids with Gymnasium's module ``registration``, but for those that are there already: a
-    second import stays silent.
-
-    String entry points keep the import light and the spec JSON-able.
-    """
+    """Register with Gymnasium's module the ids that it lacks; string entry points keep it light."""
     for name, (one, many) in ENTRY_POINTS.items():
         if name not in registration.registry:
             registration.register(id=name, entry_point=one, vector_entry_point=many)

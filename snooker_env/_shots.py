@@ -1,10 +1,7 @@
-"""How many shots has this process simulated? One counter, which ``snooker_env.benchmark`` reads before and
-after a decision.
+"""How many shots has this process simulated? One counter, read before and after a decision.
 
-A shot is counted where the engine is started for it: strokes of environments and of ``Planner`` in
-``tasks.stroke.run``, those of ``simulate`` and ``simulate_batch`` in ``simulation``. A shot that is simulated
-again because its log was too short counts once. Single impacts (``collide_balls``, the computed aim of a pot)
-are not counted.
+A shot is counted where the engine is started for it (``tasks.stroke.run``, ``simulation``), once if it is
+simulated again because its log was too short. Single impacts are not counted.
 """
 
 import threading

@@ -1,20 +1,15 @@
-"""How are tables and figures written, on a terminal and in Markdown? As lines of text; figures with
-intervals."""
+"""How are tables and figures written, on a terminal and in Markdown? As lines of text."""
 
 from collections.abc import Mapping, Sequence
 
 
 def text_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
-    """A table for a terminal, line by line: the first ``left`` columns to the left, the others to the
-    right."""
+    """A table for a terminal, line by line: the first ``left`` columns to the left, others to the right."""
     widths = [max(len(row[c]) for row in [head, *rows]) for c in range(len(head))]
 
     def line(row):
-        cells = [
-            cell.ljust(w) if c < left else cell.rjust(w)
-            for c, (cell, w) in enumerate(zip(row, widths, strict=True))
-        ]
-        return "  ".join(cells).rstrip()
+        cells = enumerate(zip(row, widths, strict=True))
+        return "  ".join(x.ljust(w) if c < left else x.rjust(w) for c, (x, w) in cells).rstrip()
 
     return [line(head), "-" * (sum(widths) + 2 * (len(widths) - 1)), *map(line, rows)]
 
@@ -27,8 +22,7 @@ def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]], left: int
 
 
 def shown(figure: Mapping[str, float | None], scale: float = 1.0, form: str = "{:.1f}") -> str:
-    """A figure with its interval, as "65.8 [61.2, 70.1]" or, with one bound, "65.8 [61.2, ..]"; "" without a
-    value."""
+    """A figure with its interval: "65.8 [61.2, 70.1]", with one bound "65.8 [61.2, ..]"; "" without."""
     numbers = (figure["value"], figure["low"], figure["high"])
     value, low, high = (None if x is None else form.format(scale * x) for x in numbers)
     if value is None or (low is None and high is None):

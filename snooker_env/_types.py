@@ -1,8 +1,4 @@
-"""Which types do the annotations share? Arrays by what they hold, what callers may pass for them, and closed
-sets of names.
-
-An annotation says what an array holds; the docstring says its shape and units.
-"""
+"""Which types do the annotations share? An annotation says what an array holds; docstrings say its shape."""
 
 from collections.abc import Sequence
 from typing import Any, Literal, Protocol, TypeAlias
@@ -15,33 +11,27 @@ Floats: TypeAlias = NDArray[np.float64]
 Singles: TypeAlias = NDArray[np.float32]
 Ints: TypeAlias = NDArray[np.int64]
 Words: TypeAlias = NDArray[np.uint64]
+Bytes: TypeAlias = NDArray[np.uint8]
 Bools: TypeAlias = NDArray[np.bool_]
-Masks: TypeAlias = NDArray[np.int8]
-"""Available choices as observations hold them: 1 or 0."""
+Masks: TypeAlias = NDArray[np.int8]  # available choices as observations hold them: 1 or 0
 
 # What callers may pass: arrays, or nested sequences with as many levels as the array would have dimensions. A
 # str is none of these.
 Real: TypeAlias = float | np.floating[Any] | np.integer[Any]
 RealArray: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]
 Vector: TypeAlias = RealArray | Sequence[Real]
-Vectors: TypeAlias = RealArray | Sequence[Vector]
-"""Of two dimensions: (n, k)."""
-Batches: TypeAlias = RealArray | Sequence[Vectors]
-"""Of three dimensions: (b, n, k)."""
-Scalars: TypeAlias = Real | Vector
-"""One number for all, or one for each: shape () or (n,)."""
+Vectors: TypeAlias = RealArray | Sequence[Vector]  # of two dimensions: (n, k)
+Batches: TypeAlias = RealArray | Sequence[Vectors]  # of three dimensions: (b, n, k)
+Scalars: TypeAlias = Real | Vector  # one number for all, or one for each: shape () or (n,)
 Integers: TypeAlias = NDArray[np.integer[Any]] | Sequence[int | np.integer[Any]]
 Flag: TypeAlias = bool | np.bool_
 Flags: TypeAlias = Bools | Sequence[Flag]
-FlagRows: TypeAlias = Bools | Sequence[Flags]
-"""Of two dimensions: (b, n)."""
-Place: TypeAlias = tuple[float, float]
-"""x and y [m]."""
+FlagRows: TypeAlias = Bools | Sequence[Flags]  # of two dimensions: (b, n)
+Place: TypeAlias = tuple[float, float]  # x and y [m]
 
 # Names.
 Fidelity: TypeAlias = Literal["fast", "standard", "reference"] | str
-"""How impacts are solved. Any str is allowed because of ``"euler:N"``, the paper's own scheme with N
-steps."""
+"""How impacts are solved. Any str is allowed: ``"euler:N"`` is the paper's own scheme with N steps."""
 Solver: TypeAlias = tuple[int, int]
 """A fidelity as the kernels read it: a code, and the N of ``"euler:N"`` or 0."""
 PhysicsName: TypeAlias = Literal["paper", "match"]

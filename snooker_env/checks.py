@@ -1,5 +1,4 @@
-"""How does code outside the package report bad input? By the same checks: one ValueError with field, value
-and what is allowed.
+"""How does code outside the package report bad input? By the same checks.
 
 >>> from snooker_env.checks import integer
 >>> integer("visits", 0, 1, 100)

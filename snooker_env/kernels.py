@@ -1,5 +1,4 @@
-"""How does one write kernels that run beside those of the package? Its two decorators, and the inner kernels
-that others may call.
+"""How does one write kernels that run beside those of the package? With its decorators.
 
 ``entry`` compiles a kernel that Python calls, and keeps its machine code on disk as the package keeps its
 own. ``kernel`` compiles an inner kernel, which only kernels can call. Both use strict IEEE arithmetic and

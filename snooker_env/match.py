@@ -25,9 +25,10 @@ def match_env(
     render_mode : {"human", "rgb_array", "ansi"}, optional
         How ``render`` shows the table; default None: not at all.
     **keywords
-        ``seats`` (two dicts: what differs in the actions and the noise of each player), ``render_size``, and
-        the keywords of ``Options`` in place of ``options``. Box actions hold the place in the D and the
-        decision after a foul, unless ``placement=False`` or ``decision=False``.
+        ``seats`` (two dicts: what differs in the actions and the noise of each player), ``render_size`` (width
+        and height [pixels], each in [100, 8192]), and the keywords of ``Options`` in place of ``options``. Box
+        actions hold the place in the D and the decision after a foul, unless ``placement=False`` or
+        ``decision=False``.
 
     Returns
     -------

@@ -10,14 +10,10 @@ from typing import Any, TextIO
 
 __all__ = ["Progress"]
 
-EVERY = 10.0
-"""Seconds between two lines of a file or pipe."""
-REDRAWN = 0.5
-"""Seconds between two states of the line on a terminal."""
-BAR = 20
-"""Characters of the bar on a terminal."""
-RECENT = 5.0
-"""Fewest seconds over which a rate is measured."""
+EVERY = 10.0  # seconds between two lines of a file or pipe
+REDRAWN = 0.5  # seconds between two states of the line on a terminal
+BAR = 20  # characters of the bar on a terminal
+RECENT = 5.0  # fewest seconds over which a rate is measured
 
 
 class Progress:
@@ -28,12 +24,8 @@ class Progress:
 
     Parameters
     ----------
-    what : str
-        The work, in words.
-    total : int
-        How much of it there is.
-    unit : str
-        Of what, in the plural.
+    what, total, unit
+        The work, in words; how much of it there is; and of what, in the plural.
     done : int
         How much was done before, by a run that is resumed.
     to : text stream, optional
@@ -97,8 +89,7 @@ class Progress:
             raise self._error
 
     def at(self, done: int, figures: str = "") -> None:
-        """Note how much of ``total`` is done, and ``figures`` to be said with it: round, loss, points.
-        OSError if the output takes no more (closed, disk full)."""
+        """Note how much is done, and ``figures`` to say with it. OSError if the output takes no more."""
         if self._error is not None:
             raise self._error
         now, measured = time.perf_counter(), self._measured
@@ -123,13 +114,9 @@ class Progress:
 
     def _keep_saying(self):
         while self._error is None and not self._ended.wait(REDRAWN if self._terminal else EVERY):
-            left = self.left
+            left, elapsed = self.left, f"{_clock(time.perf_counter() - self._began)} elapsed"
             still = "" if left == float("inf") else f"{_clock(left)} left"
-            self._write(
-                self._state(
-                    self._speed(self.rate), f"{_clock(time.perf_counter() - self._began)} elapsed", still
-                )
-            )
+            self._write(self._state(self._speed(self.rate), elapsed, still))
 
     def _state(self, *times):
         """The line: work, figures, and on a terminal first the times: it may be cut."""
@@ -141,9 +128,8 @@ class Progress:
         return ", ".join(part for part in parts if part)
 
     def _speed(self, rate):
-        return (
-            f"{rate:,.{0 if rate >= 10.0 else 1 if rate >= 1.0 else 2}f} {self._unit}/s" if rate > 0.0 else ""
-        )
+        digits = 0 if rate >= 10.0 else 1 if rate >= 1.0 else 2
+        return f"{rate:,.{digits}f} {self._unit}/s" if rate > 0.0 else ""
 
     def _write(self, text, last=False):
         """Write a line; the error of an output that takes no more is kept for ``at`` to raise."""

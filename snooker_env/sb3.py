@@ -1,5 +1,4 @@
-"""How does Stable-Baselines3 train on many tables at once? ``SnookerVecEnv``: its ``VecEnv`` on the native
-vector environment.
+"""How does Stable-Baselines3 train on many tables? ``SnookerVecEnv``, on the native vector environment.
 
 from snooker_env.sb3 import SnookerVecEnv
 MaskablePPO("MlpPolicy", SnookerVecEnv(64, action="discrete")).learn(100_000)
@@ -9,7 +8,6 @@ import time
 
 import numpy as np
 from gymnasium.vector import AutoresetMode
-from numpy.typing import NDArray
 
 try:
     from stable_baselines3.common.monitor import Monitor
@@ -25,7 +23,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ._check import choice, integer, refuse
-from ._types import Bools, Observation, Singles
+from ._types import Bools, Floats, Ints, Observation, Singles
 from .envs.vector import SnookerVectorEnv
 
 __all__ = ["SnookerVecEnv"]
@@ -40,14 +38,12 @@ class SnookerVecEnv(VecEnv):
 
     Parameters
     ----------
-    num_envs : int
-        Number of tables, in [1, 2**24].
+    num_envs, **kwargs
+        As in ``SnookerVectorEnv``, without ``autoreset_mode``.
     seed : int, optional
         Table k begins with seed + k, as after ``seed(seed)``. Default None: random.
     info_keys : sequence of str, optional
         Keys of the environment's info to include; default none.
-    **kwargs
-        All other arguments of ``SnookerVectorEnv`` except ``autoreset_mode``.
 
     Examples
     --------
@@ -77,10 +73,9 @@ class SnookerVecEnv(VecEnv):
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
         self._actions = None
-        self.episode_returns: NDArray[np.float64] = np.zeros(num_envs)
-        self.episode_lengths: NDArray[np.int64] = np.zeros(num_envs, np.int64)
-        """Rewards and steps so far of the episodes going on: (n,) each. No state of a table holds them: save
-        them with its state."""
+        self.episode_returns: Floats = np.zeros(num_envs)
+        self.episode_lengths: Ints = np.zeros(num_envs, np.int64)
+        """Rewards and steps so far, (n,) each: no state of a table holds them, save them with it."""
         self._start = time.time()
         if seed is not None:
             self.seed(seed)
@@ -88,20 +83,17 @@ class SnookerVecEnv(VecEnv):
     def reset(self) -> Observation:
         """Begin new episodes on all tables, with the seeds and options set before; returns the observations.
 
-        ``set_options([{"state": ...}, ...])`` starts from states, ``set_options([{"position": ...}, ...])``
-        from positions, one for each table; ``set_options([{"breaker": 0}, ...])`` says who breaks. States
-        hold their random streams; after a call of ``seed`` too, those of the seeds replace them. ValueError
-        if the options differ between tables in kind, or are invalid.
+        ``set_options([{"state": ...}, ...])``, or "position" or "breaker": one for each table. Of a state's
+        random stream and a seed, the seed holds. ValueError if the options differ in kind, or are invalid.
         """
         options = None
         if any(self._options):
             key = next((key for key in ("position", "breaker") if key in self._options[0]), "state")
             for k, each in enumerate(self._options):
                 if set(each) != {key}:
-                    words = (
-                        '"state", "position" or "breaker" alone, the same for each table, or nothing for all'
-                    )
-                    raise refuse(f"keys of options[{k}]", list(each), f"must be {words}")
+                    words = "alone, the same for each table, or nothing for all"
+                    allowed = f'must be "state", "position" or "breaker" {words}'
+                    raise refuse(f"keys of options[{k}]", list(each), allowed)
             options = {key if key == "breaker" else f"{key}s": [each[key] for each in self._options]}
         observation, info = self.tables.reset(seed=self._seeds, options=options)
         self.reset_infos = [{key: info[key][k] for key in self.info_keys} for k in range(self.num_envs)]
@@ -115,8 +107,7 @@ class SnookerVecEnv(VecEnv):
         self._actions = actions
 
     def step_wait(self) -> tuple[Observation, Singles, Bools, list[dict[str, Any]]]:
-        """Play the stored actions. Returns observations, rewards float32 (num_envs,), dones bool (num_envs,)
-        and one info for each table."""
+        """Play the stored actions: observations, rewards float32 (n,), dones bool (n,), infos."""
         observation, rewards, terminated, truncated, info = self.tables.step(self._actions)
         done = terminated | truncated
         self.episode_returns += rewards
@@ -144,8 +135,7 @@ class SnookerVecEnv(VecEnv):
         return self.tables.render()
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """Read an attribute for some tables: one that all share, or one of each table, as ``points``.
-        AttributeError if there is none."""
+        """Read what all tables share, or what each has, as ``points``; AttributeError if there is none."""
         if attr_name in ("observation_space", "action_space"):  # of one table
             return [getattr(self.tables, f"single_{attr_name}") for _ in self._get_indices(indices)]
         if hasattr(self.tables, attr_name) and attr_name not in ("np_random", "np_random_seed"):
@@ -158,15 +148,13 @@ class SnookerVecEnv(VecEnv):
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         """Refuse with AttributeError: the tables share everything. Make another ``SnookerVecEnv`` instead."""
-        raise AttributeError(
-            f"{attr_name} cannot be set: the tables share everything; make another SnookerVecEnv"
-        )
+        words = "the tables share everything; make another SnookerVecEnv"
+        raise AttributeError(f"{attr_name} cannot be set: {words}")
 
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
     ) -> list[Any]:
-        """Call ``get_state`` or ``action_masks`` for some tables, without arguments; ValueError for another
-        method: none belongs to one table."""
+        """Call ``get_state`` or ``action_masks`` for some tables; ValueError for another method."""
         choice("method_name", method_name, ("get_state", "action_masks"))
         each = getattr(self.tables, method_name)()
         return [each[k] for k in self._get_indices(indices)]

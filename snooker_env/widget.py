@@ -1,6 +1,4 @@
-"""How does a replay play in a notebook, its time synchronised to Python and back? As a widget of anywidget.
-
-A result of ``sn.replay`` shows itself without this module, but in a frame that Python cannot control."""
+"""How does a replay play in a notebook, synchronised to Python and back? As a widget of anywidget."""
 
 from functools import cache
 from typing import Any, Literal
@@ -12,8 +10,7 @@ from .web import WEB, table_js
 
 __all__ = ["replay_widget"]
 
-SPINS = ("off", "cue", "all")
-"""The balls whose rotation is shown."""
+SPINS = ("off", "cue", "all")  # the balls whose rotation is shown
 
 
 def replay_widget(
@@ -28,23 +25,22 @@ def replay_widget(
 ) -> Any:
     """Make a widget that plays a replay in a notebook: JupyterLab, VS Code, Colab or marimo.
 
-    Its traits are synchronised in both directions: ``stroke`` (from 0), ``time`` within it [s] (below 0
-    before the strike; not updated while it plays), and ``playing``. Setting ``stroke`` alone goes to its
-    beginning.
+    Its traits are synchronised in both directions: ``stroke`` (from 0; setting it alone goes to its
+    beginning), ``time`` within it [s] (below 0 before the strike; not updated while it plays), and
+    ``playing``.
 
     Parameters
     ----------
     source : Replay, Shot, sequence of Shot or Played, Position, or environment
         Anything that ``snooker_env.replay`` takes.
-    speed : float, optional
-        Speed of the replay over that of the shot, in [0.1, 8]; default 1.
-    playing : bool, optional
-        Whether it starts at once; default False.
-    paths, ghosts, labels : bool, optional
-        Whether paths (default True), balls at their impacts (default True) and letters on balls (default
-        False) are shown at first.
-    spin : {"off", "cue", "all"}, optional
-        The balls whose rotation is shown at first; default "cue".
+    speed : float
+        Speed of the replay over that of the shot, in [0.1, 8].
+    playing : bool
+        Whether it starts at once.
+    paths, ghosts, labels : bool
+        Whether paths, balls at their impacts and letters on balls are shown at first.
+    spin : {"off", "cue", "all"}
+        The balls whose rotation is shown at first.
 
     Returns
     -------
@@ -62,9 +58,8 @@ def replay_widget(
     (0, False)
     """
     options = {"speed": number("speed", speed, 0.1, 8.0), "spin": choice("spin", spin, SPINS)}
-    options |= {
-        name: truth(name, value) for name, value in (("paths", paths), ("ghosts", ghosts), ("labels", labels))
-    }
+    shown = {"paths": paths, "ghosts": ghosts, "labels": labels}
+    options |= {name: truth(name, value) for name, value in shown.items()}
     return _widget_class()(data=replay(source).to_dict(), options=options, playing=truth("playing", playing))
 
 

@@ -8,10 +8,18 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from snooker_env.physics.table import Table
+from snooker_env.render.table_picture import View
+
 README = 880
 """Pixels of a page's width."""
 LEAST = 10.5
 """Pixels from line to line of the smallest text: 9 and more from the top of a capital to the foot of a g."""
+
+
+def to_pixels(points, height=None, table="match", *, size=None):
+    """Columns and rows [pixels] of points (..., 2) [m] in a picture of ``rgb_array`` of that size."""
+    return View.of(Table.of(table), height, size)(points)
 
 
 @contextmanager

@@ -5,8 +5,7 @@ import json
 from math import atan2
 
 from snooker_env.play import routes
-from snooker_env.play.seats import Seats
-from snooker_env.play.service import Service
+from snooker_env.play.service import Seats, Service
 from snooker_env.play.session import Session
 
 RED = [0.6, 1.4]

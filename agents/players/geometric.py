@@ -5,7 +5,7 @@ import numpy as np
 
 from snooker_env.planning import Positions
 from snooker_env.players import BoundPlayer, Strokes
-from snooker_env.players.simple import placed
+from snooker_env.players.player import placed
 
 from .aim_search import Aimer
 

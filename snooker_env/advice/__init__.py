@@ -1,5 +1,4 @@
-"""Advice: the strokes that a player would play in a position, and their outcomes under execution errors, as
-data and in words.
+"""Advice: the strokes that a player would play in a position, and their outcomes, as data and in words.
 
 >>> import snooker_env as sn
 >>> position = sn.Position(cue=(0.25, 0.6), reds=[(-0.4, 1.3)], black=(0.0, 1.4605), on="red")
@@ -7,15 +6,13 @@ data and in words.
 >>> print(advice[0].words)  # doctest: +ELLIPSIS
 red, top left, ... m/s, ..., chance ... %, ... points expected
 
-Pockets are numbered as in ``snooker_env.POCKETS``. In words they are called green pocket, yellow pocket,
-right middle, top right, top left and left middle. Left and right are as seen from the baulk end, facing the
-black end: right is the yellow side (+x).
+In words the ``snooker_env.POCKETS`` are called green pocket, yellow pocket, right middle, top right, top left
+and left middle. Left and right are as seen from the baulk end: right is the yellow side (+x).
 """
 
 from .ask import advise, stroke_of
 from .destinations import Destinations, destinations
-from .strokes import CueStroke
-from .suggestions import Advice, Suggestion
+from .strokes import Advice, CueStroke, Suggestion
 from .words import POCKET_WORDS
 
 __all__ = [

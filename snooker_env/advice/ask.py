@@ -1,5 +1,4 @@
-"""What would a player do here, and how would it turn out? ``advise`` returns ranked strokes; ``stroke_of``
-the one that it would play."""
+"""What would a player do here, and how would it turn out? ``advise``, and ``stroke_of`` for one stroke."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -13,15 +12,12 @@ from ..players import player as player_of
 from ..tasks.noise import NoiseLike
 from . import judging
 from .practice import Practice, one_position, practice_of
-from .strokes import CueStroke, cue_strokes
-from .suggestions import Advice
+from .strokes import Advice, CueStroke, cue_strokes
 
-AGENT = "planner_500"
-"""Who is asked if nobody is named: 120 points a visit, in a twentieth of a second."""
+AGENT = "planner_500"  # who is asked if nobody is named: 120 points a visit, in a twentieth of a second
 INSTEAD = "random"
 """Whose strokes are judged where none of an agent's is fair: many of the choices of ``action="discrete"``."""
-CONSIDERED = 8
-"""Ranked strokes that are examined for each stroke requested, so that enough of them differ."""
+CONSIDERED = 8  # ranked strokes that are examined for each stroke requested, so that enough of them differ
 
 
 def advise(
@@ -39,63 +35,50 @@ def advise(
 ) -> Advice:
     """Return the strokes that a player would play in a position, best first, and their outcomes.
 
-    The outcomes are found in the same way for every player, so that strokes of different agents can be
-    compared:
-
-    1. Each stroke is played ``samples`` times, with the same execution errors for all strokes, and judged as
-       a stroke of a visit.
-    2. Of the visits that go on, ``visits`` are played to their end by a fast player
-       (``snooker_env.advice.visits``). It plans one stroke ahead, less thoroughly than a search, so
-       ``points`` is what a good player makes of the position, not the best.
+    Each stroke is played ``samples`` times, with the same execution errors whichever player is asked, and
+    judged as a stroke of a visit. Of the visits that go on, ``visits`` are played to their end by a fast
+    player (``snooker_env.advice.visits``), so ``points`` is what a good player makes of the position, not the
+    best.
 
     Of the strokes that the player ranks, the first ``n`` are returned that are fair: no foul without errors,
-    nor in most samples. They are ordered by the figure in their words: pots by points expected, others by how
-    often they are fair, because what a stroke is worth as a safety is not judged. Those that the player
-    prefers, pots or others, come first. Where none of its strokes is fair, many choices of
-    ``action="discrete"`` are judged, too; where none of these is fair either, the stroke that is fair most
-    often is returned, and its words say so.
+    nor in most samples. Pots are ordered by points expected, others by how often they are fair, because what
+    a stroke is worth as a safety is not judged; those that the player prefers, pots or others, come first.
+    Where none is fair, many choices of ``action="discrete"`` are judged, too; where none of these is, the
+    stroke that is fair most often is returned, and its words say so.
 
-    The errors are drawn from ``seed`` alone: the same seed gives the same advice. They are independent of the
-    random stream that a saved state carries, so advice never reveals the errors of the next stroke.
+    The errors are drawn from ``seed`` alone, independent of the random stream that a saved state carries: the
+    same seed gives the same advice, and advice never reveals the errors of the next stroke.
 
     Parameters
     ----------
     position : Position, dict, Positions or environment
-        One position, as ``Positions.of`` takes it, or the result of ``Position.to_dict()``. With the cue ball
-        in hand each stroke has its ``place`` in the D. Points of the visit so far do not count. In a frame a
-        free ball counts as any colour.
-    agent : str, Path or player, optional
-        The player, as ``snooker_env.player`` takes it; default "planner_500". One without ``rank`` has one
-        stroke.
-    noise : str, dict or Noise, optional
-        Execution errors with which strokes are chosen and judged; default "professional".
-    n : int, optional
-        Largest number of strokes, in [1, 100]; default 5.
-    samples : int, optional
-        How often each stroke is played, in [1, 100000]; default 200. Without noise each is played once.
-    visits : int, optional
-        How many visits of each stroke are continued, in [0, 100000]; default 40. With 0, ``points`` is that
-        of the stroke itself.
-    seed : int, optional
-        Seed of the noise samples, in [0, 2**63]; default 0.
+        One position, as ``Positions.of`` takes it, or a ``Position.to_dict()``. With the cue ball in hand
+        each stroke has its ``place``. Points so far do not count. In a frame a free ball counts as any
+        colour.
+    agent : str, Path or player
+        The player, as ``snooker_env.player`` takes it. One without ``rank`` has one stroke.
+    noise : str, dict or Noise
+        Execution errors with which strokes are chosen and judged.
+    n : int
+        Largest number of strokes, in [1, 100].
+    samples : int
+        How often each stroke is played, in [1, 100000]. Without noise each is played once.
+    visits : int
+        How many visits of each stroke are continued, in [0, 100000]; 0: ``points`` is that of the stroke.
+    seed : int
+        Seed of the noise samples, in [0, 2**63].
     options : dict or Options, optional
-        Physics, table and fidelity: an ``Options``, or a dict with "physics", "table" and "fidelity". Default
-        None: those of ``position`` if it is an environment, else the defaults.
-    distinct : bool, optional
-        Whether only the first of several strokes with equal descriptions is kept, apart from the speed of a
-        pot; default True.
-    trust : bool, optional
-        Whether code in a model's file may run, see ``snooker_env.player``; default False.
+        An ``Options``, or a dict with "physics", "table" and "fidelity". Default None: those of ``position``
+        if it is an environment, else the defaults.
+    distinct : bool
+        Whether only the first of strokes with equal descriptions is kept, apart from the speed of a pot.
+    trust : bool
+        Whether code in a model's file may run, see ``snooker_env.player``.
 
     Returns
     -------
     Advice
-        A sequence of ``Suggestion``.
-
-    Raises
-    ------
-    ValueError
-        If an argument is invalid, or there is no stroke to play.
+        A sequence of ``Suggestion``. ValueError if an argument is invalid, or there is no stroke to play.
 
     Examples
     --------
@@ -109,11 +92,8 @@ def advise(
     integer("samples", samples, 1, 100_000)
     integer("visits", visits, 0, 100_000)
     integer("seed", seed, 0, 2**63)
-    at, practice, asked = (
-        one_position(position),
-        practice_of(noise, options, position),
-        player_of(agent, trust=trust),
-    )
+    at, practice = one_position(position), practice_of(noise, options, position)
+    asked = player_of(agent, trust=trust)
 
     def tried(one: Player) -> list[judging.Tried]:
         strokes = judging.tried(practice, at, _ranked(one, practice, at, seed)[: CONSIDERED * n])
@@ -138,23 +118,16 @@ def advise(
 
 
 def _ranked(asked: Player, practice: Practice, at: Positions, seed: int) -> judging.Rankings:
-    """The player's strokes in the one position ``at``, best first, with its scores: its ranking, or the one
-    that it plays."""
+    """The player's ranking in the one position ``at``, best first with scores, or the one that it plays."""
     bound, shown = asked.at(practice.options), _shown(at)
     rank = getattr(bound, "rank", None)
     strokes, scores = (bound.play(shown, [seed]), None) if rank is None else rank(shown, [seed])[0]
-    return list(
-        zip(
-            cue_strokes(strokes, shown),
-            [None] * len(strokes) if scores is None else scores.tolist(),
-            strict=True,
-        )
-    )
+    each = [None] * len(strokes) if scores is None else scores.tolist()
+    return list(zip(cue_strokes(strokes, shown), each, strict=True))
 
 
 def _shown(at: Positions) -> Positions:
-    """What a player is asked: the stroke to come, without a choice before it or a cue ball that may stand
-    outside the D."""
+    """What a player is asked: the stroke to come, with no choice before it and the cue ball within the D."""
     return at.as_visits() if at.choice[0] or at.lot[0] or at.anywhere[0] else at
 
 
@@ -171,26 +144,16 @@ def stroke_of(
     Parameters
     ----------
     player : str, Path or player
-        The player, as ``snooker_env.player`` takes it. For several calls pass its result: a model is then
-        loaded once.
-    position : Position, dict, Positions or environment
-        One position, see ``advise``.
-    noise : str, dict or Noise, optional
-        Execution errors for which the stroke is chosen; default "professional".
-    options : dict or Options, optional
-        Physics, table and fidelity, see ``advise``.
-    seed : int, optional
-        Seed of the player's random numbers, in [0, 2**63]; default 0.
+        As ``snooker_env.player`` takes it. For several calls pass its result: a model is then loaded once.
+    position, noise, options
+        As in ``advise``.
+    seed : int
+        Seed of the player's random numbers, in [0, 2**63].
 
     Returns
     -------
     CueStroke
-        The stroke, with a place in the D if the cue ball is in hand.
-
-    Raises
-    ------
-    ValueError
-        If an argument is invalid, or there is no stroke to play.
+        With a place in the D if the cue ball is in hand. ValueError as from ``advise``.
 
     Examples
     --------

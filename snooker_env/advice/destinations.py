@@ -1,13 +1,12 @@
-"""Where do the balls of a stroke stop? ``destinations``: cue ball and object ball under many execution
-errors, as points and as a map."""
+"""Where do the balls of a stroke stop under execution errors? As points and as a map."""
 
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import choice, integer, number
+from .._types import Floats
 from ..game.balls import CUE
 from ..geometry import HALF_LENGTH, HALF_WIDTH
 from ..planning.positions import PositionsLike
@@ -29,16 +28,9 @@ class Destinations:
     cue : numpy.ndarray
         float64 (m, 2). Where the cue ball stopped [m], for the samples in which it stayed on the table.
     ball : numpy.ndarray
-        float64 (m, 2). Where the object ball stopped [m], before respotting, for the samples in which it was
-        not potted; (0, 2) if there is no object ball.
-    potted : float
-        Share of the samples in which the object ball was potted, in [0, 1].
-    in_off : float
-        Share of the samples in which the cue ball was potted, in [0, 1].
-    foul : float
-        Share of the samples with a foul, in [0, 1].
-    scored : float
-        Share of the samples that scored, in [0, 1].
+        float64 (m, 2). The same for the object ball, before respotting; (0, 2) if there is none.
+    potted, in_off, foul, scored : float
+        Shares of the samples in which the object ball or the cue ball was potted, with a foul, with points.
     points : float
         Mean points of the stroke.
 
@@ -46,15 +38,16 @@ class Destinations:
     --------
     >>> import snooker_env as sn
     >>> from snooker_env.advice import destinations
-    >>> stops = destinations(sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3)), {"speed": 1.8, "aim": 0.8}, noise="none")
+    >>> position = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    >>> stops = destinations(position, {"speed": 1.8, "aim": 0.8}, noise="none")
     >>> stops.samples, stops.cue.shape, stops.foul
     (1, (1, 2), 0.0)
     """
 
     samples: int
     object_ball: int
-    cue: NDArray[np.float64] = field(repr=False)
-    ball: NDArray[np.float64] = field(repr=False)
+    cue: Floats = field(repr=False)
+    ball: Floats = field(repr=False)
     potted: float
     in_off: float
     foul: float
@@ -64,10 +57,9 @@ class Destinations:
     def density(self, cell: float = 0.05, ball: str = "cue") -> dict[str, Any]:
         """Return a density map of where a ball stops, as shares of all samples in square cells.
 
-        ``cell``: side of a cell [m], in [0.005, 1]; default 0.05. ``ball``: the cue ball (default) or the
-        object ball. Returns "x0", "y0": the corner of the first cell [m]; "cell" [m]; "nx", "ny": numbers of
-        cells; "values": a list of ny rows of nx numbers. The values add up to the share of the samples in
-        which the ball stayed on the table. ValueError if an argument is out of range.
+        ``cell``: side of a cell [m], in [0.005, 1]. ``ball``: "cue" or "ball", the object ball. Returns
+        "x0", "y0": the corner of the first cell [m]; "cell" [m]; "nx", "ny": numbers of cells; "values": ny
+        rows of nx numbers, whose sum is the share of samples in which the ball stayed on the table.
         """
         number("cell", cell, 0.005, 1.0)
         places = getattr(self, choice("ball", ball, ("cue", "ball")))
@@ -79,13 +71,8 @@ class Destinations:
         return {"x0": x0, "y0": y0, "cell": float(cell), "nx": nx, "ny": ny, "values": values.tolist()}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the result as JSON types.
-
-        Returns all attributes by name; points as lists, rounded to a tenth of a millimetre.
-        """
-        clouds = {name: getattr(self, name).round(4).tolist() for name in ("cue", "ball")}
-        names = ("samples", "object_ball", "potted", "in_off", "foul", "scored", "points")
-        return {name: getattr(self, name) for name in names} | clouds
+        """Return all attributes by name as JSON types; points as lists, rounded to 0.1 mm."""
+        return vars(self) | {name: getattr(self, name).round(4).tolist() for name in ("cue", "ball")}
 
 
 def destinations(
@@ -101,29 +88,20 @@ def destinations(
 
     Parameters
     ----------
-    position : Position, dict, Positions or environment
-        One position, see ``advise``.
-    stroke : CueStroke, Suggestion or dict
-        The stroke as intended; a dict holds fields of ``CueStroke``.
-    noise : str, dict or Noise, optional
-        Execution errors; default "professional". Without noise one sample is played.
-    samples : int, optional
-        How often the stroke is played, in [1, 1000000]; default 500.
-    seed : int, optional
-        Seed of the noise samples, in [0, 2**63]; default 0. Every stroke meets the same errors with the same
-        seed, so a map changes smoothly with the stroke.
-    options : dict or Options, optional
-        Physics, table and fidelity, see ``advise``.
+    position, stroke, noise
+        As in ``advise``; the stroke as intended, a ``CueStroke``, ``Suggestion`` or dict of ``CueStroke``.
+    samples : int
+        How often the stroke is played, in [1, 1000000]; once without noise.
+    seed : int
+        Seed of the noise samples, in [0, 2**63]. Every stroke meets the same errors with the same seed, so a
+        map changes smoothly with the stroke.
+    options
+        As in ``advise``.
 
     Returns
     -------
     Destinations
-        The stopping points, and the shares of pots, in-offs and fouls.
-
-    Raises
-    ------
-    ValueError
-        If an argument is invalid, or there is no stroke to play.
+        ValueError if an argument is invalid, or there is no stroke to play.
 
     Examples
     --------
@@ -137,13 +115,11 @@ def destinations(
     integer("samples", samples, 1, 1_000_000)
     integer("seed", seed, 0, 2**63)
     practice, struck = practice_of(noise, options, position), CueStroke.of(stroke)
-    start = played_from(one_position(position), struck)
-    row = struck.numbers()[None]
-    trial = practice.play(start, np.zeros(1, np.int64), row)
-    ball, tries = int(trial.first[0]), 1 if practice.sure else samples
-    stops = practice.play(
-        start, np.zeros(tries, np.int64), np.repeat(row, tries, 0), keys(seed, JUDGING, tries)
-    )
+    start, row = played_from(one_position(position), struck), struck.numbers()[None]
+    tries = 1 if practice.sure else samples
+    rows = np.zeros(tries, np.int64)
+    ball = int(practice.play(start, rows[:1], row).first[0])
+    stops = practice.play(start, rows, np.repeat(row, tries, 0), keys(seed, JUDGING, tries))
     stayed = stops.potted[:, CUE] < 0
     here = stops.potted[:, ball] < 0 if ball > 0 else np.zeros(tries, np.bool_)
     return Destinations(

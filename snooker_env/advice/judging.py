@@ -1,44 +1,36 @@
-"""How does a stroke turn out under execution errors? Chances, expected points and stopping points, on common
-noise samples."""
+"""How does a stroke turn out under execution errors? Chances, points and stops, on common noise samples."""
 
 from dataclasses import replace
 from math import hypot, sqrt
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .._types import Bools, Floats
 from ..game.balls import CUE
 from ..geometry import BALL_RADIUS
 from ..planning import Positions, Stops, clear_paths
 from .practice import JUDGING, Practice, keys, played_from
-from .strokes import CueStroke
-from .suggestions import Suggestion
+from .strokes import CueStroke, Suggestion
 from .visits import played_on
 from .words import RAISED, contact_words, cushion_words, figures_words, stroke_words, what_words
 
-FOULS = ("foul", "in-off")
-"""Kinds of strokes that are fouls without errors."""
+FOULS = ("foul", "in-off")  # kinds of strokes that are fouls without errors
 Rankings: TypeAlias = list[tuple[CueStroke, float | None]]
 """Strokes, best first, each with the player's own score of it."""
-Z = 1.959964
-"""Standard deviations of a 95 % interval."""
+Z = 1.959964  # standard deviations of a 95 % interval
 
 
 def wilson(made: int, tries: int) -> tuple[float, float]:
-    """The 95 % interval of a probability of which ``made`` of ``tries`` samples were successes (Wilson
-    1927)."""
+    """The 95 % interval of a probability with ``made`` successes in ``tries`` samples (Wilson 1927)."""
     share, z2 = made / tries, Z * Z / tries
     middle = (share + 0.5 * z2) / (1.0 + z2)
     half = Z * sqrt(share * (1.0 - share) / tries + 0.25 * z2 / tries) / (1.0 + z2)
     return max(0.0, min(share, middle - half)), min(1.0, max(share, middle + half))
 
 
-def points_expected(
-    points: NDArray[np.float64], goes_on: NDArray[np.bool_], rest: NDArray[np.float64]
-) -> tuple[float, tuple[float, float]]:
-    """Mean points of a visit and its 95 % interval, from (samples,) of the first stroke and the ``rest``
-    (visits,) where it goes on."""
+def points_expected(points: Floats, goes_on: Bools, rest: Floats) -> tuple[float, tuple[float, float]]:
+    """Mean points of a visit and its 95 % interval: first strokes (samples,), and the ``rest`` (visits,)."""
     n, follows = len(points), float(rest.mean()) if len(rest) else 0.0
     share, each = float(goes_on.mean()), points + goes_on * follows
     mean = float(each.mean())
@@ -54,14 +46,12 @@ class Tried(NamedTuple):
 
     stroke: CueStroke
     score: float | None
-    start: Positions
-    """The position that it is played from."""
+    start: Positions  # the position that it is played from
     kind: str
     ball: int
     pocket: int
     first: int
-    words: str
-    """What it does and how it is struck, in words."""
+    words: str  # what it does and how it is struck, in words
 
 
 def tried(practice: Practice, at: Positions, ranked: Rankings) -> list[Tried]:
@@ -85,8 +75,7 @@ def _joined(positions: list[Positions]) -> Positions:
 def _trial(
     practice: Practice, starts: Positions, trial: Stops, k: int, stroke: CueStroke, hidden: bool
 ) -> tuple[str, int, int, int, str]:
-    """Kind, ball, pocket, first ball and words of stroke k; ``hidden``: no straight path leads to a ball
-    on."""
+    """Kind, ball, pocket, first ball and words of stroke k; ``hidden``: no straight path to a ball on."""
     first, pocket, how = int(trial.first[k]), -1, ""
     ball, (x, y) = first, starts.positions[k, CUE].tolist()
     dx, dy = (starts.positions[k, max(0, first)] - (x, y)).tolist()
@@ -101,43 +90,38 @@ def _trial(
     else:
         kind, how = "contact", contact_words(dx, dy, stroke.aim)
     distance = None if first < 0 else max(0.0, hypot(dx, dy) - 2.0 * BALL_RADIUS)
-    words = f"{what_words(kind, ball, pocket, first, how)}, {stroke_words(stroke, distance, practice.options.rules.physics)}"
-    return kind, ball, pocket, first, words
+    what = what_words(kind, ball, pocket, first, how)
+    return (
+        kind,
+        ball,
+        pocket,
+        first,
+        f"{what}, {stroke_words(stroke, distance, practice.options.rules.physics)}",
+    )
 
 
 def distinct(strokes: list[Tried]) -> list[Tried]:
     """Only the first of several strokes with equal descriptions, apart from the speed of a pot."""
-    read = [
-        one.words.replace(f"{one.stroke.speed:.1f} m/s", "") if one.kind == "pot" else one.words
-        for one in strokes
-    ]
-    return [one for k, one in enumerate(strokes) if read[k] not in read[:k]]
+    first = {}
+    for one in strokes:
+        speed = f"{one.stroke.speed:.1f} m/s" if one.kind == "pot" else ""
+        first.setdefault(one.words.replace(speed, ""), one)
+    return list(first.values())
 
 
-def fair(
-    practice: Practice, strokes: list[Tried], n: int, *, samples: int, visits: int, seed: int
-) -> list[Suggestion]:
-    """The first n of the strokes that are no foul without errors, nor in most samples, by their figure: the
-    preferred kind first."""
+def fair(practice: Practice, strokes: list[Tried], n: int, **how: int) -> list[Suggestion]:
+    """The first n strokes that are fair without errors and in most samples, the preferred kind first."""
     waiting, out = [one for one in strokes if one.kind not in FOULS], []
     while waiting and len(out) < n:
         some, waiting = waiting[: n - len(out)], waiting[n - len(out) :]
-        out += [
-            one
-            for one in judged(practice, some, samples=samples, visits=visits, seed=seed)
-            if one.foul <= 0.5
-        ]
+        out += [one for one in judged(practice, some, **how) if one.foul <= 0.5]
     return sorted(out, key=lambda one: ((one.kind == "pot") != (out[0].kind == "pot"), -one.figure))
 
 
-def least_bad(
-    practice: Practice, strokes: list[Tried], *, samples: int, visits: int, seed: int
-) -> Suggestion:
+def least_bad(practice: Practice, strokes: list[Tried], **how: int) -> Suggestion:
     """The stroke that is fair in most samples, where none is fair."""
-    worst = min(
-        judged(practice, strokes, samples=samples, visits=visits, seed=seed), key=lambda one: one.foul
-    )
-    return replace(worst, words=f"no fair stroke found: {worst.words}")
+    best = min(judged(practice, strokes, **how), key=lambda one: one.foul)
+    return replace(best, words=f"no fair stroke found: {best.words}")
 
 
 def judged(
@@ -146,11 +130,9 @@ def judged(
     """Strokes with their outcomes under execution errors, in their order."""
     n = len(strokes)
     tries, again = (1, min(1, visits)) if practice.sure else (samples, visits)
-    noise, rows = keys(seed, JUDGING, tries), np.stack([one.stroke.numbers() for one in strokes])
-    starts = _joined([one.start for one in strokes])
-    stops = practice.play(
-        starts, np.repeat(np.arange(n), tries), np.repeat(rows, tries, 0), np.tile(noise, n)
-    )
+    rows, starts = [one.stroke.numbers() for one in strokes], _joined([one.start for one in strokes])
+    each, noise = np.repeat(np.arange(n), tries), np.tile(keys(seed, JUDGING, tries), n)
+    stops = practice.play(starts, each, np.repeat(rows, tries, 0), noise)
     rest = _rest(practice, stops, n, tries, again, seed)
     out = []
     for k, one in enumerate(strokes):
@@ -163,14 +145,8 @@ def judged(
         middle, spread = _cloud(stops.places[mine, CUE][stayed])
         out.append(
             Suggestion(
-                **{
-                    name: getattr(one.stroke, name)
-                    for name in ("speed", "aim", "side", "top", "elevation", "place")
-                },
-                kind=one.kind,
-                ball=one.ball,
-                pocket=one.pocket,
-                first=one.first,
+                **vars(one.stroke),
+                **{name: getattr(one, name) for name in ("kind", "ball", "pocket", "first", "score")},
                 chance=chance,
                 chance_interval=(chance, chance) if practice.sure else wilson(int(made.sum()), tries),
                 points=points,
@@ -179,27 +155,22 @@ def judged(
                 in_off=float((~stayed).mean()),
                 stops=middle,
                 spread=spread,
-                score=one.score,
                 words=f"{one.words}, {figures_words(one.kind, chance, points)}",
             )
         )
     return out
 
 
-def _cloud(places: NDArray[np.float64]) -> tuple[tuple[float, float] | None, float | None]:
-    """The mean of points (m, 2) and the root of their mean square distance from it; None, None if there are
-    no points."""
+def _cloud(places: Floats) -> tuple[tuple[float, float] | None, float | None]:
+    """The mean of points (m, 2) and their root mean square distance from it; None, None without points."""
     if not len(places):
         return None, None
     x, y = places.mean(axis=0).tolist()
     return (x, y), float(np.sqrt(((places - (x, y)) ** 2).sum(axis=1).mean()))
 
 
-def _rest(
-    practice: Practice, stops: Stops, n: int, tries: int, visits: int, seed: int
-) -> list[NDArray[np.float64]]:
-    """For each of n strokes: the points that followed in the first ``visits`` of its samples in which the
-    visit went on."""
+def _rest(practice: Practice, stops: Stops, n: int, tries: int, visits: int, seed: int) -> list[Floats]:
+    """For each of n strokes: the points that followed in the first ``visits`` samples that went on."""
     rows = [k * tries + np.flatnonzero(stops.goes_on[k * tries : (k + 1) * tries])[:visits] for k in range(n)]
     numbers = np.concatenate([np.arange(len(each)) for each in rows]).astype(np.int64)
     rest = played_on(practice, stops.afterstates[np.concatenate(rows).astype(np.int64)], numbers, seed)

@@ -1,5 +1,4 @@
-"""Where are trial strokes played for advice? On a ``Practice`` table: planners with and without a player's
-execution errors."""
+"""Where are trial strokes played for advice? On a ``Practice``: with and without execution errors."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -20,8 +19,7 @@ from .strokes import CueStroke
 PHYSICAL_OPTIONS = tuple(name for name in Options.group("shot") if name != "noise")
 """The options that say where strokes are played. All others belong to a game."""
 JUDGING, GOING_ON = 1, 2
-"""What noise samples are for: other ones judge a stroke than those that chose it, so a lucky choice is not
-overestimated."""
+"""Of noise samples: not those that chose a stroke judge it, so that a lucky choice is not overestimated."""
 
 
 class Practice:
@@ -38,8 +36,7 @@ class Practice:
         self._spread = spread_of(self.noise, options.rules.physics)
 
     def play(self, at: Positions, rows: Any, strokes: Floats, keys: Any = None) -> Stops:
-        """Play strokes (n, 5) on copies of ``at[rows]``: with execution errors if there are ``keys``, else as
-        intended."""
+        """Play strokes (n, 5) on copies of ``at[rows]``: with errors if there are ``keys``, else without."""
         planner = self.exact if keys is None else self.noisy
         return planner.stops(at, rows, strokes=strokes, keys=None if self.sure else keys)
 
@@ -48,15 +45,13 @@ class Practice:
         return self._choices.strokes_of(at, rows, choices)[0]
 
     def prospects(self, at: Positions) -> tuple[Floats, Floats]:
-        """Values of positions for this player by the rule of thumb, and the chances of their four widest
-        pots."""
+        """Values of positions for this player by the rule of thumb, and chances of their four widest pots."""
         rule = SURE if self.sure else RULE_OF_THUMB
         return prospects_of(at, self._spread, rule, threads=self.exact.threads)
 
 
 def practice_of(noise: NoiseLike, options: Any = None, source: Any = None) -> Practice:
-    """The practice table for a noise and ``options``; for None those of ``source`` if it is an environment,
-    else the defaults."""
+    """The practice table for a noise and ``options``; None: those of an environment ``source``."""
     if options is None:
         options = getattr(bare(source), "options", None)
         options = options if isinstance(options, Options) else {}
@@ -75,13 +70,11 @@ def practice_of(noise: NoiseLike, options: Any = None, source: Any = None) -> Pr
 
 
 def one_position(source: Any) -> Positions:
-    """The one position in a source of positions, with the points of its visit set to 0; ValueError if there
-    is not one to play."""
+    """The one position in a source, with no points in its visit; ValueError if there is not one to play."""
     tables = getattr(bare(source), "tables", None)
     if isinstance(tables, Tables) and not tables.begun.all():
-        raise refuse_what(
-            "position", "an environment before reset()", "must have a position: call reset() first"
-        )
+        words = "must have a position: call reset() first"
+        raise refuse_what("position", "an environment before reset()", words)
     at = Positions.of(source)
     if len(at) != 1:
         raise refuse_what("position", f"{len(at)} positions", "must be one position")
@@ -93,8 +86,7 @@ def one_position(source: Any) -> Positions:
 
 
 def played_from(at: Positions, stroke: CueStroke) -> Positions:
-    """The one position that a stroke is played from: as one of a visit, with the cue ball at the free place
-    nearest to the stroke's."""
+    """``at`` as a visit, with a cue ball in hand at the free place nearest to that of the stroke."""
     at = at.as_visits()
     if stroke.place is None:
         return at
@@ -106,6 +98,5 @@ def played_from(at: Positions, stroke: CueStroke) -> Positions:
 
 
 def keys(seed: int, purpose: int, n: int, *more: int) -> Any:
-    """n keys of noise samples, uint64 (n,). Equal arguments give equal keys, and a larger n begins with the
-    same keys."""
+    """n keys of noise samples, uint64 (n,): the same for equal arguments; a larger n begins with the same."""
     return np.random.default_rng((seed, purpose, *more)).integers(0, 2**64 - 1, n, dtype=np.uint64)

@@ -1,19 +1,17 @@
-"""What is one stroke? ``CueStroke``: speed, tip, aim, elevation and, with the cue ball in hand, its place;
-validated, and as an action."""
+"""What is one stroke? ``CueStroke``: speed, tip, aim, elevation and place; validated, and as an action."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from math import hypot
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import array, choice, number, refuse_what
-from .._types import Place
+from .._types import Floats, Place, Singles
 from ..game.in_hand import within_d
 from ..physics.parameters import Physics
-from ..planning import Positions
+from ..planning import Position, Positions
 from ..planning.strokes import FARTHEST, encoded
 from ..players import Strokes
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
@@ -21,30 +19,21 @@ from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
 
 @dataclass(frozen=True, kw_only=True)
 class CueStroke:
-    """One stroke as a player intends it. It is validated when it is made, and it is immutable.
+    """One stroke as a player intends it, immutable; ValueError for a number not finite or out of range.
 
     Parameters
     ----------
     speed : float
         Cue speed [m/s], in [0.2, 7].
     aim : float
-        Direction in which the cue ball leaves [rad], anticlockwise from +x. Squirt is compensated, as a
-        player does: with side, the cue points in a slightly different direction. ``aim="absolute"`` of an
-        action means the same.
-    side : float, optional
-        Tip offset to the right over R, as the player sees it; default 0. The point (side, top) must lie
-        within a disc of radius 0.5.
-    top : float, optional
-        Tip offset upwards over R; default 0.
-    elevation : float, optional
-        Elevation of the butt [rad], from 0 (default) to 30 degrees.
+        Direction in which the cue ball leaves [rad], anticlockwise from +x, as ``aim="absolute"`` of an
+        action. Squirt is compensated: with side, the cue points in a slightly different direction.
+    side, top : float
+        Tip offsets to the right and upwards over R, as the player sees it, within a disc of radius 0.5.
+    elevation : float
+        Elevation of the butt [rad], from 0 to 30 degrees.
     place : (float, float), optional
         Where in the D a cue ball in hand is placed first [m]. Default None: it is played from where it lies.
-
-    Raises
-    ------
-    ValueError
-        If a number is not finite or out of range.
 
     Examples
     --------
@@ -67,27 +56,20 @@ class CueStroke:
         for name in ("side", "top"):
             put(name, number(name, getattr(self, name), -FARTHEST, FARTHEST))
         if hypot(self.side, self.top) > FARTHEST + 1e-9:
-            raise refuse_what(
-                "side, top",
-                f"({self.side:g}, {self.top:g})",
-                f"must lie within the disc of radius {FARTHEST}",
-            )
+            allowed = f"must lie within the disc of radius {FARTHEST}"
+            raise refuse_what("side, top", f"({self.side:g}, {self.top:g})", allowed)
         put("elevation", number("elevation", self.elevation, 0.0, MAX_ELEVATION))
         if self.place is not None:
             put("place", tuple(array("place", self.place, (2,)).tolist()))
             if not within_d(*self.place):
-                raise refuse_what(
-                    "place",
-                    f"({self.place[0]:g}, {self.place[1]:g})",
-                    "must be on or within the lines of the D",
-                )
+                place = f"({self.place[0]:g}, {self.place[1]:g})"
+                raise refuse_what("place", place, "must be on or within the lines of the D")
 
     @classmethod
     def of(cls, stroke: "StrokeLike") -> "CueStroke":
-        """Convert an argument to a ``CueStroke``.
+        """Convert a dict with fields of ``CueStroke``, or an object with such attributes, to a ``CueStroke``.
 
-        ``stroke``: a dict with fields of ``CueStroke``, or an object with such attributes. Returns the
-        argument itself if it is one already. ValueError if a field is unknown, missing or out of range.
+        ValueError if a field is unknown, missing or out of range.
         """
         if isinstance(stroke, cls):
             return stroke
@@ -100,37 +82,24 @@ class CueStroke:
             values = {name: getattr(stroke, name) for name in names if hasattr(stroke, name)}
         for name in ("speed", "aim"):
             if name not in values:
-                raise refuse_what(
-                    "stroke",
-                    f"a {type(stroke).__name__} without {name!r}",
-                    "must be a CueStroke or a dict of its fields",
-                )
+                what = f"a {type(stroke).__name__} without {name!r}"
+                raise refuse_what("stroke", what, "must be a CueStroke or a dict of its fields")
         return cls(**values)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the stroke as JSON types.
-
-        Returns fields and their values; ``CueStroke(**fields)`` makes the stroke again.
-        """
+        """Return the fields as JSON types; ``CueStroke(**fields)`` makes the stroke again."""
         return asdict(self) | {"place": self.place and list(self.place)}
 
-    def numbers(self) -> NDArray[np.float64]:
-        """Return the stroke as a row of numbers, without its place.
-
-        Returns float64 (5,). Speed [m/s], side, top, aim [rad], elevation [rad].
-        """
+    def numbers(self) -> Floats:
+        """Return float64 (5,): speed [m/s], side, top, aim [rad], elevation [rad]."""
         return np.array([self.speed, self.side, self.top, self.aim, self.elevation])
 
-    def action(
-        self, *, elevation: bool = False, placement: bool = False, decision: bool = False
-    ) -> NDArray[np.float32]:
-        """Return the stroke as an action of an environment with ``aim="absolute"`` and the given options.
+    def action(self, *, elevation: bool = False, placement: bool = False, decision: bool = False) -> Singles:
+        """Return the stroke as an action of an environment with ``aim="absolute"``: float32 (k,) in [-1, 1].
 
-        ``elevation``: whether the action holds the elevation; default False. ``placement``: whether the
-        action holds the place in the D; default False. A stroke without a place puts the cue ball in the
-        middle of the baulk line. ``decision``: whether the action holds the decision after a foul; default
-        False. The decision is to play. Returns float32 (k,), with k from 4 to 8. The action, in [-1, 1].
-        ValueError if the cue is raised and the action does not hold the elevation.
+        ``elevation``, ``placement``, ``decision``: whether the action holds these. Without a place the cue
+        ball is put in the middle of the baulk line; the decision is to play. ValueError for a raised cue
+        that the action does not hold.
         """
         form = Actions("absolute", elevation, placement, Physics(), ("decision",) if decision else ())
         places = None if self.place is None else [self.place]
@@ -142,8 +111,7 @@ StrokeLike: TypeAlias = CueStroke | Mapping[str, Any] | Any
 
 
 def cue_strokes(strokes: Strokes, at: Positions) -> list[CueStroke]:
-    """The strokes that a player plays in the one position ``at``, with a place in the D if the cue ball is in
-    hand."""
+    """A player's strokes in the one position ``at``, with a place in the D if the cue ball is in hand."""
     in_hand, (here, *_) = bool(at.in_hand[0]), at.positions[0].tolist()
     out = []
     for (speed, side, top, aim, elevation), place in zip(strokes.values.tolist(), strokes.place, strict=True):
@@ -152,3 +120,159 @@ def cue_strokes(strokes: Strokes, at: Positions) -> list[CueStroke]:
         tip = {"side": side / shrink, "top": top / shrink}
         out.append(CueStroke(speed=speed, aim=aim, **tip, elevation=elevation, place=put))
     return out
+
+
+@dataclass(frozen=True, kw_only=True)
+class Suggestion(CueStroke):
+    """A stroke, what it does when played as intended, and its outcomes under execution errors.
+
+    Attributes
+    ----------
+    speed, aim, side, top, elevation, place
+        As in ``CueStroke``.
+    kind : {"pot", "contact", "escape", "in-off", "foul"}
+        What the stroke does without errors. "pot": it scores. "contact": it hits a ball on fairly and scores
+        nothing; what it is worth as a safety is not judged. "escape": the same where no straight path leads
+        to a ball on. "in-off": it loses the cue ball. "foul": any other foul.
+    ball : int
+        Id of the ball that it pots without errors or, if none, strikes first; -1 if it strikes nothing.
+    pocket : int
+        Pocket of that ball, an index into ``snooker_env.POCKETS``; -1 if it is not potted.
+    first : int
+        Id of the ball that it strikes first without errors; -1 if none.
+    chance : float
+        Of a pot: the share of the samples in which that ball went into that pocket without a foul.
+        Otherwise: the share without a foul.
+    chance_interval : (float, float)
+        Wilson's 95 % interval of the chance; without noise, the chance itself twice.
+    points : float
+        Expected points of the visit from this stroke on, continued by the fast player of
+        ``snooker_env.advice.visits``; a stronger one may score more.
+    points_interval : (float, float)
+        95 % interval of that mean: the sampling error of the strokes and of the visits.
+    foul, in_off : float
+        Shares of the samples with a foul, and in which the cue ball was potted.
+    stops : (float, float) or None
+        Mean stopping point of the cue ball [m] where it stayed on the table; None if it never did.
+    spread : float or None
+        Root of the mean square distance from that point [m].
+    score : float or None
+        The agent's own score of the stroke, in its own unit: points for a search, a probability for a policy.
+    words : str
+        All this in one line of text.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
+    >>> suggestion = sn.advise(position, agent="search", noise="none", n=1)[0]
+    >>> suggestion.kind, suggestion.chance
+    ('pot', 1.0)
+    >>> print(suggestion)  # doctest: +ELLIPSIS
+    black, top left, ... m/s, ..., chance 100 %, 7 points expected
+    """
+
+    kind: str
+    ball: int
+    pocket: int
+    first: int
+    chance: float
+    chance_interval: tuple[float, float]
+    points: float
+    points_interval: tuple[float, float]
+    foul: float
+    in_off: float
+    stops: Place | None
+    spread: float | None
+    score: float | None
+    words: str
+
+    @property
+    def figure(self) -> float:
+        """What its kind is ordered by: a pot's expected points, otherwise the share without a foul."""
+        return self.points if self.kind == "pot" else self.chance
+
+    @property
+    def stroke(self) -> CueStroke:
+        """The stroke alone, a ``CueStroke``."""
+        return CueStroke.of({field.name: getattr(self, field.name) for field in fields(CueStroke)})
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all attributes by name as JSON types; pairs as lists."""
+        return {name: list(x) if isinstance(x, tuple) else x for name, x in asdict(self).items()}
+
+    def __str__(self) -> str:
+        return self.words
+
+
+@dataclass(frozen=True, kw_only=True)
+class Advice(Sequence[Suggestion]):
+    """The strokes that an agent would play in a position, best first: a sequence of ``Suggestion``.
+
+    Attributes
+    ----------
+    suggestions : tuple of Suggestion
+        The strokes.
+    position : Position
+        The position.
+    agent : str
+        Name of the agent.
+    own : bool
+        Whether the strokes are the agent's own; False where none is fair, so that others were judged, too.
+    noise : str or dict
+        Execution errors: a level's name, or the fields of ``Noise``.
+    samples, visits, seed : int
+        As in ``advise``.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> position = sn.Position(cue=(0.3, 1.1), black=(0.0, 1.4605))
+    >>> advice = sn.advise(position, agent="search", noise="none", n=1)
+    >>> len(advice), advice.agent
+    (1, 'search')
+    >>> print(advice)  # doctest: +ELLIPSIS
+    Pots by points expected:
+    1. black, top left, ... m/s, ..., chance 100 %, 7 points expected
+    """
+
+    suggestions: tuple[Suggestion, ...]
+    position: Position
+    agent: str
+    own: bool
+    noise: str | dict[str, float]
+    samples: int
+    visits: int
+    seed: int
+
+    def __len__(self) -> int:
+        return len(self.suggestions)
+
+    @overload
+    def __getitem__(self, index: int) -> Suggestion: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Suggestion, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Suggestion | tuple[Suggestion, ...]:
+        return self.suggestions[index]
+
+    def __iter__(self) -> Iterator[Suggestion]:
+        return iter(self.suggestions)
+
+    @property
+    def order(self) -> str:
+        """Whose strokes these are if not the agent's own, and by what they are ordered, in words."""
+        by = {True: "pots by points expected", False: "strokes without a pot by how often they are fair"}
+        parts = ", then ".join(by[pot] for pot in dict.fromkeys(one.kind == "pot" for one in self))
+        whose = "" if self.own else f"{self.agent} has no fair stroke here; these are not its own. "
+        return f"{whose}{parts.capitalize()}:"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return all attributes by name as JSON types; the position and the suggestions as dicts."""
+        names = ("agent", "own", "order", "noise", "samples", "visits", "seed")
+        kept = {"position": self.position.to_dict(), **{name: getattr(self, name) for name in names}}
+        return {**kept, "suggestions": [one.to_dict() for one in self]}
+
+    def __str__(self) -> str:
+        return "\n".join([self.order, *(f"{k}. {one.words}" for k, one in enumerate(self, 1))])

@@ -1,5 +1,4 @@
-"""How does a visit go on? A fast player continues many visits at once under execution errors, stroke after
-stroke, to their end.
+"""How does a visit go on? A fast player continues many at once, with execution errors, to their end.
 
 1. It tries twelve strokes at the two widest pots, once each and without errors. The value of a stroke is the
    chance of its pot, by the rule of thumb, times its points plus the value of the position left.
@@ -7,30 +6,24 @@ stroke, to their end.
 3. Where there is no direct pot, so it chooses among strokes at what it sees of the balls on, or escapes.
 
 This is a shallow search, made to play hundreds of visits in a second. From open tables under professional
-noise it scores about 58 points a visit; "planner_500" scores about 120. So the points of advice are those of
-a good player, not of the best.
+noise it scores about 58 points a visit; "planner_500" about 120.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .._types import Floats, Ints, Words
 from ..planning import Positions, action_masks
 from ..planning.sobol import EVEN_SAMPLES
 from ..tasks.discrete_actions import SIDES, STROKES, choice_of
 from .practice import GOING_ON, Practice, keys
 
 PICKS = np.array([choice_of(p, s, SIDES.index(0.0), t) for p in range(2) for s in (1, 3, 5) for t in (1, 3)])
-"""The choices that are tried: 1.3, 2.3 and 3.6 m/s, tip 0.2 R above and below the middle. Without errors,
-more extreme strokes are overestimated."""
-BEST = 3
-"""Number of strokes that meet noise samples."""
+"""Choices tried: 1.3, 2.3 and 3.6 m/s, tip 0.2 R up or down. Without errors, extremes are overestimated."""
+BEST = 3  # number of strokes that meet noise samples
 
 
-def played_on(
-    practice: Practice, left: Positions, visits: NDArray[np.int64], seed: int
-) -> NDArray[np.float64]:
-    """Points (n,) of the rest of n visits from the positions ``left``; those with equal numbers ``visits``
-    (n,) meet equal errors."""
+def played_on(practice: Practice, left: Positions, visits: Ints, seed: int) -> Floats:
+    """Points (n,) of the rest of n visits from ``left``; equal numbers ``visits`` (n,) meet equal errors."""
     total, going, number = np.zeros(len(left)), np.arange(len(left)), 0
     most = int(visits.max()) + 1 if len(visits) else 0
     while len(going):
@@ -42,7 +35,7 @@ def played_on(
     return total
 
 
-def _choose(practice: Practice, at: Positions) -> NDArray[np.float64]:
+def _choose(practice: Practice, at: Positions) -> Floats:
     """The strokes that the fast player plays in n positions: (n, 5)."""
     n = len(at)
     rows, places = np.nonzero(action_masks(at)[:, PICKS])
@@ -50,9 +43,8 @@ def _choose(practice: Practice, at: Positions) -> NDArray[np.float64]:
     strokes, worth = np.zeros((n, len(PICKS), 5)), np.full((n, len(PICKS)), -1.0)
     strokes[rows, places] = practice.chosen(at, rows, choices)
     _, chances = practice.prospects(at)
-    worth[rows, places] = chances[rows, choices // STROKES] * _led_to(
-        practice, at, rows, strokes[rows, places], None
-    )
+    led_to = _led_to(practice, at, rows, strokes[rows, places], None)
+    worth[rows, places] = chances[rows, choices // STROKES] * led_to
     # each position has at least six
     best = np.argsort(-worth, axis=1, kind="stable")[:, : 1 if practice.sure else BEST]
     finalists = np.take_along_axis(strokes, best[:, :, None], 1)
@@ -64,13 +56,7 @@ def _choose(practice: Practice, at: Positions) -> NDArray[np.float64]:
     return finalists[np.arange(n), brought.reshape(n, BEST, k).mean(axis=2).argmax(axis=1)]
 
 
-def _led_to(
-    practice: Practice,
-    at: Positions,
-    rows: NDArray[np.int64],
-    strokes: NDArray[np.float64],
-    samples: NDArray[np.uint64] | None,
-) -> NDArray[np.float64]:
+def _led_to(practice: Practice, at: Positions, rows: Ints, strokes: Floats, samples: Words | None) -> Floats:
     """Points of strokes plus the values of the positions left: (n,)."""
     stops = practice.play(at, rows, strokes, samples)
     return stops.points + stops.goes_on * practice.prospects(stops.afterstates)[0]

@@ -1,11 +1,7 @@
-"""How is a stroke described in words? Balls, pockets, spin and chances in the game's terms, as "blue, right
-middle, 1.8 m/s, screw".
+"""How is a stroke described in words? Seen from the baulk end: right is the yellow side (+x)."""
 
-Left and right are as seen from the baulk end, facing the black end: right is the yellow side (+x), left the
-green side.
-"""
-
-from math import copysign, cos, degrees, inf, sin, sqrt
+from bisect import bisect_left
+from math import copysign, cos, degrees, sin, sqrt
 
 from ..game.balls import NAMES
 from ..geometry import BALL_RADIUS, BAULK_Y, HALF_LENGTH, HALF_WIDTH
@@ -13,19 +9,14 @@ from ..physics.parameters import Physics
 from .strokes import CueStroke
 
 POCKET_WORDS = ("green pocket", "yellow pocket", "right middle", "top right", "top left", "left middle")
-"""Names of the pockets in words, in the order of ``snooker_env.POCKETS``: the corners at the baulk end by the
-colour beside them, those at the black end "top".
-"""
-_STILL = 0.1
-"""Tip offsets over R up to this count as the middle of the ball."""
-_FAR_OFF = 0.3
-"""From this offset on: "deep" screw, and "top" instead of follow."""
-_STUN = 0.25
-"""A ball whose rotation is within this share of its speed arrives without spin."""
-_SIDE = 0.05
-"""Tip offsets over R from which side is mentioned."""
-RAISED = 0.05
-"""Elevation [rad] from which a raised cue is mentioned."""
+"""Names of ``snooker_env.POCKETS`` in words: baulk corners by the colour beside them, black's "top"."""
+_STILL = 0.1  # tip offsets over R up to this count as the middle of the ball
+_FAR_OFF = 0.3  # from this offset on: "deep" screw, and "top" instead of follow
+_STUN = 0.25  # A ball whose rotation is within this share of its speed arrives without spin
+_SIDE = 0.05  # tip offsets over R from which side is mentioned
+_FULLNESS = (0.38, 0.62, 0.87)
+"""Offsets of a ball over its diameter up to which it is struck three-quarter, half or quarter."""
+RAISED = 0.05  # elevation [rad] from which a raised cue is mentioned
 
 
 def ball_words(ball: int) -> str:
@@ -34,8 +25,7 @@ def ball_words(ball: int) -> str:
 
 
 def rolling(speed: float, top: float, distance: float, physics: Physics) -> float:
-    """Surface speed of a struck ball's rotation over its speed after a distance [m]: 1 for rolling, 0 for
-    stun, < 0 for backspin."""
+    """R w / v of a struck ball after a distance [m]: 1 for rolling, 0 for stun, < 0 for backspin."""
     # It slides until it rolls: v falls by mu_s g t, and R w, at first 5/2 v times the tip's height, grows by
     # 5/2 mu_s g t.
     brake = physics.mu_s * physics.g
@@ -88,8 +78,7 @@ def stroke_words(stroke: CueStroke, distance: float | None, physics: Physics) ->
 
 
 def cushion_words(x: float, y: float, aim: float) -> str:
-    """The cushion that a ball at (x, y), sent in the direction ``aim`` [rad], meets: left, right, top (the
-    black end) or baulk."""
+    """The cushion that a ball at (x, y) meets in the direction ``aim`` [rad]; "top" is the black end."""
     dx, dy = cos(aim), sin(aim)
     to_side = (HALF_WIDTH - x * copysign(1.0, dx)) / max(abs(dx), 1e-9)
     to_end = (HALF_LENGTH - y * copysign(1.0, dy)) / max(abs(dy), 1e-9)
@@ -99,33 +88,19 @@ def cushion_words(x: float, y: float, aim: float) -> str:
 
 
 def contact_words(x: float, y: float, aim: float) -> str:
-    """How full a ball at the offset (x, y) is struck by a cue ball that runs straight in the direction
-    ``aim`` [rad]."""
+    """How full a ball at the offset (x, y) is struck by a cue ball running straight along ``aim`` [rad]."""
     aside = (y * cos(aim) - x * sin(aim)) / (2.0 * BALL_RADIUS)
-    for far, words in (
-        (0.12, "full"),
-        (0.38, "three-quarter ball"),
-        (0.62, "half-ball"),
-        (0.87, "quarter-ball"),
-        (inf, "thin"),
-    ):
-        if abs(aside) <= far:
-            return words if far < 0.2 else f"{words} on the {'right' if aside > 0 else 'left'}"
-    raise AssertionError(aside)
+    if abs(aside) <= 0.12:
+        return "full"
+    words = ("three-quarter ball", "half-ball", "quarter-ball", "thin")[bisect_left(_FULLNESS, abs(aside))]
+    return f"{words} on the {'right' if aside > 0 else 'left'}"
 
 
 def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> str:
-    """What a stroke does when played as intended. ``how``: the first cushion of an escape, or how full a ball
-    is struck."""
+    """What a stroke does without errors. ``how``: an escape's first cushion, or how full a ball is struck."""
     if kind == "pot":
-        how = (
-            ""
-            if ball == first
-            else " by a plant"
-            if first <= 15 and ball <= 15
-            else f" off the {ball_words(first)}"
-        )
-        return f"{ball_words(ball)}{how}, {POCKET_WORDS[pocket]}"
+        how = " by a plant" if first <= 15 and ball <= 15 else f" off the {ball_words(first)}"
+        return f"{ball_words(ball)}{'' if ball == first else how}, {POCKET_WORDS[pocket]}"
     if kind == "in-off":
         return f"in-off from the {ball_words(first)}" if first >= 0 else "in-off, nothing struck"
     if kind == "foul":
@@ -138,9 +113,7 @@ def what_words(kind: str, ball: int, pocket: int, first: int, how: str = "") -> 
 def figures_words(kind: str, chance: float, points: float) -> str:
     """The figures of a stroke: chance and points expected of a pot, otherwise how often it is fair."""
     if kind != "pot":
-        unjudged = (
-            "; no pot intended, its worth as a safety is not judged" if kind in ("contact", "escape") else ""
-        )
-        return f"fair {100.0 * chance:.0f} %{unjudged}"
+        unjudged = "; no pot intended, its worth as a safety is not judged"
+        return f"fair {100.0 * chance:.0f} %{unjudged if kind in ('contact', 'escape') else ''}"
     scored = f"{points:.0f}" if points >= 9.5 else f"{points:.1f}".removesuffix(".0")
     return f"chance {100.0 * chance:.0f} %, {scored} point{'' if scored == '1' else 's'} expected"

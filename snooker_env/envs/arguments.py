@@ -1,5 +1,4 @@
-"""Which tables does a reset begin anew, from where, with which seeds, and which arrays are results written
-into? Checks the arguments of ``reset`` and ``step`` beside actions."""
+"""Which tables does a reset begin, from where, with which seeds, and where do results go?"""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -19,8 +18,7 @@ from ..tasks.tables import Tables
 STARTS = ("state", "states", "position", "positions")
 """Keys of the reset options that say where an episode starts that is not dealt."""
 ONE = ("state", "position", "breaker")
-MANY = ("reset_mask", *STARTS, "breaker")
-"""Keys of the reset options of one table and of many."""
+MANY = ("reset_mask", *STARTS, "breaker")  # keys of the reset options of one table and of many
 OUTPUTS: dict[str, tuple[str, type[np.generic]]] = {
     "observations": ("observations", np.float32),
     "rewards": ("rewards", np.float64),
@@ -71,15 +69,13 @@ def both_play(tables: Tables) -> bool:
 
 
 def breakers_of(options: dict[str, Any], tables: Tables) -> dict[str, Ints]:
-    """Who breaks on each table instead of the draw, as the keyword ``breakers`` of ``Frames.reset``; empty
-    without "breaker"."""
+    """Who breaks instead of the draw: ``breakers`` of ``Frames.reset``; empty without "breaker"."""
     if "breaker" not in options:
         return {}
     breaker, field, n = options["breaker"], 'options["breaker"]', tables.n
     for start in (key for key in STARTS if key in options):
-        raise refuse(
-            field, breaker, f'must be left out with "{start}": it says who breaks where balls are dealt'
-        )
+        words = f'must be left out with "{start}": it says who breaks where balls are dealt'
+        raise refuse(field, breaker, words)
     if not isinstance(tables, Frames) or len(tables.seats) == 1:
         raise refuse(field, breaker, "must be left out: there is no opponent, and nothing is drawn")
     if isinstance(breaker, list | tuple | np.ndarray) and np.ndim(breaker) > 0:
@@ -92,26 +88,21 @@ def breakers_of(options: dict[str, Any], tables: Tables) -> dict[str, Ints]:
 
 @dataclass(frozen=True)
 class Start:
-    """The start of an episode that is not dealt: a valid state of a table, or the arrays of a valid
-    position."""
+    """The start of an episode that is not dealt: a valid state, or the arrays of a valid position."""
 
-    state: Any = None
-    """``states.State`` or ``states.FrameState``."""
-    arrays: tuple[Floats, Bools, Ints] | None = None
-    """``planning.Position.arrays``."""
+    state: Any = None  # ``states.State`` or ``states.FrameState``
+    arrays: tuple[Floats, Bools, Ints] | None = None  # ``planning.Position.arrays``
 
     @classmethod
     def of(
         cls, state: Any, tables: Tables, generator: np.random.Generator, *, to_play: bool = False
     ) -> "Start":
-        """From a dict; ValueError if it is no valid state of these tables, or with ``to_play`` has no stroke
-        left."""
+        """From a dict; ValueError if it is no valid state here, or with ``to_play`` has no stroke left."""
         either = {"either": True} if both_play(tables) else {}
         return cls(state=tables.checked(state, generator, to_play=to_play, **either))
 
     def take(self, tables: Tables, k: int) -> dict[str, Any] | None:
-        """Put it on table k; returns the state of its NumPy generator, which every state has and no
-        position."""
+        """Put it on table k; returns the state of its NumPy generator, None for a position."""
         if self.arrays is not None:
             tables.set_position(k, *self.arrays)
             return None
@@ -143,8 +134,7 @@ def starts_of(
 
 
 def _position(field, position, tables):
-    """The arrays of a ``Position`` or its ``to_dict()``, validated on these tables; ``field``: its name in
-    errors."""
+    """The arrays of a ``Position`` or its ``to_dict()``, validated; ``field``: its name in errors."""
     from ..planning import Position
 
     if isinstance(position, Position):
@@ -172,11 +162,9 @@ def _position(field, position, tables):
 def arrays_of(
     out: Any, names: Collection[str], n: int, size: int, boxes: Mapping[str, Any] | None
 ) -> dict[str, NDArray[Any]]:
-    """The caller's arrays for results of n tables, by their names in ``StepOutput``; ``size``: of a flat
-    observation.
+    """The caller's arrays for results of n tables, by name; ``size``: of a flat observation.
 
-    ``boxes``: spaces of the parts of dict observations, whose arrays are checked and left out; None for flat
-    ones.
+    ``boxes``: spaces of dict observations, whose arrays are only checked; None for flat ones.
     """
     if out is None:
         return {}
@@ -194,9 +182,8 @@ def arrays_of(
                 _check_array(f"observations.{part}", a[part], box.shape, box.dtype.type)
             continue
         if any(np.may_share_memory(a, other) for other in arrays.values()):
-            raise refuse_what(
-                f'out["{name}"]', "an array", "must not share memory with another one that is given"
-            )
+            words = "must not share memory with another one that is given"
+            raise refuse_what(f'out["{name}"]', "an array", words)
         output, dtype = OUTPUTS[name]
         _check_array(name, a, (n, size) if name == "observations" else (n,), dtype)
         arrays[output] = a

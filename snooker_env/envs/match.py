@@ -1,5 +1,4 @@
-"""How do two agents play a frame or match against each other? PettingZoo's AEC interface around one table of
-``tasks.frame``."""
+"""How do two agents play a frame or match? PettingZoo's AEC interface around one table of ``tasks.frame``."""
 
 import copy
 from collections.abc import Mapping, Sequence
@@ -59,19 +58,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
 
     Parameters
     ----------
-    options : Options, optional
-        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the
-        keywords.
-    seats : (dict, dict), optional
-        What differs for each player: options of its actions, and "noise", its execution errors. Default None:
-        nothing.
-    render_mode : {"human", "rgb_array", "ansi"}, optional
-        How ``render`` shows the table; default None: not at all.
-    render_size : (int, int), optional
-        Width and height of pictures [pixels], each in [100, 8192]; default (1920, 1080).
-    **keywords
-        The keywords of ``Options``, in place of ``options``. Box actions hold placement and decision by
-        default, and with ``frames`` the task is "match".
+    options, seats, render_mode, render_size, **keywords
+        As in ``match_env``.
 
     Examples
     --------
@@ -85,12 +73,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     3
     """
 
-    metadata: dict[str, Any] = {  # noqa: RUF012
-        "name": "snooker_match_v0",
-        "render_modes": list(MODES),
-        "is_parallelizable": False,
-        "render_fps": FPS,
-    }
+    metadata: dict[str, Any] = {"render_modes": list(MODES), "render_fps": FPS}  # noqa: RUF012
+    metadata |= {"name": "snooker_match_v0", "is_parallelizable": False}
 
     tables: Frames
     possible_agents: list[str]
@@ -125,9 +109,8 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self.np_random, _ = seeding.np_random()
         self._selected: str | None = None
         self._record, self._keyed, self._last = Record(full=render_mode is not None), False, None
-        self._pictures = Pictures(
-            self.options.rules.table, render_mode, render_size, ("Player 1", "Player 2")
-        )
+        names = ("Player 1", "Player 2")
+        self._pictures = Pictures(self.options.rules.table, render_mode, render_size, names)
 
     @property
     def agent_selection(self) -> str:
@@ -173,8 +156,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         return observations.shaped(self.options.observation, rows[0], masks)
 
     def action_mask(self, agent: str) -> NDArray[np.int8]:
-        """Return the available choices of a player, int8 (choices,): all 0 unless it is the player's turn.
-        ValueError with ``action="box"``."""
+        """Return a player's available choices, int8 (choices,), 0 out of turn; ValueError without choices."""
         side = PLAYERS.index(agent)
         if not isinstance(self.tables.seats[side].actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
@@ -187,8 +169,7 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Begin a new frame; without a seed the random stream goes on.
 
-        ``options``: "state", "position" or "breaker", see Start and end. Other keys are ignored, because
-        PettingZoo's own tests pass some. ValueError if one of these is invalid.
+        ``options``: see Start and end, else ValueError; other keys are ignored: PettingZoo's tests pass some.
         """
         if isinstance(options, dict):
             options = {key: options[key] for key in ONE if key in options}
@@ -222,16 +203,14 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self.infos = {name: self._info(striker, k) for k, name in enumerate(PLAYERS)}
 
     def step(self, action: Action) -> None:
-        """Play the action of the selected player: float (k,) within [-1, 1], or a choice; None once it has
-        terminated or is truncated.
+        """Play the action of the selected player, None once it has terminated or is truncated.
 
         ValueError for an action outside the space, ResetNeeded if no player is left: then nothing is played.
         SimulationError if the shot cannot be computed.
         """
         if not self.agents:
-            raise gymnasium.error.ResetNeeded(
-                f"the frame {self.tables.unplayable}: call reset() before step()"
-            )
+            what = f"the frame {self.tables.unplayable}"
+            raise gymnasium.error.ResetNeeded(f"{what}: call reset() before step()")
         name: Any = self.agent_selection  # of PettingZoo's own type
         if self.terminations[name] or self.truncations[name]:
             self._was_dead_step(action)
@@ -241,15 +220,13 @@ class MatchEnv(OneTable, AECEnv[str, Any, Any]):
         self._pictures.require_display()
         crew = Crew(self._record.buffers, (), self._watch)
         self._record.begin_step()
-        played = self.tables.turn(
-            lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers, striker), out, crew
-        )[0]
+        prepare = lambda which, buffers: self.tables.prepare(which, np.array([a]), buffers, striker)  # noqa: E731
+        played = self.tables.turn(prepare, out, crew)[0]
         self._last = out if played else None
         self._cumulative_rewards[name] = 0.0
         gained, winner = self.tables.pay(0), self.frame.winner
-        self.rewards = {
-            player: frame_reward(self.options.reward, gained, winner, k) for k, player in enumerate(PLAYERS)
-        }
+        each = (frame_reward(self.options.reward, gained, winner, k) for k in range(2))
+        self.rewards = dict(zip(PLAYERS, each, strict=True))
         self._account(striker)
         self._accumulate_rewards()
         self._show(played=bool(played))

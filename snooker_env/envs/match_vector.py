@@ -1,5 +1,4 @@
-"""How do two players meet on thousands of tables, both stepped by the caller? ``match_env`` on many tables,
-as kernels."""
+"""How do two players meet on thousands of tables? ``match_env`` on many tables, as kernels."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -26,25 +25,17 @@ class MatchVectorEnv(SnookerVectorEnv):
     A step is one turn on each table, of the player whose turn it is there: ``strikers``. Observations are
     those of the strikers, from their own side; infos have the keys of ``SnookerEnv`` as player 0 sees them,
     with the last stroke of either player, and "striker". Rewards are float64 (n, 2), one for each player;
-    they sum to zero.
-
-    A table whose frame or match has ended stands still until ``reset(options={"reset_mask": ...})``: its
-    actions are ignored, its rewards are 0, and its flags stay.
+    they sum to zero. A table whose frame or match has ended stands still until
+    ``reset(options={"reset_mask": ...})``: its actions are ignored, its rewards are 0, and its flags stay.
 
     Parameters
     ----------
-    num_envs : int, optional
-        Number of tables, in [1, 2**24]; default 1.
-    options : Options, optional
-        The options, with ``task="frame"`` or "match" and no opponent. Default None: they are made from the
-        keywords.
+    num_envs, options, **keywords
+        As in ``SnookerVectorEnv``, with ``task="frame"`` or "match" and no opponent, and without
+        ``autoreset_mode`` and ``max_episode_steps``. As in ``match_env`` box actions hold placement and
+        decision by default, and with ``frames`` the task is "match".
     seats : (dict, dict), optional
-        What differs for each player: options of its actions, and "noise", its execution errors. Default None:
-        nothing.
-    **keywords
-        ``threads``, ``render_mode`` and ``render_size`` of ``SnookerVectorEnv``, and the keywords of
-        ``Options`` in place of ``options``. As in ``match_env`` box actions hold placement and decision by
-        default, and with ``frames`` the task is "match".
+        What differs for each player: options of its actions, and "noise", its execution errors.
 
     Examples
     --------
@@ -78,16 +69,14 @@ class MatchVectorEnv(SnookerVectorEnv):
         self.single_action_space = one if self._alike else spaces.Tuple((one, other))
         self.action_space = batch_space(self.single_action_space, self.num_envs)
 
-    def _game_of(self, options: Options | None, keywords: dict[str, Any]) -> tuple[Options, Any]:
-        return match_options(options, keywords), None
+    _game_of = staticmethod(lambda options, keywords: (match_options(options, keywords), None))
 
     def _tables_of(self, opponent: Any, limit: int) -> Tables:
         return match_tables(self.options, self._differences, self.num_envs)
 
     @property
     def strikers(self) -> Ints:
-        """Whose turn it is on each table: int64 (num_envs,), 0 or 1; of a frame that has ended, whose turn
-        was the last."""
+        """Whose turn it is, or was at the end, on each table: int64 (num_envs,), 0 or 1."""
         return self.tables.game[:, STRIKER].copy()
 
     def reset(
@@ -103,9 +92,8 @@ class MatchVectorEnv(SnookerVectorEnv):
     ) -> tuple[Observation, Floats, Bools, Bools, dict[str, Any]]:
         """Play one turn on each table, see ``SnookerVectorEnv.step``; without ``out``.
 
-        ``actions`` are the strikers'. With seats whose actions differ, two such arrays, one for each player,
-        of which the striker's rows are read. Observations are of the players whose turn it is now; rewards
-        float64 (num_envs, 2).
+        ``actions`` are the strikers'; with seats whose actions differ two such arrays, one for each player.
+        Observations are of the players whose turn it is now; rewards float64 (num_envs, 2).
         """
         _refuse_out(out)
         tables = self.tables
@@ -113,9 +101,8 @@ class MatchVectorEnv(SnookerVectorEnv):
             words = "must be two arrays, one for each player: their seats differ"
             raise refuse_what("actions", f"a {type(actions).__name__}", words)
         each = [actions, actions] if self._alike else actions
-        checked = [
-            seat.actions.check_many(a, self.num_envs) for seat, a in zip(tables.seats, each, strict=True)
-        ]
+        pairs = zip(tables.seats, each, strict=True)
+        checked = [seat.actions.check_many(a, self.num_envs) for seat, a in pairs]
         self._require_begun()
         written = tables.output()
         with self._playing():
@@ -135,8 +122,7 @@ class MatchVectorEnv(SnookerVectorEnv):
         return super()._shaped(written, None)
 
     def action_masks(self) -> Bools:
-        """Return the available choices of the strikers, bool (num_envs, choices); ValueError unless both
-        players have the same discrete actions."""
+        """Return the strikers' choices, bool (num_envs, choices); ValueError unless both have the same."""
         if not self._alike or not isinstance(self.tables.seats[0].actions, Choices):
             words = 'must be "discrete" for both players: a Box has no masks'
             raise refuse("action", self.options.action, words)

@@ -23,23 +23,18 @@ from .pictures import Picture, Pictures
 
 
 class Record:
-    """The strokes of one table since the reset. ``full``: all, with their paths; else only the agent's last
-    ``Shot``."""
+    """The strokes of one table since the reset: ``full``, all with paths; else the agent's last ``Shot``."""
 
     def __init__(self, *, full: bool, last_shot: Shot | None = None):
         self.full = full
-        self.buffers = ShotBuffers(1, path=full)
-        """Work space in which the strokes are played."""
-        self.strokes: list[Played] = []
-        """Of both players; empty unless ``full``."""
-        self.last_shot: Shot | None = last_shot
-        """The agent's; with ``full``, that of either player."""
+        self.buffers = ShotBuffers(1, path=full)  # work space in which the strokes are played
+        self.strokes: list[Played] = []  # of both players; empty unless ``full``
+        self.last_shot: Shot | None = last_shot  # the agent's; with ``full``, that of either player
         self._before, self._rendered = 0, False
         self._ended: tuple[list[Played], int] = [], 0
 
     def begin_episode(self) -> None:
-        """Forget the last episode but for strokes not rendered yet: some vector environments reset within a
-        step."""
+        """Keep only strokes not rendered yet: some vector environments reset within a step."""
         self._ended = ([], 0) if self._rendered else (self.strokes, len(self.strokes) - self._before)
         self.strokes, self.last_shot, self._before, self._rendered = [], None, 0, False
 
@@ -66,8 +61,7 @@ class OneTable:
     """An environment with one table: ``SnookerEnv``, and ``MatchEnv`` with two players."""
 
     options: Options
-    tables: Tables
-    """The one table: ``tasks.tables.Tables``."""
+    tables: Tables  # the one table: ``tasks.tables.Tables``
     np_random: np.random.Generator
     render_mode: str | None
     _np_random_seed: int | None
@@ -107,8 +101,7 @@ class OneTable:
 
     @property
     def over(self) -> bool:
-        """Whether there is no stroke to play, a bool: the episode has ended, was stopped, or has not
-        begun."""
+        """Whether there is no stroke to play: the episode has ended, was stopped, or has not begun."""
         return bool(self.tables.ended()[0])
 
     @property
@@ -132,24 +125,20 @@ class OneTable:
         return self.options.rules.noise
 
     # strokes
-    # ------------------------------------------------------------------------------------------------
 
     @property
     def last_shot(self) -> Shot | None:
-        """The agent's last ``Shot``, None before the first; with a history that of either player, with its
-        path."""
+        """The agent's last ``Shot``, None before the first; with a history that of either player."""
         return self._record.last_shot
 
     @property
     def history(self) -> list[Played]:
-        """The ``Played`` strokes of both players since the last reset, a list; empty unless
-        ``keep_history``."""
+        """Both players' ``Played`` strokes since the last reset, a list; empty unless ``keep_history``."""
         return list(self._record.strokes)
 
     @property
     def keep_history(self) -> bool:
-        """Whether ``history`` is kept, with the path of every stroke, a bool: from when it is set to True,
-        and always with a render mode. Setting it to False forgets the strokes so far."""
+        """Whether ``history`` is kept, with all paths; always with a render mode. False forgets it."""
         return self._record.full
 
     @keep_history.setter
@@ -163,8 +152,7 @@ class OneTable:
         self._record.saw(self.tables, k, buffers, j, mine)
 
     def render(self) -> Picture:
-        """Return the table with the paths of the last shot: uint8 (H, W, 3) with "rgb_array", str with
-        "ansi", else None. Recorders get the motion of the strokes."""
+        """Return a ``Picture``, with the paths of the last shot; recorders get the motion of the strokes."""
         return self._pictures.render(self.tables, 0, self._record.strokes, self._record.recent())
 
     def _show(self, *, played: bool = False) -> None:
@@ -175,20 +163,13 @@ class OneTable:
         self._pictures.close()
 
     # states
-    # ------------------------------------------------------------------------------------------------
 
     def get_state(self) -> dict[str, Any]:
-        """Return everything between two shots, a dict of JSON types: table, game and random stream.
-
-        Its keys: docs/environment/specification.md. ``set_state`` and ``reset`` restore it exactly.
-        """
+        """Return everything between two shots as JSON types, see docs/environment/specification.md."""
         return self.tables.get_state(0) | {"rng": self.np_random.bit_generator.state}
 
     def set_state(self, state: dict[str, Any]) -> None:
-        """Restore a result of ``get_state``; the next shot continues identically.
-
-        ValueError if it is invalid; then nothing has changed.
-        """
+        """Restore a result of ``get_state``; ValueError if it is invalid: then nothing has changed."""
         self._begin_at(Start.of(state, self.tables, self.np_random), seeded=False)
         self._begin()
 

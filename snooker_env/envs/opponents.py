@@ -1,5 +1,4 @@
-"""Who sits opposite the agent of a frame? What the option ``opponent`` names, or an object, bound once to the
-game."""
+"""Who sits opposite the agent of a frame? Whom the option ``opponent`` names, or an object, bound once."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -45,8 +44,7 @@ def opponent_of(opponent: Any, options: Options) -> Opponent:
 
 
 def game_of(options: Options | None, keywords: Mapping[str, Any]) -> tuple[Options, Any]:
-    """The ``Options`` of an environment, as ``options_of``, and who was passed as an object beside them, else
-    None."""
+    """The ``Options`` of an environment, and the opponent that was passed as an object, else None."""
     opponent = keywords.get("opponent")
     if opponent is None or isinstance(opponent, str | Path):
         return options_of(options, keywords), None
@@ -57,8 +55,7 @@ def game_of(options: Options | None, keywords: Mapping[str, Any]) -> tuple[Optio
 
 
 def match_options(options: Options | None, keywords: Mapping[str, Any]) -> Options:
-    """The ``Options`` of an environment of two players: box actions hold placement and decision, and with
-    ``frames`` it is a match."""
+    """``Options`` for two players: box actions hold placement and decision; with ``frames`` it is a match."""
     if options is None:
         box = keywords.get("action", "box") == "box"
         task = "match" if "frames" in keywords else "frame"

@@ -1,5 +1,4 @@
-"""How does an environment show itself? A picture for "rgb_array", text for "ansi", a window with the moving
-shot for "human"."""
+"""How does an environment show itself? As a picture, as text, or in a window with the moving shot."""
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -8,22 +7,20 @@ from typing import Any, TypeAlias
 
 import gymnasium
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import integer, refuse
+from .._types import Bytes
 from ..physics.table import Table
 from ..tasks.played import Played
 from ..tasks.tables import Tables
 
 MODES = ("human", "rgb_array", "ansi")
 FPS = 30
-HOLD = 15
-"""Pictures of the table after each stroke of a film, with the referee's words."""
-SIZE = (1920, 1080)
-"""Default width and height of pictures [pixels], as in render.view."""
+HOLD = 15  # pictures of the table after each stroke of a film, with the referee's words
+SIZE = (1920, 1080)  # default width and height of pictures [pixels], as in render.table_picture
 
 
-Picture: TypeAlias = NDArray[np.uint8] | str | None
+Picture: TypeAlias = Bytes | str | None
 """uint8 (H, W, 3) with "rgb_array", str with "ansi", else None."""
 
 
@@ -42,10 +39,8 @@ class PictureSource:
     """The pictures of one environment: the current one or, for a recorder, first those of the motion.
 
     ``RecordVideo`` of Gymnasium and ``VecVideoRecorder`` of Stable-Baselines3 call ``render()`` once after
-    each step, in a method named ``_capture_frame``, and append the result to their film. A step here is a
-    whole shot, so a visit would become a film of a fifth of a second, and no recorder accepts a list of
-    pictures. So ``render()``, called by such a method, calls it back once for each picture of the motion; the
-    recorder's own call then returns the last one.
+    each step, in a method named ``_capture_frame``. A step here is a whole shot, and no recorder accepts a
+    list. So ``render()``, called by such a method, calls it back for each picture of the motion.
     """
 
     def __init__(self) -> None:
@@ -66,10 +61,7 @@ class PictureSource:
 
 
 class Pictures:
-    """The pictures of one environment. A window belongs to one process; a copy of the environment has none.
-
-    ``size``: width and height [pixels]; ``players``: their names on the score bar.
-    """
+    """The pictures of one environment, ``size`` [pixels], ``players`` on the bar; a copy has no window."""
 
     def __init__(
         self, table: Table, mode: str | None, size: Sequence[int] = SIZE, players: tuple[str, ...] = ()
@@ -91,9 +83,8 @@ class Pictures:
         """
         if self.mode is None:
             modes = '"rgb_array", "ansi" or "human"'
-            gymnasium.logger.warn(
-                f"render() without render_mode; make the environment with render_mode={modes}"
-            )
+            how = f"make the environment with render_mode={modes}"
+            gymnasium.logger.warn(f"render() without render_mode; {how}")
         if self.mode == "rgb_array":
             motion = lambda: chain.from_iterable(self._motion(*some) for some in recent)  # noqa: E731
             return self._source.picture(motion, lambda: self._still(tables, k, history))
@@ -104,8 +95,7 @@ class Pictures:
         return None
 
     def render_all(self, tables: Tables, recent: list[list[Played]]) -> tuple[Picture, ...]:
-        """``render`` for many tables at once. They move at the same time, and all wait for the longest
-        motion."""
+        """``render`` for many tables: they move at the same time and wait for the longest motion."""
         if self.mode != "rgb_array":
             return tuple(self.render(tables, k, strokes, []) for k, strokes in enumerate(recent))
 
@@ -121,8 +111,7 @@ class Pictures:
         return self._source.picture(motion, still)
 
     def require_display(self) -> None:
-        """RuntimeError if a stroke is to be shown in a window and there is no display. A reset does without:
-        Gymnasium's ``check_env`` resets an environment of each mode, on servers too."""
+        """RuntimeError if a stroke needs a window and there is no display; a reset needs none."""
         if self.mode == "human":
             from ..render.window import require_display
 
@@ -151,32 +140,29 @@ class Pictures:
 
     def _films(self, history: list[Played], recent: int) -> Iterator[Any]:
         """The last strokes: each as a film, and the table after it."""
-        from ..replays.bars import bars
         from ..replays.film import filmed
+        from ..replays.words import bars
 
         shown = bars(history, self.players)
         for k in range(len(history) - recent, len(history)):
             yield filmed(self.table, history[k], *shown[k])
 
-    def _motion(self, history: list[Played], recent: int) -> Iterator[NDArray[np.uint8]]:
-        from ..render.pygame_view import rgb_array
-
+    def _motion(self, history: list[Played], recent: int) -> Iterator[Bytes]:
         for film, after in self._films(history, recent):
-            for scene in film.scenes(FPS):
-                yield rgb_array(scene, size=self.size)
-            still = rgb_array(after, size=self.size)
-            for _ in range(HOLD):
-                yield still
+            yield from map(self._picture, film.scenes(FPS))
+            yield from [self._picture(after)] * HOLD
 
     def _still(self, tables, k, history):
+        return self._picture(self._scene(tables, k, history))
+
+    def _picture(self, scene):
         from ..render.pygame_view import rgb_array
 
-        return rgb_array(self._scene(tables, k, history), size=self.size)
+        return rgb_array(scene, size=self.size)
 
     def _scene(self, tables, k, history):
-        from ..render.scene import ball_paths, contacts, scene
-        from ..render.turning import Turning
-        from ..replays.bars import bars, standing_bar
+        from ..render.scene import Turning, ball_paths, contacts, scene
+        from ..replays.words import bars, standing_bar
 
         paths = ghosts = last = None
         turns = {0: np.array([1.0, 0.0, 0.0, 0.0])}  # spots as in films
@@ -190,16 +176,8 @@ class Pictures:
             if shot.on_table[0] and np.array_equal(shot.positions[0], tables.positions[k][0]):
                 turns = {0: Turning(shot, 0).at(shot.duration)}
         bar = standing_bar(tables, k, self.players, last)
-        return scene(
-            self.table,
-            tables.positions[k],
-            tables.on_table[k],
-            paths=paths,
-            ghosts=ghosts,
-            turns=turns,
-            text=tables.text(k),
-            bar=bar,
-        )
+        over: Any = {"paths": paths, "ghosts": ghosts, "turns": turns, "text": tables.text(k), "bar": bar}
+        return scene(self.table, tables.positions[k], tables.on_table[k], **over)
 
 
 def checked_size(size: Any) -> tuple[int, int]:

@@ -1,5 +1,4 @@
-"""What is ``Snooker-v0``? The Gymnasium environment: composes action, noise, strike, engine, referee,
-observation and reward."""
+"""What is ``Snooker-v0``? The Gymnasium environment of one table."""
 
 from collections.abc import Sequence
 from inspect import cleandoc
@@ -120,7 +119,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin a new episode; without a seed the random stream goes on. ``options``: see Episode.
+        """Begin a new episode, see Episode; without a seed the random stream goes on.
 
         Returns the observation and the info. ValueError for an unknown key, or a state or position that is
         invalid or has no stroke left.
@@ -139,17 +138,15 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
     def step(self, action: Action) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Play one shot; in a frame, also all strokes of the opponent after it.
 
-        ``action``: float (k,) within [-1, 1], or a choice. Returns observation, reward, terminated,
-        truncated, info. ValueError for an action outside the space, ResetNeeded if no episode is going on:
-        then nothing is played. SimulationError if a shot cannot be computed: the balls lie as before, but for
-        a cue ball that was placed.
+        Returns observation, reward, terminated, truncated, info. ValueError for an action outside the space,
+        ResetNeeded if no episode is going on: then nothing is played. SimulationError if a shot cannot be
+        computed: the balls lie as before, but for a cue ball that was placed.
         """
         a = self.options.rules.actions.check(action)
         tables = self.tables
         if tables.finished()[0]:
-            raise gymnasium.error.ResetNeeded(
-                f"the {self.options.task} {tables.unplayable}: call reset() before step()"
-            )
+            what = f"the {self.options.task} {tables.unplayable}"
+            raise gymnasium.error.ResetNeeded(f"{what}: call reset() before step()")
         self._pictures.require_display()
         out = tables.output()
         self._record.begin_step()
@@ -162,8 +159,7 @@ class SnookerEnv(OneTable, gymnasium.Env[Any, Any]):
         return self._shaped(out), float(out.rewards[0]), *ended, tables.info(out, 0)
 
     def action_masks(self) -> Bools:
-        """Return the available choices, bool (540,) or longer; sb3-contrib's maskable algorithms call this.
-        ValueError with ``action="box"``."""
+        """Return the choices, bool (540,) or longer, for maskable algorithms; ValueError with "box"."""
         if not isinstance(self.options.rules.actions, Choices):
             raise refuse("action", "box", 'must be "discrete": a Box has no masks')
         return self.tables.action_masks()[0]

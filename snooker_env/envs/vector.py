@@ -1,5 +1,4 @@
-"""How do thousands of tables play side by side? The native vector environment of ``Snooker-v0``: steps as
-kernels, on several threads.
+"""How do thousands of tables play side by side? As kernels, on several threads.
 
 gymnasium.make_vec("Snooker-v0", num_envs=1024, vectorization_mode="vector_entry_point", noise="club")
 """
@@ -31,15 +30,10 @@ from .snooker import SnookerEnv
 
 PICTURES = ("rgb_array", "ansi")
 _ONE_TABLE = "simulate_batch, or SnookerEnv for one table"
-NOT_OF_A_TABLE = {
+NOT_OF_A_TABLE = dict.fromkeys(("last_shot", "history", "keep_history"), _ONE_TABLE) | {
+    **{name: name for name in ("step", "render", "close")},
     "reset": 'reset(options={"reset_mask": ...})',
-    "step": "step",
     "set_state": 'reset(options={"states": ...})',
-    "render": "render",
-    "close": "close",
-    "last_shot": _ONE_TABLE,
-    "history": _ONE_TABLE,
-    "keep_history": _ONE_TABLE,
     "spec": "the attribute spec",
     "unwrapped": "this environment",
     "get_wrapper_attr": "call",
@@ -78,8 +72,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
     ----------
     num_envs : int, optional
         Number of tables, in [1, 2**24]; default 1.
-    options : Options, optional
-        The options, see ``SnookerEnv``. Default None: they are made from the keywords.
+    options, **keywords
+        The options, or their keywords, see ``SnookerEnv``.
     max_episode_steps : int, optional
         Number of steps after which an episode is truncated; default None: never.
     render_mode : {"rgb_array", "ansi"}, optional
@@ -90,8 +84,6 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         In [1, 1024]; default one for each available processor. Results do not depend on it.
     render_size : (int, int), optional
         Width and height of a table's picture [pixels], each in [100, 8192]; default (1920, 1080).
-    **keywords
-        The keywords of ``Options``, in place of ``options``.
 
     Examples
     --------
@@ -152,15 +144,13 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         """The strokes of each table in the last step or reset, if they are shown."""
         self._crew = Threads(threads, watch=None if render_mode is None else self._saw)
 
-    def _game_of(self, options: Options | None, keywords: dict[str, Any]) -> tuple[Options, Any]:
-        """The options, and who sits opposite the agent."""
-        return game_of(options, keywords)
+    _game_of = staticmethod(game_of)
+    """The options, and who sits opposite the agent."""
 
     def _tables_of(self, opponent: Any, limit: int) -> Tables:
         return tables_of(self.options, opponent, self.num_envs, limit)
 
     # Gymnasium's interface
-    # ------------------------------------------------------------------------------------------------
 
     def reset(
         self,
@@ -172,9 +162,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         """Begin new episodes on all tables, or on some; ``options`` and ``out``: see the class.
 
         Table k draws from seed + k, or from element k of a list; without a seed the streams go on. Returns
-        observations float32 (num_envs, k), or a dict of such arrays, and infos: an array for each key, and
-        under "_key" which tables it holds for. ValueError for invalid options, ResetNeeded if a table outside
-        the mask has never been reset.
+        observations and infos: an array for each key, and under "_key" which tables it holds for. ValueError
+        for invalid options, ResetNeeded if a table outside the mask has never been reset.
         """
         options, tables = known_options(options, MANY), self.tables
         seeds, wanted = seeds_of(seed, self.num_envs), mask_of(options, self.num_envs)
@@ -220,9 +209,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         mode = self.autoreset_mode
         if mode == AutoresetMode.DISABLED and self._done.any():
             what, k = self.options.task, int(np.argmax(self._done))
-            raise gymnasium.error.ResetNeeded(
-                f'the {what} on table {k} is over: reset(options={{"reset_mask": ...}}) before step()'
-            )
+            first = 'reset(options={"reset_mask": ...}) before step()'
+            raise gymnasium.error.ResetNeeded(f"the {what} on table {k} is over: {first}")
         same_step = mode == AutoresetMode.SAME_STEP
         waiting = self._done if mode == AutoresetMode.NEXT_STEP else np.zeros(self.num_envs, np.bool_)
         written = self.tables.output(last=same_step, arrays=arrays)
@@ -245,8 +233,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return self.tables.action_masks()
 
     def render(self) -> tuple[Picture, ...]:
-        """Return a picture of each table, as ``SnookerEnv.render``. A recorder gets the motion of all of them
-        at once."""
+        """Return a picture of each table, as ``SnookerEnv.render``; a recorder gets all motion at once."""
         return self._pictures.render_all(self.tables, self._recent)
 
     def close_extras(self, **kwargs: Any) -> None:
@@ -261,8 +248,7 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
 
     @property
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
-        """The NumPy generator of each table, a tuple. Each is used once, for the key of its table's random
-        stream."""
+        """Each table's NumPy generator, used once: for the key of the table's random stream."""
         for k, generator in enumerate(self._generators):
             if generator is None:
                 self._generators[k], self._generator_seeds[k] = seeding.np_random(None)
@@ -274,21 +260,17 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
         return tuple(self._generator_seeds) if self.np_random else ()
 
     # single tables
-    # ------------------------------------------------------------------------------------------------
 
     def get_state(self) -> list[dict[str, Any]]:
-        """Return the state of each table, a list of dicts, as ``SnookerEnv.get_state``.
-
-        ``reset(options={"states": states})`` restores them. They do not hold steps towards
-        ``max_episode_steps``.
-        """
-        return [
-            self.tables.get_state(k) | {"rng": g.bit_generator.state} for k, g in enumerate(self.np_random)
-        ]
+        """Return the state of each table, for ``reset(options={"states": states})``; it counts no steps."""
+        each = enumerate(self.np_random)
+        return [self.tables.get_state(k) | {"rng": one.bit_generator.state} for k, one in each]
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """Read an attribute or call a method of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call``
-        does. ValueError if the name does not belong to one table, AttributeError if there is none."""
+        """Read or call something of ``SnookerEnv`` for each table, as ``SyncVectorEnv.call`` does.
+
+        ValueError if the name does not belong to one table, AttributeError if there is none.
+        """
         if not isinstance(name, str) or name in NOT_OF_A_TABLE or name.startswith("_"):
             instead = NOT_OF_A_TABLE.get(name) if isinstance(name, str) else None
             words = "must be something public that a table has for itself"
@@ -301,16 +283,13 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
             each.append(getattr(one, name))
         return tuple(one(*args, **kwargs) if callable(one) else one for one in each)
 
-    def get_attr(self, name: str) -> tuple[Any, ...]:
-        """Read an attribute of ``SnookerEnv`` for each table, see ``call``."""
-        return self.call(name)
+    get_attr = call
 
     def set_attr(self, name: str, values: Any) -> None:
         """Refuse with AttributeError: the tables share everything. Make another environment instead."""
         raise AttributeError(f"{name} cannot be set: the tables share everything; make another environment")
 
     # parts of reset and step
-    # ------------------------------------------------------------------------------------------------
 
     def _require_begun(self) -> None:
         if not self._begun.all():

@@ -1,2 +1,1 @@
-"""A page to play snooker, with an advisor, and its HTTP protocol: ``python -m snooker_env.play``; see
-docs/play/protocol.md."""
+"""A page to play snooker, with an advisor, and its HTTP protocol (docs/play/protocol.md)."""

@@ -1,5 +1,4 @@
-"""How is the page opened? ``python -m snooker_env.play``: a server on this machine's own address, and the
-browser on its page."""
+"""``python -m snooker_env.play``: a server on this machine's own address, and the browser on its page."""
 
 import argparse
 import json
@@ -11,60 +10,43 @@ from typing import Any
 from .._check import refuse_what
 from ..tasks.noise import LEVELS
 
-MOST_FILE = 1_000_000
-"""Largest size of a position's file [bytes]."""
+MOST_FILE = 1_000_000  # largest size of a position's file [bytes]
 
 
 def _arguments(argv: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="python -m snooker_env.play",
-        description="Play snooker in the browser: against yourself or an agent, from any position, with an advisor. Programs can play "
-        "too, by the protocol in the documentation. The server listens on 127.0.0.1 only, and requires the address that it prints.",
-    )
-    parser.add_argument("--port", type=int, default=0, help="port to listen on (default: any free port)")
-    parser.add_argument("--no-browser", action="store_true", help="only print the address")
-    parser.add_argument(
-        "--agent",
-        action="append",
-        default=[],
-        metavar="NAME",
-        help="an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or MODULE:CLASS; the first one "
-        "is your opponent; may be given more than once",
-    )
-    parser.add_argument("--trust", action="store_true", help="let code in an --agent's model file run")
-    parser.add_argument(
-        "--noise",
-        choices=list(LEVELS),
-        default="professional",
-        help="execution errors of the agent (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)"
-    )
-    parser.add_argument("--layout", default="break_off", help="how the table is dealt (default: %(default)s)")
-    parser.add_argument(
-        "--seed", type=int, default=None, help="seed of all random numbers (default: a new one each time)"
-    )
+    about = """Play snooker in the browser: against yourself or an agent, from any position, with an advisor.
+        Programs can play too, by the protocol in the documentation. The server listens on 127.0.0.1 only, and
+        requires the address that it prints."""
+    parser = argparse.ArgumentParser(prog="python -m snooker_env.play", description=about)
+    add = parser.add_argument
+    add("--port", type=int, default=0, help="port to listen on (default: any free port)")
+    add("--no-browser", action="store_true", help="only print the address")
+    agent = """an agent that can be chosen on the page: a name of snooker_env.players(), a model's .zip, or
+        MODULE:CLASS; the first one is your opponent; may be given more than once"""
+    add("--agent", action="append", default=[], metavar="NAME", help=agent)
+    add("--trust", action="store_true", help="let code in an --agent's model file run")
+    noise = "execution errors of the agent (default: %(default)s)"
+    add("--noise", choices=list(LEVELS), default="professional", help=noise)
+    add("--position", type=Path, metavar="FILE", help="begin with this position or saved game (JSON)")
+    add("--layout", default="break_off", help="how the table is dealt (default: %(default)s)")
+    add("--seed", type=int, help="seed of all random numbers (default: a new one each time)")
     return parser.parse_args(argv)
 
 
 def service_of(args: argparse.Namespace) -> Any:
-    """The game for the command line's arguments: a ``Service``. ValueError or OSError if something is
-    invalid."""
+    """The game for the command line's arguments; ValueError or OSError if something is invalid."""
     import numpy as np
 
     from ..players import player
     from .routes import position_of
-    from .seats import PERSON, Seats
-    from .service import Service
+    from .service import PERSON, Seats, Service
     from .session import Session
 
     seed = int(np.random.SeedSequence().entropy) % 2**62 if args.seed is None else args.seed  # type: ignore[arg-type]
     session = Session(layout=args.layout, seed=seed)
-    agents = {
-        Path(name).stem if name.endswith(".zip") else name: player(name, trust=args.trust)
-        for name in args.agent
-    }
+    shown = [Path(name).stem if name.endswith(".zip") else name for name in args.agent]
+    players = [player(name, trust=args.trust) for name in args.agent]
+    agents = dict(zip(shown, players, strict=True))
     seats = Seats(agents)
     if agents:
         seats.sit([PERSON, next(iter(agents))])
@@ -79,8 +61,7 @@ def service_of(args: argparse.Namespace) -> Any:
 
 
 def warm_up(service: Any) -> None:
-    """Compile everything that a stroke and a question need, so that nobody waits for it in the middle of a
-    game."""
+    """Compile what a stroke and a question need, so that nobody waits in the middle of a game."""
     from ..advice import CueStroke
     from . import questions
     from .report import report
@@ -97,9 +78,8 @@ def warm_up(service: Any) -> None:
 def _read(path: Path) -> dict[str, Any]:
     """The JSON object in a file."""
     if path.stat().st_size > MOST_FILE:
-        raise refuse_what(
-            "position", f"a file of {path.stat().st_size} bytes", f"must be at most {MOST_FILE}"
-        )
+        what = f"a file of {path.stat().st_size} bytes"
+        raise refuse_what("position", what, f"must be at most {MOST_FILE}")
     try:
         read = json.loads(path.read_text("utf-8"))
     except (ValueError, RecursionError) as error:
@@ -126,10 +106,8 @@ def main(argv: list[str] | None = None) -> int:
         print("snooker_env.play: interrupted", file=sys.stderr)
         return 130
     try:
-        print(
-            f"Snooker is played at\n\n    {server.address}\n\nPrograms play at its api/ (docs/play/protocol.md). Ctrl-C ends it.",
-            flush=True,
-        )
+        print(f"Snooker is played at\n\n    {server.address}\n")
+        print("Programs play at its api/ (docs/play/protocol.md). Ctrl-C ends it.", flush=True)
         if not args.no_browser:
             webbrowser.open(server.address)
         server.serve_forever(poll_interval=0.2)

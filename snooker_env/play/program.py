@@ -1,5 +1,4 @@
-"""How does an external program play? JSON lines: the state of ``docs/play/protocol.md`` on its standard
-input, a stroke on its output.
+"""How does an external program play? JSON lines: a state on its standard input, a stroke on its output.
 
 The program is started at the first question and answers all of them. For each stroke it gets one line, the
 object of ``GET api/state`` with a "seed" for what it draws, and answers with one line, an object as
@@ -25,23 +24,19 @@ from ..game.balls import CUE
 from ..game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
 from ..planning import Positions
 from ..planning.positions import seeds_of
-from ..players.player import Strokes
-from ..players.simple import BoundPlayer
+from ..players.player import BoundPlayer, Strokes
 from ..tasks.box_actions import MIN_SPEED
 from ..tasks.frame import Frames
 from ..tasks.noise import LEVELS
 from ..tasks.options import Options
 from .report import report
 from .routes import STROKE, stroke_asked
-from .seats import Seats
 from .server import RefusedError, parsed
-from .service import Service
+from .service import Seats, Service
 from .session import STATE, Session
 
-LONGEST = 1 << 20
-"""The longest answer [bytes]."""
-DECISIONS = {"play": PLAY, "play_again": PLAY_AGAIN, "replace": REPLACE}
-"""What the words of a "choice" mean."""
+LONGEST = 1 << 20  # the longest answer [bytes]
+DECISIONS = {"play": PLAY, "play_again": PLAY_AGAIN, "replace": REPLACE}  # what the words of a "choice" mean
 
 
 class AgentError(RuntimeError):
@@ -54,14 +49,9 @@ class ProgramPlayer(BoundPlayer):
     Parameters
     ----------
     command : str
-        The command line, split as by a shell; no shell runs it.
-    timeout : float, optional
-        The longest time of an answer [s], in (0, 1e6]; default 60.
-
-    Raises
-    ------
-    ValueError
-        If the command is empty, or the timeout is out of range.
+        The command line, split as by a shell; no shell runs it. ValueError if it is empty.
+    timeout : float
+        The longest time of an answer [s], in (0, 1e6].
 
     Examples
     --------
@@ -88,10 +78,9 @@ class ProgramPlayer(BoundPlayer):
         self._noise: Any = choice("noise", options.noise, tuple(LEVELS))
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
-        """Return what the program answers in each of n positions.
+        """Return what the program answers in each of n positions; it is told the ``seeds``, int (n,).
 
-        ``positions``: the n positions. ``seeds``: int (n,), the program is told them. Returns n strokes and
-        what is said with them. AgentError if the program ends, is too slow, or its answer is no stroke.
+        AgentError if the program ends, is too slow, or its answer is no stroke.
         """
         _ = self.options  # it must be bound
         at = Positions.of(positions)
@@ -135,11 +124,7 @@ class ProgramPlayer(BoundPlayer):
             for kept, layout in zip(table.saved, at.saved or (), strict=False):
                 kept[0] = layout[k]
             state = table.get_state(0)
-            game = {
-                "practice": False,
-                "noise": [self._noise] * 2,
-                "state": {name: state[name] for name in STATE},
-            }
+            game = {"practice": False, "noise": [self._noise] * 2, "state": {n: state[n] for n in STATE}}
             session.load({"format": "snooker-game", "version": 1, **game})
         else:
             position = at[k]
@@ -149,9 +134,8 @@ class ProgramPlayer(BoundPlayer):
 
     def _asked(self, seed: int) -> dict[str, Any]:
         """The program's answer to the table as it stands: an object."""
-        answer = self._lines.asked(
-            json.dumps(report(self._service) | {"seed": seed}, separators=(",", ":")).encode() + b"\n"
-        )
+        state = json.dumps(report(self._service) | {"seed": seed}, separators=(",", ":"))
+        answer = self._lines.asked(state.encode() + b"\n")
         try:
             return parsed(answer.strip())
         except RefusedError as error:
@@ -254,9 +238,7 @@ class _Lines:
                 self._taken.set()
 
 
-def _struck(
-    values: Any = (MIN_SPEED, 0.0, 0.0, 0.0, 0.0), place: Any = None, decision: int = PLAY
-) -> Strokes:
+def _struck(values: Any = (MIN_SPEED, 0, 0, 0, 0), place: Any = None, decision: int = PLAY) -> Strokes:
     """One stroke."""
     places: Any = None if place is None else np.array([place])
     return Strokes(np.array([values]), places, decision=np.array([decision]))

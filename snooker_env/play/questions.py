@@ -1,32 +1,65 @@
-"""What would be played, and where would the balls stop? Questions about the next stroke, answered on copies
-of the table."""
+"""Which stroke does a request contain, and what would it do? Answered on copies of the table."""
 
 from typing import Any
 
 import numpy as np
 
-from .._check import choice, refuse
+from .._check import choice, number, refuse
 from .._types import NoiseName
 from ..advice import CueStroke, Suggestion, advise, destinations
-from ..game.balls import CUE, NAMES
+from ..game.balls import COLOUR_NAMES, CUE, NAMES, colour
 from ..geometry import POCKET_AIMS, POCKETS
 from ..physics.engine import EventKind
 from ..planning import pot_aim
 from ..render.scene import ball_paths
 from ..replays.encode import packed
 from ..shot import Shot
-from .seats import Seats
+from .service import Seats
 from .session import Session
-from .wishes import ball_named, pocket_named
 
-MOST_SAMPLES = 2000
-"""Largest number of samples in one question: 40 ms of computing."""
+
+def stroke_in(fields: dict[str, Any], aim: float | None = None) -> CueStroke:
+    """The stroke in a request, its "aim" unless passed separately; ValueError if invalid."""
+    for name in ("speed",) if aim is not None else ("speed", "aim"):
+        if name not in fields:
+            form = '{"speed": m/s, "aim": rad, "side": 0, "top": 0, "elevation": 0}'
+            raise refuse(name, None, f"must be given: {form}")
+    parts = {name: fields[name] for name in ("speed", "side", "top", "elevation") if name in fields}
+    return CueStroke(aim=number("aim", fields["aim"], -1e6, 1e6) if aim is None else aim, **parts)
+
+
+def place_asked(field: str, value: Any) -> tuple[float, float]:
+    """Two numbers [m]; ValueError for anything else."""
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise refuse(field, value, "must be [x, y] in metres")
+    return number(f"{field}[0]", value[0], -10, 10), number(f"{field}[1]", value[1], -10, 10)
+
+
+def ball_named(field: str, value: Any) -> int:
+    """Id of the object ball with a name ("red 3", "blue")."""
+    return NAMES.index(choice(field, value, NAMES[1:]))
+
+
+def colour_named(field: str, value: Any) -> int:
+    """Id of the colour with a name."""
+    return colour(choice(field, value, COLOUR_NAMES))
+
+
+def pocket_named(field: str, value: Any) -> int:
+    """Index of the pocket with a name; "right middle" is "middle right"."""
+    if isinstance(value, str):
+        for k, name in enumerate(POCKETS):
+            if sorted(value.lower().split()) == sorted(name.split()):
+                return k
+    raise refuse(field, value, "must be one of " + ", ".join(map(repr, POCKETS)))
+
+
+MOST_SAMPLES = 2000  # largest number of samples in one question: 40 ms of computing
 MOST_SUGGESTIONS = 10
 
 
 def aim_at(session: Session, asked: Any, stroke: CueStroke) -> float:
-    """The direction in which the cue ball must leave to pot a ball, with throw and swerve; ``asked``: {"pot":
-    [ball, pocket]}."""
+    """The direction of the cue ball that pots a ball, with throw; ``asked``: {"pot": [ball, pocket]}."""
     pair = asked.get("pot") if isinstance(asked, dict) and set(asked) == {"pot"} else None
     if not isinstance(pair, list) or len(pair) != 2:
         raise refuse("aim_at", asked, 'must be {"pot": [ball, pocket]}, as {"pot": ["blue", "middle right"]}')
@@ -48,8 +81,7 @@ def exact(session: Session, stroke: CueStroke) -> Shot:
 
 
 def paths(shot: Shot) -> dict[str, Any]:
-    """The paths of a shot's balls: points [m], rounded to a tenth of a millimetre; and the ball struck first,
-    the pots and the duration."""
+    """Paths of a shot's balls [m], rounded to 0.1 mm; the ball struck first, the pots and the duration."""
     events = shot.events
     hits = events[(events["kind"] == EventKind.BALL_BALL) & (events["i"] == CUE)]
     lines = ball_paths(shot, range(len(shot.positions)), step=0.04)
@@ -64,31 +96,20 @@ def paths(shot: Shot) -> dict[str, Any]:
 def scatter(
     session: Session, stroke: CueStroke, *, noise: NoiseName, samples: int, seed: int
 ) -> dict[str, Any]:
-    """Where cue ball and object ball stop when the stroke is played many times with execution errors; and its
-    paths without them."""
+    """Where cue ball and object ball stop under execution errors, and the paths without them."""
     shot = exact(session, stroke)
     stops = destinations(session.planned(), stroke, noise=noise, samples=samples, seed=seed)
-    return paths(shot) | {
-        "cue": packed(stops.cue, "f4"),
-        "ball": packed(stops.ball, "f4"),
-        "samples": stops.samples,
-        "potted": stops.potted,
-        "in_off": stops.in_off,
-        "foul": stops.foul,
-        "points": stops.points,
-    }
+    figures = {name: getattr(stops, name) for name in ("samples", "potted", "in_off", "foul", "points")}
+    return paths(shot) | figures | {"cue": packed(stops.cue, "f4"), "ball": packed(stops.ball, "f4")}
 
 
 def suggestions(
     session: Session, seats: Seats, *, agent: str, noise: NoiseName, n: int, samples: int, seed: int
 ) -> dict[str, Any]:
-    """Strokes of the agent in words and data, each with its paths without errors; whose they are, and by what
-    they are ordered."""
+    """Strokes of the agent in words and data, with paths without errors; whose they are, and their order."""
     choice("agent", agent, seats.agents)
-    advice = advise(
-        session.planned(), agent=seats.players[agent], noise=noise, n=n, samples=samples, seed=seed
-    )
-    out = []
+    how: Any = {"noise": noise, "n": n, "samples": samples, "seed": seed}
+    advice, out = advise(session.planned(), agent=seats.players[agent], **how), []
     for one in advice:
         twin = session.twin()
         if one.place is not None:

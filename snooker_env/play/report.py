@@ -1,9 +1,7 @@
-"""What is on the table, and what may be done? The game as JSON types for the page and for programs, and as
-plain text.
+"""What is on the table, and what may be done? The game as JSON types for page and programs, and as text.
 
-``table_after`` says what table and scoreboard are after one act. The state of the game is that of its last
-act, and what may be done now. A stroke is sent with the tables before and after it, so that whoever shows it
-needs nothing else.
+The state of the game is that of its last act, and what may be done now. A stroke is sent with the tables
+before and after it, so that whoever shows it needs nothing else.
 """
 
 from typing import Any
@@ -18,31 +16,24 @@ from ..render.scene import scene_data
 from ..replays.encode import encoded_stroke
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED
 from ..tasks.noise import LEVELS
-from .lines import Line, lines_of
 from .questions import MOST_SAMPLES, MOST_SUGGESTIONS
 from .service import Service
 from .session import Act, Session
-from .words import asked_words, freedom, last_words, table_text
+from .words import Line, asked_words, freedom, last_words, lines_of, table_text
 
 
 def scene(service: Service) -> dict[str, Any]:
     """The constant part: the table as it is drawn, limits of strokes, available players."""
-    rules = service.session.options_with("none").rules
+    with service.reading() as session:
+        rules = session.options_with("none").rules
+    limits = {"speed": [MIN_SPEED, MAX_SPEED], "offset": FARTHEST, "elevation": [0.0, MAX_ELEVATION]}
+    pockets = zip(POCKET_WORDS, POCKET_AIMS[:, :2].tolist(), strict=True)
     return {
         "scene": scene_data(rules.table),
         "R": rules.physics.R,
         "spin_decel": rules.physics.spin_decel,
-        "limits": {
-            "speed": [MIN_SPEED, MAX_SPEED],
-            "offset": FARTHEST,
-            "elevation": [0.0, MAX_ELEVATION],
-            "samples": MOST_SAMPLES,
-            "suggestions": MOST_SUGGESTIONS,
-        },
-        "pockets": [
-            {"name": name, "x": float(x), "y": float(y)}
-            for name, (x, y) in zip(POCKET_WORDS, POCKET_AIMS[:, :2], strict=True)
-        ],
+        "limits": limits | {"samples": MOST_SAMPLES, "suggestions": MOST_SUGGESTIONS},
+        "pockets": [{"name": name, "x": x, "y": y} for name, (x, y) in pockets],
         "agents": service.seats.agents,
         "players": service.seats.names,
         "noise": list(LEVELS),
@@ -54,18 +45,13 @@ def table_after(act: Act, labels: tuple[str, str]) -> dict[str, Any]:
     state, frame = act.state, Frame.from_dict(act.state["frame"])
     present = [ball for ball, on in enumerate(state["on_table"]) if on]
     over = frame.phase == "over"
-    return {
-        "phase": frame.phase,
-        "striker": frame.striker,
-        "breaker": frame.breaker,
+    names = ("phase", "striker", "breaker", "free_ball", "in_hand", "winner")
+    return {name: getattr(frame, name) for name in names} | {
         "scores": list(frame.scores),
         "break": frame.break_points,
         "ball_on": None if over else frame.ball_on.name.lower(),
-        "free_ball": frame.free_ball,
-        "in_hand": frame.in_hand,
         "reds": sum(0 < ball < YELLOW for ball in present),
         "available": 0 if over else frame.available,
-        "winner": frame.winner,
         "positions": {NAMES[ball]: list(state["positions"][ball]) for ball in present},
         "words": asked_words(frame, labels),
         "last": last_words(act, labels),
@@ -77,9 +63,8 @@ def stroke_report(service: Service, k: int) -> dict[str, Any]:
     acts, labels = service.session.acts, service.seats.labels
     played = acts[k].played
     assert played is not None
-    return encoded_stroke(played, labels) | {
-        "tables": [table_after(acts[k - 1], labels), table_after(acts[k], labels)]
-    }
+    tables = [table_after(act, labels) for act in acts[k - 1 : k + 1]]
+    return encoded_stroke(played, labels) | {"tables": tables}
 
 
 def report(service: Service) -> dict[str, Any]:
@@ -87,8 +72,7 @@ def report(service: Service) -> dict[str, Any]:
     session, seats = service.session, service.seats
     frame, tables = session.frame, session.tables
     on = tables.on(0) if frame.phase == "stroke" else 0
-    hidden = _snookered(session, frame, on)
-    lines = _lines(session, frame, on)
+    hidden, lines = (_snookered(session, frame, on), _lines(session, frame, on)) if on else (False, [])
     state = table_after(session.acts[session.at - 1], seats.labels)
     state |= {
         "revision": service.revision,
@@ -116,8 +100,6 @@ def report(service: Service) -> dict[str, Any]:
 
 
 def _snookered(session: Session, frame: Frame, on: int) -> bool:
-    if not on:
-        return False
     tables = session.tables
     present = tables.on_table[0].copy()
     present[CUE] = not frame.in_hand
@@ -125,11 +107,7 @@ def _snookered(session: Session, frame: Frame, on: int) -> bool:
 
 
 def _lines(session: Session, frame: Frame, on: int) -> list[Line]:
-    if not on:
-        return []
-    positions = [session.planned()]
-    if frame.free_ball:
-        positions.append(session.planned(free_ball=True))
+    positions = [session.planned(free_ball=free) for free in ((False, True) if frame.free_ball else (False,))]
     return lines_of(positions, on, session.noise[frame.striker])
 
 
@@ -147,22 +125,19 @@ def _facts(session: Session, state: dict[str, Any], places: dict[int, tuple[floa
     facts.append(f"Score: {one} {state['scores'][0]}, {other} {state['scores'][1]}; break {state['break']}.")
     if state["phase"] == "over":
         return facts
-    facts.append(
-        f"{state['available']} points are left on the table, {reds} red{'' if reds == 1 else 's'} among the balls."
-    )
+    left = f"{state['available']} points are left on the table"
+    facts.append(f"{left}, {reds} red{'' if reds == 1 else 's'} among the balls.")
     if state["needs_snookers"]:
         facts.append("The striker needs penalty points to win.")
     if state["phase"] == "choice":
         facts.append("Choices: " + ", ".join(state["choices"]) + ".")
         return facts
     if state["nominations"]:
-        facts.append(
-            f"May be nominated: {', '.join(state['nominations'])}; without a nomination it is the colour first struck."
-        )
+        colours = ", ".join(state["nominations"])
+        facts.append(f"May be nominated: {colours}; without a nomination it is the colour first struck.")
     if state["in_hand"]:
-        facts.append(
-            "The cue ball may be placed anywhere in the D (x^2 + (y + 1.0475)^2 <= 0.292^2 and y <= -1.0475)."
-        )
+        where = "x^2 + (y + 1.0475)^2 <= 0.292^2 and y <= -1.0475"
+        facts.append(f"The cue ball may be placed anywhere in the D ({where}).")
     if state["snookered"]:
         facts.append("The cue ball is snookered: no ball on can be struck at both edges in a straight line.")
     return facts + freedom(places)

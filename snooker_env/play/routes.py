@@ -1,13 +1,12 @@
-"""Which requests does the server answer, and how? Each route of the protocol: its fields, checked, and its
-action.
+"""Which requests does the server answer, and how? ``docs/play/protocol.md`` describes every route.
 
-A handler takes the fields of one request as plain JSON types and returns JSON types. A ValueError names an
-invalid field. ``docs/play/protocol.md`` describes every route.
+A handler takes the checked fields of a request and returns JSON types; a ValueError names an invalid field.
 """
 
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from .._check import choice, integer, number, refuse, truth
@@ -19,41 +18,34 @@ from ..replays import Replay
 from ..tasks.noise import LEVELS
 from ..tasks.states import MOST
 from . import questions
+from .questions import colour_named, place_asked, stroke_in
 from .report import report, scene, stroke_report
 from .service import Service, StaleError
 from .session import Session
-from .wishes import colour_named, place_asked, stroke_in
 
-STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")
-"""Fields that define a stroke."""
+STROKE = ("speed", "side", "top", "aim", "aim_at", "elevation", "place")  # fields that define a stroke
 Handler = Callable[[Service, dict[str, Any]], Any]
 
 
 @dataclass(frozen=True)
 class Route:
-    """One route: what answers it, with JSON types or with a ``str``, an HTML page; and the fields that a
-    request may have."""
+    """What answers a route, with JSON types or a ``str``, an HTML page; and the fields a request may have."""
 
     handler: Handler
     fields: tuple[str, ...] = ()
 
 
-def _state(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _state(service: Service, fields: dict[str, Any]) -> None:
     if "after" in fields:
-        service.wait(
-            integer("after", fields["after"], 0, MOST), number("wait", fields.get("wait", 0.0), 0.0, 60.0)
-        )
-    with service.reading():
-        return report(service)
+        after, seconds = fields["after"], number("wait", fields.get("wait", 0.0), 0.0, 60.0)
+        service.wait(integer("after", after, 0, MOST), seconds)
 
 
 def _strokes(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.reading() as session:
         first = integer("from", fields.get("from", 0), 0, MOST)
-        return {
-            "revision": service.revision,
-            "strokes": [stroke_report(service, k) for k in session.strokes[first:]],
-        }
+        strokes = [stroke_report(service, k) for k in session.strokes[first:]]
+        return {"revision": service.revision, "strokes": strokes}
 
 
 def stroke_asked(session: Session, fields: dict[str, Any]) -> CueStroke:
@@ -78,9 +70,8 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         twin = session.twin()  # errors occur on the copy first, so that a refused request has changed nothing
         if "choice" in fields:
             if strikes and fields["choice"] != "play":
-                raise refuse(
-                    "choice", fields["choice"], 'must be "play" in a request that holds a stroke too'
-                )
+                allowed = 'must be "play" in a request that holds a stroke too'
+                raise refuse("choice", fields["choice"], allowed)
             twin.choose(fields["choice"])
         if strikes:
             stroke = stroke_asked(twin, fields)
@@ -98,12 +89,12 @@ def _stroke(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
 
 def _place(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.acting() as session:
-        place = session.place(*place_asked("place", fields.get("place")))
+        place = list(session.place(*place_asked("place", fields.get("place"))))
     with service.reading():
-        return {"place": list(place), "state": report(service)}
+        return {"place": place, "state": report(service)}
 
 
-def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any] | None:
     check = truth("check", fields.get("check", False))
     try:
         return _put(service, fields, check)
@@ -113,34 +104,25 @@ def _set_up(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         return {"sound": False, "error": parts_of(error)}
 
 
-def _put(service: Service, fields: dict[str, Any], check: bool) -> dict[str, Any]:
+def _put(service: Service, fields: dict[str, Any], check: bool) -> dict[str, Any] | None:
     scores = fields.get("scores", [0, 0])
     if not isinstance(scores, list) or len(scores) != 2:
         raise refuse("scores", scores, "must be two integers")
     points = (integer("scores[0]", scores[0], 0, MOST), integer("scores[1]", scores[1], 0, MOST))
-    striker, free = (
-        integer("striker", fields.get("striker", 0), 0, 1),
-        truth("free_ball", fields.get("free_ball", False)),
-    )
+    striker = integer("striker", fields.get("striker", 0), 0, 1)
+    free = truth("free_ball", fields.get("free_ball", False))
     position = position_of(fields.get("position"))
-    if check:
-        with service.asking() as session:
-            session.set_up(position, scores=points, striker=striker, free_ball=free, check=True)
-        return {"sound": True, "error": None}
-    with service.acting(pause=True, any_turn=True) as session:
-        session.set_up(position, scores=points, striker=striker, free_ball=free)
-    return _state(service, {})
+    with service.asking() if check else service.acting(pause=True, any_turn=True) as session:
+        session.set_up(position, scores=points, striker=striker, free_ball=free, check=check)
+    return {"sound": True, "error": None} if check else None
 
 
 def position_of(fields: Any) -> Position:
     """A ``Position`` from JSON types; ValueError, with the name of the ball or field, if it is invalid."""
     names = tuple(Position.__dataclass_fields__)
     if not isinstance(fields, dict):
-        raise refuse(
-            "position",
-            fields,
-            'must be an object: {"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}',
-        )
+        form = '{"cue": [x, y], "reds": [[x, y], ...], "black": [x, y], "on": "red", ...}'
+        raise refuse("position", fields, f"must be an object: {form}")
     for name in fields:
         choice("field of position", name, [n for n in names if n not in ("table", "over")])
     points: dict[str, Any] = {"points": integer("points", fields.get("points", 0), 0, MOST_BREAK)}
@@ -149,34 +131,24 @@ def position_of(fields: Any) -> Position:
     return Position(**fields | points)
 
 
-def _undo(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    """Undo until a person has a stroke or decision to make."""
-    return _moved(service, Session.undo)
-
-
-def _redo(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    return _moved(service, Session.redo)
-
-
-def _moved(service: Service, move: Callable[[Session], bool]) -> dict[str, Any]:
+def _moved(service: Service, fields: dict[str, Any], move: Callable[[Session], bool]) -> None:
+    """Undo or redo until a person has a stroke or decision to make."""
     with service.acting(pause=True, any_turn=True) as session:
         people = not all(map(service.seats.is_agent, (0, 1)))
         while move(session) and people and service.agent_to_play():
             pass
-    return _state(service, {})
 
 
-def _new(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _new(service: Service, fields: dict[str, Any]) -> None:
     kinds = {"layout": str, "seed": int, "breaker": int}
     for name, kind in kinds.items():
         if name in fields and type(fields[name]) is not kind:
             raise refuse(name, fields[name], f"must be of type {kind.__name__}")
     with service.acting(any_turn=True) as session:
         session.new(**fields)
-    return _state(service, {})
 
 
-def _players(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _players(service: Service, fields: dict[str, Any]) -> None:
     noise, practice = fields.get("noise"), fields.get("practice")
     if noise is not None:
         if not isinstance(noise, list) or len(noise) != 2:
@@ -191,18 +163,11 @@ def _players(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         if noise is not None:
             session.noise[:] = noise
         session.practice = session.practice if practice is None else practice
-    return _state(service, {})
 
 
-def _go(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    service.go_on()
-    return _state(service, {})
-
-
-def _concede(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _concede(service: Service, fields: dict[str, Any]) -> None:
     with service.acting() as session:
         session.concede()
-    return _state(service, {})
 
 
 def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
@@ -210,28 +175,24 @@ def _save(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
         return session.save()
 
 
-def _load(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
+def _load(service: Service, fields: dict[str, Any]) -> None:
     with service.acting(pause=True, any_turn=True) as session:
         session.load(fields.get("saved"))
-    return _state(service, {})
 
 
 def _advise(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     agent = choice("agent", fields.get("agent", service.seats.agents[0]), service.seats.agents)
     n = integer("n", fields.get("n", 5), 1, questions.MOST_SUGGESTIONS)
     with service.asking(_revision(fields)) as session:
-        noise, samples, seed = _errors(fields, 200, session)
         return questions.suggestions(
-            session, service.seats, agent=agent, noise=noise, n=n, samples=samples, seed=seed
+            session, service.seats, agent=agent, n=n, **_errors(fields, 200, session)
         )
 
 
 def _destinations(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
     with service.asking(_revision(fields)) as session:
-        noise, samples, seed = _errors(fields, 500, session)
-        return questions.scatter(
-            session, stroke_asked(session, fields), noise=noise, samples=samples, seed=seed
-        )
+        errors = _errors(fields, 500, session)
+        return questions.scatter(session, stroke_asked(session, fields), **errors)
 
 
 def _revision(fields: dict[str, Any]) -> int | None:
@@ -239,42 +200,29 @@ def _revision(fields: dict[str, Any]) -> int | None:
     return integer("revision", fields["revision"], 0, MOST) if "revision" in fields else None
 
 
-def _errors(fields: dict[str, Any], samples: int, session: Session) -> tuple[Any, int, int]:
+def _errors(fields: dict[str, Any], samples: int, session: Session) -> dict[str, Any]:
     """Noise, samples and seed of a question; the noise is that of the striker's seat unless it is given."""
     noise = choice("noise", fields.get("noise", session.noise[session.frame.striker]), LEVELS)
     samples = integer("samples", fields.get("samples", samples), 1, questions.MOST_SAMPLES)
-    return noise, samples, integer("seed", fields.get("seed", 0), 0, MOST)
+    return {"noise": noise, "samples": samples, "seed": integer("seed", fields.get("seed", 0), 0, MOST)}
 
 
-def _replay(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    return _replay_of(service).to_dict()
-
-
-def _replay_page(service: Service, fields: dict[str, Any]) -> str:
-    return _replay_of(service).html()
-
-
-def _replay_of(service: Service) -> Replay:
+def _replay(service: Service, fields: dict[str, Any], form: Callable[[Replay], Any]) -> Any:
     with service.reading() as session:
         strokes = [played for k in session.strokes if (played := session.acts[k].played) is not None]
         labels = service.seats.labels
     if not strokes:
         raise refuse("strokes", 0, "must be at least one: nothing has been played yet")
-    return Replay(strokes, title=f"{labels[0]} - {labels[1]}", players=labels)
-
-
-def _scene(service: Service, fields: dict[str, Any]) -> dict[str, Any]:
-    with service.reading():
-        return scene(service)
+    return form(Replay(strokes, title=f"{labels[0]} - {labels[1]}", players=labels))
 
 
 ERRORS = ("noise", "samples", "seed", "revision")
 GET: dict[str, Route] = {
-    "scene": Route(_scene),
+    "scene": Route(lambda service, fields: scene(service)),
     "state": Route(_state, ("after", "wait")),
     "strokes": Route(_strokes, ("from",)),
-    "replay": Route(_replay),
-    "replay.html": Route(_replay_page),
+    "replay": Route(partial(_replay, form=Replay.to_dict)),
+    "replay.html": Route(partial(_replay, form=Replay.html)),
 }
 POST: dict[str, Route] = {
     "stroke": Route(_stroke, (*STROKE, "choice", "nominate", "revision")),
@@ -282,11 +230,11 @@ POST: dict[str, Route] = {
     "advise": Route(_advise, ("agent", "n", *ERRORS)),
     "destinations": Route(_destinations, (*STROKE, *ERRORS)),
     "position": Route(_set_up, ("position", "scores", "striker", "free_ball", "check")),
-    "undo": Route(_undo),
-    "redo": Route(_redo),
+    "undo": Route(partial(_moved, move=Session.undo)),
+    "redo": Route(partial(_moved, move=Session.redo)),
     "new": Route(_new, ("layout", "seed", "breaker")),
     "players": Route(_players, ("players", "noise", "practice")),
-    "go": Route(_go),
+    "go": Route(lambda service, fields: service.go_on()),
     "concede": Route(_concede),
     "save": Route(_save),
     "load": Route(_load, ("saved",)),
@@ -296,26 +244,22 @@ POST: dict[str, Route] = {
 def parts_of(error: ValueError) -> dict[str, Any]:
     """The parts of an error message that ``_check.refuse`` made."""
     text = str(error)
-    at = re.match(
-        r"(?P<field>[\w\[\]., ]+?) = (?P<value>.*?): (?P<message>(must|overlaps|lies|ball).*)\Z",
-        text,
-        re.DOTALL,
-    )
+    form = r"(?P<field>[\w\[\]., ]+?) = (?P<value>.*?): (?P<message>(must|overlaps|lies|ball).*)\Z"
+    at = re.match(form, text, re.DOTALL)
     return at.groupdict() if at else {"field": None, "value": None, "message": text}
 
 
 def answer(service: Service, route: Route, fields: dict[str, Any]) -> Any:
-    """The answer of a route; ValueError for an unknown or invalid field."""
+    """The answer of a route, by default the state; ValueError for an unknown or invalid field."""
     for name in fields:
         if name not in route.fields:
-            raise refuse(
-                "field",
-                name,
-                f"must be one of {list(route.fields)}"
-                if route.fields
-                else "must be left out: there are no fields",
-            )
+            some = f"must be one of {list(route.fields)}"
+            raise refuse("field", name, some if route.fields else "must be left out: there are no fields")
     try:
-        return route.handler(service, fields)
+        reply = route.handler(service, fields)
     except StaleError:
         return {"stale": True}
+    if reply is not None:
+        return reply
+    with service.reading():
+        return report(service)

@@ -1,5 +1,4 @@
-"""How does the game answer a browser or a program? A small HTTP server on this machine's own address, for
-those who have its token.
+"""How does the game answer a browser or a program? A small HTTP server, for those who have its token.
 
 Every request is checked before anything is done: the token in its path, in constant time; ``Host``, so that
 no other name leads here; ``Origin`` and ``Sec-Fetch-Site``, so that no other page can send requests; method,
@@ -26,29 +25,16 @@ from ..web import WEB, table_js
 from .routes import GET, POST, answer, parts_of
 from .service import BusyError, Service
 
-SCRIPTS = (
-    "table.js",
-    "play.js",
-    "play_aim.js",
-    "play_ask.js",
-    "play_first.js",
-    "play_setup.js",
-    "play_parts.js",
-)
+PARTS = ("play", "play_aim", "play_ask", "play_first", "play_setup", "play_parts")
+SCRIPTS = ("table.js", *(f"{part}.js" for part in PARTS))
 FILES = {"": "text/html", "play.css": "text/css", **dict.fromkeys(SCRIPTS, "text/javascript")}
 """What is served besides the protocol: path -> its type. No other file is ever read."""
 MOST_HEAD = 16_384
-MOST_BODY = 65_536
-"""Largest head and body of a request [bytes]; a saved game has about 3,000."""
-MOST_AT_ONCE = 32
-"""Largest number of connections; a browser keeps six."""
+MOST_BODY = 65_536  # largest head and body of a request [bytes]; a saved game has about 3,000
+MOST_AT_ONCE = 32  # largest number of connections; a browser keeps six
 _FULL = b'{"error": {"field": null, "value": null, "message": "busy: too many connections"}}'
-FULL = (
-    b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\nContent-Length: %d\r\n\r\n"
-    % len(_FULL)
-    + _FULL
-)
-"""The answer to further connections."""
+_HEAD = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: application/json\r\nConnection: close\r\n"
+FULL = b"%sContent-Length: %d\r\n\r\n%s" % (_HEAD, len(_FULL), _FULL)  # the answer to further connections
 IDLE, REQUEST = 20.0, 10.0
 """How long a connection may wait for its next request, and a request for its end [s]."""
 HEADERS = {
@@ -72,8 +58,7 @@ class RefusedError(Exception):
 
 
 class TimedReader:
-    """A connection for ``http.server`` with limits: bytes in a head, and ``REQUEST`` seconds from the first
-    byte of a request."""
+    """A connection for ``http.server``: limited bytes in a head, and ``REQUEST`` seconds for a request."""
 
     def __init__(self, connection: socket.socket):
         self._socket, self._held = connection, b""
@@ -134,13 +119,8 @@ class PlayHandler(BaseHTTPRequestHandler):
     def handle_one_request(self) -> None:
         """Handle one request, its head within the limits."""
         self.rfile.expect()
-        self.path, self.command, self.requestline, self.request_version, self.close_connection = (
-            "",
-            "",
-            "",
-            "HTTP/1.1",
-            True,
-        )
+        self.path = self.command = self.requestline = ""
+        self.request_version, self.close_connection = "HTTP/1.1", True
         try:
             super().handle_one_request()
         except RefusedError as refused:
@@ -155,9 +135,8 @@ class PlayHandler(BaseHTTPRequestHandler):
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
         """Answer an error that ``http.server`` itself finds, as one JSON error."""
         self.close_connection = True
-        self._refuse(
-            RefusedError(405 if code == 501 else code, message or "not a request that can be answered")
-        )
+        words = message or "not a request that can be answered"
+        self._refuse(RefusedError(405 if code == 501 else code, words))
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("do_"):  # any method: the same checks refuse it, after the token
@@ -165,8 +144,7 @@ class PlayHandler(BaseHTTPRequestHandler):
         raise AttributeError(name)
 
     def finish(self) -> None:
-        """Read the rest of a refused request: closing a connection with unread bytes would lose the
-        answer."""
+        """Read the rest of a refused request: closing with unread bytes would lose the answer."""
         with suppress(OSError):
             self.connection.shutdown(socket.SHUT_WR)
             self.connection.settimeout(0.2)
@@ -184,18 +162,11 @@ class PlayHandler(BaseHTTPRequestHandler):
             route = (GET if self.command == "GET" else POST)[name[4:]]
             reply = answer(self.server.service, route, query if self.command == "GET" else self._body())
             if isinstance(reply, str):
-                self._send(
-                    200,
-                    reply.encode(),
-                    "text/html",
-                    {"Content-Disposition": 'attachment; filename="replay.html"'},
-                )
+                more = {"Content-Disposition": 'attachment; filename="replay.html"'}
+                self._send(200, reply.encode(), "text/html", more)
             else:
-                self._send(
-                    200,
-                    json.dumps(reply, allow_nan=False, separators=(",", ":")).encode(),
-                    "application/json",
-                )
+                text = json.dumps(reply, allow_nan=False, separators=(",", ":"))
+                self._send(200, text.encode(), "application/json")
         except RefusedError as refused:
             self._refuse(refused)
         except ValueError as error:
@@ -223,18 +194,15 @@ class PlayHandler(BaseHTTPRequestHandler):
         token, _, name = parts.path.removeprefix("/").partition("/")
         # the printed address ends with "/", and clients often append "/api/state"
         name = re.sub("^/+(?=api/)", "", name)
-        if not parts.path.startswith("/") or not hmac.compare_digest(
-            token.encode(), self.server.token.encode()
-        ):
+        known = hmac.compare_digest(token.encode(), self.server.token.encode())
+        if not parts.path.startswith("/") or not known:
             raise self._last(403, "the address must hold the token that was printed when the server started")
         if self.command not in ("GET", "POST"):
             raise self._last(405, "the method must be GET or POST", Allow="GET, POST")
-        known = {f"api/{key}" for key in (GET if self.command == "GET" else POST)} | (
-            set(FILES) if self.command == "GET" else set()
-        )
-        if name not in known:
+        methods = {"GET": {*FILES, *(f"api/{key}" for key in GET)}, "POST": {f"api/{key}" for key in POST}}
+        if name not in methods[self.command]:
             other = "GET" if self.command == "POST" else "POST"
-            if name in FILES or name.removeprefix("api/") in {"GET": GET, "POST": POST}[other]:
+            if name in methods[other]:
                 raise self._last(405, f"the method must be {other}", Allow=other)
             raise self._last(404, "there is nothing of that name")
         if "Transfer-Encoding" in head:
@@ -251,9 +219,8 @@ class PlayHandler(BaseHTTPRequestHandler):
         for name, value in pairs:
             if name in fields:
                 raise RefusedError(400, "must be given once", name, value)
-            fields[name] = (
-                json.loads(value) if re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value) else value
-            )
+            is_number = re.fullmatch(r"(0|[1-9][0-9]{0,14})(\.[0-9]{1,9})?", value)
+            fields[name] = json.loads(value) if is_number else value
         return fields
 
     def _body(self) -> dict[str, Any]:
@@ -275,8 +242,8 @@ class PlayHandler(BaseHTTPRequestHandler):
         return parsed(raw)
 
     def _last(
-        self, status: int, message: str, field: str | None = None, value: Any = None, **headers: str
-    ) -> RefusedError:
+        self, status: int, message: str, field: Any = None, value: Any = None, **headers: str
+    ) -> Exception:
         """A refusal that closes the connection, because the rest of the request may not have been read."""
         self.close_connection = True
         refused = RefusedError(status, message, field, value)
@@ -297,12 +264,8 @@ class PlayHandler(BaseHTTPRequestHandler):
     def _send(self, status: int, body: bytes, kind: str, more: dict[str, str] | None = None) -> None:
         self.connection.settimeout(REQUEST)
         self.send_response(status)
-        for name, value in {
-            **HEADERS,
-            **(more or {}),
-            "Content-Type": kind,
-            "Content-Length": str(len(body)),
-        }.items():
+        about = {"Content-Type": kind, "Content-Length": str(len(body))}
+        for name, value in (HEADERS | (more or {}) | about).items():
             self.send_header(name, value)
         if self.close_connection:
             self.send_header("Connection", "close")
@@ -312,12 +275,10 @@ class PlayHandler(BaseHTTPRequestHandler):
 
 
 def parsed(raw: bytes) -> dict[str, Any]:
-    """The JSON object in a body; RefusedError for anything else, including NaN, Infinity and repeated
-    names."""
+    """The JSON object in a body; RefusedError for others, NaN, Infinity and repeated names."""
     try:
-        fields = (
-            json.loads(raw.decode("utf-8"), parse_constant=_no_number, object_pairs_hook=_once) if raw else {}
-        )
+        text = raw.decode("utf-8") or "{}"
+        fields = json.loads(text, parse_constant=_no_number, object_pairs_hook=_once)
     except (ValueError, RecursionError) as error:
         raise RefusedError(400, f"the body must be JSON in UTF-8 ({error})") from None
     if not isinstance(fields, dict):

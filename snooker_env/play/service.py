@@ -1,29 +1,82 @@
-"""How do a page, a program and thinking agents share one game? Behind one lock: each act is atomic, and
-agents think on copies.
+"""How do persons, programs and agents share one game? Behind one lock; agents think on copies of it.
 
 A number, the revision, grows with every change; a request that waits for a change names the last revision it
-has seen. The agent's thread is notified when it is its turn, and its stroke is dropped if the game has
-changed in the meantime.
+has seen. An agent's stroke is dropped if the game has changed in the meantime.
 """
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from time import monotonic
 
+from .._check import choice, refuse, refuse_what
+from ..advice.ask import AGENT
 from ..advice.strokes import cue_strokes
-from ..game.frame_columns import PLAY_AGAIN, REPLACE
+from ..game.frame_columns import PLAY_AGAIN, REPLACE, STROKES
 from ..game.ruling import AUTO
-from ..players import Strokes
+from ..players import Player, Strokes, player
 from ..simulation import SimulationError
 from ..tasks.declarations import CLAIMS, CONCEDES
-from .seats import Seats
 from .session import DECLINED, Session
 
-DECIDED = {PLAY_AGAIN: "play_again", REPLACE: "replace"}
-"""Decisions after a foul other than to play."""
-LONGEST_WAIT = 25.0
-"""How long a request may wait for a change [s]."""
+PERSON = "person"
+OFFERED = (AGENT, "search_2000", "ghost_ball", "random")  # the agents that can always be chosen
+
+
+class Seats:
+    """The two seats, and the players that may take them: ``OFFERED``, and ``agents`` by name."""
+
+    who: list[str]  # ``PERSON`` or the name of an agent, for each seat
+
+    def __init__(self, agents: Mapping[str, Player]):
+        self.players: dict[str, Player] = dict(agents)
+        for name in OFFERED:
+            self.players.setdefault(name, player(name))
+        self.who = [PERSON, PERSON]
+
+    @property
+    def names(self) -> list[str]:
+        """The players that may sit down: "person" and the agents."""
+        return [PERSON, *self.players]
+
+    @property
+    def agents(self) -> list[str]:
+        """The agents' names."""
+        return list(self.players)
+
+    def sit(self, who: list[str]) -> None:
+        """Assign both seats; ValueError for an unknown name."""
+        if not isinstance(who, list) or len(who) != 2:
+            raise refuse("players", who, "must be two names")
+        self.who = [choice(f"players[{k}]", name, self.names) for k, name in enumerate(who)]
+
+    def is_agent(self, seat: int) -> bool:
+        """Whether an agent has this seat."""
+        return self.who[seat] != PERSON
+
+    def label(self, seat: int) -> str:
+        """The player's name on the page."""
+        if self.is_agent(seat):
+            name = self.who[seat].replace("_", " ")  # as the page lists it
+            return name if self.who[0] != self.who[1] else f"{name} {seat + 1}"
+        return "You" if self.is_agent(1 - seat) else f"Player {seat + 1}"
+
+    @property
+    def labels(self) -> tuple[str, str]:
+        """The names of both."""
+        return self.label(0), self.label(1)
+
+    def decided(self, name: str, session: Session) -> Strokes:
+        """What an agent does in the frame: a decision, a declaration or a stroke, without changing it."""
+        options = session.options_with(session.noise[session.frame.striker])
+        decided = self.players[name].at(options).play(session.position, session.tables.game[:, STROKES])
+        if not isinstance(decided, Strokes) or len(decided) != 1:
+            raise refuse_what("strokes", f"a {type(decided).__name__}", "must be Strokes of one stroke")
+        return decided
+
+
+DECIDED = {PLAY_AGAIN: "play_again", REPLACE: "replace"}  # decisions after a foul other than to play
+LONGEST_WAIT = 25.0  # how long a request may wait for a change [s]
 
 
 class BusyError(RuntimeError):
@@ -37,11 +90,8 @@ class StaleError(RuntimeError):
 class Service:
     """One game, its seats, and the thread in which agents think."""
 
-    paused: bool
-    """Whether an agent whose turn it is waits for ``go_on``: after an undo, a load or a position set up, and
-    between two agents."""
-    trouble: str
-    """Why the last agent did not play, or ""."""
+    paused: bool  # whether an agent waits for ``go_on``: after undo, load or set-up, and between two agents
+    trouble: str  # why the last agent did not play, or ""
 
     def __init__(self, session: Session, seats: Seats):
         self.session: Session = session
@@ -70,23 +120,20 @@ class Service:
     def acting(
         self, revision: int | None = None, *, pause: bool = False, any_turn: bool = False
     ) -> Iterator[Session]:
-        """The game, for changing it. ``pause``: an agent to play then waits; ``any_turn``: not refused in an
-        agent's turn."""
+        """The game, for changing it. ``pause``: agents then wait; ``any_turn``: also in an agent's turn."""
         with self._changed:
             if revision not in (None, self.revision):
                 raise StaleError
             if not any_turn and self.agent_to_play():
-                raise ValueError(
-                    f"turn = {self.seats.label(self.session.frame.striker)!r}: must be a person's: an agent is to play"
-                )
+                whose = self.seats.label(self.session.frame.striker)
+                raise refuse("turn", whose, "must be a person's: an agent is to play")
             yield self.session
             self.paused, self.trouble = pause, ""
             self._moved()
 
     @contextmanager
     def asking(self, revision: int | None = None) -> Iterator[Session]:
-        """A copy of the game for trial strokes; ``BusyError`` for too many questions, ``StaleError`` for an
-        old revision."""
+        """A copy for trial strokes; ``BusyError``: too many questions, ``StaleError``: an old revision."""
         if not self._asking.acquire(timeout=10.0):
             raise BusyError("other questions are being answered")
         try:

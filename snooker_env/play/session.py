@@ -1,10 +1,8 @@
-"""What is the game on the page? One frame in memory, played by the package's own functions, with a list of
-acts to undo and redo.
+"""What is the game on the page? One frame in memory, with a list of acts to undo and redo.
 
-``Session`` plays the strokes and decisions of the current striker, with the noise of that seat. ``seats.py``
-says who sits there, ``service.py`` handles threads. Each act is an ``Act`` in a list; undo and redo move in
-it. A state holds the random stream, so a stroke that is undone and played again meets the same execution
-errors.
+``Session`` plays the strokes and decisions of the current striker, with the noise of that seat. Each act is
+an ``Act`` in a list; undo and redo move in it. A state holds the random stream, so a stroke that is undone
+and played again meets the same execution errors.
 """
 
 from dataclasses import dataclass, replace
@@ -34,10 +32,8 @@ from ..tasks.tables import Crew
 
 DECISIONS = {"play_again": -1.0, "play": 0.0, "replace": 1.0}
 """Last component of an action for each choice after a foul."""
-DECLINED = 0
-"""The nomination of a player who does not use a free ball."""
-STATE = ("positions", "on_table", "frame", "strokes", "stream")
-"""Fields of the table in a saved game."""
+DECLINED = 0  # the nomination of a player who does not use a free ball
+STATE = ("positions", "on_table", "frame", "strokes", "stream")  # fields of the table in a saved game
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,39 +41,23 @@ class Act:
     """An act in the game: "new", "stroke", "choice", "set_up", "load", "concede" or "claim"."""
 
     what: str
-    state: dict[str, Any]
-    """The table after it, as JSON types."""
-    player: int | None = None
-    """Who did it."""
-    played: Played | None = None
-    """For a stroke: as it was struck, simulated and judged."""
-    detail: str = ""
-    """For a choice: the decision; for a stroke: the colour that was nominated."""
+    state: dict[str, Any]  # the table after it, as JSON types
+    player: int | None = None  # who did it
+    played: Played | None = None  # for a stroke: as it was struck, simulated and judged
+    detail: str = ""  # for a choice: the decision; for a stroke: the colour that was nominated
 
 
 class Session:
-    """A frame that can be played, set up, undone, saved and loaded; ``layout`` deals it, ``seed`` is that of
-    all random numbers."""
+    """A frame to play, set up, undo, save and load; ``seed``: of all random numbers."""
 
-    noise: list[NoiseName]
-    """Execution errors of each seat: names of ``snooker_env.tasks.LEVELS``."""
-    practice: bool
-    """Alone at the table: the turn always returns to player 0, and after a foul the balls stay as they
-    lie."""
+    noise: list[NoiseName]  # execution errors of each seat: names of ``snooker_env.tasks.LEVELS``
+    practice: bool  # alone at the table: player 0 has every turn, and after a foul the balls stay as they lie
     acts: list[Act]
-    at: int
-    """Number of acts that count; the following ones were undone."""
+    at: int  # number of acts that count; the following ones were undone
 
     def __init__(self, *, layout: str = "break_off", seed: int = 0):
-        self._options = Options(
-            task="frame",
-            placement=True,
-            decision=True,
-            elevation=True,
-            miss="clear_path",
-            max_strokes=None,
-            layout=layout,
-        )
+        box: Any = {"placement": True, "decision": True, "elevation": True, "max_strokes": None}
+        self._options = Options(task="frame", miss="clear_path", layout=layout, **box)
         self.noise, self.practice = ["none", "none"], False
         self._generator = np.random.default_rng(0)  # part of a state, but no stroke draws from it
         self._buffers = ShotBuffers(1, path=True)
@@ -118,17 +98,13 @@ class Session:
         return Positions.of(cast(Any, self))  # it has tables, as environments have
 
     def planned(self, *, free_ball: bool = False) -> Positions:
-        """The position of the next stroke for planning, as one of a visit; with ``free_ball`` every colour is
-        on instead of the ball on."""
+        """The next stroke's position, as one of a visit; with ``free_ball`` every colour is on instead."""
         frame, tables = self.frame, self.tables
         if frame.phase == "over":
             raise refuse("phase", "over", "must not be over: there is no stroke to play")
         on = BallOn.ANY_COLOUR if free_ball else frame.ball_on
-        return Positions(
-            tables.positions.copy(),
-            tables.on_table.copy(),
-            [[int(on), int(frame.in_hand), frame.break_points, 0, 0]],
-        )
+        game = [[int(on), int(frame.in_hand), frame.break_points, 0, 0]]
+        return Positions(tables.positions.copy(), tables.on_table.copy(), game)
 
     def options_with(self, noise: NoiseName) -> Options:
         """The options of this frame for a player with these execution errors."""
@@ -166,12 +142,8 @@ class Session:
         """Raise ValueError unless a stroke may be played now, and that colour be nominated."""
         frame = self.frame
         if frame.phase != "stroke":
-            allowed = (
-                'must be "stroke": choose first (play, play_again or replace)'
-                if frame.phase == "choice"
-                else "must not be over"
-            )
-            raise refuse("phase", frame.phase, allowed)
+            choose = 'must be "stroke": choose first (play, play_again or replace)'
+            raise refuse("phase", frame.phase, choose if frame.phase == "choice" else "must not be over")
         declined = nominated == DECLINED and frame.free_ball
         if nominated != AUTO and not declined and nominated not in self.nominations():
             names = [NAMES[i] for i in self.nominations()]
@@ -179,8 +151,7 @@ class Session:
             raise refuse("nominate", NAMES[nominated], allowed)
 
     def play(self, stroke: CueStroke, *, nominated: int = AUTO) -> Act:
-        """Play the stroke from where the cue ball lies; ``nominated``: a colour, AUTO for the one first
-        struck, or DECLINED."""
+        """Play the stroke; ``nominated``: a colour, AUTO for the one first struck, or DECLINED."""
         self.check_stroke(nominated)
         before, tables = self.state, self.tables
         striker = self.frame.striker
@@ -231,8 +202,7 @@ class Session:
         return self._ended("concede", frame.concede(frame.striker))
 
     def claim(self) -> Act:
-        """End the frame: the striker, more than seven points ahead with the black alone on the table, claims
-        it."""
+        """The striker, more than seven points ahead with the black alone on the table, claims the frame."""
         return self._ended("claim", self.frame.claim())
 
     def _ended(self, what: str, after: Frame) -> Act:
@@ -241,8 +211,7 @@ class Session:
         return self._did(Act(what, self.state, striker))
 
     def place(self, x: float, y: float) -> tuple[float, float]:
-        """Put the cue ball in hand on the free place of the D nearest to (x, y), and return that place. It
-        may be moved again."""
+        """Put the cue ball in hand on the free place of the D nearest to (x, y), and return that place."""
         frame = self.frame
         if not frame.in_hand or frame.phase != "stroke":
             raise refuse("place", [x, y], "must be left out: the cue ball is not in hand")
@@ -252,40 +221,18 @@ class Session:
         return px, py
 
     def set_up(
-        self,
-        position: Position,
-        *,
-        scores: tuple[int, int],
-        striker: int,
-        free_ball: bool,
-        check: bool = False,
+        self, position: Position, *, scores: Any, striker: int, free_ball: bool, check: bool = False
     ) -> None:
-        """Put the balls as in a position. ``check``: only validate it. ValueError names the ball or the
-        field."""
+        """Put the balls as in a position, or only ``check`` it. ValueError names the ball or the field."""
         positions, on_table, _ = position.arrays()
         mask = mask_of_present(on_table) & ~1
         for i in np.flatnonzero(~on_table):
             positions[i] = 0.0
-        frame = Frame(
-            scores=scores,
-            striker=striker,
-            breaker=striker,
-            break_points=position.points,
-            on_table=mask,
-            in_hand=position.in_hand,
-            ball_on=BallOn[str(position.on).upper()],
-            free_ball=free_ball,
-            miss="clear_path",
-        )
-        sound = self._checked(
-            {
-                "positions": positions.tolist(),
-                "on_table": on_table.tolist(),
-                "frame": frame.to_dict(),
-                "strokes": 0,
-                "stream": self.tables.streams[0].tolist(),
-            }
-        )
+        game: Any = {"scores": scores, "striker": striker, "breaker": striker, "free_ball": free_ball}
+        game |= {"break_points": position.points, "in_hand": position.in_hand, "on_table": mask}
+        frame = Frame(**game, ball_on=BallOn[str(position.on).upper()], miss="clear_path")
+        state = {"positions": positions.tolist(), "on_table": on_table.tolist(), "frame": frame.to_dict()}
+        sound = self._checked(state | {"strokes": 0, "stream": self.tables.streams[0].tolist()})
         if not check:
             self.tables.set_state(0, sound)
             self._did(Act("set_up", self.state))
@@ -300,27 +247,18 @@ class Session:
 
     def save(self) -> dict[str, Any]:
         """The current game as JSON types."""
-        return {
-            "format": "snooker-game",
-            "version": 1,
-            "practice": self.practice,
-            "noise": list(self.noise),
-            "state": self.state,
-        }
+        game = {"practice": self.practice, "noise": list(self.noise), "state": self.state}
+        return {"format": "snooker-game", "version": 1, **game}
 
     def load(self, saved: Any) -> None:
         """Restore a result of ``save``. ValueError names what is invalid, and then nothing has changed."""
         fields = ("format", "version", "practice", "noise", "state")
         if not isinstance(saved, dict) or saved.get("format") != "snooker-game":
-            raise refuse_what(
-                "saved", "something else", 'must be a saved game, with "format": "snooker-game"'
-            )
+            allowed = 'must be a saved game, with "format": "snooker-game"'
+            raise refuse_what("saved", "something else", allowed)
         if set(saved) != set(fields) or saved["version"] != 1 or saved["version"] is True:
-            raise refuse_what(
-                "saved",
-                f"version {saved.get('version')!r} with {sorted(saved)}",
-                f"must be version 1 with {list(fields)}",
-            )
+            what = f"version {saved.get('version')!r} with {sorted(saved)}"
+            raise refuse_what("saved", what, f"must be version 1 with {list(fields)}")
         noise = saved["noise"]
         if not isinstance(noise, list) or len(noise) != 2:
             raise refuse("saved.noise", noise, "must be two names")

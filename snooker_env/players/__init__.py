@@ -10,11 +10,9 @@ import sys as _sys
 from types import ModuleType as _ModuleType
 
 from .choices import ChoicePlayer
-from .player import Player, Ranked, Strokes
-from .playing import FRAMES, VISITS, decided, decision_seeds
+from .player import FRAMES, VISITS, BoundPlayer, Player, Ranked, Strokes, decided, decision_seeds
 from .resolver import player, players
 from .seen import Seen, SeenPlayer
-from .simple import BoundPlayer
 
 __all__ = [
     "FRAMES",

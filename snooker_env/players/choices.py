@@ -1,5 +1,4 @@
-"""How does a player play that scores the discrete choices? The one with the highest score; its aim is
-solved."""
+"""How does a player play that scores the discrete choices? The highest score; its aim is solved."""
 
 from typing import Any
 
@@ -11,11 +10,9 @@ from ..planning.positions import seeds_of
 from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS, choice_of
 from ..tasks.ghost_ball import geometric_strokes
 from ..tasks.options import Options
-from .player import Ranked, Strokes
-from .simple import BoundPlayer, placed, streams_of
+from .player import BoundPlayer, Ranked, Strokes, placed, streams_of
 
-MOST = 100
-"""Most strokes of a ranking."""
+MOST = 100  # most strokes of a ranking
 
 
 class ChoicePlayer(BoundPlayer):
@@ -40,8 +37,7 @@ class ChoicePlayer(BoundPlayer):
         self._planner = Planner(Options(action="discrete", **same), threads=1)
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
-        """Score all choices in n positions of visits, with seeds (n,): float (n, 540), -inf for unavailable
-        ones."""
+        """Score all choices in n positions of visits: float (n, 540), -inf for unavailable ones."""
         raise NotImplementedError
 
     def figures(self, scores: Floats) -> Floats | None:
@@ -100,8 +96,8 @@ class Random(ChoicePlayer):
 class GhostBall(ChoicePlayer):
     """``ghost_ball``: the widest pot, aim solved, in the middle at 2.3 m/s; else the geometric player's.
 
-    It places, breaks off, nominates and decides as the kernels of ``tasks.ghost_ball`` do. The opponent of
-    that name plays these kernels alone, at the straight line of the pot, for speed."""
+    All else is as by the kernels of ``tasks.ghost_ball``; the opponent of that name has these alone.
+    """
 
     name, training_shots = "ghost_ball", 0
 

@@ -1,5 +1,4 @@
-"""How does a player sit opposite the agent of a frame? Asked once for all tables that wait; its strokes are
-carried out as they are."""
+"""How does a player sit opposite the agent of a frame? Asked once for all tables that wait."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -37,9 +36,8 @@ class PlayerOpponent(Opponent):
         numbers = np.empty(len(which))
         drawn(which, frames.streams, numbers)
         saved = Layouts(frames.saved.positions[which], frames.saved.on_table[which])
-        at = Positions(
-            frames.positions[which], frames.on_table[which], strikers_own(frames.game[which]), saved
-        )
+        game = strikers_own(frames.game[which])
+        at = Positions(frames.positions[which], frames.on_table[which], game, saved)
         try:
             strokes = self.player.play(at, (numbers * 2**32).astype(np.int64))
         # of the player's own code: it is named, and the kind kept where callers tell kinds apart

@@ -1,10 +1,10 @@
-"""What is a player? A function of positions and a seed: it sees where the balls lie and says what it plays.
+"""What is a player? A function of positions and a seed, bound once (``at``), then asked (``play``).
 
-A ``Player`` is bound once to where it plays (``at``) and then asked for any number of positions (``play``).
 It keeps nothing between two calls: the same position and seed give the same stroke, whether asked for one
 table or a thousand.
 """
 
+import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol, TypeAlias, runtime_checkable
@@ -13,16 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import refuse, refuse_what
-from .._types import Environment, Floats, Integers, Ints
+from .._types import Bools, Environment, Floats, Integers, Ints
 from ..game.balls import YELLOW
 from ..game.frame_columns import BALL_ON, PLACE_ANYWHERE, PLAY, PLAY_AGAIN, REPLACE
 from ..game.ruling import AUTO
 from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
-from ..planning.positions import Positions, PositionsLike
+from ..planning.planner import options_in
+from ..planning.positions import Positions, PositionsLike, seeds_of
 from ..planning.strokes import NAMES
 from ..planning.trials import AIM, ELEVATION, SIDE, SPEED, TOP
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
+from ..tasks.ghost_ball import put_in_hand
 from ..tasks.options import Options
 
 RulesLike: TypeAlias = Environment | Options | Mapping[str, Any]
@@ -52,11 +54,10 @@ class Strokes:
     nominate : numpy.ndarray, optional
         int64 (n,). Id of the colour nominated after a red or as a free ball; 0: the free ball is declined; -1
         (default): the colour first struck.
-    decision : numpy.ndarray, optional
+    decision, declare : numpy.ndarray, optional
         int64 (n,). After a foul of the opponent: PLAY (default), PLAY_AGAIN, REPLACE or PLACE_ANYWHERE of
-        ``game.frame_columns``.
-    declare : numpy.ndarray, optional
-        int64 (n,). SAYS_NOTHING (default), CONCEDES, CLAIMS or OTHER_BEGINS of ``tasks.declarations``.
+        ``game.frame_columns``; SAYS_NOTHING (default), CONCEDES, CLAIMS or OTHER_BEGINS of
+        ``tasks.declarations``.
 
     Examples
     --------
@@ -103,10 +104,8 @@ class Strokes:
             object.__setattr__(self, name, array.astype(default.dtype))
         sound = np.isnan(self.place).all(1) | (np.abs(self.place) <= (HALF_WIDTH, HALF_LENGTH)).all(1)
         if not sound.all():
-            k = int(np.argmin(sound))
-            raise refuse(
-                f"place[{k}]", self.place[k].tolist(), "must be on the table, or NaN and NaN for none"
-            )
+            k, allowed = int(np.argmin(sound)), "must be on the table, or NaN and NaN for none"
+            raise refuse(f"place[{k}]", self.place[k].tolist(), allowed)
 
     def __len__(self) -> int:
         return len(self.values)
@@ -156,7 +155,8 @@ class Strokes:
         ``options``: of the environment, with ``action="box"`` and ``aim="absolute"``. ``at``: the n
         positions, on which the meaning of a place and a nomination depends. ValueError if the environment
         reads other actions, or a raised cue, a decision or a declaration that they do not hold; a place and a
-        nomination that they do not hold are left out."""
+        nomination that they do not hold are left out.
+        """
         box = options.rules.actions
         if not isinstance(box, Actions) or box.aim != "absolute":
             what = f"action={options.action!r}, aim={options.aim!r}"
@@ -212,10 +212,8 @@ class Ranked(NamedTuple):
 
     Attributes
     ----------
-    strokes : Strokes
-        m strokes.
-    scores : numpy.ndarray or None
-        float64 (m,). The player's own scores, or None if it has none.
+    strokes, scores
+        m ``Strokes``, and the player's own scores, float64 (m,), or None if it has none.
 
     Examples
     --------
@@ -226,15 +224,15 @@ class Ranked(NamedTuple):
     """
 
     strokes: Strokes
-    scores: NDArray[np.float64] | None
+    scores: Floats | None
 
 
 @runtime_checkable
 class Player(Protocol):
     """A player: a function of positions and a seed.
 
-    A player may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position; the first
-    stroke is the one that ``play`` returns. Advice shows it.
+    It may also have ``rank(positions, seeds)``, which returns a ``Ranked`` for each position, first of all
+    the stroke that ``play`` returns. Advice shows it.
 
     Examples
     --------
@@ -247,13 +245,138 @@ class Player(Protocol):
     def at(self, rules: RulesLike) -> "Player":
         """Return a new player bound to physics, table, fidelity, noise and, for frames, the game.
 
-        How an environment's actions are read does not matter: strokes are the same everywhere. ValueError if
-        the options are invalid, or the player cannot play under them."""
+        Strokes do not depend on how actions are read. ValueError if the player cannot play under the options.
+        """
         ...
 
     def play(self, positions: PositionsLike, seeds: Integers) -> Strokes:
-        """Return what it does in each of n positions, of visits or of frames as the striker sees them.
+        """Return what it does in n positions, of visits or of frames as the striker sees them.
 
         ``seeds``, int (n,): equal positions and seeds give equal strokes, however many are asked for at once.
         """
         ...
+
+
+class BoundPlayer:
+    """Base class of players: ``at`` binds a copy to options, for which subclasses have ``_bind``.
+
+    Examples
+    --------
+    >>> from snooker_env.players import BoundPlayer
+    >>> BoundPlayer().at({"noise": "club"}).options.noise
+    'club'
+    """
+
+    name: str = ""
+    training_shots: int | None = None
+    """All simulated shots of its training; None: not known."""
+    _options: Options | None = None
+
+    def at(self, rules: RulesLike) -> Any:
+        """Return a copy of this player bound to where it plays, see ``Player.at``."""
+        bound = copy.copy(self)
+        bound._options = options_in(rules)
+        bound._bind(bound._options)
+        return bound
+
+    def _bind(self, options: Options) -> None:
+        """What a player makes once for where it plays."""
+
+    @property
+    def options(self) -> Options:
+        """Where the player plays; ValueError before ``at``."""
+        if self._options is None:
+            raise refuse("player", self.name, "must be bound first: player.at(options)")
+        return self._options
+
+
+def streams_of(seeds: Any) -> np.ndarray:
+    """A random stream for each seed: uint64 (n, 2)."""
+    streams = np.zeros((len(seeds), 2), np.uint64)
+    streams[:, 0] = seeds
+    return streams
+
+
+def placed(at: Positions, seeds: Any) -> tuple[Positions, np.ndarray]:
+    """Visits with cue balls in hand put where ``ghost_ball`` does, and these places (n, 2), else NaN."""
+    places, keys = np.full((len(at), 2), np.nan), seeds_of(seeds, len(at))
+    if not at.in_hand.any():
+        return at.as_visits(), places
+    moved = at.copy()
+    put_in_hand(moved.positions, moved.on_table, moved.game, streams_of(keys))
+    hand = at.in_hand
+    places[hand] = moved.positions[hand, 0]
+    return moved.as_visits(), places
+
+
+VISITS: dict[str, Any] = {"aim": "absolute", "elevation": True, "placement": True}
+"""The options with which an environment of visits reads all that a player does."""
+FRAMES: dict[str, Any] = VISITS | {"decision": True}
+"""Those of frames and matches, where nobody concedes and the colour first struck is the one nominated."""
+_ODD = np.uint64(0x9E3779B97F4A7C15)
+
+
+def decision_seeds(seed: int, tables: Ints, decision: int | Ints) -> Ints:
+    """Return a seed for each table and decision, the same whichever tables are asked beside it.
+
+    Parameters
+    ----------
+    seed, tables, decision
+        The player's, an int; a number for each table, int (n,), such as the seed that it was dealt from; the
+        number of the decision, of all tables or of each.
+
+    Returns
+    -------
+    numpy.ndarray
+        int64 (n,), in [0, 2**32).
+
+    Examples
+    --------
+    >>> from snooker_env.players import decision_seeds
+    >>> bool(decision_seeds(0, [5, 6], 3)[1] == decision_seeds(0, [6], 3)[0])
+    True
+    """
+    state = np.uint64(seed & 0xFFFFFFFFFFFFFFFF) + np.zeros(len(tables), np.uint64)
+    for part in (np.asarray(tables), np.broadcast_to(np.asarray(decision), len(tables))):
+        state = _mixed(state + _ODD * (part.astype(np.uint64) + np.uint64(1)))
+    return (state >> np.uint64(32)).astype(np.int64)
+
+
+def _mixed(x: Any) -> Any:
+    """splitmix64 of uint64 numbers (Steele, Lea & Flood 2014)."""
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return x ^ (x >> np.uint64(31))
+
+
+def decided(player: Player, tables: Any, going: Bools, seeds: Ints) -> Floats:
+    """Ask a bound player on tables.
+
+    Parameters
+    ----------
+    player, tables
+        The player, bound, and n tables, made with ``VISITS`` or ``FRAMES``.
+    going, seeds : numpy.ndarray
+        The tables on which it is asked, bool (n,), and the seeds of these decisions, int64 (n,).
+
+    Returns
+    -------
+    numpy.ndarray
+        float64 (n, k). Actions; 0 on the other tables.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import snooker_env as sn
+    >>> from snooker_env.players import VISITS, decided
+    >>> tables = sn.SnookerVectorEnv(2, **VISITS)
+    >>> _ = tables.reset(seed=0)
+    >>> decided(sn.player("ghost_ball").at(tables), tables, np.array([True, False]), np.array([1, 2])).shape
+    (2, 7)
+    """
+    rows = np.flatnonzero(going)
+    actions = np.zeros((len(going), tables.options.rules.actions.size))
+    if len(rows):
+        at = Positions.of(tables)[rows]
+        actions[rows] = player.play(at, seeds[rows]).actions(tables.options, at)
+    return actions

@@ -1,5 +1,4 @@
-"""Which player does a name stand for? The only place that answers: built in, installed by others, your class,
-a model, a program."""
+"""Which player does a name stand for? The only place that answers."""
 
 import importlib
 import importlib.util
@@ -16,22 +15,15 @@ from .player import Player
 from .search import BUDGET, LEAST, MOST, SearchPlayer
 
 GROUP = "snooker_env.players"
-"""Entry points of this group name players of other packages: NAME = MODULE:MAKER, called without
-arguments."""
+"""Entry points for players of other packages: NAME = MODULE:MAKER, called without arguments."""
 READERS = "snooker_env.models"
-"""Entry points of this group read files of models: MODULE:READER, called with the path; None if the file is
-not theirs."""
-BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner")
-"""The players in the package."""
-RENAMED = {"lookahead": "search"}
-"""Names of players of version 0.3 that are still understood."""
-OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")
-"""MODULE:CLASS."""
+"""Entry points that read models: MODULE:READER, called with a path; None if the file is not theirs."""
+BUILT_IN = ("random", "ghost_ball", "best_pot", "search", "planner")  # the players in the package
+RENAMED = {"lookahead": "search"}  # names of players of version 0.3 that are still understood
+OWN = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*")  # MODULE:CLASS
 PROGRAM, PROGRAM_PLAYER = "program:", "snooker_env.play.program:ProgramPlayer"
 """How names of programs begin, and their player, which is loaded as an entry point is."""
-_SEARCHING = re.compile(
-    r"(best_pot|search|lookahead|planner_value|planner_policy|planner)(?:_(\d+))?(?:@(.+))?"
-)
+_SEARCHING = re.compile(r"(best_pot|search|lookahead|planner(?:_value|_policy)?)(?:_(\d+))?(?:@(.+))?")
 
 
 def players() -> list[str]:
@@ -62,22 +54,17 @@ def player(name: Any, *, trust: bool = False) -> Player:
         * a name of ``players()``, for players that search optionally with a number of simulated shots
           ("planner_500") and for a planner with a model ("planner@runs/ppo_value-0");
         * "MODULE:CLASS" of a player of your own, made without arguments; its module is imported;
-        * a model's ``.zip`` of Stable-Baselines3 or sb3-contrib, or a training run's folder or files of
-          ``train.py``;
+        * a ``.zip`` of Stable-Baselines3 or sb3-contrib, or a run's folder or files of ``train.py``;
         * "program:COMMAND", an external program (docs/play/protocol.md);
         * a player, or an object with ``options`` and ``act(observations, masks, seeds)``.
-    trust : bool, optional
-        Whether code in a model's ``.zip`` may run; default False.
+    trust : bool
+        Whether code in a model's ``.zip`` may run.
 
     Returns
     -------
     Player
-        The player, not yet bound: ``player(name).at(options).play(positions, seeds)``.
-
-    Raises
-    ------
-    ValueError
-        If nothing has that name, the file holds no player, or it holds code and ``trust`` is False.
+        Not yet bound: ``player(name).at(options).play(positions, seeds)``. ValueError if nothing has that
+        name, the file holds no player, or it holds code and ``trust`` is False.
 
     Examples
     --------

@@ -1,5 +1,4 @@
-"""How does a model of Stable-Baselines3 or sb3-contrib play? Its ``.zip``, checked before any code in it
-runs, as a ``Seen``."""
+"""How does a model of Stable-Baselines3 or sb3-contrib play? Its checked ``.zip``, as a ``Seen``."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,9 +19,7 @@ _VIEW = "must be a model trained on the observation of a visit or a frame, and n
 
 @dataclass(frozen=True)
 class FittingModel:
-    """A model's file whose spaces are those of an environment with these options.
-
-    ``saved``: the file, of which nothing was unpickled. ``options``: how it sees and acts, see ``Seen``."""
+    """A model's file, not unpickled, with fitting ``options``: how it sees and acts, see ``Seen``."""
 
     saved: SavedModel
     options: dict[str, Any]
@@ -83,11 +80,8 @@ class SavedNetwork:
         actions = []
         with one_thread():
             for k in range(len(seeds)):
-                row = (
-                    {name: part[k] for name, part in observations.items()}
-                    if isinstance(observations, dict)
-                    else observations[k]
-                )
+                flat = not isinstance(observations, dict)
+                row = observations[k] if flat else {name: part[k] for name, part in observations.items()}
                 masked = {"action_masks": masks[k]} if self._masked and masks is not None else {}
                 actions.append(self._network.predict(row, deterministic=True, **masked)[0])
         space = self._network.action_space
@@ -102,9 +96,8 @@ def saved_player(path: Path, options: dict[str, Any], trust: bool, field: str = 
     except Exception as error:
         raise refuse(field, str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
     if ours:
-        raise refuse(
-            field,
-            str(path),
-            "must be read in a clone of the repository, without options: it is a model or a run of train.py",
+        words = (
+            "must be read in a clone of the repository, without options: it is a model or a run of train.py"
         )
+        raise refuse(field, str(path), words)
     return SeenPlayer(SavedNetwork(FittingModel.of(path, options, field), trust), name=str(path))

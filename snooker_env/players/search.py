@@ -1,12 +1,9 @@
-"""How do players search? By the rule of thumb, for the pot alone, or with a learned value and policy, by one
-``StrokeSearch``.
+"""How do players search? By one ``StrokeSearch``; a name may end in simulated shots: ``search_2000``.
 
 * ``search`` judges positions by the rule of thumb and looks at strokes spread evenly over the pots.
-* ``planner`` judges by the learned value and looks at the strokes that the learned policy proposes. It has
-  weights for several levels of execution errors and takes those of the level that it plays under.
+* ``planner`` judges by the learned value and looks at the strokes that the learned policy proposes. It takes
+  the weights of the level of execution errors that it plays under.
 * ``best_pot`` plays the likeliest pot without regard to what follows.
-
-A name may end in a number of simulated shots a decision: ``search_2000``.
 """
 
 from typing import Any
@@ -18,31 +15,25 @@ from ..planning import Positions, StrokeSearch
 from ..planning.learned.learned_value import LearnedValue
 from ..planning.learned.policy_proposals import PolicyProposals
 from ..tasks.options import Options
-from .player import Ranked, Strokes
-from .simple import BoundPlayer, placed
+from .player import BoundPlayer, Ranked, Strokes, placed
 from .weights import Learned, learned_at, level_for
 
-BUDGET = 120
-"""Simulated shots of a decision where the name does not say how many."""
+BUDGET = 120  # simulated shots of a decision where the name does not say how many
 KINDS = ("best_pot", "search", "planner", "planner_value", "planner_policy")
 """``planner_value`` and ``planner_policy`` have one of the planner's two halves: what is each worth?"""
 
-LEAST, MOST = 8, 10**7
-"""The fewest and the most simulated shots of a decision."""
-RANKED = 40
-"""Most strokes of a ranking."""
+LEAST, MOST = 8, 10**7  # the fewest and the most simulated shots of a decision
+RANKED = 40  # most strokes of a ranking
 
 
 class SearchPlayer(BoundPlayer):
-    """The best stroke of a ``StrokeSearch``; a planner's ``learned`` policy and value are by default the
-    package's."""
+    """The best stroke of a ``StrokeSearch``; ``learned``: a planner's, by default the package's."""
 
     def __init__(self, kind: str, budget: int = BUDGET, learned: Learned | None = None):
         self.kind, self.name = kind, kind if budget == BUDGET else f"{kind}_{budget}"
         self.budget = integer("budget", budget, LEAST, MOST)
         self._learned, self.training_shots = learned, None if kind.startswith("planner") else 0
-        self.search: Any = None
-        """The ``StrokeSearch`` where it is bound; None before."""
+        self.search: Any = None  # the ``StrokeSearch`` where it is bound; None before
 
     def _bind(self, options: Options) -> None:
         self.search = search = StrokeSearch(options, self.budget, pots_only=self.kind == "best_pot")

@@ -1,14 +1,12 @@
-"""How does a network play? It sees observations and answers with actions; one adapter makes a player of
-it."""
+"""How does a network play? It sees observations and answers with actions; an adapter makes a player."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import choice, refuse_what
-from .._types import Bools, Ints, Observation
+from .._types import Bools, Floats, Ints, Observation
 from ..game.balls import mask_of_present
 from ..game.frame_columns import (
     ANYWHERE,
@@ -31,12 +29,10 @@ from ..tasks.observations import shaped
 from ..tasks.options import Options
 from ..tasks.saying import sayings
 from ..tasks.visit import Visits
-from .player import Strokes
-from .simple import BoundPlayer, placed
+from .player import BoundPlayer, Strokes, placed
 
 OPTIONS = (*Options.group("action"), *Options.group("view"), *SAYS, "miss")
-"""Options that say how a network sees and acts; with a miss rule it sees the layout that "replace"
-restores."""
+"""How a network sees and acts; with a miss rule it sees the layout that "replace" restores."""
 
 
 @runtime_checkable
@@ -60,7 +56,8 @@ class Seen(Protocol):
         """Return n actions, for n observations, of the kinds that ``options`` say.
 
         ``masks``: bool (n, choices) with ``action="discrete"``, else None. ``seeds``, int64 (n,): equal rows
-        and seeds must give equal actions, however many are asked for."""
+        and seeds must give equal actions, however many are asked for.
+        """
         ...
 
 
@@ -94,9 +91,8 @@ class SeenPlayer(BoundPlayer):
     def __init__(self, seen: Any, options: Mapping[str, Any] | None = None, name: str | None = None):
         sees = dict(getattr(seen, "options", {}) if options is None else options)
         self.seen, self.name = seen, name or type(seen).__name__
-        self.frames = (
-            choice(f"task of player {self.name}", sees.pop("task", "visit"), ("visit", "frame")) == "frame"
-        )
+        task = choice(f"task of player {self.name}", sees.pop("task", "visit"), ("visit", "frame"))
+        self.frames = task == "frame"
         for key in sees:
             choice(f"key of the options of player {self.name}", key, OPTIONS)
         if not self.frames:
@@ -109,10 +105,9 @@ class SeenPlayer(BoundPlayer):
         """Read its options with the physics of ``options``; ValueError if they are no environment's."""
         same: dict[str, Any] = {name: getattr(options, name) for name in Options.group("shot")}
         if self.frames:
-            match = (
-                {"task": "match", "frames": options.frames} if options.task == "match" else {"task": "frame"}
-            )
-            same |= match | {name: getattr(options, name) for name in Options.group("frame")}
+            match = {"frames": options.frames} if options.task == "match" else {}
+            same |= {"task": "match" if match else "frame"} | match
+            same |= {name: getattr(options, name) for name in Options.group("frame")}
         self._rules = Options(**same | self.sees).rules
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
@@ -130,15 +125,14 @@ class SeenPlayer(BoundPlayer):
         shown = shown.copy()
         shown.game[decision == PLACE_ANYWHERE, IN_HAND] = shown.game[decision == PLACE_ANYWHERE, ANYWHERE] = 1
         values, start = decoded(self._rules, shown, rows, actions, nominate)
-        return Strokes(
-            values, np.where(self._puts(shown), start.positions[:, 0], places), nominate, decision, declare
-        )
+        places = np.where(self._puts(shown), start.positions[:, 0], places)
+        return Strokes(values, places, nominate, decision, declare)
 
     def _puts(self, at: Positions) -> Bools:
         """Where its action places the cue ball: bool (n, 1)."""
         return (at.in_hand & bool(self._rules.actions.placement))[:, None]
 
-    def _shown(self, at: Positions, keys: Ints) -> tuple[Positions, NDArray[np.float64]]:
+    def _shown(self, at: Positions, keys: Ints) -> tuple[Positions, Floats]:
         """The positions as it sees them, and where cue balls in hand were placed for it (n, 2), else NaN."""
         none = np.full((len(at), 2), np.nan)
         if self.frames:
@@ -151,7 +145,7 @@ class SeenPlayer(BoundPlayer):
             visits.positions[anywhere], none[anywhere] = put.positions, places
         return visits, none
 
-    def _actions(self, at: Positions, keys: Ints) -> NDArray[np.float64]:
+    def _actions(self, at: Positions, keys: Ints) -> Floats:
         """Its checked actions in n positions; errors name it."""
         n, rules = len(at), self._rules
         tables: Any = (Frames if self.frames else Visits)(rules, 0)
@@ -165,9 +159,8 @@ class SeenPlayer(BoundPlayer):
         try:
             actions = np.asarray(answer)
             if actions.ndim == 0 or len(actions) != n:
-                raise refuse_what(
-                    "actions", f"array of shape {actions.shape}", f"must be {n}, one for each position"
-                )
+                allowed = f"must be {n}, one for each position"
+                raise refuse_what("actions", f"array of shape {actions.shape}", allowed)
             return rules.actions.check_many(actions, n)
         except ValueError as error:
             raise ValueError(f"player {self.name}: {error}") from None

@@ -9,11 +9,10 @@ import numpy as np
 
 from .._check import integer
 from .outline import BAULK_LINE, D_ARC, SPOT_MARKS, extent, is_marked
-from .palette import LETTERS, PALE
+from .palette import LETTERS
 from .scene import Scene
 
-WIDTH = 100
-"""Default number of characters a line."""
+WIDTH = 100  # default number of characters a line
 
 _LEGEND = "W=cue  r=red (digit: several)  Y=yellow G=green N=brown B=blue P=pink K=black"
 _LINE, _ARC, _SPOT, _PATH, _AIM, _GHOST, _POCKET = "│", "·", "+", ".", "-", "o", "O"
@@ -29,7 +28,6 @@ class _Grid:
         # odd, so that blue, brown, pink and black have a row of their own
         self.rows = min(max(9, rows), 400) | 1
         self.cells = np.full((self.rows, columns), " ")
-        self.owner = np.full((self.rows, columns), -1)  # ball id, for colours
 
     def cell(self, point):
         """Row and column of a point [m], or None if it lies outside the noses."""
@@ -40,35 +38,35 @@ class _Grid:
         column = int((y - self.low) / (self.high - self.low) * self.columns)
         return min(row, self.rows - 1), min(column, self.columns - 1)
 
-    def mark(self, point, character, owner=-1):
+    def mark(self, point, character):
         at = self.cell(point)
         if at is not None:
-            self.cells[at], self.owner[at] = character, owner
+            self.cells[at] = character
 
-    def line(self, points, character, owner=-1):
+    def line(self, points, character):
         """A polyline, drawn by points closer than the cells."""
         step = (self.high - self.low) / self.columns / 2
         for a, b in pairwise(points):
             for part in np.linspace(0.0, 1.0, 2 + int(np.hypot(*(b - a)) / step)):
-                self.mark(a + part * (b - a), character, owner)
+                self.mark(a + part * (b - a), character)
 
 
-def ansi(scene: Scene, width: int = WIDTH, *, colour: bool = False) -> str:
-    """The scene as lines of text, with status and legend; ``colour``: with 24-bit codes of terminals."""
+def ansi(scene: Scene, width: int = WIDTH) -> str:
+    """The scene as lines of text, with status and legend."""
     grid = _Grid(integer("width", width, 60, 400) - 2, scene.table)
     if is_marked(scene.table):
         grid.line(BAULK_LINE, _LINE)
         grid.line(D_ARC, _ARC)
         for spot in SPOT_MARKS:
             grid.mark(spot, _SPOT)
-    for ball, points in scene.paths.items():
-        grid.line(points, _PATH, ball)
+    for points in scene.paths.values():
+        grid.line(points, _PATH)
     if scene.aim is not None:
         grid.line(scene.aim, _AIM)
     if scene.ghost is not None:
         grid.mark(scene.ghost, _GHOST)
     hidden = _balls(grid, scene)
-    lines = _framed(grid, scene.table, colour)
+    lines = _framed(grid, scene.table)
     if scene.text:
         lines.append(scene.text)
     lines += wrap(_LEGEND, width)
@@ -92,11 +90,11 @@ def _balls(grid, scene):
             letter = str(len(balls)) if len(balls) < 10 else "*"
         elif under:
             hidden.append(f"{under} under {letter}")
-        grid.cells[at], grid.owner[at] = letter, top
+        grid.cells[at] = letter
     return hidden
 
 
-def _framed(grid, table, colour):
+def _framed(grid, table):
     """The grid's lines inside the rails, with the pockets in them."""
     side, wall = ("═", "║") if len(table.noses) else (" ", " ")
     rails = [[side] * grid.columns, [side] * grid.columns]
@@ -110,17 +108,4 @@ def _framed(grid, table, colour):
         else:
             corners[2 * bottom + int(y >= grid.high)] = _POCKET
     top, bottom = (corners[2 * k] + "".join(rails[k]) + corners[2 * k + 1] for k in (0, 1))
-    paint = _paint if colour else lambda character, ball: character
-    rows = zip(grid.cells.tolist(), grid.owner.tolist(), strict=True)
-    return [
-        top,
-        *(wall + "".join(map(paint, characters, owners)) + wall for characters, owners in rows),
-        bottom,
-    ]
-
-
-def _paint(character, ball):
-    if ball < 0:
-        return character
-    r, g, b = PALE[ball]
-    return f"\x1b[38;2;{r};{g};{b}m{character}\x1b[0m"
+    return [top, *(wall + "".join(row) + wall for row in grid.cells.tolist()), bottom]

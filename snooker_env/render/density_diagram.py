@@ -17,10 +17,8 @@ from .sketch import Sketch, is_closed, rgb
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-HEAT = (255, 176, 46)
-"""Colour of the map: red, green, blue."""
-CELL = 0.01
-"""Size of the cells of the map [m]."""
+HEAT = (255, 176, 46)  # colour of the map: red, green, blue
+CELL = 0.01  # size of the cells of the map [m]
 _REACH = 3.0  # a Gaussian kernel is cut off at this many bandwidths
 
 
@@ -55,14 +53,9 @@ def density_of(
 
     Parameters
     ----------
-    points : float64 (m, 2)
-        Places [m].
-    low, high : float64 (2,)
-        Two opposite corners of the rectangle [m].
-    bandwidth : float
-        Standard deviation of the kernels [m].
-    cell : float
-        Size of a cell [m]; the cells fill the rectangle exactly, so theirs differs a little.
+    points, low, high, bandwidth, cell
+        Places, float64 (m, 2); two opposite corners of the rectangle, float64 (2,); standard deviation of the
+        kernels; and size of a cell, a little different where the cells fill the rectangle [m].
 
     Returns
     -------
@@ -88,10 +81,8 @@ def density_of(
         half = int(min(np.ceil(_REACH * bandwidth / size[axis]), n[axis]))
         bell = np.exp(-0.5 * (np.arange(-half, half + 1) * size[axis] / bandwidth) ** 2)
         wide = np.pad(values, [(half, half) if k == axis else (0, 0) for k in range(2)], mode="symmetric")
-        bell /= bell.sum()
-        values = np.apply_along_axis(
-            lambda line, bell=bell: np.convolve(line, bell, mode="valid"), axis, wide
-        )
+        smooth: Any = np.convolve
+        values = np.apply_along_axis(smooth, axis, wide, bell / bell.sum(), mode="valid")
     return values, size
 
 
@@ -100,10 +91,8 @@ def level_of(values: Floats, share: float) -> float:
 
     Parameters
     ----------
-    values : float64 (nx, ny)
-        Densities, as of ``density_of`` [1/m^2].
-    share : float
-        Share of the total, from 0 to 1.
+    values, share
+        Densities, as of ``density_of`` [1/m^2], and the share, from 0 to 1.
 
     Returns
     -------
@@ -154,10 +143,8 @@ def density(
         Standard deviation of the Gaussian kernels [m], in [0.0001, 1]; None: Scott's rule.
     colour : sequence of int
         Red, green and blue of the map, 0 to 255.
-    view : "table", "shot" or ((float, float), (float, float))
-        The part of the table to show, as in ``plot`` [m]; "shot": as much as the points need.
-    title : str
-        Title at the top left.
+    view, title
+        As in ``plot``; "shot": as much of the table as the points need.
 
     Returns
     -------
@@ -224,20 +211,12 @@ def _draw_cloud(sketch, points, bandwidth, shares, colour):
         low, high = np.maximum(low, bounds[:, 0] + sketch.R), np.minimum(high, bounds[:, 1] - sketch.R)
     values, size = density_of(points.clip(low, high), low, high, bandwidth)
     strength = values / values.max()
-    picture = np.empty((*values.shape, 4))
-    picture[..., :3] = np.array(rgb(colour)[:3]) + (1 - np.array(rgb(colour)[:3])) * (
-        0.55 * strength[..., None] ** 3
-    )
+    picture, ink = np.empty((*values.shape, 4)), np.array(rgb(colour)[:3])
+    picture[..., :3] = ink + (1 - ink) * 0.55 * strength[..., None] ** 3
     picture[..., 3] = 0.95 * (1 - np.exp(-5 * strength))
-    image = AxesImage(
-        sketch.ax,
-        extent=(low[1], high[1], high[0], low[0]),
-        origin="upper",
-        interpolation="bilinear",
-        zorder=3.0,
-    )
-    image.set_data(picture)
-    image.set_gid("density")
+    style: dict[str, Any] = {"origin": "upper", "interpolation": "bilinear", "zorder": 3.0}
+    image = AxesImage(sketch.ax, extent=(low[1], high[1], high[0], low[0]), **style)
+    image.set(data=picture, gid="density")
     sketch.ax.add_image(image)
     ys, xs = (low[k] + size[k] * (np.arange(values.shape[k]) + 0.5) for k in (1, 0))
     for share in sorted(shares):
@@ -260,6 +239,5 @@ def _label(sketch, lines, share, *, outer):
         stroke = [withStroke(linewidth=2.0, foreground=rgb("path_edge", 0.8))]
         away, side = (0.4, "left") if outer else (-0.4, "right")
         y += away * sketch.font / sketch.points_per_metre
-        sketch.text(
-            y, x, f"{100 * share:g} %", size=0.9, zorder=8.5, gid="share", path_effects=stroke, ha=side
-        )
+        style = {"zorder": 8.5, "gid": "share", "path_effects": stroke, "ha": side}
+        sketch.text(y, x, f"{100 * share:g} %", size=0.9, **style)

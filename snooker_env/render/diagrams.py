@@ -5,9 +5,8 @@ new figure, and return the axes: baulk left and black right, y [m] to the right 
 ``bandwidth_of``, ``density_of`` and ``level_of`` are what ``density`` draws, as numbers.
 """
 
-from .compare_diagram import compare
 from .density_diagram import bandwidth_of, density, density_of, level_of
 from .fan_diagram import fan
-from .shot_diagram import plot
+from .shot_diagram import compare, plot
 
 __all__ = ["bandwidth_of", "compare", "density", "density_of", "fan", "level_of", "plot"]

@@ -74,8 +74,7 @@ def fan(
     """Draw the cue ball's paths of one pot, played with every pair of a top and a side.
 
     As in Fig. 1 of the paper. Of the aims that pot the ball, which squirt and throw change, the middle one is
-    played. The colour of a path is its top, from screw (blue) to follow (red); the sign at its end is its
-    side.
+    played. A path's colour is its top, from screw (blue) to follow (red); the sign at its end is its side.
 
     Parameters
     ----------
@@ -135,13 +134,7 @@ def fan(
 
 
 def fan_options(
-    r: Floats,
-    here: Any,
-    ball: int | None,
-    pocket: int | None,
-    strokes: Strokes,
-    table: Table,
-    physics: Physics,
+    r: Floats, here: Any, ball: Any, pocket: Any, strokes: Strokes, table: Table, physics: Physics
 ) -> list[Option]:
     """The strokes of a fan: for each top and side the aim (or one that pots the ball) and the shot."""
     speed, tops, sides, elevation, aim = strokes
@@ -221,11 +214,8 @@ def _line(r, ball, pocket, table, R):
 def _met(shot):
     """The cue ball's first meeting with another ball, or None."""
     first = cue_ball(shot)
-    return (
-        None
-        if first is None
-        else next((c for c in contacts(shot, first) if c.kind == EventKind.BALL_BALL), None)
-    )
+    meetings = () if first is None else contacts(shot, first)
+    return next((one for one in meetings if one.kind == EventKind.BALL_BALL), None)
 
 
 def _way(shot):
@@ -250,12 +240,9 @@ def _ends(shots):
 
 def shade(top: float, tops: Sequence[float]) -> tuple[int, ...]:
     """The colour of one of the tops, from ``SHADES``; white for no top."""
-    most = max(map(abs, tops)) or 1.0
-    middle = len(SHADES) // 2
-    place = middle * (1.0 + top / most)
-    return tuple(
-        round(float(np.interp(place, range(len(SHADES)), [colour[c] for colour in SHADES]))) for c in range(3)
-    )
+    place = len(SHADES) // 2 * (1.0 + top / (max(map(abs, tops)) or 1.0))
+    parts = zip(*SHADES, strict=True)
+    return tuple(round(float(np.interp(place, range(len(SHADES)), part))) for part in parts)
 
 
 def _write(sketch, options, tops, speed):
@@ -271,16 +258,12 @@ def _write(sketch, options, tops, speed):
     for k, side in enumerate(sides):
         at = y + (0.36 + 0.17 * k) * w.width
         sketch.mark((rows[1], at), _MARKS[1 + int(np.sign(round(side, 9)))], "text", 6.5, 9.5)
-        sketch.text(
-            at + 0.018 * w.width,
-            rows[1],
-            "none" if side == 0 else f"{'right' if side > 0 else 'left'} {abs(side):.2f}",
-        )
+        words = "none" if side == 0 else f"{'right' if side > 0 else 'left'} {abs(side):.2f}"
+        sketch.text(at + 0.018 * w.width, rows[1], words)
     step = 0.68 / max(len(tops), 4)
     for k, top in enumerate(tops):
         at = y + (0.285 + step * k) * w.width
-        sketch.ax.plot(
-            [at, at + 0.028 * w.width], [rows[0]] * 2, color=rgb(shade(top, tops)), lw=3.0, zorder=9.5
-        )
+        ends, ink = [at, at + 0.028 * w.width], rgb(shade(top, tops))
+        sketch.ax.plot(ends, [rows[0]] * 2, color=ink, lw=3.0, zorder=9.5)
         words = "centre" if top == 0 else f"{'top' if top > 0 else 'screw'} {abs(top):.2f}"
         sketch.text(at + 0.036 * w.width, rows[0], words)

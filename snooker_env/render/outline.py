@@ -1,5 +1,4 @@
-"""Which parts of a table never move, and where are they? Cushions, falls, holes and snooker's lines, in
-metres. Table frame: origin at the table's centre, +x to the yellow side, +y to the black end."""
+"""Which parts of a table never move, and where are they? Cushions, falls, holes and lines [m]."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -8,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .._types import Floats
-from ..game.balls import N_BALLS, NAMES, VALUES
+from ..game.balls import NAMES, VALUES
 from ..geometry import BALL_RADIUS, BAULK_Y, COLOUR_SPOTS, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.columns import JAW_RADIUS
 from ..physics.table import Table, TableLike
@@ -69,11 +68,8 @@ def extent(table: Table) -> Floats:
 
 def is_marked(table: Table) -> bool:
     """Whether snooker's lines and spots are drawn: on a snooker bed, and on unbounded cloth."""
-    ends = (HALF_WIDTH, HALF_LENGTH)
-    return all(
-        np.allclose(bounds, (-end, end), rtol=0.0, atol=1e-9)
-        for bounds, end in zip(extent(table), ends, strict=True)
-    )
+    snooker = [(-HALF_WIDTH, HALF_WIDTH), (-HALF_LENGTH, HALF_LENGTH)]
+    return np.allclose(extent(table), snooker, rtol=0.0, atol=1e-9)
 
 
 @lru_cache(maxsize=16)
@@ -98,11 +94,9 @@ def outline(table: Table) -> Outline:
     4
     """
     cushions, noses = [], []
-    ends = [
-        (_point(axis, side * level, end), _point(axis, side, 0.0))
-        for axis, side, level, *low_high in table.noses
-        for end in low_high
-    ]
+    ends = []
+    for axis, side, level, *low_high in table.noses:
+        ends += [(_point(axis, side * level, end), _point(axis, side, 0.0)) for end in low_high]
     for axis, side, level, low, high in table.noses:
         out = _point(axis, side, 0.0)  # from the nose into the wood
         left, right = (_jaw(table.jaws, _point(axis, side * level, end)) for end in (low, high))
@@ -155,9 +149,8 @@ def _onward(jaw, out, level, ends):
 def _throat(fall, noses, mouths):
     """The hole in the wood, from the mouth's middle to the fall's centre, as wide as its jaws' ends."""
     jaw_ends = [end for nose in noses for end in (nose[0], nose[-1])]
-    (a, b), (c, d) = (
-        sorted(points, key=lambda point: np.hypot(*(point - fall[:2])))[:2] for points in (mouths, jaw_ends)
-    )
+    far = lambda point: np.hypot(*(point - fall[:2]))  # noqa: E731
+    (a, b), (c, d) = (sorted(points, key=far)[:2] for points in (mouths, jaw_ends))
     return [*(a + b) / 2, *fall[:2], np.hypot(*(c - d)) / 2]
 
 
@@ -187,11 +180,9 @@ def scene_data(table: TableLike) -> dict[str, Any]:
     """
     table = Table.of(table)
     parts = outline(table)
-    marks = (
-        {"baulk": _rounded(BAULK_LINE), "d": _rounded(D_ARC), "spots": _rounded(SPOT_MARKS)}
-        if is_marked(table)
-        else None
-    )
+    marks = {"baulk": _rounded(BAULK_LINE), "d": _rounded(D_ARC), "spots": _rounded(SPOT_MARKS)}
+    keys = ("name", "letter", "value", "rgb")
+    balls = zip(NAMES, LETTERS, VALUES.tolist(), COLOURS.tolist(), strict=True)
     return {
         "cushions": [_rounded(polygon) for polygon in parts.cushions],
         "noses": [_rounded(nose) for nose in parts.noses],
@@ -200,18 +191,10 @@ def scene_data(table: TableLike) -> dict[str, Any]:
         "extent": _rounded(extent(table)),
         "rail": RAIL,
         "cushion": CUSHION,
-        "lines": marks,
+        "lines": marks if is_marked(table) else None,
         "ball_radius": float(table.ball_radius or BALL_RADIUS),
         "palette": {name: list(rgb) for name, rgb in PALETTE.items()},
-        "balls": [
-            {
-                "name": NAMES[ball],
-                "letter": LETTERS[ball],
-                "value": int(VALUES[ball]),
-                "rgb": COLOURS[ball].tolist(),
-            }
-            for ball in range(N_BALLS)
-        ],
+        "balls": [dict(zip(keys, ball, strict=True)) for ball in balls],
     }
 
 

@@ -1,8 +1,8 @@
-"""Which colours does everything have? One table for pygame, matplotlib and the browser. Each ball differs
-from the cloth by at least 25 in CIEDE2000, so that it is easy to see."""
+"""Which colours does everything have? Each ball is easy to see: 25 or more from the cloth in CIEDE2000."""
 
 import numpy as np
-from numpy.typing import NDArray
+
+from .._types import Bytes
 
 PALETTE: dict[str, tuple[int, int, int]] = {
     "floor": (17, 18, 21),
@@ -26,19 +26,18 @@ PALETTE: dict[str, tuple[int, int, int]] = {
     "text": (240, 240, 236),
     "text_quiet": (164, 170, 184),
 }
-"""Colours by name, (red, green, blue), 0 to 255. ``cloth_edge``: the cloth where it bends over a fall;
-``line``: the lines and spots; ``nose``: the edge of a cushion that balls meet; ``path_edge``: the outline
-of a path; ``lamp``: its reflection in a ball; ``bar``: the score bar."""
+"""Colours by name, (red, green, blue), 0 to 255. ``cloth_edge``: the cloth over a fall; ``nose``: the edge
+that balls meet; ``path_edge``: a path's outline; ``lamp``: its reflection; ``bar``: the score bar."""
 
-COLOURS: NDArray[np.uint8] = np.array(
+COLOURS: Bytes = np.array(
     [(252, 248, 234)]
     + [(196, 18, 24)] * 15
     + [(252, 214, 36), (0, 74, 62), (118, 62, 22), (20, 72, 206), (244, 138, 166), (18, 18, 21)],
     dtype=np.uint8,
 )
 """Colours of the balls by id: uint8 (22, 3), red, green, blue; read-only."""
-PALE: NDArray[np.uint8] = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)
-"""Lighter colours, for paths on the cloth and letters on a dark terminal: uint8 (22, 3), read-only."""
+PALE: Bytes = ((COLOURS.astype(np.int64) * 2 + 255) // 3).astype(np.uint8)
+"""Lighter colours, for paths on the cloth: uint8 (22, 3), read-only."""
 LETTERS = "W" + "r" * 15 + "YGNBPK"
 """Letters by ball id: W the white cue ball, r a red; N is brown and K black, because B is blue."""
 

@@ -1,22 +1,120 @@
-"""How is a ball drawn? Shaded, with reflections of the lamps over the table and a faint shadow from each.
-Pictures of these are kept for each colour, size and quarter of a pixel."""
+"""How are balls, paths and words drawn with pygame-ce? As kept pictures: balls shaded, with reflections of the
+lamps and faint shadows; paths in pieces, so that one that grows changes only at its end."""
 
+import os
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from .._install import missing
 from .._types import Floats
 from ..game.balls import YELLOW
 from .palette import COLOURS, LETTERS, PALETTE
-from .pygame_library import BOLD, surface_of, typeset
-from .scene import Scene
-from .table_picture import LAMP_HEIGHT, lamps
-from .turning import matrix
-from .view import View
+from .scene import Scene, matrix
+from .table_picture import LAMP_HEIGHT, View, lamps
 
-PANEL = 0.55
-"""Length of a lamp [m]."""
+FONTS = Path(__file__).parent / "fonts"
+BOLD, MEDIUM = "Inter-Bold.otf", "Inter-Medium.otf"
+
+
+def pygame_() -> Any:
+    """The module ``pygame``, or an ImportError with the command that installs it."""
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+    try:
+        import pygame
+    except ImportError as error:
+        raise missing("pictures need pygame-ce", "render") from error
+    return pygame
+
+
+def typeset(text: str, colour: Any, size: float, file: str = MEDIUM) -> Any:
+    """A line of text as a surface, ``size`` pixels from a capital's top to the bottom of its descenders."""
+    pygame = pygame_()
+    if not pygame.font.get_init():
+        pygame.font.init()
+        _font.cache_clear()
+    return _font(file, max(6, round(size))).render(text.replace("\0", " "), True, colour)
+
+
+@lru_cache(maxsize=64)
+def _font(file, size):
+    return pygame_().font.Font(str(FONTS / file), size)
+
+
+def surface_of(rgba: Any) -> Any:
+    """A surface with transparency from an array (h, w, 4) of floats from 0 to 255."""
+    image = np.ascontiguousarray(np.clip(np.rint(rgba), 0, 255).astype(np.uint8))
+    return pygame_().image.frombuffer(image, image.shape[1::-1], "RGBA")
+
+
+_STEP = 3.0  # distance between the points of a path [pixels]
+_POINTS = 16  # points in a piece
+_LONGEST = 1e5  # pixels: a longer path is not drawn
+
+
+def line_width(scale: float) -> float:
+    """Width of a path [pixels] at ``scale`` pixels per metre: 3.4 in a picture of 1920 x 1080."""
+    return max(1.5, 0.0072 * scale)
+
+
+def draw_lines(surface: Any, lines: list[tuple[Floats, tuple[int, int, int]]], width: float) -> None:
+    """Draw polylines (points (m, 2) [pixels], colour), later ones on top."""
+    for points, colour in lines:
+        pieces = list(_pieces(points))
+        edge = width + 2 * max(0.9, 0.45 * width)
+        surface.fblits([_piece(*piece, PALETTE["path_edge"], edge) for piece in pieces])
+        surface.fblits([_piece(*piece, colour, width) for piece in pieces])
+
+
+def _pieces(points):
+    """The pieces of a line: their points, and the cuts (point, direction, or None) that neighbours share."""
+    steps = np.hypot(*np.diff(points, axis=0).T)
+    run = np.concatenate([[0.0], np.cumsum(steps)])
+    moved = np.concatenate([[True], steps > 1e-9])
+    run, points = run[moved], points[moved]
+    if len(points) < 2 or not run[-1] < _LONGEST:
+        return
+    at = np.append(np.arange(0.0, run[-1], _STEP), run[-1])
+    even = np.stack([np.interp(at, run, points[:, k]) for k in (0, 1)], axis=1)
+    cuts = range(_POINTS, len(even) - 1, _POINTS)
+    edges = [None, *((*even[k].tolist(), *(even[k + 1] - even[k - 1]).tolist()) for k in cuts), None]
+    for k, first in enumerate((0, *cuts)):
+        yield tuple(even[first : first + _POINTS + 1].ravel().tolist()), edges[k], edges[k + 1]
+
+
+@lru_cache(maxsize=4096)
+def _piece(numbers, start, end, colour, width):
+    """One piece as a picture, and the place of its corner."""
+    points = np.array(numbers).reshape(-1, 2)
+    chord = points[-1] - points[0]
+    off = np.abs((points - points[0]) @ np.array([-chord[1], chord[0]])) / max(np.hypot(*chord), 1e-9)
+    if np.max(off) < 0.05:  # straight
+        points = points[[0, -1]]
+    margin = width / 2 + 1
+    low = np.floor(points.min(axis=0) - margin).astype(int)
+    high = np.ceil(points.max(axis=0) + margin).astype(int)
+    x, y = np.meshgrid(np.arange(low[0], high[0]) + 0.5, np.arange(low[1], high[1]) + 0.5)
+    nearest, whose = np.full(x.shape, np.inf), np.zeros(x.shape, int)
+    for k, ((ax, ay), (bx, by)) in enumerate(zip(points[:-1].tolist(), points[1:].tolist(), strict=True)):
+        dx, dy = bx - ax, by - ay
+        part = np.clip(((x - ax) * dx + (y - ay) * dy) / max(dx * dx + dy * dy, 1e-12), 0, 1)
+        far = (x - ax - part * dx) ** 2 + (y - ay - part * dy) ** 2
+        whose[far < nearest] = k
+        np.minimum(nearest, far, out=nearest)
+    image = np.empty((*x.shape, 4))
+    image[..., :3] = colour
+    image[..., 3] = 255 * np.clip(width / 2 + 0.5 - np.sqrt(nearest), 0, 1)
+    for cut, segment, side in ((start, 0, -1), (end, len(points) - 2, 1)):
+        if cut is not None:
+            px, py, dx, dy = cut
+            beyond = side * ((x - px) * dx + (y - py) * dy)
+            image[..., 3][(whose == segment) & (beyond >= 0 if side > 0 else beyond > 0)] = 0
+    return surface_of(image), (int(low[0]), int(low[1]))
+
+
+PANEL = 0.55  # length of a lamp [m]
 _FADED = 0.42
 _SPOT = np.cos(np.radians(17.0))
 _SPOTS = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=np.float64)
@@ -43,9 +141,8 @@ def draw_balls(surface: Any, scene: Scene, view: View) -> None:
     images += _mirrored(scene.positions[~lettered], over, where[~lettered], radius)
     for ball, place in zip(scene.ids[lettered].tolist(), where[lettered], strict=True):
         letter = _letter(ball, round(radius, 1))
-        images.append(
-            (letter, (round(place[0] - letter.get_width() / 2), round(place[1] - letter.get_height() / 2)))
-        )
+        x, y = place[0] - letter.get_width() / 2, place[1] - letter.get_height() / 2
+        images.append((letter, (round(x), round(y))))
     surface.fblits(images)
 
 
@@ -89,10 +186,7 @@ def _spotted(place, colour, radius, turn):
     d = np.hypot(x, y)
     nz = np.sqrt(np.clip(1 - (d / radius) ** 2, 0, 1))
     towards = matrix(turn) @ _SPOTS.T  # (3, 6) in the table frame: x down, y to the right, z to the eye
-    seen = np.max(
-        y[..., None] / radius * towards[0] + x[..., None] / radius * towards[1] + nz[..., None] * towards[2],
-        axis=-1,
-    )
+    seen = np.max(np.stack([y / radius, x / radius, nz], axis=-1) @ towards, axis=-1)
     spot = np.clip((seen - _SPOT) * radius * 3.4 + 0.5, 0, 1)[..., None]
     ink = np.array(COLOURS[1] if min(colour) > 120 else (250, 250, 245), dtype=np.float64)
     image = np.empty((*d.shape, 4))
@@ -134,11 +228,8 @@ def _lamp(half, radius, fx, fy):
     image = np.empty((*d.shape, 4))
     image[..., :3] = PALETTE["lamp"]
     small = min(1.0, 0.25 + radius / 12)  # fainter in a small ball, which it would hide
-    image[..., 3] = (
-        255
-        * small
-        * np.maximum(0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2)))
-    )
+    bright, glow = 0.94 * np.clip(across + 0.5 - d, 0, 1), 0.30 * np.exp(-((d / (0.13 * radius)) ** 2))
+    image[..., 3] = 255 * small * np.maximum(bright, glow)
     return surface_of(image)
 
 
@@ -181,13 +272,8 @@ def dot(ball: int, radius: float) -> Any:
         ring.blit(image, ((ring.get_width() - image.get_width()) // 2,) * 2)
         image = ring
     lamp = _lamp(max(1, round(0.8 * radius)), round(radius, 1), 2, 2)
-    image.blit(
-        lamp,
-        (
-            (image.get_width() - lamp.get_width()) // 2,
-            round(image.get_height() / 2 - lamp.get_height() / 2 - 0.35 * radius),
-        ),
-    )
+    row = round(image.get_height() / 2 - lamp.get_height() / 2 - 0.35 * radius)
+    image.blit(lamp, ((image.get_width() - lamp.get_width()) // 2, row))
     return image
 
 

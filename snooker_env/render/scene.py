@@ -1,12 +1,10 @@
-"""What is there to draw? A table, its lines, balls and overlays, in metres and without a drawing library.
-Table frame: origin at the centre, +x to the yellow side, +y to the black end."""
+"""What is there to draw? A table, its lines, balls and overlays, in metres, without a drawing library."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import array, integer, number, refuse
 from .._types import Flags, Floats, Ints, Vector, Vectors
@@ -15,10 +13,53 @@ from ..geometry import BALL_RADIUS
 from ..physics.engine import EventKind
 from ..physics.table import Table, TableLike
 from ..simulation import Shot
-from .outline import outline as outline  # a part of what there is to draw
+from .outline import outline as outline
 from .outline import scene_data as scene_data
-from .palette import COLOURS, LETTERS
-from .turning import Turning
+
+TURN_STEP = 1 / 240
+"""Time between stored rotations [s]: at 100 rad/s the ball turns by a quarter of a right angle in it."""
+
+
+class Turning:
+    """The rotation of one ball of a ``Shot``."""
+
+    def __init__(self, shot: Shot, ball: int):
+        self._shot, self._ball = shot, int(ball)
+        count = int(shot.duration / TURN_STEP) + 1
+        spins = shot.at((np.arange(count) + 0.5) * TURN_STEP)[2][:, self._ball]
+        turns = rotation(spins * TURN_STEP)
+        self._kept = np.empty((count + 1, 4))
+        self._kept[0] = 1.0, 0.0, 0.0, 0.0
+        for k in range(count):
+            self._kept[k + 1] = product(turns[k], self._kept[k])
+
+    def at(self, t: float) -> Floats:
+        """The unit quaternion (4,) at a time [s] from the start of the shot."""
+        k = min(int(t / TURN_STEP), len(self._kept) - 1)
+        rest = t - k * TURN_STEP
+        return product(rotation(self._shot.at(k * TURN_STEP + rest / 2)[2][self._ball] * rest), self._kept[k])
+
+
+def rotation(turn: Floats) -> Floats:
+    """The quaternion (..., 4) of a rotation about the axis ``turn`` (..., 3) by its length [rad]."""
+    turn = np.asarray(turn, dtype=np.float64)
+    angle = np.linalg.norm(turn, axis=-1, keepdims=True)
+    return np.concatenate([np.cos(angle / 2), turn * (np.sinc(angle / (2 * np.pi)) / 2)], axis=-1)
+
+
+def product(a: Floats, b: Floats) -> Floats:
+    """The product of two quaternions (4,): the rotation ``b``, then ``a``."""
+    (aw, ax, ay, az), (bw, bx, by, bz) = a.tolist(), b.tolist()
+    w, x = aw * bw - ax * bx - ay * by - az * bz, aw * bx + ax * bw + ay * bz - az * by
+    y, z = aw * by - ax * bz + ay * bw + az * bx, aw * bz + ax * by - ay * bx + az * bw
+    return np.array([w, x, y, z])
+
+
+def matrix(q: Floats) -> Floats:
+    """The rotation of a quaternion as a matrix (3, 3)."""
+    w, x, y, z = q.tolist()
+    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])  # of the axis: across @ v is its product with v
+    return np.eye(3) + 2 * w * across + 2 * across @ across
 
 
 @dataclass(frozen=True)
@@ -39,9 +80,8 @@ class ScoreBar:
         if len(self.players) > 2 or not all(isinstance(name, str) for name in self.players):
             raise refuse("players", self.players, "must be the names of at most two players")
         if len(self.scores) != len(self.players):
-            raise refuse(
-                "scores", self.scores, f"must hold one number for each of the {len(self.players)} players"
-            )
+            allowed = f"must hold one number for each of the {len(self.players)} players"
+            raise refuse("scores", self.scores, allowed)
         if self.striker is not None and self.striker not in range(len(self.players)):
             raise refuse("striker", self.striker, "must be None or an index of players")
         for ball in self.potted:
@@ -64,16 +104,6 @@ class Scene:
     text: str  # one line of status, shown without a bar
     bar: ScoreBar | None
     lettered: bool  # whether balls carry their letters, so that colours are not needed
-
-    @property
-    def colours(self) -> NDArray[np.uint8]:
-        """Colours of the balls: (k, 3) uint8, red, green, blue."""
-        return COLOURS[self.ids]
-
-    @property
-    def labels(self) -> tuple[str, ...]:
-        """One letter for each ball."""
-        return tuple(LETTERS[i] for i in self.ids)
 
 
 class _Overlays(NamedTuple):
@@ -103,27 +133,18 @@ def scene(
         raise refuse("positions", f"array of shape {r.shape}", f"must hold at most {N_BALLS} balls")
     here = np.ones(len(r), bool) if on_table is None else np.array(on_table)
     if here.shape != (len(r),) or here.dtype != bool:
-        raise refuse(
-            "on_table", f"{here.dtype} array of shape {here.shape}", f"must be bool of shape ({len(r)},)"
-        )
+        what = f"{here.dtype} array of shape {here.shape}"
+        raise refuse("on_table", what, f"must be bool of shape ({len(r)},)")
     if bar is not None and not isinstance(bar, ScoreBar):
         raise refuse("bar", bar, "must be None or a ScoreBar")
     ids, table = np.flatnonzero(here), Table.of(table)
-    radius = (
-        (table.ball_radius or BALL_RADIUS)
-        if ball_radius is None
-        else number("ball_radius", ball_radius, 1e-3, 1)
-    )
-    paths, aim, ghost, ghosts, turns = _Overlays(**overlays)
-    aim = None if aim is None else array("aim", aim, (-1, 2))
-    ghost = None if ghost is None else array("ghost", ghost, (2,))
-    drawn = (
-        _by_ball("paths", paths, (-1, 2)),
-        aim,
-        ghost,
-        _by_ball("ghosts", ghosts, (-1, 2)),
-        _by_ball("turns", turns, (4,)),
-    )
+    usual = table.ball_radius or BALL_RADIUS
+    radius = usual if ball_radius is None else number("ball_radius", ball_radius, 1e-3, 1)
+    over = _Overlays(**overlays)
+    aim = None if over.aim is None else array("aim", over.aim, (-1, 2))
+    ghost = None if over.ghost is None else array("ghost", over.ghost, (2,))
+    paths, ghosts = (_by_ball(name, getattr(over, name), (-1, 2)) for name in ("paths", "ghosts"))
+    drawn = (paths, aim, ghost, ghosts, _by_ball("turns", over.turns, (4,)))
     return Scene(table, ids, r[ids], radius, *drawn, str(text), bar, bool(lettered))
 
 
@@ -164,15 +185,13 @@ def contacts(shot: Shot, ball: int = CUE) -> Floats:
 
 def _timed_contacts(shot, ball):
     """``contacts`` and their times (m,) [s]."""
-    met = shot.events[
-        (shot.events["kind"] == EventKind.BALL_BALL)
-        & ((shot.events["i"] == ball) | (shot.events["j"] == ball))
-    ]
-    kept = []
-    for place, time in zip(shot.at(met["time"])[0][:, ball].reshape(-1, 2), met["time"], strict=True):
-        if not kept or np.hypot(*(place - kept[-1][0])) > shot.physics.R:
-            kept.append((place, time))
-    return np.array([place for place, _ in kept]).reshape(-1, 2), np.array([time for _, time in kept])
+    met = shot.events[shot.events["kind"] == EventKind.BALL_BALL]
+    met = met[(met["i"] == ball) | (met["j"] == ball)]
+    places, kept = shot.at(met["time"])[0][:, ball].reshape(-1, 2), []
+    for k, place in enumerate(places):
+        if not kept or np.hypot(*(place - places[kept[-1]])) > shot.physics.R:
+            kept.append(k)
+    return places[kept], met["time"][kept]
 
 
 class Film:
@@ -189,11 +208,8 @@ class Film:
         **overlays: Any,
     ):
         self.duration: float = shot.duration
-        self._table, self._shot, self._overlays = (
-            Table.of(table),
-            shot,
-            {"ball_radius": shot.physics.R, **overlays},
-        )
+        self._table, self._shot = Table.of(table), shot
+        self._overlays: dict[str, Any] = {"ball_radius": shot.physics.R, **overlays}
         self._paths = _timed_paths(shot, trail, shot.duration)
         self._turning = {int(ball): Turning(shot, ball) for ball in spots}
         self._contacts = {int(ball): _timed_contacts(shot, ball) for ball in faded}
@@ -214,30 +230,11 @@ class Film:
                 paths[ball] = done
         turns = {ball: turning.at(t) for ball, turning in self._turning.items()}
         ghosts = {ball: places[times <= t] for ball, (places, times) in self._contacts.items()}
-        return scene(
-            self._table,
-            r,
-            self._gone_at > t,
-            **{"paths": paths, "turns": turns, "ghosts": ghosts, **self._overlays},
-        )
+        over = {"paths": paths, "turns": turns, "ghosts": ghosts} | self._overlays
+        return scene(self._table, r, self._gone_at > t, **over)
 
     def scenes(self, fps: float = 30.0, speed: float = 1.0) -> Iterator[Scene]:
         """One picture every speed / fps seconds of the shot's own time, and one of its end."""
         step = number("speed", speed, 0.0, open_low=True) / number("fps", fps, 0.0, open_low=True)
         for t in np.append(np.arange(0.0, self.duration, step), self.duration):
             yield self.at(float(t))
-
-
-def shot_scenes(
-    table: TableLike,
-    shot: Shot,
-    *,
-    fps: float = 30.0,
-    speed: float = 1.0,
-    trail: Iterable[int] = (CUE,),
-    spots: Iterable[int] = (),
-    faded: Iterable[int] = (),
-    **overlays: Any,
-) -> Iterator[Scene]:
-    """The scenes of the ``Film`` of a shot, whose other arguments these are."""
-    return Film(table, shot, trail=trail, spots=spots, faded=faded, **overlays).scenes(fps, speed)

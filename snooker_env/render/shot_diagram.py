@@ -1,19 +1,18 @@
-"""How is a shot drawn as a diagram? Paths, ghosts, impacts, speeds, the cut and the tip, on a ``Sketch``."""
+"""How are shots drawn as diagrams? Paths, impacts, speeds, the cut and the tip, on a ``Sketch`` for each."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
-from .._check import array, choice, integer, number, refuse, truth
-from .._types import Floats
+from .._check import array, choice, integer, number, refuse, refuse_what, truth
+from .._types import Floats, Place
 from ..game.balls import N_BALLS, NAMES
 from ..physics.engine import EventKind
 from ..physics.table import Table
 from ..simulation import Shot
 from .palette import PALE
 from .shot_paths import (
-    Meeting,
     Piece,
     Tip,
     arrow_places,
@@ -24,7 +23,7 @@ from .shot_paths import (
     tip_of,
     velocity_before,
 )
-from .sketch import CAPTIONS, PATH_WIDTH, Region, Sketch, flipped, is_closed, rgb
+from .sketch import CAPTIONS, PATH_WIDTH, WIDTH, Region, Sketch, flipped, is_closed, pyplot, rgb
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,26 +31,18 @@ if TYPE_CHECKING:
 View: TypeAlias = Literal["table", "shot"] | Sequence[Sequence[float]]
 """The part to show: all, as much as the shot needs, or ((lowest x, highest x), (lowest y, highest y)) [m]."""
 
-SLIDES = (255, 168, 36)
-"""Colour of the stripes of a path on which the ball slides."""
-DASHES = (0, (2.0, 1.6))
-"""Lengths of these stripes, in widths of the path."""
+SLIDES = (255, 168, 36)  # colour of the stripes of a path on which the ball slides
+DASHES = (0, (2.0, 1.6))  # lengths of these stripes, in widths of the path
 MOST_PATHS = 7
 """If more balls move, only paths of the cue ball, its first object ball and potted balls are wide."""
 
-_SIGNS: dict[EventKind, tuple[Any, Any, float]] = {
-    EventKind.BALL_BALL: ("o", "text", 4.5),
-    EventKind.CUSHION: ("D", SLIDES, 4.5),
-    EventKind.JAW: ("^", SLIDES, 5.5),
-    EventKind.POT: ("X", "text", 7.0),
+_SIGNS: dict[EventKind, tuple[Any, Any, float, str]] = {
+    EventKind.BALL_BALL: ("o", "text", 4.5, "ball"),
+    EventKind.CUSHION: ("D", SLIDES, 4.5, "cushion"),
+    EventKind.JAW: ("^", SLIDES, 5.5, "jaw"),
+    EventKind.POT: ("X", "text", 7.0, "pocket"),
 }
-"""Marker, colour and size of each kind of impact."""
-_WORDS = {
-    EventKind.BALL_BALL: "ball",
-    EventKind.CUSHION: "cushion",
-    EventKind.JAW: "jaw",
-    EventKind.POT: "pocket",
-}
+"""Marker, colour, size and name of each kind of impact."""
 
 
 def plot(
@@ -117,9 +108,8 @@ def plot(
     truth("speeds", speeds)
     choice("caption", caption, CAPTIONS)
     table, moved = shot.table or Table.of(None), paths(shot)
-    chosen = set(
-        moved if balls is None else (integer("balls", ball, 0, len(shot.positions) - 1) for ball in balls)
-    )
+    named = moved if balls is None else balls
+    chosen = {integer("balls", ball, 0, len(shot.positions) - 1) for ball in named}
     first = cue_ball(shot)
     tip = _tip(cue, shot, first)
     sketch = Sketch(table, shot.physics.R, region_of(view, area(shot), table), ax, strip=CAPTIONS[caption])
@@ -147,13 +137,11 @@ def plot(
 def region_of(view: Any, points: Floats, table: Table) -> Region:
     """The part of the table that a view shows, for a shot with these points (m, 2) [m]."""
     if isinstance(view, str) and view in ("table", "shot"):
-        return (
-            Region.of_table(table) if view == "table" and is_closed(table) else Region.around(points, table)
-        )
+        whole = view == "table" and is_closed(table)
+        return Region.of_table(table) if whole else Region.around(points, table)
     if isinstance(view, str) or np.shape(view) != (2, 2):
-        raise refuse(
-            "view", view, 'must be "table", "shot" or ((lowest x, highest x), (lowest y, highest y))'
-        )
+        allowed = 'must be "table", "shot" or ((lowest x, highest x), (lowest y, highest y))'
+        raise refuse("view", view, allowed)
     (low_x, high_x), (low_y, high_y) = array("view", view, (2, 2)).tolist()
     if low_x >= high_x or low_y >= high_y:
         raise refuse("view", view, "must have its lower ends first")
@@ -182,12 +170,8 @@ def draw_path(sketch: Sketch, path: Sequence[Piece], ball: int, colour: Any = No
     for piece in path:
         style: dict[str, Any] = {"gid": f"{piece.kind}-{ball}"}
         if piece.kind == "slide":
-            style |= {
-                "ls": DASHES,
-                "gapcolor": rgb(SLIDES),
-                "dash_capstyle": "butt",
-                "solid_capstyle": "butt",
-            }
+            style |= {"ls": DASHES, "gapcolor": rgb(SLIDES)}
+            style |= {"dash_capstyle": "butt", "solid_capstyle": "butt"}
         elif piece.kind == "fall":
             style |= {"ls": ":"}
         sketch.line(piece.points, colour, level=5.0 + 0.3 * (ball == 0), **style)
@@ -200,8 +184,8 @@ def draw_path(sketch: Sketch, path: Sequence[Piece], ball: int, colour: Any = No
 def _draw_impacts(sketch, shot, ball, start):
     """Signs at the impacts of a ball, and a ghost of the ball at each if it has moved."""
     for contact in contacts(shot, ball):
-        marker, colour, size = _SIGNS[contact.kind]
-        sketch.mark(contact.place, marker, colour, size, gid=f"{contact.kind.name.lower()}-{ball}")
+        *sign, _ = _SIGNS[contact.kind]
+        sketch.mark(contact.place, *sign, gid=f"{contact.kind.name.lower()}-{ball}")
         if contact.kind == EventKind.BALL_BALL and np.hypot(*(contact.centre - start[ball])) > 0.2 * sketch.R:
             sketch.ghost(ball, contact.centre)
 
@@ -232,18 +216,11 @@ def _draw_cut(sketch, shot, contact):
         points = contact.centre + far * np.stack([np.cos(ray), np.sin(ray)], axis=1)
         if ray is not rays:
             points[0] = contact.centre
-        sketch.ax.plot(
-            *flipped(points).T,
-            color=rgb("aim"),
-            lw=1.0,
-            ls="-" if ray is rays else (0, (3, 2)),
-            zorder=6.5,
-            gid="cut",
-        )
+        ls = "-" if ray is rays else (0, (3, 2))
+        sketch.ax.plot(*flipped(points).T, color=rgb("aim"), lw=1.0, ls=ls, zorder=6.5, gid="cut")
 
 
 # the strip under the table
-# ------------------------------------------------------------------------------------------------------------
 
 
 def _tip(cue: Mapping[str, float] | None, shot: Shot, first: int | None) -> Tip | None:
@@ -258,12 +235,8 @@ def _tip(cue: Mapping[str, float] | None, shot: Shot, first: int | None) -> Tip 
                 raise refuse("keys of cue", list(cue), f"must hold {key!r}")
         speed = cue.get("speed", 0.0 if first is None else float(np.hypot(*shot.at(0.0)[1][first])))
         side, top = number("cue.side", cue["side"], -1, 1), number("cue.top", cue["top"], -1, 1)
-        return Tip(
-            side,
-            top,
-            number("cue.speed", speed, 0),
-            number("cue.elevation", cue.get("elevation", 0.0), 0, 1.5),
-        )
+        elevation = number("cue.elevation", cue.get("elevation", 0.0), 0, 1.5)
+        return Tip(side, top, number("cue.speed", speed, 0), elevation)
     if first is None:
         return None
     _, v, w = shot.at(0.0)
@@ -281,9 +254,7 @@ def tip_words(tip: Tip) -> str:
     return ", ".join(words) or "centre ball"
 
 
-def draw_tip(
-    sketch: Sketch, tip: Tip | None, middle: tuple[float, float], radius: float, limit: float
-) -> None:
+def draw_tip(sketch: Sketch, tip: Tip | None, middle: Place, radius: float, limit: float) -> None:
     """Where the tip struck the cue ball; ``middle``: (y, x) [m]; ``limit``: offset of a miscue over R."""
     from matplotlib.patches import Circle
 
@@ -293,42 +264,24 @@ def draw_tip(
     for line in ([(y - radius, y + radius), (x, x)], [(y, y), (x - radius, x + radius)]):
         sketch.ax.plot(*line, color=rgb("text_quiet", 0.6), lw=0.6, zorder=9.35)
     if tip is not None:
-        add(
-            Circle(
-                (y + tip.side * radius, x - tip.top * radius),
-                0.13 * radius,
-                fc=rgb("bar_accent"),
-                ec="none",
-                zorder=9.4,
-                gid="tip",
-            )
-        )
+        place = (y + tip.side * radius, x - tip.top * radius)
+        add(Circle(place, 0.13 * radius, fc=rgb("bar_accent"), ec="none", zorder=9.4, gid="tip"))
 
 
-def _write_strip(
-    sketch: Sketch, shot: Shot, first: int | None, tip: Tip | None, known: bool, *, short: bool
-) -> None:
+def _write_strip(sketch, shot, first, tip, known, *, short):
     rows, left = sketch.rows(4 if short else 3), sketch.region.low_y + 0.12 * sketch.depth
     facts = summary(shot, first)
     if first is not None:
         radius = (0.32 if short else 0.40) * sketch.depth
-        draw_tip(
-            sketch,
-            tip,
-            (left + radius, sketch.region.high_x + sketch.depth / 2),
-            radius,
-            shot.physics.max_offset,
-        )
+        middle = (left + radius, sketch.region.high_x + sketch.depth / 2)
+        draw_tip(sketch, tip, middle, radius, shot.physics.max_offset)
         left += 2 * radius + 0.16 * sketch.depth
         if tip is None:
             lines = ["a spin that no tip gives"]
         else:
             raised = f", butt raised {np.degrees(tip.elevation):.0f}°" if tip.elevation > 0.005 else ""
-            source = (
-                "as it was struck"
-                if known
-                else "worked out from the spin" + ("" if tip.elevation else ", cue level")
-            )
+            source = "worked out from the spin" + ("" if tip.elevation else ", cue level")
+            source = "as it was struck" if known else source
             lines = [tip_words(tip), f"{tip.speed:.2f} m/s{raised}", *([] if short else [source])]
         sketch.text(left, rows[0], lines[0], weight="bold")
         for x, words in zip(rows[1:], lines[1:] + (facts[::2] if short else []), strict=False):
@@ -346,29 +299,15 @@ def summary(shot: Shot, first: int | None) -> list[str]:
     lines = []
     met = next((contact for contact in contacts(shot, first) if contact.kind == EventKind.BALL_BALL), None)
     if met is not None:
-        other = contact_of(shot, met)
+        back = (met.time, met.ball)  # the same meeting from the side of the other ball
+        other = next(one for one in contacts(shot, met.other) if (one.time, one.other) == back)
         cut = np.degrees(cut_angle(shot, met))
         lines.append(f"{name(met.other)}: cut {cut:.0f}°, leaves with {other.after:.2f} m/s")
         lines.append(f"cue ball: {met.speed:.2f} m/s before, {met.after:.2f} after")
-    pots = [
-        f"{name(ball)} into {pocket(shot, int(shot.potted[ball]))}"
-        for ball in np.flatnonzero(shot.potted >= 0).tolist()
-    ]
-    return [
-        *lines,
-        "; ".join(pots[:2]) + (" ..." if len(pots) > 2 else "")
-        if pots
-        else f"at rest after {shot.duration:.1f} s",
-    ]
-
-
-def contact_of(shot: Shot, met: Meeting) -> Meeting:
-    """The same meeting of two balls from the side of the other ball."""
-    return next(
-        contact
-        for contact in contacts(shot, met.other)
-        if contact.time == met.time and contact.other == met.ball
-    )
+    down = np.flatnonzero(shot.potted >= 0).tolist()
+    pots = "; ".join(f"{name(ball)} into {pocket(shot, int(shot.potted[ball]))}" for ball in down[:2])
+    end = pots + (" ..." if len(down) > 2 else "") if pots else f"at rest after {shot.duration:.1f} s"
+    return [*lines, end]
 
 
 def name(ball: int) -> str:
@@ -396,6 +335,72 @@ def _write_legend(sketch, shot, row):
     y = w.low_y + 0.90 * w.width
     kinds = [kind for kind in _SIGNS if (shot.events["kind"] == int(kind)).any()]
     for x, kind in zip(row[:2], [kind for kind in kinds if kind != EventKind.POT], strict=False):
-        marker, colour, size = _SIGNS[kind]
-        sketch.mark((x, y), marker, colour, size, 9.5)
-        sketch.text(y + 0.4 * long, x, _WORDS[kind])
+        *sign, words = _SIGNS[kind]
+        sketch.mark((x, y), *sign, 9.5)
+        sketch.text(y + 0.4 * long, x, words)
+
+
+_GAP = 0.015  # between two diagrams, as a part of the figure's width
+
+
+def compare(
+    shots: Sequence[Shot],
+    labels: Sequence[str] = (),
+    axes: "Sequence[Axes] | None" = None,
+    *,
+    cues: Sequence[Mapping[str, float] | None] | None = None,
+    view: View = "shot",
+    **options: Any,
+) -> "tuple[Axes, ...]":
+    """Draw shots side by side, each as ``plot`` does, with the same part of the table.
+
+    Parameters
+    ----------
+    shots : sequence of Shot
+        The shots, all on the same table; else ValueError.
+    labels : sequence of str
+        A title for each shot, or () for none.
+    axes : sequence of matplotlib.axes.Axes, optional
+        Axes for each shot; None makes a new figure.
+    cues : sequence of mapping or None, optional
+        How each cue ball was struck, as ``cue`` in ``plot``.
+    view, **options
+        As in ``plot``; "shot": as much of the table as all shots need.
+
+    Returns
+    -------
+    tuple of matplotlib.axes.Axes
+        The axes of the diagrams.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> from snooker_env.render.diagrams import compare
+    >>> struck = [sn.strike(speed=2.0, aim=1.5708, top=top) for top in (-0.3, 0.3)]
+    >>> balls, still = [(0.0, 0.5), (0.02, 1.2)], (0.0, 0.0, 0.0)
+    >>> shots = [sn.simulate(balls, [v[:2], (0.0, 0.0)], [w, still]) for v, w in struck]
+    >>> len(compare(shots, ["screw", "follow"]))
+    2
+    """
+    shots = list(shots)
+    if not shots:
+        raise refuse("shots", shots, "must hold at least one shot")
+    for field, values in (("labels", labels), ("axes", axes), ("cues", cues)):
+        if values is not None and len(values) not in ({0, len(shots)} if field == "labels" else {len(shots)}):
+            raise refuse_what(field, f"{len(values)} of them", f"must be {len(shots)}, one for each shot")
+    table = shots[0].table
+    for k, shot in enumerate(shots):
+        if shot.table is not table:
+            raise refuse_what(f"shots[{k}].table", "another table", "must be that of shots[0]")
+    points = np.concatenate([area(shot) for shot in shots])
+    region = region_of(view, points, Table.of(None) if table is None else table)
+    caption = options.pop("caption", "full" if len(shots) == 1 else "short")
+    if axes is None:
+        n = len(shots)
+        wide = (1.0 - (n - 1) * _GAP) / n
+        high = wide * (region.height / region.width + CAPTIONS.get(caption, 0.0))
+        figure = pyplot().figure(figsize=(WIDTH, WIDTH * high), facecolor=rgb("floor"))
+        axes = [figure.add_axes((k * (wide + _GAP), 0.0, wide, 1.0)) for k in range(n)]
+    over: Any = options | {"view": np.array(region).reshape(2, 2), "caption": caption}
+    each = zip(shots, axes, labels or [""] * len(shots), cues or [None] * len(shots), strict=True)
+    return tuple(plot(shot, ax, cue=cue, title=title, **over) for shot, ax, title, cue in each)

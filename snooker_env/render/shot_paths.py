@@ -1,6 +1,4 @@
-"""What does a diagram show of a shot? Paths in pieces that slide or roll, contacts and speeds, and the tip.
-The lines between a piece's points are within ``STRAY`` of it: a rolling ball moves straight, a sliding one
-on a parabola."""
+"""What does a diagram show of a shot? Paths within ``STRAY``, contacts, speeds, and the tip."""
 
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
@@ -14,10 +12,8 @@ from ..physics.engine import EventKind
 from ..physics.parameters import Physics
 from ..simulation import Shot, check_path
 
-STRAY = 1e-4
-"""The largest distance of a path from the lines that are drawn [m]."""
-STILL = 1e-3
-"""A ball that moved less than this is drawn as one that did not move [m]."""
+STRAY = 1e-4  # the largest distance of a path from the lines that are drawn [m]
+STILL = 1e-3  # A ball that moved less than this is drawn as one that did not move [m]
 
 Kind = Literal["slide", "roll", "fall"]
 _KINDS: dict[int, Kind] = {SLIDE: "slide", ROLL: "roll", BEND: "roll", FALLING: "fall"}
@@ -48,11 +44,8 @@ def pieces(shot: Shot, ball: int) -> list[Piece]:
     """The path of a ball, empty if it never moves; like pieces without an impact between are joined."""
     rows = shot.segments[shot.segments[:, SEGMENT_BALL] == ball]
     ends = np.append(rows[1:, T0], shot.duration)
-    impacts = set(
-        shot.events["time"][
-            _is_impact(shot) & ((shot.events["i"] == ball) | (shot.events["j"] == ball))
-        ].tolist()
-    )
+    events = shot.events[_is_impact(shot)]
+    impacts = set(events["time"][(events["i"] == ball) | (events["j"] == ball)].tolist())
     phases: list[tuple[Kind, list[float]]] = []
     for row, end in zip(rows, ends, strict=True):
         kind = _KINDS.get(int(row[SEGMENT_STATE]))
@@ -67,11 +60,8 @@ def pieces(shot: Shot, ball: int) -> list[Piece]:
     if not phases:
         return []
     at = shot.at(np.concatenate([times for _, times in phases]))[0][:, ball]
-    cuts = np.cumsum([len(times) for _, times in phases])[:-1]
-    return [
-        Piece(kind, np.array(times), points)
-        for (kind, times), points in zip(phases, np.split(at, cuts), strict=True)
-    ]
+    parts = np.split(at, np.cumsum([len(times) for _, times in phases])[:-1])
+    return [Piece(kind, np.array(t), points) for (kind, t), points in zip(phases, parts, strict=True)]
 
 
 def _steps(row, duration):
@@ -89,11 +79,8 @@ def paths(shot: Shot) -> dict[int, list[Piece]]:
     """The pieces of each ball that moved, by its id."""
     check_path(shot)
     every = {ball: pieces(shot, ball) for ball in range(len(shot.positions))}
-    return {
-        ball: parts
-        for ball, parts in every.items()
-        if any(np.ptp(piece.points, axis=0).max() > STILL for piece in parts)
-    }
+    moves = lambda parts: any(np.ptp(piece.points, axis=0).max() > STILL for piece in parts)  # noqa: E731
+    return {ball: parts for ball, parts in every.items() if moves(parts)}
 
 
 def cue_ball(shot: Shot) -> int | None:
@@ -132,10 +119,8 @@ def contacts(shot: Shot, ball: int) -> Iterator[Meeting]:
             place = centre + R * towards / np.hypot(*towards)
         elif shot.table is not None and kind == EventKind.POT:
             place = shot.table.falls[other, [FALL_X, FALL_Y]]
-        before, after = velocity_before(shot, ball, time), v[ball]
-        yield Meeting(
-            time, kind, ball, other, place, centre, float(np.hypot(*before)), float(np.hypot(*after))
-        )
+        before, after = (float(np.hypot(*u)) for u in (velocity_before(shot, ball, time), v[ball]))
+        yield Meeting(time, kind, ball, other, place, centre, before, after)
 
 
 def cut_angle(shot: Shot, contact: Meeting) -> float:
@@ -160,13 +145,9 @@ def tip_of(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
     about_path, about_up = float(spin[0] * c + spin[1] * s), float(spin[2])
     elevation = float(np.arctan2(about_path * np.sign(about_up), abs(about_up))) if about_up else 0.0
     elevation = elevation if elevation > 1e-9 else 0.0  # no cue has a negative one
-    q = 2.5 * v / np.cos(elevation) / physics.R
-    return Tip(
-        about_up / np.cos(elevation) / q,
-        float(spin[1] * c - spin[0] * s) / q,
-        v / float(np.cos(elevation)),
-        elevation,
-    )
+    level = float(np.cos(elevation))
+    q = 2.5 * v / level / physics.R
+    return Tip(about_up / level / q, float(spin[1] * c - spin[0] * s) / q, v / level, elevation)
 
 
 def arrow_places(points: Floats, spacing: float) -> list[tuple[Floats, Floats]]:

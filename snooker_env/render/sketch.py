@@ -1,5 +1,4 @@
-"""How is a table drawn with matplotlib? By a ``Sketch``: axes in metres, a point (x, y) at ``ax.plot(y, x)``,
-all on the table's own colours, so that light and dark pages show it alike."""
+"""How is a table drawn with matplotlib? By a ``Sketch``: a point (x, y) [m] is at ``ax.plot(y, x)``."""
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -15,12 +14,10 @@ from .palette import COLOURS, LETTERS, PALE, PALETTE
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-WIDTH = 8.3
-"""Width of a new figure [inches]: 830 pixels, the width of a README."""
+WIDTH = 8.3  # width of a new figure [inches]: 830 pixels, the width of a README
 PATH_WIDTH, OUTLINE = 2.16, 1.6
 """Width of a path [points], 3 pixels at 100 dpi, and by how much its dark outline is wider [points]."""
-TABLE = "snooker-table"
-"""The gid of the parts that a sketch draws once on its axes."""
+TABLE = "snooker-table"  # the gid of the parts that a sketch draws once on its axes
 CAPTIONS = {"full": 0.118, "short": 0.2, "none": 0.0}
 """Height of the strip of text over the picture's width: for wide axes, axes of half the width, and none."""
 
@@ -67,20 +64,14 @@ class Region(NamedTuple):
     ) -> "Region":
         """Around points (m, 2) [m]: at least 1 m wide, width / height in ``ratio``, inside ``of_table``."""
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
-        height, width = high - low
-        width, height = max(width, 1.0, ratio[0] * height), height
-        height = max(height, width / ratio[1])
-        whole = cls.of_table(table)
-        bounded = is_closed(table)
-        limits = []
-        for size, middle, least, most in (
-            (height, (low[0] + high[0]) / 2, whole.low_x, whole.high_x),
-            (width, (low[1] + high[1]) / 2, whole.low_y, whole.high_y),
-        ):
-            size = min(size, most - least) if bounded else size
-            start = float(np.clip(middle - size / 2, least, most - size)) if bounded else middle - size / 2
-            limits += [start, start + size]
-        return cls(*map(float, limits))
+        width = max(high[1] - low[1], 1.0, ratio[0] * (high[0] - low[0]))
+        size = np.array([max(high[0] - low[0], width / ratio[1]), width])
+        start = (low + high) / 2 - size / 2
+        if is_closed(table):
+            least, most = np.array(cls.of_table(table)).reshape(2, 2).T
+            size = np.minimum(size, most - least)
+            start = np.clip((low + high) / 2 - size / 2, least, most - size)
+        return cls(*np.stack([start, start + size], axis=1).ravel().tolist())
 
 
 def is_closed(table: Table) -> bool:
@@ -118,10 +109,8 @@ class Sketch:
         depth = strip * region.width
         axes: Any = ax
         if axes is None:
-            figure = plt.figure(
-                figsize=(WIDTH, WIDTH * (region.height + depth) / region.width), facecolor=rgb("floor")
-            )
-            axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+            size = (WIDTH, WIDTH * (region.height + depth) / region.width)
+            axes = plt.figure(figsize=size, facecolor=rgb("floor")).add_axes((0.0, 0.0, 1.0, 1.0))
         self.ax: Axes = axes
         self.fresh: bool = not any(artist.get_gid() == TABLE for artist in axes.get_children())
         if self.fresh:
@@ -132,26 +121,18 @@ class Sketch:
         else:
             (low_y, high_y), (bottom, low_x) = axes.get_xlim(), axes.get_ylim()
             self.region, self.depth = Region(low_x, bottom, low_y, high_y), 0.0
-        room, points = axes.get_window_extent(), 72 / axes.figure.dpi
-        self.points_per_metre: float = points * min(
-            room.width / self.region.width, room.height / (self.region.height + self.depth)
-        )
-        self.font: float = float(
-            np.clip(9.0 * self.points_per_metre * self.region.width / (72 * WIDTH), 7.5, 11.0)
-        )
+        room, w = axes.get_window_extent(), self.region
+        pixels = min(room.width / w.width, room.height / (w.height + self.depth))
+        self.points_per_metre: float = 72 / axes.figure.dpi * pixels
+        self.font: float = float(np.clip(9.0 * self.points_per_metre * w.width / (72 * WIDTH), 7.5, 11.0))
         self._taken: list[tuple[float, float, float, float]] = []
         self._busy: list[Floats] = []
 
     def _set_up(self):
         w, ax = self.region, self.ax
-        ax.set_xlim(w.low_y, w.high_y)
-        ax.set_ylim(w.high_x + self.depth, w.low_x)
-        ax.set_aspect("equal")
-        ax.set_xticks([])
-        ax.set_yticks([])
-        ax.set_facecolor(rgb("floor"))
-        for spine in ax.spines.values():
-            spine.set_visible(False)
+        ax.set(xlim=(w.low_y, w.high_y), ylim=(w.high_x + self.depth, w.low_x), aspect="equal")
+        ax.set(xticks=[], yticks=[], facecolor=rgb("floor"))
+        ax.spines[:].set_visible(False)
 
     # the table
 
@@ -169,44 +150,26 @@ class Sketch:
                 patch.set_clip_path(clip)
 
         def box(extra, kind: Any = Rectangle, **more):
-            return kind(
-                (low_y - extra, low_x - extra), high_y - low_y + 2 * extra, high_x - low_x + 2 * extra, **more
-            )
+            wide, high = high_y - low_y + 2 * extra, high_x - low_x + 2 * extra
+            return kind((low_y - extra, low_x - extra), wide, high, ec="none", **more)
 
         def rail(extra, radius, colour, level):
-            add(
-                box(
-                    extra,
-                    FancyBboxPatch,
-                    boxstyle=f"round,pad=0,rounding_size={radius}",
-                    fc=rgb(colour),
-                    ec="none",
-                ),
-                level,
-            )
+            style = f"round,pad=0,rounding_size={radius}"
+            add(box(extra, FancyBboxPatch, boxstyle=style, fc=rgb(colour)), level)
 
         if is_closed(self.table):
             rail(RAIL, 0.09, "wood_edge", 0.0)
             rail(RAIL - 0.010, 0.08, "wood", 0.05)
             rail(RAIL - 0.022, 0.07, [min(255, round(1.13 * part)) for part in PALETTE["wood"]], 0.06)
-            add(box(CUSHION + 0.008, fc=rgb("wood_edge"), ec="none"), 0.1)
-            for rim, colour, level in (
-                (0.014, "leather_edge", 0.15),
-                (0.011, "leather", 0.16),
-                (0.0, "hole", 0.2),
-            ):
+            add(box(CUSHION + 0.008, fc=rgb("wood_edge")), 0.1)
+            rims = (0.014, "leather_edge", 0.15), (0.011, "leather", 0.16), (0.0, "hole", 0.2)
+            for rim, colour, level in rims:
                 for x0, y0, x1, y1, half in parts.throats:
                     along = np.array([x1 - x0, y1 - y0]) / np.hypot(x1 - x0, y1 - y0)
                     across = (half + rim) * np.array([-along[1], along[0]])
                     a, b = np.array([x0, y0]), np.array([x1, y1])
-                    add(
-                        Polygon(
-                            flipped([a + across, b + across, b - across, a - across]),
-                            fc=rgb(colour),
-                            ec="none",
-                        ),
-                        level,
-                    )
+                    corners = flipped([a + across, b + across, b - across, a - across])
+                    add(Polygon(corners, fc=rgb(colour), ec="none"), level)
                     add(Circle((y1, x1), half + rim, fc=rgb(colour), ec="none"), level)
             left, top = max(low_y - CUSHION, w.low_y), max(low_x - CUSHION, w.low_x)
             right, bottom = min(high_y + CUSHION, w.high_y), min(high_x + CUSHION, w.high_x)
@@ -224,20 +187,12 @@ class Sketch:
             for x, y in SPOT_MARKS:
                 add(Circle((y, x), 0.007, fc=rgb("line"), ec="none"), 0.5)
         for nose in parts.noses:
-            (shade,) = ax.plot(
-                *flipped(nose).T, color=rgb("shadow", 0.28), lw=0.03 * scale, zorder=0.55, gid=TABLE
-            )
-            shade.set_clip_path(cloth)
+            style = {"color": rgb("shadow", 0.28), "lw": 0.03 * scale, "zorder": 0.55, "gid": TABLE}
+            ax.plot(*flipped(nose).T, **style)[0].set_clip_path(cloth)
         for polygon, nose in zip(parts.cushions, parts.noses, strict=True):
             add(Polygon(flipped(polygon), fc=rgb("cushion"), ec="none"), 0.6, cloth)
-            ax.plot(
-                *flipped(nose).T,
-                color=rgb("nose"),
-                lw=0.005 * scale,
-                zorder=0.65,
-                gid=TABLE,
-                solid_capstyle="butt",
-            )
+            style = {"color": rgb("nose"), "lw": 0.005 * scale, "zorder": 0.65, "gid": TABLE}
+            ax.plot(*flipped(nose).T, **style, solid_capstyle="butt")
         if self.depth:
             add(Rectangle((w.low_y, w.high_x), w.width, self.depth, fc=rgb("bar"), ec="none"), 9.0)
             ax.plot([w.low_y, w.high_y], [w.high_x] * 2, color=rgb("bar_edge"), lw=1.0, zorder=9.1, gid=TABLE)
@@ -249,41 +204,20 @@ class Sketch:
         from matplotlib.patches import Circle
 
         (y, x), R, colour = flipped(place), self.R, COLOURS[ball % N_BALLS]
-        add = self.ax.add_patch
+        add, style = self.ax.add_patch, {"lw": 0.4, "zorder": 7.0, "gid": f"ball-{ball}"}
         add(Circle((y + 0.25 * R, x + 0.3 * R), 1.08 * R, fc=rgb("shadow", 0.4), ec="none", zorder=6.9))
-        add(
-            Circle(
-                (y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), lw=0.4, zorder=7.0, gid=f"ball-{ball}"
-            )
-        )
+        add(Circle((y, x), R, fc=rgb(0.92 * colour), ec=rgb(0.5 * colour), **style))
         for k in range(1, 13):
             away = 0.029 * k * R
-            add(
-                Circle(
-                    (y - away, x - away),
-                    R * (1 - 0.065 * k),
-                    fc=(1, 1, 1, 0.022),
-                    ec="none",
-                    zorder=7.0 + 0.005 * k,
-                )
-            )
+            style = {"fc": (1, 1, 1, 0.022), "ec": "none", "zorder": 7.0 + 0.005 * k}
+            add(Circle((y - away, x - away), R * (1 - 0.065 * k), **style))
         add(Circle((y - 0.36 * R, x - 0.40 * R), 0.17 * R, fc=rgb("lamp", 0.85), ec="none", zorder=7.1))
         self.keep_clear(np.asarray(place)[None], 2 * R)
         if label:
             dark = colour @ [0.30, 0.59, 0.11] < 130
-            ink = (1, 1, 1) if dark else (0, 0, 0)
-            size = max(5.0, 1.15 * R * self.points_per_metre)
-            self.ax.text(
-                y,
-                x,
-                LETTERS[ball % N_BALLS],
-                color=ink,
-                size=size,
-                weight="bold",
-                ha="center",
-                va="center_baseline",
-                zorder=7.2,
-            )
+            how = {"color": "white" if dark else "black", "size": max(5.0, 1.15 * R * self.points_per_metre)}
+            how |= {"weight": "bold", "ha": "center", "va": "center_baseline", "zorder": 7.2}
+            self.ax.text(y, x, LETTERS[ball % N_BALLS], **how)
 
     def ghost(
         self, ball: int, place: Vector, alpha: float = 0.4, *, radius: float | None = None, level: float = 6.0
@@ -301,18 +235,10 @@ class Sketch:
         self, points: Floats, colour: Any, *, level: float = 5.0, width: float = PATH_WIDTH, **style: Any
     ) -> None:
         """A line (m, 2) [m] with a dark outline."""
-        under = {
-            "color": rgb("path_edge", 0.85),
-            "lw": width + OUTLINE,
-            "zorder": level - 0.5,
-            "solid_capstyle": "round",
-        }
-        self.ax.plot(*flipped(points).T, **under, gid="outline")
-        self.ax.plot(
-            *flipped(points).T,
-            **{"color": rgb(colour), "lw": width, "zorder": level, "solid_capstyle": "round", "gid": "path"}
-            | style,
-        )
+        under = {"color": rgb("path_edge", 0.85), "lw": width + OUTLINE, "zorder": level - 0.5}
+        over = {"color": rgb(colour), "lw": width, "zorder": level, "gid": "path"}
+        for each in ({"gid": "outline", **under}, over | style):
+            self.ax.plot(*flipped(points).T, **{"solid_capstyle": "round", **each})
         self.keep_clear(points, 0.0)
 
     def arrow(
@@ -321,27 +247,17 @@ class Sketch:
         """An arrowhead at a place, ``size`` long [points], pointing along a unit vector."""
         from matplotlib.patches import Polygon
 
-        head = (
-            np.array([(0.5, 0.0), (-0.35, 0.32), (-0.17, 0.0), (-0.35, -0.32)]) * size / self.points_per_metre
-        )
-        points = place + head @ np.array([direction, [-direction[1], direction[0]]])
-        self.ax.add_patch(
-            Polygon(flipped(points), fc=rgb(colour), ec=rgb("path_edge"), lw=0.8, zorder=level, gid="arrow")
-        )
+        head = np.array([(0.5, 0.0), (-0.35, 0.32), (-0.17, 0.0), (-0.35, -0.32)]) * size
+        turned = head / self.points_per_metre @ np.array([direction, [-direction[1], direction[0]]])
+        style = {"fc": rgb(colour), "ec": rgb("path_edge"), "lw": 0.8, "zorder": level, "gid": "arrow"}
+        self.ax.add_patch(Polygon(flipped(place + turned), **style))
 
     def mark(
         self, place: Vector, marker: Any, colour: Any, size: float = 6.0, level: float = 8.0, **more: Any
     ) -> None:
         """A small sign at a place."""
-        y, x = flipped(place)
-        style = {
-            "mfc": rgb(colour),
-            "mec": rgb("path_edge"),
-            "mew": 0.9,
-            "ls": "none",
-            "zorder": level,
-        } | more
-        self.ax.plot(y, x, marker=marker, ms=size, **style)
+        style = {"mfc": rgb(colour), "mec": rgb("path_edge"), "mew": 0.9, "ls": "none", "zorder": level}
+        self.ax.plot(*flipped(place), marker=marker, ms=size, **style | more)
 
     # words
 
@@ -349,21 +265,16 @@ class Sketch:
         """Keep labels away from points (m, 2), each ``size`` wide [m], and from the line through them."""
         if len(points) > 1:
             steps = np.maximum(1, np.ceil(np.hypot(*np.diff(points, axis=0).T) / 0.02).astype(int))
-            points = np.concatenate(
-                [np.linspace(a, b, n) for a, b, n in zip(points[:-1], points[1:], steps, strict=True)]
-            )
+            lines = zip(points[:-1], points[1:], steps, strict=True)
+            points = np.concatenate([np.linspace(a, b, n) for a, b, n in lines])
         self._busy.append(np.column_stack([points, np.full(len(points), size)]))
 
     def text(
         self, y: float, x: float, words: str, colour: Any = "text", size: float = 1.0, **more: Any
     ) -> None:
         """Text at a place of the picture; ``size`` in units of the usual font."""
-        self.ax.text(
-            y,
-            x,
-            words,
-            **{"color": rgb(colour), "size": self.font * size, "zorder": 9.5, "va": "center"} | more,
-        )
+        style = {"color": rgb(colour), "size": self.font * size, "zorder": 9.5, "va": "center"}
+        self.ax.text(y, x, words, **style | more)
 
     def rows(self, n: int) -> list[float]:
         """The x of n lines of text in the strip under the picture [m]."""
@@ -394,10 +305,8 @@ class Sketch:
         best, least = None, np.inf
         for far in (1.6, 2.3, 3.2, 4.4):
             for angle in np.arange(0, 2 * np.pi, np.pi / 8):
-                cy, cx = (
-                    y + np.cos(angle) * (wide / 2 + 0.45 * far * high),
-                    x + np.sin(angle) * 0.8 * far * high,
-                )
+                cy = y + np.cos(angle) * (wide / 2 + 0.45 * far * high)
+                cx = x + np.sin(angle) * 0.8 * far * high
                 box = cy - wide / 2, cy + wide / 2, cx - high / 2, cx + high / 2
                 cost = self._cost(box, busy) + 0.4 * far
                 if cost < least:
@@ -410,32 +319,17 @@ class Sketch:
         if np.hypot(near[0] - y, near[1] - x) > 0.7 * high:
             self.ax.plot([y, near[0]], [x, near[1]], color=rgb("text", 0.7), lw=0.7, zorder=8.4, gid="leader")
         stroke = [withStroke(linewidth=2.4, foreground=rgb("path_edge", 0.9))]
-        style = {
-            "color": rgb(colour),
-            "size": self.font,
-            "ha": "center",
-            "va": "center",
-            "zorder": 8.6,
-            "weight": "bold",
-        }
-        self.ax.text(cy, cx, words, **style, path_effects=stroke, gid="label")
+        style = {"zorder": 8.6, "ha": "center", "weight": "bold", "path_effects": stroke, "gid": "label"}
+        self.text(cy, cx, words, colour, **style)
         return True
 
     def _cost(self, box, busy):
         """The cost of a label in that box: how much it would cover."""
         left, right, top, bottom = box
-        w = self.region
-        out = max(w.low_y - left, right - w.high_y, w.low_x - top, bottom - w.high_x, 0.0)
-        half = busy[:, 2] / 2
-        inside = (
-            (busy[:, 1] > left - half)
-            & (busy[:, 1] < right + half)
-            & (busy[:, 0] > top - half)
-            & (busy[:, 0] < bottom + half)
-        )
-        weight = float((inside * np.where(busy[:, 2] > 0, 6.0, 1.0)).sum())
-        over = 0.0
-        for low_y, high_y, low_x, high_x in self._taken:
-            if low_y < right and left < high_y and low_x < bottom and top < high_x:
-                over += 100.0
-        return weight + over + (1000.0 if out else 0.0)
+        w, (x, y, size) = self.region, busy.T
+        out = left < w.low_y or right > w.high_y or top < w.low_x or bottom > w.high_x
+        half = size / 2
+        inside = (y > left - half) & (y < right + half) & (x > top - half) & (x < bottom + half)
+        weight = float((inside * np.where(size > 0, 6.0, 1.0)).sum())
+        over = sum(a < right and left < b and c < bottom and top < d for a, b, c, d in self._taken)
+        return weight + 100.0 * over + 1000.0 * out

@@ -2,27 +2,76 @@
 a signed distance [m] (negative inside); an edge covers a part of a pixel, smooth at every size."""
 
 from functools import lru_cache
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .._check import integer, refuse
+from .._types import Bytes, Floats
 from ..geometry import BAULK_Y, D_RADIUS
 from ..physics.table import Table
 from .outline import BAULK_LINE, CUSHION, RAIL, SPOT_MARKS, Outline, extent, is_marked, outline
 from .palette import PALETTE
-from .view import View
 
-LAMPS = 4
-"""Number of lamps over a table, in a row along its length."""
-LAMP_HEIGHT = 0.95
-"""Height of the lamps above the cloth [m]."""
+Size: TypeAlias = tuple[int, int]
+SIZE = (1920, 1080)  # default width and height of a picture [pixels]
+
+_MARGIN = 0.012  # floor shown around the rails [m]
+_BAR = 1 / 15  # part of the height for the score bar
+_LONGEST = 8.0  # largest width over height, for a width that follows from the table
+_LEAST, _MOST = 100, 8192
+
+
+class View(NamedTuple):
+    """A picture of a table."""
+
+    width: int
+    height: int
+    bar: int  # rows of the score bar, at the bottom
+    scale: float  # pixels per metre
+    x: float  # column of the origin
+    y: float  # row of the origin
+
+    @classmethod
+    def of(cls, table: Table, height: int | None = None, size: Size | None = None) -> "View":
+        """``size`` (width, height): as large as fits; ``height``: that table's width; neither: ``SIZE``."""
+        low, high = extent(table).T
+        (tall, wide), (middle_x, middle_y) = high - low + 2 * (RAIL + _MARGIN), (low + high) / 2
+        if height is not None and size is not None:
+            raise refuse("size", size, "must be None where height is given")
+        if height is not None:
+            height = integer("height", height, _LEAST, 4320)
+            bar = round(_BAR * height)
+            scale = min((height - bar) / tall, _LONGEST * height / wide)
+            width = 2 * round(scale * wide / 2)  # even, for video encoders
+        else:
+            width, height = _checked(SIZE if size is None else size)
+            bar = round(_BAR * min(height, width * SIZE[1] / SIZE[0]))
+            scale = min((height - bar) / tall, width / wide)
+        x, y = width / 2 - scale * middle_y, (height - bar) / 2 - scale * middle_x
+        return cls(width, height, bar, float(scale), float(x), float(y))
+
+    def __call__(self, points: Floats) -> Floats:
+        """Column and row of points (..., 2) [m]."""
+        points = np.asarray(points, dtype=np.float64)
+        return np.stack([self.x + self.scale * points[..., 1], self.y + self.scale * points[..., 0]], axis=-1)
+
+
+def _checked(size):
+    if isinstance(size, str) or not hasattr(size, "__len__") or len(size) != 2:
+        raise refuse("size", size, "must be (width, height)")
+    return integer("size", size[0], _LEAST, _MOST), integer("size", size[1], _LEAST, _MOST)
+
+
+LAMPS = 4  # number of lamps over a table, in a row along its length
+LAMP_HEIGHT = 0.95  # height of the lamps above the cloth [m]
 
 _RIM = 0.020  # width of a pocket's leather [m]
 _ROUND = 0.085  # radius of the table's corners [m]
 _INK = {name: np.array(rgb, dtype=np.float32) for name, rgb in PALETTE.items()}
 
 
-def lamps(table: Table) -> NDArray[np.float64]:
+def lamps(table: Table) -> Floats:
     """Places of the lamps over the table: (``LAMPS``, 2) [m]."""
     (low_x, high_x), (low_y, high_y) = extent(table)
     parts = (np.arange(LAMPS) + 0.5) / LAMPS
@@ -30,7 +79,7 @@ def lamps(table: Table) -> NDArray[np.float64]:
 
 
 @lru_cache(maxsize=8)
-def table_picture(table: Table, view: View) -> NDArray[np.uint8]:
+def table_picture(table: Table, view: View) -> Bytes:
     """The picture of a table without balls, read-only; the rows of the score bar show the floor."""
     canvas, parts = _Canvas(view, table), outline(table)
     canvas.image[:] = _INK["floor"]
@@ -55,19 +104,15 @@ class _Canvas:
         self.image = np.empty((view.height, view.width, 3), np.float32)
         self.x = ((np.arange(view.height, dtype=np.float32) + 0.5 - view.y) / view.scale)[:, None]
         self.y = ((np.arange(view.width, dtype=np.float32) + 0.5 - view.x) / view.scale)[None, :]
-        self.middle, self.half = (
-            self.extent.mean(axis=1).tolist(),
-            (np.diff(self.extent, axis=1)[:, 0] / 2).tolist(),
-        )
+        self.middle = self.extent.mean(axis=1).tolist()
+        self.half = (np.diff(self.extent, axis=1)[:, 0] / 2).tolist()
         self.random = np.random.default_rng(1)
 
     def around(self, points, margin):
         """The rows and columns within ``margin`` [m] of some points: the picture there, x, y."""
         (x0, y0), (x1, y1) = np.min(points, axis=0) - margin, np.max(points, axis=0) + margin
-        rows, columns = (
-            slice(*np.searchsorted(axis.ravel(), ends))
-            for axis, ends in ((self.x, (x0, x1)), (self.y, (y0, y1)))
-        )
+        each = (self.x, (x0, x1)), (self.y, (y0, y1))
+        rows, columns = (slice(*np.searchsorted(axis.ravel(), ends)) for axis, ends in each)
         return self.image[rows, columns], self.x[rows], self.y[:, columns]
 
     def cover(self, distance):
@@ -106,21 +151,14 @@ def _smooth(t):
 
 def _bed(canvas, table):
     """The cloth: its nap runs along the table, and the lamps' light fades a little towards the ends."""
-    image, x, y = (
-        canvas.image[: canvas.view.height - canvas.view.bar],
-        canvas.x[: canvas.view.height - canvas.view.bar],
-        canvas.y,
-    )
+    above = canvas.view.height - canvas.view.bar
+    image, x, y = canvas.image[:above], canvas.x[:above], canvas.y
     rows, columns = image.shape[:2]
     pixels = canvas.view.scale / 480  # of a picture of 1080 rows
-    nap = 0.011 * canvas.grain(rows, columns, 1.0, max(1.5, 3.0 * pixels)) + 0.0055 * canvas.grain(
-        rows, columns, max(1, 5 * pixels), 60 * pixels + 2
-    )
-    light = (
-        1.035
-        - 0.075 * ((y - canvas.middle[1]) / canvas.half[1]) ** 2
-        - 0.055 * ((x - canvas.middle[0]) / canvas.half[0]) ** 2
-    )
+    nap = 0.011 * canvas.grain(rows, columns, 1.0, max(1.5, 3.0 * pixels))
+    nap = nap + 0.0055 * canvas.grain(rows, columns, max(1, 5 * pixels), 60 * pixels + 2)
+    across, along = ((axis - m) / h for axis, m, h in zip((x, y), canvas.middle, canvas.half, strict=True))
+    light = 1.035 - 0.075 * along**2 - 0.055 * across**2
     cloth = (np.clip(light, 0.8, 1.1) * (1 + nap))[..., None] * _INK["cloth"]
     if len(table.noses):
         _paint(image, cloth, canvas.cover(canvas.box(x, y, CUSHION + 0.02)))
@@ -131,22 +169,15 @@ def _bed(canvas, table):
 def _marks(canvas):
     """The baulk line, the D and the spots."""
     half = max(0.0017, 0.55 / canvas.view.scale)
-    image, _, y = canvas.around(BAULK_LINE, 2 * half)
-    _paint(
-        image,
-        _INK["line"],
-        0.88 * canvas.cover(np.abs(y - np.float32(BAULK_Y)) - half) * np.ones((len(image), 1)),
-    )
+    image, x, y = canvas.around(BAULK_LINE, 2 * half)
+    _paint(image, _INK["line"], 0.88 * canvas.cover(np.abs(y - np.float32(BAULK_Y)) - half + 0 * x))
     image, x, y = canvas.around([(-D_RADIUS, BAULK_Y - D_RADIUS), (D_RADIUS, BAULK_Y)], 2 * half)
     arc = np.abs(np.hypot(x, y - BAULK_Y) - D_RADIUS) - half
     _paint(image, _INK["line"], 0.88 * canvas.cover(np.maximum(arc, y - BAULK_Y)))
     for spot in SPOT_MARKS:
         image, x, y = canvas.around([spot], 0.02)
-        _paint(
-            image,
-            _INK["line"],
-            0.9 * canvas.cover(np.hypot(x - spot[0], y - spot[1]) - max(0.0048, 1.2 / canvas.view.scale)),
-        )
+        far = np.hypot(x - spot[0], y - spot[1]) - max(0.0048, 1.2 / canvas.view.scale)
+        _paint(image, _INK["line"], 0.9 * canvas.cover(far))
 
 
 def _pockets(canvas, parts: Outline):
@@ -155,11 +186,8 @@ def _pockets(canvas, parts: Outline):
         image, x, y = canvas.around([(cx, cy), throat[:2]], max(radius, throat[4]) + 0.03)
         fall = np.hypot(x - cx, y - cy) - radius
         _paint(image, 0.55 * _INK["cloth_edge"], 0.85 * _smooth(1 - fall / 0.011))
-        front = (
-            0.30 * _INK["cloth_edge"] * (1 - _smooth(-fall / 0.014))[..., None]
-            + _INK["hole"] * _smooth(-fall / 0.014)[..., None]
-        )
-        _paint(image, front, canvas.cover(fall))
+        deep = _smooth(-fall / 0.014)[..., None]
+        _paint(image, 0.30 * _INK["cloth_edge"] * (1 - deep) + _INK["hole"] * deep, canvas.cover(fall))
         back = _capsule(x, y, throat)
         depth = _smooth(-back / 0.022)[..., None]
         inside = 0.55 * _INK["leather"] * (1 - depth) + _INK["hole"] * depth
@@ -183,9 +211,8 @@ def _cushion(canvas, polygon, nose):
     inside = _inside(x, y, polygon)
     outer = np.where(inside, -to_nose, to_nose)  # the nose is the only visible edge of a cushion
     within = canvas.cover(canvas.box(x, y, CUSHION + 0.02))  # a nose may go on beyond the frame
-    image *= (1 - 0.50 * np.exp(-np.maximum(outer, 0) / 0.013) * (outer > 0) * (outer < reach) * within)[
-        ..., None
-    ]
+    shadow = 0.50 * np.exp(-np.maximum(outer, 0) / 0.013) * (outer > 0) * (outer < reach)
+    image *= (1 - shadow * within)[..., None]
     t = np.clip(to_nose / (CUSHION + 0.004), 0, 1)
     top = _INK["cushion"] * (1.16 - 0.42 * t)[..., None]
     edge = np.exp(-(((to_nose - 0.0035) / 0.0035) ** 2))[..., None]
@@ -231,13 +258,10 @@ def _wood(canvas, table, parts):
     image *= (1 - 0.55 * np.exp(-edge / 0.02) * (edge > 0))[..., None]  # its shadow on the floor
     rows, columns = image.shape[:2]
     pixels = max(canvas.view.scale / 480, 0.4)
-    along = canvas.grain(rows, columns, 1.3 * pixels, 150 * pixels) + 0.8 * canvas.grain(
-        rows, columns, 4 * pixels, 320 * pixels
+    along, across = (
+        canvas.grain(*size, 1.3 * pixels, 150 * pixels) + 0.8 * canvas.grain(*size, 4 * pixels, 320 * pixels)
+        for size in ((rows, columns), (columns, rows))
     )
-    across = (
-        canvas.grain(columns, rows, 1.3 * pixels, 150 * pixels)
-        + 0.8 * canvas.grain(columns, rows, 4 * pixels, 320 * pixels)
-    ).T
     ends = np.abs(y - canvas.middle[1]) - canvas.half[1] > np.abs(x - canvas.middle[0]) - canvas.half[0]
     deep = -edge  # from the outer edge [m]
     shade = (
@@ -249,7 +273,7 @@ def _wood(canvas, table, parts):
     shade += 0.24 * np.exp(-(((inner - 0.012) / 0.003) ** 2)) - 0.45 * _smooth(1 - inner / 0.007)
     lamps_y = lamps(table)[:, 1].tolist()
     gloss = sum(np.exp(-(((y - lamp) / 0.34) ** 2)) for lamp in lamps_y)
-    shade *= 1 + 0.055 * np.where(ends, across, along) + 0.07 * (gloss - 0.5)
+    shade *= 1 + 0.055 * np.where(ends, across.T, along) + 0.07 * (gloss - 0.5)
     wood = np.ones(image.shape[:2], np.float32) * canvas.cover(edge) * (1 - canvas.cover(inner))
     leather = np.full(image.shape[:2], 1.0, np.float32)  # distance to the nearest pocket's hole
     for throat in parts.throats.tolist():
@@ -270,11 +294,9 @@ def _leather(canvas, image, x, y, throat):
     length = np.hypot(x0 - x1, y0 - y1)
     ux, uy = (x0 - x1) / length, (y0 - y1) / length  # towards the table
     out = np.linspace(-0.05, length, 200)
+    aside = half + _RIM
     outer = [
-        canvas.box(
-            x1 + ux * out + side * uy * (half + _RIM), y1 + uy * out - side * ux * (half + _RIM), CUSHION
-        )
-        for side in (-1, 1)
+        canvas.box(x1 + ux * out + s * uy * aside, y1 + uy * out - s * ux * aside, CUSHION) for s in (-1, 1)
     ]
     over = np.flatnonzero(np.maximum(*outer) < -0.007)
     end = float(out[over[0]]) if len(over) else length
@@ -284,7 +306,5 @@ def _leather(canvas, image, x, y, throat):
     shade = 0.45 + 0.85 * np.sqrt(np.clip(1 - (2 * t - 1) ** 2, 0, 1)) - 0.35 * _smooth(1 + cut / 0.004)
     ridge = 0.6 * np.exp(-(((t - 0.42) / 0.16) ** 2))[..., None]
     skin = _INK["leather"] * shade[..., None] + (_INK["leather_edge"] - _INK["leather"]) * ridge
-    frame = canvas.cover(canvas.box(x, y, RAIL, _ROUND) + 0.004)
-    _paint(
-        image, skin, canvas.cover(hole - _RIM) * (1 - canvas.cover(hole + 0.0015)) * canvas.cover(cut) * frame
-    )
+    frame = canvas.cover(canvas.box(x, y, RAIL, _ROUND) + 0.004) * canvas.cover(cut)
+    _paint(image, skin, canvas.cover(hole - _RIM) * (1 - canvas.cover(hole + 0.0015)) * frame)

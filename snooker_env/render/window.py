@@ -12,19 +12,17 @@
 """
 
 import dataclasses
-import itertools
 import os
 import sys
-from collections.abc import Iterable
 from typing import Any
 
 from .._check import number
 from ..physics.table import Table
 from .palette import PALETTE
-from .pygame_library import BOLD, MEDIUM, pygame_, typeset
-from .pygame_picture import draw
+from .pygame_balls import BOLD, MEDIUM, pygame_, typeset
+from .pygame_view import draw
 from .scene import Film, Scene
-from .view import SIZE, View
+from .table_picture import SIZE, Size, View
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 """Speeds that the user can choose, in multiples of the caller's."""
@@ -37,9 +35,7 @@ _INVISIBLE = ("dummy", "offscreen")  # drivers of SDL
 def display_missing() -> bool:
     """Whether nobody could see a window; ``SDL_VIDEODRIVER=dummy`` allows one without a screen (tests)."""
     linux = not (sys.platform.startswith("win") or sys.platform == "darwin")
-    return linux and not any(
-        os.environ.get(name) for name in ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY")
-    )
+    return linux and not any(map(os.environ.get, ("SDL_VIDEODRIVER", "DISPLAY", "WAYLAND_DISPLAY")))
 
 
 def require_display() -> None:
@@ -59,17 +55,14 @@ def _no_display(why):
 class Window:
     """A window with a table, opened by the first ``draw``; once closed by its user, shut until ``close``."""
 
-    def __init__(
-        self, height: int | None = None, title: str = "snooker", *, size: tuple[int, int] | None = None
-    ):
+    def __init__(self, height: int | None = None, title: str = "snooker", *, size: Size | None = None):
         View.of(Table.of(None), height, size)  # raises for a wrong size now, not when the window opens
         self._height, self._size, self._title = height, size, title
         self._screen: Any = None
         self._shut = False
         self._speed, self._paused, self._letters, self._paths = SPEEDS.index(1.0), False, False, True
         self._steps, self._skip, self._hint = 0, False, 0
-        self.status: str = ""
-        """The status in the window's last line."""
+        self.status: str = ""  # the status in the window's last line
 
     @property
     def is_open(self) -> bool:
@@ -98,24 +91,23 @@ class Window:
         self._show(scene)
         return True
 
-    def play(self, scenes: Film | Iterable[Scene], fps: float = 30.0, *, speed: float = 1.0) -> bool:
-        """Show a film in real time, or a scene every 1 / fps s; False if the user has closed the window."""
+    def play(self, film: Film, fps: float = 30.0, *, speed: float = 1.0) -> bool:
+        """Show a film in real time; False if the user has closed the window."""
         fps, clock = number("fps", fps, 0.0, open_low=True), pygame_().time.Clock()
-        speed = number("speed", speed, 0.0, open_low=True)
-        take = _FilmReel(scenes, speed / fps) if isinstance(scenes, Film) else _SceneReel(scenes)
-        self._skip, scene = False, take.first()
-        while scene is not None:
-            if not self.draw(scene, self._status()):
-                return False
+        step = number("speed", speed, 0.0, open_low=True) / fps
+        self._skip, time = False, 0.0
+        while self.draw(film.at(time), "paused" if self._paused else f"playing {self.speed:g}x"):
+            stands = self._paused and not self._steps and not self._skip
+            if time >= film.duration and not stands:
+                return True
             if self._skip:
-                scene = take.skip()
-            elif not self._paused:
-                scene = take.on(self.speed)
-            elif self._steps:
-                self._steps -= 1
-                scene = take.on(min(self.speed, 1.0))
+                time = film.duration
+            elif not stands:
+                self._steps = max(0, self._steps - 1)
+                time += step * (min(self.speed, 1.0) if self._paused else self.speed)
+            time = min(time, film.duration)
             clock.tick(fps)
-        return True
+        return False
 
     def close(self) -> None:
         """Close the window if it is open. A later ``draw`` opens it again."""
@@ -123,9 +115,6 @@ class Window:
         if self._screen is not None:
             self._screen = None
             pygame_().display.quit()
-
-    def _status(self):
-        return "paused" if self._paused else f"playing {self.speed:g}x"
 
     def _open(self, scene):
         pygame = pygame_()
@@ -180,10 +169,8 @@ class Window:
         pygame = pygame_()
         self._screen = pygame.display.get_surface()  # a new one after the window was resized
         width, height = self._screen.get_size()
-        hint = self._hint
-        scene = dataclasses.replace(
-            scene, lettered=scene.lettered or self._letters, paths=scene.paths if self._paths else {}
-        )
+        hint, paths = self._hint, scene.paths if self._paths else {}
+        scene = dataclasses.replace(scene, lettered=scene.lettered or self._letters, paths=paths)
         pixels = draw(scene, View.of(scene.table, size=(max(width, 100), max(height - hint, 100))))
         self._screen.fill(PALETTE["floor"])
         self._screen.blit(pygame.image.frombuffer(pixels, pixels.shape[1::-1], "RGB"), (0, 0))
@@ -193,52 +180,3 @@ class Window:
         if words.get_width() + keys.get_width() < width - 4 * hint:
             self._screen.blit(keys, keys.get_rect(midright=(width - hint, height - hint / 2)))
         pygame.display.flip()
-
-
-class _FilmReel:
-    """The pictures of a film one by one; None after the last."""
-
-    def __init__(self, film: Film, step: float):
-        self._film, self._step, self._time = film, step, 0.0
-
-    def first(self) -> Scene | None:
-        return self._film.at(0.0)
-
-    def on(self, speed: float) -> Scene | None:
-        return self._to(self._time + speed * self._step)
-
-    def skip(self) -> Scene | None:
-        """The last picture."""
-        return self._to(self._film.duration)
-
-    def _to(self, time):
-        if self._time >= self._film.duration:
-            return None
-        self._time = min(time, self._film.duration)
-        return self._film.at(self._time)
-
-
-class _SceneReel:
-    """The same for an iterable of scenes: some are left out above speed 1, or shown again below it."""
-
-    def __init__(self, scenes: Iterable[Scene]):
-        self._scenes, self._due = iter(scenes), 0.0
-        self._last: Scene | None = None
-
-    def first(self) -> Scene | None:
-        return self._pass(1)
-
-    def on(self, speed: float) -> Scene | None:
-        self._due += speed
-        count = int(self._due)
-        self._due -= count
-        return self._pass(count) if count else self._last
-
-    def skip(self) -> Scene | None:
-        return self._pass(None)
-
-    def _pass(self, count):
-        passed = None
-        for passed in itertools.islice(self._scenes, count):
-            self._last = passed
-        return passed

@@ -1,5 +1,4 @@
-"""Replays: what was played, exact at every time, as a page that any browser plays from disk, as data, and as
-a film.
+"""Replays: what was played, exact at every time, as a page for any browser, as data, and as a film.
 
 >>> import snooker_env as sn
 >>> shot = sn.simulate([(0.0, -1.0), (0.0, 0.5)], [(0.0, 3.0), (0.0, 0.0)], [(0.0, 0.0, 0.0)] * 2)
@@ -8,8 +7,7 @@ a film.
 2
 """
 
-from .document import Replay
-from .make import replay
+from .document import Replay, replay
 from .wrapper import RecordReplay
 
 __all__ = ["RecordReplay", "Replay", "replay"]

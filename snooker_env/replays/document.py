@@ -1,5 +1,4 @@
-"""What is a replay? Strokes in their order, as data, as a page that any browser plays from disk, and as a
-film."""
+"""What is a replay? Strokes in their order, as a page for any browser, as data, and as a film."""
 
 import html
 import json
@@ -9,13 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import choice, refuse, refuse_what
 from .._files import write_atomic
+from .._types import Bytes
 from ..physics.table import Table, TableLike
+from ..planning import Position
 from ..render.scene import scene_data
-from ..simulation import Shot
+from ..simulation import Shot, simulate
 from ..tasks.played import Played
 from ..web import WEB, table_js
 from .encode import encoded_stroke
@@ -25,14 +25,13 @@ SUFFIXES = (".html", ".json", ".mp4", ".gif")
 
 
 class Replay:
-    """A sequence of strokes that can be shown as a page, in a notebook, or as a film.
-
-    ``snooker_env.replay`` makes replays from shots, histories, positions and environments.
+    """A sequence of strokes, of ``snooker_env.replay``, shown as a page, in a notebook, or as a film.
 
     Parameters
     ----------
     strokes : iterable of Shot or Played
-        The strokes in the order in which they were played; at least one, each with its path.
+        The strokes in the order in which they were played; at least one, each with its path. ValueError if
+        they differ in ball radius, spin deceleration or table.
     title : str, optional
         Title of the page.
     players : iterable of str, optional
@@ -42,19 +41,8 @@ class Replay:
 
     Attributes
     ----------
-    strokes : tuple of Shot or Played
-        The strokes.
-    title : str
-        The title.
-    players : tuple of str
-        Names of the players; none for bare shots.
-    table : Table
-        The table.
-
-    Raises
-    ------
-    ValueError
-        If there is no stroke, or strokes differ in ball radius, spin deceleration or table.
+    strokes, title, players, table
+        As tuples of Shot or Played and of names, the latter empty for bare shots, str and ``Table``.
 
     Examples
     --------
@@ -76,11 +64,8 @@ class Replay:
         self.strokes: tuple[Shot | Played, ...] = tuple(strokes)
         for k, stroke in enumerate(self.strokes):
             if not isinstance(stroke, Shot | Played):
-                raise refuse_what(
-                    f"strokes[{k}]",
-                    f"a {type(stroke).__name__}",
-                    "must be a Shot, or a stroke of env.history",
-                )
+                allowed = "must be a Shot, or a stroke of env.history"
+                raise refuse_what(f"strokes[{k}]", f"a {type(stroke).__name__}", allowed)
         if not self.strokes:
             raise refuse("strokes", [], "must hold at least one stroke")
         self.title: str = checked_text("title", title)
@@ -90,16 +75,11 @@ class Replay:
             allowed = "must be two names for a frame, one for a visit, none for bare shots"
             raise refuse_what("players", f"{len(names)} names", allowed)
         self.players: tuple[str, ...] = names or usual
-        for k, shot in enumerate(self.shots):
-            if (shot.physics.R, shot.physics.spin_decel) != (
-                self.shots[0].physics.R,
-                self.shots[0].physics.spin_decel,
-            ):
-                raise refuse_what(
-                    f"strokes[{k}]",
-                    "a shot with other physics",
-                    "must have the R and the spin_decel of the first",
-                )
+        constants = [(shot.physics.R, shot.physics.spin_decel) for shot in self.shots]
+        for k, these in enumerate(constants):
+            if these != constants[0]:
+                allowed = "must have the R and the spin_decel of the first"
+                raise refuse_what(f"strokes[{k}]", "a shot with other physics", allowed)
         tables = [shot.table for shot in self.shots if shot.table is not None]
         if table is not None:
             self.table: Table = Table.of(table)
@@ -107,22 +87,15 @@ class Replay:
             self.table = tables[0] if tables else Table.preset("match")
             for k, other in enumerate(tables):
                 if not _same(other, self.table):
-                    raise refuse_what(
-                        f"strokes[{k}]",
-                        "a shot on another table",
-                        "must be on the table of the first, or pass table=...",
-                    )
+                    allowed = "must be on the table of the first, or pass table=..."
+                    raise refuse_what(f"strokes[{k}]", "a shot on another table", allowed)
         self._data: dict[str, Any] | None = None
 
     def _usual_players(self) -> tuple[str, ...]:
-        judged = [stroke for stroke in self.strokes if isinstance(stroke, Played)]
-        return (
-            ("Player 1", "Player 2")
-            if judged and len(judged[0].scores) == 2
-            else ("Player",)
-            if judged
-            else ()
-        )
+        judged = next((stroke for stroke in self.strokes if isinstance(stroke, Played)), None)
+        if judged is None:
+            return ()
+        return ("Player 1", "Player 2") if len(judged.scores) == 2 else ("Player",)
 
     @property
     def shots(self) -> list[Shot]:
@@ -136,23 +109,16 @@ class Replay:
         return f"Replay({len(self)} strokes, {self.title!r})"
 
     def to_dict(self) -> dict[str, Any]:
-        """The replay as JSON types, in the format of docs/play/replay.md; treat what is inside as read-only.
+        """The replay as JSON types, see docs/play/replay.md; treat what is inside as read-only.
 
         ValueError if a shot has no path, or more than 22 balls.
         """
         if self._data is None:
             strokes = [encoded_stroke(stroke, self.players) for stroke in self.strokes]
             physics = self.shots[0].physics
-            self._data = {
-                "format": FORMAT,
-                "version": VERSION,
-                "title": self.title,
-                "players": list(self.players),
-                "scene": scene_data(self.table),
-                "R": physics.R,
-                "spin_decel": physics.spin_decel,
-                "strokes": strokes,
-            }
+            self._data = {"format": FORMAT, "version": VERSION, "title": self.title}
+            self._data |= {"players": list(self.players), "scene": scene_data(self.table)}
+            self._data |= {"R": physics.R, "spin_decel": physics.spin_decel, "strokes": strokes}
         return dict(self._data)
 
     def html(self) -> str:
@@ -172,7 +138,7 @@ class Replay:
 
     def frames(
         self, *, fps: float = 30.0, speed: float = 1.0, size: tuple[int, int] = (1920, 1080)
-    ) -> Iterator[NDArray[np.uint8]]:
+    ) -> Iterator[Bytes]:
         """The pictures of the film, each uint8 (height, width, 3): treat them as read-only.
 
         ``fps`` and ``speed`` (over that of the strokes) in (0, 1000], else ValueError; ``size``: width and
@@ -186,8 +152,7 @@ class Replay:
         """Write the replay, whole or not at all, in the format of the suffix; returns the path.
 
         ``.html``: the page. ``.json``: the data. ``.mp4`` or ``.gif``: a film, which needs the extra
-        ``render``; ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (by default a GIF has 15
-        pictures of 640 x 360 a second).
+        ``render``; ``film`` are ``fps``, ``speed`` and ``size`` as in ``frames`` (a GIF: 15, 640 x 360).
         ValueError for another suffix, OSError if the file cannot be written, ImportError without the extra.
         """
         target = Path(path)
@@ -220,6 +185,88 @@ def checked_players(players: Any) -> tuple[str, ...]:
 
 
 def _same(a: Table, b: Table) -> bool:
-    return a is b or all(
-        np.array_equal(x, y) for x, y in ((a.noses, b.noses), (a.jaws, b.jaws), (a.falls, b.falls))
-    )
+    parts = ("noses", "jaws", "falls")
+    return a is b or all(np.array_equal(getattr(a, name), getattr(b, name)) for name in parts)
+
+
+_ALLOWED = (
+    "must be a Shot, a list of shots or of strokes of env.history, a Position, a Replay, or an environment "
+    "that keeps its history"
+)
+
+
+def replay(
+    source: Any,
+    path: str | Path | None = None,
+    *,
+    title: str = "",
+    players: Iterable[str] = (),
+    table: TableLike = None,
+) -> Replay:
+    """Make a replay of what was played, and write it to a file if ``path`` is given.
+
+    Parameters
+    ----------
+    source : Shot, Played, sequence of Shot or Played, Position, Replay, or environment
+        * A ``Shot`` of ``sn.simulate``, or several in the order in which they were played.
+        * The strokes of an episode: ``env.history`` of ``SnookerEnv`` or of a match; or the environment
+          itself, wrapped or not, if it has a render mode or its ``keep_history`` was set to True.
+        * A ``Position`` is shown as it stands.
+        * A ``Replay`` is copied, with the other arguments applied.
+    path : str or Path, optional
+        A file that ends in ``.html``, ``.json``, ``.mp4`` or ``.gif``, see ``Replay.save``.
+    title, players, table
+        As in ``Replay``.
+
+    Returns
+    -------
+    Replay
+        ValueError if there is nothing to show, a shot has no path, or an argument is invalid; OSError if the
+        file cannot be written.
+
+    Examples
+    --------
+    >>> import snooker_env as sn
+    >>> env = sn.SnookerEnv(action="discrete")
+    >>> env.keep_history = True
+    >>> _ = env.reset(seed=1)
+    >>> _ = env.step(67)
+    >>> sn.replay(env, title="one stroke")
+    Replay(1 strokes, 'one stroke')
+    """
+    strokes: Any
+    if isinstance(source, Replay):
+        strokes, title, players = source.strokes, title or source.title, players or source.players
+        table = table or source.table
+    else:
+        strokes = _strokes(source, table)
+    made = Replay(strokes, title=title, players=players, table=table)
+    if path is not None:
+        made.save(path)
+    return made
+
+
+def _still(position: Position, table: TableLike) -> Shot:
+    """The shot in which nothing moves."""
+    places, on_table, _ = position.arrays()
+    nothing, table = np.zeros((len(places), 3)), Table.of("match" if table is None else table)
+    return simulate(places, nothing[:, :2], nothing, table, on_table=on_table)
+
+
+def _strokes(source: Any, table: TableLike) -> list[Shot | Played]:
+    if isinstance(source, Shot | Played):
+        return [source]
+    if isinstance(source, list | tuple):
+        return list(source)
+    if isinstance(source, Position):
+        return [_still(source, table)]
+    env = getattr(source, "unwrapped", source)
+    if not hasattr(env, "history"):
+        raise refuse_what("source", f"a {type(source).__name__}", _ALLOWED)
+    if not env.keep_history:
+        words = "must have env.unwrapped.keep_history = True set before it plays, or be wrapped in "
+        raise refuse_what("source", "an environment that keeps no history", f"{words}sn.RecordReplay")
+    if not env.history:
+        what = "an environment without a stroke since its reset"
+        raise refuse_what("source", what, "must have played at least one")
+    return env.history

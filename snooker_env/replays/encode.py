@@ -1,9 +1,7 @@
-"""How is a stroke encoded for a browser? As the closed forms of its phases of motion: small, and exact at
-every time.
+"""How is a stroke encoded for a browser? As the closed forms of its phases of motion (docs/play/replay.md).
 
 The numbers of a path are binary in base64. Positions, velocities and accelerations have 64 bits, so that the
-browser computes the same positions as ``Shot.at``. Spins have 32 bits, because they are only displayed.
-docs/play/replay.md describes the format.
+browser computes the same positions as ``Shot.at``; spins, which are only displayed, 32.
 """
 
 import base64
@@ -12,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from .._check import refuse_what
-from .._types import Floats
 from ..game.balls import N_BALLS
 from ..physics import cloth
 from ..simulation import Shot
@@ -26,23 +23,18 @@ _WHICH = [cloth.SEGMENT_BALL, cloth.SEGMENT_STATE]
 
 def packed(values: Any, kind: str) -> str:
     """Numbers as base64 of little-endian ``kind``: "f8", "f4" or "u1", row after row."""
-    return base64.b64encode(np.ascontiguousarray(values, np.dtype(kind).newbyteorder("<")).tobytes()).decode(
-        "ascii"
-    )
+    little = np.ascontiguousarray(values, np.dtype(kind).newbyteorder("<"))
+    return base64.b64encode(little.tobytes()).decode("ascii")
 
 
 def encoded_shot(shot: Shot) -> dict[str, Any]:
-    """The motion of a shot, up to the key "pots". ValueError if it has no path, or more balls than
-    snooker."""
+    """The motion of a shot, up to "pots". ValueError if it has no path, or more balls than snooker."""
     n = len(shot.positions)
     if n > N_BALLS:
         raise refuse_what("shot", f"{n} balls", f"must have at most {N_BALLS}: their colours are snooker's")
     if not len(shot.segments):
-        raise refuse_what(
-            "shot",
-            "a Shot without its path",
-            "must be of sn.simulate, or of an environment with keep_history = True",
-        )
+        allowed = "must be of sn.simulate, or of an environment with keep_history = True"
+        raise refuse_what("shot", "a Shot without its path", allowed)
     first, states = shot.segments[:n], shot.segments[:, cloth.SEGMENT_STATE]
     idle = (states == cloth.REST) | (states == cloth.GONE)
     # at rest from the start: its place is in ``start``
@@ -67,25 +59,13 @@ def encoded_shot(shot: Shot) -> dict[str, Any]:
 def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, Any]:
     """One stroke of a replay. For a bare ``Shot``, the parts that come from the referee are empty."""
     if isinstance(item, Shot):
-        return encoded_shot(item) | {
-            "cue": None,
-            "player": None,
-            "ball_on": None,
-            "points": 0,
-            "penalty": 0,
-            "fouls": [],
-            "words": "",
-            "score": [],
-            "break": 0,
-            "after": None,
-        }
-    shot = item.shot
-    return encoded_shot(shot) | {
-        "cue": item.cue,
-        "player": item.player,
+        empty = dict.fromkeys(("cue", "player", "ball_on", "after"))
+        none = {"points": 0, "penalty": 0, "fouls": [], "words": "", "score": [], "break": 0}
+        return encoded_shot(item) | empty | none
+    same = {name: getattr(item, name) for name in ("cue", "player", "points", "penalty")}
+    return encoded_shot(item.shot) | {
+        **same,
         "ball_on": "free ball" if item.free_ball else on_words(item.ball_on),
-        "points": item.points,
-        "penalty": item.penalty,
         "fouls": foul_words(item.fouls),
         "words": sentence(item, players),
         "score": list(item.scores),
@@ -97,15 +77,7 @@ def encoded_stroke(item: Shot | Played, players: tuple[str, ...]) -> dict[str, A
 def _after(item: Played) -> dict[str, Any] | None:
     """The table before the next stroke, if it differs from the balls at rest."""
     on_table = item.on_table
-    same = np.array_equal(on_table, item.shot.on_table) and np.array_equal(
-        item.positions[on_table], item.shot.positions[on_table]
-    )
-    return (
-        None
-        if same
-        else {"places": packed(_places(item.positions), "f8"), "on_table": np.flatnonzero(on_table).tolist()}
-    )
-
-
-def _places(positions: Floats) -> Floats:
-    return np.asarray(positions, np.float64)
+    same = np.array_equal(item.positions[on_table], item.shot.positions[on_table])
+    if same and np.array_equal(on_table, item.shot.on_table):
+        return None
+    return {"places": packed(item.positions, "f8"), "on_table": np.flatnonzero(on_table).tolist()}

@@ -1,28 +1,54 @@
-"""How does a replay become a film? Picture after picture is sent to the encoder, so that only one is in
-memory at a time."""
+"""How does a replay become a film? Picture by picture sent to the encoder: one at a time is in memory."""
 
 import subprocess
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .._check import number, refuse
 from .._files import write_atomic
 from .._install import missing
+from .._jit import entry
+from .._types import Bytes
 from ..physics.table import Table
 from ..render.scene import Film, Scene, ScoreBar, scene
 from ..simulation import Shot
 from ..tasks.played import Played
-from .bars import bars
-from .video_colours import to_video
-from .words import pots_of
+from .words import bars, pots_of
 
-PAUSE = 0.8
-"""How long the table is shown after each stroke [s of the film]."""
+_HALF = 1 << 15
+
+
+@entry(what="the colours of films", seconds=1)
+def _fill(rgb, luma, cb, cr):
+    """Fill luma (h, w), cb and cr (h/2, w/2) uint8 from the picture rgb (h, w, 3) uint8; h and w even."""
+    for i in range(cb.shape[0]):
+        for j in range(cb.shape[1]):
+            red = green = blue = 0
+            for di in range(2):
+                for dj in range(2):
+                    row, column = 2 * i + di, 2 * j + dj
+                    r, g, b = int(rgb[row, column, 0]), int(rgb[row, column, 1]), int(rgb[row, column, 2])
+                    luma[row, column] = 16 + ((11966 * r + 40254 * g + 4064 * b + _HALF) >> 16)
+                    red, green, blue = red + r, green + g, blue + b
+            cb[i, j] = 128 + ((-6596 * red - 22188 * green + 28784 * blue + 4 * _HALF) >> 18)
+            cr[i, j] = 128 + ((28784 * red - 26145 * green - 2639 * blue + 4 * _HALF) >> 18)
+
+
+def to_video(picture: Bytes) -> Bytes:
+    """The bytes (3 h w / 2,) of a picture (h, w, 3), one plane after the other: ffmpeg's format yuv420p."""
+    height, width = picture.shape[:2]
+    out = np.empty(3 * height * width // 2, np.uint8)
+    luma, chroma = out[: height * width], out[height * width :].reshape(2, height // 2, width // 2)
+    _fill(np.ascontiguousarray(picture), luma.reshape(height, width), chroma[0], chroma[1])
+    return out
+
+
+PAUSE = 0.8  # how long the table is shown after each stroke [s of the film]
 UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 SIZE = (1920, 1080)
 HD = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"]
@@ -32,10 +58,7 @@ USUAL: dict[str, tuple[tuple[int, int], float]] = {".mp4": (SIZE, 30.0), ".gif":
 
 
 def shown(
-    strokes: Iterable[Shot | Played],
-    table: Table,
-    players: tuple[str, ...],
-    title: str,
+    strokes: Iterable[Shot | Played], table: Table, players: tuple[str, ...], title: str
 ) -> Iterator[tuple[Film, Scene]]:
     """For each stroke its film, and the table after it with the referee's words."""
     strokes = list(strokes)
@@ -55,23 +78,11 @@ def filmed(
     where, on_table = (stroke.positions, stroke.on_table) if judged else (shot.positions, shot.on_table)
     placed = judged and not np.array_equal(stroke.positions[0], shot.positions[0])
     turns = {0: UNTURNED} if placed else last.turns
-    over = {
-        "ball_radius": shot.physics.R,
-        "paths": last.paths,
-        "ghosts": last.ghosts,
-        "turns": turns,
-        "bar": after,
-        "text": text,
-    }
-    return film, scene(table, where, on_table, **over)
+    over: Any = {"paths": last.paths, "ghosts": last.ghosts, "turns": turns, "bar": after, "text": text}
+    return film, scene(table, where, on_table, ball_radius=shot.physics.R, **over)
 
 
-def frames(
-    films: Iterable[tuple[Film, Scene]],
-    fps: float,
-    speed: float,
-    size: tuple[int, int],
-) -> Iterator[NDArray[np.uint8]]:
+def frames(films: Iterable[tuple[Film, Scene]], fps: float, speed: float, size: Any) -> Iterator[Bytes]:
     """The pictures of what ``shown`` gives."""
     from ..render.pygame_view import rgb_array
 
@@ -79,18 +90,11 @@ def frames(
     for film, after in films:
         for picture in film.scenes(fps, speed):
             yield rgb_array(picture, size=size)
-        still = rgb_array(after, size=size)
-        for _ in range(round(PAUSE * fps)):
-            yield still
+        yield from [rgb_array(after, size=size)] * round(PAUSE * fps)
 
 
 def write_film(
-    pictures_of: Callable[..., Iterator[NDArray[np.uint8]]],
-    target: Path,
-    *,
-    fps: float | None = None,
-    speed: float = 1.0,
-    size: tuple[int, int] | None = None,
+    pictures_of: Callable[..., Any], target: Path, *, fps: Any = None, speed: float = 1.0, size: Any = None
 ) -> None:
     """Write the pictures of ``pictures_of(fps=, speed=, size=)`` to an .mp4 or .gif file."""
     usual_size, usual_fps = USUAL[target.suffix.lower()]
@@ -107,35 +111,23 @@ def _rate(field: str, value: Any) -> float:
     return number(field, value, 0.0, 1000.0, open_low=True)
 
 
-def _encode(pictures: Iterator[NDArray[np.uint8]], path: Path, fps: float, size: tuple[int, int]) -> None:
+def _encode(pictures: Iterator[Bytes], path: Path, fps: float, size: tuple[int, int]) -> None:
     if path.suffix.lower() != ".gif":
-        _pipe(
-            _in_video_colours(pictures),
-            "yuv420p",
-            size,
-            fps,
-            ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "26", "-threads", "1", *HD],
-            path,
-        )
+        wanted = ["-c:v", "libx264", "-preset", "ultrafast", "-crf", "26", "-threads", "1", *HD]
+        _pipe(_in_video_colours(pictures), "yuv420p", size, fps, wanted, path)
         return
     first = next(pictures)
     colours = path.with_name(f"{path.stem}.colours.png")
     try:
-        _pipe(
-            iter([_swatches(first)]),
-            "rgb24",
-            (256, 256),
-            1.0,
-            ["-vf", "palettegen=stats_mode=single"],
-            colours,
-        )
+        wanted = ["-vf", "palettegen=stats_mode=single"]
+        _pipe(iter([_swatches(first)]), "rgb24", (256, 256), 1.0, wanted, colours)
         chosen = ["-i", str(colours), "-lavfi", "paletteuse=dither=none:diff_mode=rectangle", "-loop", "0"]
         _pipe(chain([first], pictures), "rgb24", size, fps, chosen, path)
     finally:
         colours.unlink(missing_ok=True)
 
 
-def _in_video_colours(pictures: Iterator[NDArray[np.uint8]]) -> Iterator[NDArray[np.uint8]]:
+def _in_video_colours(pictures: Iterator[Bytes]) -> Iterator[Bytes]:
     """``to_video`` of each picture, computed once for a picture that is repeated."""
     last, made = None, np.empty(0, np.uint8)
     for picture in pictures:
@@ -144,28 +136,18 @@ def _in_video_colours(pictures: Iterator[NDArray[np.uint8]]) -> Iterator[NDArray
         yield made
 
 
-def _swatches(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def _swatches(picture: Bytes) -> Bytes:
     """A picture's colours as a picture (256, 256, 3), rare ones enlarged: a ball's colour matters."""
     coarse = (picture >> 2).astype(np.uint32)
-    codes, counts = np.unique(
-        (coarse[..., 0] << 12) | (coarse[..., 1] << 6) | coarse[..., 2], return_counts=True
-    )
+    codes, counts = np.unique(coarse @ np.array([1 << 12, 1 << 6, 1], np.uint32), return_counts=True)
     share = np.cumsum(counts**0.25)
-    taken = codes[
-        np.searchsorted(share, np.linspace(0.0, share[-1], 256 * 256, endpoint=False), side="right")
-    ]
+    even = np.linspace(0.0, share[-1], 256 * 256, endpoint=False)
+    taken = codes[np.searchsorted(share, even, side="right")]
     shades = np.stack([taken >> 12, (taken >> 6) & 63, taken & 63], axis=-1)
     return ((shades << 2) | 2).astype(np.uint8).reshape(256, 256, 3)
 
 
-def _pipe(
-    pictures: Iterator[NDArray[np.uint8]],
-    kind: str,
-    size: tuple[int, int],
-    fps: float,
-    wanted: list[str],
-    path: Path,
-) -> None:
+def _pipe(pictures, kind, size, fps, wanted, path):
     """Send pictures through ffmpeg into a file."""
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
@@ -176,16 +158,14 @@ def _pipe(
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as encoder:
         assert encoder.stdin is not None and encoder.stderr is not None
         try:
-            for picture in pictures:
-                encoder.stdin.write(np.ascontiguousarray(picture).data)
-            encoder.stdin.close()
-            complaint = encoder.stderr.read().decode(errors="replace")
-        except BrokenPipeError:
-            complaint = encoder.stderr.read().decode(errors="replace")
+            with suppress(BrokenPipeError):
+                for picture in pictures:
+                    encoder.stdin.write(np.ascontiguousarray(picture).data)
+                encoder.stdin.close()
+            complaint = encoder.stderr.read().decode(errors="replace").strip()
         except BaseException:
             encoder.kill()
             raise
     if encoder.returncode:
-        raise OSError(
-            f"the film could not be written: {complaint.strip() or f'ffmpeg ended with {encoder.returncode}'}"
-        )
+        why = complaint or f"ffmpeg ended with {encoder.returncode}"
+        raise OSError(f"the film could not be written: {why}")

@@ -1,10 +1,15 @@
-"""What does the referee say after a stroke? One sentence in plain words, and the names of the fouls."""
+"""What do the referee and the score bar say of each stroke? In plain words, during it and after it."""
 
-from ..game.balls import N_REDS, NAMES, BallOn
+from collections.abc import Iterable, Sequence
+
+from ..game.balls import N_REDS, NAMES, BallOn, mask_of_present, points_available
+from ..game.frame_columns import BALL_ON
 from ..game.ruling import Foul
 from ..physics.engine import EventKind
+from ..render.scene import ScoreBar
 from ..simulation import Shot
 from ..tasks.played import Played
+from ..tasks.tables import Tables
 
 FOUL_WORDS = {
     Foul.NO_CONTACT: "no ball struck",
@@ -64,3 +69,49 @@ def sentence(played: Played, players: tuple[str, ...]) -> str:
     elif played.over and played.next_on == BallOn.NOTHING and not played.fouls:
         words += ". Table cleared"
     return words + "."
+
+
+def bars(strokes: Iterable[Played], players: Sequence[str]) -> list[tuple[ScoreBar, ScoreBar]]:
+    """The bars during and after each stroke of one episode, in order; ``players``: their names."""
+    made, names = [], tuple(players)
+    potted: list[int] | None = []  # in this break; None: it began before the first recorded stroke
+    run = 0
+    for one in strokes:
+        gains = {one.player: one.points, 1 - one.player: one.penalty}
+        scores = tuple(score - gains.get(k, 0) for k, score in enumerate(one.scores))
+        if one.break_before != run or not run:
+            potted = [] if not one.break_before else None
+        here = one.shot.on_table.copy()
+        here[pots_of(one.shot)] = True
+        before = _bar(here, one.ball_on, one.free_ball, names, scores, one.player, one.break_before, potted)
+        if one.points and potted is not None:
+            potted = potted + pots_of(one.shot)
+        run, game = one.break_before + one.points, (one.on_table, one.next_on, one.next_free_ball)
+        after = _bar(*game, names, one.scores, one.player, run, potted, sentence(one, names))
+        made.append((before, after))
+        run = run if one.points else 0
+    return made
+
+
+def standing_bar(tables: Tables, k: int, players: Sequence[str], last: ScoreBar | None = None) -> ScoreBar:
+    """The bar for table k as it stands; ``last``: the bar after the stroke that led there, if known."""
+    now, last = tables.standing(k), last or ScoreBar()
+    game = tables.on_table[k], BallOn(tables.game[k, BALL_ON]), now["next_free_ball"]
+    of_player = players, now["scores"], now["next_player"], now["break_points"]
+    return _bar(*game, *of_player, last.potted if now["break_points"] else (), last.words)
+
+
+def _bar(on_table, ball_on, free_ball, players, scores, striker, break_points, potted, words=""):
+    """A bar; without players none of their scores."""
+    mask = mask_of_present(on_table) & ~1
+    return ScoreBar(
+        tuple(players),
+        scores if players else (),
+        striker if players else None,
+        break_points,
+        tuple(potted or ()),
+        int(on_table[1 : N_REDS + 1].sum()),
+        points_available(mask, ball_on, free_ball) if ball_on >= 0 else 0,
+        "free ball" if free_ball else on_words(ball_on),
+        words,
+    )

@@ -1,5 +1,4 @@
-"""How are an environment's episodes written to files? ``RecordReplay``: a wrapper that writes a replay for
-each wanted episode."""
+"""How are an environment's episodes written to files? ``RecordReplay`` writes a replay for each."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -15,22 +14,21 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     """Records the strokes of ``Snooker-v0`` and writes each wanted episode as a replay.
 
     The files are ``FOLDER/PREFIX-episode-0.html``, and so on. An episode is written when it ends, or when the
-    next one or ``close()`` cuts it short. An episode without a stroke gives no file. No render mode is
-    needed. An existing file of that name is overwritten.
+    next one or ``close()`` cuts it short; one without a stroke gives no file. No render mode is needed. An
+    existing file of that name is overwritten.
 
     Parameters
     ----------
     env : gymnasium.Env
-        ``Snooker-v0``, wrapped or not.
+        ``Snooker-v0`` with one table, wrapped or not; else ValueError.
     folder : str or Path
         Folder of the files; it is created if it does not exist.
     episode_trigger : callable, optional
-        ``episode_trigger(number) -> bool``: whether to write the episode with this number, from 0. Default
-        None: all.
-    name_prefix : str, optional
-        Beginning of the files' names; default "snooker".
-    suffix : {".html", ".json", ".mp4", ".gif"}, optional
-        Format of the files, see ``Replay.save``; default ".html".
+        ``episode_trigger(number) -> bool``: whether to write the episode with this number, from 0. None: all.
+    name_prefix : str
+        Beginning of the files' names.
+    suffix : {".html", ".json", ".mp4", ".gif"}
+        Format of the files, see ``Replay.save``.
     players : iterable of str, optional
         Names of the players, see ``snooker_env.replay``.
 
@@ -38,11 +36,6 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
     ----------
     paths : list of Path
         The files written so far.
-
-    Raises
-    ------
-    ValueError
-        If the environment is not one of this package with one table.
 
     Examples
     --------
@@ -68,29 +61,19 @@ class RecordReplay(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Record
         suffix: str = ".html",
         players: Iterable[str] = (),
     ):
-        gymnasium.utils.RecordConstructorArgs.__init__(
-            self,
-            folder=str(folder),
-            episode_trigger=episode_trigger,
-            name_prefix=name_prefix,
-            suffix=suffix,
-            players=players,
-        )
+        arguments = {"episode_trigger": episode_trigger, "name_prefix": name_prefix, "suffix": suffix}
+        gymnasium.utils.RecordConstructorArgs.__init__(self, folder=str(folder), players=players, **arguments)
         super().__init__(env)
         inner = env.unwrapped
         if not hasattr(inner, "keep_history"):
             raise refuse_what("env", f"a {type(inner).__name__}", "must be a Snooker-v0 of one table")
         inner.keep_history = True  # type: ignore[attr-defined]
         self.paths: list[Path] = []
-        self._folder, self._prefix, self._suffix = (
-            Path(folder),
-            name_prefix,
-            choice("suffix", suffix, SUFFIXES),
-        )
+        self._folder, self._prefix = Path(folder), name_prefix
+        self._suffix = choice("suffix", suffix, SUFFIXES)
         if not isinstance(name_prefix, str) or Path(name_prefix + suffix).name != name_prefix + suffix:
-            raise refuse(
-                "name_prefix", name_prefix, "must be the beginning of a file's name, without folders"
-            )
+            words = "must be the beginning of a file's name, without folders"
+            raise refuse("name_prefix", name_prefix, words)
         frame = inner.options.task != "visit"  # type: ignore[attr-defined]
         self._wanted, self._players = episode_trigger, checked_players(players)
         if len(self._players) not in (0, 1 + frame):

@@ -4,9 +4,8 @@ import threading
 
 import pytest
 
-from snooker_env.play.seats import Seats
 from snooker_env.play.server import PlayServer
-from snooker_env.play.service import Service
+from snooker_env.play.service import Seats, Service
 from snooker_env.play.session import Session
 from tests.playing import Asked, Line
 

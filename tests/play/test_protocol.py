@@ -13,8 +13,7 @@ from snooker_env.game.frame_columns import PLAY, PLAY_AGAIN, REPLACE
 from snooker_env.geometry import POCKETS
 from snooker_env.planning import Position, Positions
 from snooker_env.play import routes
-from snooker_env.play.lines import lines_of
-from snooker_env.play.words import where
+from snooker_env.play.words import lines_of, where
 from snooker_env.players import Strokes
 from snooker_env.tasks.declarations import CLAIMS, CONCEDES
 from tests.playing import COVERED, EASY, STRAIGHT

@@ -6,13 +6,13 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import CUE, N_BALLS, SPOTS
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.render import pygame_balls, pygame_lines
+from snooker_env.render import pygame_balls
 from snooker_env.render.outline import outline
 from snooker_env.render.palette import COLOURS
-from snooker_env.render.pygame_view import SIZE, View, rgb_array, to_pixels
-from snooker_env.render.scene import scene
+from snooker_env.render.pygame_view import SIZE, View, rgb_array
+from snooker_env.render.scene import rotation, scene
 from snooker_env.render.table_picture import table_picture
-from snooker_env.render.turning import rotation
+from tests.pictures import to_pixels
 
 MATCH = sn.Table.preset("match")
 NOBODY = np.zeros(N_BALLS, bool)
@@ -41,7 +41,7 @@ def test_a_picture_is_full_hd_with_the_table_above_the_bar(empty):
     assert 0 < top < 10 and view.height - view.bar - 10 < bottom < view.height - view.bar and 0 < left < 50
     assert right == 1920 - left
     assert 2 * BALL_RADIUS * view.scale > 25  # a ball, in pixels
-    assert view.metres(view(np.array((0.3, -1.1)))) == pytest.approx((0.3, -1.1))
+    assert (view(np.array((0.3, -1.1))) - (view.x, view.y)) / view.scale == pytest.approx((-1.1, 0.3))
 
 
 @pytest.mark.parametrize("size", [(640, 360), (1000, 300), (301, 999)])
@@ -103,10 +103,13 @@ def test_a_path_that_grew_is_as_if_it_was_drawn_at_once():
     points = np.stack([0.5 * np.sin(2 * turn), turn - 1.5 + 0.2 * np.sin(9 * turn)], axis=1)
     drawn = lambda points: rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points}))  # noqa: E731
     for length in range(2, 300, 7):
-        grown = drawn(points[:length])
-    pygame_lines._piece.cache_clear()
-    assert np.array_equal(grown, drawn(points[:length]))
-    assert np.array_equal(drawn(np.tile((0.1, 0.1), (5, 1))), rgb_array(scene("match", SPOTS, NOBODY)))
+        grown = rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points[:length]}))
+    pygame_balls._piece.cache_clear()
+    assert np.array_equal(grown, rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points[:length]})))
+    still = np.tile((0.1, 0.1), (5, 1))
+    assert np.array_equal(
+        rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: still})), rgb_array(scene("match", SPOTS, NOBODY))
+    )
 
 
 def test_ghosts_are_faded_balls(empty):

@@ -8,8 +8,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
 from snooker_env.geometry import BALL_RADIUS
-from snooker_env.render.scene import Film, ball_paths, contacts, scene, shot_scenes
-from snooker_env.render.turning import Turning, matrix
+from snooker_env.render.scene import Film, Turning, ball_paths, contacts, matrix, scene
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +19,7 @@ def pot():
 
 def test_film_of_a_shot(pot):
     assert pot.potted[1] == sn.POCKETS.index("middle right")
-    film = list(shot_scenes("match", pot, fps=50, speed=2.0, text="pot"))
+    film = list(Film("match", pot, text="pot").scenes(50, 2.0))
     assert len(film) == int(np.ceil(pot.duration * 25)) + 1
     assert [len(s.ids) for s in film] == sorted([len(s.ids) for s in film], reverse=True)
     drop = pot.events["time"][pot.events["kind"] == sn.EventKind.POT][0]
@@ -30,7 +29,7 @@ def test_film_of_a_shot(pot):
         assert not s.paths or np.array_equal(s.paths[CUE][-1], s.positions[0])
     assert np.array_equal(film[-1].positions[0], pot.positions[0])
     assert film[0].paths == {} and film[-1].paths.keys() == {CUE}
-    assert all(s.paths == {} for s in itertools.islice(shot_scenes("match", pot, trail=()), 5))
+    assert all(s.paths == {} for s in itertools.islice(Film("match", pot, trail=()).scenes(), 5))
 
 
 def test_paths_run_from_start_to_end(pot):
@@ -46,9 +45,9 @@ def test_paths_run_from_start_to_end(pot):
 def test_the_film_of_a_shot_shows_the_balls_of_the_shot():
     pool = sn.Table.preset("pool9")
     end = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], pool, {"R": pool.ball_radius})
-    assert {one.ball_radius for one in shot_scenes(pool, end, fps=5)} == {pool.ball_radius}
+    assert {one.ball_radius for one in Film(pool, end).scenes(5)} == {pool.ball_radius}
     small = sn.simulate([(0.0, 0.0)], [(0.5, 0.0)], [(0.0, 0.0, 0.0)], None, {"R": 0.02})
-    assert {one.ball_radius for one in shot_scenes(None, small, fps=5)} == {0.02}
+    assert {one.ball_radius for one in Film(None, small).scenes(5)} == {0.02}
     assert scene("match", SPOTS).ball_radius == scene(None, SPOTS).ball_radius == BALL_RADIUS
     with pytest.raises(ValueError, match="ball_radius"):
         scene("match", SPOTS, ball_radius=-1)
@@ -56,7 +55,7 @@ def test_the_film_of_a_shot_shows_the_balls_of_the_shot():
 
 def test_a_film_is_the_same_at_any_time_as_picture_after_picture(pot):
     film = Film("match", pot, trail=(CUE, 1), text="pot")
-    for k, one in enumerate(shot_scenes("match", pot, fps=20, trail=(CUE, 1), text="pot")):
+    for k, one in enumerate(Film("match", pot, trail=(CUE, 1), text="pot").scenes(20)):
         here = film.at(min(k * 0.05, pot.duration))
         assert np.array_equal(here.positions, one.positions) and here.paths.keys() == one.paths.keys()
         whole = ball_paths(pot, (CUE, 1))
@@ -77,7 +76,7 @@ def test_contacts_and_ghosts_are_where_the_cue_ball_met_others(pot):
         ghosts = film.at(t).ghosts
         assert [len(ghosts[ball]) for ball in (CUE, 1)] == [count, count]
     assert np.array_equal(ghosts[CUE], contacts(pot)) and Film("match", pot).at(pot.duration).ghosts == {}
-    end = list(shot_scenes("match", pot, faded=(CUE,)))[-1]
+    end = list(Film("match", pot, faded=(CUE,)).scenes())[-1]
     assert np.array_equal(end.ghosts[CUE], contacts(pot))
 
 

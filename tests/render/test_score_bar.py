@@ -5,9 +5,8 @@ import pytest
 
 from snooker_env.game.balls import SPOTS
 from snooker_env.render.palette import COLOURS, PALETTE
-from snooker_env.render.pygame_bar import in_words, score_bar
-from snooker_env.render.pygame_library import BOLD, MEDIUM, typeset
-from snooker_env.render.pygame_view import rgb_array
+from snooker_env.render.pygame_balls import BOLD, MEDIUM, typeset
+from snooker_env.render.pygame_view import in_words, rgb_array, score_bar
 from snooker_env.render.scene import ScoreBar, scene
 
 pytest.importorskip("pygame")

@@ -5,9 +5,9 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.game.balls import CUE, SPOTS
-from snooker_env.render.pygame_view import Window, rgb_array
-from snooker_env.render.scene import Film, scene, shot_scenes
-from snooker_env.render.window import SPEEDS, WAITING, require_display
+from snooker_env.render.pygame_view import rgb_array
+from snooker_env.render.scene import Film, scene
+from snooker_env.render.window import SPEEDS, WAITING, Window, require_display
 
 
 @pytest.fixture(scope="module")
@@ -35,13 +35,13 @@ def test_window_opens_lazily_plays_and_closes(dummy_screen, pot):
     window = Window(height=300)
     assert not window.is_open and not dummy_screen.display.get_init()
     window.close()
-    film = list(shot_scenes("match", pot, fps=10))
-    assert window.play(film, fps=1000) and window.is_open
-    assert np.array_equal(picture(dummy_screen), rgb_array(film[-1], size=(518, 300)))
+    film = Film("match", pot)
+    assert window.play(film, fps=1000, speed=100) and window.is_open
+    assert np.array_equal(picture(dummy_screen), rgb_array(film.at(film.duration), size=(518, 300)))
     window.close()
     window.close()
     assert not window.is_open and not dummy_screen.display.get_init()
-    assert window.draw(film[0]) and window.is_open
+    assert window.draw(film.at(0.0)) and window.is_open
     window.close()
 
 
@@ -49,9 +49,10 @@ def test_the_window_heeds_its_close_button_and_escape(dummy_screen, pot):
     window = Window(height=300)
     assert window.draw(scene("match", SPOTS))
     dummy_screen.event.post(dummy_screen.event.Event(dummy_screen.QUIT))
-    assert not window.play(shot_scenes("match", pot), fps=1000)
-    assert not window.is_open and not window.draw(scene("match", SPOTS))
-    assert not dummy_screen.display.get_init()
+    assert not window.play(Film("match", pot), fps=1000)
+    assert (
+        not window.is_open and not window.draw(scene("match", SPOTS)) and not dummy_screen.display.get_init()
+    )
     window.close()
     assert window.draw(scene("match", SPOTS))
     window.close()
@@ -89,19 +90,14 @@ class Pressed(Window):
         return shown
 
 
-@pytest.mark.parametrize("kind", ["film", "scenes"])
-def test_a_film_runs_faster_and_slower_and_shows_its_end(dummy_screen, pot, kind):
-    def made():
-        return Film("match", pot) if kind == "film" else shot_scenes("match", pot, fps=20)
-
+def test_a_film_runs_faster_and_slower_and_shows_its_end(dummy_screen, pot):
     whole = int(np.ceil(pot.duration * 20)) + 1
     up, down = dummy_screen.K_UP, dummy_screen.K_DOWN
     ends = ((up,) * 9, SPEEDS[-1]), ((down,) * 9, SPEEDS[0])
     for keys, speed in [((), 1.0), ((up,), 2.0), ((down,), 0.5), *ends]:
         window = Pressed(dummy_screen, {1: keys})
         assert window.draw(scene("match", SPOTS))
-        # a film's picture every 1/20 s of it, without waiting
-        assert window.play(made(), fps=20_000, speed=1000)
+        assert window.play(Film("match", pot), fps=20_000, speed=1000)  # every 1/20 s of it, without waiting
         played = window.seen[1:]
         assert len(played) == pytest.approx((whole - 1) / speed + 1, abs=1 / speed + 1), speed
         assert played[-1][0] == pot.positions[CUE, 0] and window.speed == speed

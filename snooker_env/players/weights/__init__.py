@@ -1,10 +1,8 @@
-"""Which weights does the package hold? Value and policy of the planner, one file for each noise level, plain
-NumPy arrays.
+"""Which weights does the package hold? Value and policy of the planner, one file for each noise level.
 
-``python -m agents.export`` writes them from the models that ``train.py`` made. A file holds
-``policy/LAYER/weight`` and ``policy/LAYER/bias`` for each layer of a ``StrokePolicy``, and
-``value/LAYER/weight`` (members, out, in) and ``value/LAYER/bias`` (members, out) for each layer of a
-``LearnedValue``. Reading them runs no code.
+``python -m agents.export`` writes them from the models that ``train.py`` made. A file holds the NumPy arrays
+``policy/LAYER/weight`` and ``policy/LAYER/bias`` of a ``StrokePolicy``, and ``value/LAYER/weight`` (members,
+out, in) and ``value/LAYER/bias`` (members, out) of a ``LearnedValue``. Reading them runs no code.
 """
 
 from collections.abc import Mapping
@@ -13,25 +11,24 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..._check import refuse
+from ..._types import Singles
 from ...planning.learned.stroke_policy import LAYERS, StrokePolicy
 from ...tasks.noise import LEVELS, Noise
 
 FOLDER = Path(__file__).parent
-VALUE_LAYERS = 3
-"""Layers of each network of a value."""
+VALUE_LAYERS = 3  # layers of each network of a value
 
 
 class Learned(NamedTuple):
     """What a planner has learned: a policy over strokes, and the layers of each network of its value."""
 
     policy: StrokePolicy
-    value: list[list[tuple[NDArray[np.float32], NDArray[np.float32]]]]
+    value: list[list[tuple[Singles, Singles]]]
 
 
-def learned_of(arrays: Mapping[str, NDArray[np.float32]]) -> Learned:
+def learned_of(arrays: Mapping[str, Singles]) -> Learned:
     """The policy and the value in the arrays of a file."""
     policy = {name: (arrays[f"policy/{name}/weight"], arrays[f"policy/{name}/bias"]) for name in LAYERS}
     layers = [(arrays[f"value/{k}/weight"], arrays[f"value/{k}/bias"]) for k in range(VALUE_LAYERS)]
