@@ -157,26 +157,19 @@ class Pocket:
                 self, field, number(f"{name}.{field}", getattr(self, field), low, high, open_low=open_low)
             )
         if not self.throat > 0.0:
-            raise refuse(
-                name,
-                self,
-                "must leave an opening between its jaws: a wider mouth, less turn or a smaller jaw_radius",
+            allowed = (
+                "must leave an opening between its jaws: a wider mouth, less turn or a smaller jaw_radius"
             )
+            raise refuse(name, self, allowed)
         if (
             self.shelf + self.mouth_depth + self.fall_radius <= self._arc_end[1]
             and not self._ends_over_the_fall
         ):
-            raise refuse(
-                name,
-                self,
-                "must have the centre of its fall behind the ends of its jaws' arcs, or those ends over the fall",
-            )
+            allowed = "must have the centre of its fall behind the ends of its jaws' arcs, or those ends over the fall"
+            raise refuse(name, self, allowed)
         if self.fall_radius < self.throat / 2:
-            raise refuse(
-                name,
-                self,
-                "must have a fall at least as wide as the throat, so that no ball passes beside it",
-            )
+            allowed = "must have a fall at least as wide as the throat, so that no ball passes beside it"
+            raise refuse(name, self, allowed)
 
     @classmethod
     def corner(

@@ -273,11 +273,8 @@ def check_table(positions: Vectors, on_table: Flags) -> tuple[Floats, Bools]:
     """New copies of ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; ValueError for anything else."""
     present = np.array(on_table)
     if present.shape != (N_BALLS,) or present.dtype != np.bool_:
-        raise refuse(
-            "on_table",
-            f"{present.dtype} array of shape {present.shape}",
-            f"must be bool of shape ({N_BALLS},)",
-        )
+        allowed = f"must be bool of shape ({N_BALLS},)"
+        raise refuse("on_table", f"{present.dtype} array of shape {present.shape}", allowed)
     return array("positions", positions, (N_BALLS, 2)), present
 
 

@@ -163,11 +163,8 @@ class Frame:
         choice("phase", self.phase, PHASES)
         choice("miss", self.miss, MISS_RULES)
         if rule_set(self.rules).anywhere and self.miss != "off":
-            raise refuse(
-                "miss",
-                self.miss,
-                f"must be 'off' with rules = {self.rules!r}: no miss is called in this game",
-            )
+            allowed = f"must be 'off' with rules = {self.rules!r}: no miss is called in this game"
+            raise refuse("miss", self.miss, allowed)
         most = (("break_points", MOST_BREAK), ("failures", 2), ("misses", MOST_MISSES), ("clock", MOST_CLOCK))
         for name, high in (("striker", 1), ("breaker", 1), *most):
             if not is_plain(getattr(self, name), high):
@@ -347,11 +344,8 @@ class Frame:
     def claim(self) -> "Frame":
         """The striker claims the frame."""
         if not self.may_claim:
-            raise refuse(
-                "lead",
-                self.situation.lead if self.phase == "stroke" else self.phase,
-                "must be over 7 with only the black left",
-            )
+            allowed = "must be over 7 with only the black left"
+            raise refuse("lead", self.situation.lead if self.phase == "stroke" else self.phase, allowed)
         return self._acted(_CLAIM)
 
     def concede(self, player: int) -> "Frame":

@@ -174,12 +174,8 @@ def after_stroke(row, result, conditions, effort, layout, duration):
     other = 1 - me
     failures, warned, misses = row[FAILURES], row[WARNED], row[MISSES]
     decided = _decided(row)
-    on_table, ball_on, in_hand, free_ball = (
-        row[ON_TABLE],
-        row[BALL_ON],
-        row[IN_HAND] + row[ANYWHERE],
-        row[FREE_BALL],
-    )
+    on_table, ball_on = row[ON_TABLE], row[BALL_ON]
+    in_hand, free_ball = row[IN_HAND] + row[ANYWHERE], row[FREE_BALL]
     row[SCORE_0 + me] += result.points
     row[SCORE_0 + other] += result.penalty
     row[ON_TABLE] = result.on_table
@@ -212,12 +208,8 @@ def after_stroke(row, result, conditions, effort, layout, duration):
     row[FAILURES] = failures + 1 if called and full else 0
     row[MISSES] = misses + 1 if called and rules == SIX_RED else 0
     row[SAVED], row[SAVED_LAYOUT] = 1, layout
-    row[SAVED_ON_TABLE], row[SAVED_BALL_ON], row[SAVED_IN_HAND], row[SAVED_FREE_BALL] = (
-        on_table,
-        ball_on,
-        in_hand,
-        free_ball,
-    )
+    row[SAVED_ON_TABLE], row[SAVED_BALL_ON] = on_table, ball_on
+    row[SAVED_IN_HAND], row[SAVED_FREE_BALL] = in_hand, free_ball
 
 
 @kernel

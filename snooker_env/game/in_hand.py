@@ -147,11 +147,8 @@ def _disc(positions, on_table, i, reach):
 @kernel
 def nearest_anywhere(positions, on_table, x, y, radius):
     """``nearest_place`` on the whole bed, where pockets bar places too, and edges replace the D's lines."""
-    wide, high, reach = (
-        HALF_WIDTH - radius - CLEARANCE,
-        HALF_LENGTH - radius - CLEARANCE,
-        2.0 * radius + CLEARANCE,
-    )
+    wide, high = HALF_WIDTH - radius - CLEARANCE, HALF_LENGTH - radius - CLEARANCE
+    reach = 2.0 * radius + CLEARANCE
     wish = x, y = min(wide, max(-wide, x)), min(high, max(-high, y))
     place = _better(positions, on_table, wish, wish, (x, y, np.inf), True, radius)
     if place[2] == 0.0:

@@ -236,11 +236,8 @@ def paths(
     table is in hand: in the D or, with ``anywhere``, on the bed. ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if truth("anywhere", anywhere) and present[0]:
-        raise refuse(
-            "anywhere",
-            True,
-            "must be False with the cue ball on the table (on_table[0]): then it is not in hand",
-        )
+        allowed = "must be False with the cue ball on the table (on_table[0]): then it is not in hand"
+        raise refuse("anywhere", True, allowed)
     if integer("on", on, 0, ALL_MASK) & CUE_BIT:
         raise refuse("on", on, "must name object balls only")
     cushions = array("noses", noses, (-1, 5)), array("jaws", jaws, (-1, 6))

@@ -33,15 +33,11 @@ class Situation:
         integer("lead", self.lead, -MOST_POINTS, MOST_POINTS)
         choice("rules", self.rules, RULES)
         if not balls_on(self.ball_on, self.on_table & ~CUE_BIT):
-            raise refuse(
-                "ball_on", self.ball_on.name, "must name balls of which one is on the table (on_table)"
-            )
+            allowed = "must name balls of which one is on the table (on_table)"
+            raise refuse("ball_on", self.ball_on.name, allowed)
         if self.ball_on > BallOn.RED and self.on_table & REDS_MASK:
-            raise refuse(
-                "ball_on",
-                self.ball_on.name,
-                "must be RED or ANY_COLOUR while reds are on the table (on_table)",
-            )
+            allowed = "must be RED or ANY_COLOUR while reds are on the table (on_table)"
+            raise refuse("ball_on", self.ball_on.name, allowed)
         if self.free_ball and self.ball_on == BallOn.ANY_COLOUR:
             raise refuse("free_ball", self.free_ball, "must be False when any colour is on (ball_on)")
 
@@ -82,9 +78,8 @@ class Stroke:
             integer("nominated", self.nominated, AUTO, N_BALLS - 1) > 0
             and not COLOURS_MASK >> self.nominated & 1
         ):
-            raise refuse(
-                "nominated", self.nominated, "must be a colour (ids 16 to 21), 0 for none or -1 (AUTO)"
-            )
+            allowed = "must be a colour (ids 16 to 21), 0 for none or -1 (AUTO)"
+            raise refuse("nominated", self.nominated, allowed)
 
     @property
     def flags(self) -> Flag:
@@ -157,11 +152,8 @@ def check(situation: Situation, stroke: Stroke) -> None:
         )
         if not allowed >> stroke.nominated & 1:
             what = [NAMES[i] for i in ids_of(allowed & COLOURS_MASK)]
-            raise refuse(
-                "nominated",
-                NAMES[stroke.nominated],
-                f"must be one of {what}" if what else "must be none: no choice is on",
-            )
+            allowed = f"must be one of {what}" if what else "must be none: no choice is on"
+            raise refuse("nominated", NAMES[stroke.nominated], allowed)
 
 
 def numbers_of(situation: Situation, stroke: Stroke) -> tuple[Before, Facts, int]:

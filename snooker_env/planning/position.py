@@ -245,9 +245,8 @@ def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue
     if not balls_on(ball_on, present):
         raise refuse(on, ball_on.name.lower(), f"must name balls of which one is on the table ({balls})")
     if ball_on > BallOn.RED and present & REDS_MASK:
-        raise refuse(
-            on, ball_on.name.lower(), f"must be 'red' or 'any_colour' while reds are on the table ({balls})"
-        )
+        allowed = f"must be 'red' or 'any_colour' while reds are on the table ({balls})"
+        raise refuse(on, ball_on.name.lower(), allowed)
     lowest = next_on(present)
     if ball_on not in (BallOn.ANY_COLOUR, lowest):
         what = f"'any_colour' or {BallOn(lowest).name.lower()!r}, the lowest on the table"
@@ -257,9 +256,8 @@ def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue
 def _checked(raw: Any, field: str = "position") -> Mapping[str, Any]:
     """A dict of JSON types that has keys of ``names`` only and no truth values where numbers belong."""
     if not isinstance(raw, Mapping):
-        raise refuse_what(
-            field, f"a {type(raw).__name__}", f"must be a dict with keys of {', '.join(_NAMES)}"
-        )
+        allowed = f"must be a dict with keys of {', '.join(_NAMES)}"
+        raise refuse_what(field, f"a {type(raw).__name__}", allowed)
     for key in raw:
         choice(f"key of {field}", key, _NAMES)
     for key, value in raw.items():

@@ -101,11 +101,8 @@ class Positions:
         m = len(self.positions)
         present, columns = np.asarray(on_table), np.asarray(game)
         if present.shape != (m, N_BALLS) or present.dtype != np.bool_:
-            raise refuse_what(
-                "on_table",
-                f"{present.dtype} array of shape {present.shape}",
-                f"must be bool of shape {(m, N_BALLS)}",
-            )
+            allowed = f"must be bool of shape {(m, N_BALLS)}"
+            raise refuse_what("on_table", f"{present.dtype} array of shape {present.shape}", allowed)
         if columns.shape not in ((m, VISIT_COLUMNS), (m, COLUMNS)) or columns.dtype.kind not in "iu":
             allowed = f"must be integers of shape {(m, VISIT_COLUMNS)}, or {(m, COLUMNS)} of frames"
             raise refuse_what("game", f"{columns.dtype} array of shape {columns.shape}", allowed)
@@ -135,11 +132,8 @@ class Positions:
         tables = getattr(bare(source), "tables", None)
         if isinstance(tables, Tables):
             return _of_tables(tables)
-        raise refuse_what(
-            "positions",
-            f"a {type(source).__name__}",
-            "must be Positions, a Position, a state, a list of these, or an environment",
-        )
+        allowed = "must be Positions, a Position, a state, a list of these, or an environment"
+        raise refuse_what("positions", f"a {type(source).__name__}", allowed)
 
     def __len__(self) -> int:
         return len(self.game)

@@ -198,11 +198,8 @@ def _contacts(balls, seeds, strokes, chances):
 @entry(what="the escapes of positions", seconds=5, uses=(escape_aim,))
 def _escapes(balls, seeds, law, strokes, chances):
     """Fill strokes (n, m, 5) and chances (n, m) with strokes over cushions, where hardly anything is seen."""
-    (positions, on_table, game), windows, lines = (
-        balls,
-        np.empty((MOST_EDGES, 3)),
-        np.empty((ESCAPES, POT_COLUMNS)),
-    )
+    (positions, on_table, game), windows = balls, np.empty((MOST_EDGES, 3))
+    lines = np.empty((ESCAPES, POT_COLUMNS))
     law, work, aims = CueLaw(law[0], law[1], 0, 0), new_work(), np.empty(ESCAPES)
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]

@@ -86,10 +86,8 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
 def carry_out(frames: Frames, which: Ints, asked: tuple[Any, ...], buffers: ShotBuffers, side: int) -> Ints:
     """Carry out the strokes ``asked``, arrays of ``players.Strokes``, up to the strike, with the errors of the
     seat ``side``; returns the tables with a stroke."""
-    playing, codes = (
-        np.empty(len(which), np.int64),
-        (frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward)),
-    )
+    playing = np.empty(len(which), np.int64)
+    codes = (frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward))
     m = _carry_out(
         which,
         asked,

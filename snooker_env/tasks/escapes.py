@@ -170,12 +170,8 @@ def _keep(lines, first, count, aim, half, speed, worth):
     for k in range(count - 1, at, -1):
         for c in range(4):
             lines[k, c] = lines[k - 1, c]
-    lines[at, LINE_AIM], lines[at, LINE_ROOM], lines[at, LINE_SPEED], lines[at, LINE_WORTH] = (
-        turned(aim),
-        half,
-        speed,
-        worth,
-    )
+    lines[at, LINE_AIM], lines[at, LINE_ROOM] = turned(aim), half
+    lines[at, LINE_SPEED], lines[at, LINE_WORTH] = speed, worth
     return count
 
 

@@ -126,10 +126,8 @@ class Frames(Tables):
         rules = rules.rules if isinstance(rules, Options) else rules
         super().__init__(rules, n, limit=limit)
         self.sit([Seat.of(rules)] if seats is None else seats)
-        self._saved_positions, self._saved_on_table = (
-            np.zeros((n, N_BALLS, 2)),
-            np.zeros((n, N_BALLS), np.bool_),
-        )
+        self._saved_positions = np.zeros((n, N_BALLS, 2))
+        self._saved_on_table = np.zeros((n, N_BALLS), np.bool_)
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
         self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
@@ -457,22 +455,15 @@ class Frames(Tables):
         if sound.due:
             return sound
         if to_play and over:
-            raise refuse(
-                "state.frame.phase", "over", 'must not be "over": there is no shot to play from this state'
-            )
+            allowed = 'must not be "over": there is no shot to play from this state'
+            raise refuse("state.frame.phase", "over", allowed)
         if to_play and stopped:
             limit = self.rules.max_strokes
-            raise refuse(
-                "state.strokes",
-                sound.strokes,
-                f"must be below max_strokes = {limit}: there is no shot left to play",
-            )
+            allowed = f"must be below max_strokes = {limit}: there is no shot left to play"
+            raise refuse("state.strokes", sound.strokes, allowed)
         if not either and sound.frame.striker != AGENT and not (over or stopped):
-            raise refuse(
-                "state.frame.striker",
-                sound.frame.striker,
-                f"must be {AGENT}, the agent, as always between two steps",
-            )
+            allowed = f"must be {AGENT}, the agent, as always between two steps"
+            raise refuse("state.frame.striker", sound.frame.striker, allowed)
         return sound
 
     def set_state(self, k: int, state: FrameState) -> None:

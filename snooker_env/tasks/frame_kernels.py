@@ -271,10 +271,8 @@ def observe_frame_into(out, k, tables, saved, setting, player):
     on = strikeable(row, bits(present) & ~1)
     observe_into(out, tables.positions[k], present, row[BALL_ON], on, row[IN_HAND], row[POINTS])
     mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
-    to_play, left = (
-        not row[OVER] and row[STRIKER] == player,
-        available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL]),
-    )
+    to_play = not row[OVER] and row[STRIKER] == player
+    left = available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
     clock = min(1.0, row[CLOCK] / setting.clock) if setting.clock else 0.0
     more = (
         _share(mine, 147.0),
@@ -321,16 +319,11 @@ def _write_frame_info(k, row, player, replies, out):
     """Write the info of the frame as ``player`` sees it: break, choice, free ball are the striker's."""
     reals, counts = out.reals, out.counts
     mine, other, at_table = row[SCORE_0 + player], row[SCORE_1 - player], row[STRIKER] == player
-    reals[k, I_BREAK], reals[k, I_SCORE], reals[k, I_OPPONENT_SCORE] = (
-        row[POINTS] if at_table else 0,
-        mine,
-        other,
-    )
+    reals[k, I_BREAK], reals[k, I_SCORE] = row[POINTS] if at_table else 0, mine
+    reals[k, I_OPPONENT_SCORE] = other
     counts[k, I_STROKES], counts[k, I_REPLIES], counts[k, I_WINNER] = row[STROKES], replies, row[WINNER]
-    counts[k, I_CHOICE], counts[k, I_FREE_BALL] = (
-        at_table and row[PHASE] == CHOICE,
-        at_table and row[FREE_BALL],
-    )
+    counts[k, I_CHOICE] = at_table and row[PHASE] == CHOICE
+    counts[k, I_FREE_BALL] = at_table and row[FREE_BALL]
     counts[k, I_NEEDS_SNOOKERS] = needs_snookers(row, player)
     reals[k, I_CLOCK] = row[CLOCK] / 1000.0
     counts[k, I_ANYWHERE], counts[k, I_WARNED] = row[ANYWHERE], row[WARNED]

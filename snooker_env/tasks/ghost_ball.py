@@ -58,10 +58,8 @@ def _put_on_bed(positions, on_table, mask, rows):
             if not (on_table[ball] and (mask >> ball) & 1):
                 continue
             for k in range(POCKET_AIMS.shape[0]):
-                dx, dy = (
-                    positions[ball, 0] - POCKET_AIMS[k, AIM_X],
-                    positions[ball, 1] - POCKET_AIMS[k, AIM_Y],
-                )
+                dx = positions[ball, 0] - POCKET_AIMS[k, AIM_X]
+                dy = positions[ball, 1] - POCKET_AIMS[k, AIM_Y]
                 far = (2.0 * BALL_RADIUS + _BEHIND) / max(1e-9, hypot(dx, dy))
                 place_anywhere(
                     positions, on_table, positions[ball, 0] + far * dx, positions[ball, 1] + far * dy
@@ -114,12 +112,8 @@ def stroke_at(positions, on_table, on, in_hand, failed, drive, rows, stream):
     touching = touching_balls(positions, on_table)
     x, y = positions[0, 0], positions[0, 1]
     if not failed and find_pots(positions, on_table, on & ~touching, BALL_RADIUS, rows[:1]):
-        ball, pocket, gx, gy = (
-            int(rows[0, POT_BALL]),
-            int(rows[0, POT_POCKET]),
-            rows[0, GHOST_X],
-            rows[0, GHOST_Y],
-        )
+        ball, pocket = int(rows[0, POT_BALL]), int(rows[0, POT_POCKET])
+        gx, gy = rows[0, GHOST_X], rows[0, GHOST_Y]
         run = hypot(
             POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
         )

@@ -84,12 +84,8 @@ def _add(lines, count, aim, space):
     for k in range(count):
         if abs(turned(aim - lines[k, LINE_AIM])) < _APART:
             return count
-    lines[count, LINE_AIM], lines[count, LINE_ROOM], lines[count, LINE_SPEED], lines[count, LINE_WORTH] = (
-        turned(aim),
-        space,
-        0.0,
-        0.0,
-    )
+    lines[count, LINE_AIM], lines[count, LINE_ROOM] = turned(aim), space
+    lines[count, LINE_SPEED], lines[count, LINE_WORTH] = 0.0, 0.0
     return count + 1
 
 

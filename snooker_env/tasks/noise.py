@@ -156,14 +156,10 @@ class Noise:
                 choice("noise field", key, [f.name for f in fields(cls)])
             return cls(**noise)
         if not isinstance(noise, str) or noise not in LEVELS:
-            raise refuse(
-                "noise",
-                noise,
-                "must be one of "
-                + ", ".join(map(repr, LEVELS))
-                + " or a dict of "
-                + str(list(asdict(cls()))),
+            allowed = (
+                "must be one of " + ", ".join(map(repr, LEVELS)) + " or a dict of " + str(list(asdict(cls())))
             )
+            raise refuse("noise", noise, allowed)
         return LEVELS[noise]
 
     @property

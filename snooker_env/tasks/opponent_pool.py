@@ -40,9 +40,8 @@ class OpponentPool:
         self._weights: list[float] = []
         listed = [] if members is None else list(members)
         if members is not None and not listed:
-            raise refuse(
-                "members", listed, "must hold one member at least; leave them out where add(...) follows"
-            )
+            allowed = "must hold one member at least; leave them out where add(...) follows"
+            raise refuse("members", listed, allowed)
         each = [1.0] * len(listed) if weights is None else list(weights)
         if len(each) != len(listed):
             raise refuse("weights", each, f"must be {len(listed)} numbers, one for each member")
@@ -69,9 +68,8 @@ class OpponentPool:
             or member is None
             or (isinstance(member, str) and member == "none")
         ):
-            raise refuse(
-                "member", member, "must be one opponent: a name, a model's file, a callable or a player"
-            )
+            allowed = "must be one opponent: a name, a model's file, a callable or a player"
+            raise refuse("member", member, allowed)
         weight = number("weight", weight, 0.0)
         self._members.append(member)
         self._weights.append(weight)
@@ -112,11 +110,8 @@ class PoolOpponent(Opponent):
         turns: list[tuple[Opponent, Ints, Any]] = []
         for number_ in np.unique(playing).tolist():
             if number_ > len(self._ready):
-                raise refuse(
-                    "opponent",
-                    f"member {number_ - 1} of a pool",
-                    f"must be below {len(self._ready)}, as many as the pool has",
-                )
+                allowed = f"must be below {len(self._ready)}, as many as the pool has"
+                raise refuse("opponent", f"member {number_ - 1} of a pool", allowed)
             turns += self._ready[number_ - 1].turns(frames, which[playing == number_], generators)
         return turns
 

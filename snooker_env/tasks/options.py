@@ -310,11 +310,8 @@ class Options:
         if choice("observation", self.observation, observations.OBSERVATIONS) == "masked" and not isinstance(
             actions, Choices
         ):
-            raise refuse(
-                "observation",
-                self.observation,
-                'must be "flat" or "balls" with action="box": a Box has no masks',
-            )
+            allowed = 'must be "flat" or "balls" with action="box": a Box has no masks'
+            raise refuse("observation", self.observation, allowed)
         truth("trust", self.trust)
         choice(
             "reward",
@@ -331,22 +328,15 @@ class Options:
             choice("miss", self.miss, MISS_RULES)
             choice("game", self.game, RULES)
             if rule_set(self.game).anywhere and self.miss != "off":
-                raise refuse(
-                    "miss", self.miss, f'must be "off" with game="{self.game}", in which no miss is called'
-                )
+                allowed = f'must be "off" with game="{self.game}", in which no miss is called'
+                raise refuse("miss", self.miss, allowed)
             if not rule_set(self.game).clock and self.time_to_play != TIME_TO_PLAY:
-                raise refuse(
-                    "time_to_play",
-                    self.time_to_play,
-                    f'must be {TIME_TO_PLAY} with game="{self.game}", which has no clock',
-                )
+                allowed = f'must be {TIME_TO_PLAY} with game="{self.game}", which has no clock'
+                raise refuse("time_to_play", self.time_to_play, allowed)
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
             if not isinstance(self.opponent, str | Path) or not str(self.opponent):
-                raise refuse(
-                    "opponent",
-                    self.opponent,
-                    f"{OPPONENTS}; Options hold text: pass an object to the environment, beside them",
-                )
+                allowed = f"{OPPONENTS}; Options hold text: pass an object to the environment, beside them"
+                raise refuse("opponent", self.opponent, allowed)
             object.__setattr__(self, "opponent", str(self.opponent))
         read = Rules(
             actions,
@@ -369,11 +359,8 @@ class Options:
     def _physics(self) -> Physics:
         physics = Physics.of(self.physics)
         if physics.R != BALL_RADIUS:
-            raise refuse(
-                "physics.R",
-                physics.R,
-                f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it",
-            )
+            allowed = f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it"
+            raise refuse("physics.R", physics.R, allowed)
         physics.check_stopping()
         return physics
 
@@ -396,9 +383,8 @@ class Options:
                 name, value, usual = (
                     (self.says[0], True, False) if f.name == "says" else (f.name, value, f.default)
                 )
-                raise refuse(
-                    name, value, f'must be {usual!r} with task="{self.task}"; it belongs to task="{only}"'
-                )
+                allowed = f'must be {usual!r} with task="{self.task}"; it belongs to task="{only}"'
+                raise refuse(name, value, allowed)
 
     @classmethod
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
@@ -460,16 +446,12 @@ def options_of(options: Options | None, keywords: Mapping[str, Any]) -> Options:
     if options is None:
         for name in keywords:
             if name not in NAMES:
-                raise TypeError(
-                    f"got an unexpected keyword argument {name!r}; the options are {', '.join(NAMES)}"
-                )
+                allowed = f"got an unexpected keyword argument {name!r}; the options are {', '.join(NAMES)}"
+                raise TypeError(allowed)
         return Options(**keywords)
     if not isinstance(options, Options):
         raise refuse("options", options, "must be an Options or None")
     if keywords:
-        raise refuse_what(
-            "options",
-            "an Options",
-            f"must be None with the keywords {sorted(keywords)}: change them with options.but(...)",
-        )
+        allowed = f"must be None with the keywords {sorted(keywords)}: change them with options.but(...)"
+        raise refuse_what("options", "an Options", allowed)
     return options

@@ -79,12 +79,8 @@ def soft(positions, on_table, on, touching, drive, rows):
         # its squared speed at the ball
         arrival = _NUDGE * _NUDGE + 2.0 * _NUDGE * sqrt(ROLL * far) + ROLL * drive
         for way in range(4):
-            angle, seen, wanted, spin = (
-                middle + (0.0, 0.5, -0.5, 0.0)[way] * half,
-                0.5 * half,
-                SLIDE * (sqrt(ROLL * far) + _NUDGE),
-                0.0,
-            )
+            angle, seen = middle + (0.0, 0.5, -0.5, 0.0)[way] * half, 0.5 * half
+            wanted, spin = SLIDE * (sqrt(ROLL * far) + _NUDGE), 0.0
             worth = 0.0
             if way == 0:
                 seen = half
@@ -111,12 +107,8 @@ def _escape(positions, on_table, on, vary, lines, stream):
             u, _ = pair(stream)
             weight = 0.3 + 0.7 * u
         if weight * lines[k, LINE_WORTH] > best:
-            best, speed, aim, window = (
-                weight * lines[k, LINE_WORTH],
-                lines[k, LINE_SPEED],
-                lines[k, LINE_AIM],
-                lines[k, LINE_ROOM],
-            )
+            best, speed = weight * lines[k, LINE_WORTH], lines[k, LINE_SPEED]
+            aim, window = lines[k, LINE_AIM], lines[k, LINE_ROOM]
     return speed, aim, window
 
 

@@ -62,10 +62,8 @@ def _passes(aim, stroke, c, b, p, law, work):
         cloth.next_phase(motion, state, 1, phys)
         T = 0.0
     gx, gy = motion[1, cloth.X] - bx, motion[1, cloth.Y] - by
-    ux, uy = (
-        motion[1, cloth.VX] + 0.5 * motion[1, cloth.AX] * T,
-        motion[1, cloth.VY] + 0.5 * motion[1, cloth.AY] * T,
-    )
+    ux = motion[1, cloth.VX] + 0.5 * motion[1, cloth.AX] * T
+    uy = motion[1, cloth.VY] + 0.5 * motion[1, cloth.AY] * T
     # still sliding at the pocket: its chord is accurate enough
     if T == 0.0 and gx * qx + gy * qy > 0.9 * away * away:
         ux, uy = gx, gy

@@ -303,6 +303,5 @@ class SavedModel:
             )
         except Exception as error:  # the file's own code may raise anything
             why = str(error).partition("\n")[0]
-            raise self.refused(
-                f"must be a model that {name} can load ({type(error).__name__}: {why})"
-            ) from error
+            allowed = f"must be a model that {name} can load ({type(error).__name__}: {why})"
+            raise self.refused(allowed) from error

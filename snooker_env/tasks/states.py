@@ -80,17 +80,11 @@ def check_keys(state: Any, keys: Collection[str]) -> None:
     if not isinstance(state, dict):
         raise refuse("state", state, "must be a state of get_state(), a dict")
     if missing := sorted(set(keys) - set(state)):
-        raise refuse_what(
-            "state",
-            f"a dict without {missing}",
-            f"must be a state of get_state() here, with the keys {list(keys)}",
-        )
+        allowed = f"must be a state of get_state() here, with the keys {list(keys)}"
+        raise refuse_what("state", f"a dict without {missing}", allowed)
     if unknown := [key for key in state if key not in keys]:
-        raise refuse_what(
-            "state",
-            f"a dict with {unknown}",
-            f"must be a state of get_state() here, with the keys {list(keys)} only",
-        )
+        allowed = f"must be a state of get_state() here, with the keys {list(keys)} only"
+        raise refuse_what("state", f"a dict with {unknown}", allowed)
 
 
 def checked_layout(
@@ -103,9 +97,8 @@ def checked_layout(
         if any(isinstance(x, bool | np.bool_) for x in place):  # NumPy converts them to 0 and 1
             raise refuse(f"{field}[{i}]", list(place), "must be two real numbers")
     if len(far := np.flatnonzero(np.abs(places).max(axis=1) > FAR)):
-        raise refuse(
-            f"{field}[{far[0]}]", places[far[0]].tolist(), f"must be within {FAR:g} m, also off the table"
-        )
+        allowed = f"must be within {FAR:g} m, also off the table"
+        raise refuse(f"{field}[{far[0]}]", places[far[0]].tolist(), allowed)
     table.check(places, R, field, present)
     return places, present
 
@@ -114,11 +107,8 @@ def check_in_hand(field: str, in_hand: bool, name: str, positions: Floats) -> No
     """ValueError if a cue ball in hand is not in the D, where it is shown until it is placed."""
     if in_hand and not within_d(*positions[CUE]):
         x, y = positions[CUE].tolist()
-        raise refuse(
-            field,
-            in_hand,
-            f"must be False with the cue ball at {name}[{CUE}] = ({x:g}, {y:g}), outside the D",
-        )
+        allowed = f"must be False with the cue ball at {name}[{CUE}] = ({x:g}, {y:g}), outside the D"
+        raise refuse(field, in_hand, allowed)
 
 
 def _check_like(field, value, known):
@@ -140,9 +130,8 @@ def check_rng(rng: Any, generator: np.random.Generator) -> None:
     try:
         trial.state = rng
     except (TypeError, ValueError, OverflowError) as error:
-        raise refuse(
-            "state.rng", rng, f"must be the state of a {type(trial).__name__} generator ({error})"
-        ) from None
+        allowed = f"must be the state of a {type(trial).__name__} generator ({error})"
+        raise refuse("state.rng", rng, allowed) from None
 
 
 def check_stream(stream: Any) -> list[int]:
@@ -167,35 +156,24 @@ def checked(
     if not over:  # then there must be a shot to play
         lowest = next_on(balls)
         if not on_table[CUE]:
-            raise refuse(
-                "state.on_table", on_table.tolist(), "must hold the cue ball while the visit goes on"
-            )
+            allowed = "must hold the cue ball while the visit goes on"
+            raise refuse("state.on_table", on_table.tolist(), allowed)
         if not balls_on(ball_on, balls):
-            raise refuse(
-                "state.ball_on", ball_on.name, "must name balls of which one is on the table (state.on_table)"
-            )
+            allowed = "must name balls of which one is on the table (state.on_table)"
+            raise refuse("state.ball_on", ball_on.name, allowed)
         if ball_on > BallOn.RED and balls & REDS_MASK:
-            raise refuse(
-                "state.ball_on",
-                ball_on.name,
-                "must be RED or ANY_COLOUR while reds are on the table (state.on_table)",
-            )
+            allowed = "must be RED or ANY_COLOUR while reds are on the table (state.on_table)"
+            raise refuse("state.ball_on", ball_on.name, allowed)
         if ball_on not in (BallOn.ANY_COLOUR, lowest):
-            raise refuse(
-                "state.ball_on",
-                ball_on.name,
-                f"must be ANY_COLOUR or {BallOn(lowest).name}, the lowest of state.on_table",
-            )
+            allowed = f"must be ANY_COLOUR or {BallOn(lowest).name}, the lowest of state.on_table"
+            raise refuse("state.ball_on", ball_on.name, allowed)
         check_in_hand("state.in_hand", in_hand, "state.positions", positions)
     check_rng(state["rng"], generator)
     points, stream = integer("state.points", state["points"], 0, MOST_BREAK), check_stream(state["stream"])
     more = points_available(balls, ball_on)
     if points + more > MOST_BREAK:
-        raise refuse(
-            "state.points",
-            points,
-            f"must be at most {MOST_BREAK - more}: state.on_table and state.ball_on offer {more} more",
-        )
+        allowed = f"must be at most {MOST_BREAK - more}: state.on_table and state.ball_on offer {more} more"
+        raise refuse("state.points", points, allowed)
     if over and to_play:
         raise refuse("state.over", True, "must be False: there is no shot to play from this state")
     return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"])
@@ -217,18 +195,12 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
     if frame.rules != rules.game:
         raise refuse("state.frame.rules", frame.rules, f"must be {rules.game!r}, as this environment plays")
     if frame.phase == "lot" and not rules.actions.lot:
-        raise refuse(
-            "state.frame.phase",
-            frame.phase,
-            "must not be between two steps: the lot is drawn in the step of the stroke before",
-        )
+        allowed = "must not be between two steps: the lot is drawn in the step of the stroke before"
+        raise refuse("state.frame.phase", frame.phase, allowed)
     if frame.phase != "over":
         if mask_of_present(on_table) != frame.on_table | CUE_BIT:
-            raise refuse(
-                "state.on_table",
-                on_table.tolist(),
-                "must hold the cue ball and the balls of state.frame.on_table, no others",
-            )
+            allowed = "must hold the cue ball and the balls of state.frame.on_table, no others"
+            raise refuse("state.on_table", on_table.tolist(), allowed)
         check_in_hand(
             "state.frame.in_hand", frame.in_hand and not frame.anywhere, "state.positions", positions
         )
@@ -255,11 +227,8 @@ def _checked_match(state, frame, best_of):
     won = integer("state.frames[0]", won[0], 0, needed), integer("state.frames[1]", won[1], 0, needed)
     for k, n in enumerate(won):
         if (n == needed) != (frame.winner == k):
-            raise refuse(
-                f"state.frames[{k}]",
-                n,
-                f"must be {needed} for the winner of a match that is over, else below",
-            )
+            allowed = f"must be {needed} for the winner of a match that is over, else below"
+            raise refuse(f"state.frames[{k}]", n, allowed)
     return won, integer("state.first_break", state["first_break"], 0, 1)
 
 
@@ -274,11 +243,8 @@ def _checked_saved(frame, table, R):
         raise refuse(field, saved.layout, "must be positions and on_table, as they were before the foul")
     positions, on_table = checked_layout((f"{field}[0]", f"{field}[1]"), *saved.layout, table, R)
     if mask_of_present(on_table) != saved.on_table | CUE_BIT:
-        raise refuse(
-            f"{field}[1]",
-            on_table.tolist(),
-            "must hold the cue ball and the balls of state.frame.saved.on_table, no others",
-        )
+        allowed = "must hold the cue ball and the balls of state.frame.saved.on_table, no others"
+        raise refuse(f"{field}[1]", on_table.tolist(), allowed)
     check_in_hand("state.frame.saved.in_hand", saved.in_hand and not saved.anywhere, f"{field}[0]", positions)
     return replace(saved, layout=layout_of(positions, on_table))
 

@@ -247,11 +247,8 @@ class ShotBuffers:
 
     def __init__(self, m: int, log: int = 512, *, path: bool = False):
         self.log = log
-        self.r, self.v, self.w = (
-            np.zeros((m, N_BALLS, 2)),
-            np.zeros((m, N_BALLS, 2)),
-            np.zeros((m, N_BALLS, 3)),
-        )
+        self.r, self.v = np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 2))
+        self.w = np.zeros((m, N_BALLS, 3))
         self.here, self.potted = np.zeros((m, N_BALLS), np.bool_), np.zeros((m, N_BALLS), np.int64)
         self.shots, self.seen = np.zeros((m, STRIKE_COLUMNS)), np.zeros((m, SEEN_COLUMNS), np.int64)
         self.event_time, self.event_what = np.zeros((m, log)), np.zeros((m, log, 3), np.int32)

@@ -26,11 +26,8 @@ def table_of(table: TableLike) -> Table:
         raise refuse("table", table, 'must be "match", "tight" or a Table')
     if cloth.ball_radius is not None and abs(cloth.ball_radius - BALL_RADIUS) > SAME_BALL:
         made = f"this one is made for balls of radius {cloth.ball_radius:g} m, snooker's have {BALL_RADIUS:g}"
-        raise refuse(
-            "table",
-            cloth.name,
-            f'must be "match", "tight" or a Table of snooker\'s bed in Snooker-v0: {made}',
-        )
+        allowed = f'must be "match", "tight" or a Table of snooker\'s bed in Snooker-v0: {made}'
+        raise refuse("table", cloth.name, allowed)
     _check_noses(cloth)
     _check_pockets(cloth)
     past, most = deepest(cloth.jaws, cloth.falls, cloth.bounds, BALL_RADIUS), (REACH - 1.0) * HALF_WIDTH

@@ -61,10 +61,8 @@ def _edges(positions, on_table, on, windows):
             if on_table[j] and ((on >> i) ^ (on >> j)) & 1 and 0.0 < apart < 4.0 * BALL_RADIUS:
                 # where the cue ball touches both
                 height = sqrt(4.0 * BALL_RADIUS * BALL_RADIUS - 0.25 * apart * apart) / apart
-                mx, my = (
-                    0.5 * (positions[i, 0] + positions[j, 0]) - x,
-                    0.5 * (positions[i, 1] + positions[j, 1]) - y,
-                )
+                mx = 0.5 * (positions[i, 0] + positions[j, 0]) - x
+                my = 0.5 * (positions[i, 1] + positions[j, 1]) - y
                 windows[n, EDGE] = atan2(my + height * sx, mx - height * sy)
                 windows[n + 1, EDGE] = atan2(my - height * sx, mx + height * sy)
                 n += 2
@@ -87,10 +85,8 @@ def open_windows(positions, on_table, on, touching, windows):
     wanted = ~touching if away else on & ~touching  # of the ball met first, 0 for none
     count, shut, is_open, low = 0, -1, False, 0.0
     for k in range(2 * n):  # once round, from the first interval that is shut
-        here, end = (
-            windows[k % n, EDGE] + 2.0 * pi * (k // n),
-            windows[(k + 1) % n, EDGE] + 2.0 * pi * ((k + 1) // n),
-        )
+        here = windows[k % n, EDGE] + 2.0 * pi * (k // n)
+        end = windows[(k + 1) % n, EDGE] + 2.0 * pi * ((k + 1) // n)
         angle, was_open = 0.5 * (here + end), is_open
         is_open = (wanted >> met(positions, on_table, x, y, cos(angle), sin(angle), 1e9)) & 1 != 0
         if shut < 0:

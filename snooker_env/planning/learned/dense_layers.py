@@ -81,9 +81,7 @@ class Layers:
         for k, (weight, bias) in enumerate(self._layers):
             if k:
                 self._between(rows)
-            before, rows = (
-                np.ascontiguousarray(rows, np.float32),
-                np.empty((len(rows), len(bias)), np.float32),
-            )
+            before = np.ascontiguousarray(rows, np.float32)
+            rows = np.empty((len(rows), len(bias)), np.float32)
             linear(before, weight, bias, rows)
         return rows

@@ -53,11 +53,8 @@ class PolicyProposals:
         )
         picks = np.minimum(picks, CHOICES - 1)
         stroke = picks % STROKES
-        speed, side, top = (
-            stroke // (len(SIDES) * len(TOPS)),
-            stroke // len(TOPS) % len(SIDES),
-            stroke % len(TOPS),
-        )
+        speed, side = stroke // (len(SIDES) * len(TOPS)), stroke // len(TOPS) % len(SIDES)
+        top = stroke % len(TOPS)
         tips = np.empty((*picks.shape, 3))
         tips[..., 0] = _SPEEDS[speed] * np.exp(_STEP[speed] * (points[..., 0] - 0.5))
         plain = (side == SIDES.index(0.0)) & (points[..., 3] < 0.5)

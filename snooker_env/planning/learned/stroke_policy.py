@@ -52,10 +52,8 @@ class StrokePolicy:
         """The scores of one block of tables."""
         n, width = len(rows), len(self._layers["ball_2"][1])
         state_at = 3 * width + len(self._layers["pot_2"][1])
-        balls, pots = (
-            np.empty((n * (N_BALLS - 1), BALL_INPUTS), np.float32),
-            np.empty((n * POTS, POT_ENTRIES), np.float32),
-        )
+        balls = np.empty((n * (N_BALLS - 1), BALL_INPUTS), np.float32)
+        pots = np.empty((n * POTS, POT_ENTRIES), np.float32)
         groups, first = np.empty(len(balls), np.int64), np.empty(n + 1, np.int64)
         context, sides = np.empty((n, state_at + STATE + 3), np.float32), np.empty(n, np.float32)
         m = table_kernels.read_tables(rows, seen, (balls, groups, first, pots, context, sides), state_at)
