@@ -6,35 +6,13 @@ import numpy as np
 
 from .._jit import entry
 from .._types import Ints
+from ..game import frame_columns as columns
 from ..game.balls import YELLOW
-from ..game.frame_columns import (
-    ANYWHERE,
-    CHOICE,
-    IN_HAND,
-    LOT,
-    PHASE,
-    PLAY,
-    PLAY_AGAIN,
-    STRIKER,
-    Layouts,
-    claim,
-    concede,
-    draw,
-)
 from ..game.ruling import AUTO
 from ..physics.cue import squirt
+from . import declarations
 from .arrays import StruckArrays, TableArrays
 from .box_actions import tip_on_disc
-from .declarations import (
-    A_END_MASS,
-    A_MAX_OFFSET,
-    CLAIMS,
-    CONCEDES,
-    OTHER_BEGINS,
-    SAYS_NOTHING,
-    may_declare,
-    nominated_ball,
-)
 from .frame import Frames
 from .frame_kernels import choose_as, give_up
 from .rewards import MATCH_REWARDS
@@ -46,37 +24,41 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
     """Strokes of the tables ``which``: shots 0 to m - 1, on the tables ``playing[:m]``; returns m. ``asked``:
     values, place, nominate, decision, declare of ``players.Strokes``; ``codes``: rule set, reward."""
     values, places, nominate, decisions, declared = asked
-    tables, saved, shots = TableArrays(*tables), Layouts(*saved), StruckArrays(*shots)
+    tables, saved, shots = TableArrays(*tables), columns.Layouts(*saved), StruckArrays(*shots)
     (options, noise), (rules, reward), m = packed, codes, 0
     for k in which:
         row, p, on = tables.game[k], tables.positions[k], tables.on_table[k]
-        says = declared[k] if may_declare(declared[k], row) else SAYS_NOTHING
-        if says == CONCEDES:
-            concede(row)
+        says = declared[k] if declarations.may_declare(declared[k], row) else declarations.SAYS_NOTHING
+        if says == declarations.CONCEDES:
+            columns.concede(row)
             give_up(row, reward)
             continue
-        if says == CLAIMS:
-            claim(row)
+        if says == declarations.CLAIMS:
+            columns.claim(row)
             continue
-        if row[PHASE] == LOT:
-            draw(row, 1 - row[STRIKER] if says == OTHER_BEGINS else row[STRIKER])
-            if says == OTHER_BEGINS:
+        if row[columns.PHASE] == columns.LOT:
+            columns.draw(
+                row, 1 - row[columns.STRIKER] if says == declarations.OTHER_BEGINS else row[columns.STRIKER]
+            )
+            if says == declarations.OTHER_BEGINS:
                 continue
-        elif row[PHASE] == CHOICE:
-            wish = 0.0 if decisions[k] == PLAY else -1.0 if decisions[k] == PLAY_AGAIN else 1.0
+        elif row[columns.PHASE] == columns.CHOICE:
+            wish = (
+                0.0 if decisions[k] == columns.PLAY else -1.0 if decisions[k] == columns.PLAY_AGAIN else 1.0
+            )
             if not choose_as(k, wish, rules, tables, saved):
                 continue
         tables.nominated[k] = (
-            AUTO if nominate[k] < 0 else nominated_ball(max(0, nominate[k] - YELLOW + 1), row)
+            AUTO if nominate[k] < 0 else declarations.nominated_ball(max(0, nominate[k] - YELLOW + 1), row)
         )
-        if row[IN_HAND] and not np.isnan(places[k, 0]):
-            if row[ANYWHERE]:
+        if row[columns.IN_HAND] and not np.isnan(places[k, 0]):
+            if row[columns.ANYWHERE]:
                 place_anywhere(p, on, places[k, 0], places[k, 1])
             else:
                 place(p, on, places[k, 0], places[k, 1])
         speed, aim, elevation = values[k, 0], values[k, 3], values[k, 4]
-        side, top = tip_on_disc(values[k, 1], values[k, 2], options[A_MAX_OFFSET])
-        intended = (speed, side, top, aim - squirt(side, options[A_END_MASS]), elevation)
+        side, top = tip_on_disc(values[k, 1], values[k, 2], options[declarations.A_MAX_OFFSET])
+        intended = (speed, side, top, aim - squirt(side, options[declarations.A_END_MASS]), elevation)
         strike(intended, p, on, tables.streams[k], options, noise, m, shots)
         playing[m] = k
         m += 1

@@ -23,26 +23,9 @@ import numpy as np
 
 from .._check import refuse
 from .._types import Bools, Floats, Ints, Singles
+from ..game import frame_columns as columns
 from ..game.balls import COLOURS_MASK, CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_present
 from ..game.frame import MISS_RULES, Frame, frame_of, write_frame
-from ..game.frame_columns import (
-    ATTEMPTS,
-    BALL_ON,
-    COLUMNS,
-    FIRST_BREAK,
-    FREE_BALL,
-    IN_HAND,
-    OPPONENT,
-    OVER,
-    PAID,
-    PHASE,
-    POINTS,
-    SCORE_0,
-    SCORE_1,
-    STRIKER,
-    STROKES,
-    Layouts,
-)
 from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
 from . import frame_kernels
@@ -105,7 +88,7 @@ class Frames(Tables):
     FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers", "anywhere", "warned")
     COUNTS: tuple[str, ...] = (*COUNTS, "strokes", "opponent_strokes", "winner", *FLAGS, "misses", "failures")
     SIZE = FRAME_SIZE
-    COLUMNS = COLUMNS
+    COLUMNS = columns.COLUMNS
 
     nominated: Ints
     """(n,) The colour that the striker has nominated after a red or as its free ball, 0 for a free ball
@@ -152,9 +135,9 @@ class Frames(Tables):
         self._lot[A_LOT] = any(pack[0][A_LOT] for pack in self.packs)
 
     @property
-    def saved(self) -> Layouts:
+    def saved(self) -> columns.Layouts:
         """Where the balls lay before the last fouls: ``frame_columns.Layouts``."""
-        return Layouts(self._saved_positions, self._saved_on_table)
+        return columns.Layouts(self._saved_positions, self._saved_on_table)
 
     @property
     def saved_arrays(self) -> tuple[Floats, Bools]:
@@ -188,16 +171,16 @@ class Frames(Tables):
     def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k; with a free ball every colour."""
         return super().on(k) | (
-            COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, FREE_BALL] else 0
+            COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, columns.FREE_BALL] else 0
         )
 
     def lead(self) -> Ints:
         """The agent's scores minus the opponent's: (n,)."""
-        return self.game[:, SCORE_0 + AGENT] - self.game[:, SCORE_1 - AGENT]
+        return self.game[:, columns.SCORE_0 + AGENT] - self.game[:, columns.SCORE_1 - AGENT]
 
     def stopped(self) -> Bools:
         """Which frames the referee stops after ``max_strokes``: bool (n,)."""
-        return self.game[:, STROKES] >= self.rules.max_strokes
+        return self.game[:, columns.STROKES] >= self.rules.max_strokes
 
     def ended(self) -> Bools:
         """See ``Tables.ended``."""
@@ -209,7 +192,7 @@ class Frames(Tables):
 
     def interrupted(self) -> None:
         """See ``Tables.interrupted``: tables at which it is the opponent's turn."""
-        self.begun[self.game[:, STRIKER] != AGENT] = False
+        self.begun[self.game[:, columns.STRIKER] != AGENT] = False
 
     # a turn
     # --------------------------------------------------------------------------------------------------------
@@ -217,7 +200,7 @@ class Frames(Tables):
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = AGENT) -> Ints:
         """Decisions and strokes of the seat ``side`` up to the strike; returns the tables with a stroke."""
         reads = self.seats[side].actions
-        if reads.nominate or reads.declares or self.game[which, PHASE].any():
+        if reads.nominate or reads.declares or self.game[which, columns.PHASE].any():
             which = which[self.decide(which, actions, side)]
         self.strike(which, actions, buffers, self.packs[side])
         self.hold_late(which, buffers)
@@ -262,7 +245,7 @@ class Frames(Tables):
             remember(
                 which, self.arrays, self.saved_arrays, b.played, self.rules.table.noses, self.rules.table.jaws
             )
-        if self._miss == ATTEMPTS:
+        if self._miss == columns.ATTEMPTS:
             judge_attempts(which, b, self.positions, self.on_table, self.game, self.rules, self.packed[2])
         played = self._played if reported else self._replies
         frame_kernels.conclude(
@@ -286,14 +269,14 @@ class Frames(Tables):
 
     def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> None:
         """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k)."""
-        going, striker = ~self.ended(), self.game[:, STRIKER].copy()
+        going, striker = ~self.ended(), self.game[:, columns.STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
             prepare = partial(self._prepared, its, side)
             self.turn(prepare, out, crew, np.flatnonzero(going & (striker == side)))
         self._replies[:] = self._played * (striker != AGENT)
         crew(np.flatnonzero(going), lambda which, _: self._finish(which, out))
-        out.terminated[~going] = self.game[~going, OVER]
+        out.terminated[~going] = self.game[~going, columns.OVER]
         out.truncated[~going] = ~out.terminated[~going]
         crew(np.flatnonzero(~going), lambda which, _: self._show(which, out, fresh=False))
 
@@ -324,7 +307,7 @@ class Frames(Tables):
             self.go_on(acting)
             if alone:
                 # even if a state of two players left a decision or lot
-                self.game[acting, STRIKER] = AGENT
+                self.game[acting, columns.STRIKER] = AGENT
                 self._finish(which, out)
 
         crew(playing, play)
@@ -348,7 +331,7 @@ class Frames(Tables):
         """All strokes of the opponent until it is the agent's turn or the frame has ended."""
         opponent = self.seats[1].player
         assert opponent is not None  # ``turn`` plays for two without
-        while len(which := which[(self.game[which, STRIKER] != AGENT) & ~self.ended()[which]]):
+        while len(which := which[(self.game[which, columns.STRIKER] != AGENT) & ~self.ended()[which]]):
             for player, tables, asked in opponent.turns(self, which, crew.generators):
 
                 def play(part, buffers, player=player, asked=asked):
@@ -406,7 +389,7 @@ class Frames(Tables):
     def pay(self, k: int) -> int:
         """What the agent has earned on table k since it was last paid."""
         unpaid = self._unpaid(k)
-        self.game[k, PAID] += unpaid
+        self.game[k, columns.PAID] += unpaid
         return unpaid
 
     def action_masks(self, which: Ints | None = None, side: int = AGENT) -> Bools:
@@ -429,8 +412,8 @@ class Frames(Tables):
             "positions": self.positions[k].tolist(),
             "on_table": self.on_table[k].tolist(),
             "frame": self.frame(k).to_dict(),
-            "strokes": int(self.game[k, STROKES]),
-            "opponent": int(self.game[k, OPPONENT]),
+            "strokes": int(self.game[k, columns.STROKES]),
+            "opponent": int(self.game[k, columns.OPPONENT]),
             "unpaid": self._unpaid(k),
             "due": bool(self.due[k]),
             "stream": self.streams[k].tolist(),
@@ -438,11 +421,11 @@ class Frames(Tables):
 
     def _unpaid(self, k):
         """What the agent has earned and no reward has paid yet."""
-        return int(self._worth(k) - self.game[k, PAID])
+        return int(self._worth(k) - self.game[k, columns.PAID])
 
     def _worth(self, k):
         """What the agent has earned in the episode so far, as its reward counts."""
-        return self.game[k, SCORE_0 + AGENT] - self.game[k, SCORE_1 - AGENT]
+        return self.game[k, columns.SCORE_0 + AGENT] - self.game[k, columns.SCORE_1 - AGENT]
 
     def checked(
         self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False
@@ -470,9 +453,9 @@ class Frames(Tables):
         """See ``Tables.set_state``."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
-        self.game[k, OPPONENT] = state.opponent
-        self.game[k, FIRST_BREAK] = state.frame.breaker
-        self.game[k, PAID] = self._worth(k) - state.unpaid
+        self.game[k, columns.OPPONENT] = state.opponent
+        self.game[k, columns.FIRST_BREAK] = state.frame.breaker
+        self.game[k, columns.PAID] = self._worth(k) - state.unpaid
         self.streams[k] = np.array(state.stream, np.uint64)
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, state.due, AUTO
 
@@ -490,7 +473,7 @@ class Frames(Tables):
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """See ``Tables.set_position``. Player 0 is at the table; the points are its break."""
-        ball_on, in_hand, points = game[[BALL_ON, IN_HAND, POINTS]].tolist()
+        ball_on, in_hand, points = game[[columns.BALL_ON, columns.IN_HAND, columns.POINTS]].tolist()
         balls = mask_of_present(on_table) & ~CUE_BIT
         frame = Frame(
             break_points=points,

@@ -6,91 +6,18 @@ from typing import NamedTuple
 
 from .._jit import entry, kernel
 from .._types import Floats
+from ..game import frame_columns as columns
 from ..game.apply_ruling import settle
 from ..game.balls import BLACK, CUE, N_BALLS, SPOTS, available, bits
-from ..game.frame_columns import (
-    ANYWHERE,
-    BALL_ON,
-    BREAKER,
-    CHOICE,
-    CLOCK,
-    FAILURES,
-    FIRST_BREAK,
-    FRAMES_0,
-    FRAMES_1,
-    FREE_BALL,
-    IN_HAND,
-    LOT,
-    MISS_CALLED,
-    MISSES,
-    NO_MISSES,
-    ON_TABLE,
-    OVER,
-    PAID,
-    PHASE,
-    PLACE_ANYWHERE,
-    PLAY,
-    PLAY_AGAIN,
-    POINTS,
-    REPLACE,
-    RESPOTTED_BLACK,
-    SCORE_0,
-    SCORE_1,
-    STEPS,
-    STRIKER,
-    STROKES,
-    WARNED,
-    WINNER,
-    Conditions,
-    Effort,
-    Layouts,
-    after_stroke,
-    begin_frame,
-    choose,
-    claim,
-    concede,
-    draw,
-    is_late,
-    lead_of,
-    may_place_anywhere,
-    may_replace,
-    needs_snookers,
-    strikeable,
-)
 from ..game.philox import pair
 from ..game.rule_sets import SHOOT_OUT, SIX_RED
 from ..game.ruling import AUTO, FLAG, OUTCOME, Facts
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import Status
+from . import declarations, stroke
 from .arrays import OutputArrays, PlayedArrays, TableArrays
-from .declarations import (
-    A_DECISION,
-    A_LOT,
-    A_NOMINATE,
-    CLAIMS,
-    CONCEDES,
-    OTHER_BEGINS,
-    SAYS_NOTHING,
-    declaration_of,
-    nomination_of,
-)
 from .observations import FRAME_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, earned, frame_reward_of
-from .stroke import (
-    ATTEMPT,
-    CLEAR_PATH,
-    FULL_PATH,
-    VX,
-    VY,
-    WX,
-    WY,
-    WZ,
-    place,
-    place_anywhere,
-    reached_cushion,
-    see,
-    write_ruling,
-)
 from .tables import COUNTS, I_BREAK, REALS, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
@@ -130,17 +57,21 @@ class Setting(NamedTuple):
 def choose_as(k, wish, rules, tables, saved):
     """Make the decision ``wish`` in [-1, 1] after a foul (see ``decide``); whether a stroke follows."""
     row = tables.game[k]
-    what = PLAY_AGAIN if wish < -1.0 / 3.0 else PLAY
+    what = columns.PLAY_AGAIN if wish < -1.0 / 3.0 else columns.PLAY
     if wish > 1.0 / 3.0:
         what = (
-            REPLACE if may_replace(row, rules) else PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
+            columns.REPLACE
+            if columns.may_replace(row, rules)
+            else columns.PLACE_ANYWHERE
+            if columns.may_place_anywhere(row, rules)
+            else columns.PLAY
         )
-    choose(row, what)
-    if what == REPLACE:
+    columns.choose(row, what)
+    if what == columns.REPLACE:
         p, on, back, back_on = tables.positions[k], tables.on_table[k], saved.positions[k], saved.on_table[k]
         for i in range(N_BALLS):
             p[i, 0], p[i, 1], on[i] = back[i, 0], back[i, 1], back_on[i]
-    return what == PLAY or what == PLACE_ANYWHERE
+    return what == columns.PLAY or what == columns.PLACE_ANYWHERE
 
 
 @kernel
@@ -148,42 +79,45 @@ def give_up(row, reward):
     """Charge whoever gave the frame up, or lost it by a third miss, with the points left, S4 R5(b), where
     points are added up: eight for each red, and the colours. Otherwise it would pay to give up at once."""
     if reward != FRAMES_PAID:
-        left = available(row[ON_TABLE], -1, 0)
-        row[PAID] += -left if row[WINNER] == AGENT else left
+        left = available(row[columns.ON_TABLE], -1, 0)
+        row[columns.PAID] += -left if row[columns.WINNER] == AGENT else left
 
 
 @entry(what="the decisions of frames", seconds=2)
 def decide(which, actions, tables, saved, setting, plays):
     """What strikers say before a stroke; ``plays[j]``: one follows. A decision below -1/3: the offender plays
     again; above 1/3: from the position before, or by the striker from anywhere, where that may be."""
-    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     options = setting.options
     for j in range(which.shape[0]):
         k = which[j]
         row, a = tables.game[k], actions[k]
-        declared = declaration_of(a, options, row)
-        plays[j] = declared == SAYS_NOTHING
-        if declared == CONCEDES:
-            concede(row)
+        declared = declarations.declaration_of(a, options, row)
+        plays[j] = declared == declarations.SAYS_NOTHING
+        if declared == declarations.CONCEDES:
+            columns.concede(row)
             give_up(row, setting.reward)
-        elif declared == CLAIMS:
-            claim(row)
-        elif row[PHASE] == LOT:
-            draw(row, 1 - row[STRIKER] if declared == OTHER_BEGINS else row[STRIKER])
-        elif row[PHASE] == CHOICE:
-            wish = a[int(options[A_DECISION])] if options[A_DECISION] >= 0 else 0.0
+        elif declared == declarations.CLAIMS:
+            columns.claim(row)
+        elif row[columns.PHASE] == columns.LOT:
+            columns.draw(
+                row,
+                1 - row[columns.STRIKER] if declared == declarations.OTHER_BEGINS else row[columns.STRIKER],
+            )
+        elif row[columns.PHASE] == columns.CHOICE:
+            wish = a[int(options[declarations.A_DECISION])] if options[declarations.A_DECISION] >= 0 else 0.0
             plays[j] = choose_as(k, wish, setting.rules, tables, saved)
-        if plays[j] and options[A_NOMINATE] >= 0:
-            tables.nominated[k] = nomination_of(a, options, row)
+        if plays[j] and options[declarations.A_NOMINATE] >= 0:
+            tables.nominated[k] = declarations.nomination_of(a, options, row)
 
 
 @kernel
 def _hand_back(row):
     """Return the table to the agent, who plays alone."""
-    if not row[OVER] and row[STRIKER] != AGENT:
-        if row[PHASE] == CHOICE:
-            choose(row, PLAY_AGAIN)
-        row[STRIKER] = AGENT  # ``after_stroke`` has ended the break already
+    if not row[columns.OVER] and row[columns.STRIKER] != AGENT:
+        if row[columns.PHASE] == columns.CHOICE:
+            columns.choose(row, columns.PLAY_AGAIN)
+        row[columns.STRIKER] = AGENT  # ``after_stroke`` has ended the break already
 
 
 @kernel
@@ -198,9 +132,11 @@ def _leave_the_black(positions, on_table):
 def hold_late(which, game, rules, time_to_play, v, w, shots):
     """Shots that would not be begun within the shot clock are not played: the cue ball is not struck."""
     for j in range(which.shape[0]):
-        if is_late(game[which[j]], rules, time_to_play):
+        if columns.is_late(game[which[j]], rules, time_to_play):
             v[j, CUE, 0] = v[j, CUE, 1] = w[j, CUE, 0] = w[j, CUE, 1] = w[j, CUE, 2] = 0.0
-            shots[j, VX] = shots[j, VY] = shots[j, WX] = shots[j, WY] = shots[j, WZ] = 0.0
+            shots[j, stroke.VX] = shots[j, stroke.VY] = shots[j, stroke.WX] = shots[j, stroke.WY] = shots[
+                j, stroke.WZ
+            ] = 0.0
 
 
 @entry(what="the referee of frames", seconds=6)
@@ -209,48 +145,50 @@ def conclude(which, tables, shots, setting, reported, alone, played, output):
     ``played`` counts them. ``alone``: the table returns to the agent."""
     tables, shots, setting = TableArrays(*tables), PlayedArrays(*shots), Setting(*setting)
     out = OutputArrays(*output)
-    rules, conditions = setting.rules, Conditions(setting.rules, setting.miss, setting.time_to_play)
+    rules, conditions = setting.rules, columns.Conditions(setting.rules, setting.miss, setting.time_to_play)
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
             continue
         k = which[j]
         p, on, row, seen = tables.positions[k], tables.on_table[k], tables.game[k], shots.seen[j]
-        first, touching, moved, potted = see(j, shots, p, on)
+        first, touching, moved, potted = stroke.see(j, shots, p, on)
         for i in range(N_BALLS):
             p[i, 0], p[i, 1] = shots.r[j, i, 0], shots.r[j, i, 1]
-        ball_on, flags = row[BALL_ON], 0
+        ball_on, flags = row[columns.BALL_ON], 0
         if rules == SIX_RED:
             flags = FLAG.SIX_RED
         elif rules == SHOOT_OUT:
             flags = FLAG.SHOOT_OUT
-            if is_late(row, rules, setting.time_to_play):
+            if columns.is_late(row, rules, setting.time_to_play):
                 flags |= FLAG.LATE
-            if not reached_cushion(shots.event_what[j], shots.n_events[j]):
+            if not stroke.reached_cushion(shots.event_what[j], shots.n_events[j]):
                 flags |= FLAG.NO_CUSHION
-        situation = ball_on, row[FREE_BALL], lead_of(row, row[STRIKER])
+        situation = ball_on, row[columns.FREE_BALL], columns.lead_of(row, row[columns.STRIKER])
         facts = Facts(first, touching, moved, potted, 0, tables.nominated[k])
         result = settle(p, on, situation, facts, flags, setting.jaws, BALL_RADIUS)
         tables.nominated[k] = AUTO
-        write_ruling(seen, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result)
-        effort = Effort(seen[CLEAR_PATH], seen[FULL_PATH], seen[ATTEMPT])
+        stroke.write_ruling(
+            seen, row[columns.STRIKER], ball_on, row[columns.FREE_BALL], row[columns.POINTS], result
+        )
+        effort = columns.Effort(seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH], seen[stroke.ATTEMPT])
         lasted = int(1000.0 * shots.duration[j] + 0.5)
-        after_stroke(row, result, conditions, effort, setting.miss != NO_MISSES, lasted)
-        row[STROKES] += 1
-        if row[OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
+        columns.after_stroke(row, result, conditions, effort, setting.miss != columns.NO_MISSES, lasted)
+        row[columns.STROKES] += 1
+        if row[columns.OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
             give_up(row, setting.reward)
-        if row[PHASE] == LOT:
+        if row[columns.PHASE] == columns.LOT:
             _leave_the_black(p, on)
             u, _ = pair(tables.streams[k])
-            row[STRIKER] = int(2.0 * u)  # the winner of the lot
-            if alone or not setting.options[A_LOT]:
-                draw(row, row[STRIKER])  # who begins
-        if row[IN_HAND] and not row[OVER]:
-            if not row[ANYWHERE]:
-                place(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
+            row[columns.STRIKER] = int(2.0 * u)  # the winner of the lot
+            if alone or not setting.options[declarations.A_LOT]:
+                columns.draw(row, row[columns.STRIKER])  # who begins
+        if row[columns.IN_HAND] and not row[columns.OVER]:
+            if not row[columns.ANYWHERE]:
+                stroke.place(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
             elif potted & 1:
-                place_anywhere(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
+                stroke.place_anywhere(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
             else:  # where it came to rest
-                place_anywhere(p, on, p[CUE, 0], p[CUE, 1])
+                stroke.place_anywhere(p, on, p[CUE, 0], p[CUE, 1])
         played[k] += 1
         if reported:
             write_stroke_info(k, out, j, shots, ball_on, result)
@@ -268,39 +206,41 @@ def _share(number, scale):
 def observe_frame_into(out, k, tables, saved, setting, player):
     """Write what ``player`` observes: as in a visit, ``FRAME_ENTRIES`` and, with room, the saved layout."""
     row, present = tables.game[k], tables.on_table[k]
-    on = strikeable(row, bits(present) & ~1)
-    observe_into(out, tables.positions[k], present, row[BALL_ON], on, row[IN_HAND], row[POINTS])
-    mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
-    to_play = not row[OVER] and row[STRIKER] == player
-    left = available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
-    clock = min(1.0, row[CLOCK] / setting.clock) if setting.clock else 0.0
+    on = columns.strikeable(row, bits(present) & ~1)
+    observe_into(
+        out, tables.positions[k], present, row[columns.BALL_ON], on, row[columns.IN_HAND], row[columns.POINTS]
+    )
+    mine, other = row[columns.SCORE_0 + player], row[columns.SCORE_1 - player]
+    to_play = not row[columns.OVER] and row[columns.STRIKER] == player
+    left = available(row[columns.ON_TABLE], row[columns.BALL_ON], row[columns.FREE_BALL])
+    clock = min(1.0, row[columns.CLOCK] / setting.clock) if setting.clock else 0.0
     more = (
         _share(mine, 147.0),
         _share(other, 147.0),
         _share(mine - other, 147.0),
         left / 155.0,
         1.0 if to_play else 0.0,
-        1.0 if row[FREE_BALL] else 0.0,
-        1.0 if row[PHASE] == CHOICE else 0.0,
-        1.0 if row[MISS_CALLED] else 0.0,
-        1.0 if row[RESPOTTED_BLACK] else 0.0,
-        1.0 if row[BREAKER] == player else 0.0,
-        row[FAILURES] / 2.0,
-        1.0 if row[WARNED] else 0.0,
-        1.0 if row[PHASE] == LOT else 0.0,
-        _share(row[FRAMES_0 + player], 1.0),
-        _share(row[FRAMES_1 - player], 1.0),
+        1.0 if row[columns.FREE_BALL] else 0.0,
+        1.0 if row[columns.PHASE] == columns.CHOICE else 0.0,
+        1.0 if row[columns.MISS_CALLED] else 0.0,
+        1.0 if row[columns.RESPOTTED_BLACK] else 0.0,
+        1.0 if row[columns.BREAKER] == player else 0.0,
+        row[columns.FAILURES] / 2.0,
+        1.0 if row[columns.WARNED] else 0.0,
+        1.0 if row[columns.PHASE] == columns.LOT else 0.0,
+        _share(row[columns.FRAMES_0 + player], 1.0),
+        _share(row[columns.FRAMES_1 - player], 1.0),
         _share(setting.frames, 1.0),
         clock,
-        _share(row[MISSES], 5.0),
-        1.0 if row[ANYWHERE] else 0.0,
+        _share(row[columns.MISSES], 5.0),
+        1.0 if row[columns.ANYWHERE] else 0.0,
     )
     for c in range(len(more)):
         out[SIZE + c] = more[c]
     if out.shape[0] == FRAME_SIZE:
         return
     for i in range(N_BALLS):
-        at, back = FRAME_SIZE + 3 * i, row[MISS_CALLED] and saved.on_table[k, i]
+        at, back = FRAME_SIZE + 3 * i, row[columns.MISS_CALLED] and saved.on_table[k, i]
         out[at] = saved.positions[k, i, 0] / HALF_WIDTH if back else 0.0
         out[at + 1] = saved.positions[k, i, 1] / HALF_LENGTH if back else 0.0
         out[at + 2] = 1.0 if back else 0.0
@@ -309,7 +249,7 @@ def observe_frame_into(out, k, tables, saved, setting, player):
 @entry(what="the observations of frames", seconds=1)
 def observe(which, player, tables, saved, setting, rows):
     """The observations of ``player`` on the tables ``which``: one of ``rows`` each."""
-    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     for j in range(which.shape[0]):
         observe_frame_into(rows[j], which[j], tables, saved, setting, player)
 
@@ -318,45 +258,51 @@ def observe(which, player, tables, saved, setting, rows):
 def _write_frame_info(k, row, player, replies, out):
     """Write the info of the frame as ``player`` sees it: break, choice, free ball are the striker's."""
     reals, counts = out.reals, out.counts
-    mine, other, at_table = row[SCORE_0 + player], row[SCORE_1 - player], row[STRIKER] == player
-    reals[k, I_BREAK], reals[k, I_SCORE] = row[POINTS] if at_table else 0, mine
+    mine, other = row[columns.SCORE_0 + player], row[columns.SCORE_1 - player]
+    at_table = row[columns.STRIKER] == player
+    reals[k, I_BREAK], reals[k, I_SCORE] = row[columns.POINTS] if at_table else 0, mine
     reals[k, I_OPPONENT_SCORE] = other
-    counts[k, I_STROKES], counts[k, I_REPLIES], counts[k, I_WINNER] = row[STROKES], replies, row[WINNER]
-    counts[k, I_CHOICE] = at_table and row[PHASE] == CHOICE
-    counts[k, I_FREE_BALL] = at_table and row[FREE_BALL]
-    counts[k, I_NEEDS_SNOOKERS] = needs_snookers(row, player)
-    reals[k, I_CLOCK] = row[CLOCK] / 1000.0
-    counts[k, I_ANYWHERE], counts[k, I_WARNED] = row[ANYWHERE], row[WARNED]
-    counts[k, I_MISSES], counts[k, I_FAILURES] = row[MISSES], row[FAILURES]
+    counts[k, I_STROKES], counts[k, I_REPLIES] = row[columns.STROKES], replies
+    counts[k, I_WINNER] = row[columns.WINNER]
+    counts[k, I_CHOICE] = at_table and row[columns.PHASE] == columns.CHOICE
+    counts[k, I_FREE_BALL] = at_table and row[columns.FREE_BALL]
+    counts[k, I_NEEDS_SNOOKERS] = columns.needs_snookers(row, player)
+    reals[k, I_CLOCK] = row[columns.CLOCK] / 1000.0
+    counts[k, I_ANYWHERE], counts[k, I_WARNED] = row[columns.ANYWHERE], row[columns.WARNED]
+    counts[k, I_MISSES], counts[k, I_FAILURES] = row[columns.MISSES], row[columns.FAILURES]
     if counts.shape[1] > I_FRAME:
-        counts[k, I_FRAMES_WON], counts[k, I_OPPONENT_FRAMES] = row[FRAMES_0 + player], row[FRAMES_1 - player]
+        counts[k, I_FRAMES_WON] = row[columns.FRAMES_0 + player]
+        counts[k, I_OPPONENT_FRAMES] = row[columns.FRAMES_1 - player]
         # from 0: the last one of a match that is over, too
-        counts[k, I_FRAME] = row[FRAMES_0] + row[FRAMES_1] - row[OVER]
+        counts[k, I_FRAME] = row[columns.FRAMES_0] + row[columns.FRAMES_1] - row[columns.OVER]
 
 
 @kernel
 def _worth(row, reward):
     """What the agent has earned so far, as the ``reward`` counts it."""
-    return earned(reward, lead_of(row, AGENT), row[FRAMES_0 + AGENT] - row[FRAMES_1 - AGENT])
+    return earned(
+        reward, columns.lead_of(row, AGENT), row[columns.FRAMES_0 + AGENT] - row[columns.FRAMES_1 - AGENT]
+    )
 
 
 @entry(what="the steps of frames", seconds=1)
 def finish(which, tables, saved, setting, due, replies, played, output):
     """Write a step's results; ``played`` (n,): whether the agent had a stroke. No end stays ``due``."""
-    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
         row = tables.game[k]
-        row[STEPS] += 1
+        row[columns.STEPS] += 1
         worth = _worth(row, setting.reward)
-        winner = row[WINNER] if row[OVER] else -1
-        out.rewards[k] = frame_reward_of(setting.reward, worth - row[PAID], winner, AGENT)
-        row[PAID], due[k] = worth, False
-        stopped = not row[OVER] and row[STROKES] >= setting.max_strokes
-        out.terminated[k], out.truncated[k] = row[OVER], stopped or row[STEPS] >= setting.limit
+        winner = row[columns.WINNER] if row[columns.OVER] else -1
+        out.rewards[k] = frame_reward_of(setting.reward, worth - row[columns.PAID], winner, AGENT)
+        row[columns.PAID], due[k] = worth, False
+        stopped = not row[columns.OVER] and row[columns.STROKES] >= setting.max_strokes
+        out.terminated[k] = row[columns.OVER]
+        out.truncated[k] = stopped or row[columns.STEPS] >= setting.limit
         if not played[k]:
-            write_empty_info(k, out, row[BALL_ON])
+            write_empty_info(k, out, row[columns.BALL_ON])
         _write_frame_info(k, row, AGENT, replies[k], out)
         observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)
 
@@ -365,7 +311,7 @@ def finish(which, tables, saved, setting, due, replies, played, output):
 def inform(player, game, output):
     """The info of the first table as ``player`` sees it, without a stroke."""
     out = OutputArrays(*output)
-    write_empty_info(0, out, game[0, BALL_ON])
+    write_empty_info(0, out, game[0, columns.BALL_ON])
     _write_frame_info(0, game[0], player, 0, out)
 
 
@@ -380,8 +326,8 @@ def begin(which, drawn, breakers, in_hand, on_table, game, streams):
         if drawn:
             u, _ = pair(streams[k])
             breaker = breakers[k] if breakers[k] >= 0 else int(2.0 * u)
-        begin_frame(game[k], bits(on_table[k]), breaker, in_hand)
-        game[k, FIRST_BREAK] = breaker
+        columns.begin_frame(game[k], bits(on_table[k]), breaker, in_hand)
+        game[k, columns.FIRST_BREAK] = breaker
 
 
 @entry(what="the frames of a match", seconds=1)
@@ -389,8 +335,8 @@ def count_frames(which, game, needed, goes_on):
     """Count the frames that have ended on the tables ``which``; ``goes_on[j]``: nobody has won ``needed``."""
     for j in range(which.shape[0]):
         row = game[which[j]]
-        row[FRAMES_0 + row[WINNER]] += 1
-        goes_on[j] = row[FRAMES_0 + row[WINNER]] < needed
+        row[columns.FRAMES_0 + row[columns.WINNER]] += 1
+        goes_on[j] = row[columns.FRAMES_0 + row[columns.WINNER]] < needed
 
 
 @entry(what="the next frame of a match", seconds=1)
@@ -399,21 +345,23 @@ def begin_next(which, alone, reward, in_hand, on_table, game):
     for j in range(which.shape[0]):
         k = which[j]
         row = game[k]
-        won, lost, first, steps = row[FRAMES_0], row[FRAMES_1], row[FIRST_BREAK], row[STEPS]
-        paid = row[PAID] if reward == FRAMES_PAID else row[PAID] - lead_of(row, AGENT)
-        begin_frame(row, bits(on_table[k]), AGENT if alone else (first + won + lost) % 2, in_hand)
-        row[FRAMES_0], row[FRAMES_1], row[FIRST_BREAK], row[STEPS], row[PAID] = won, lost, first, steps, paid
+        won, lost = row[columns.FRAMES_0], row[columns.FRAMES_1]
+        first, steps = row[columns.FIRST_BREAK], row[columns.STEPS]
+        paid = row[columns.PAID] if reward == FRAMES_PAID else row[columns.PAID] - columns.lead_of(row, AGENT)
+        columns.begin_frame(row, bits(on_table[k]), AGENT if alone else (first + won + lost) % 2, in_hand)
+        row[columns.FRAMES_0], row[columns.FRAMES_1], row[columns.FIRST_BREAK] = won, lost, first
+        row[columns.STEPS], row[columns.PAID] = steps, paid
 
 
 @entry(what="the resets of frames", seconds=1)
 def show(which, fresh, tables, saved, setting, replies, output, last):
     """Write the results of a reset for the tables ``which``; ``fresh``: ``last`` first keeps the old rows."""
-    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
         if fresh:
             keep_last(k, out, last)
-        write_empty_info(k, out, tables.game[k, BALL_ON])
+        write_empty_info(k, out, tables.game[k, columns.BALL_ON])
         _write_frame_info(k, tables.game[k], AGENT, replies[k], out)
         observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)

@@ -7,22 +7,8 @@ import numpy as np
 
 from .._jit import entry, kernel
 from .._types import Ints
+from ..game import frame_columns as columns
 from ..game.balls import N_BALLS, YELLOW, bits, touching_balls
-from ..game.frame_columns import (
-    ANYWHERE,
-    CHOICE,
-    IN_HAND,
-    LOT,
-    PHASE,
-    PLACE_ANYWHERE,
-    PLAY,
-    SAVED,
-    STRIKER,
-    choose,
-    draw,
-    may_place_anywhere,
-    strikeable,
-)
 from ..game.philox import pair
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..game.rule_sets import SHOOT_OUT
@@ -144,20 +130,22 @@ def named(positions, on_table, row, aim):
 def geometric_turn(positions, on_table, row, rules, rows, stream):
     """Its turn: (speed, side, top, aim, what it nominates, what it decides after a foul). ``row``: of a visit
     or frame, after its decision; a cue ball in hand is placed. ``rules``: the code of the rule set."""
-    frame, decision = row.shape[0] > ANYWHERE, PLAY
-    if frame and row[PHASE] == CHOICE:
-        decision = PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
-        choose(row, decision)
-    elif frame and row[PHASE] == LOT:
-        draw(row, row[STRIKER])
-    mask = strikeable(row, bits(on_table) & ~1)
-    if row[IN_HAND]:
-        put(positions, on_table, mask, frame and row[ANYWHERE], rows, stream)
+    frame, decision = row.shape[0] > columns.ANYWHERE, columns.PLAY
+    if frame and row[columns.PHASE] == columns.CHOICE:
+        decision = columns.PLACE_ANYWHERE if columns.may_place_anywhere(row, rules) else columns.PLAY
+        columns.choose(row, decision)
+    elif frame and row[columns.PHASE] == columns.LOT:
+        columns.draw(row, row[columns.STRIKER])
+    mask = columns.strikeable(row, bits(on_table) & ~1)
+    if row[columns.IN_HAND]:
+        put(positions, on_table, mask, frame and row[columns.ANYWHERE], rows, stream)
     jitter, _ = pair(stream)
-    failed = frame and row[SAVED] != 0  # it plays from a position that has been restored
+    failed = frame and row[columns.SAVED] != 0  # it plays from a position that has been restored
     drive = DRIVE if rules == SHOOT_OUT else 0.0
-    speed, side, top, aim = stroke_at(positions, on_table, mask, row[IN_HAND], failed, drive, rows, stream)
-    speed *= 1.0 + (0.04 if row[IN_HAND] and racked(positions, on_table) else 0.2) * (jitter - 0.5)
+    speed, side, top, aim = stroke_at(
+        positions, on_table, mask, row[columns.IN_HAND], failed, drive, rows, stream
+    )
+    speed *= 1.0 + (0.04 if row[columns.IN_HAND] and racked(positions, on_table) else 0.2) * (jitter - 0.5)
     return speed, side, top, aim, named(positions, on_table, row, aim) if frame else AUTO, decision
 
 
@@ -194,12 +182,12 @@ def put_in_hand(positions, on_table, game, streams):
     rows = np.empty((LINE_ROWS, POT_COLUMNS))
     for k in range(len(game)):
         row = game[k]
-        if row[IN_HAND]:
-            anywhere = row.shape[0] > ANYWHERE and row[ANYWHERE] != 0
+        if row[columns.IN_HAND]:
+            anywhere = row.shape[0] > columns.ANYWHERE and row[columns.ANYWHERE] != 0
             put(
                 positions[k],
                 on_table[k],
-                strikeable(row, bits(on_table[k]) & ~1),
+                columns.strikeable(row, bits(on_table[k]) & ~1),
                 anywhere,
                 rows,
                 streams[k],

@@ -4,16 +4,7 @@ import numpy as np
 
 from .._jit import entry
 from .._types import Floats, Ints
-from ..game.frame_columns import (
-    CHOICE,
-    PHASE,
-    PLACE_ANYWHERE,
-    PLAY,
-    PLAY_AGAIN,
-    REPLACE,
-    may_place_anywhere,
-    may_replace,
-)
+from ..game import frame_columns as columns
 from .declarations import A_DECISION, declaration_of, nomination_of
 from .options import Rules
 
@@ -24,12 +15,16 @@ def _said(actions, options, game, rules, nominated, decisions, declared):
     for k in range(len(game)):
         row, a = game[k], actions[k]
         declared[k] = declaration_of(a, options, row)
-        wish = a[int(options[A_DECISION])] if options[A_DECISION] >= 0 and row[PHASE] == CHOICE else 0.0
-        decisions[k] = PLAY_AGAIN if wish < -1.0 / 3.0 else PLAY
-        if wish > 1.0 / 3.0 and may_replace(row, rules):
-            decisions[k] = REPLACE
-        elif wish > 1.0 / 3.0 and may_place_anywhere(row, rules):
-            decisions[k] = PLACE_ANYWHERE
+        wish = (
+            a[int(options[A_DECISION])]
+            if options[A_DECISION] >= 0 and row[columns.PHASE] == columns.CHOICE
+            else 0.0
+        )
+        decisions[k] = columns.PLAY_AGAIN if wish < -1.0 / 3.0 else columns.PLAY
+        if wish > 1.0 / 3.0 and columns.may_replace(row, rules):
+            decisions[k] = columns.REPLACE
+        elif wish > 1.0 / 3.0 and columns.may_place_anywhere(row, rules):
+            decisions[k] = columns.PLACE_ANYWHERE
         nominated[k] = nomination_of(a, options, row)
 
 

@@ -8,17 +8,7 @@ import numpy as np
 
 from .._check import array, flags, integer, refuse, refuse_what, truth
 from .._types import Bools, Floats
-from ..game.balls import (
-    CUE,
-    CUE_BIT,
-    N_BALLS,
-    REDS_MASK,
-    BallOn,
-    balls_on,
-    mask_of_present,
-    next_on,
-    points_available,
-)
+from ..game import balls
 from ..game.frame import MOST_BREAK, Frame
 from ..game.in_hand import within_d
 from ..physics.table import Table
@@ -38,7 +28,7 @@ class State(NamedTuple):
 
     positions: Floats
     on_table: Bools
-    ball_on: BallOn
+    ball_on: balls.BallOn
     in_hand: bool
     points: int
     over: bool
@@ -92,7 +82,7 @@ def checked_layout(
 ) -> tuple[Floats, Bools]:
     """The arrays positions (22, 2), on_table (22,); ValueError, with one of ``names``, if not a layout."""
     field = names[0]
-    places, present = array(field, positions, (N_BALLS, 2)), flags(names[1], on_table, (N_BALLS,))
+    places, present = array(field, positions, (balls.N_BALLS, 2)), flags(names[1], on_table, (balls.N_BALLS,))
     for i, place in enumerate(positions):
         if any(isinstance(x, bool | np.bool_) for x in place):  # NumPy converts them to 0 and 1
             raise refuse(f"{field}[{i}]", list(place), "must be two real numbers")
@@ -105,9 +95,9 @@ def checked_layout(
 
 def check_in_hand(field: str, in_hand: bool, name: str, positions: Floats) -> None:
     """ValueError if a cue ball in hand is not in the D, where it is shown until it is placed."""
-    if in_hand and not within_d(*positions[CUE]):
-        x, y = positions[CUE].tolist()
-        allowed = f"must be False with the cue ball at {name}[{CUE}] = ({x:g}, {y:g}), outside the D"
+    if in_hand and not within_d(*positions[balls.CUE]):
+        x, y = positions[balls.CUE].tolist()
+        allowed = f"must be False with the cue ball at {name}[{balls.CUE}] = ({x:g}, {y:g}), outside the D"
         raise refuse(field, in_hand, allowed)
 
 
@@ -151,26 +141,28 @@ def checked(
         ("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R
     )
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
-    ball_on = BallOn(integer("state.ball_on", state["ball_on"], BallOn.NOTHING, BallOn.BLACK))
-    balls = mask_of_present(on_table)
+    ball_on = balls.BallOn(
+        integer("state.ball_on", state["ball_on"], balls.BallOn.NOTHING, balls.BallOn.BLACK)
+    )
+    mask = balls.mask_of_present(on_table)
     if not over:  # then there must be a shot to play
-        lowest = next_on(balls)
-        if not on_table[CUE]:
+        lowest = balls.next_on(mask)
+        if not on_table[balls.CUE]:
             allowed = "must hold the cue ball while the visit goes on"
             raise refuse("state.on_table", on_table.tolist(), allowed)
-        if not balls_on(ball_on, balls):
+        if not balls.balls_on(ball_on, mask):
             allowed = "must name balls of which one is on the table (state.on_table)"
             raise refuse("state.ball_on", ball_on.name, allowed)
-        if ball_on > BallOn.RED and balls & REDS_MASK:
+        if ball_on > balls.BallOn.RED and mask & balls.REDS_MASK:
             allowed = "must be RED or ANY_COLOUR while reds are on the table (state.on_table)"
             raise refuse("state.ball_on", ball_on.name, allowed)
-        if ball_on not in (BallOn.ANY_COLOUR, lowest):
-            allowed = f"must be ANY_COLOUR or {BallOn(lowest).name}, the lowest of state.on_table"
+        if ball_on not in (balls.BallOn.ANY_COLOUR, lowest):
+            allowed = f"must be ANY_COLOUR or {balls.BallOn(lowest).name}, the lowest of state.on_table"
             raise refuse("state.ball_on", ball_on.name, allowed)
         check_in_hand("state.in_hand", in_hand, "state.positions", positions)
     check_rng(state["rng"], generator)
     points, stream = integer("state.points", state["points"], 0, MOST_BREAK), check_stream(state["stream"])
-    more = points_available(balls, ball_on)
+    more = balls.points_available(mask, ball_on)
     if points + more > MOST_BREAK:
         allowed = f"must be at most {MOST_BREAK - more}: state.on_table and state.ball_on offer {more} more"
         raise refuse("state.points", points, allowed)
@@ -198,7 +190,7 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
         allowed = "must not be between two steps: the lot is drawn in the step of the stroke before"
         raise refuse("state.frame.phase", frame.phase, allowed)
     if frame.phase != "over":
-        if mask_of_present(on_table) != frame.on_table | CUE_BIT:
+        if balls.mask_of_present(on_table) != frame.on_table | balls.CUE_BIT:
             allowed = "must hold the cue ball and the balls of state.frame.on_table, no others"
             raise refuse("state.on_table", on_table.tolist(), allowed)
         check_in_hand(
@@ -242,7 +234,7 @@ def _checked_saved(frame, table, R):
     if not isinstance(saved.layout, tuple) or len(saved.layout) != 2:
         raise refuse(field, saved.layout, "must be positions and on_table, as they were before the foul")
     positions, on_table = checked_layout((f"{field}[0]", f"{field}[1]"), *saved.layout, table, R)
-    if mask_of_present(on_table) != saved.on_table | CUE_BIT:
+    if balls.mask_of_present(on_table) != saved.on_table | balls.CUE_BIT:
         allowed = "must hold the cue ball and the balls of state.frame.saved.on_table, no others"
         raise refuse(f"{field}[1]", on_table.tolist(), allowed)
     check_in_hand("state.frame.saved.in_hand", saved.in_hand and not saved.anywhere, f"{field}[0]", positions)
