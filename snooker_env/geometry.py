@@ -5,8 +5,7 @@ kernels' arrays of a ``Bed``. Pockets are numbered as in ``POCKETS``.
 
 Sources. Snooker: WPBSA, playing area 3569 x 1778 mm, spots and D as in the rules; the official templates are
 secret, ours agree with the quoted openings (3.5 in corner, 4 in middle at the fall: ``python -m
-benchmarks.pockets``). Pool: WPA; Alciatore, TP 3.5 and 3.6. UK 8-ball: WEPF. Carom: UMB.
-"""
+benchmarks.pockets``). Pool: WPA; Alciatore, TP 3.5 and 3.6. UK 8-ball: WEPF. Carom: UMB."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -181,8 +180,7 @@ class Pocket:
         the mouth to the slate's edge [m], in [-1, 1]; negative where the hole begins before the mouth.
         ``fall_radius``: of the slate's circle [m], in (0, 1]. ``cut``: angle between nose and facing
         [degrees], in [135, 180): 135 makes the facings parallel, the WPA's is 142. ``jaw_radius``: of the arc
-        on which a jaw leaves the nose [m], in [0, 1]; 0 is a sharp point.
-        """
+        on which a jaw leaves the nose [m], in [0, 1]; 0 is a sharp point."""
         mouth, shelf, fall_radius = _sizes("pocket.corner", mouth, shelf, fall_radius)
         depth = (fall_radius + shelf) / sqrt(2.0) - mouth / (2.0 * sqrt(2.0))
         turn = 180.0 - number("pocket.corner.cut", cut, 135, 180)
@@ -201,8 +199,7 @@ class Pocket:
     ) -> "Pocket":
         """Make a middle (side) pocket from its published sizes; ValueError as for ``Pocket``.
 
-        As ``Pocket.corner``, but ``cut`` is in [90, 180): 90 makes the facings parallel, the WPA's is 104.
-        """
+        As ``Pocket.corner``, but ``cut`` is in [90, 180): 90 makes the facings parallel, the WPA's is 104."""
         mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
         turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
         return cls(

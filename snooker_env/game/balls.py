@@ -1,8 +1,7 @@
 """Which balls are there, what is each worth and where does it belong? The table's places are in ``geometry``.
 
 Ids: 0 the cue ball, 1 to 15 the reds, 16 to 21 the colours by value. A set of balls is an integer whose bit i
-stands for ball i, or a bool array (22,). Positions are float64 (22, 2) [m] in the table frame.
-"""
+stands for ball i, or a bool array (22,). Positions are float64 (22, 2) [m] in the table frame."""
 
 from collections.abc import Iterable
 from enum import IntEnum
@@ -40,17 +39,8 @@ ALL_MASK = 0x3FFFFF
 class BallOn(IntEnum):
     """The ball on: what the striker must hit first. From RED on, the number is its value in points.
 
-    ============= === ==========================================================================
-    NOTHING       -1  Nothing: the frame is over.
-    ANY_COLOUR    0   Any one colour, which the striker nominates: a red was just potted.
-    RED           1   A red.
-    YELLOW        2   The yellow.
-    GREEN         3   The green.
-    BROWN         4   The brown.
-    BLUE          5   The blue.
-    PINK          6   The pink.
-    BLACK         7   The black.
-    ============= === ==========================================================================
+    NOTHING (-1): the frame is over. ANY_COLOUR (0): any one colour, which the striker nominates, as a red was
+    just potted. RED (1), YELLOW (2), GREEN (3), BROWN (4), BLUE (5), PINK (6), BLACK (7): that ball.
 
     Examples
     --------
@@ -80,8 +70,7 @@ REFEREE_TOUCH = 50e-6
 """The referee calls a touching ball when the gap to the cue ball is below this [m]. The eye resolves about 70
 um at 25 cm (one arc minute), and balls that touch come to rest 1 to 40 um apart in the simulation."""
 CLEARANCE = 2.0 * REFEREE_TOUCH
-"""The gap beside a ball or cushion at which a ball is put down [m]: the referee sees that they do not touch.
-"""
+"""The gap beside a ball or cushion at which a ball is put down [m]: the referee sees no contact."""
 
 
 def _spots():
@@ -91,14 +80,9 @@ def _spots():
     spots[YELLOW:] = COLOUR_SPOTS
     pink_y = spots[PINK, 1]
     # Rows sqrt(3) R apart, a pitch of 2 R: each red touches its neighbours. Rounded to mm they would overlap.
-    ball = 1
-    for row in range(5):
-        for k in range(row + 1):
-            spots[ball] = (
-                (2 * k - row) * BALL_RADIUS,
-                pink_y + 2 * BALL_RADIUS + PINK_GAP + row * np.sqrt(3.0) * BALL_RADIUS,
-            )
-            ball += 1
+    for ball, (row, k) in enumerate(((n, k) for n in range(5) for k in range(n + 1)), 1):
+        y = pink_y + 2 * BALL_RADIUS + PINK_GAP + row * np.sqrt(3.0) * BALL_RADIUS
+        spots[ball] = (2 * k - row) * BALL_RADIUS, y
     return spots
 
 

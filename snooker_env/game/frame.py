@@ -12,12 +12,9 @@ A foul and a miss (S3 R14): ``miss="off"`` never calls it. ``miss="clear_path"``
 path to a part of a ball on was clear and none was struck first; not when either player needed penalty points
 before or after the stroke, or the points left equalled the difference. After a miss with a clear full-ball
 path, a second failure from the same position is a miss whatever the scores; then the striker is warned, and
-the third loses the frame. ``miss="attempt"`` calls it on a snookered striker too (``attempt``).
-
-Left out, because a simulator cannot judge it: whether a failure was deliberate; when there is a stalemate
-(``restart`` only carries one out); time wasting and conduct; balls that fall in unprovoked or are moved by
-others; fouls before the stroke on a replaced position. The lot for a re-spotted black is passed in.
-"""
+the third loses the frame. ``miss="attempt"`` calls it on a snookered striker too (``attempt``). Stalemates
+(``restart`` carries one out) and the lot for a re-spotted black are passed in.
+docs/environment/rules.md says what is left out."""
 
 from dataclasses import asdict, dataclass
 from operator import itemgetter
@@ -46,24 +43,10 @@ MOST_CLOCK = 2**50
 """Upper limit of a frame's clock [ms]."""
 
 
-_INTEGERS = {
-    "striker": columns.STRIKER,
-    "breaker": columns.BREAKER,
-    "break_points": columns.POINTS,
-    "on_table": columns.ON_TABLE,
-    "failures": columns.FAILURES,
-    "clock": columns.CLOCK,
-    "misses": columns.MISSES,
-    "rack": columns.RACK,
-}
-_FLAGS = {
-    "in_hand": columns.IN_HAND,
-    "free_ball": columns.FREE_BALL,
-    "respotted_black": columns.RESPOTTED_BLACK,
-    "miss_called": columns.MISS_CALLED,
-    "warned": columns.WARNED,
-    "anywhere": columns.ANYWHERE,
-}
+_NUMBERS = ("striker", "breaker", "on_table", "failures", "clock", "misses", "rack")
+_INTEGERS = {name: getattr(columns, name.upper()) for name in _NUMBERS} | {"break_points": columns.POINTS}
+_TRUTHS = ("in_hand", "free_ball", "respotted_black", "miss_called", "warned", "anywhere")
+_FLAGS = {name: getattr(columns, name.upper()) for name in _TRUTHS}
 """The columns of the fields of a ``Frame`` that are plain integers, and bools."""
 _integers, _flags = itemgetter(*_INTEGERS.values()), itemgetter(*_FLAGS.values())
 
@@ -72,23 +55,19 @@ class _Asked(NamedTuple):
     """What a frame allows."""
 
     needs_snookers: tuple[bool, bool]
+    concede: tuple[bool, bool]
     shot_clock: int
     replace: bool
     anywhere: bool
     claim: bool
-    concede: tuple[bool, bool]
 
 
 @entry
 def _ask(row, rules):
-    return (
-        (columns.needs_snookers(row, 0), columns.needs_snookers(row, 1)),
-        columns.shot_clock(row, rules),
-        columns.may_replace(row, rules) != 0,
-        columns.may_place_anywhere(row, rules) != 0,
-        columns.may_claim(row),
-        (columns.may_concede(row, 0), columns.may_concede(row, 1)),
-    )
+    replaced, anywhere = columns.may_replace(row, rules) != 0, columns.may_place_anywhere(row, rules) != 0
+    needs = columns.needs_snookers(row, 0), columns.needs_snookers(row, 1)
+    concedes = columns.may_concede(row, 0), columns.may_concede(row, 1)
+    return needs, concedes, columns.shot_clock(row, rules), replaced, anywhere, columns.may_claim(row)
 
 
 @entry(what="the rules of frames", seconds=1)
@@ -126,11 +105,8 @@ class Saved:
         _set(self, "on_table", _object_balls(self.on_table))
         for name in ("in_hand", "free_ball", "anywhere"):
             _set(self, name, truth(name, getattr(self, name)))
-        _set(
-            self,
-            "ball_on",
-            Situation(on_table=self.on_table, ball_on=self.ball_on, free_ball=self.free_ball).ball_on,
-        )
+        at = Situation(on_table=self.on_table, ball_on=self.ball_on, free_ball=self.free_ball)
+        _set(self, "ball_on", at.ball_on)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -169,19 +145,14 @@ class Frame:
         for name, high in (("striker", 1), ("breaker", 1), *most):
             if not is_plain(getattr(self, name), high):
                 _set(self, name, integer(name, getattr(self, name), 0, high))
-        for name in ("in_hand", "free_ball", "respotted_black", "miss_called", "warned", "anywhere"):
+        for name in _TRUTHS:
             if type(getattr(self, name)) is not bool:
                 _set(self, name, truth(name, getattr(self, name)))
         if not isinstance(self.scores, tuple) or len(self.scores) != 2:
             raise refuse("scores", self.scores, "must be a tuple of two integers")
         if not all(is_plain(points, MOST_POINTS) for points in self.scores):
-            _set(
-                self,
-                "scores",
-                tuple(
-                    integer(f"scores[{k}]", points, 0, MOST_POINTS) for k, points in enumerate(self.scores)
-                ),
-            )
+            scores = (integer(f"scores[{k}]", n, 0, MOST_POINTS) for k, n in enumerate(self.scores))
+            _set(self, "scores", tuple(scores))
         _set(self, "on_table", _object_balls(self.on_table))
         _set(self, "rack", _object_balls(self.rack, "rack"))
         if self.saved is not None and not isinstance(self.saved, Saved):
@@ -204,21 +175,11 @@ class Frame:
         rules: RulesName = "snooker",
     ) -> "Frame":
         """A new frame. ``on_table``: mask of the balls, for a start with others than the rule set's."""
-        balls = (
-            rule_set(rules).on_table
-            if on_table is None
-            else integer("on_table", on_table, 0, ALL_MASK) & ~CUE_BIT
-        )
-        ball_on = BallOn(next_on(balls))
-        return cls(
-            striker=breaker,
-            breaker=breaker,
-            rules=rules,
-            miss=miss,
-            on_table=balls,
-            ball_on=ball_on,
-            rack=balls,
-        )
+        balls = rule_set(rules).on_table
+        if on_table is not None:
+            balls = integer("on_table", on_table, 0, ALL_MASK) & ~CUE_BIT
+        on, players = BallOn(next_on(balls)), {"striker": breaker, "breaker": breaker}
+        return cls(**players, rules=rules, miss=miss, on_table=balls, ball_on=on, rack=balls)
 
     @property
     def rule_set(self) -> RuleSet:
@@ -229,37 +190,22 @@ class Frame:
     def situation(self) -> Situation:
         """The ``Situation`` in which the referee judges the next stroke."""
         lead = self.scores[self.striker] - self.scores[1 - self.striker]
-        return Situation(
-            on_table=self.on_table,
-            ball_on=self.ball_on,
-            free_ball=self.free_ball,
-            lead=lead,
-            rules=self.rules,
-        )
+        on, free = self.ball_on, self.free_ball
+        return Situation(on_table=self.on_table, ball_on=on, free_ball=free, lead=lead, rules=self.rules)
 
     @property
     def available(self) -> int:
         """The most points that the striker can still score."""
         return points_available(self.on_table, self.ball_on, self.free_ball)
 
-    def _row(self):
-        """The frame as a row of ``frame_columns``."""
-        row = np.zeros(columns.COLUMNS, np.int64)
-        _pack(self, row)
-        return row
-
-    def _next(self, row, layout):
-        """The frame that a row of the same game holds; ``layout``: that of its ``saved``, if it has one."""
-        return _unpacked(row, self.rules, self.miss, layout)
-
     def _acted(self, act, number=0):
         """The frame after one of the acts of ``_act``."""
-        row = self._row()
+        row = _packed(self)
         _act(row, act, number)
-        return self._next(row, None if self.saved is None else self.saved.layout)
+        return _unpacked(row, self.rules, self.miss, None if self.saved is None else self.saved.layout)
 
     def _asked(self):
-        return _Asked(*_ask(self._row(), self.rule_set.code))
+        return _Asked(*_ask(_packed(self), self.rule_set.code))
 
     def needs_snookers(self, player: int) -> bool:
         """Whether ``player`` trails by more than is left for them; a free ball is the striker's alone."""
@@ -295,8 +241,7 @@ class Frame:
         and to the next rest; it starts with the first stroke. A stroke that needs longer than ``shot_clock``
         is not played: the caller leaves the balls as they lie, and ``stroke`` is read as
         ``Stroke(late=True)``. The frame ends when another stroke with the same ``time_to_play`` could not
-        begin in time.
-        """
+        begin in time."""
         self._in_phase("stroke", "play")
         late, lasted, rules = False, 0, self.rule_set
         integer("time_to_play", time_to_play, 0, MOST_CLOCK)
@@ -304,9 +249,9 @@ class Frame:
             late, lasted = 0 < self.shot_clock < time_to_play, integer("duration", duration, 0, MOST_CLOCK)
         result = ruling_of(self.situation, Stroke(late=True) if late else stroke)
         conditions = Conditions(rules.code, MISS_RULES.index(self.miss), int(time_to_play))
-        row, effort = self._row(), Effort(bool(clear_path), bool(full_ball_path), bool(attempt))
+        row, effort = _packed(self), Effort(bool(clear_path), bool(full_ball_path), bool(attempt))
         _play(row, result, conditions, effort, layout is not None, lasted)
-        return self._next(row, layout), verdict_of(result)
+        return _unpacked(row, self.rules, self.miss, layout), verdict_of(result)
 
     @property
     def choices(self) -> tuple[Choice, ...]:
@@ -323,8 +268,7 @@ class Frame:
         "play": the opponent plays the table as it lies, with the free ball, if any. "play_again": the
         offender plays it, without. "replace", after a miss: the offender plays from ``saved``; the penalty
         stands. "anywhere", after the last miss in succession: the opponent plays from anywhere on the table,
-        without a free ball.
-        """
+        without a free ball."""
         self._in_phase("choice", "choose")
         choice("choice", what, self.choices)
         if what == "replace" and self.saved is None:
@@ -377,16 +321,16 @@ class Frame:
             check_fields(f"{field}.saved", saved, Saved)
             with within(f"{field}.saved"):
                 saved = Saved(**saved | {"layout": tuples(saved["layout"])})
+        scores = tuple(scores) if isinstance(scores, list) else scores
         with within(field):
-            frame = cls(
-                **plain | {"scores": tuple(scores) if isinstance(scores, list) else scores, "saved": saved}
-            )
+            frame = cls(**plain | {"scores": scores, "saved": saved})
             check_fit(frame)
         return frame
 
 
-def _pack(frame, row):
-    """Write a ``Frame`` into an empty row, but for the layout that is stored with it."""
+def _packed(frame):
+    """A ``Frame`` as a row of ``frame_columns``, but for the layout that is stored with it."""
+    row = np.zeros(columns.COLUMNS, np.int64)
     for name, column in (*_INTEGERS.items(), *_FLAGS.items()):
         row[column] = getattr(frame, name)
     row[columns.BALL_ON], row[columns.PHASE] = frame.ball_on, PHASES.index(frame.phase)
@@ -399,6 +343,7 @@ def _pack(frame, row):
         row[columns.SAVED_ON_TABLE], row[columns.SAVED_BALL_ON] = saved.on_table, saved.ball_on
         row[columns.SAVED_FREE_BALL] = saved.free_ball
         row[columns.SAVED_IN_HAND] = saved.in_hand + saved.anywhere
+    return row
 
 
 def _unpacked(row, rules, miss, layout):
@@ -437,8 +382,7 @@ def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int, rules: RulesNa
 
 def write_frame(frame: Frame, strokes: int, row: Ints, layouts: Layouts, k: int) -> None:
     """Write a checked ``Frame`` into the row (COLUMNS,) of a table, its layout into row k of ``layouts``."""
-    row[:] = 0
-    _pack(frame, row)
+    row[:] = _packed(frame)
     row[columns.STROKES] = strokes
     if frame.saved is not None and frame.saved.layout is not None:
         layouts.positions[k], layouts.on_table[k] = map(np.array, frame.saved.layout)

@@ -108,8 +108,7 @@ def nearest_place(positions, on_table, x, y, radius):
 
     Each ball excludes a disc. The nearest point outside all discs is the wish itself (moved into the D), the
     nearest point of one circle, or a crossing of two circles or of one with the lines of the D: all are
-    tried. ``on_table[0]`` must be False.
-    """
+    tried. ``on_table[0]`` must be False."""
     wish = x, y = _into_d(x, y)
     reach = 2.0 * radius + CLEARANCE
     place = _better(positions, on_table, wish, wish, (x, y, np.inf), False, radius)

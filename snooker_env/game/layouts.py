@@ -1,8 +1,7 @@
 """Which tables can a task start from? Layouts from a stream of random numbers, by geometry only.
 
 A layout is ``positions`` (22, 2) [m] and ``on_table`` (22,) bool, and depends on the stream alone: same key
-and counter, same table. The row of a ball off the table is that of ``balls.SPOTS``.
-"""
+and counter, same table. The row of a ball off the table is that of ``balls.SPOTS``."""
 
 from dataclasses import dataclass
 from math import atan2, cos, hypot, sin

@@ -2,8 +2,7 @@
 
 Each is a break-off and further hard strokes at the reds until the pack is spread; all 22 balls are on it and
 some red can be potted. ``python -m benchmarks.make_opened`` makes the file. The last ``HELD_OUT`` tables are
-for evaluation (the layout "held_out").
-"""
+for evaluation (the layout "held_out")."""
 
 from functools import cache, lru_cache
 from pathlib import Path

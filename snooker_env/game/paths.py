@@ -9,8 +9,7 @@ must be free of all balls, also where several could be on: the striker nominates
 A path ends where the cue ball would meet a cushion, nose or jaw (R14 speaks of a path of the cue ball; only
 the test for a snooker leaves cushions out). In hand a path counts that is clear from any place where the cue
 ball may stand (R14(a), and S2 R17 for a snooker). Tried are the places of ``in_hand``; an opening that falls
-between them is in the striker's favour.
-"""
+between them is in the striker's favour."""
 
 import numpy as np
 
@@ -148,8 +147,7 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
 
     It can open or close only at finitely many directions: tangents to a ball or a jaw, to an end of a
     cushion, and where target and obstacle are met at the same time. So it is exact to test the midpoints
-    between them.
-    """
+    between them."""
     cx, cy = positions[0, 0], positions[0, 1]
     edges = np.empty(4 * N_BALLS + 4 * noses.shape[0] + 6 * jaws.shape[0])
     for target in range(1, N_BALLS):
@@ -200,8 +198,7 @@ def best_paths(positions, on_table, on, in_hand, noses, jaws, radius):
 
     ``in_hand``: 0 the cue ball is played from where it lies, 1 from the D, 2 from anywhere on the bed. In
     hand, its place in ``positions`` is tried first, if on the table, then others until one has a full-ball
-    path.
-    """
+    path."""
     if on_table[0]:
         full = full_ball_path(positions, on_table, on, noses, jaws, radius)
         clear = full or clear_path(positions, on_table, on, noses, jaws, radius)

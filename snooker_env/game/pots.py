@@ -9,8 +9,7 @@ by::
 This is the half window of the pocket as an angle of the object ball's path over the magnification of an
 aiming error at the impact. w(a) is the lateral window of the pocket at the angle a off its axis [m], jaws
 included, to a millimetre, for a ball that rolls at 1.5 m/s on table "match"
-(tests/benchmarks/test_pocket_windows.py); it is smaller for a fast ball and larger for a slow one.
-"""
+(tests/benchmarks/test_pocket_windows.py); it is smaller for a fast ball and larger for a slow one."""
 
 from math import acos, cos, radians, sqrt
 

@@ -1,7 +1,6 @@
 """Which game is played? What six-red snooker and the Shoot Out change in the rules of a frame, as data.
 
-``docs/environment/rules.md`` says where each rule comes from, what is left out and why.
-"""
+``docs/environment/rules.md`` says where each rule comes from, what is left out and why."""
 
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args

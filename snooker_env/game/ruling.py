@@ -2,8 +2,7 @@
 
 ``ruling`` is a pure kernel on integers and masks (bit i is ball i), the same for one table and thousands. It
 does not judge intent or effort (``frame`` has what geometry decides of that), time wasting or conduct. Acts
-outside the simulation, jumps, pushes and double hits are passed in as flags.
-"""
+outside the simulation, jumps, pushes and double hits are passed in as flags."""
 
 from collections import namedtuple
 from enum import IntEnum, IntFlag
@@ -148,8 +147,7 @@ def _nomination(on, ball_on, free_ball, first, touching, nominated):
     """The id of the colour on, or of the free ball, or 0 for none ("any colour" or a free ball need one).
 
     With AUTO it is the colour first struck among those allowed, the highest if there are several; if none was
-    struck, an allowed colour that the cue ball was touching.
-    """
+    struck, an allowed colour that the cue ball was touching."""
     if ball_on != 0 and not free_ball:
         return 0
     if nominated >= 0:

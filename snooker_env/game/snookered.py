@@ -7,8 +7,7 @@ curved face of a jaw obstructs an edge and is nearer than any ball not on that d
 
 In hand the places of ``in_hand.PLACES_IN_D`` are tested, 5 mm apart, then places right beside each ball,
 where most narrow openings are. An opening narrower than the step and away from every ball may be missed; no
-player places a ball more exactly.
-"""
+player places a ball more exactly."""
 
 import numpy as np
 

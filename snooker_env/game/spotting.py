@@ -4,8 +4,7 @@ A colour goes on its own spot; if that is occupied, on the free spot of the high
 its own spot as possible without touching another ball, on the straight line towards the top cushion; if that
 has no room, below the spot (the rules state this for pink and black). A spot is occupied if a ball there
 would touch another as the referee sees it (``balls.REFEREE_TOUCH``). Of several colours, those whose own spot
-is free go first, then the highest value.
-"""
+is free go first, then the highest value."""
 
 import numpy as np
 
@@ -39,8 +38,7 @@ def nearest_free(positions, on_table, x, y, direction, radius):
     other [m].
 
     Ball i excludes y_i - h to y_i + h with h^2 = (2 R + clearance)^2 - (x_i - x)^2; y moves to the far end of
-    each interval that contains it, until none does, which is exact. Cushions are ignored.
-    """
+    each interval that contains it, until none does, which is exact. Cushions are ignored."""
     reach = 2.0 * radius + balls.CLEARANCE
     moved = True
     while moved:

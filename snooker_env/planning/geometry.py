@@ -2,8 +2,7 @@
 paths.
 
 The geometry is that of straight lines: no throw, no spin and no cushions. ``pot_aim`` corrects the aim for
-throw, swerve and spin.
-"""
+throw, swerve and spin."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

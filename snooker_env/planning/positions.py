@@ -100,8 +100,7 @@ class Positions:
 
         An environment, of one table or many, wrapped or not, gives all current tables, those of frames as
         their strikers see them. Or a ``Position``, a state of a visit, a dict of ``Position.to_dict()``, or a
-        list of these.
-        """
+        list of these."""
         if isinstance(source, Positions):
             return source
         if isinstance(source, Position | Mapping):

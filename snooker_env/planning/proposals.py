@@ -10,8 +10,7 @@ position that it has any for.
 * ``at_balls``: in the directions in which a ball on is met first (``tasks.windows``), evenly. Every other
   stroke is hard, since a ball then goes in by chance more often.
 * ``over_cushions``, where hardly anything is seen: about the escapes of ``tasks.escapes``, aimed by the
-  models of the engine.
-"""
+  models of the engine."""
 
 from math import erf, exp, hypot, log, pi, sqrt
 from typing import NamedTuple, Protocol

@@ -31,8 +31,7 @@ FAR = 0.1
 """Decay of the chance of a pot per metre of both balls' paths [1/m]."""
 RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, FAR)
 """Constants of ``prospects_of`` for a player with execution errors: points of the rest of the visit, shares
-of the second and third best pot, decay of the chance with distance [1/m].
-"""
+of the second and third best pot, decay of the chance with distance [1/m]."""
 SURE = (1e4, 1e-3, 0.0, 0.0)
 """Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left."""
 

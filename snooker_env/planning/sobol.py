@@ -3,8 +3,7 @@ its share.
 
 Sobol's sequence in base 2, with the direction numbers of Joe & Kuo (2008), scrambled as Owen (1995) proposed:
 each bit of a coordinate is flipped depending on the bits above it, here by a hash (Burley 2020, Vegdahl
-2021). A scramble is one seed; each point by itself is uniform, so that means over the points are unbiased.
-"""
+2021). A scramble is one seed; each point by itself is uniform, so that means over the points are unbiased."""
 
 from statistics import NormalDist
 

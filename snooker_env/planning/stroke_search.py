@@ -9,8 +9,7 @@ leaves.
    2013). The samples are scrambled Sobol points, common to all strokes of a position. The score is the mean
    over the samples, with the first look as ``PRIOR`` of them.
 
-Without execution errors the first look is the whole truth and takes the whole budget.
-"""
+Without execution errors the first look is the whole truth and takes the whole budget."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, TypeAlias

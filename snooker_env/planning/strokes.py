@@ -3,8 +3,7 @@ actions, and the aim solver.
 
 A stroke is a row of five numbers in SI, in the columns of ``trials``: cue speed [m/s], side and top (tip
 offset over R), the direction in which the cue ball leaves [rad] (the cue itself points aside by the squirt of
-the side), elevation of the cue [rad].
-"""
+the side), elevation of the cue [rad]."""
 
 from math import pi
 from typing import Any

@@ -1,8 +1,7 @@
 """How are trial strokes played on copies of positions? As strokes in SI under given errors, or as actions
 under drawn ones.
 
-``decoded`` is the one way from actions and choices to strokes: the environment's own, without errors.
-"""
+``decoded`` is the one way from actions and choices to strokes: the environment's own, without errors."""
 
 from dataclasses import replace
 from typing import Any, NamedTuple

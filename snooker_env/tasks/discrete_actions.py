@@ -111,8 +111,7 @@ class Choices:
 
     With ``nominate``, n * 540 + that: n = 0 nominates nothing, 1 to 6 yellow to black, and the pots are those
     of the ball that is then on. The last choices, as far as they are on: concede, claim, let the other player
-    begin after the lot. What may not be said is played as the stroke of the same remainder.
-    """
+    begin after the lot. What may not be said is played as the stroke of the same remainder."""
 
     size: int = 1
     placement: bool = False

@@ -8,8 +8,7 @@ up to 2 m/s.
 
 Aim. Speed, height and side of the strike turn the escape. So the cue ball alone is played with the models of
 the engine until it meets a ball, in directions about the one of the search, and sent along the middle of
-those that succeed.
-"""
+those that succeed."""
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 

@@ -10,8 +10,7 @@ go to the opponent's score; after a foul the agent plays on from where the balls
 A frame that ends in the opponent's first visit is shown by that reset; the next step plays nothing, reports
 the end and pays its reward (``Frames.due``). A cue ball in hand is placed at once on the free place of the D
 nearest to its usual one (``balls.SPOTS``), so that it can be seen; the player may place it elsewhere. The
-physics is planar: no ball leaves the table or jumps over another, so those fouls never occur.
-"""
+physics is planar: no ball leaves the table or jumps over another, so those fouls never occur."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence

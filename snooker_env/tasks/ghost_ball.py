@@ -206,8 +206,7 @@ class GhostBallOpponent(Opponent):
     * It allows for neither throw nor position.
     * Its speed varies by a tenth (at the break-off by a fiftieth), and the direction of a plain stroke within
       the window that strikes the ball. From a position restored after its miss it tries no pot and varies
-      more: two exact players cannot repeat one failing stroke for ever.
-    """
+      more: two exact players cannot repeat one failing stroke for ever."""
 
     def prepare(self, frames: Frames, which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
         """See ``Opponent.prepare``."""

@@ -3,8 +3,7 @@
 ``action="discrete"`` chooses among up to ``POTS`` lines; ``aim="target"`` is measured from the first. Without
 a direct pot they are, best first: at the start of a frame, thin at the end red of either side, the break-off;
 where hardly anything is seen, escapes, whose aim is found for the stroke; the middle of the widest window of
-directions in which a ball on is met first, its two edges, thin, and the middles of other windows.
-"""
+directions in which a ball on is met first, its two edges, thin, and the middles of other windows."""
 
 from math import atan2, cos, hypot, pi, sin
 

@@ -30,8 +30,7 @@ large in height, is small: a real cue turns about the bridge, and with the bridg
 (0.35 m) behind the ball squirt cancels the turn. Speed 1.75, 2.5 and 4 %: of pool players it is said that a
 good one rolls a ball a table's length to within an inch or two, 0.5 to 1 % of the speed, a beginner to within
 a diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009). Elevation 0.1 to 0.3 deg, which hardly matters with a
-level cue.
-"""
+level cue."""
 
 from dataclasses import asdict, dataclass, fields
 from math import degrees, hypot, radians, sqrt
@@ -173,8 +172,7 @@ class Noise:
         A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a
         small offset [TP A.31]: with the usual ratio of 30, 0.163 deg per mm. It holds for strokes without
         intended side; the swerve of a nearly level cue is neglected. ``physics``: as ``Physics.of`` takes it;
-        default "paper".
-        """
+        default "paper"."""
         constants = Physics.of(physics)
         tip = self.offset_mm * 1e-3 / constants.R
         return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + constants.end_mass_ratio)))

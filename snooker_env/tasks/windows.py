@@ -3,8 +3,7 @@ lines.
 
 What is met first can change only at the tangents of the balls and where the cue ball would meet a ball on and
 another at once; so one direction of each interval tells. A ball on that touches the cue ball counts as struck
-when it is played away: then every direction away from the touching balls is open.
-"""
+when it is played away: then every direction away from the touching balls is open."""
 
 from math import asin, atan2, cos, floor, hypot, pi, sin, sqrt
 

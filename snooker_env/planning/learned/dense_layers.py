@@ -3,8 +3,7 @@ a fixed order of sums.
 
 The matrix products of NumPy and torch wake a thread for each core. For networks this small these wait for
 each other longer than they compute, and the last bits depend on the number of rows and of threads. Here a
-row's result depends on that row alone.
-"""
+row's result depends on that row alone."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -20,8 +19,7 @@ def linear(rows, weight, bias, out):
     ..., rounded after each.
 
     All float32 and contiguous. Two rows and four terms at a time: so the sums stay in registers, and the
-    compiler takes several columns at once.
-    """
+    compiler takes several columns at once."""
     n, a = rows.shape
     b = weight.shape[1]
     spare = np.empty(b, np.float32)

@@ -2,8 +2,7 @@
 the visit then brings.
 
 The mean of several small networks with two outputs. P starts from the likeliest pot's chance by its width; U
-is positive. ``agents.learning.value_network`` trains them.
-"""
+is positive. ``agents.learning.value_network`` trains them."""
 
 from collections.abc import Sequence
 
@@ -23,8 +22,7 @@ class LearnedValue:
     """The value [points] of n ``Positions``: called with them, it returns float32 (n,).
 
     ``members``: the layers of each network, (weight (out, in), bias (out,)). ``spread`` [rad]: see
-    ``spread_of``.
-    """
+    ``spread_of``."""
 
     def __init__(self, members: Sequence[Sequence[tuple[NDArray, NDArray]]], spread: float, threads: int = 1):
         self._members = [Layers(member, "relu") for member in members]

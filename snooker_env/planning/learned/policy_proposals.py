@@ -3,8 +3,7 @@ probabilities.
 
 The policy scores the 540 discrete choices. A softmax with ``TEMPERATURE`` makes them probabilities, which are
 sampled systematically: a choice with a share of 10 % gets 10 % of the strokes. Each stroke is moved within
-the choice's cell of speed, side and top by a Sobol point, so that the grid does not limit the search.
-"""
+the choice's cell of speed, side and top by a Sobol point, so that the grid does not limit the search."""
 
 from typing import Any
 

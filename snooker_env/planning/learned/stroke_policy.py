@@ -3,8 +3,7 @@ on that table alone.
 
 The network is that of ``agents.learning.networks.TableReader`` and ``StrokeHead``: a small network for each
 ball, one for each pot, sums over them, a context, and scores of each pot's strokes.
-tests/agents/learning/test_fused.py compares it with PyTorch's.
-"""
+tests/agents/learning/test_fused.py compares it with PyTorch's."""
 
 from collections.abc import Mapping
 

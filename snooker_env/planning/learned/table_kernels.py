@@ -1,8 +1,7 @@
 """What does a policy of strokes compute between its layers? Reading tables, sums over balls and pots, masks.
 
 Each kernel goes over n rows once. The layouts are those of ``agents.learning.networks.TableReader``, with
-which a policy is trained.
-"""
+which a policy is trained."""
 
 import numpy as np
 
@@ -31,8 +30,7 @@ def read_tables(rows, seen, inputs, at):
     ``inputs``: (balls, group, first, pots, context, sides). balls (m, BALL_INPUTS), group (m,): the balls on
     the tables; 0 for a red that is not on, 1 for a red on, 2 and 3 likewise for colours. first (n + 1,): each
     table's first row of them. pots (n * POTS, POT_ENTRIES). context[:, at:]: state, cue ball, side. sides
-    (n,): -1 where mirrored, else 1.
-    """
+    (n,): -1 where mirrored, else 1."""
     balls, group, first, pots, context, sides = inputs
     m = 0
     for j in range(rows.shape[0]):

@@ -1,8 +1,7 @@
 """What does a learned value see of a position? The best pots, how open each ball is, where the balls lie, and
 the ball on.
 
-The table is nearly symmetric: it is read mirrored so that the cue ball is on the right.
-"""
+The table is nearly symmetric: it is read mirrored so that the cue ball is on the right."""
 
 from math import cos, erf, exp, log, log10, radians, sqrt
 
