@@ -9,20 +9,8 @@ from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
 from ..game.ruling import AUTO
 
 # Columns of the packed options of an action space.
-(
-    A_TARGET,
-    A_ELEVATION,
-    A_PLACEMENT,
-    A_END_MASS,
-    A_MAX_OFFSET,
-    A_DISCRETE,
-    A_NOMINATE,
-    A_DECISION,
-    A_DECLARATION,
-    A_CONCEDE,
-    A_CLAIM,
-    A_LOT,
-) = range(12)
+A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET, A_DISCRETE = range(6)
+A_NOMINATE, A_DECISION, A_DECLARATION, A_CONCEDE, A_CLAIM, A_LOT = range(6, 12)
 
 SAYS = ("nominate", "decision", "concede", "claim", "lot")
 """What an action can say beside the stroke."""
@@ -47,9 +35,8 @@ def nominated_ball(n, row):
     if not row[columns.FREE_BALL]:
         return AUTO
     ball = YELLOW + n - 1
-    free = (
-        COLOURS_MASK & row[columns.ON_TABLE] & ~balls_on_kernel(row[columns.BALL_ON], row[columns.ON_TABLE])
-    )
+    mask = row[columns.ON_TABLE]
+    free = COLOURS_MASK & mask & ~balls_on_kernel(row[columns.BALL_ON], mask)
     return ball if n > 0 and free >> ball & 1 else 0
 
 

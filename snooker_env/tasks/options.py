@@ -29,15 +29,13 @@ TASKS = ("visit", "frame", "match")
 MOST_TIME = 15.0
 """The most time to play [s]: the longest shot clock. With more no stroke would ever be in time."""
 TIME_TO_PLAY = 9.0
-"""Default time [s] from the rest of the balls to the next stroke, in a game with a clock: with the strokes'
-own duration some 14 s a stroke, as in the Shoot Out of professionals."""
+"""Default time [s] between strokes, with a clock: some 14 s a stroke in all, as in professionals' Shoot Out."""
 ACTIONS = ("box", "discrete")
 LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 """What layout="default" means in each task."""
 MAX_STROKES = 1000
-"""Default number of strokes of both players after which the referee stops a frame. Random players that aim
-near a pot needed 284 on average, never more than 560 in 2,000 frames (``benchmarks.frames``); those that only
-foul, or only pass the turn, never finish."""
+"""Default number of strokes after which the referee stops a frame. Random players that aim near a pot needed
+284 on average, at most 560 in 2,000 frames (``benchmarks.frames``); some players never finish."""
 FRAMES = 7
 """Default length of a match: best of 7."""
 OPPONENTS = (
@@ -46,8 +44,7 @@ OPPONENTS = (
 )
 """What may be the opponent, for messages."""
 GROUPS = ("task", "action", "view", "shot", "frame")
-"""Groups of options: what is played, how one acts, what one sees, what decides a shot, the rules of
-frames."""
+"""Groups of options: what is played, how one acts, what one sees, what decides a shot, rules of frames."""
 _UNSAID: Any = object()
 OBJECT = "object"
 """As the option ``opponent``: whoever was passed to the environment as an object."""
@@ -63,24 +60,16 @@ class Rules:
     noise: Noise
     physics: Physics
     table: Table
-    fidelity: Solver
-    """As ``parse_fidelity`` returns it."""
-    plan: Plan
-    """How tables are dealt."""
+    fidelity: Solver  # as ``parse_fidelity`` returns it
+    plan: Plan  # how tables are dealt
     reward: str
     observation: ObservationKind
-    miss: MissRule = "off"
-    """In a frame: the rule for a foul and a miss."""
-    max_strokes: int = NEVER
-    """In a frame: strokes of both players after which it is stopped."""
-    one_stroke: bool = False
-    """In a visit: whether it ends after its first stroke."""
-    frames: int = 0
-    """In a match: of how many frames at most; 0 for a single frame, which is no match."""
-    game: RulesName = "snooker"
-    """In a frame: the rule set."""
-    time_to_play: int = 0
-    """In a frame with a clock: from the rest of the balls to the next stroke [ms]."""
+    miss: MissRule = "off"  # of a frame, as all below but one: the rule for a foul and a miss
+    max_strokes: int = NEVER  # strokes of both players after which it is stopped
+    one_stroke: bool = False  # in a visit: whether it ends after its first stroke
+    frames: int = 0  # in a match: of how many frames at most; 0 for a single frame, which is no match
+    game: RulesName = "snooker"  # the rule set
+    time_to_play: int = 0  # with a clock: from the rest of the balls to the next stroke [ms]
 
     @property
     def rule_set(self) -> RuleSet:
@@ -97,9 +86,50 @@ class Rules:
         return self.actions.pack(), self.noise.pack(BALL_RADIUS), self.physics.pack()
 
 
-def _about(group: str, values: str, *, only: str | None = None) -> dict[str, Any]:
-    """The metadata of an option: its group, its values (Markdown), and the only task that has it."""
-    return {"group": group, "values": values, "only": only}
+_ABOUT: dict[str, tuple[str, str | None, str]] = {
+    "task": ("task", None, '"visit", "frame", "match" (all that is of a frame is of a match, too)'),
+    "layout": ("task", None, '"opened", of a frame "break_off"; see Layouts'),
+    "action": ("action", None, '"box", "discrete"'),
+    "aim": ("action", None, '"absolute", "target"'),
+    "observation": ("view", None, '"flat", "balls"; with discrete actions "masked"'),
+    "noise": (
+        "shot",
+        None,
+        '"none", "professional", "amateur", "club", "robot", "olympiad", or a dict of `snooker_env.tasks.Noise`',
+    ),
+    "reward": (
+        "task",
+        None,
+        '"points"; of a visit "points_and_fouls", "pots", "legal"; of a frame "win"; of a match "frames", too',
+    ),
+    "elevation": ("action", None, "whether box actions hold the elevation of the cue"),
+    "placement": ("action", None, "whether box actions hold the place of a cue ball in hand"),
+    "physics": ("shot", None, '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)'),
+    "table": ("shot", None, '"match", "tight", or a `Table` whose noses are where snooker\'s are'),
+    "fidelity": ("shot", None, '"fast", "standard", "reference", "euler:N"'),
+    "one_stroke": ("task", "visit", "whether it ends with its first stroke"),
+    "opponent": (
+        "task",
+        "frame",
+        '"none", "random", "ghost_ball", another name of a player, a `.zip`; or an object: see Opponents',
+    ),
+    "trust": ("task", "frame", "whether the code in an opponent's `.zip` may run"),
+    "miss": ("frame", "frame", '"off", "clear_path", "attempt": the rule for a foul and a miss'),
+    "max_strokes": ("frame", "frame", "strokes after which the frame is stopped; None for never"),
+    "says": (
+        "action",
+        "frame",
+        'some of "nominate", "decision", "concede", "claim", "lot": what actions say beside the stroke',
+    ),
+    "game": ("frame", "frame", '"snooker", "six_red", "shoot_out": the rules of the game'),
+    "time_to_play": (
+        "frame",
+        "frame",
+        "the time from the rest of the balls to the next stroke in the Shoot Out [s], at most 15",
+    ),
+    "frames": ("task", "match", "an odd number: the best of so many"),
+}
+"""Of each option: its group, the only task that has it, its values in Markdown."""
 
 
 def _said(says: Any, flags: Mapping[str, Any]) -> tuple[str, ...]:
@@ -193,99 +223,27 @@ class Options:
     ('club', 'none')
     """
 
-    task: Literal["visit", "frame", "match"] = field(
-        default="visit",
-        metadata=_about("task", '"visit", "frame", "match" (all that is of a frame is of a match, too)'),
-    )
-    layout: str = field(
-        default="default", metadata=_about("task", '"opened", of a frame "break_off"; see Layouts')
-    )
-    action: Literal["box", "discrete"] = field(default="box", metadata=_about("action", '"box", "discrete"'))
-    aim: Literal["absolute", "target"] = field(
-        default="absolute", metadata=_about("action", '"absolute", "target"')
-    )
-    observation: ObservationKind = field(
-        default="flat", metadata=_about("view", '"flat", "balls"; with discrete actions "masked"')
-    )
-    noise: NoiseLike = field(
-        default="none",
-        metadata=_about(
-            "shot",
-            '"none", "professional", "amateur", "club", "robot", "olympiad", or a dict of `snooker_env.tasks.Noise`',
-        ),
-    )
-    reward: Literal["points", "points_and_fouls", "pots", "legal", "win", "frames"] = field(
-        default="points",
-        metadata=_about(
-            "task",
-            '"points"; of a visit "points_and_fouls", "pots", "legal"; of a frame "win"; of a match "frames", too',
-        ),
-    )
-    elevation: bool = field(
-        default=False, metadata=_about("action", "whether box actions hold the elevation of the cue")
-    )
-    placement: bool = field(
-        default=False, metadata=_about("action", "whether box actions hold the place of a cue ball in hand")
-    )
-    physics: PhysicsLike = field(
-        default="paper",
-        metadata=_about("shot", '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)'),
-    )
-    table: TableLike = field(
-        default="match",
-        metadata=_about("shot", '"match", "tight", or a `Table` whose noses are where snooker\'s are'),
-    )
-    fidelity: Fidelity = field(
-        default="standard", metadata=_about("shot", '"fast", "standard", "reference", "euler:N"')
-    )
-    one_stroke: bool = field(
-        default=False, metadata=_about("task", "whether it ends with its first stroke", only="visit")
-    )
-    opponent: str | Path = field(
-        default="none",
-        metadata=_about(
-            "task",
-            '"none", "random", "ghost_ball", another name of a player, a `.zip`; or an object: see Opponents',
-            only="frame",
-        ),
-    )
-    trust: bool = field(
-        default=False,
-        metadata=_about("task", "whether the code in an opponent's `.zip` may run", only="frame"),
-    )
-    miss: MissRule = field(
-        default="off",
-        metadata=_about(
-            "frame", '"off", "clear_path", "attempt": the rule for a foul and a miss', only="frame"
-        ),
-    )
-    max_strokes: int | None = field(
-        default=MAX_STROKES,
-        metadata=_about("frame", "strokes after which the frame is stopped; None for never", only="frame"),
-    )
-    says: Sequence[str] = field(
-        default=(),
-        metadata=_about(
-            "action",
-            'some of "nominate", "decision", "concede", "claim", "lot": what actions say beside the stroke',
-            only="frame",
-        ),
-    )
-    game: RulesName = field(
-        default="snooker",
-        metadata=_about("frame", '"snooker", "six_red", "shoot_out": the rules of the game', only="frame"),
-    )
-    time_to_play: float = field(
-        default=TIME_TO_PLAY,
-        metadata=_about(
-            "frame",
-            "the time from the rest of the balls to the next stroke in the Shoot Out [s], at most 15",
-            only="frame",
-        ),
-    )
-    frames: int = field(
-        default=FRAMES, metadata=_about("task", "an odd number: the best of so many", only="match")
-    )
+    task: Literal["visit", "frame", "match"] = "visit"
+    layout: str = "default"
+    action: Literal["box", "discrete"] = "box"
+    aim: Literal["absolute", "target"] = "absolute"
+    observation: ObservationKind = "flat"
+    noise: NoiseLike = "none"
+    reward: Literal["points", "points_and_fouls", "pots", "legal", "win", "frames"] = "points"
+    elevation: bool = False
+    placement: bool = False
+    physics: PhysicsLike = "paper"
+    table: TableLike = "match"
+    fidelity: Fidelity = "standard"
+    one_stroke: bool = False
+    opponent: str | Path = "none"
+    trust: bool = False
+    miss: MissRule = "off"
+    max_strokes: int | None = MAX_STROKES
+    says: Sequence[str] = ()
+    game: RulesName = "snooker"
+    time_to_play: float = TIME_TO_PLAY
+    frames: int = FRAMES
     nominate: InitVar[bool] = _UNSAID
     decision: InitVar[bool] = _UNSAID
     concede: InitVar[bool] = _UNSAID
@@ -307,17 +265,13 @@ class Options:
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
             layout = f"break_off:{rule_set(self.game).reds}"
         plan = fitted(layout, table)
-        if choice("observation", self.observation, observations.OBSERVATIONS) == "masked" and not isinstance(
-            actions, Choices
-        ):
+        kind = choice("observation", self.observation, observations.OBSERVATIONS)
+        if kind == "masked" and not isinstance(actions, Choices):
             allowed = 'must be "flat" or "balls" with action="box": a Box has no masks'
             raise refuse("observation", self.observation, allowed)
         truth("trust", self.trust)
-        choice(
-            "reward",
-            self.reward,
-            {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}[self.task],
-        )
+        rewards = {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}
+        choice("reward", self.reward, rewards[self.task])
         one_stroke = truth("one_stroke", self.one_stroke)
         limit = NEVER
         self._check_task()
@@ -338,22 +292,9 @@ class Options:
                 allowed = f"{OPPONENTS}; Options hold text: pass an object to the environment, beside them"
                 raise refuse("opponent", self.opponent, allowed)
             object.__setattr__(self, "opponent", str(self.opponent))
-        read = Rules(
-            actions,
-            noise,
-            physics,
-            table,
-            fidelity,
-            plan,
-            self.reward,
-            self.observation,
-            self.miss,
-            limit,
-            one_stroke,
-            frames,
-            self.game,
-            round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME)),
-        )
+        pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
+        world = actions, noise, physics, table, fidelity, plan, self.reward, self.observation
+        read = Rules(*world, self.miss, limit, one_stroke, frames, self.game, pause)
         object.__setattr__(self, "rules", read)
 
     def _physics(self) -> Physics:
@@ -376,13 +317,12 @@ class Options:
     def _check_task(self) -> None:
         """Raise ValueError if an option of another task is changed."""
         for f in _FIELDS:
-            only, value = f.metadata["only"], getattr(self, f.name)
+            only, value = _ABOUT[f.name][1], getattr(self, f.name)
             if only is None or self.task == only or (self.task == "match" and only == "frame"):
                 continue
             if not isinstance(value, (type(f.default), np.bool_)) or value != f.default:
-                name, value, usual = (
-                    (self.says[0], True, False) if f.name == "says" else (f.name, value, f.default)
-                )
+                says = f.name == "says"
+                name, value, usual = (self.says[0], True, False) if says else (f.name, value, f.default)
                 allowed = f'must be {usual!r} with task="{self.task}"; it belongs to task="{only}"'
                 raise refuse(name, value, allowed)
 
@@ -391,54 +331,38 @@ class Options:
         """Return name and default of each option of a group: "task", "action", "view", "shot" or "frame";
         with ``task``, of those that this task has. ValueError if there is no such group or task."""
         choice("name", name, GROUPS)
-        kinds = (
-            TASKS if task is None else {"match": ("frame", "match")}.get(choice("task", task, TASKS), (task,))
-        )
-        return {
-            f.name: f.default
-            for f in _FIELDS
-            if f.metadata["group"] == name and f.metadata["only"] in (None, *kinds)
-        }
+        kinds = TASKS if task is None else {"match": TASKS[1:]}.get(choice("task", task, TASKS), (task,))
+        keys = {key for key, (group, only, _) in _ABOUT.items() if group == name and only in (None, *kinds)}
+        return {f.name: f.default for f in _FIELDS if f.name in keys}
 
     def but(self, **changes: Any) -> "Options":
         """Return a validated copy with some fields changed. ValueError as of ``Options``."""
-        # else they are those of this one
-        flags = {} if "says" not in changes else dict.fromkeys(SAYS, _UNSAID)
+        flags = dict.fromkeys(SAYS, _UNSAID) if "says" in changes else {}  # else they are those of this one
         return replace(self, **flags | changes)
-
-
-def _saying(name: str) -> Any:
-    """Whether options say this."""
-
-    def flag_of(self: Options) -> bool:
-        return name in self.says
-
-    return flag_of
 
 
 _FIELDS = tuple(f for f in fields(Options) if f.init)
 NAMES = (*(f.name for f in _FIELDS), *SAYS)
 for _name in SAYS:
-    setattr(Options, _name, property(_saying(_name), doc=f'Whether ``says`` has "{_name}", a bool.'))
+    _says: Any = lambda self, name=_name: name in self.says  # noqa: E731
+    setattr(Options, _name, property(_says, doc=f'Whether ``says`` has "{_name}", a bool.'))
 
 
 def options_table() -> str:
-    """All options, their defaults and values: a Markdown table, from the fields' metadata."""
+    """All options, their defaults and values: a Markdown table."""
     rows = ["| name | default | values |", "|---|---|---|"]
     for f in _FIELDS:
         default = f'"{f.default}"' if isinstance(f.default, str) else repr(f.default)
-        only = "" if f.metadata["only"] is None else f"of a {f.metadata['only']}: "
-        rows.append(f"| `{f.name}` | `{default}` | {only}{f.metadata['values']} |")
+        _, only, values = _ABOUT[f.name]
+        rows.append(f"| `{f.name}` | `{default}` | {f'of a {only}: ' if only else ''}{values} |")
     return "\n".join(rows) + "\n"
 
 
 def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:
     """The observation space of a game with these options."""
-    rules = options.rules
+    rules, frame = options.rules, options.task != "visit"
     choices = rules.actions.choices if isinstance(rules.actions, Choices) else 0
-    return observations.space(
-        options.observation, frame=options.task != "visit", replaced=rules.misses, choices=choices
-    )
+    return observations.space(options.observation, frame=frame, replaced=rules.misses, choices=choices)
 
 
 def options_of(options: Options | None, keywords: Mapping[str, Any]) -> Options:

@@ -38,22 +38,8 @@ STRIKE_COLUMNS = 11
 
 # Columns of the referee's facts: masks of balls, clear paths before a stroke that failed (where misses are
 # called), whether it was an attempt (``miss="attempt"``); and of the ruling (``BREAK``: with this stroke).
-(
-    FIRST,
-    TOUCHING,
-    MOVED,
-    DOWN,
-    CLEAR_PATH,
-    FULL_PATH,
-    ATTEMPT,
-    PLAYER,
-    WAS_ON,
-    FREE,
-    BREAK,
-    SCORED,
-    COST,
-    FOULS,
-) = range(14)
+FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, ATTEMPT = range(7)
+PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS = range(7, 14)
 SEEN_COLUMNS = 14
 
 _BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW)
