@@ -238,10 +238,9 @@ class Frame:
         ball came near one (``attempt.ATTEMPT_GAP``). ``layout``: see ``Saved``.
 
         For a clock, ``time_to_play``, ``duration``: the time [ms] from the rest of the balls to this stroke,
-        and to the next rest; it starts with the first stroke. A stroke that needs longer than ``shot_clock``
-        is not played: the caller leaves the balls as they lie, and ``stroke`` is read as
-        ``Stroke(late=True)``. The frame ends when another stroke with the same ``time_to_play`` could not
-        begin in time."""
+        and to the next rest. A stroke that needs longer than ``shot_clock`` is not played: the balls stay as
+        they lie, and ``stroke`` is read as ``Stroke(late=True)``. The frame ends when another stroke with the
+        same ``time_to_play`` could not begin in time."""
         self._in_phase("stroke", "play")
         late, lasted, rules = False, 0, self.rule_set
         integer("time_to_play", time_to_play, 0, MOST_CLOCK)
@@ -266,9 +265,9 @@ class Frame:
         """The opponent's decision after a foul, which is final.
 
         "play": the opponent plays the table as it lies, with the free ball, if any. "play_again": the
-        offender plays it, without. "replace", after a miss: the offender plays from ``saved``; the penalty
-        stands. "anywhere", after the last miss in succession: the opponent plays from anywhere on the table,
-        without a free ball."""
+        offender plays it, without. "replace", after a miss: the offender plays from ``saved``. "anywhere",
+        after the last miss in succession: the opponent plays from anywhere on the table, without a free
+        ball."""
         self._in_phase("choice", "choose")
         choice("choice", what, self.choices)
         if what == "replace" and self.saved is None:

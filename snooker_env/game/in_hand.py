@@ -106,9 +106,8 @@ def _better(positions, on_table, wish, p, best, anywhere, radius):
 def nearest_place(positions, on_table, x, y, radius):
     """The free place in the D nearest to (x, y) [m], and whether there is one: (x, y, bool).
 
-    Each ball excludes a disc. The nearest point outside all discs is the wish itself (moved into the D), the
-    nearest point of one circle, or a crossing of two circles or of one with the lines of the D: all are
-    tried. ``on_table[0]`` must be False."""
+    Each ball excludes a disc. The nearest point outside all is the wish itself (moved into the D), the nearest
+    point of one circle, or a crossing of two circles or of one with the D's lines. on_table[0] must be False."""
     wish = x, y = _into_d(x, y)
     reach = 2.0 * radius + CLEARANCE
     place = _better(positions, on_table, wish, wish, (x, y, np.inf), False, radius)
@@ -193,9 +192,8 @@ def place_cue(
     ``positions[0]``. ValueError for wrong input, and if there is no free place (which no legal table has)."""
     placed, present = check_table(positions, on_table)
     present[0] = False
-    px, py, free = _nearest_place(
-        placed, present, number("x", x), number("y", y), float(radius), bool(anywhere)
-    )
+    x, y = number("x", x), number("y", y)
+    px, py, free = _nearest_place(placed, present, x, y, float(radius), bool(anywhere))
     if not free:
         raise refuse("on_table", int(present.sum()), "must leave a free place")
     return px, py

@@ -1,7 +1,6 @@
-"""Which tables can a task start from? Layouts from a stream of random numbers, by geometry only.
-
-A layout is ``positions`` (22, 2) [m] and ``on_table`` (22,) bool, and depends on the stream alone: same key
-and counter, same table. The row of a ball off the table is that of ``balls.SPOTS``."""
+"""Which tables can a task start from? Layouts, ``positions`` (22, 2) [m] and ``on_table`` (22,), by geometry
+only, from a stream of random numbers: same key and counter, same table. A ball off the table is on its
+spot."""
 
 from dataclasses import dataclass
 from math import atan2, cos, hypot, sin
@@ -39,11 +38,9 @@ def clear(positions, on_table, x, y):
     for k in range(POCKET_PLACES.shape[0]):
         if hypot(POCKET_PLACES[k, 0] - x, POCKET_PLACES[k, 1] - y) < POCKET_GAP:
             return False
-    free = True
+    free, reach = True, 2 * BALL_RADIUS + GAP
     for i in range(N_BALLS):
-        free = free and not (
-            on_table[i] and hypot(positions[i, 0] - x, positions[i, 1] - y) < 2 * BALL_RADIUS + GAP
-        )
+        free = free and not (on_table[i] and hypot(positions[i, 0] - x, positions[i, 1] - y) < reach)
     return free
 
 
@@ -60,11 +57,8 @@ def _put(positions, on_table, ball, kind, stream):
     while True:
         u, v = pair(stream)
         x, y = left + u * (right - left), bottom + v * (top - bottom)
-        if (
-            ball == CUE
-            and kind == COLOURS
-            and not 0.25 <= hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1]) <= 1.2
-        ):
+        far = hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1])
+        if ball == CUE and kind == COLOURS and not 0.25 <= far <= 1.2:
             continue  # too near to the first ball on, or too far from it
         if clear(positions, on_table, x, y):
             positions[ball, 0], positions[ball, 1] = x, y
@@ -87,8 +81,8 @@ def _opened(positions, on_table, tables, first, last, stream):
 
 @kernel
 def _line_up_y(k):
-    """The y of red k of 15 in the practice line-up on the centre line [m]: two below the blue, seven below
-    the pink, four below the black, two above it; about 112 mm apart, so that a ball just passes."""
+    """The y of red k of 15 in the line-up [m]: two below the blue, seven below the pink, four below the
+    black, two above it; about 112 mm apart, so that a ball just passes."""
     blue, pink, black = SPOTS[19, 1], SPOTS[20, 1], SPOTS[21, 1]
     low, high = (pink - blue) / 8, (black - pink) / 5
     if k <= 9:
@@ -97,27 +91,20 @@ def _line_up_y(k):
 
 
 SNOOKERED_REDS = 3
-"""The most reds on the table in the layout "snookered"."""
 BEHIND = (0.08, 0.5)
-"""Range of its cue ball's distance from the snookering colour [m]: 1.5 balls to 28 % of the table's width."""
+"""Of the layout "snookered": the most reds; range of the cue ball's distance from the colour before it [m]."""
 
 
 @kernel
 def _hide(positions, on_table, reds, stream):
-    """Try to snooker the cue ball on every red, 1 to ``reds``, by a random colour; returns whether this
-    succeeded.
-
-    The cue ball goes behind the colour as seen from a red, and the rule's tangent test
-    (``snookered.is_snookered``) must agree. An escape needs a cushion, swerve, or the one open edge of a red.
-    """
+    """Try to snooker the cue ball on every red, 1 to ``reds``, by a random colour, behind which it goes as
+    seen from a red; returns whether the rule's tangent test (``snookered.is_snookered``) agrees."""
     u, v = pair(stream)
     far, _ = pair(stream)
     turn, _ = normals(stream)
     red, colour = 1 + int(u * reds), YELLOW + int(v * (N_BALLS - YELLOW))
-    angle = (
-        atan2(positions[colour, 1] - positions[red, 1], positions[colour, 0] - positions[red, 0])
-        + 0.03 * turn
-    )
+    dx, dy = positions[colour, 0] - positions[red, 0], positions[colour, 1] - positions[red, 1]
+    angle = atan2(dy, dx) + 0.03 * turn
     far = BEHIND[0] + far * (BEHIND[1] - BEHIND[0])
     x, y = positions[colour, 0] + far * cos(angle), positions[colour, 1] + far * sin(angle)
     if not clear(positions, on_table, x, y):
@@ -128,9 +115,9 @@ def _hide(positions, on_table, reds, stream):
 
 
 POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e-3)}
-"""Difficulty -> range of the tolerance of the layout's widest pot [rad]: by how much the aim may err to
-either side, by ``game.pots``. Along the solved line at 2.3 m/s a professional's execution errors pot 94,
-90 and 61 % of them, a club player's 92, 63 and 24 % (``python -m benchmarks.execution --strokes 2000``)."""
+"""Difficulty -> range of the tolerance of the layout's widest pot [rad], by which the aim may err to either
+side. Along the solved line at 2.3 m/s a professional's execution errors pot 94, 90 and 61 % of them, a club
+player's 92, 63 and 24 % (``python -m benchmarks.execution --strokes 2000``)."""
 
 
 @kernel
@@ -157,10 +144,8 @@ def _deal(code, tables, stream, positions, on_table, pot):
             if _hide(positions, on_table, loose, stream):
                 return
         elif kind == POT:
-            if (
-                find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, pot)
-                and low <= pot[0, TOLERANCE] < high
-            ):
+            many = find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, pot)
+            if many and low <= pot[0, TOLERANCE] < high:
                 return
         else:
             return
@@ -168,8 +153,7 @@ def _deal(code, tables, stream, positions, on_table, pot):
 
 @entry(what="the dealing of tables", seconds=4)
 def deal_tables(which, code, tables, streams, positions, on_table):
-    """Write new layouts for the tables ``which`` into positions (n, 22, 2) [m] and on_table (n, 22);
-    ``code``, ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64, one for each table."""
+    """New layouts for the tables ``which``; ``code``, ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64."""
     pot = np.empty((1, POT_COLUMNS))
     for k in which:
         _deal(code, tables, streams[k], positions[k], on_table[k], pot)
@@ -214,12 +198,8 @@ class Plan:
         return plan_of, (self.name, self.unfit)
 
 
-_NAMES = {
-    "break_off": (BREAK_OFF, N_REDS),
-    "line_up": (LINE_UP, N_REDS),
-    "colours": (COLOURS, 0),
-    "snookered": (SNOOKERED, SNOOKERED_REDS),
-}
+_NAMES = {"break_off": (BREAK_OFF, N_REDS), "line_up": (LINE_UP, N_REDS)}
+_NAMES |= {"colours": (COLOURS, 0), "snookered": (SNOOKERED, SNOOKERED_REDS)}
 _COUNTED = {"random": RANDOM, "break_off": BREAK_OFF}
 _COUNTS = [str(n) for n in range(N_REDS + 1)]
 LAYOUTS = ("opened", "held_out", *_NAMES)
@@ -249,13 +229,14 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     >>> plan_of("random:6").code.tolist()
     [4.0, 6.0, 0.0, 0.0]
     """
-    head, _, which = name.partition(":") if isinstance(name, str) else ("", "", "")
+    name, asked = name if isinstance(name, str) else "", name
+    head, _, which = name.partition(":")
     tables, code = NO_BANK, None
-    if isinstance(name, str) and name in ("opened", "held_out"):
+    if name in ("opened", "held_out"):
         tables = bank_without(unfit)
         part = kept(len(tables))[name == "held_out"]
         code = (OPENED, N_REDS, part.start, part.stop)
-    elif isinstance(name, str) and name in _NAMES:
+    elif name in _NAMES:
         code = (*_NAMES[name], 0, 0)
     elif head in _COUNTED and which in _COUNTS:
         code = (_COUNTED[head], int(which), 0, 0)
@@ -264,7 +245,7 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     if code is None:
         known = ", ".join(map(repr, LAYOUTS))
         allowed = f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard", "random:N" or "break_off:N" with N from 0 to {N_REDS}'
-        raise refuse("layout", name, allowed)
+        raise refuse("layout", asked, allowed)
     return Plan(name, np.array(code, np.float64), tables, unfit if len(tables) else ())
 
 
@@ -297,13 +278,3 @@ def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
     positions, on_table = np.empty((1, N_BALLS, 2)), np.empty((1, N_BALLS), np.bool_)
     deal_tables(np.zeros(1, np.int64), plan.code, plan.tables, stream_of(rng)[None], positions, on_table)
     return positions[0], on_table[0]
-
-
-def break_off(rng: np.random.Generator) -> tuple[Floats, Bools]:
-    """The start of a frame: the cue ball at its usual place, on either side of the brown."""
-    return layout("break_off", rng)
-
-
-def opened(rng: np.random.Generator) -> tuple[Floats, Bools]:
-    """A table opened by play, all 22 balls on it."""
-    return layout("opened", rng)

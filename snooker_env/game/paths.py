@@ -3,13 +3,12 @@
 *Any part*: in some direction the cue ball, rolling straight, meets a ball on before any ball not on; other
 balls on never obstruct. *Full ball* (S3 R14): it can roll straight onto the centre of some ball on. For reds
 this is "a complete diameter of any Red that is not obstructed by a ball or balls not on": a strip as wide as
-a ball, from the cue ball onto the whole of one red, where only other reds do not matter. A colour's strip
-must be free of all balls, also where several could be on: the striker nominates one of them.
+a ball, where only other reds do not matter. A colour's strip must be free of all balls, also where several
+could be on: the striker nominates one.
 
-A path ends where the cue ball would meet a cushion, nose or jaw (R14 speaks of a path of the cue ball; only
-the test for a snooker leaves cushions out). In hand a path counts that is clear from any place where the cue
-ball may stand (R14(a), and S2 R17 for a snooker). Tried are the places of ``in_hand``; an opening that falls
-between them is in the striker's favour."""
+A path ends at a cushion, nose or jaw (only the test for a snooker leaves cushions out). In hand a path counts
+that is clear from any place where the cue ball may stand (R14(a), and S2 R17 for a snooker). Tried are the
+places of ``in_hand``; an opening that falls between them is in the striker's favour."""
 
 import numpy as np
 
@@ -68,10 +67,13 @@ def full_ball_path(positions, on_table, on, noses, jaws, radius):
             clear = to_cushion(cx, cy, (tx - cx) / d, (ty - cy) / d, noses, jaws, radius) >= run * d - SLACK
             for i in range(1, N_BALLS):
                 if on_table[i] and not (harmless >> i) & 1:
-                    gap = segment_distance(
-                        positions[i, 0], positions[i, 1], cx, cy, cx + run * (tx - cx), cy + run * (ty - cy)
+                    x, y, ex, ey = (
+                        positions[i, 0],
+                        positions[i, 1],
+                        cx + run * (tx - cx),
+                        cy + run * (ty - cy),
                     )
-                    clear = clear and gap >= 2.0 * radius - SLACK
+                    clear = clear and segment_distance(x, y, cx, cy, ex, ey) >= 2.0 * radius - SLACK
             if clear:
                 return True
     return False
@@ -86,36 +88,28 @@ def _open_direction(positions, on_table, on, target, angle, noses, jaws, radius)
     if run == np.inf:
         return False
     for i in range(1, N_BALLS):
-        if (
-            on_table[i]
-            and not (on >> i) & 1
-            and meets(positions[i, 0] - cx, positions[i, 1] - cy, ux, uy, radius) < run
-        ):
+        x, y = positions[i, 0] - cx, positions[i, 1] - cy
+        if on_table[i] and not (on >> i) & 1 and meets(x, y, ux, uy, radius) < run:
             return False
     return to_cushion(cx, cy, ux, uy, noses, jaws, radius) >= run - SLACK
 
 
 @kernel
 def _cushion_edges(edges, n, c, t, towards, noses, jaws, radius):
-    """Append the directions at which a cushion may open or close the path from c to t; returns their number.
-    A nose: the cue ball meets it and the target at the same time, or passes its end. A jaw: also if it
-    grazes it."""
+    """Append the directions at which a cushion may open or close the path from c to t; returns their number:
+    where a nose and the target are met at the same time, or its end is passed; of a jaw also where it is
+    grazed."""
     (cx, cy), (tx, ty) = c, t
     for k in range(noses.shape[0]):
         level, vertical = noses[k, SIDE] * (noses[k, LEVEL] - radius), noses[k, AXIS] == 0.0
-        away = level - (tx if vertical else ty)
+        away, middle = level - (tx if vertical else ty), ty if vertical else tx
         half2 = 4.0 * radius * radius - away * away
         for end in range(4):
             if end < 2 and half2 < 0.0:
                 continue
-            at = (
-                noses[k, LOW + end - 2]
-                if end >= 2
-                else (ty if vertical else tx) + (2 * end - 1) * np.sqrt(half2)
-            )
-            edges[n] = (
-                np.arctan2(at - cy, level - cx) if vertical else np.arctan2(level - cy, at - cx)
-            ) - towards
+            at = noses[k, LOW + end - 2] if end >= 2 else middle + (2 * end - 1) * np.sqrt(half2)
+            turn = np.arctan2(at - cy, level - cx) if vertical else np.arctan2(level - cy, at - cx)
+            edges[n] = turn - towards
             n += 1
     for k in range(jaws.shape[0]):
         bx, by, reach = jaws[k, ARC_X] - cx, jaws[k, ARC_Y] - cy, jaws[k, ARC_RADIUS] + radius
@@ -146,8 +140,8 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
     """Whether there is a straight path to any part of a ball on (mask ``on``) from the place of the cue ball.
 
     It can open or close only at finitely many directions: tangents to a ball or a jaw, to an end of a
-    cushion, and where target and obstacle are met at the same time. So it is exact to test the midpoints
-    between them."""
+    cushion, and where target and obstacle are met at the same time. So testing the midpoints between them is
+    exact."""
     cx, cy = positions[0, 0], positions[0, 1]
     edges = np.empty(4 * N_BALLS + 4 * noses.shape[0] + 6 * jaws.shape[0])
     for target in range(1, N_BALLS):
@@ -184,10 +178,11 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
         ordered = np.sort(edges[:n])
         for k in range(n - 1):
             low, high = ordered[k], ordered[k + 1]
-            inside = low >= -half and high <= half and high - low > WINDOW
-            if inside and _open_direction(
-                positions, on_table, on, target, towards + 0.5 * (low + high), noses, jaws, radius
-            ):
+            inside, angle = (
+                low >= -half and high <= half and high - low > WINDOW,
+                towards + 0.5 * (low + high),
+            )
+            if inside and _open_direction(positions, on_table, on, target, angle, noses, jaws, radius):
                 return True
     return False
 

@@ -38,16 +38,12 @@ class RuleSet:
 LATE_PENALTY = 5
 """Least penalty in points for a stroke that was not begun within the shot clock."""
 
+_SHOT_CLOCK = (15_000, 10_000)
 RULE_SETS = (
     RuleSet(name="snooker", code=SNOOKER),
     RuleSet(name="six_red", code=SIX_RED, reds=6, most_misses=5, behind_nominated=True),
     RuleSet(
-        name="shoot_out",
-        code=SHOOT_OUT,
-        anywhere=True,
-        cushion=True,
-        clock=600_000,
-        shot_clock=(15_000, 10_000),
+        name="shoot_out", code=SHOOT_OUT, anywhere=True, cushion=True, clock=600_000, shot_clock=_SHOT_CLOCK
     ),
 )
 """All rule sets, by code."""

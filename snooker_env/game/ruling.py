@@ -1,8 +1,7 @@
 """Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke.
 
-``ruling`` is a pure kernel on integers and masks (bit i is ball i), the same for one table and thousands. It
-does not judge intent or effort (``frame`` has what geometry decides of that), time wasting or conduct. Acts
-outside the simulation, jumps, pushes and double hits are passed in as flags."""
+``ruling`` is a pure kernel on integers and masks (bit i is ball i). It does not judge intent or effort
+(``frame`` has what geometry decides of that); acts outside the simulation are passed in as flags."""
 
 from collections import namedtuple
 from enum import IntEnum, IntFlag
@@ -146,8 +145,8 @@ def _top_ball(mask):
 def _nomination(on, ball_on, free_ball, first, touching, nominated):
     """The id of the colour on, or of the free ball, or 0 for none ("any colour" or a free ball need one).
 
-    With AUTO it is the colour first struck among those allowed, the highest if there are several; if none was
-    struck, an allowed colour that the cue ball was touching."""
+    With AUTO it is the highest colour first struck among those allowed; if none was struck, an allowed colour
+    that the cue ball was touching."""
     if ball_on != 0 and not free_ball:
         return 0
     if nominated >= 0:
@@ -232,7 +231,7 @@ def ruling(before, facts, flags):
     # 6. No snooker behind the free ball without a score, unless only pink and black are left.
     behind = flags & FLAG.BEHIND_FREE_BALL and (fouls or not down)
     if behind and (
-        (choice and flags & FLAG.SIX_RED) or (free and reds_and_colours != (1 << PINK | 1 << BLACK))
+        (choice and flags & FLAG.SIX_RED) or (free and reds_and_colours != 1 << PINK | 1 << BLACK)
     ):
         fouls |= FOUL.BEHIND_FREE_BALL
         penalty = max(penalty, base)
@@ -285,17 +284,5 @@ def ruling(before, facts, flags):
     if flags & FLAG.SHOOT_OUT and playing and fouls:
         in_hand = 1
     free_next = 1 if playing and fouls and flags & FLAG.SNOOKERED and not flags & FLAG.SHOOT_OUT else 0
-    return Ruling(
-        fouls,
-        penalty,  # type: ignore[arg-type]
-        points,  # type: ignore[arg-type]
-        respotted,
-        remaining,
-        next_on,
-        stays,
-        in_hand,
-        free_next,
-        visit_end,
-        outcome,
-        choice,
-    )  # type: ignore[arg-type]
+    score: Any = (fouls, penalty, points, respotted)
+    return Ruling(*score, remaining, next_on, stays, in_hand, free_next, visit_end, outcome, choice)

@@ -13,9 +13,8 @@ def swapped(game: Ints) -> Ints:
         other[:, a], other[:, b] = game[:, b], game[:, a]
     for column in (columns.STRIKER, columns.BREAKER, columns.FIRST_BREAK):
         other[:, column] = 1 - game[:, column]
-    other[:, columns.WINNER] = np.where(
-        game[:, columns.WINNER] < 0, game[:, columns.WINNER], 1 - game[:, columns.WINNER]
-    )
+    winner = game[:, columns.WINNER]
+    other[:, columns.WINNER] = np.where(winner < 0, winner, 1 - winner)
     other[:, columns.PAID] = -game[:, columns.PAID]
     return other
 

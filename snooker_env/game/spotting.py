@@ -1,10 +1,9 @@
 """Where does a colour go when it returns? The spotting rule, exact, as kernels.
 
-A colour goes on its own spot; if that is occupied, on the free spot of the highest value; if all are, as near
-its own spot as possible without touching another ball, on the straight line towards the top cushion; if that
-has no room, below the spot (the rules state this for pink and black). A spot is occupied if a ball there
-would touch another as the referee sees it (``balls.REFEREE_TOUCH``). Of several colours, those whose own spot
-is free go first, then the highest value."""
+A colour goes on its own spot; if that is occupied (a ball there would touch another as the referee sees it),
+on the free spot of the highest value; if all are, as near its own spot as possible without touching, on the
+straight line towards the top cushion; if that has no room, below the spot (the rules state this for pink and
+black). Of several colours, those whose own spot is free go first, then the highest value."""
 
 import numpy as np
 
@@ -34,11 +33,10 @@ def occupied(positions, on_table, x, y, radius):
 
 @kernel
 def nearest_free(positions, on_table, x, y, direction, radius):
-    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no
-    other [m].
+    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no other.
 
     Ball i excludes y_i - h to y_i + h with h^2 = (2 R + clearance)^2 - (x_i - x)^2; y moves to the far end of
-    each interval that contains it, until none does, which is exact. Cushions are ignored."""
+    each interval that contains it, until none does, which is exact."""
     reach = 2.0 * radius + balls.CLEARANCE
     moved = True
     while moved:
@@ -79,10 +77,9 @@ def spot(positions, on_table, mask, radius):
             on_table[ball] = False
     waiting = mask
     for ball in range(balls.BLACK, balls.YELLOW - 1, -1):
-        if (mask >> ball) & 1 and not occupied(
-            positions, on_table, balls.SPOTS[ball, 0], balls.SPOTS[ball, 1], radius
-        ):
-            positions[ball, 0], positions[ball, 1] = balls.SPOTS[ball, 0], balls.SPOTS[ball, 1]
+        x, y = balls.SPOTS[ball, 0], balls.SPOTS[ball, 1]
+        if (mask >> ball) & 1 and not occupied(positions, on_table, x, y, radius):
+            positions[ball, 0], positions[ball, 1] = x, y
             on_table[ball] = True
             waiting &= ~(1 << ball)
     for ball in range(balls.BLACK, balls.YELLOW - 1, -1):
