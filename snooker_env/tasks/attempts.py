@@ -1,13 +1,13 @@
 """What does the miss rule need to know of a stroke that failed? Its clear paths and, with ``miss="attempt"``,
 whether it was an attempt. For that, strokes without a clear path that struck no ball on first are played once
-more, with the path of the cue ball, before the referee rules; they are not counted."""
+more, uncounted, with the path of the cue ball, before the referee rules."""
 
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .._jit import entry
-from .._types import Bools, Floats, Ints
+from .._types import Ints
 from ..game.attempt import ATTEMPT_GAP, closest_approach
 from ..game.balls import CUE, N_BALLS, bits
 from ..game.frame_columns import ANYWHERE, BALL_ON, FREE_BALL, IN_HAND, MISSED, Layouts, strikeable
@@ -19,7 +19,7 @@ from .arrays import PlayedArrays, TableArrays
 from .stroke import ATTEMPT, CLEAR_PATH, FIRST, FULL_PATH, ShotBuffers, see, with_path
 
 if TYPE_CHECKING:
-    from .options import Rules
+    from .tables import Tables
 
 _BALL_BALL, _OK = int(EventKind.BALL_BALL), int(Status.OK)
 
@@ -71,24 +71,17 @@ def gap_of(positions, on_table, row, shots, path, j):
     return closest_approach(segments[j], n_segments[j], until, positions, on_table, on, BALL_RADIUS)
 
 
-def judge_attempts(
-    which: Ints,
-    buffers: ShotBuffers,
-    positions: Floats,
-    on_table: Bools,
-    game: Ints,
-    rules: "Rules",
-    phys: Floats,
-) -> dict[int, float]:
-    """Write into ``buffers.seen`` which shots were attempts; returns the gaps [m] of those asked by row."""
-    b, asked = buffers, np.empty(len(which), np.bool_)
+def judge_attempts(which: Ints, b: ShotBuffers, tables: "Tables") -> dict[int, float]:
+    """Write into ``b.seen`` which shots were attempts; returns the gaps [m] of those asked by row."""
+    positions, on_table, game, *_ = tables.arrays
+    asked = np.empty(len(which), np.bool_)
     question(which, on_table, game, b.status, b.seen, asked)
     gaps = {}
     for j in np.flatnonzero(asked).tolist():
         k = which[j]
-        one, at = (
-            (b, j) if b.segments.shape[1] else (with_path(b, j, positions[k], on_table[k], rules, phys), 0)
-        )
+        one, at = b, j
+        if not b.segments.shape[1]:
+            one, at = with_path(b, j, positions[k], on_table[k], tables.rules, tables.packed[2]), 0
         gaps[j] = gap_of(positions[k], on_table[k], game[k], one.played, (one.segments, one.n_segments), at)
         b.seen[j, ATTEMPT] = gaps[j] <= ATTEMPT_GAP
     return gaps

@@ -37,20 +37,17 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
             columns.claim(row)
             continue
         if row[columns.PHASE] == columns.LOT:
-            columns.draw(
-                row, 1 - row[columns.STRIKER] if says == declarations.OTHER_BEGINS else row[columns.STRIKER]
-            )
-            if says == declarations.OTHER_BEGINS:
+            other = says == declarations.OTHER_BEGINS
+            columns.draw(row, 1 - row[columns.STRIKER] if other else row[columns.STRIKER])
+            if other:
                 continue
         elif row[columns.PHASE] == columns.CHOICE:
-            wish = (
-                0.0 if decisions[k] == columns.PLAY else -1.0 if decisions[k] == columns.PLAY_AGAIN else 1.0
-            )
+            what = decisions[k]
+            wish = 0.0 if what == columns.PLAY else -1.0 if what == columns.PLAY_AGAIN else 1.0
             if not choose_as(k, wish, rules, tables, saved):
                 continue
-        tables.nominated[k] = (
-            AUTO if nominate[k] < 0 else declarations.nominated_ball(max(0, nominate[k] - YELLOW + 1), row)
-        )
+        colour = max(0, nominate[k] - YELLOW + 1)
+        tables.nominated[k] = AUTO if nominate[k] < 0 else declarations.nominated_ball(colour, row)
         if row[columns.IN_HAND] and not np.isnan(places[k, 0]):
             if row[columns.ANYWHERE]:
                 place_anywhere(p, on, places[k, 0], places[k, 1])
@@ -68,17 +65,8 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
 def carry_out(frames: Frames, which: Ints, asked: tuple[Any, ...], buffers: ShotBuffers, side: int) -> Ints:
     """Carry out the strokes ``asked``, arrays of ``players.Strokes``, up to the strike, with the errors of the
     seat ``side``; returns the tables with a stroke."""
-    playing = np.empty(len(which), np.int64)
-    codes = (frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward))
-    m = _carry_out(
-        which,
-        asked,
-        frames.arrays,
-        frames.saved_arrays,
-        frames.packs[side][:2],
-        codes,
-        buffers.struck,
-        playing,
-    )
+    codes = frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward)
+    playing, tables = np.empty(len(which), np.int64), (frames.arrays, frames.saved_arrays)
+    m = _carry_out(which, asked, *tables, frames.packs[side][:2], codes, buffers.struck, playing)
     frames.hold_late(playing[:m], buffers)
     return playing[:m]

@@ -86,12 +86,10 @@ def masks(which, positions, on_table, game, options, out):
         k, parts = which[j], 1 + declarations.COLOURS if options[declarations.A_NOMINATE] >= 0 else 1
         row, mask = game[k], bits(on_table[k])
         for n in range(parts):
-            on = (
-                strikeable(row, mask)
-                if parts == 1
-                else declarations.playable(row, mask, declarations.nominated_ball(n, row))
-            )
-            available = parts == 1 or declarations.may_nominate(n, row)
+            on, available = strikeable(row, mask), True
+            if parts > 1:
+                on = declarations.playable(row, mask, declarations.nominated_ball(n, row))
+                available = declarations.may_nominate(n, row)
             many = count_lines(positions[k], on_table[k], on, rows) if available and on_table[k, 0] else 1
             for c in range(SIZE):
                 out[j, n * SIZE + c] = available and c < STROKES * many
@@ -121,15 +119,13 @@ class Choices:
     claim: bool
     lot: bool
     choices: int
-    """Number of choices in all."""
     space: spaces.Discrete
 
     def __init__(self, physics: Physics, says: Collection[str] = ()):
         self.physics = physics
         self.nominate, _, self.concede, self.claim, self.lot = (name in says for name in declarations.SAYS)
-        self.choices = (
-            SIZE * (1 + declarations.COLOURS * self.nominate) + self.concede + self.claim + self.lot
-        )
+        more = self.concede + self.claim + self.lot
+        self.choices = SIZE * (1 + declarations.COLOURS * self.nominate) + more
         self.space = spaces.Discrete(self.choices)
 
     @property
@@ -158,8 +154,9 @@ class Choices:
 
     def pack(self) -> Floats:
         """The options for the kernels, in the columns ``A_*`` of ``declarations``."""
-        physics, spoken = self.physics, [self.concede, self.claim, self.lot]
-        limits = [physics.end_mass_ratio, physics.max_offset]
-        return np.array(
-            [False, False, False, *limits, True, 0 if self.nominate else -1, -1, -1, *spoken], np.float64
+        limits, spoken = (
+            (self.physics.end_mass_ratio, self.physics.max_offset),
+            (self.concede, self.claim, self.lot),
         )
+        where = 0 if self.nominate else -1, -1, -1
+        return np.array([False, False, False, *limits, True, *where, *spoken], np.float64)

@@ -7,8 +7,8 @@ simulator, for a ball struck ``ROLLING`` above its middle: for the physics "pape
 up to 2 m/s.
 
 Aim. Speed, height and side of the strike turn the escape. So the cue ball alone is played with the models of
-the engine until it meets a ball, in directions about the one of the search, and sent along the middle of
-those that succeed."""
+the engine until it meets a ball, in directions about that of the search, and sent along the middle of those
+that succeed."""
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 
@@ -63,22 +63,13 @@ _LEGS = 4
 _SAME = 0.1
 """Escapes whose directions differ by less are one [rad]."""
 
-_BED = np.array(
-    [
-        (axis, side, half, -9.0, 9.0)
-        for axis, half in ((AXIS_X, HALF_WIDTH), (AXIS_Y, HALF_LENGTH))
-        for side in (-1.0, 1.0)
-    ]
-)
+_HALVES = ((AXIS_X, HALF_WIDTH), (AXIS_Y, HALF_LENGTH))
+_BED = np.array([(axis, side, half, -9.0, 9.0) for axis, half in _HALVES for side in (-1.0, 1.0)])
 _NO_JAWS, _NO_FALLS = np.empty((0, 6)), np.empty((0, 3))
 for _constant in (_BED, _NO_JAWS, _NO_FALLS):
     _constant.setflags(write=False)
-_CLEAR = (
-    BALL_RADIUS - HALF_WIDTH,
-    HALF_WIDTH - BALL_RADIUS,
-    BALL_RADIUS - HALF_LENGTH,
-    HALF_LENGTH - BALL_RADIUS,
-)
+_X, _Y = HALF_WIDTH - BALL_RADIUS, HALF_LENGTH - BALL_RADIUS
+_CLEAR = (-_X, _X, -_Y, _Y)
 _STEP, _STEPS = 0.0087, (30, 75)
 """Directions about an escape tried for a stroke: their distance [rad]; number on either side, and if none
 succeeds."""
@@ -98,13 +89,8 @@ def _rebound(cosine):
     at = atan2(sqrt(max(0.0, 1.0 - cosine * cosine)), cosine) * 18.0 / pi
     k = min(int(at), _ANGLES - 1)
     s = at - k
-    low, high = _REBOUND[k], _REBOUND[k + 1]
-    return (
-        low[0] + s * (high[0] - low[0]),
-        low[1] + s * (high[1] - low[1]),
-        low[2] + s * (high[2] - low[2]),
-        low[3] + s * (high[3] - low[3]),
-    )
+    (a, b, c, d), (a1, b1, c1, d1) = _REBOUND[k], _REBOUND[k + 1]
+    return a + s * (a1 - a), b + s * (b1 - b), c + s * (c1 - c), d + s * (d1 - d)
 
 
 @kernel
@@ -179,21 +165,19 @@ def find_escapes(positions, on_table, on, lines, first):
     """Write the escapes with the widest windows into the rows from ``first`` on; returns the rows in use."""
     turn, count = 2.0 * pi / _DIRECTIONS, first
     for s in range(len(_SPEEDS)):
-        begin = 0
-        while (
-            begin < _DIRECTIONS
-            and _reaches(positions, on_table, on, cos(begin * turn), sin(begin * turn), _SPEEDS[s]) > 0.0
-        ):
+        begin, speed = 0, _SPEEDS[s]
+        while _reaches(positions, on_table, on, cos(begin * turn), sin(begin * turn), speed) > 0.0:
             begin += 1  # a window must not be cut in two where the directions begin
+            if begin == _DIRECTIONS:
+                break
         worth, run = 0.0, 0
         for k in range(begin, begin + _DIRECTIONS + 1):
-            here = _reaches(positions, on_table, on, cos(k * turn), sin(k * turn), _SPEEDS[s])
+            here = _reaches(positions, on_table, on, cos(k * turn), sin(k * turn), speed)
             if here > 0.0:
                 worth, run = worth + here, run + 1
             elif run:
-                count = _keep(
-                    lines, first, count, (k - 0.5 * (run + 1)) * turn, 0.5 * run * turn, _SPEEDS[s], worth
-                )
+                aim = (k - 0.5 * (run + 1)) * turn
+                count = _keep(lines, first, count, aim, 0.5 * run * turn, speed, worth)
                 worth, run = 0.0, 0
         if count > first and lines[first, LINE_WORTH] >= _WIDE:
             break
@@ -215,13 +199,8 @@ def _played(aim, stroke, positions, on_table, law, work):
         ball, until = 0, min(wall, motion[0, cloth.T_END])
         for i in range(1, N_BALLS):
             x, y, d = positions[i, 0], positions[i, 1], 2.0 * R
-            if (
-                not on_table[i]
-                or x + d < motion[0, cloth.LO_X]
-                or x - d > motion[0, cloth.HI_X]
-                or y + d < motion[0, cloth.LO_Y]
-                or y - d > motion[0, cloth.HI_Y]
-            ):
+            off = x + d < motion[0, cloth.LO_X] or x - d > motion[0, cloth.HI_X]
+            if not on_table[i] or off or y + d < motion[0, cloth.LO_Y] or y - d > motion[0, cloth.HI_Y]:
                 continue
             cloth.begin(motion, state, 1, 0.0, (x, y), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
             t = pair_time(motion, state, 0, 1, now, d)

@@ -10,13 +10,13 @@ go to the opponent's score; after a foul the agent plays on from where the balls
 A frame that ends in the opponent's first visit is shown by that reset; the next step plays nothing, reports
 the end and pays its reward (``Frames.due``). A cue ball in hand is placed at once on the free place of the D
 nearest to its usual one (``balls.SPOTS``), so that it can be seen; the player may place it elsewhere. The
-physics is planar: no ball leaves the table or jumps over another, so those fouls never occur."""
+physics is planar: no ball leaves the table or jumps over another."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -41,13 +41,16 @@ from .states import FrameState, checked_frame
 from .stroke import ShotBuffers
 from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
 
+Generators: TypeAlias = Sequence[np.random.Generator]
+"""One for each table, for an opponent in Python."""
+
 
 class Opponent(ABC):
     """Who plays the other side of frames."""
 
     name: str = ""
 
-    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Any:
+    def ask(self, frames: "Frames", which: Ints, generators: Generators) -> Any:
         """What it plays on the tables ``which``, for ``prepare``; None for one that plays as a kernel."""
         return None
 
@@ -55,11 +58,13 @@ class Opponent(ABC):
     def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
         """Carry the strokes out up to the strike; returns the tables with a stroke."""
 
-    def turns(
-        self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]
-    ) -> "list[tuple[Opponent, Ints, Any]]":
+    def turns(self, frames: "Frames", which: Ints, generators: Generators) -> "list[Turn]":
         """Who plays on which of the tables ``which``, and what: [(opponent, tables, asked), ...]."""
         return [(self, which, self.ask(frames, which, generators))]
+
+
+Turn: TypeAlias = tuple[Opponent, Ints, Any]
+"""Who plays on which tables, and what was asked."""
 
 
 @dataclass(frozen=True)
@@ -91,16 +96,10 @@ class Frames(Tables):
 
     nominated: Ints
     """(n,) The colour that the striker has nominated after a red or as its free ball, 0 for a free ball
-    declined; AUTO, as always between two strokes: the colour first struck. Code that sets it must check
-    it."""
-    due: Bools
-    """(n,) Which episodes have ended in a reset, so that the next step reports their end."""
-
-    seats: tuple[Seat, ...]
-    """The agent's, and the other player's if it does not play alone. One without a player is played by
-    ``turn``."""
-    packs: tuple[Any, ...]
-    """``packed`` of each seat."""
+    declined; AUTO, as always between two strokes: the colour first struck. Unchecked."""
+    due: Bools  # (n,) which episodes have ended in a reset, so that the next step reports their end
+    seats: tuple[Seat, ...]  # the agent's, and the other's if it does not play alone; no player: by ``turn``
+    packs: tuple[Any, ...]  # ``packed`` of each seat
 
     def __init__(
         self, rules: Rules | Options, n: int = 1, *, limit: int = NEVER, seats: Sequence[Seat] | None = None
@@ -144,24 +143,17 @@ class Frames(Tables):
         return self._saved_positions, self._saved_on_table
 
     @property
-    def _setting(self) -> tuple[Any, ...]:
+    def _setting(self):
         """For kernels: the parts of ``frame_kernels.Setting``, in a plain tuple."""
         return self._setting_of(self._lot)
 
-    def _setting_of(self, options: Floats) -> tuple[Any, ...]:
+    def _setting_of(self, options):
         """``_setting`` with the packed options of one seat's actions."""
         return *self._numbers, options, self._jaws
 
     def _columns(self) -> tuple[str, ...]:
-        return (
-            *super()._columns(),
-            "_saved_positions",
-            "_saved_on_table",
-            "_replies",
-            "_played",
-            "nominated",
-            "due",
-        )
+        more = ("_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due")
+        return super()._columns() + more
 
     def frame(self, k: int) -> Frame:
         """The ``game.frame.Frame`` on table k."""
@@ -169,9 +161,8 @@ class Frames(Tables):
 
     def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k; with a free ball every colour."""
-        return super().on(k) | (
-            COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, columns.FREE_BALL] else 0
-        )
+        free = COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, columns.FREE_BALL] else 0
+        return super().on(k) | free
 
     def lead(self) -> Ints:
         """The agent's scores minus the opponent's: (n,)."""
@@ -213,10 +204,8 @@ class Frames(Tables):
 
     def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
         """What the strikers say before their strokes; returns which of the tables ``which`` play one."""
-        plays = np.empty(len(which), np.bool_)
-        frame_kernels.decide(
-            which, actions, self.arrays, self.saved_arrays, self._setting_of(self.packs[side][0]), plays
-        )
+        plays, setting = np.empty(len(which), np.bool_), self._setting_of(self.packs[side][0])
+        frame_kernels.decide(which, actions, self.arrays, self.saved_arrays, setting, plays)
         return plays
 
     def complete(
@@ -241,15 +230,12 @@ class Frames(Tables):
 
     def _conclude(self, which, b, out, reported, alone):
         if self.rules.misses:
-            remember(
-                which, self.arrays, self.saved_arrays, b.played, self.rules.table.noses, self.rules.table.jaws
-            )
+            cushions = self.rules.table.noses, self.rules.table.jaws
+            remember(which, self.arrays, self.saved_arrays, b.played, *cushions)
         if self._miss == columns.ATTEMPTS:
-            judge_attempts(which, b, self.positions, self.on_table, self.game, self.rules, self.packed[2])
-        played = self._played if reported else self._replies
-        frame_kernels.conclude(
-            which, self.arrays, b.played, self._setting, reported, alone, played, out.arrays
-        )
+            judge_attempts(which, b, self)
+        tables, played = (self.arrays, b.played, self._setting), self._played if reported else self._replies
+        frame_kernels.conclude(which, *tables, reported, alone, played, out.arrays)
 
     def turn(
         self,
@@ -300,9 +286,8 @@ class Frames(Tables):
 
         def play(which, buffers):
             acting = which[~self.due[which]] if self.due.any() else which
-            self.complete(
-                self.prepare(acting, actions, buffers), out, buffers, crew, reported=True, alone=alone
-            )
+            struck = self.prepare(acting, actions, buffers)
+            self.complete(struck, out, buffers, crew, reported=True, alone=alone)
             self.go_on(acting)
             if alone:
                 # even if a state of two players left a decision or lot
@@ -334,9 +319,8 @@ class Frames(Tables):
             for player, tables, asked in opponent.turns(self, which, crew.generators):
 
                 def play(part, buffers, player=player, asked=asked):
-                    self.complete(
-                        player.prepare(self, part, asked, buffers), out, buffers, crew, reported=False
-                    )
+                    struck = player.prepare(self, part, asked, buffers)
+                    self.complete(struck, out, buffers, crew, reported=False)
                     self.go_on(part)
 
                 crew(tables, play)
@@ -407,16 +391,9 @@ class Frames(Tables):
 
     def get_state(self, k: int) -> dict[str, Any]:
         """See ``Tables.get_state``: the fields of a ``states.FrameState`` except "rng"."""
-        return {
-            "positions": self.positions[k].tolist(),
-            "on_table": self.on_table[k].tolist(),
-            "frame": self.frame(k).to_dict(),
-            "strokes": int(self.game[k, columns.STROKES]),
-            "opponent": int(self.game[k, columns.OPPONENT]),
-            "unpaid": self._unpaid(k),
-            "due": bool(self.due[k]),
-            "stream": self.streams[k].tolist(),
-        }
+        strokes, opponent = self.game[k, [columns.STROKES, columns.OPPONENT]].tolist()
+        paid = {"opponent": opponent, "unpaid": self._unpaid(k), "due": bool(self.due[k])}
+        return super().get_state(k) | {"frame": self.frame(k).to_dict(), "strokes": strokes} | paid
 
     def _unpaid(self, k):
         """What the agent has earned and no reward has paid yet."""
@@ -461,28 +438,19 @@ class Frames(Tables):
     def standing(self, k: int) -> dict[str, Any]:
         """See ``Tables.standing``."""
         frame = self.frame(k)
-        return {
-            "next_player": frame.striker,
-            "scores": frame.scores,
-            "break_points": frame.break_points,
-            "choice": frame.phase == "choice",
-            "winner": frame.winner,
-            "next_free_ball": frame.free_ball,
-        }
+        now = {"scores": frame.scores, "break_points": frame.break_points, "winner": frame.winner}
+        turn = {"next_player": frame.striker, "next_free_ball": frame.free_ball}
+        return now | turn | {"choice": frame.phase == "choice"}
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """See ``Tables.set_position``. Player 0 is at the table; the points are its break."""
         ball_on, in_hand, points = game[[columns.BALL_ON, columns.IN_HAND, columns.POINTS]].tolist()
-        balls = mask_of_present(on_table) & ~CUE_BIT
-        frame = Frame(
-            break_points=points,
-            on_table=balls,
-            ball_on=BallOn(ball_on),
-            in_hand=bool(in_hand),
-            miss=self.rules.miss,
-            rules=self.rules.game,
-            rack=balls,
+        balls, game = (
+            mask_of_present(on_table) & ~CUE_BIT,
+            {"miss": self.rules.miss, "rules": self.rules.game},
         )
+        on: Any = {"ball_on": BallOn(ball_on), "in_hand": bool(in_hand), "break_points": points}
+        frame = Frame(on_table=balls, rack=balls, **on, **game)
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, False, AUTO

@@ -33,24 +33,16 @@ _OK = int(Status.OK)
 class Setting(NamedTuple):
     """What is the same for all frames of some tables."""
 
-    rules: int
-    """Code of the rule set, as in ``frame_columns.Conditions``."""
+    rules: int  # code of the rule set, as in ``frame_columns.Conditions``
     miss: int
     time_to_play: int
-    reward: int
-    """Code of the reward."""
-    limit: int
-    """Steps after which an episode is truncated."""
-    max_strokes: int
-    """Strokes after which a frame is stopped."""
-    frames: int
-    """Frames that win a match."""
-    clock: int
-    """Time of a frame [ms]; 0: no clock."""
-    options: Floats
-    """Packed, of the action space."""
-    jaws: Floats
-    """(m, 3): see ``snookered.NO_JAWS``."""
+    reward: int  # its code
+    limit: int  # steps after which an episode is truncated
+    max_strokes: int  # strokes after which a frame is stopped
+    frames: int  # frames that win a match
+    clock: int  # time of a frame [ms]; 0: no clock
+    options: Floats  # packed, of the action space
+    jaws: Floats  # (m, 3): see ``snookered.NO_JAWS``
 
 
 @kernel
@@ -59,13 +51,8 @@ def choose_as(k, wish, rules, tables, saved):
     row = tables.game[k]
     what = columns.PLAY_AGAIN if wish < -1.0 / 3.0 else columns.PLAY
     if wish > 1.0 / 3.0:
-        what = (
-            columns.REPLACE
-            if columns.may_replace(row, rules)
-            else columns.PLACE_ANYWHERE
-            if columns.may_place_anywhere(row, rules)
-            else columns.PLAY
-        )
+        anywhere = columns.PLACE_ANYWHERE if columns.may_place_anywhere(row, rules) else columns.PLAY
+        what = columns.REPLACE if columns.may_replace(row, rules) else anywhere
     columns.choose(row, what)
     if what == columns.REPLACE:
         p, on, back, back_on = tables.positions[k], tables.on_table[k], saved.positions[k], saved.on_table[k]
@@ -100,10 +87,8 @@ def decide(which, actions, tables, saved, setting, plays):
         elif declared == declarations.CLAIMS:
             columns.claim(row)
         elif row[columns.PHASE] == columns.LOT:
-            columns.draw(
-                row,
-                1 - row[columns.STRIKER] if declared == declarations.OTHER_BEGINS else row[columns.STRIKER],
-            )
+            other = declared == declarations.OTHER_BEGINS
+            columns.draw(row, 1 - row[columns.STRIKER] if other else row[columns.STRIKER])
         elif row[columns.PHASE] == columns.CHOICE:
             wish = a[int(options[declarations.A_DECISION])] if options[declarations.A_DECISION] >= 0 else 0.0
             plays[j] = choose_as(k, wish, setting.rules, tables, saved)
@@ -134,9 +119,8 @@ def hold_late(which, game, rules, time_to_play, v, w, shots):
     for j in range(which.shape[0]):
         if columns.is_late(game[which[j]], rules, time_to_play):
             v[j, CUE, 0] = v[j, CUE, 1] = w[j, CUE, 0] = w[j, CUE, 1] = w[j, CUE, 2] = 0.0
-            shots[j, stroke.VX] = shots[j, stroke.VY] = shots[j, stroke.WX] = shots[j, stroke.WY] = shots[
-                j, stroke.WZ
-            ] = 0.0
+            for c in range(stroke.VX, stroke.WZ + 1):
+                shots[j, c] = 0.0
 
 
 @entry(what="the referee of frames", seconds=6)
@@ -167,9 +151,8 @@ def conclude(which, tables, shots, setting, reported, alone, played, output):
         facts = Facts(first, touching, moved, potted, 0, tables.nominated[k])
         result = settle(p, on, situation, facts, flags, setting.jaws, BALL_RADIUS)
         tables.nominated[k] = AUTO
-        stroke.write_ruling(
-            seen, row[columns.STRIKER], ball_on, row[columns.FREE_BALL], row[columns.POINTS], result
-        )
+        striker, free, points = row[columns.STRIKER], row[columns.FREE_BALL], row[columns.POINTS]
+        stroke.write_ruling(seen, striker, ball_on, free, points, result)
         effort = columns.Effort(seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH], seen[stroke.ATTEMPT])
         lasted = int(1000.0 * shots.duration[j] + 0.5)
         columns.after_stroke(row, result, conditions, effort, setting.miss != columns.NO_MISSES, lasted)
@@ -207,9 +190,8 @@ def observe_frame_into(out, k, tables, saved, setting, player):
     """Write what ``player`` observes: as in a visit, ``FRAME_ENTRIES`` and, with room, the saved layout."""
     row, present = tables.game[k], tables.on_table[k]
     on = columns.strikeable(row, bits(present) & ~1)
-    observe_into(
-        out, tables.positions[k], present, row[columns.BALL_ON], on, row[columns.IN_HAND], row[columns.POINTS]
-    )
+    in_hand, points = row[columns.IN_HAND], row[columns.POINTS]
+    observe_into(out, tables.positions[k], present, row[columns.BALL_ON], on, in_hand, points)
     mine, other = row[columns.SCORE_0 + player], row[columns.SCORE_1 - player]
     to_play = not row[columns.OVER] and row[columns.STRIKER] == player
     left = available(row[columns.ON_TABLE], row[columns.BALL_ON], row[columns.FREE_BALL])
@@ -280,9 +262,8 @@ def _write_frame_info(k, row, player, replies, out):
 @kernel
 def _worth(row, reward):
     """What the agent has earned so far, as the ``reward`` counts it."""
-    return earned(
-        reward, columns.lead_of(row, AGENT), row[columns.FRAMES_0 + AGENT] - row[columns.FRAMES_1 - AGENT]
-    )
+    frames_lead = row[columns.FRAMES_0 + AGENT] - row[columns.FRAMES_1 - AGENT]
+    return earned(reward, columns.lead_of(row, AGENT), frames_lead)
 
 
 @entry(what="the steps of frames", seconds=1)
@@ -318,8 +299,8 @@ def inform(player, game, output):
 @entry(what="the start of a frame", seconds=1)
 def begin(which, drawn, breakers, in_hand, on_table, game, streams):
     """New frames on tables already dealt. Who breaks: without ``drawn`` the agent; else ``breakers`` (n,),
-    where it is -1 whoever is drawn, and a number is drawn in any case, so that the errors of strokes do not
-    depend on it."""
+    where -1 whoever is drawn; a number is drawn in any case, so that the errors of strokes do not depend on
+    it."""
     for j in range(which.shape[0]):
         k = which[j]
         breaker = AGENT

@@ -24,9 +24,8 @@ from .opponents import SIDE
 from .plain_stroke import BREAK_X, SLIDE, break_off, plain, soft
 from .stroke import ShotBuffers, place, place_anywhere, strike
 
-_PLACES = tuple(
-    (x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8)
-)
+_OVER, _BACK = (-0.8, -0.4, 0.0, 0.4, 0.8), (0.0, 0.5)
+_PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in _BACK for x in _OVER)
 _BEHIND = 0.3
 """How far behind the ghost ball the cue ball is placed, where it may stand anywhere [m]."""
 DRIVE = 4.0
@@ -47,9 +46,8 @@ def _put_on_bed(positions, on_table, mask, rows):
                 dx = positions[ball, 0] - POCKET_AIMS[k, AIM_X]
                 dy = positions[ball, 1] - POCKET_AIMS[k, AIM_Y]
                 far = (2.0 * BALL_RADIUS + _BEHIND) / max(1e-9, hypot(dx, dy))
-                place_anywhere(
-                    positions, on_table, positions[ball, 0] + far * dx, positions[ball, 1] + far * dy
-                )
+                x, y = positions[ball, 0] + far * dx, positions[ball, 1] + far * dy
+                place_anywhere(positions, on_table, x, y)
                 worth = 0.0
                 if tries == 1:
                     _, _, _, worth = soft(positions, on_table, 1 << ball, 0, DRIVE, rows)
@@ -100,17 +98,12 @@ def stroke_at(positions, on_table, on, in_hand, failed, drive, rows, stream):
     if not failed and find_pots(positions, on_table, on & ~touching, BALL_RADIUS, rows[:1]):
         ball, pocket = int(rows[0, POT_BALL]), int(rows[0, POT_POCKET])
         gx, gy = rows[0, GHOST_X], rows[0, GHOST_Y]
-        run = hypot(
-            POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
-        )
+        tx, ty = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
+        run = hypot(tx - positions[ball, 0], ty - positions[ball, 1])
         # of the cue ball at the impact
         needed = SLIDE * sqrt(ROLL * (run + 0.6)) / max(rows[0, COS_CUT], 0.2)
-        return (
-            min(6.0, SLIDE * sqrt(ROLL * hypot(gx - x, gy - y) + needed * needed)),
-            0.0,
-            0.0,
-            atan2(gy - y, gx - x),
-        )
+        speed = min(6.0, SLIDE * sqrt(ROLL * hypot(gx - x, gy - y) + needed * needed))
+        return speed, 0.0, 0.0, atan2(gy - y, gx - x)
     return plain(positions, on_table, on, touching, failed, drive, rows, stream)
 
 
@@ -142,10 +135,9 @@ def geometric_turn(positions, on_table, row, rules, rows, stream):
     jitter, _ = pair(stream)
     failed = frame and row[columns.SAVED] != 0  # it plays from a position that has been restored
     drive = DRIVE if rules == SHOOT_OUT else 0.0
-    speed, side, top, aim = stroke_at(
-        positions, on_table, mask, row[columns.IN_HAND], failed, drive, rows, stream
-    )
-    speed *= 1.0 + (0.04 if row[columns.IN_HAND] and racked(positions, on_table) else 0.2) * (jitter - 0.5)
+    placed = row[columns.IN_HAND]
+    speed, side, top, aim = stroke_at(positions, on_table, mask, placed, failed, drive, rows, stream)
+    speed *= 1.0 + (0.04 if placed and racked(positions, on_table) else 0.2) * (jitter - 0.5)
     return speed, side, top, aim, named(positions, on_table, row, aim) if frame else AUTO, decision
 
 
@@ -169,9 +161,8 @@ def geometric_strokes(positions, on_table, game, rules, streams, strokes, nomina
     """The geometric player's strokes (n, 5), nominations and decisions (n,); places cue balls in hand."""
     rows = np.empty((LINE_ROWS, POT_COLUMNS))
     for k in range(len(game)):
-        speed, side, top, aim, colour, decision = geometric_turn(
-            positions[k], on_table[k], game[k], rules, rows, streams[k]
-        )
+        turn = geometric_turn(positions[k], on_table[k], game[k], rules, rows, streams[k])
+        speed, side, top, aim, colour, decision = turn
         nominated[k], decisions[k] = colour, decision
         strokes[k, 0], strokes[k, 1], strokes[k, 2], strokes[k, 3], strokes[k, 4] = speed, side, top, aim, 0.0
 
@@ -184,14 +175,8 @@ def put_in_hand(positions, on_table, game, streams):
         row = game[k]
         if row[columns.IN_HAND]:
             anywhere = row.shape[0] > columns.ANYWHERE and row[columns.ANYWHERE] != 0
-            put(
-                positions[k],
-                on_table[k],
-                columns.strikeable(row, bits(on_table[k]) & ~1),
-                anywhere,
-                rows,
-                streams[k],
-            )
+            mask = columns.strikeable(row, bits(on_table[k]) & ~1)
+            put(positions[k], on_table[k], mask, anywhere, rows, streams[k])
 
 
 class GhostBallOpponent(Opponent):

@@ -48,9 +48,8 @@ def racked(positions, on_table):
     """The end red of the last row if all balls stand as at a start of a frame, with 15 or 6 reds; else 0."""
     end = 0
     for i in range(1, N_BALLS):
-        if on_table[i] and (
-            abs(positions[i, 0] - SPOTS[i, 0]) > 1e-3 or abs(positions[i, 1] - SPOTS[i, 1]) > 1e-3
-        ):
+        dx, dy = positions[i, 0] - SPOTS[i, 0], positions[i, 1] - SPOTS[i, 1]
+        if on_table[i] and (abs(dx) > 1e-3 or abs(dy) > 1e-3):
             return 0
         if on_table[i] and i <= N_REDS:
             end = i

@@ -42,11 +42,8 @@ class Matches(Frames):
     def get_state(self, k: int) -> dict[str, Any]:
         """See ``Tables.get_state``."""
         won = self.game[k, [FRAMES_0, FRAMES_1]].tolist()
-        return super().get_state(k) | {
-            "frames": won,
-            "first_break": int(self.game[k, FIRST_BREAK]),
-            "best_of": self.rules.frames,
-        }
+        match = {"frames": won, "first_break": int(self.game[k, FIRST_BREAK]), "best_of": self.rules.frames}
+        return super().get_state(k) | match
 
     def set_state(self, k: int, state: FrameState) -> None:
         """See ``Tables.set_state``."""

@@ -1,6 +1,6 @@
 """How does one train against several opponents? One is drawn for each frame, from the table's own stream."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from .._check import integer, number, refuse
 from .._types import Ints
 from ..game.frame_columns import OPPONENT
-from .frame import Frames, Opponent
+from .frame import Frames, Generators, Opponent, Turn
 from .opponents import drawn
 
 
@@ -63,11 +63,8 @@ class OpponentPool:
     def add(self, member: Any, weight: float = 1.0) -> None:
         """Add a member, which later frames may draw; an environment checks it when it uses it first.
         ValueError if the weight is below 0, or the member is a pool."""
-        if (
-            isinstance(member, OpponentPool)
-            or member is None
-            or (isinstance(member, str) and member == "none")
-        ):
+        nobody = member is None or (isinstance(member, str) and member == "none")
+        if nobody or isinstance(member, OpponentPool):
             allowed = "must be one opponent: a name, a model's file, a callable or a player"
             raise refuse("member", member, allowed)
         weight = number("weight", weight, 0.0)
@@ -100,14 +97,12 @@ class PoolOpponent(Opponent):
         """Nothing: its members play."""
         return which[:0]
 
-    def turns(
-        self, frames: Frames, which: Ints, generators: Sequence[np.random.Generator]
-    ) -> list[tuple[Opponent, Ints, Any]]:
+    def turns(self, frames: Frames, which: Ints, generators: Generators) -> list[Turn]:
         """See ``Opponent.turns``: one entry for each member that plays."""
         self._complete()
         self._draw(frames, which)
         playing = frames.game[which, OPPONENT]
-        turns: list[tuple[Opponent, Ints, Any]] = []
+        turns: list[Turn] = []
         for number_ in np.unique(playing).tolist():
             if number_ > len(self._ready):
                 allowed = f"must be below {len(self._ready)}, as many as the pool has"

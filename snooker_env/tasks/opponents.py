@@ -1,7 +1,7 @@
 """Who plays the other side of a frame? ``ask`` is called once for all tables at which it is the opponent's
 turn, in Python; ``prepare`` then carries what it returned out up to the strike, on several threads."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TypeAlias
 
 import numpy as np
@@ -12,7 +12,7 @@ from .._types import Action, Floats, Ints, Observation
 from ..game.philox import pair
 from . import observations
 from .discrete_actions import Choices
-from .frame import Frames, Opponent
+from .frame import Frames, Generators, Opponent
 from .stroke import ShotBuffers
 
 Policy: TypeAlias = Callable[[Observation, np.random.Generator], Action]
@@ -35,7 +35,7 @@ class AskedOpponent(Opponent):
     def __init__(self, policy: Policy):
         self.policy = policy
 
-    def ask(self, frames: Frames, which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
+    def ask(self, frames: Frames, which: Ints, generators: Generators) -> Floats:
         """See ``Opponent.ask``: (n, k). ValueError, naming "opponent's action", for an invalid one."""
         actions, k_of = frames.seats[SIDE].actions, which.tolist()
         seen = frames.observe(which, SIDE)
@@ -55,14 +55,11 @@ class AskedOpponent(Opponent):
     def _wishes(self, frames, which, seen, generators):
         kind, many = frames.rules.observation, getattr(self.policy, "many", None)
         discrete = isinstance(frames.seats[SIDE].actions, Choices)
-        masks = (
-            frames.action_masks(which, SIDE) if discrete and (many is not None or kind == "masked") else None
-        )
+        wanted = discrete and (many is not None or kind == "masked")
+        masks = frames.action_masks(which, SIDE) if wanted else None
         if many is None:
-            shown = [None] * len(seen) if masks is None else masks
-            views = [
-                observations.shaped(kind, row.copy(), mask) for row, mask in zip(seen, shown, strict=True)
-            ]
+            shown = zip(seen, [None] * len(seen) if masks is None else masks, strict=True)
+            views = [observations.shaped(kind, row.copy(), mask) for row, mask in shown]
             return [self.policy(view, rng) for view, rng in zip(views, generators, strict=True)]
         wished = many(observations.shaped(kind, seen, masks), generators, masks)
         if not hasattr(wished, "__len__") or len(wished) != len(which):

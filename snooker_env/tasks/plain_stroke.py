@@ -122,12 +122,8 @@ def plain(positions, on_table, on, touching, vary, drive, rows, stream):
     for ball in range(1, N_BALLS):
         if ((touching & on) >> ball) & 1:
             speed = 0.6 if drive == 0.0 else sqrt(0.36 + SLIDE * SLIDE * ROLL * drive)
-            return (
-                speed,
-                0.0,
-                0.0,
-                atan2(positions[0, 1] - positions[ball, 1], positions[0, 0] - positions[ball, 0]) + shift,
-            )
+            dx, dy = positions[0, 0] - positions[ball, 0], positions[0, 1] - positions[ball, 1]
+            return speed, 0.0, 0.0, atan2(dy, dx) + shift
     speed, top, aim, window = soft(positions, on_table, on, touching, drive, rows)
     if window < NARROW:
         over, other, wide = _escape(positions, on_table, on, vary, rows[:POTS], stream)

@@ -91,20 +91,12 @@ class Played:
 
 def judged(seen: list[int]) -> dict[str, Any]:
     """The fields of ``Played`` that a row of ``ShotBuffers.seen`` holds."""
-    return {
-        "player": seen[PLAYER],
-        "ball_on": BallOn(seen[WAS_ON]),
-        "free_ball": bool(seen[FREE]),
-        "first": ids_of(seen[FIRST]),
-        "points": seen[SCORED],
-        "penalty": seen[COST],
-        "fouls": Foul(seen[FOULS]),
-        "break_before": seen[BREAK] - seen[SCORED],
-    }
+    cost = {"points": seen[SCORED], "penalty": seen[COST], "fouls": Foul(seen[FOULS])}
+    before = {"ball_on": BallOn(seen[WAS_ON]), "free_ball": bool(seen[FREE]), "player": seen[PLAYER]}
+    return cost | before | {"first": ids_of(seen[FIRST]), "break_before": seen[BREAK] - seen[SCORED]}
 
 
 def struck(buffers: ShotBuffers, j: int) -> dict[str, float]:
     """The field ``cue`` of ``Played``, for shot j."""
-    return dict(
-        zip(("speed", "side", "top", "aim", "elevation"), buffers.shots[j, CUE_SPEED:].tolist(), strict=True)
-    )
+    names = ("speed", "side", "top", "aim", "elevation")
+    return dict(zip(names, buffers.shots[j, CUE_SPEED:].tolist(), strict=True))

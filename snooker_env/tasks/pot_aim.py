@@ -39,10 +39,9 @@ def _passes(aim, stroke, c, b, p, law, work):
     nx, ny = bx - x, by - y
     d = hypot(nx, ny)
     still, impact = (0.0, 0.0, 0.0), Law(phys, law.fidelity, law.n_steps)
-    ball = (v[0], v[1], 0.0)
-    _v1, _w1, v2, w2, solved = collide_balls(
-        ball, w, still, still, (nx / d, ny / d), impact, phys[P_E_B], work.series
-    )
+    ball, normal = (v[0], v[1], 0.0), (nx / d, ny / d)
+    after = collide_balls(ball, w, still, still, normal, impact, phys[P_E_B], work.series)
+    _v1, _w1, v2, w2, solved = after
     if not solved:
         return 9.0
     cloth.begin(motion, state, 1, t, (bx, by), (v2[0], v2[1]), w2, phys)

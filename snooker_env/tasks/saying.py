@@ -15,11 +15,8 @@ def _said(actions, options, game, rules, nominated, decisions, declared):
     for k in range(len(game)):
         row, a = game[k], actions[k]
         declared[k] = declaration_of(a, options, row)
-        wish = (
-            a[int(options[A_DECISION])]
-            if options[A_DECISION] >= 0 and row[columns.PHASE] == columns.CHOICE
-            else 0.0
-        )
+        asked = options[A_DECISION] >= 0 and row[columns.PHASE] == columns.CHOICE
+        wish = a[int(options[A_DECISION])] if asked else 0.0
         decisions[k] = columns.PLAY_AGAIN if wish < -1.0 / 3.0 else columns.PLAY
         if wish > 1.0 / 3.0 and columns.may_replace(row, rules):
             decisions[k] = columns.REPLACE

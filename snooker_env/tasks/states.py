@@ -32,8 +32,7 @@ class State(NamedTuple):
     in_hand: bool
     points: int
     over: bool
-    stream: list[int]
-    """Key and counter of the table's random stream."""
+    stream: list[int]  # key and counter of the table's random stream
     rng: dict[str, Any]
 
 
@@ -44,22 +43,19 @@ class FrameState(NamedTuple):
     positions: Floats
     on_table: Bools
     strokes: int
-    opponent: int
-    """Which member of a pool plays, counted from 1; 0: none is drawn."""
-    unpaid: int
-    """What the agent has earned and no reward has paid: points, or with ``reward="frames"`` frames."""
-    due: bool
-    """Whether the episode ended before the agent's first stroke, and the next step reports it."""
-    stream: list[int]
-    """Key and counter of the table's random stream."""
+    opponent: int  # which member of a pool plays, counted from 1; 0: none is drawn
+    unpaid: (
+        int  # what the agent has earned and no reward has paid: points, or with ``reward="frames"`` frames
+    )
+    due: bool  # whether the episode ended before the agent's first stroke, and the next step reports it
+    stream: list[int]  # key and counter of the table's random stream
     rng: dict[str, Any]
-    frames: tuple[int, int] | None = None
-    first_break: int | None = None
-    """Of a match: the frames that each player has won, and who broke first."""
-    best_of: int | None = None
-    """Of a match: of how many frames at most."""
+    frames: tuple[int, int] | None = None  # of a match, as all below: the frames that each player has won
+    first_break: int | None = None  # who broke first
+    best_of: int | None = None  # of how many frames at most
 
 
+_NAMES = ("state.positions", "state.on_table")
 FRAME_KEYS = ("frame", "positions", "on_table", "strokes", "opponent", "unpaid", "due", "stream", "rng")
 MATCH_KEYS = (*FRAME_KEYS, "frames", "first_break", "best_of")
 """Keys of the saved state of a frame, and of a match."""
@@ -137,13 +133,10 @@ def checked(
     """The ``State`` that a dict describes; ValueError names the first invalid part, or says that no shot is
     left with ``to_play``. ``generator``: for the part "rng"; it is not changed."""
     check_keys(state, State._fields)
-    positions, on_table = checked_layout(
-        ("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R
-    )
+    positions, on_table = checked_layout(_NAMES, state["positions"], state["on_table"], table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
-    ball_on = balls.BallOn(
-        integer("state.ball_on", state["ball_on"], balls.BallOn.NOTHING, balls.BallOn.BLACK)
-    )
+    number = integer("state.ball_on", state["ball_on"], balls.BallOn.NOTHING, balls.BallOn.BLACK)
+    ball_on = balls.BallOn(number)
     mask = balls.mask_of_present(on_table)
     if not over:  # then there must be a shot to play
         lowest = balls.next_on(mask)
@@ -175,9 +168,7 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
     """The ``FrameState`` that a dict describes, under these rules; ValueError names the first wrong part."""
     check_keys(state, MATCH_KEYS if rules.frames else FRAME_KEYS)
     miss, table, R = rules.miss, rules.table, rules.physics.R
-    positions, on_table = checked_layout(
-        ("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R
-    )
+    positions, on_table = checked_layout(_NAMES, state["positions"], state["on_table"], table, R)
     frame = Frame.from_dict(state["frame"], "state.frame")
     strokes = integer("state.strokes", state["strokes"], 0, MOST)
     for k, points in enumerate(frame.scores):
@@ -193,9 +184,8 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
         if balls.mask_of_present(on_table) != frame.on_table | balls.CUE_BIT:
             allowed = "must hold the cue ball and the balls of state.frame.on_table, no others"
             raise refuse("state.on_table", on_table.tolist(), allowed)
-        check_in_hand(
-            "state.frame.in_hand", frame.in_hand and not frame.anywhere, "state.positions", positions
-        )
+        in_d = frame.in_hand and not frame.anywhere
+        check_in_hand("state.frame.in_hand", in_d, "state.positions", positions)
     if frame.saved is not None:
         frame = replace(frame, saved=_checked_saved(frame, table, R))
     stream = check_stream(state["stream"])

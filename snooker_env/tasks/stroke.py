@@ -57,9 +57,8 @@ def _played_into(positions, ball, vx, vy, time):
     once (the physics lets balls without a gap meet along the tangent, too)."""
     dx, dy = positions[ball, 0] - positions[CUE, 0], positions[ball, 1] - positions[CUE, 1]
     speed = np.hypot(vx, vy)
-    return vx * dx + vy * dy > 0.0 and (
-        abs(vx * dy - vy * dx) < 2.0 * BALL_RADIUS * speed or time * speed <= 10.0 * TOUCH
-    )
+    into = abs(vx * dy - vy * dx) < 2.0 * BALL_RADIUS * speed or time * speed <= 10.0 * TOUCH
+    return vx * dx + vy * dy > 0.0 and into
 
 
 @kernel
@@ -119,9 +118,8 @@ def strike(intended, positions, on_table, stream, options, noise, j, shots):
     speed, side, top, aim, elevation = executed(*intended, noise, stream)
     side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
     shot, r, v, w, here = shots.shots[j], shots.r, shots.v, shots.w, shots.here
-    (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = cue.struck(
-        speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS]
-    )
+    struck = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS])
+    (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = struck
     shot[SPEED] = intended[0]
     shot[CUE_SPEED], shot[SIDE], shot[TOP], shot[AIM], shot[ELEVATION] = speed, side, top, aim, elevation
     for i in range(N_BALLS):
@@ -136,9 +134,8 @@ def _same_table(positions, on_table, other, other_on):
     """Whether the balls lie at the same places on two tables."""
     differ = 0
     for i in range(N_BALLS):
-        differ += (
-            on_table[i] != other_on[i] or positions[i, 0] != other[i, 0] or positions[i, 1] != other[i, 1]
-        )
+        moved = positions[i, 0] != other[i, 0] or positions[i, 1] != other[i, 1]
+        differ += on_table[i] != other_on[i] or moved
     return differ == 0
 
 
@@ -162,12 +159,8 @@ def address(which, actions, tables, shots, packed, fidelity):
         mask = playable(game[k], bits(on), nominated[k] if nominated.shape[0] else AUTO)
         if options[A_DISCRETE]:
             # a planner plays a choice under several errors in succession: its aim is solved once
-            if (
-                j == 0
-                or a[0] != solved[0]
-                or mask != mask_before
-                or not _same_table(p, on, positions[which[j - 1]], on_table[which[j - 1]])
-            ):
+            before, new = which[max(0, j - 1)], j == 0 or a[0] != solved[0] or mask != mask_before
+            if new or not _same_table(p, on, positions[before], on_table[before]):
                 chosen = discrete_actions.chosen(int(a[0]), p, on, mask, law, work)
                 solved[0], mask_before = a[0], mask
                 solved[1], solved[2], solved[3], solved[4], solved[5] = chosen
@@ -202,48 +195,35 @@ def write_ruling(seen, player, ball_on, free_ball, before, result):
 class ShotBuffers:
     """Work space for up to m shots at once, each with a log of ``log`` events and optionally its path."""
 
-    log: int
-    r: Floats
-    v: Floats
-    w: Floats
-    here: Bools
-    """(m, 22, 2) [m], (m, 22, 2) [m/s], (m, 22, 3) [rad/s], (m, 22): the balls before the shots, then
-    after."""
-    potted: Ints
-    """(m, 22) the pocket of each ball, or -1."""
-    shots: Floats
-    """(m, STRIKE_COLUMNS) of each strike, columns ``VX`` to ``ELEVATION``."""
-    seen: Ints
-    """(m, SEEN_COLUMNS) facts for the referee and the ruling, columns ``FIRST`` to ``FOULS``."""
-    event_time: Floats
-    event_what: NDArray[np.int32]
-    """(m, log) [s] and (m, log, 3): time; kind, i, j of each event."""
-    segments: Floats
-    """The paths, if they are recorded."""
-    status: Ints
-    n_events: Ints
-    n_segments: Ints
-    duration: Floats
-    """(m,) how each shot ended, and how long it took [s]."""
-    enlarged: "dict[int, ShotBuffers]"
-    """Shots of the last run that needed a longer log: row -> their own buffers."""
-    struck: tuple[Any, ...]
-    played: tuple[Any, ...]
-    """For kernels: the parts of ``StruckArrays`` and ``PlayedArrays``, in plain tuples."""
+    enlarged: (
+        "dict[int, ShotBuffers]"  # shots of the last run that needed a longer log: row -> their own buffers
+    )
 
     def __init__(self, m: int, log: int = 512, *, path: bool = False):
-        self.log = log
-        self.r, self.v = np.zeros((m, N_BALLS, 2)), np.zeros((m, N_BALLS, 2))
-        self.w = np.zeros((m, N_BALLS, 3))
-        self.here, self.potted = np.zeros((m, N_BALLS), np.bool_), np.zeros((m, N_BALLS), np.int64)
-        self.shots, self.seen = np.zeros((m, STRIKE_COLUMNS)), np.zeros((m, SEEN_COLUMNS), np.int64)
-        self.event_time, self.event_what = np.zeros((m, log)), np.zeros((m, log, 3), np.int32)
-        self.segments = np.zeros((m, 2 * log + N_BALLS + 2 if path else 0, cloth.COLUMNS + 2))
-        self.status, self.n_events, self.n_segments = (np.zeros(m, np.int64) for _ in range(3))
-        self.duration = np.zeros(m)
-        self.struck = self.r, self.v, self.w, self.here, self.shots
+        self.log: int = log
+        # the balls before the shots, then after: [m], [m/s], [rad/s]; the pocket of each, or -1
+        self.r: Floats = np.zeros((m, N_BALLS, 2))
+        self.v: Floats = np.zeros((m, N_BALLS, 2))
+        self.w: Floats = np.zeros((m, N_BALLS, 3))
+        self.here: Bools = np.zeros((m, N_BALLS), np.bool_)
+        self.potted: Ints = np.zeros((m, N_BALLS), np.int64)
+        # each strike, columns ``VX`` to ``ELEVATION``; facts for the referee and the ruling, ``FIRST`` to ``FOULS``
+        self.shots: Floats = np.zeros((m, STRIKE_COLUMNS))
+        self.seen: Ints = np.zeros((m, SEEN_COLUMNS), np.int64)
+        # time [s]; kind, i, j of each event; the paths, if they are recorded
+        self.event_time: Floats = np.zeros((m, log))
+        self.event_what: NDArray[np.int32] = np.zeros((m, log, 3), np.int32)
+        self.segments: Floats = np.zeros((m, 2 * log + N_BALLS + 2 if path else 0, cloth.COLUMNS + 2))
+        # how each shot ended, and how long it took [s]
+        self.status: Ints = np.zeros(m, np.int64)
+        self.n_events: Ints = np.zeros(m, np.int64)
+        self.n_segments: Ints = np.zeros(m, np.int64)
+        self.duration: Floats = np.zeros(m)
+        # for kernels: the parts of ``StruckArrays`` and ``PlayedArrays``, in plain tuples
+        self.struck: tuple[Any, ...] = (self.r, self.v, self.w, self.here, self.shots)
+        ends = self.seen, self.potted, self.status, self.duration
         events = self.event_time, self.event_what, self.n_events
-        self.played = self.r, self.shots, self.seen, self.potted, self.status, self.duration, *events
+        self.played: tuple[Any, ...] = (self.r, self.shots, *ends, *events)
         self.enlarged = {}
 
     def __len__(self) -> int:

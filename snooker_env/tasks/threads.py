@@ -86,11 +86,8 @@ class Threads(Crew):
         self._pool = None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {k: v for k, v in self.__dict__.items() if k != "_lock"} | {
-            "_pool": None,
-            "_desks": [],
-            "generators": (),
-        }
+        kept = {k: v for k, v in self.__dict__.items() if k != "_lock"}
+        return kept | {"_pool": None, "_desks": [], "generators": ()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, _lock=threading.Lock())  # threads and locks belong to one process

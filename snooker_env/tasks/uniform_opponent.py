@@ -1,7 +1,5 @@
 """How does the built-in opponent "random" play? Uniformly: any action, or one of the available choices."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from .._jit import entry
@@ -10,7 +8,7 @@ from ..game.philox import pair
 from .declarations import COLOURS
 from .discrete_actions import SIZE as CHOICES
 from .discrete_actions import Choices
-from .frame import Frames, Opponent
+from .frame import Frames, Generators, Opponent
 from .opponents import SIDE
 from .stroke import ShotBuffers
 
@@ -47,7 +45,7 @@ def _uniform_choice(which, streams, masks, actions):
 class UniformOpponent(Opponent):
     """Uniform random play: every component of a box action, or an available choice, but it never concedes."""
 
-    def ask(self, frames: Frames, which: Ints, generators: Sequence[np.random.Generator]) -> Floats:
+    def ask(self, frames: Frames, which: Ints, generators: Generators) -> Floats:
         """Empty actions: ``prepare`` draws them from each table's own stream."""
         return np.empty((frames.n, frames.seats[SIDE].actions.size))
 

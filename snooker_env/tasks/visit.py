@@ -148,15 +148,8 @@ class Visits(Tables):
     def get_state(self, k: int) -> dict[str, Any]:
         """See ``Tables.get_state``: the fields of a ``states.State`` except "rng"."""
         ball_on, in_hand, points, over, _ = self.game[k].tolist()
-        return {
-            "positions": self.positions[k].tolist(),
-            "on_table": self.on_table[k].tolist(),
-            "ball_on": ball_on,
-            "in_hand": bool(in_hand),
-            "points": points,
-            "over": bool(over),
-            "stream": self.streams[k].tolist(),
-        }
+        visit = {"ball_on": ball_on, "in_hand": bool(in_hand), "points": points, "over": bool(over)}
+        return super().get_state(k) | visit
 
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> State:
         """See ``Tables.checked``."""
@@ -172,14 +165,8 @@ class Visits(Tables):
     def standing(self, k: int) -> dict[str, Any]:
         """See ``Tables.standing``: there is one player, whose break is its score."""
         points = int(self.game[k, POINTS])
-        return {
-            "next_player": 0,
-            "scores": (points,),
-            "break_points": points,
-            "choice": False,
-            "winner": None,
-            "next_free_ball": False,
-        }
+        now = {"scores": (points,), "break_points": points, "winner": None, "choice": False}
+        return now | {"next_player": 0, "next_free_ball": False}
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """See ``Tables.set_position``."""

@@ -21,14 +21,8 @@ MOST_EDGES = 2 * N_BALLS + 2 * (N_BALLS // 2) ** 2
 @kernel
 def half_width(positions, ball):
     """Half the angle under which the cue ball meets a ball: from its middle to a graze [rad]."""
-    return asin(
-        min(
-            1.0,
-            2.0
-            * BALL_RADIUS
-            / hypot(positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1]),
-        )
-    )
+    dx, dy = positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1]
+    return asin(min(1.0, 2.0 * BALL_RADIUS / hypot(dx, dy)))
 
 
 @kernel
