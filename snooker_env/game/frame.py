@@ -178,8 +178,8 @@ class Frame:
         balls = rule_set(rules).on_table
         if on_table is not None:
             balls = integer("on_table", on_table, 0, ALL_MASK) & ~CUE_BIT
-        on, players = BallOn(next_on(balls)), {"striker": breaker, "breaker": breaker}
-        return cls(**players, rules=rules, miss=miss, on_table=balls, ball_on=on, rack=balls)
+        held: Any = {"on_table": balls, "rack": balls, "ball_on": BallOn(next_on(balls))}
+        return cls(striker=breaker, breaker=breaker, rules=rules, miss=miss, **held)
 
     @property
     def rule_set(self) -> RuleSet:

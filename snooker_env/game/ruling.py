@@ -177,7 +177,7 @@ def ruling(before, facts, flags):
     fair = target | on
     base = max(4, value_on)
     fouls = 0
-    penalty = 0
+    penalty: Any = 0
 
     # 2. First impact. A touching ball that is on counts as struck, as long as the stroke does not move it.
     if touching & moved:
@@ -245,7 +245,7 @@ def ruling(before, facts, flags):
         penalty = 7
 
     # Points, and the colours that return: after a foul all, else those not potted as the sequence's ball on.
-    points = 0
+    points: Any = 0
     respotted = down & COLOURS_MASK
     if not fouls:
         if ball_on == 1:
@@ -254,29 +254,29 @@ def ruling(before, facts, flags):
             points = value_on
             if ball_on != 0:
                 respotted &= ~on
-    remaining = (reds_and_colours & ~down) | respotted
+    left = (reds_and_colours & ~down) | respotted
 
     # Who plays on, and on which ball.
     stays = 1 if points else 0
-    next_on = next_on_kernel(remaining)
-    if points and ball_on == 1 and remaining & COLOURS_MASK:
+    next_on = next_on_kernel(left)
+    if points and ball_on == 1 and left & COLOURS_MASK:
         next_on = 0
-    visit_end = VISIT.FOUL if fouls else VISIT.CONTINUES if points else VISIT.MISS
-    if remaining == 0 and not fouls:
-        visit_end = VISIT.CLEARANCE
+    end = VISIT.FOUL if fouls else VISIT.CONTINUES if points else VISIT.MISS
+    if left == 0 and not fouls:
+        end = VISIT.CLEARANCE
 
     # The frame ends on an empty table, and with a foul when only the black is left; if level, it returns.
     outcome = OUTCOME.PLAYING
-    if remaining == 0 or (fouls and reds_and_colours == 1 << BLACK):
+    if left == 0 or (fouls and reds_and_colours == 1 << BLACK):
         lead += points - penalty
         if lead == 0:
             outcome = OUTCOME.RESPOTTED_BLACK
-            remaining = respotted = 1 << BLACK
+            left = respotted = 1 << BLACK
             next_on = 7
             stays = -1
         else:
             outcome = OUTCOME.STRIKER_WINS if lead > 0 else OUTCOME.OPPONENT_WINS
-            remaining = respotted = 0
+            left = respotted = 0
             next_on = -1
             stays = 0
     playing = outcome == OUTCOME.PLAYING
@@ -284,5 +284,6 @@ def ruling(before, facts, flags):
     if flags & FLAG.SHOOT_OUT and playing and fouls:
         in_hand = 1
     free_next = 1 if playing and fouls and flags & FLAG.SNOOKERED and not flags & FLAG.SHOOT_OUT else 0
-    score: Any = (fouls, penalty, points, respotted)
-    return Ruling(*score, remaining, next_on, stays, in_hand, free_next, visit_end, outcome, choice)
+    return Ruling(
+        fouls, penalty, points, respotted, left, next_on, stays, in_hand, free_next, end, outcome, choice
+    )

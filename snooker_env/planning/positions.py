@@ -41,8 +41,7 @@ class Positions:
     Parameters
     ----------
     positions : array_like
-        float (m, 22, 2). Centres of the balls [m], by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow
-        to black.
+        float (m, 22, 2). Centres [m] by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow to black.
     on_table : array_like
         bool (m, 22). Which balls are on the table.
     game : array_like
@@ -55,8 +54,7 @@ class Positions:
     Raises
     ------
     ValueError
-        If an array has the wrong shape or type, or a number is not finite. Overlapping balls are found when a
-        position is played.
+        If an array has the wrong shape or type, or a number is not finite. Overlaps are refused when played.
 
     Examples
     --------
@@ -82,13 +80,9 @@ class Positions:
         if present.shape != (m, N_BALLS) or present.dtype != np.bool_:
             allowed = f"must be bool of shape {(m, N_BALLS)}"
             raise refuse_what("on_table", f"{present.dtype} array of shape {present.shape}", allowed)
-        if (
-            held.shape not in ((m, columns.VISIT_COLUMNS), (m, columns.COLUMNS))
-            or held.dtype.kind not in "iu"
-        ):
-            allowed = (
-                f"must be integers of shape {(m, columns.VISIT_COLUMNS)}, or {(m, columns.COLUMNS)} of frames"
-            )
+        visits, frames = (m, columns.VISIT_COLUMNS), (m, columns.COLUMNS)
+        if held.shape not in (visits, frames) or held.dtype.kind not in "iu":
+            allowed = f"must be integers of shape {visits}, or {frames} of frames"
             raise refuse_what("game", f"{held.dtype} array of shape {held.shape}", allowed)
         self.on_table: NDArray[np.bool_] = np.ascontiguousarray(present)
         self.game: NDArray[np.int64] = np.ascontiguousarray(held, np.int64)
@@ -105,12 +99,9 @@ class Positions:
             return source
         if isinstance(source, Position | Mapping):
             source = [source]
-        if (
-            isinstance(source, list | tuple)
-            and source
-            and all(isinstance(one, Position | Mapping) for one in source)
-        ):
-            positions, on_table, game = zip(*map(_arrays, source), strict=True)
+        some: Any = source if isinstance(source, list | tuple) else ()
+        if len(some) and all(isinstance(one, Position | Mapping) for one in some):
+            positions, on_table, game = zip(*map(_arrays, some), strict=True)
             return cls(np.stack(positions), np.stack(on_table), np.stack(game))
         tables = getattr(bare(source), "tables", None)
         if isinstance(tables, Tables):
@@ -139,9 +130,8 @@ class Positions:
             # the kernels are compiled for contiguous arrays
             setattr(taken, name, np.ascontiguousarray(getattr(self, name)[rows]))
         saved = self.saved
-        taken.saved = saved and columns.Layouts(
-            np.ascontiguousarray(saved.positions[rows]), np.ascontiguousarray(saved.on_table[rows])
-        )
+        held: Any = saved and (np.ascontiguousarray(each[rows]) for each in saved)
+        taken.saved = saved and columns.Layouts(*held)
         return taken
 
     def __repr__(self) -> str:
@@ -249,14 +239,9 @@ class Positions:
 def _floats(field: str, values: Any, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """``_check.array``, but without a copy of an array that is valid already."""
     a = np.asarray(values)
-    sound = (
-        a.dtype == np.float64
-        and a.ndim == len(shape)
-        and a.shape[1:] == shape[1:]
-        and a.flags.c_contiguous
-        and np.isfinite(a).all()
-    )
-    return a if sound and not isinstance(values, np.ma.MaskedArray) else array(field, values, shape)
+    right = a.dtype == np.float64 and a.ndim == len(shape) and a.shape[1:] == shape[1:]
+    plain = a.flags.c_contiguous and not isinstance(values, np.ma.MaskedArray)
+    return a if right and plain and np.isfinite(a).all() else array(field, values, shape)
 
 
 def _arrays(one: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
@@ -326,17 +311,13 @@ def check_played(at: Positions, rows: NDArray[np.int64], table: Table, radius: f
     used = np.unique(rows)
     some = at if len(used) == len(at) else at[used]
     on, present = some.ball_on, some.on_table
-    colours = present[:, 16:]
-    reds = present[:, 1:16].any(axis=1)
-    lowest = np.where(reds, int(BallOn.RED), 2 + colours.argmax(axis=1))
+    reds, colours = present[:, 1:16].any(axis=1), present[:, 16:].any(axis=1)
+    lowest = np.where(reds, int(BallOn.RED), 2 + present[:, 16:].argmax(axis=1))
     fine = present[:, CUE] & ~some.over & np.isfinite(some.positions).all(axis=(1, 2))
-    fine &= np.where(
-        on == int(BallOn.ANY_COLOUR), colours.any(axis=1), (on == lowest) & (reds | colours.any(axis=1))
-    )
+    fine &= np.where(on == int(BallOn.ANY_COLOUR), colours, (on == lowest) & (reds | colours))
     fine &= (some.points >= 0) & (some.points <= MOST_BREAK)
     if not fine.all():
-        k = int(used[np.argmin(fine)])
-        _refuse_row(at, k)
+        _refuse_row(at, int(used[np.argmin(fine)]))
     try:
         table.check(some.positions, radius, "positions", present)
     except ValueError:

@@ -6,10 +6,8 @@ leaves.
    pot are proposed, the penalty of a foul is deducted, and if the visit ends, the share ``LEFT`` of the value
    of the position for the opponent.
 2. The best meet noise samples, the better ones more of them (sequential halving, Karnin, Koren & Somekh
-   2013). The samples are scrambled Sobol points, common to all strokes of a position. The score is the mean
-   over the samples, with the first look as ``PRIOR`` of them.
-
-Without execution errors the first look is the whole truth and takes the whole budget."""
+   2013): scrambled Sobol points, common to all strokes of a position. The score is the mean over the samples,
+   with the first look as ``PRIOR`` of them. Without execution errors the first look takes the whole budget."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, TypeAlias
@@ -48,14 +46,12 @@ SCHEDULES = (
 LEFT = 0.5
 """Share of a position's value for the opponent that counts."""
 FOUL = 20.0
-"""What a foul costs beside its penalty [points]: the opponent may have the balls replaced or, snookered, has
-a free ball."""
+"""What a foul costs beside its penalty [points]: the opponent may have the balls replaced or a free ball."""
 
 Value: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 """Values [points] of n positions that strokes have left: (n,)."""
 Propose: TypeAlias = Callable[["StrokeSearch", Positions, int, Ints], Proposals]
-"""A generator: proposals of m strokes for each position, called with the search, the n positions, m and the
-seeds (n,)."""
+"""A generator: proposals of m strokes for each position, of the search, the n positions, m and seeds (n,)."""
 WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)
 """The generators for positions in which those of the search have no likely pot."""
 
@@ -67,10 +63,9 @@ class Ranked(NamedTuple):
 
     Attributes
     ----------
-    strokes : numpy.ndarray
-        float64 (n, m, 5). Strokes in SI, see ``Planner``.
-    scores : numpy.ndarray
-        float64 (n, m). Expected points of the stroke and of what follows.
+    strokes, scores : numpy.ndarray
+        float64 (n, m, 5), strokes in SI, see ``Planner``; float64 (n, m), expected points of the stroke and
+        of what follows.
     samples : numpy.ndarray
         int64 (n, m). Noise samples that each stroke met; 0 if it had only the look without error.
 
@@ -89,9 +84,8 @@ class Ranked(NamedTuple):
     def actions(self) -> NDArray[np.float32]:
         """Convert the strokes to actions of ``aim="absolute"``: float32 (n, m, 4)."""
         flat = self.strokes.reshape(-1, COLUMNS)
-        return actions_of(flat[:, SPEED], flat[:, AIM], flat[:, SIDE], flat[:, TOP]).reshape(
-            *self.scores.shape, 4
-        )
+        made = actions_of(flat[:, SPEED], flat[:, AIM], flat[:, SIDE], flat[:, TOP])
+        return made.reshape(*self.scores.shape, 4)
 
 
 def schedule(budget: int) -> tuple[int, tuple[tuple[int, int], ...]]:
@@ -171,9 +165,8 @@ class StrokeSearch:
 
     def _by_rule(self, at: Positions) -> Floats:
         """Values of positions by the rule of thumb [points]: float64 (n,)."""
-        return prospects_of(
-            at, self.spread, SURE if self.noise.silent else RULE_OF_THUMB, threads=self.planner.threads
-        )[0]
+        constants = SURE if self.noise.silent else RULE_OF_THUMB
+        return prospects_of(at, self.spread, constants, threads=self.planner.threads)[0]
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> Ranked:
         """Try strokes in n positions and return them ``Ranked``: each row's first one is to be played.
@@ -214,13 +207,11 @@ class StrokeSearch:
         return Ranked(strokes[every, order], scores[every, order], tries[every, order])
 
     def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Outcomes:
-        """Play strokes (m, 5) on ``at[rows]`` under errors (m, 5) in standard deviations, see
-        ``Planner.play``."""
+        """Play strokes (m, 5) on ``at[rows]`` under errors (m, 5) in standard deviations."""
         return self.planner.play(at, rows, strokes=strokes, errors=errors)
 
     def _proposed(self, at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Ints, Bools]:
-        """Strokes (n, m, 5), chances and generators (n, m), and where strokes without a pot are among them
-        (n,)."""
+        """Strokes (n, m, 5), chances and generators (n, m), and where some are without a pot (n,)."""
         generators = (self.propose,) if callable(self.propose) else tuple(self.propose)
         strokes, chances, which = self._shared(generators, at, m, seeds)
         doubt = chances.max(axis=1) <= self.doubtful
@@ -230,9 +221,7 @@ class StrokeSearch:
             strokes[doubt], chances[doubt], which[doubt] = shared
         return strokes, chances, which, doubt | which.any(axis=1)
 
-    def _shared(
-        self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints
-    ) -> tuple[Floats, Floats, Ints]:
+    def _shared(self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints):
         """Strokes of the generators that have any, in turn; chances; which generator each is of."""
         made = [Proposals(*generate(self, at, m, seeds)) for generate in generators]
         if len(made) == 1:
@@ -245,8 +234,7 @@ class StrokeSearch:
         return strokes, chances, which
 
     def _gains(self, at: Positions, safe: Bools, strokes: Floats, errors: Floats) -> Floats:
-        """What strokes (n, m, s, 5) under errors (n, s, 5) bring, and the value of what they leave: (n, m,
-        s)."""
+        """What strokes (n, m, s, 5) under errors (n, s, 5) bring, and what they leave is worth: (n, m, s)."""
         n, m, s = strokes.shape[:3]
         every = np.broadcast_to(errors[:, None], (n, m, s, DIMENSIONS)).reshape(-1, DIMENSIONS)
         rows = np.repeat(np.arange(n), m * s)
@@ -264,8 +252,7 @@ class StrokeSearch:
 
 
 def in_turn(order: Ints, kinds: Ints) -> Ints:
-    """Rows (n, m) of indices, best first, reordered: the best of each of ``kinds`` (n, m), the second best,
-    ..."""
+    """Rows (n, m) of indices, best first, as the best of each of ``kinds`` (n, m), the second best, ..."""
     sorted_kinds = np.take_along_axis(kinds, order, 1)
     place = np.zeros_like(order)
     for kind in np.unique(kinds):

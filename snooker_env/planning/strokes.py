@@ -1,9 +1,5 @@
 """How does a stroke become an action? The one encoder of strokes, choices of ``action="discrete"`` as
-actions, and the aim solver.
-
-A stroke is a row of five numbers in SI, in the columns of ``trials``: cue speed [m/s], side and top (tip
-offset over R), the direction in which the cue ball leaves [rad] (the cue itself points aside by the squirt of
-the side), elevation of the cue [rad]."""
+actions, and the aim solver. A stroke is a row of five numbers in SI, in the columns of ``trials``."""
 
 from math import pi
 from typing import Any
@@ -73,10 +69,8 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
 
     Parameters
     ----------
-    speeds : array_like
-        float (n,). Cue speeds [m/s], in [0.2, 7].
-    aims : array_like
-        float (n,). Directions in which the cue ball leaves [rad], anticlockwise from +x.
+    speeds, aims : array_like
+        float (n,). Cue speeds [m/s], in [0.2, 7]; directions in which the cue ball leaves [rad].
     side, top : array_like or float, optional
         float, scalar or (n,). Tip offsets over R, to the right and up, each in [-0.5, 0.5]; default 0.
 
@@ -171,10 +165,8 @@ def as_actions(
     ----------
     positions : PositionsLike
         The m positions: anything that ``Positions.of`` accepts.
-    rows : array_like
-        int (n,). Row of ``positions`` for each choice, in [0, m).
-    choices : array_like
-        int (n,). Choices, in [0, 540).
+    rows, choices : array_like
+        int (n,). Row of ``positions`` for each choice, in [0, m); choices, in [0, 540).
     physics : str, dict, Physics or None, optional
         Physical constants with which the aims are solved; default None: the preset "paper".
     fidelity : str, optional
@@ -229,10 +221,8 @@ def pot_aim(
     ----------
     positions : PositionsLike
         The m positions: anything that ``Positions.of`` accepts.
-    rows : array_like
-        int (n,). Row of ``positions`` for each ball, in [0, m).
-    balls : array_like
-        int (n,). Id of the ball to send, in [1, 21].
+    rows, balls : array_like
+        int (n,). Row of ``positions`` for each ball, in [0, m); id of the ball to send, in [1, 21].
     targets : array_like
         float (n, 2). Where to send it [m], for a pocket its ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
     strokes : array_like or float
@@ -240,10 +230,8 @@ def pot_aim(
         speeds [m/s] of strokes in the middle of the ball.
     ghosts : array_like, optional
         float (n, 2). Ghost-ball centres [m]; default: 2 R behind the ball as seen from the target.
-    physics : str, dict, Physics or None, optional
-        Physical constants; default None: the preset "paper".
-    fidelity : str, optional
-        "fast", "standard" (default), "reference" or "euler:N": how impacts are solved.
+    physics, fidelity : optional
+        As for ``as_actions``.
 
     Returns
     -------
@@ -262,13 +250,7 @@ def pot_aim(
 
 
 def solved_aims(
-    at: Positions,
-    rows: Integers,
-    balls: Integers,
-    targets: Vectors,
-    strokes: Any,
-    ghosts: Vectors | None,
-    dynamics: Dynamics,
+    at: Positions, rows: Any, balls: Any, targets: Any, strokes: Any, ghosts: Any, dynamics: Dynamics
 ) -> NDArray[np.float64]:
     """``pot_aim`` with checked physics and fidelity."""
     which, offset = rows_of(at, rows), dynamics[0].max_offset

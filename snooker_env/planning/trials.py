@@ -1,7 +1,5 @@
 """How are trial strokes played on copies of positions? As strokes in SI under given errors, or as actions
-under drawn ones.
-
-``decoded`` is the one way from actions and choices to strokes: the environment's own, without errors."""
+under drawn ones. ``decoded`` is the one way from actions and choices to strokes: the environment's own."""
 
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -25,8 +23,8 @@ from ..tasks.visit import Visits
 from .positions import Positions
 
 (SPEED, SIDE, TOP, AIM, ELEVATION) = range(5)
-"""Columns of a stroke: cue speed [m/s], tip offset over R to the right and up, direction in which the cue
-ball leaves, elevation [rad]."""
+"""Columns of a stroke: cue speed [m/s], tip offset over R to the right and up, direction in which the cue ball
+leaves (the cue itself points aside by the squirt of the side), elevation of the cue [rad]."""
 COLUMNS = 5
 NO_NOISE = Noise()
 
@@ -39,12 +37,9 @@ def _strike(which, strokes, errors, tables, shots, options, noise, silent):
         k = which[j]
         speed, aim, elevation = strokes[k, SPEED], strokes[k, AIM], strokes[k, ELEVATION]
         side, top = tip_on_disc(strokes[k, SIDE], strokes[k, TOP], options[A_MAX_OFFSET])
-        struck = with_errors(
-            speed, side, top, aim - squirt(side, options[A_END_MASS]), elevation, errors[k], noise
-        )
-        stroke.strike(
-            struck, tables.positions[k], tables.on_table[k], tables.streams[k], options, silent, j, shots
-        )
+        p, on, aim = tables.positions[k], tables.on_table[k], aim - squirt(side, options[A_END_MASS])
+        struck = with_errors(speed, side, top, aim, elevation, errors[k], noise)
+        stroke.strike(struck, p, on, tables.streams[k], options, silent, j, shots)
 
 
 class TrialVisits(Visits):
@@ -89,16 +84,13 @@ class Stops(NamedTuple):
 
     Attributes
     ----------
-    places : numpy.ndarray
-        float64 (n, 22, 2). Centres at rest [m] before colours are respotted; of a potted ball where it fell.
-    potted : numpy.ndarray
-        int64 (n, 22). Pocket of each ball, an index into ``snooker_env.POCKETS``; -1 if not potted.
+    places, potted : numpy.ndarray
+        float64 (n, 22, 2), centres at rest [m] before colours are respotted, of a potted ball where it fell;
+        int64 (n, 22), pocket of each ball, an index into ``snooker_env.POCKETS``, or -1.
     first : numpy.ndarray
         int64 (n,). Id of the ball struck first (the lowest of several at once); -1 if none was.
-    points : numpy.ndarray
-        float64 (n,). Points scored; 0 for a miss or a foul.
-    penalty : numpy.ndarray
-        int64 (n,). Penalty points of a foul; 0 for a fair stroke.
+    points, penalty : numpy.ndarray
+        float64 (n,), points scored, 0 for a miss or a foul; int64 (n,), penalty points of a foul, or 0.
     goes_on : numpy.ndarray
         bool (n,). Whether the visit continues after the stroke.
     afterstates : Positions

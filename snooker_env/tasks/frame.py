@@ -445,12 +445,9 @@ class Frames(Tables):
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """See ``Tables.set_position``. Player 0 is at the table; the points are its break."""
         ball_on, in_hand, points = game[[columns.BALL_ON, columns.IN_HAND, columns.POINTS]].tolist()
-        balls, game = (
-            mask_of_present(on_table) & ~CUE_BIT,
-            {"miss": self.rules.miss, "rules": self.rules.game},
-        )
+        balls, rules = mask_of_present(on_table) & ~CUE_BIT, self.rules
         on: Any = {"ball_on": BallOn(ball_on), "in_hand": bool(in_hand), "break_points": points}
-        frame = Frame(on_table=balls, rack=balls, **on, **game)
+        frame = Frame(on_table=balls, rack=balls, miss=rules.miss, rules=rules.game, **on)
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, False, AUTO

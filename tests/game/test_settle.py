@@ -28,7 +28,7 @@ def settled(arrays, ball_on, free_ball=False, lead=0, **seen):
 
 
 def test_reds_go_colours_return_and_the_cue_ball_comes_to_hand():
-    arrays = layouts.break_off(np.random.default_rng(0))
+    arrays = layouts.layout("break_off", np.random.default_rng(0))
     potted = mask_of([0, 3, BLUE])
     verdict, positions, on_table = settled(arrays, BallOn.RED, first=1 << 3, potted=potted)
     assert verdict.fouls == Foul.CUE_POTTED | Foul.WRONG_POT and verdict.penalty == 5 and verdict.in_hand
@@ -39,7 +39,7 @@ def test_reds_go_colours_return_and_the_cue_ball_comes_to_hand():
 
 def test_the_array_and_the_verdict_agree():
     verdict, _, on_table = settled(
-        layouts.break_off(np.random.default_rng(0)), BallOn.RED, first=2, potted=mask_of([1, 2])
+        layouts.layout("break_off", np.random.default_rng(0)), BallOn.RED, first=2, potted=mask_of([1, 2])
     )
     assert mask_of(np.flatnonzero(on_table)) & ~1 == verdict.on_table
 

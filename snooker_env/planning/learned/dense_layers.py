@@ -1,9 +1,6 @@
 """How are the layers of a small network computed while it plays? By a kernel, on the thread that calls it, in
-a fixed order of sums.
-
-The matrix products of NumPy and torch wake a thread for each core. For networks this small these wait for
-each other longer than they compute, and the last bits depend on the number of rows and of threads. Here a
-row's result depends on that row alone."""
+a fixed order of sums: a row's result depends on that row alone. The matrix products of NumPy and torch wake a
+thread for each core, which wait for each other longer than they compute."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -63,10 +60,8 @@ class Layers:
     """A multilayer perceptron of layers (out, in) and (out,), copied, with "tanh" or "relu" between them."""
 
     def __init__(self, weights: Sequence[tuple[Any, Any]], activation: str):
-        self._layers = [
-            (np.array(weight.T, np.float32, order="C"), np.array(bias, np.float32))
-            for weight, bias in weights
-        ]
+        turned = [np.array(weight.T, np.float32, order="C") for weight, _ in weights]
+        self._layers = [(w, np.array(bias, np.float32)) for w, (_, bias) in zip(turned, weights, strict=True)]
         self._between = ACTIVATIONS[activation]
 
     @property

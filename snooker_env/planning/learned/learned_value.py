@@ -1,8 +1,6 @@
 """What is a position worth by a learned value? V = P x U: the chance that the next stroke scores, times what
-the visit then brings.
-
-The mean of several small networks with two outputs. P starts from the likeliest pot's chance by its width; U
-is positive. ``agents.learning.value_network`` trains them."""
+the visit then brings: the mean of several small networks. P starts from the likeliest pot's chance by its
+width; U is positive. ``agents.learning.value_network`` trains them."""
 
 from collections.abc import Sequence
 

@@ -18,7 +18,7 @@ from ..strokes import action_masks
 from .pot_view import with_pots
 
 TEMPERATURE = 4.0
-"""Of the policy's scores: above 1, so that strokes which it likes less are tried too (``python -m
+"""Of the scores: above 1, so that less likely strokes are tried too (``python -m
 benchmarks.temperature``)."""
 _SPEEDS, _SIDES, _TOPS = np.array(SPEEDS), np.array(SIDES), np.array(TOPS)
 _STEP = np.gradient(np.log(_SPEEDS))
@@ -44,12 +44,8 @@ class PolicyProposals:
         sums = np.cumsum(likely, axis=1)
         points = np.stack([sobol_points(m, 4, seed ^ 0xBEEF) for seed in seeds.tolist()])
         levels = (np.arange(m) + points[:, :1, 3]) / m  # systematic sampling: one random start a position
-        picks = np.stack(
-            [
-                np.searchsorted(row, level * row[-1], side="right")
-                for row, level in zip(sums, levels, strict=True)
-            ]
-        )
+        each = zip(sums, levels, strict=True)
+        picks = np.stack([np.searchsorted(row, level * row[-1], side="right") for row, level in each])
         picks = np.minimum(picks, CHOICES - 1)
         stroke = picks % STROKES
         speed, side = stroke // (len(SIDES) * len(TOPS)), stroke // len(TOPS) % len(SIDES)

@@ -1,7 +1,5 @@
-"""What does a policy of strokes compute between its layers? Reading tables, sums over balls and pots, masks.
-
-Each kernel goes over n rows once. The layouts are those of ``agents.learning.networks.TableReader``, with
-which a policy is trained."""
+"""What does a policy of strokes compute between its layers? Reading tables, sums over balls and pots, masks,
+each over n rows once. The layouts are those of ``agents.learning.networks.TableReader``."""
 
 import numpy as np
 

@@ -1,7 +1,5 @@
 """What does a learned value see of a position? The best pots, how open each ball is, where the balls lie, and
-the ball on.
-
-The table is nearly symmetric: it is read mirrored so that the cue ball is on the right."""
+the ball on. The table is nearly symmetric: it is read mirrored so that the cue ball is on the right."""
 
 from math import cos, erf, exp, log, log10, radians, sqrt
 
@@ -87,11 +85,8 @@ def _open(balls, many, open_to):
             if cosine < (_MIDDLE_EDGE if POCKET_AIMS[k, IS_MIDDLE] > 0.0 else _CORNER_EDGE):
                 continue
             width = window(cosine, POCKET_AIMS[k, IS_MIDDLE] > 0.0)
-            if (
-                width <= 0.0
-                or abs(x - d * dx) > HALF_WIDTH - BALL_RADIUS + 1e-9
-                or abs(y - d * dy) > HALF_LENGTH - BALL_RADIUS + 1e-9
-            ):
+            gx, gy = abs(x - d * dx), abs(y - d * dy)
+            if width <= 0.0 or gx > HALF_WIDTH - BALL_RADIUS + 1e-9 or gy > HALF_LENGTH - BALL_RADIUS + 1e-9:
                 continue
             if _clear(balls, many, x, y, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], b, d):
                 open_to[b, k] = width / (2.0 * run)
@@ -215,10 +210,7 @@ def _features(positions, on_table, ball_on, spread, out):
 
 def value_features(at, spread, threads=1):
     """Features of n ``Positions`` with the cue ball on the table: float32 (n, SIZE)."""
-    ball_on, out = at.ball_on.copy(), np.empty((len(at), SIZE), np.float32)
-    in_parts(
-        len(at),
-        threads,
-        lambda rows: _features(at.positions[rows], at.on_table[rows], ball_on[rows], spread, out[rows]),
-    )
+    out = np.empty((len(at), SIZE), np.float32)
+    balls = at.positions, at.on_table, at.ball_on.copy()
+    in_parts(len(at), threads, lambda rows: _features(*(each[rows] for each in balls), spread, out[rows]))
     return out
