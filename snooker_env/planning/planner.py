@@ -22,9 +22,8 @@ from ..tasks.rewards import REWARDS
 from ..tasks.tables import I_FIRST, I_PENALTY
 from ..tasks.threads import Threads, processors
 from .positions import Positions, PositionsLike, bare, check_played, rows_of
-from .strokes import check_strokes, encoded, solved_aims
-from .trials import AIM, Stops, TrialVisits, WatchedVisits, decoded
-from .trials import COLUMNS as STROKE
+from .strokes import AIM, Stops, TrialVisits, WatchedVisits, check_strokes, decoded, encoded, solved_aims
+from .strokes import COLUMNS as STROKE
 
 
 class Outcomes(NamedTuple):

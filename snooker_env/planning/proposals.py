@@ -30,8 +30,7 @@ from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
 from .positions import Positions
 from .prospects import FAR, FOLLOWS
 from .sobol import sobol
-from .strokes import Dynamics, law_of
-from .trials import AIM, COLUMNS, SIDE, SPEED, TOP
+from .strokes import AIM, COLUMNS, SIDE, SPEED, TOP, Dynamics, law_of
 
 SLOWEST, FASTEST, SOFTEST = 0.8, 6.5, 0.5
 """Cue speeds of the proposals at pots [m/s]; the smallest of strokes without a pot."""

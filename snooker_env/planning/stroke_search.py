@@ -27,8 +27,7 @@ from .positions import Positions, PositionsLike, check_played, seeds_of
 from .proposals import Proposals, at_balls, at_pots, over_cushions
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import DIMENSIONS, normal_points
-from .strokes import Dynamics, actions_of
-from .trials import AIM, COLUMNS, SIDE, SPEED, TOP
+from .strokes import AIM, COLUMNS, SIDE, SPEED, TOP, Dynamics, actions_of
 
 PRIOR = 1.0
 """Number of samples that the look without error counts as."""

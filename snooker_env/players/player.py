@@ -19,8 +19,7 @@ from ..game.frame_columns import BALL_ON, PLACE_ANYWHERE, PLAY, PLAY_AGAIN, REPL
 from ..game.ruling import AUTO
 from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..planning.positions import Positions, PositionsLike
-from ..planning.strokes import NAMES
-from ..planning.trials import AIM, ELEVATION, SIDE, SPEED, TOP
+from ..planning.strokes import AIM, ELEVATION, NAMES, SIDE, SPEED, TOP
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING
 from ..tasks.options import Options

@@ -28,7 +28,6 @@ from ..game.frame import MISS_RULES, Frame, frame_of, write_frame
 from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
 from . import frame_kernels
-from .attempts import judge_attempts, remember
 from .box_actions import Actions
 from .declarations import A_LOT
 from .discrete_actions import Choices
@@ -36,10 +35,11 @@ from .frame_kernels import AGENT
 from .noise import Noise
 from .observations import FRAME_SIZE, REPLACED_SIZE
 from .options import NEVER, Options, Rules
-from .rewards import MATCH_REWARDS
+from .rewards import FRAMES_PAID, MATCH_REWARDS
 from .states import FrameState, checked_frame
 from .stroke import ShotBuffers
 from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
+from .visit import Visits
 
 Generators: TypeAlias = Sequence[np.random.Generator]
 """One for each table, for an opponent in Python."""
@@ -231,9 +231,9 @@ class Frames(Tables):
     def _conclude(self, which, b, out, reported, alone):
         if self.rules.misses:
             cushions = self.rules.table.noses, self.rules.table.jaws
-            remember(which, self.arrays, self.saved_arrays, b.played, *cushions)
+            frame_kernels.remember(which, self.arrays, self.saved_arrays, b.played, *cushions)
         if self._miss == columns.ATTEMPTS:
-            judge_attempts(which, b, self)
+            frame_kernels.judge_attempts(which, b, self)
         tables, played = (self.arrays, b.played, self._setting), self._played if reported else self._replies
         frame_kernels.conclude(which, *tables, reported, alone, played, out.arrays)
 
@@ -458,3 +458,58 @@ class Frames(Tables):
         on = frame.ball_on.name.lower().replace("_", " ")
         ended = "" if frame.winner is None else f"   player {frame.winner} wins"
         return f"{frame.scores[0]} - {frame.scores[1]}   player {frame.striker}, break {frame.break_points}   on: {on}{ended}"
+
+
+class Matches(Frames):
+    """n tables, each in the middle of its own match: best of N frames, the players break in turn, the next rack
+    follows in the same step. A frame that the referee stops truncates the match."""
+
+    COUNTS: tuple[str, ...] = (*Frames.COUNTS, "frames_won", "opponent_frames", "frame")
+
+    def go_on(self, which: Ints) -> None:
+        """Count the frames that have just ended, and set up the next ones unless the match is decided."""
+        ended = which[self.game[which, columns.OVER] != 0]
+        if not len(ended):
+            return
+        goes_on = np.empty(len(ended), np.bool_)
+        frame_kernels.count_frames(ended, self.game, self.rules.frames // 2 + 1, goes_on)
+        if not len(ended := ended[goes_on]):
+            return
+        plan = self.rules.plan
+        deal_tables(ended, plan.code, plan.tables, self.streams, self.positions, self.on_table)
+        alone = len(self.seats) == 1
+        frame_kernels.begin_next(ended, alone, self._reward, plan.in_hand, self.on_table, self.game)
+
+    def _worth(self, k):
+        if self._reward == FRAMES_PAID:
+            return self.game[k, columns.FRAMES_0 + AGENT] - self.game[k, columns.FRAMES_1 - AGENT]
+        return self.game[k, columns.SCORE_0 + AGENT] - self.game[k, columns.SCORE_1 - AGENT]
+
+    def get_state(self, k: int) -> dict[str, Any]:
+        """See ``Tables.get_state``."""
+        won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()
+        match = {
+            "frames": won,
+            "first_break": int(self.game[k, columns.FIRST_BREAK]),
+            "best_of": self.rules.frames,
+        }
+        return super().get_state(k) | match
+
+    def set_state(self, k: int, state: FrameState) -> None:
+        """See ``Tables.set_state``."""
+        super().set_state(k, state)
+        assert state.frames is not None and state.first_break is not None  # ``checked`` has seen to it
+        self.game[k, [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK]] = (
+            *state.frames,
+            state.first_break,
+        )
+        self.game[k, columns.PAID] = self._worth(k) - state.unpaid
+
+    def text(self, k: int) -> str:
+        """See ``Tables.text``."""
+        won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()
+        return f"frames {won[0]} - {won[1]}   {super().text(k)}"
+
+
+TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames, "match": Matches}
+"""Which class plays each ``task``."""

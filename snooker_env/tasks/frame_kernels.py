@@ -4,24 +4,28 @@ parts of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``
 
 from typing import NamedTuple
 
+import numpy as np
+
 from .._jit import entry, kernel
-from .._types import Floats
+from .._types import Floats, Ints
 from ..game import frame_columns as columns
 from ..game.apply_ruling import settle
+from ..game.attempt import ATTEMPT_GAP, closest_approach
 from ..game.balls import BLACK, CUE, N_BALLS, SPOTS, available, bits
+from ..game.paths import best_paths
 from ..game.philox import pair
 from ..game.rule_sets import SHOOT_OUT, SIX_RED
-from ..game.ruling import AUTO, FLAG, OUTCOME, Facts
+from ..game.ruling import AUTO, FLAG, OUTCOME, Before, Facts, ruling
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
-from ..physics.engine import Status
+from ..physics.engine import EventKind, Status
 from . import declarations, stroke
 from .arrays import OutputArrays, PlayedArrays, TableArrays
 from .observations import FRAME_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, earned, frame_reward_of
-from .tables import COUNTS, I_BREAK, REALS, keep_last, write_empty_info, write_stroke_info
+from .tables import COUNTS, I_BREAK, REALS, Tables, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
-_OK = int(Status.OK)
+_OK, _BALL_BALL = int(Status.OK), int(EventKind.BALL_BALL)
 (I_SCORE, I_OPPONENT_SCORE, I_CLOCK) = range(len(REALS), len(REALS) + 3)
 (I_STROKES, I_REPLIES, I_WINNER) = range(len(COUNTS), len(COUNTS) + 3)
 (I_CHOICE, I_FREE_BALL, I_NEEDS_SNOOKERS, I_ANYWHERE, I_WARNED) = range(len(COUNTS) + 3, len(COUNTS) + 8)
@@ -346,3 +350,71 @@ def show(which, fresh, tables, saved, setting, replies, output, last):
         write_empty_info(k, out, tables.game[k, columns.BALL_ON])
         _write_frame_info(k, tables.game[k], AGENT, replies[k], out)
         observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)
+
+
+@entry(what="the paths of the miss rule", seconds=2)
+def remember(which, tables, saved, shots, noses, jaws):
+    """Record the layouts before the strokes, and which paths were clear before those that struck no ball on
+    first; of others ``seen`` says that one was. S3 R14(c) speaks of every ball "that is or could be on":
+    after a red, all colours."""
+    tables, saved, shots = TableArrays(*tables), columns.Layouts(*saved), PlayedArrays(*shots)
+    for j in range(which.shape[0]):
+        if shots.status[j] != _OK:
+            continue
+        k = which[j]
+        positions, on_table, row = tables.positions[k], tables.on_table[k], tables.game[k]
+        mask, seen = bits(on_table), shots.seen[j]
+        first, touching, moved, potted = stroke.see(j, shots, positions, on_table)
+        seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH] = True, False
+        before = Before(mask, row[columns.BALL_ON], row[columns.FREE_BALL], 0)
+        if (
+            ruling(before, Facts(first, touching, moved, potted, 0, tables.nominated[k]), 0).fouls
+            & columns.MISSED
+        ):
+            in_hand, on = row[columns.IN_HAND] + row[columns.ANYWHERE], columns.strikeable(row, mask & ~1)
+            clear, full = best_paths(positions, on_table, on, in_hand, noses, jaws, BALL_RADIUS)
+            seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH] = clear, full
+        for i in range(N_BALLS):
+            saved.positions[k, i, 0], saved.positions[k, i, 1] = positions[i, 0], positions[i, 1]
+            saved.on_table[k, i] = on_table[i]
+
+
+@entry(what="the strokes of snookered strikers", seconds=1)
+def question(which, on_table, game, status, seen, asked):
+    """Find the shots whose attempt must be judged: ``asked[j]``; all others count as attempts."""
+    for j in range(which.shape[0]):
+        k = which[j]
+        asked[j] = False
+        seen[j, stroke.ATTEMPT] = True
+        if status[j] == _OK and not (seen[j, stroke.CLEAR_PATH] or seen[j, stroke.FULL_PATH]):
+            asked[j] = seen[j, stroke.FIRST] & columns.strikeable(game[k], bits(on_table[k]) & ~1) == 0
+
+
+@entry(what="the attempts of snookered strikers", seconds=1)
+def gap_of(positions, on_table, row, shots, path, j):
+    """How near the cue ball came to a ball on in shot j, before it struck another or came to rest [m]."""
+    shots, (segments, n_segments) = PlayedArrays(*shots), path
+    until, on = shots.duration[j], columns.strikeable(row, bits(on_table) & ~1)
+    for e in range(shots.n_events[j]):
+        if shots.event_what[j, e, 0] == _BALL_BALL and shots.event_what[j, e, 1] == CUE:
+            until = shots.event_time[j, e]
+            break
+    return closest_approach(segments[j], n_segments[j], until, positions, on_table, on, BALL_RADIUS)
+
+
+def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> dict[int, float]:
+    """Write into ``b.seen`` which shots were attempts; returns the gaps [m] of those asked by row: strokes
+    without a clear path that struck no ball on first, which are played once more, uncounted, with the path of
+    the cue ball."""
+    positions, on_table, game, *_ = tables.arrays
+    asked = np.empty(len(which), np.bool_)
+    question(which, on_table, game, b.status, b.seen, asked)
+    gaps = {}
+    for j in np.flatnonzero(asked).tolist():
+        k = which[j]
+        one, at = b, j
+        if not b.segments.shape[1]:
+            one, at = stroke.with_path(b, j, positions[k], on_table[k], tables.rules, tables.packed[2]), 0
+        gaps[j] = gap_of(positions[k], on_table[k], game[k], one.played, (one.segments, one.n_segments), at)
+        b.seen[j, stroke.ATTEMPT] = gaps[j] <= ATTEMPT_GAP
+    return gaps

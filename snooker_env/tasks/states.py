@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,9 +12,7 @@ from ..game import balls
 from ..game.frame import MOST_BREAK, Frame
 from ..game.in_hand import within_d
 from ..physics.table import Table
-
-if TYPE_CHECKING:
-    from .options import Rules
+from .options import Rules
 
 MOST = 2**53 - 1
 """Largest score and number of strokes in a saved frame: a float, as in observations and infos, is still
@@ -164,7 +162,7 @@ def checked(
     return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"])
 
 
-def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) -> FrameState:
+def checked_frame(state: Any, rules: Rules, generator: np.random.Generator) -> FrameState:
     """The ``FrameState`` that a dict describes, under these rules; ValueError names the first wrong part."""
     check_keys(state, MATCH_KEYS if rules.frames else FRAME_KEYS)
     miss, table, R = rules.miss, rules.table, rules.physics.R

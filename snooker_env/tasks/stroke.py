@@ -3,7 +3,7 @@ then ``engine.run_batch``; each task has its own referee. Row j of the ``ShotBuf
 which[j]. Each table draws from its own stream, so that no result depends on other tables, their number or the
 threads."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,9 +25,7 @@ from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, playable
 from .lines import new_work
 from .noise import executed
-
-if TYPE_CHECKING:
-    from .options import Rules
+from .options import Rules
 
 AT_ONCE = 1e-9
 """Contacts within this time [s] are simultaneous."""
@@ -236,7 +234,7 @@ class ShotBuffers:
         one.v[0, CUE], one.w[0, CUE] = shot[[VX, VY]], shot[[WX, WY, WZ]]
         return one
 
-    def shot(self, j: int, rules: "Rules") -> Shot:
+    def shot(self, j: int, rules: Rules) -> Shot:
         """Shot j as a ``Shot``."""
         n = self.n_events[j]
         events = np.zeros(n, EVENT)
@@ -248,13 +246,13 @@ class ShotBuffers:
         return Shot(*ends, events, segments, rules.physics, rules.table)
 
 
-def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
+def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
     """Play the first m shots until all balls are at rest; ``phys``: the packed ``rules.physics``."""
     count(m)
     _simulated(buffers, m, rules, phys)
 
 
-def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
+def _simulated(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
     """The same without counting them."""
     table = rules.table
     buffers.enlarged = {}
@@ -266,7 +264,7 @@ def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> No
 
 
 def run_again(
-    buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats
+    buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: Rules, phys: Floats
 ) -> ShotBuffers:
     """Play shot j, on table k, with a longer log in its own buffers; SimulationError if it does not help."""
     one, status = buffers, buffers.status[j]
@@ -282,7 +280,7 @@ def run_again(
 
 
 def with_path(
-    buffers: ShotBuffers, j: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats
+    buffers: ShotBuffers, j: int, positions: Floats, on_table: Bools, rules: Rules, phys: Floats
 ) -> ShotBuffers:
     """Play shot j, which came to rest, once more with its path, uncounted; returns its own buffers."""
     one = buffers.again(j, buffers.log, path=True)
