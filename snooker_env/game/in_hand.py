@@ -1,8 +1,6 @@
 """Where may the cue ball in hand stand? At the free place nearest to a point, in the D or anywhere; exact.
-
-The centre must be on or within the lines of the D: the baulk line between yellow and green, and the half
-circle behind it. Anywhere on the table: within the rectangle that leaves a gap to the cushions, off pockets.
-"""
+The centre must be on or within the lines of the D; anywhere on the table, within the rectangle that leaves a
+gap to the cushions, off pockets."""
 
 from typing import Any
 
@@ -15,10 +13,8 @@ from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, 
 from .balls import CLEARANCE, N_BALLS, REFEREE_TOUCH, check_table
 from .spotting import touches
 
-POCKET_REACH = 0.15
-"""Least distance of the cue ball's centre from a pocket's nominal place [m]: clear of the jaws."""
-ROUNDING = 1e-12
-"""Tolerance for points on the lines of the D [m]."""
+POCKET_REACH, ROUNDING = 0.15, 1e-12
+"""Least distance from a pocket's nominal place, clear of the jaws; tolerance on the lines of the D [m]."""
 D_STEP, BED_STEP = 0.005, 0.05
 """Distances between neighbouring places that are tried in the D, and on the whole bed [m]."""
 

@@ -18,12 +18,9 @@ from .philox import normals, pair, stream_of
 from .pots import POT_COLUMNS, TOLERANCE, find_pots
 from .snookered import NO_JAWS, snookered_from
 
-GAP = 0.001
-"""Least gap between a ball placed at random and any other ball [m]."""
-CUSHION_GAP = 0.05
-"""Least gap between such a ball and a cushion [m]: about a ball's width, to be struck normally."""
-POCKET_GAP = 0.15
-"""Least distance of such a ball's centre from a pocket's nominal place [m]: clear of the jaws."""
+GAP, CUSHION_GAP, POCKET_GAP = 0.001, 0.05, 0.15
+"""Least gaps [m] between a ball placed at random and any other ball, and a cushion (about a ball's width, to be
+struck normally); least distance of its centre from a pocket's nominal place (clear of the jaws)."""
 
 OPENED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)
 """Kinds of layouts, for the kernels."""
@@ -169,10 +166,9 @@ class Plan:
     ----------
     name : str
         Name of the layout.
-    code : float64 (4,)
-        Kind, number of reds, and the range of tables of the bank or of a pot's tolerance [rad].
-    tables : float64 (b, 22, 2)
-        The bank of opened tables [m]; b = 0 for a layout without one.
+    code, tables : numpy.ndarray
+        float64 (4,): kind, number of reds, and the range of tables of the bank or of a pot's tolerance [rad].
+        float64 (b, 22, 2): the bank of opened tables [m]; b = 0 for a layout without one.
     unfit : tuple of int
         Tables of the bank that do not fit the table played on; others replace them.
 
@@ -261,10 +257,8 @@ def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
 
     Returns
     -------
-    positions : float64 (22, 2)
-        Centres of the balls [m], a new array.
-    on_table : bool (22,)
-        Which balls are on the table, a new array.
+    positions, on_table : numpy.ndarray
+        New arrays, float64 (22, 2), centres of the balls [m], and bool (22,).
 
     Examples
     --------

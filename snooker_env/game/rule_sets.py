@@ -50,10 +50,8 @@ RULE_SETS = (
 RULES = get_args(RulesName)
 """Their names, by code."""
 
-MOST_MISSES = RULE_SETS[SIX_RED].most_misses
-CLOCK_LIMIT = RULE_SETS[SHOOT_OUT].clock
+MOST_MISSES, CLOCK_LIMIT = RULE_SETS[SIX_RED].most_misses, RULE_SETS[SHOOT_OUT].clock
 SHOT_CLOCK = RULE_SETS[SHOOT_OUT].shot_clock
-"""The same numbers for the kernels."""
 
 
 def rule_set(name: RulesName) -> RuleSet:

@@ -18,10 +18,9 @@ from .balls import ALL_MASK, CLEARANCE, CUE_BIT, N_BALLS, REFEREE_TOUCH, check_t
 from .in_hand import PLACES_IN_D
 from .spotting import touches
 
-BESIDE = 360
-"""Number of directions in which places beside a ball are tested."""
-SLACK = 1e-9
-"""A ball obstructs only if it is nearer than 2 R by more than this [m]: touching does not obstruct."""
+BESIDE, SLACK = 360, 1e-9
+"""Number of directions in which places beside a ball are tested; a ball obstructs only if it is nearer than
+2 R by more than this [m]: touching does not obstruct."""
 NO_JAWS = np.empty((0, 3))
 """No curved cushion faces; other arrays (m, 3) hold their circles (x, y, radius) [m]."""
 

@@ -63,7 +63,6 @@ class TrialVisits(Visits):
         self.positions, self.on_table, self.game = after.positions, after.on_table, after.game
 
     def address(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> None:
-        """As ``Tables.address``."""
         if self.errors is None:
             super().address(which, actions, buffers)
             return
@@ -134,14 +133,12 @@ class WatchedVisits(TrialVisits):
         return super().output(**kwargs)
 
     def run(self, which: Ints, buffers: ShotBuffers) -> list[int]:
-        """As ``Tables.run``."""
         unfinished = super().run(which, buffers)
         m = len(which)
         self.places[which], self.potted[which] = buffers.r[:m], buffers.potted[:m]
         return unfinished
 
     def again(self, which: Ints, j: int, buffers: ShotBuffers) -> ShotBuffers:
-        """As ``Tables.again``."""
         one = super().again(which, j, buffers)
         self.places[which[j]], self.potted[which[j]] = one.r[0], one.potted[0]
         return one

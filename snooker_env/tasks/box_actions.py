@@ -82,31 +82,9 @@ def _shot(a, positions, on_table, on, options, phys):
 
 
 class Actions:
-    """The box action space and the meaning of its components.
-
-    ==== ============ =======================================================================
-    0    cue speed    0.2 to 7.0 m/s, linear
-    1    side         tip offset over R = 0.5 x, + to the right. The point (side, top) is moved
-    2    top          back to the disc of radius 0.5 (the miscue limit) if it lies outside;
-                      top: + above, - below the middle
-    3    aim          "absolute": the angle pi x from +x, anticlockwise, in which the ball
-                      leaves without noise (squirt is compensated, as a player does).
-                      "target": the target line + 3 deg x (see ``line``)
-    4    elevation    only with ``elevation=True``: 0 to 30 deg, linear
-    next place in     only with ``placement=True``: across the D, then from the baulk line (-1)
-    two  the D        to the edge of the D (+1). Ignored unless the cue ball is in hand
-    next nomination   only if it says "nominate". After a red the range is cut in six equal
-                      parts, yellow to black; with a free ball in seven: the ball on itself,
-                      then yellow to black. At other times ignored
-    next decision     only if it says "decision": what to do after a foul of the opponent, else
-                      ignored. Below -1/3: the offender plays again from here. Above 1/3: the
-                      balls are replaced and it plays again, if a miss was called. In between,
-                      or without a miss: play, with this same action
-    last declaration  only if it says "concede", "claim" or "lot". Below -2/3: concede. Above 2/3:
-                      claim the frame, where the rules allow it. At the lot, below 0: the other
-                      player begins. Else: play, with this same action
-    ==== ============ =======================================================================
-    """
+    """The box action space; docs/environment/specification.md says what its components mean: speed, side,
+    top, aim, then elevation, the place in the D (two), nomination, decision, declaration, as far as they are
+    on."""
 
     aim: str
     elevation: bool

@@ -106,7 +106,6 @@ def masks(which, positions, on_table, game, options, out):
 
 class Choices:
     """The discrete action space and its meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``choice_of``.
-
     With ``nominate``, n * 540 + that: n = 0 nominates nothing, 1 to 6 yellow to black, and the pots are those
     of the ball that is then on. The last choices, as far as they are on: concede, claim, let the other player
     begin after the lot. What may not be said is played as the stroke of the same remainder."""

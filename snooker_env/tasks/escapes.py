@@ -51,17 +51,13 @@ _REBOUND = (
 """A ball rolls into a cushion at speed v, at 0, 10, .. 90 degrees to its normal. When it rolls again: its
 velocity along the normal and along the cushion, over v, and how far it has come along each, over v^2
 [s^2/m]."""
-_MOUTH = 0.12
-"""No cushion is used within this distance of a pocket's nominal place [m]."""
-_DIRECTIONS = 720
-_SPEEDS = (1.7, 2.8, 4.2)
-"""Cue speeds of an escape [m/s]: the next one is tried where the one before leaves no window of ``_WIDE``."""
-_WIDE = 4.0
-"""Number of directions of a window that is wide enough, after a deduction for cushions."""
-_LEGS = 4
-"""Most straight parts of an escape: one more than cushions."""
-_SAME = 0.1
-"""Escapes whose directions differ by less are one [rad]."""
+_MOUTH, _SAME = 0.12, 0.1
+"""No cushion is used so near to a pocket's nominal place [m]; escapes so near in direction are one [rad]."""
+_DIRECTIONS, _LEGS = 720, 4
+"""Directions tried; most straight parts of an escape, one more than cushions."""
+_SPEEDS, _WIDE = (1.7, 2.8, 4.2), 4.0
+"""Cue speeds of an escape [m/s]: the next one is tried where the one before leaves no window of ``_WIDE``
+directions, after a deduction for cushions."""
 
 _HALVES = ((AXIS_X, HALF_WIDTH), (AXIS_Y, HALF_LENGTH))
 _BED = np.array([(axis, side, half, -9.0, 9.0) for axis, half in _HALVES for side in (-1.0, 1.0)])

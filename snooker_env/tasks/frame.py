@@ -173,11 +173,9 @@ class Frames(Tables):
         return self.game[:, columns.STROKES] >= self.rules.max_strokes
 
     def ended(self) -> Bools:
-        """See ``Tables.ended``."""
         return super().ended() | self.stopped()
 
     def finished(self) -> Bools:
-        """See ``Tables.finished``."""
         return self.ended() & ~self.due
 
     def interrupted(self) -> None:
@@ -381,7 +379,6 @@ class Frames(Tables):
         return self.masks_of(which, self.seats[side].actions, self.packs[side][0])
 
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
-        """See ``Tables.observe``."""
         rows = np.empty((len(which), self.SIZE), np.float32)
         frame_kernels.observe(which, player, self.arrays, self.saved_arrays, self._setting, rows)
         return rows
@@ -426,7 +423,6 @@ class Frames(Tables):
         return sound
 
     def set_state(self, k: int, state: FrameState) -> None:
-        """See ``Tables.set_state``."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
         self.game[k, columns.OPPONENT] = state.opponent
@@ -436,7 +432,6 @@ class Frames(Tables):
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, state.due, AUTO
 
     def standing(self, k: int) -> dict[str, Any]:
-        """See ``Tables.standing``."""
         frame = self.frame(k)
         now = {"scores": frame.scores, "break_points": frame.break_points, "winner": frame.winner}
         turn = {"next_player": frame.striker, "next_free_ball": frame.free_ball}
@@ -453,7 +448,6 @@ class Frames(Tables):
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, False, AUTO
 
     def text(self, k: int) -> str:
-        """See ``Tables.text``."""
         frame = self.frame(k)
         on = frame.ball_on.name.lower().replace("_", " ")
         ended = "" if frame.winner is None else f"   player {frame.winner} wins"
@@ -486,7 +480,6 @@ class Matches(Frames):
         return self.game[k, columns.SCORE_0 + AGENT] - self.game[k, columns.SCORE_1 - AGENT]
 
     def get_state(self, k: int) -> dict[str, Any]:
-        """See ``Tables.get_state``."""
         won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()
         match = {
             "frames": won,
@@ -496,7 +489,6 @@ class Matches(Frames):
         return super().get_state(k) | match
 
     def set_state(self, k: int, state: FrameState) -> None:
-        """See ``Tables.set_state``."""
         super().set_state(k, state)
         assert state.frames is not None and state.first_break is not None  # ``checked`` has seen to it
         self.game[k, [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK]] = (
@@ -506,7 +498,6 @@ class Matches(Frames):
         self.game[k, columns.PAID] = self._worth(k) - state.unpaid
 
     def text(self, k: int) -> str:
-        """See ``Tables.text``."""
         won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()
         return f"frames {won[0]} - {won[1]}   {super().text(k)}"
 

@@ -316,7 +316,6 @@ class GhostBallOpponent(Opponent):
       more: two exact players cannot repeat one failing stroke for ever."""
 
     def prepare(self, frames: Frames, which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
-        """See ``Opponent.prepare``."""
         _ghost_ball(which, frames.arrays, buffers.struck, frames.packs[SIDE], frames.rules.rule_set.code)
         frames.hold_late(which, buffers)
         return which

@@ -26,14 +26,9 @@ LINE_ROWS = POTS + MOST_EDGES
 """Rows of the work space of lines: up to ``POTS`` lines, then room for windows."""
 THIN = 0.62
 """Of a thin contact: how far the path of the cue ball passes the centre of the ball, over 2 R."""
-EASY = 0.01
-"""Half a window that a player cannot miss [rad]."""
-NARROW = 0.25 * EASY
-"""Half a window below which an escape is better [rad]."""
-_SLIT = 1e-6
-"""Half a window that is none [rad]."""
-_APART = 2e-3
-"""Two lines differ by at least this [rad]."""
+EASY, NARROW, _SLIT, _APART = 0.01, 0.25 * 0.01, 1e-6, 2e-3
+"""Half a window [rad] that a player cannot miss; below which an escape is better; that is none; least
+difference of two lines."""
 
 
 @entry  # it makes arrays, which an inner kernel may not

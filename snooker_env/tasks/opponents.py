@@ -51,7 +51,6 @@ class AskedOpponent(Opponent):
         return out
 
     def prepare(self, frames: Frames, which: Ints, asked: Floats, buffers: ShotBuffers) -> Ints:
-        """See ``Opponent.prepare``."""
         return frames.prepare(which, asked, buffers, SIDE)
 
     def _wishes(self, frames, which, seen, generators):
@@ -106,7 +105,6 @@ class UniformOpponent(Opponent):
         return np.empty((frames.n, frames.seats[SIDE].actions.size))
 
     def prepare(self, frames: Frames, which: Ints, asked: Floats, buffers: ShotBuffers) -> Ints:
-        """See ``Opponent.prepare``."""
         reads = frames.seats[SIDE].actions
         if isinstance(reads, Choices):
             masks = frames.action_masks(which, SIDE)

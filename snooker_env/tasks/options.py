@@ -38,11 +38,8 @@ MAX_STROKES = 1000
 284 on average, at most 560 in 2,000 frames (``benchmarks.frames``); some players never finish."""
 FRAMES = 7
 """Default length of a match: best of 7."""
-OPPONENTS = (
-    "must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an object: a callable(observation, rng) "
-    "-> action, a player, one with act(observations, masks, seeds), an OpponentPool"
-)
-"""What may be the opponent, for messages."""
+OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an \
+object: a callable(observation, rng) -> action, a player, one with act(observations, masks, seeds), an OpponentPool"""
 GROUPS = ("task", "action", "view", "shot", "frame")
 """Groups of options: what is played, how one acts, what one sees, what decides a shot, rules of frames."""
 _UNSAID: Any = object()
@@ -168,10 +165,9 @@ class Options:
     reward : {"points", "points_and_fouls", "pots", "legal", "win", "frames"}, optional
         Default "points". The first four are available in a visit, "points" and "win" in a frame, "frames"
         also in a match.
-    elevation : bool, optional
-        Whether a box action holds the elevation of the cue; default False.
-    placement : bool, optional
-        Whether a box action holds the place in the D for a cue ball in hand; default False.
+    elevation, placement : bool, optional
+        Whether a box action holds the elevation of the cue, and the place in the D for a cue ball in hand;
+        default False.
     physics : str, dict, Physics or None, optional
         As ``Physics.of`` takes them, with snooker's ball radius. Default "paper".
     table : str or Table, optional
@@ -187,15 +183,14 @@ class Options:
     max_strokes : int or None, optional
         In a frame: strokes of both players after which the referee stops it and its match; default 1000,
         None: never.
-    one_stroke : bool, optional
-        In a visit: whether it ends after its first stroke; default False.
-    trust : bool, optional
-        In a frame: whether code in an opponent's ``.zip`` may run; default False.
+    one_stroke, trust : bool, optional
+        In a visit: whether it ends after its first stroke. In a frame: whether code in an opponent's ``.zip``
+        may run. Default False.
     says : sequence of str, optional
         In a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a
-        free ball; else it is the one struck first), "decision" (after a foul of the opponent, of box actions
-        only), "concede", "claim" (the frame, where the rules allow it) and "lot" (whether the winner of the
-        lot for a re-spotted black lets the other player begin; else it begins). Default: nothing.
+        free ball; else the one struck first), "decision" (after a foul, of box actions only), "concede",
+        "claim" (the frame, where the rules allow it) and "lot" (whether the winner of the lot for a re-spotted
+        black lets the other player begin; else it begins). Default: nothing.
     nominate, decision, concede, claim, lot : bool, optional
         Whether ``says`` has them: ``decision=True`` adds "decision" to it. To be read as attributes, too.
     game : {"snooker", "six_red", "shoot_out"}, optional

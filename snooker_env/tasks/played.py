@@ -21,38 +21,28 @@ class Played:
     cue : dict of str to float
         The strike, errors included: "speed" [m/s], "side", "top" (over R, right and up), "aim", "elevation"
         [rad].
-    player : int
-        Who played it: 0, or in a frame 0 or 1.
-    ball_on : BallOn
-        What was on.
-    free_ball : bool
-        Whether the player had a free ball.
+    player, next_player : int
+        Who played it, and whose turn it is next: 0, or in a frame 0 or 1.
+    ball_on, next_on : BallOn
+        What was on, and what is on next; NOTHING when the visit or frame is over.
+    free_ball, next_free_ball : bool
+        Whether the player had a free ball, and whether the next player has one.
     first : tuple of int
         Ids of the balls struck first: one, none, or those struck at the same instant.
     points, penalty : int
         Points scored, and penalty points given to the opponent.
     fouls : Foul
         The rules that the stroke broke.
-    positions : numpy.ndarray
-        float64 (22, 2). The balls after the stroke [m], colours respotted and a cue ball in hand placed.
-    on_table : numpy.ndarray
-        bool (22,). Which balls are on the table then.
-    next_on : BallOn
-        What is on next; NOTHING when the visit or frame is over.
-    next_free_ball : bool
-        Whether the next player has a free ball.
-    next_player : int
-        Whose turn it is next.
+    positions, on_table : numpy.ndarray
+        float64 (22, 2), the balls after the stroke [m], colours respotted and a cue ball in hand placed; bool
+        (22,), which balls are on the table then.
     scores : tuple of int
         In a frame, both scores after the stroke; in a visit, its points so far.
     break_before, break_points : int
         Points of the break before and with this stroke; the latter in a frame 0 if it scored nothing.
-    in_hand : bool
-        Whether the cue ball is in hand next.
-    choice : bool
-        Whether the next player has a decision to make, after a foul.
-    over : bool
-        Whether the visit or frame has ended.
+    in_hand, choice, over : bool
+        Whether the cue ball is in hand next; whether the next player has a decision to make, after a foul;
+        whether the visit or frame has ended.
     winner : int or None
         Who has won the frame.
 

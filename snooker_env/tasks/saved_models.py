@@ -19,8 +19,8 @@ from .._install import missing
 __all__ = ["PLAIN", "SavedModel", "by_train", "entries", "one_thread", "outline", "part"]
 
 MOST = 2**26
-"""Largest number of bytes of JSON that are read (SB3 stores the last observations there): a small zip can
-unpack to more than a machine's memory, and JSON to objects 25 times as large."""
+"""Most bytes of JSON that are read (SB3 stores the last observations there): a small zip can unpack to more
+than a machine's memory, and JSON to objects 25 times as large."""
 PLAIN = "model.json"
 """The part that replaces ``data`` in zips written by ``agents.publish``, which hold no pickles."""
 
@@ -37,8 +37,7 @@ _ALGORITHMS = (
 """Library, class, and the names that only its models save, in addition to those of the classes above. A
 recurrent model has no class of rollout buffers."""
 _PLAYED = ("policy_class", "policy_kwargs", "observation_space", "action_space")
-"""The pickles that playing needs; others (schedules, callbacks, buffers) may name packages that are
-missing."""
+"""The pickles that playing needs; others (schedules, callbacks, buffers) may name missing packages."""
 _UNPICKLED = {"learning_rate": 0.0, "clip_range": 0.2, "train_freq": 1, "target_entropy": 0.0}
 """What takes the place of a pickle that is left out; else None. Nothing is learned by these."""
 
@@ -47,8 +46,7 @@ _UNPICKLED = {"learning_rate": 0.0, "clip_range": 0.2, "train_freq": 1, "target_
 def one_thread() -> Iterator[None]:
     """Let PyTorch compute on the calling thread alone, as a context: where a model that plays decides.
 
-    PyTorch shares out even small products among a thread for each core; networks of a few layers are slower
-    so, and each core that another process holds makes them wait.
+    Shared out among a thread for each core, networks of a few layers are slower, and wait for busy cores.
 
     Returns
     -------
@@ -92,21 +90,16 @@ def part(path: str | Path, name: str, most: int = MOST) -> bytes:
 
     Raises
     ------
-    ValueError
-        If the part is larger than ``most``.
-    KeyError, zipfile.BadZipFile, OSError
-        If there is no such part, the file is no zip, or it cannot be read.
+    ValueError, KeyError, zipfile.BadZipFile, OSError
+        If the part is larger than ``most``, there is none, the file is no zip, or it cannot be read.
 
     Examples
     --------
     >>> from snooker_env.tasks.saved_models import part
-    >>> import tempfile, zipfile
-    >>> from pathlib import Path
-    >>> file = Path(tempfile.mkdtemp()) / "model.zip"
-    >>> with zipfile.ZipFile(file, "w") as made:
-    ...     made.writestr("data", "{}")
-    >>> part(file, "data")
-    b'{}'
+    >>> part("nowhere.zip", "data")
+    Traceback (most recent call last):
+    ...
+    FileNotFoundError: [Errno 2] No such file or directory: 'nowhere.zip'
     """
     with zipfile.ZipFile(path) as file:
         if file.getinfo(name).file_size > most:
@@ -247,11 +240,8 @@ class SavedModel:
         try:
             data = entries(path)
             ours = by_train(data)
-            outlines = (
-                []
-                if ours
-                else [_described_outline(data[key]) for key in ("observation_space", "action_space")]
-            )
+            spaces_ = () if ours else ("observation_space", "action_space")
+            outlines = [_described_outline(data[key]) for key in spaces_]
         except Exception as error:  # zipfile and json raise many kinds for other files
             raise refuse(field, str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
         if ours:
@@ -291,16 +281,12 @@ class SavedModel:
             raise missing(f"{self.field} = {str(self.path)!r} needs {library}", "train") from error
         # keep the caller's random state; no learning
         only_played = {"seed": None, "n_envs": 1, "buffer_size": 1}
-        pickled = [
-            key for key, value in self.data.items() if isinstance(value, dict) and ":serialized:" in value
-        ]
-        left_out = {key: _UNPICKLED.get(key) for key in pickled if key not in _PLAYED}
+        others = [(key, value) for key, value in self.data.items() if key not in _PLAYED]
+        pickled = [key for key, value in others if isinstance(value, dict) and ":serialized:" in value]
+        left_out = {key: _UNPICKLED.get(key) for key in pickled}
         try:
-            return (
-                getattr(module, name)
-                .load(self.path, device="cpu", custom_objects=left_out, **only_played)
-                .policy
-            )
+            kind = getattr(module, name)
+            return kind.load(self.path, device="cpu", custom_objects=left_out, **only_played).policy
         except Exception as error:  # the file's own code may raise anything
             why = str(error).partition("\n")[0]
             allowed = f"must be a model that {name} can load ({type(error).__name__}: {why})"

@@ -129,7 +129,6 @@ class Visits(Tables):
             _begin(which, fresh, plan.in_hand, self.arrays, out.arrays, out.last)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
-        """See ``Tables.reset``."""
 
         def begin(which, buffers):
             self._begin(which[wanted[which]], out)
@@ -140,7 +139,6 @@ class Visits(Tables):
         crew(np.arange(self.n), begin)
 
     def observe(self, which: Ints, player: int = 0) -> Singles:
-        """See ``Tables.observe``."""
         rows = np.empty((len(which), SIZE), np.float32)
         observe(which, self.positions, self.on_table, self.game, rows)
         return rows
@@ -152,7 +150,6 @@ class Visits(Tables):
         return super().get_state(k) | visit
 
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> State:
-        """See ``Tables.checked``."""
         return checked(state, self.rules.table, self.rules.physics.R, generator, to_play=to_play)
 
     def set_state(self, k: int, state: State) -> None:
@@ -169,11 +166,9 @@ class Visits(Tables):
         return now | {"next_player": 0, "next_free_ball": False}
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """See ``Tables.set_position``."""
         self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
         self.begun[k] = True
 
     def text(self, k: int) -> str:
-        """See ``Tables.text``."""
         on = BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
         return f"break {self.game[k, POINTS]}   on: {on}   reds: {int(self.on_table[k, 1:16].sum())}"
