@@ -65,8 +65,7 @@ COLOUR_SPOTS = np.array(
 """The spots of yellow, green, brown, blue, pink and black: float64 (6, 2) [m], read-only."""
 
 POCKET_PLACES = np.array([(sx * HALF_WIDTH, sy * HALF_LENGTH) for sx, sy in SIDES])
-"""Nominal places of the pockets: float64 (6, 2) [m], read-only: where two nose lines meet, or the middle of
-one. Layouts keep balls away from them."""
+"""Nominal places of pockets: float64 (6, 2) [m], read-only: where two nose lines meet, or a middle of one."""
 
 AIM_X, AIM_Y, AXIS_X, AXIS_Y, IS_MIDDLE = range(5)
 """Columns of ``POCKET_AIMS``: aim point [m], the axis as outward unit vector, 1 for a middle pocket."""
@@ -171,9 +170,7 @@ class Pocket:
     def middle(
         cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 90.0, jaw_radius: float = 0.0
     ) -> "Pocket":
-        """Make a middle (side) pocket from its published sizes; ValueError as for ``Pocket``.
-
-        As ``Pocket.corner``, but ``cut`` is in [90, 180): 90 makes the facings parallel, the WPA's is 104."""
+        """Make a middle pocket as ``Pocket.corner``; ``cut`` in [90, 180): 90 is parallel, the WPA's 104."""
         mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
         turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
         return cls(**_named(True, mouth / 2.0, jaw_radius, turn, fall_radius + shelf, fall_radius))

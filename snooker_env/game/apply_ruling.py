@@ -37,11 +37,9 @@ def settle_visit(positions, on_table, ball_on, lead, seen, radius):
 
 @kernel
 def settle(positions, on_table, situation, facts, flags, jaws, radius):
-    """Judge a stroke and set up the table for the next one: a ``Ruling`` with free ball and snooker behind it.
-
-    ``positions`` [m] after the stroke and ``on_table`` *before* it are changed in place; on_table[0] is False
-    if the cue ball is in hand. ``situation``: (ball_on, free_ball, lead) of ``Before``. SNOOKERED and
-    BEHIND_FREE_BALL of ``flags`` are set here. ``jaws``: see ``snookered.NO_JAWS``."""
+    """Judge a stroke and set up the table for the next one: a ``Ruling`` with free ball and snooker behind
+    it. ``positions`` after the stroke and ``on_table`` *before* it are changed in place; on_table[0] is False
+    if the cue ball is in hand. SNOOKERED and BEHIND_FREE_BALL of ``flags`` are set here."""
     flags = flags & ~(FLAG.SNOOKERED | FLAG.BEHIND_FREE_BALL)
     ball_on, free_ball, lead = situation
     before = Before(bits(on_table), ball_on, free_ball, lead)
@@ -80,9 +78,8 @@ def settle_table(
     jaws: Vectors = NO_JAWS,
     radius: float = BALL_RADIUS,
 ) -> tuple[Verdict, Floats, Bools]:
-    """Judge a ``Stroke`` and set up the table: the ``Verdict``, new ``positions`` (22, 2) [m], ``on_table``
-    (22,). ``positions`` are after the stroke, ``on_table`` before it, as in ``situation``. ``snookered`` and
-    ``behind_free_ball`` are computed here. ValueError for wrong input."""
+    """Judge a ``Stroke`` and set up the table: ``Verdict``, new ``positions`` (22, 2) [m], ``on_table``
+    (22,), of those after and before it. ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if (mask_of(np.flatnonzero(present)) ^ situation.on_table) & ~1:
         raise refuse("situation.on_table", situation.on_table, "must be the mask of the array on_table")

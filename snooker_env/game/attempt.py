@@ -65,8 +65,7 @@ def nearest_on_piece(dx, dy, vx, vy, ax, ay, T):
 
 @kernel
 def closest_approach(segments, n_segments, until, positions, on_table, on, radius):
-    """The smallest gap [m] of the cue ball to a ball of the mask ``on``, up to the time ``until`` [s], or inf;
-    ``segments``, ``n_segments``: the path log; ``positions``, ``on_table``: before the shot."""
+    """The smallest gap [m] to a ball of the mask ``on`` up to the time ``until`` [s], or inf."""
     best, k = np.inf, 0
     while k < n_segments:
         if segments[k, BALL] != CUE:

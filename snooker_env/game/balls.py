@@ -67,7 +67,7 @@ TOUCH = 1e-6
 """Two balls touch when the gap between them is below this [m]: far below sight, far above rounding."""
 
 REFEREE_TOUCH = 50e-6
-"""The referee calls a touching ball when the gap to the cue ball is below this [m]. The eye resolves about 70
+"""The referee calls a touching ball when the gap to the cue ball is below this [m]: the eye resolves about 70
 um at 25 cm (one arc minute), and balls that touch come to rest 1 to 40 um apart in the simulation."""
 CLEARANCE = 2.0 * REFEREE_TOUCH
 """The gap beside a ball or cushion at which a ball is put down [m]: the referee sees no contact."""

@@ -420,8 +420,7 @@ class Frame:
 
     @classmethod
     def from_dict(cls, plain: dict[str, Any], field: str = "frame") -> "Frame":
-        """The frame from the result of ``to_dict``, also after JSON. ValueError names the wrong part of
-        ``field``, also where the rules forbid a combination of parts."""
+        """The frame of ``to_dict``, also after JSON; ValueError names the wrong part of ``field``."""
         check_fields(field, plain, cls)
         saved, scores = plain["saved"], plain["scores"]
         if saved is not None:

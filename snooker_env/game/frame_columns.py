@@ -22,8 +22,7 @@ SAVED, SAVED_ON_TABLE, SAVED_BALL_ON, SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYO
 STROKES, PAID, FRAMES_0, FRAMES_1, FIRST_BREAK, CLOCK, MISSES, ANYWHERE, OPPONENT, RACK = range(23, 33)
 """The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether a frame has one;
 SAVED_IN_HAND: 2 for anywhere). Of tables only: strokes of both players; the agent's lead that rewards have
-already paid; frames won in a match and who broke in its first frame; which of a pool of opponents plays,
-from 1 (0: not drawn)."""
+already paid; frames won in a match and who broke in its first frame; which of a pool plays, from 1."""
 COLUMNS = 33
 
 (STROKE, CHOICE, LOT, FINISHED) = range(4)

@@ -100,10 +100,8 @@ def _better(positions, on_table, wish, p, best, anywhere, radius):
 
 @kernel
 def nearest_place(positions, on_table, x, y, radius):
-    """The free place in the D nearest to (x, y) [m], and whether there is one: (x, y, bool).
-
-    Each ball excludes a disc. The nearest point outside all is the wish itself (moved into the D), the nearest
-    point of one circle, or a crossing of two circles or of one with the D's lines. on_table[0] must be False."""
+    """The free place in the D nearest to (x, y) [m]: (x, y, whether there is one); on_table[0] False. Each
+    ball bars a disc; tried are the wish itself, the nearest points of circles, and all crossings."""
     wish = x, y = _into_d(x, y)
     reach = 2.0 * radius + CLEARANCE
     place = _better(positions, on_table, wish, wish, (x, y, np.inf), False, radius)
@@ -184,8 +182,7 @@ def place_cue(
     radius: float = BALL_RADIUS,
     anywhere: bool = False,
 ) -> Place:
-    """The free place (x, y) in the D (``anywhere``: on the bed) nearest to (x, y) [m], whatever
-    ``positions[0]``. ValueError for wrong input, and if there is no free place (which no legal table has)."""
+    """The free place in the D (or on the bed) nearest to (x, y) [m]; ValueError if there is none."""
     placed, present = check_table(positions, on_table)
     present[0] = False
     x, y = number("x", x), number("y", y)

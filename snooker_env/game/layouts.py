@@ -1,6 +1,5 @@
 """Which tables can a task start from? Layouts, ``positions`` (22, 2) [m] and ``on_table`` (22,), by geometry
-only, from a stream of random numbers: same key and counter, same table. A ball off the table is on its
-spot."""
+only, from a stream of random numbers: same key and counter, same table. Absent balls lie on spots."""
 
 from dataclasses import dataclass
 from math import atan2, cos, hypot, sin
@@ -19,8 +18,7 @@ from .pots import POT_COLUMNS, TOLERANCE, find_pots
 from .snookered import NO_JAWS, snookered_from
 
 GAP, CUSHION_GAP, POCKET_GAP = 0.001, 0.05, 0.15
-"""Least gaps [m] between a ball placed at random and any other ball, and a cushion (about a ball's width, to be
-struck normally); least distance of its centre from a pocket's nominal place (clear of the jaws)."""
+"""Least gaps [m] of a ball placed at random to balls, to cushions, and of its centre to pockets."""
 
 OPENED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)
 """Kinds of layouts, for the kernels."""
@@ -78,8 +76,7 @@ def _opened(positions, on_table, tables, first, last, stream):
 
 @kernel
 def _line_up_y(k):
-    """The y of red k of 15 in the line-up [m]: two below the blue, seven below the pink, four below the
-    black, two above it; about 112 mm apart, so that a ball just passes."""
+    """The y of red k of 15 [m]: 2 below the blue, 7 below the pink, 4 below the black, 2 above."""
     blue, pink, black = SPOTS[19, 1], SPOTS[20, 1], SPOTS[21, 1]
     low, high = (pink - blue) / 8, (black - pink) / 5
     if k <= 9:
@@ -94,8 +91,7 @@ BEHIND = (0.08, 0.5)
 
 @kernel
 def _hide(positions, on_table, reds, stream):
-    """Try to snooker the cue ball on every red, 1 to ``reds``, by a random colour, behind which it goes as
-    seen from a red; returns whether the rule's tangent test (``snookered.is_snookered``) agrees."""
+    """Try to snooker it on every red, 1 to ``reds``, behind a random colour; returns whether it is."""
     u, v = pair(stream)
     far, _ = pair(stream)
     turn, _ = normals(stream)
@@ -199,8 +195,7 @@ _NAMES |= {"colours": (COLOURS, 0), "snookered": (SNOOKERED, SNOOKERED_REDS)}
 _COUNTED = {"random": RANDOM, "break_off": BREAK_OFF}
 _COUNTS = [str(n) for n in range(N_REDS + 1)]
 LAYOUTS = ("opened", "held_out", *_NAMES)
-"""Names of the layouts without a number: "opened", "held_out", "break_off", "line_up", "colours",
-"snookered"."""
+"""Names without a number: "opened", "held_out", "break_off", "line_up", "colours", "snookered"."""
 
 
 def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:

@@ -32,8 +32,7 @@ def kept(size: int) -> tuple[range, range]:
 
 @lru_cache(8)
 def bank_without(unfit: tuple[int, ...]) -> Floats:
-    """The bank with each table of ``unfit`` replaced by the next of its part (held out or not) that fits, so
-    that a stream deals the same tables as before, except for these; some of each part must be left."""
+    """The bank with each table of ``unfit`` replaced by the next of its part that fits; others stay."""
     if not unfit:
         return bank()
     tables = bank().copy()

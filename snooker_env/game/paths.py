@@ -96,9 +96,7 @@ def _open_direction(positions, on_table, on, target, angle, noses, jaws, radius)
 
 @kernel
 def _cushion_edges(edges, n, c, t, towards, noses, jaws, radius):
-    """Append the directions at which a cushion may open or close the path from c to t; returns their number:
-    where a nose and the target are met at the same time, or its end is passed; of a jaw also where it is
-    grazed."""
+    """Append directions at which a cushion may open or close the path from c to t; returns the number."""
     (cx, cy), (tx, ty) = c, t
     for k in range(noses.shape[0]):
         level, vertical = noses[k, SIDE] * (noses[k, LEVEL] - radius), noses[k, AXIS] == 0.0
@@ -137,11 +135,8 @@ def _cushion_edges(edges, n, c, t, towards, noses, jaws, radius):
 
 @entry  # np.sort makes an array, which an inner kernel may not
 def clear_path(positions, on_table, on, noses, jaws, radius):
-    """Whether there is a straight path to any part of a ball on (mask ``on``) from the place of the cue ball.
-
-    It can open or close only at finitely many directions: tangents to a ball or a jaw, to an end of a
-    cushion, and where target and obstacle are met at the same time. So testing the midpoints between them is
-    exact."""
+    """Whether a straight path leads to any part of a ball on (mask ``on``). It can open or close only at
+    tangents to balls and jaws, ends of cushions, and where two are met at once: midpoints tell."""
     cx, cy = positions[0, 0], positions[0, 1]
     edges = np.empty(4 * N_BALLS + 4 * noses.shape[0] + 6 * jaws.shape[0])
     for target in range(1, N_BALLS):
@@ -189,11 +184,8 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
 
 @entry(what="the paths of the miss rule", seconds=2)
 def best_paths(positions, on_table, on, in_hand, noses, jaws, radius):
-    """Both tests: (any part, full ball).
-
-    ``in_hand``: 0 the cue ball is played from where it lies, 1 from the D, 2 from anywhere on the bed. In
-    hand, its place in ``positions`` is tried first, if on the table, then others until one has a full-ball
-    path."""
+    """Both tests: (any part, full ball). ``in_hand``: 0 from where it lies, 1 from the D, 2 from anywhere on
+    the bed; its place in ``positions`` is tried first, then others until one has a full-ball path."""
     if on_table[0]:
         full = full_ball_path(positions, on_table, on, noses, jaws, radius)
         clear = full or clear_path(positions, on_table, on, noses, jaws, radius)

@@ -102,8 +102,7 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
 
 @kernel
 def pot_at(positions, on_table, ball, k, d, least):
-    """The pot of a ball into pocket k: (tolerance, ghost ball x, y, cosine of the cut), the tolerance 0 if
-    there is no pot with one above ``least``. d: diameter of the balls [m]."""
+    """The pot of a ball into pocket k: (tolerance, ghost x, y, cosine of the cut); 0 if below ``least``."""
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     dx, dy = POCKET_AIMS[k, AIM_X] - bx, POCKET_AIMS[k, AIM_Y] - by
     # seen without a root: the object ball would come back towards the cue ball, or the pocket is shut

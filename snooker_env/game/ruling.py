@@ -143,10 +143,8 @@ def _top_ball(mask):
 
 @kernel
 def _nomination(on, ball_on, free_ball, first, touching, nominated):
-    """The id of the colour on, or of the free ball, or 0 for none ("any colour" or a free ball need one).
-
-    With AUTO it is the highest colour first struck among those allowed; if none was struck, an allowed colour
-    that the cue ball was touching."""
+    """The id of the colour on, or of the free ball, or 0 for none. With AUTO it is the highest colour first
+    struck among those allowed; if none was struck, an allowed colour that the cue ball was touching."""
     if ball_on != 0 and not free_ball:
         return 0
     if nominated >= 0:
@@ -159,8 +157,8 @@ def _nomination(on, ball_on, free_ball, first, touching, nominated):
 
 @kernel
 def ruling(before, facts, flags):
-    """The ``Ruling`` on the stroke ``facts`` in the frame ``before``; ``flags``: Flag bits. The order is that
-    of the rule book; the highest penalty counts, and a foul scores nothing."""
+    """The ``Ruling`` on the stroke ``facts`` in the frame ``before``; ``flags``: Flag bits, in the order of
+    the book."""
     on_table, ball_on, free_ball, lead = before
     first, touching, moved, potted, off, nominated = facts
     reds_and_colours = on_table & ~CUE_BIT

@@ -19,8 +19,7 @@ from .in_hand import PLACES_IN_D
 from .spotting import touches
 
 BESIDE, SLACK = 360, 1e-9
-"""Number of directions in which places beside a ball are tested; a ball obstructs only if it is nearer than
-2 R by more than this [m]: touching does not obstruct."""
+"""Number of places beside a ball that are tested; nearer than 2 R by more than this [m] a ball obstructs."""
 NO_JAWS = np.empty((0, 3))
 """No curved cushion faces; other arrays (m, 3) hold their circles (x, y, radius) [m]."""
 
@@ -47,8 +46,7 @@ def _edge(cx, cy, tx, ty, side, radius):
 
 @kernel
 def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
-    """Mask of the balls not on, nearest by centres, that hide an edge of ``target`` from (cx, cy); 0: both edges
-    are open; -1: a jaw obstructs an edge and is nearer."""
+    """Mask of the nearest balls that hide an edge of ``target`` from (cx, cy); 0: none; -1: a jaw does."""
     tx, ty = positions[target, 0], positions[target, 1]
     if np.hypot(tx - cx, ty - cy) <= 2.0 * radius + REFEREE_TOUCH:
         return 0
@@ -74,8 +72,7 @@ def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
 
 @kernel
 def snookered_from(positions, on_table, on, cx, cy, jaws, radius):
-    """Whether the cue ball at (cx, cy) is snookered, and the mask of the effective snookering balls: (bool,
-    int); 0 if reds are hidden by different balls."""
+    """Whether it is snookered at (cx, cy), and the mask of the effective balls; 0 if they differ."""
     effective = -1
     for target in range(1, N_BALLS):
         if on_table[target] and (on >> target) & 1:

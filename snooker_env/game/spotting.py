@@ -33,10 +33,8 @@ def occupied(positions, on_table, x, y, radius):
 
 @kernel
 def nearest_free(positions, on_table, x, y, direction, radius):
-    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no other.
-
-    Ball i excludes y_i - h to y_i + h with h^2 = (2 R + clearance)^2 - (x_i - x)^2; y moves to the far end of
-    each interval that contains it, until none does, which is exact."""
+    """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no
+    other: it moves to the far end of each interval that a ball bars, until none does, which is exact."""
     reach = 2.0 * radius + balls.CLEARANCE
     moved = True
     while moved:
@@ -70,8 +68,7 @@ def place_colour(positions, on_table, ball, radius):
 
 @kernel
 def spot(positions, on_table, mask, radius):
-    """Write the colours in ``mask`` into ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; those still
-    on the table are removed first (the black of a re-spotted black)."""
+    """Put the colours in ``mask``, removed first, on ``positions`` (22, 2) [m] and ``on_table``."""
     for ball in range(balls.YELLOW, balls.BLACK + 1):
         if (mask >> ball) & 1:
             on_table[ball] = False
@@ -97,8 +94,8 @@ def _spot(positions, on_table, mask, radius):
 def spot_colours(
     positions: Vectors, on_table: Flags, mask: int, *, radius: float = BALL_RADIUS
 ) -> tuple[Floats, Bools]:
-    """New ``positions`` (22, 2) [m] and ``on_table`` (22,) with the colours in ``mask`` placed by the rule.
-    ValueError for wrong arrays, or a mask that contains a ball that is no colour."""
+    """New ``positions`` (22, 2) [m] and ``on_table`` (22,), the colours of ``mask`` spotted; or
+    ValueError."""
     if integer("mask", mask, 0, balls.ALL_MASK) & ~balls.COLOURS_MASK:
         raise refuse("mask", mask, "must name colours only (ids 16 to 21)")
     placed, present = balls.check_table(positions, on_table)

@@ -1,5 +1,4 @@
-"""What would strokes lead to? ``Planner`` plays them on copies of positions, under given noise samples, by
-the rules, on all cores."""
+"""What would strokes lead to? ``Planner`` plays them on copies of positions by the rules."""
 
 import copy
 import threading
@@ -245,9 +244,7 @@ class Planner:
         *,
         ghosts: Vectors | None = None,
     ) -> NDArray[np.float64]:
-        """Solve the cue ball's directions with this planner's physics and fidelity: float64 (n,).
-
-        See ``snooker_env.planning.pot_aim``."""
+        """Solve aims as ``planning.pot_aim`` with this planner's physics and fidelity: float64 (n,)."""
         dynamics = self.physics, self._rules.fidelity
         return solved_aims(Positions.of(positions), rows, balls, targets, strokes, ghosts, dynamics)
 

@@ -1,5 +1,4 @@
-"""How is a position written down? ``Position``: balls by name and the ball on, validated; and the kernels'
-arrays."""
+"""How is a position written down? ``Position``: balls by name, the ball on; the kernels' arrays."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -226,8 +225,7 @@ def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], t
 
 
 def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue: str, balls: str) -> None:
-    """Raise ValueError, with these names of fields, unless there is a stroke to play (as
-    ``tasks.states``)."""
+    """Raise ValueError, with these names of fields, unless there is a stroke to play."""
     present = mask_of_present(on_table)
     if not present & 1:
         raise refuse(cue, None, "must be on the table while the visit goes on")

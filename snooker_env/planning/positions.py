@@ -1,5 +1,4 @@
-"""Which positions are strokes tried on? ``Positions``: arrays with one row for each, taken from environments,
-states or ``Position``."""
+"""Which positions are strokes tried on? ``Positions``: arrays with one row for each."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias, overload

@@ -43,8 +43,7 @@ LOST = 0.01
 POWER = 4.0
 """Power of the chance in a pot's share of the strokes."""
 ESCAPES, ANYWHERE, MOST_POTS = 8, 8, 16
-"""Numbers of escapes and (widest) pots that strokes are shared among; over cushions every ``ANYWHERE``-th
-stroke goes in any direction."""
+"""Escapes that share strokes, every which over cushions goes anywhere; pots that share strokes."""
 
 
 class Search(Protocol):
@@ -78,8 +77,7 @@ class Proposals(NamedTuple):
 
 @kernel
 def pot_chance(positions, pot, spread, far):
-    """Chance of a pot by its width: the aim's error stays within the tolerance; less exp(-``far`` [1/m] x
-    paths)."""
+    """Chance that the aim's error stays within the pot's tolerance, less exp(-``far`` [1/m] x paths)."""
     ball, pocket = int(pot[POT_BALL]), int(pot[POT_POCKET])
     path = hypot(pot[GHOST_X] - positions[0, 0], pot[GHOST_Y] - positions[0, 1])
     tx, ty = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]

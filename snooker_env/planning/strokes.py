@@ -52,8 +52,7 @@ def _strike(which, strokes, errors, tables, shots, options, noise, silent):
 
 
 class TrialVisits(Visits):
-    """Visits of one stroke each, filled by ``lay``: of strokes (n, 5) with ``errors`` (n, 5), else of
-    actions."""
+    """Visits of one stroke, filled by ``lay``: of strokes (n, 5) with ``errors`` (n, 5), else of actions."""
 
     errors: Floats | None = None
 

@@ -22,8 +22,7 @@ AIMS = ("absolute", "target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
 """Cue speeds [m/s] for -1 and +1 of an action: from a ball just rolled to the hardest power shot."""
 TARGET_SPAN = radians(3.0)
-"""With ``aim="target"``: angle off the target line for +-1 [rad], more than any throw or error of a club
-player."""
+"""With ``aim="target"``: angle off the target line for +-1 [rad], more than any throw or error."""
 MAX_ELEVATION = radians(30.0)
 
 
@@ -83,8 +82,7 @@ def _shot(a, positions, on_table, on, options, phys):
 
 class Actions:
     """The box action space; docs/environment/specification.md says what its components mean: speed, side,
-    top, aim, then elevation, the place in the D (two), nomination, decision, declaration, as far as they are
-    on."""
+    top, aim, then elevation, the place in the D (two), nomination, decision, declaration."""
 
     aim: str
     elevation: bool

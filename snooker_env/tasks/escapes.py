@@ -31,8 +31,7 @@ ROLL = 0.25
 ROLLING = 0.4
 """Tip offset over R with which a ball rolls from the start."""
 LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH = range(4)
-"""Columns of a line of the cue ball: direction and by how much it may err [rad]; cue speed of an escape
-[m/s], 0 for what is seen; worth among escapes."""
+"""Columns of a line: direction, how much it may err [rad]; cue speed of an escape [m/s], 0 if seen; worth."""
 
 _ANGLES = 9
 """The rows of ``_REBOUND`` are 10 degrees apart."""
@@ -48,16 +47,14 @@ _REBOUND = (
     (0.099, 0.928, 0.0046, 0.0317),
     (0.000, 1.000, 0.0000, 0.0000),
 )
-"""A ball rolls into a cushion at speed v, at 0, 10, .. 90 degrees to its normal. When it rolls again: its
-velocity along the normal and along the cushion, over v, and how far it has come along each, over v^2
-[s^2/m]."""
+"""A ball rolls into a cushion at speed v, at 0, 10, .. 90 degrees to its normal. When it rolls again:
+velocity along normal and cushion over v, way along each over v^2 [s^2/m]."""
 _MOUTH, _SAME = 0.12, 0.1
 """No cushion is used so near to a pocket's nominal place [m]; escapes so near in direction are one [rad]."""
 _DIRECTIONS, _LEGS = 720, 4
 """Directions tried; most straight parts of an escape, one more than cushions."""
 _SPEEDS, _WIDE = (1.7, 2.8, 4.2), 4.0
-"""Cue speeds of an escape [m/s]: the next one is tried where the one before leaves no window of ``_WIDE``
-directions, after a deduction for cushions."""
+"""Cue speeds of an escape [m/s]: the next where one leaves fewer than ``_WIDE`` directions."""
 
 _HALVES = ((AXIS_X, HALF_WIDTH), (AXIS_Y, HALF_LENGTH))
 _BED = np.array([(axis, side, half, -9.0, 9.0) for axis, half in _HALVES for side in (-1.0, 1.0)])
@@ -67,8 +64,7 @@ for _constant in (_BED, _NO_JAWS, _NO_FALLS):
 _X, _Y = HALF_WIDTH - BALL_RADIUS, HALF_LENGTH - BALL_RADIUS
 _CLEAR = (-_X, _X, -_Y, _Y)
 _STEP, _STEPS = 0.0087, (30, 75)
-"""Directions about an escape tried for a stroke: their distance [rad]; number on either side, and if none
-succeeds."""
+"""Directions tried about an escape: distance [rad]; number on either side, and if none succeeds."""
 _HALVINGS = 3
 """How often that distance is halved to find where a window ends."""
 
@@ -182,8 +178,7 @@ def find_escapes(positions, on_table, on, lines, first):
 
 @kernel(seconds=1, uses=(collide_cushion,))
 def _played(aim, stroke, positions, on_table, law, work):
-    """The ball that the cue ball meets first, by the models of the engine, cushions at fidelity "fast"; 0:
-    none, or a pocket first. ``stroke``: (speed, side, top)."""
+    """The ball that the cue ball meets first, by the engine's models; 0: none, or a pocket."""
     (speed, side, top), phys, motion, state = stroke, law.phys, work.motion, work.state
     R, m = phys[P_R], law.end_mass_ratio
     (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, m), side, top, 0.0, R, m)
@@ -232,7 +227,7 @@ def _succeeds(aim, stroke, positions, on_table, on, law, work):
 @kernel(uses=(_succeeds,))
 def escape_aim(about, stroke, positions, on_table, on, law, work):
     """Direction [rad] in which the stroke meets a ball on: the middle of the widest, then nearest window
-    about ``about``, farther away if there is none, as with much side; ``about`` if none succeeds."""
+    about ``about``, or ``about`` itself."""
     best, low, high = 0.0, about, about
     for steps in _STEPS:
         run = 0

@@ -216,8 +216,7 @@ class Frames(Tables):
         reported: bool,
         alone: bool = False,
     ) -> None:
-        """Play and judge the shots that have been struck. ``reported``: ``out`` reports the strokes; otherwise
-        they are only counted. ``alone``: the table returns to the agent."""
+        """Play and judge the shots struck. ``reported``: in ``out``; ``alone``: the agent plays on."""
         if not len(which):
             return
         unfinished = self.run(which, buffers)
@@ -242,8 +241,8 @@ class Frames(Tables):
         crew: Crew,
         which: Ints | None = None,
     ) -> Bools:
-        """One turn of the striker on the tables ``which`` (those that go on). ``prepare(which, buffers)``: as
-        the method. Returns where there was a stroke, (n,) bool. ``out`` gets the infos."""
+        """One turn of the striker on the tables ``which`` (or all); returns where there was a stroke,
+        (n,)."""
         playing = np.flatnonzero(~self.ended()) if which is None else which
         self._played[playing] = 0
         crew(playing, lambda which, b: self.complete(prepare(which, b), out, b, crew, reported=True))
@@ -276,8 +275,7 @@ class Frames(Tables):
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
     ) -> None:
-        """See ``Tables.step``. After SimulationError a cue ball that was placed and a decision already taken
-        stand, and other tables may have been played. Errors raised by an opponent are passed on."""
+        """See ``Tables.step``. After SimulationError what was placed or decided stands."""
         anew, alone = bool(waiting.any()), len(self.seats) == 1
         playing = np.flatnonzero(~waiting) if anew else np.arange(self.n)
         self._replies[:] = self._played[:] = 0
@@ -345,8 +343,7 @@ class Frames(Tables):
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
     def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
-        """New frames on the tables ``which``. Who breaks: without ``drawn`` the agent; else ``breakers``
-        (n,), where it is -1 whoever is drawn."""
+        """New frames on ``which``. Who breaks: the agent, or ``drawn``: ``breakers`` (n,), -1 by lot."""
         plan = self.rules.plan
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         breakers = np.full(self.n, -1) if breakers is None else breakers
@@ -455,8 +452,7 @@ class Frames(Tables):
 
 
 class Matches(Frames):
-    """n tables, each in the middle of its own match: best of N frames, the players break in turn, the next rack
-    follows in the same step. A frame that the referee stops truncates the match."""
+    """n tables, each in a match; stopped by the referee in a frame, it is truncated."""
 
     COUNTS: tuple[str, ...] = (*Frames.COUNTS, "frames_won", "opponent_frames", "frame")
 

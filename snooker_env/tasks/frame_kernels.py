@@ -67,8 +67,7 @@ def choose_as(k, wish, rules, tables, saved):
 
 @kernel
 def give_up(row, reward):
-    """Charge whoever gave the frame up, or lost it by a third miss, with the points left, S4 R5(b), where
-    points are added up: eight for each red, and the colours. Otherwise it would pay to give up at once."""
+    """Charge whoever gave a frame up, or lost by a third miss, with the points left, S4 R5(b)."""
     if reward != FRAMES_PAID:
         left = available(row[columns.ON_TABLE], -1, 0)
         row[columns.PAID] += -left if row[columns.WINNER] == AGENT else left
@@ -129,8 +128,7 @@ def hold_late(which, game, rules, time_to_play, v, w, shots):
 
 @entry(what="the referee of frames", seconds=6)
 def conclude(which, tables, shots, setting, reported, alone, played, output):
-    """Judge the shots that came to rest and update tables and frames. ``reported``: infos report the strokes;
-    ``played`` counts them. ``alone``: the table returns to the agent."""
+    """Judge the shots that came to rest. ``reported``: infos report them; ``alone``: the agent plays on."""
     tables, shots, setting = TableArrays(*tables), PlayedArrays(*shots), Setting(*setting)
     out = OutputArrays(*output)
     rules, conditions = setting.rules, columns.Conditions(setting.rules, setting.miss, setting.time_to_play)
@@ -302,9 +300,8 @@ def inform(player, game, output):
 
 @entry(what="the start of a frame", seconds=1)
 def begin(which, drawn, breakers, in_hand, on_table, game, streams):
-    """New frames on tables already dealt. Who breaks: without ``drawn`` the agent; else ``breakers`` (n,),
-    where -1 whoever is drawn; a number is drawn in any case, so that the errors of strokes do not depend on
-    it."""
+    """New frames on tables already dealt. Who breaks: the agent, or if ``drawn``, ``breakers`` (n,), where -1
+    by lot; a number is drawn in any case, so that the errors of strokes do not depend on it."""
     for j in range(which.shape[0]):
         k = which[j]
         breaker = AGENT
@@ -355,8 +352,7 @@ def show(which, fresh, tables, saved, setting, replies, output, last):
 @entry(what="the paths of the miss rule", seconds=2)
 def remember(which, tables, saved, shots, noses, jaws):
     """Record the layouts before the strokes, and which paths were clear before those that struck no ball on
-    first; of others ``seen`` says that one was. S3 R14(c) speaks of every ball "that is or could be on":
-    after a red, all colours."""
+    first. S3 R14(c) speaks of every ball "that is or could be on": after a red, all colours."""
     tables, saved, shots = TableArrays(*tables), columns.Layouts(*saved), PlayedArrays(*shots)
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
@@ -403,9 +399,8 @@ def gap_of(positions, on_table, row, shots, path, j):
 
 
 def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> dict[int, float]:
-    """Write into ``b.seen`` which shots were attempts; returns the gaps [m] of those asked by row: strokes
-    without a clear path that struck no ball on first, which are played once more, uncounted, with the path of
-    the cue ball."""
+    """Write into ``b.seen`` which shots were attempts; returns the gaps [m], by row, of those that struck no
+    ball on and had no clear path: they are played once more, uncounted, with the cue ball's path."""
     positions, on_table, game, *_ = tables.arrays
     asked = np.empty(len(which), np.bool_)
     question(which, on_table, game, b.status, b.seen, asked)

@@ -29,9 +29,8 @@ SLIDE = 1.4
 BREAK_X = float(SPOTS[0, 0])
 """Where the cue ball stands for the break-off: its x, either sign, on the baulk line [m]."""
 _BREAK_SPEED, _BREAK_SIDE, _BREAK_TOP = 3.4, 0.42, 0.1
-"""Of the break-off: a third of the end red, with running side, back to baulk over three cushions. Chosen,
-with ``lines.THIN``, among 6,000 random ones: of those that return the cue ball to baulk in each of 40 trials
-of a professional, one that leaves hardly a pot."""
+"""Of the break-off, thin at the end red, with running side, back to baulk over three cushions: among 6,000
+random ones that return to baulk in 40 trials of a professional, one that leaves hardly a pot."""
 _NUDGE = 0.3
 """How much faster than needed a cue ball is rolled at a ball [m/s]; its speed varies by a tenth."""
 _STOP = 6.1
@@ -74,8 +73,7 @@ def _goes_in(positions, ball, ux, uy, v2):
 def soft(positions, on_table, on, touching, drive, rows):
     """The soft stroke at the nearest ball on with a window that a player cannot miss: (speed, top, direction)
     and half the window [rad], 0: none. It is aimed at the middle of what is seen; where the cue ball would
-    follow into a pocket, halfway to an edge, or so that it stops at the ball. ``touching``: mask of balls at
-    the cue ball, none of them on. ``drive``: how much farther than needed it rolls [m]."""
+    follow into a pocket, halfway to an edge, or so that it stops at the ball."""
     x, y = positions[0, 0], positions[0, 1]
     best, speed, top, aim, window, windows = -1e9, 0.0, 0.0, 0.0, 0.0, rows[POTS:]
     many = open_windows(positions, on_table, on, touching, windows)
@@ -126,9 +124,9 @@ def _escape(positions, on_table, on, vary, lines, stream):
 
 @kernel
 def plain(positions, on_table, on, touching, vary, drive, rows, stream):
-    """A stroke without a pot: (speed, side, top, direction). Straight away from a touching ball on, which
-    counts as striking it; else soft; else an escape; else at a little of a ball on, or the nearest. ``vary``:
-    one from here has failed, so another is played; ``drive``: how much farther than needed it rolls [m]."""
+    """A stroke without a pot: (speed, side, top, direction): away from a touching ball on; else soft; else an
+    escape; else at a ball on. ``vary``: one from here has failed; ``drive``: how much farther it rolls
+    [m]."""
     u, _ = pair(stream)
     shift = (1.6 if vary else 0.5) * (u - 0.5)
     for ball in range(1, N_BALLS):
@@ -151,14 +149,12 @@ _PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in _BACK for x in _
 _BEHIND = 0.3
 """How far behind the ghost ball the cue ball is placed, where it may stand anywhere [m]."""
 DRIVE = 4.0
-"""How much farther than needed a plain stroke would roll where some ball must reach a cushion [m]; a ball
-struck full comes half as far."""
+"""How much farther than needed it rolls where some ball must reach a cushion [m]."""
 
 
 @kernel
 def _put_on_bed(positions, on_table, mask, rows):
-    """Place a cue ball behind the ball of the easiest pot, on the line from the pocket, or as near as the bed
-    allows; without a pot, where most of a ball on is seen."""
+    """Place a cue ball behind the ball of the easiest pot; without a pot, where most of a ball on is seen."""
     widest, best_x, best_y = 0.0, positions[0, 0], positions[0, 1]
     for tries in range(2):
         for ball in range(1, N_BALLS):
@@ -184,8 +180,7 @@ def _put_on_bed(positions, on_table, mask, rows):
 
 @kernel
 def put(positions, on_table, mask, anywhere, rows, stream):
-    """Place a cue ball in hand for the widest pot, else where most of a ball on is seen; for the break-off to
-    the left or right of the brown, as the stream decides. ``anywhere``: not in the D only."""
+    """Place a cue ball in hand for the widest pot, else where most is seen; for the break-off by lot."""
     if anywhere:
         _put_on_bed(positions, on_table, mask, rows)
         return
@@ -210,8 +205,7 @@ def put(positions, on_table, mask, anywhere, rows, stream):
 
 @kernel
 def stroke_at(positions, on_table, on, in_hand, failed, drive, rows, stream):
-    """The geometric player's shot: (speed, side, top, direction). ``in_hand``: just placed; ``failed``: a
-    stroke from here has; ``drive``: how much farther than needed one without a pot is to roll [m]."""
+    """The geometric player's shot: (speed, side, top, direction). ``in_hand``: just placed; see ``plain``."""
     end_red = racked(positions, on_table) if in_hand else 0
     if end_red:
         return break_off(positions, end_red)
@@ -243,8 +237,7 @@ def named(positions, on_table, row, aim):
 
 @kernel
 def geometric_turn(positions, on_table, row, rules, rows, stream):
-    """Its turn: (speed, side, top, aim, what it nominates, what it decides after a foul). ``row``: of a visit
-    or frame, after its decision; a cue ball in hand is placed. ``rules``: the code of the rule set."""
+    """Its turn: (speed, side, top, aim, nomination, decision); a ball in hand is placed."""
     frame, decision = row.shape[0] > columns.ANYWHERE, columns.PLAY
     if frame and row[columns.PHASE] == columns.CHOICE:
         decision = columns.PLACE_ANYWHERE if columns.may_place_anywhere(row, rules) else columns.PLAY

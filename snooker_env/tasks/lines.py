@@ -27,8 +27,7 @@ LINE_ROWS = POTS + MOST_EDGES
 THIN = 0.62
 """Of a thin contact: how far the path of the cue ball passes the centre of the ball, over 2 R."""
 EASY, NARROW, _SLIT, _APART = 0.01, 0.25 * 0.01, 1e-6, 2e-3
-"""Half a window [rad] that a player cannot miss; below which an escape is better; that is none; least
-difference of two lines."""
+"""Half windows [rad]: a sure one; below it an escape is better; none. Least difference of two lines."""
 
 
 @entry  # it makes arrays, which an inner kernel may not
@@ -103,8 +102,7 @@ def _seen(positions, on_table, lines, windows, many, count):
 
 @kernel(uses=(find_escapes,))
 def find_lines(positions, on_table, on, rows):
-    """Write up to ``POTS`` lines, best first, into the first rows of ``rows`` (LINE_ROWS, POT_COLUMNS), for
-    a table without a direct pot. Returns their number, at least 1: if need be, at the nearest ball on."""
+    """Write up to ``POTS`` lines into ``rows`` (LINE_ROWS, POT_COLUMNS); returns the number, >= 1."""
     lines, windows = rows[:POTS], rows[POTS:]
     touching, end_red, count = touching_balls(positions, on_table), racked(positions, on_table), 0
     many = open_windows(positions, on_table, on, touching, windows)

@@ -190,5 +190,4 @@ LEVELS: dict[str, Noise] = {
     "robot": Noise(aim_deg=0.033, speed_rel=0.08, offset_mm=0.2, elevation_deg=0.1),
     "olympiad": Noise(aim_deg=0.125, speed_abs=0.075, offset_mm=0.5, elevation_deg=0.1),
 }
-"""The levels of execution noise: "none", "professional", "amateur", "club", "robot", "olympiad". The module's
-docstring gives their sources."""
+"""The levels: "none", "professional", "amateur", "club", "robot", "olympiad"; sources: above."""

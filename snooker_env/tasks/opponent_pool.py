@@ -61,8 +61,7 @@ class OpponentPool:
         return tuple(self._weights)
 
     def add(self, member: Any, weight: float = 1.0) -> None:
-        """Add a member, which later frames may draw; an environment checks it when it uses it first.
-        ValueError if the weight is below 0, or the member is a pool."""
+        """Add a member, which later frames may draw; ValueError for a pool, or a weight below 0."""
         nobody = member is None or (isinstance(member, str) and member == "none")
         if nobody or isinstance(member, OpponentPool):
             allowed = "must be one opponent: a name, a model's file, a callable or a player"
@@ -72,8 +71,7 @@ class OpponentPool:
         self._weights.append(weight)
 
     def set_weight(self, index: int, weight: float) -> None:
-        """Change the weight of ``members[index]``. With 0 it is drawn no more; frames in which it plays go
-        on. ValueError if there is no such member, or the weight is below 0."""
+        """Change the weight of ``members[index]``, 0: not drawn any more; ValueError for a bad number."""
         self._weights[integer("index", index, 0, len(self._members) - 1)] = number("weight", weight, 0.0)
 
 

@@ -1,7 +1,6 @@
 """In which direction must the cue ball leave to pot a ball? The line of a pot, corrected for throw, swerve
 and the object ball's own curve: the two balls alone are played on unbounded cloth until the object ball
-rolls, and secant steps correct the direction by how far it passes the pocket's aim point. A trial takes a
-microsecond."""
+rolls; secant steps correct the direction by how far it passes the pocket's aim point."""
 
 from math import atan2, hypot, pi
 
@@ -75,8 +74,7 @@ def _passes(aim, stroke, c, b, p, law, work):
 
 @kernel(seconds=5, uses=(collide_balls,))
 def solved_aim(positions, ball, target, ghost, stroke, law, work):
-    """Direction [rad] in which the stroke (speed, side, top, elevation) sends ``ball`` to ``target``, sought
-    from the straight line to ``ghost``; the best one tried if none succeeds (too soft, or too thin a cut)."""
+    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``."""
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     line = atan2(gy - cy, gx - cx)

@@ -1,7 +1,6 @@
 """How is a model's file read safely? As plain data first, without running anything: a zip of
-Stable-Baselines3 or sb3-contrib holds weights and ``data``, JSON in which all but plain values is a pickle
-(of cloudpickle, in base64), whose code runs when loaded. Only ``SavedModel.network`` unpickles, and requires
-consent."""
+Stable-Baselines3 or sb3-contrib holds weights and ``data``, JSON in which all but plain values is a pickle,
+whose code runs when loaded. Only ``SavedModel.network`` unpickles, and requires consent."""
 
 import json
 import zipfile
@@ -34,8 +33,7 @@ _ALGORITHMS = (
     ("stable_baselines3", "PPO", {"clip_range", "rollout_buffer_class"}),
     ("stable_baselines3", "A2C", {"gae_lambda", "rollout_buffer_class"}),
 )
-"""Library, class, and the names that only its models save, in addition to those of the classes above. A
-recurrent model has no class of rollout buffers."""
+"""Library, class, and what only its models save beside those above; recurrent: no buffers."""
 _PLAYED = ("policy_class", "policy_kwargs", "observation_space", "action_space")
 """The pickles that playing needs; others (schedules, callbacks, buffers) may name missing packages."""
 _UNPICKLED = {"learning_rate": 0.0, "clip_range": 0.2, "train_freq": 1, "target_entropy": 0.0}

@@ -15,8 +15,7 @@ from ..physics.table import Table
 from .options import Rules
 
 MOST = 2**53 - 1
-"""Largest score and number of strokes in a saved frame: a float, as in observations and infos, is still
-exact."""
+"""Largest score and number of strokes in a saved frame: a float, as in observations, is still exact."""
 FAR = 1000.0
 """Limit of the coordinates of a ball off the table [m]: they mean nothing, but must not overflow."""
 
@@ -128,8 +127,7 @@ def check_stream(stream: Any) -> list[int]:
 def checked(
     state: Any, table: Table, R: float, generator: np.random.Generator, *, to_play: bool = False
 ) -> State:
-    """The ``State`` that a dict describes; ValueError names the first invalid part, or says that no shot is
-    left with ``to_play``. ``generator``: for the part "rng"; it is not changed."""
+    """The ``State`` of a dict; ValueError names the first wrong part, or if none is left ``to_play``."""
     check_keys(state, State._fields)
     positions, on_table = checked_layout(_NAMES, state["positions"], state["on_table"], table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])

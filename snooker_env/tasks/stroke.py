@@ -1,7 +1,6 @@
 """How is one stroke played, on one table or on thousands? ``address`` (placement, action, error, strike),
 then ``engine.run_batch``; each task has its own referee. Row j of the ``ShotBuffers`` is the shot on table
-which[j]. Each table draws from its own stream, so that no result depends on other tables, their number or the
-threads."""
+which[j]. Each table draws from its own stream: no result depends on other tables or threads."""
 
 from typing import Any
 
@@ -51,8 +50,7 @@ _WHY = {
 @kernel
 def _played_into(positions, ball, vx, vy, time):
     """Whether the cue ball, struck with (vx, vy) [m/s], was played into the touching ``ball`` that it met at
-    ``time`` [s]: its straight line leads into it, however small the gap and slow the stroke, or they met at
-    once (the physics lets balls without a gap meet along the tangent, too)."""
+    ``time`` [s]: its line leads into it, or they met at once, also along the tangent."""
     dx, dy = positions[ball, 0] - positions[CUE, 0], positions[ball, 1] - positions[CUE, 1]
     speed = np.hypot(vx, vy)
     into = abs(vx * dy - vy * dx) < 2.0 * BALL_RADIUS * speed or time * speed <= 10.0 * TOUCH
@@ -62,8 +60,7 @@ def _played_into(positions, ball, vx, vy, time):
 @kernel
 def first_struck(event_time, event_what, n_events, touching, positions, vx, vy):
     """Masks, from a shot's log, of the balls struck first, and of the ``touching`` ones that it was played
-    into: a push stroke. One that it is played away from, and meets later off a cushion, is struck but not
-    moved in leaving."""
+    into, a push stroke; one that it meets later off a cushion is struck but not moved in leaving."""
     first, moved, start = 0, 0, np.inf
     for e in range(n_events):
         kind, time = event_what[e, 0], event_time[e]

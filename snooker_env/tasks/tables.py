@@ -70,8 +70,7 @@ def write_empty_info(k, out, ball_on):
 Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
 """Work on some tables, called as ``task(which, buffers)``."""
 Watch: TypeAlias = Callable[[int, stroke.ShotBuffers, int, bool], None]
-"""Called as ``watch(k, buffers, j, reported)`` after each stroke on table k, shot j of the buffers. ``reported``: it is
-the agent's; in a match, either player's."""
+"""Called as ``watch(k, buffers, j, reported)`` after each stroke on table k; ``reported``: the agent's."""
 
 
 class StepOutput:
@@ -106,8 +105,7 @@ class StepOutput:
 
 
 class Crew:
-    """Runs ``task(part, buffers)`` on parts of ``which``; here on all at once. ``generators``: one for each
-    table, for an opponent in Python. ``watch``: called after each stroke, or None."""
+    """Runs ``task(part, buffers)``, here on all at once; ``generators``: for Python opponents."""
 
     def __init__(self, buffers: Any = None, generators: Sequence[Any] = (), watch: Watch | None = None):
         self.buffers: Any = buffers  # ``ShotBuffers``, or None for a crew that allocates its own

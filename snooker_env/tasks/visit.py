@@ -1,6 +1,5 @@
 """How is a visit played, on one table or on thousands? Strokes until the first miss, foul or clearance: a
-step is ``stroke.address``, ``stroke.run`` and ``_conclude``; new visits go through ``deal_tables`` and
-``_begin``."""
+step is ``stroke.address``, ``stroke.run`` and ``_conclude``; new ones ``deal_tables`` and ``_begin``."""
 
 from typing import Any
 

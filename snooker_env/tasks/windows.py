@@ -71,8 +71,7 @@ def _edges(positions, on_table, on, windows):
 
 @kernel
 def open_windows(positions, on_table, on, touching, windows):
-    """Write the windows in which the balls in the mask ``on`` are met first, widest first; returns their
-    number. ``touching``: mask of the balls that touch the cue ball; windows (MOST_EDGES, 3)."""
+    """Write the windows (MOST_EDGES, 3) in which balls of the mask ``on`` are met first; returns how many."""
     x, y, away = positions[0, 0], positions[0, 1], (touching & on) != 0
     n = _edges(positions, on_table, on, windows)
     wanted = ~touching if away else on & ~touching  # of the ball met first, 0 for none
@@ -112,8 +111,7 @@ def room(windows, count, angle):
 
 @kernel
 def open_part(positions, ball, windows, count):
-    """The widest part of a ball on that can be struck: (direction, half its width) [rad], 0: none. Another
-    ball on may be struck as well."""
+    """The widest part of a ball on that can be struck: (direction, half its width) [rad], 0: none."""
     middle, half = towards(positions, ball), half_width(positions, ball)
     best, widest = middle, 0.0
     for k in range(count):

@@ -12,11 +12,8 @@ from ..._jit import entry
 
 @entry(what="the layers of networks", seconds=2)
 def linear(rows, weight, bias, out):
-    """out (n, b) = rows (n, a) @ weight (a, b) + bias (b,): bias + rows[0] weight[0] + rows[1] weight[1] +
-    ..., rounded after each.
-
-    All float32 and contiguous. Two rows and four terms at a time: so the sums stay in registers, and the
-    compiler takes several columns at once."""
+    """out (n, b) = rows (n, a) @ weight (a, b) + bias (b,): bias + rows[0] weight[0] + ..., rounded after
+    each. All float32 and contiguous; two rows, four terms at a time: the sums stay in registers."""
     n, a = rows.shape
     b = weight.shape[1]
     spare = np.empty(b, np.float32)

@@ -17,10 +17,8 @@ POINTS = 40.0
 
 
 class LearnedValue:
-    """The value [points] of n ``Positions``: called with them, it returns float32 (n,).
-
-    ``members``: the layers of each network, (weight (out, in), bias (out,)). ``spread`` [rad]: see
-    ``spread_of``."""
+    """The value [points] of n ``Positions``: called with them, it returns float32 (n,). ``members``: the
+    layers (weight (out, in), bias (out,)) of each network. ``spread`` [rad]: see ``spread_of``."""
 
     def __init__(self, members: Sequence[Sequence[tuple[NDArray, NDArray]]], spread: float, threads: int = 1):
         self._members = [Layers(member, "relu") for member in members]

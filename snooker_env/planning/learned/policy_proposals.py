@@ -18,8 +18,7 @@ from ..strokes import action_masks
 from .pot_view import with_pots
 
 TEMPERATURE = 4.0
-"""Of the scores: above 1, so that less likely strokes are tried too (``python -m
-benchmarks.temperature``)."""
+"""Of the scores: above 1, so that less likely ones are tried too (``python -m benchmarks.temperature``)."""
 _SPEEDS, _SIDES, _TOPS = np.array(SPEEDS), np.array(SIDES), np.array(TOPS)
 _STEP = np.gradient(np.log(_SPEEDS))
 """Width of a cell in the logarithm of the speed."""

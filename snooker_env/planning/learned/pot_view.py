@@ -1,5 +1,4 @@
-"""What does a learned policy see of a table? The flat observation, followed by features of the direct
-pots."""
+"""What does a learned policy see of a table? The flat observation, then features of direct pots."""
 
 from math import hypot, log10
 from typing import Any

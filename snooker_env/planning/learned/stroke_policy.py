@@ -1,7 +1,6 @@
 """How does a learned policy score strokes while it plays? By kernels on NumPy arrays: a table's scores depend
 on that table alone. The network is that of ``agents.learning.networks``
-(tests/agents/learning/test_fused.py): one for each ball, one for each pot, sums over them, a context, and
-scores of each pot's strokes."""
+(tests/agents/learning/test_fused.py): for each ball, for each pot, sums, a context, scores of strokes."""
 
 from collections.abc import Mapping
 

@@ -64,8 +64,7 @@ def read_tables(rows, seen, inputs, at):
 
 @entry
 def sum_balls(codes, group, first, context, width):
-    """ReLU of balls' codes (m, width) in place; sums / 5 of those on, reds, colours into context[:, : 3 *
-    width]."""
+    """ReLU of balls' codes (m, width) in place; sums / 5 of those on, reds, colours into context."""
     for j in range(first.shape[0] - 1):
         sums = context[j]
         for c in range(3 * width):
@@ -119,8 +118,7 @@ def mirrored(choice):
 
 @entry
 def mask_scores(rows, masks, sides, scores, out):
-    """Scores (n, choices) of each pot's (n * POTS, STROKES or more); ``NEVER`` where the mask (in the mirror)
-    is False."""
+    """Scores (n, choices) of each pot's (n * POTS, STROKES or more); ``NEVER`` where the mask is False."""
     for j in range(rows.shape[0]):
         mask, row = masks[rows[j]], out[j]
         for p in range(POTS):

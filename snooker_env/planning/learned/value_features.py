@@ -29,8 +29,7 @@ SHARED = 28
 """Entries of the whole position: see ``_fill``."""
 SIZE = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES + SHARED
 FAR = 0.01
-"""Decay of the chance of a pot per metre of both balls' paths [1/m]. The published values have learned with
-this one."""
+"""Decay of a pot's chance per metre of both balls' paths [1/m]; of the published values."""
 LOGIT = SIZE - 1
 """The entry that holds the logit of the likeliest pot, where the network's own estimate begins."""
 _CORNER_EDGE, _MIDDLE_EDGE = cos(radians(50.0)), cos(radians(70.0))
