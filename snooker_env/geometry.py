@@ -52,16 +52,8 @@ BAULK_Y = -1.0475
 """The y of the baulk line [m]."""
 D_RADIUS = 0.292
 """Radius of the D [m]; its centre is the brown spot, (0, ``BAULK_Y``)."""
-COLOUR_SPOTS = np.array(
-    [
-        (D_RADIUS, BAULK_Y),
-        (-D_RADIUS, BAULK_Y),
-        (0.0, BAULK_Y),
-        (0.0, 0.0),
-        (0.0, HALF_LENGTH / 2),
-        (0.0, 1.4605),
-    ]
-)
+_ACROSS, _ALONG = (D_RADIUS, -D_RADIUS, 0.0, 0.0, 0.0, 0.0), (*[BAULK_Y] * 3, 0.0, HALF_LENGTH / 2, 1.4605)
+COLOUR_SPOTS = np.column_stack([_ACROSS, _ALONG])
 """The spots of yellow, green, brown, blue, pink and black: float64 (6, 2) [m], read-only."""
 
 POCKET_PLACES = np.array([(sx * HALF_WIDTH, sy * HALF_LENGTH) for sx, sy in SIDES])

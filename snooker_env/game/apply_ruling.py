@@ -52,9 +52,8 @@ def settle(positions, on_table, situation, facts, flags, jaws, radius):
         nominating and result.nominated and not result.points
     )
     if result.outcome == OUTCOME.PLAYING and matters:
-        hidden, effective = snookered(
-            positions, on_table, balls_on_kernel(result.ball_on, result.on_table), jaws, radius
-        )
+        on = balls_on_kernel(result.ball_on, result.on_table)
+        hidden, effective = snookered(positions, on_table, on, jaws, radius)
         if hidden:
             flags |= FLAG.SNOOKERED
             if (effective >> result.nominated) & 1 and not result.fouls:

@@ -82,9 +82,7 @@ def closest_approach(segments, n_segments, until, positions, on_table, on, radiu
             for i in range(1, N_BALLS):
                 if on_table[i] and (on >> i) & 1:
                     dx, dy = segments[k, X] - positions[i, 0], segments[k, Y] - positions[i, 1]
-                    far = nearest_on_piece(
-                        dx, dy, segments[k, VX], segments[k, VY], segments[k, AX], segments[k, AY], T
-                    )
-                    best = min(best, far - 2.0 * radius)
+                    vx, vy, ax, ay = segments[k, VX], segments[k, VY], segments[k, AX], segments[k, AY]
+                    best = min(best, nearest_on_piece(dx, dy, vx, vy, ax, ay, T) - 2.0 * radius)
         k = following
     return best

@@ -457,25 +457,16 @@ def _unpacked(row, rules, miss, layout):
     at = row.tolist()
     saved = None
     if at[columns.SAVED]:
-        saved = Saved(
-            on_table=at[columns.SAVED_ON_TABLE],
-            ball_on=BallOn(at[columns.SAVED_BALL_ON]),
-            in_hand=at[columns.SAVED_IN_HAND] > 0,
-            free_ball=bool(at[columns.SAVED_FREE_BALL]),
-            anywhere=at[columns.SAVED_IN_HAND] == 2,
-            layout=layout if at[columns.SAVED_LAYOUT] else None,
-        )
-    return Frame(
-        **dict(zip(_INTEGERS, _integers(at), strict=True)),
-        **dict(zip(_FLAGS, map(bool, _flags(at)), strict=True)),
-        scores=(at[columns.SCORE_0], at[columns.SCORE_1]),
-        ball_on=BallOn(at[columns.BALL_ON]),
-        phase=PHASES[at[columns.PHASE]],
-        winner=None if at[columns.WINNER] < 0 else at[columns.WINNER],
-        rules=rules,
-        miss=miss,
-        saved=saved,
-    )
+        placed, kept = at[columns.SAVED_IN_HAND], layout if at[columns.SAVED_LAYOUT] else None
+        on: Any = {"on_table": at[columns.SAVED_ON_TABLE], "ball_on": BallOn(at[columns.SAVED_BALL_ON])}
+        free = bool(at[columns.SAVED_FREE_BALL])
+        saved = Saved(**on, in_hand=placed > 0, anywhere=placed == 2, free_ball=free, layout=kept)
+    numbers: Any = dict(zip(_INTEGERS, _integers(at), strict=True))
+    truths: Any = dict(zip(_FLAGS, map(bool, _flags(at)), strict=True))
+    numbers |= {"scores": (at[columns.SCORE_0], at[columns.SCORE_1]), "ball_on": BallOn(at[columns.BALL_ON])}
+    winner = None if at[columns.WINNER] < 0 else at[columns.WINNER]
+    game: Any = {"phase": PHASES[at[columns.PHASE]], "winner": winner, "rules": rules, "miss": miss}
+    return Frame(**numbers, **truths, **game, saved=saved)
 
 
 def frame_of(row: Ints, miss: MissRule, layouts: Layouts, k: int, rules: RulesName = "snooker") -> Frame:

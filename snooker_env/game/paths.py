@@ -67,12 +67,8 @@ def full_ball_path(positions, on_table, on, noses, jaws, radius):
             clear = to_cushion(cx, cy, (tx - cx) / d, (ty - cy) / d, noses, jaws, radius) >= run * d - SLACK
             for i in range(1, N_BALLS):
                 if on_table[i] and not (harmless >> i) & 1:
-                    x, y, ex, ey = (
-                        positions[i, 0],
-                        positions[i, 1],
-                        cx + run * (tx - cx),
-                        cy + run * (ty - cy),
-                    )
+                    x, y = positions[i, 0], positions[i, 1]
+                    ex, ey = cx + run * (tx - cx), cy + run * (ty - cy)
                     clear = clear and segment_distance(x, y, cx, cy, ex, ey) >= 2.0 * radius - SLACK
             if clear:
                 return True
@@ -173,10 +169,8 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
         ordered = np.sort(edges[:n])
         for k in range(n - 1):
             low, high = ordered[k], ordered[k + 1]
-            inside, angle = (
-                low >= -half and high <= half and high - low > WINDOW,
-                towards + 0.5 * (low + high),
-            )
+            inside = low >= -half and high <= half and high - low > WINDOW
+            angle = towards + 0.5 * (low + high)
             if inside and _open_direction(positions, on_table, on, target, angle, noses, jaws, radius):
                 return True
     return False

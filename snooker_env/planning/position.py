@@ -175,11 +175,8 @@ def _known(init: Any) -> Any:
     def checked(self: Position, *args: Any, **fields_: Any) -> None:
         for name in fields_:
             if name not in names:
-                reds, known = (
-                    "the reds are one list, reds=[(x, y), ...]",
-                    f"the fields are {', '.join(names)}",
-                )
-                hint = reds if name.startswith("red") else known
+                reds, known = "the reds are one list, reds=[(x, y), ...]", ", ".join(names)
+                hint = reds if name.startswith("red") else f"the fields are {known}"
                 raise TypeError(f"Position got an unexpected keyword argument {name!r}; {hint}")
         init(self, *args, **fields_)
 

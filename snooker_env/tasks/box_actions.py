@@ -144,10 +144,8 @@ class Actions:
         last = self.size - self.declares  # the components before the declaration
         nominated = last - 1 - self.decision if self.nominate else -1
         where = nominated, last - 1 if self.decision else -1, last if self.declares else -1
-        kind, spoken = (
-            (self.aim == "target", self.elevation, self.placement),
-            (self.concede, self.claim, self.lot),
-        )
+        kind = self.aim == "target", self.elevation, self.placement
+        spoken = self.concede, self.claim, self.lot
         return np.array([*kind, *limits, False, *where, *spoken], np.float64)
 
     def shot(

@@ -18,7 +18,7 @@ from .frame import Frames
 from .frame_kernels import choose_as, give_up
 from .options import Rules
 from .rewards import MATCH_REWARDS
-from .stroke import ShotBuffers, place, place_anywhere, strike
+from .stroke import ShotBuffers, place, strike
 
 
 @entry(what="the strokes of players in frames", seconds=3)
@@ -51,10 +51,7 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
         colour = max(0, nominate[k] - YELLOW + 1)
         tables.nominated[k] = AUTO if nominate[k] < 0 else declarations.nominated_ball(colour, row)
         if row[columns.IN_HAND] and not np.isnan(places[k, 0]):
-            if row[columns.ANYWHERE]:
-                place_anywhere(p, on, places[k, 0], places[k, 1])
-            else:
-                place(p, on, places[k, 0], places[k, 1])
+            place(p, on, places[k, 0], places[k, 1], row[columns.ANYWHERE] != 0)
         speed, aim, elevation = values[k, 0], values[k, 3], values[k, 4]
         side, top = tip_on_disc(values[k, 1], values[k, 2], options[declarations.A_MAX_OFFSET])
         intended = (speed, side, top, aim - squirt(side, options[declarations.A_END_MASS]), elevation)

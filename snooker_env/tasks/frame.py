@@ -183,7 +183,6 @@ class Frames(Tables):
         self.begun[self.game[:, columns.STRIKER] != AGENT] = False
 
     # a turn
-    # --------------------------------------------------------------------------------------------------------
 
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = AGENT) -> Ints:
         """Decisions and strokes of the seat ``side`` up to the strike; returns the tables with a stroke."""
@@ -270,7 +269,6 @@ class Frames(Tables):
         return
 
     # steps and resets of the frame task
-    # --------------------------------------------------------------------------------------------------------
 
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
@@ -381,7 +379,6 @@ class Frames(Tables):
         return rows
 
     # states
-    # --------------------------------------------------------------------------------------------------------
 
     def get_state(self, k: int) -> dict[str, Any]:
         """See ``Tables.get_state``: the fields of a ``states.FrameState`` except "rng"."""
@@ -477,20 +474,15 @@ class Matches(Frames):
 
     def get_state(self, k: int) -> dict[str, Any]:
         won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()
-        match = {
-            "frames": won,
-            "first_break": int(self.game[k, columns.FIRST_BREAK]),
-            "best_of": self.rules.frames,
-        }
+        first = int(self.game[k, columns.FIRST_BREAK])
+        match = {"frames": won, "first_break": first, "best_of": self.rules.frames}
         return super().get_state(k) | match
 
     def set_state(self, k: int, state: FrameState) -> None:
         super().set_state(k, state)
         assert state.frames is not None and state.first_break is not None  # ``checked`` has seen to it
-        self.game[k, [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK]] = (
-            *state.frames,
-            state.first_break,
-        )
+        match = [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK]
+        self.game[k, match] = *state.frames, state.first_break
         self.game[k, columns.PAID] = self._worth(k) - state.unpaid
 
     def text(self, k: int) -> str:

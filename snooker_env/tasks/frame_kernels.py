@@ -168,12 +168,9 @@ def conclude(which, tables, shots, setting, reported, alone, played, output):
             if alone or not setting.options[declarations.A_LOT]:
                 columns.draw(row, row[columns.STRIKER])  # who begins
         if row[columns.IN_HAND] and not row[columns.OVER]:
-            if not row[columns.ANYWHERE]:
-                stroke.place(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
-            elif potted & 1:
-                stroke.place_anywhere(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
-            else:  # where it came to rest
-                stroke.place_anywhere(p, on, p[CUE, 0], p[CUE, 1])
+            lies = row[columns.ANYWHERE] and not potted & 1  # it stays where it came to rest
+            x, y = (p[CUE, 0], p[CUE, 1]) if lies else (SPOTS[CUE, 0], SPOTS[CUE, 1])
+            stroke.place(p, on, x, y, row[columns.ANYWHERE] != 0)
         played[k] += 1
         if reported:
             write_stroke_info(k, out, j, shots, ball_on, result)
@@ -363,10 +360,8 @@ def remember(which, tables, saved, shots, noses, jaws):
         first, touching, moved, potted = stroke.see(j, shots, positions, on_table)
         seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH] = True, False
         before = Before(mask, row[columns.BALL_ON], row[columns.FREE_BALL], 0)
-        if (
-            ruling(before, Facts(first, touching, moved, potted, 0, tables.nominated[k]), 0).fouls
-            & columns.MISSED
-        ):
+        facts = Facts(first, touching, moved, potted, 0, tables.nominated[k])
+        if ruling(before, facts, 0).fouls & columns.MISSED:
             in_hand, on = row[columns.IN_HAND] + row[columns.ANYWHERE], columns.strikeable(row, mask & ~1)
             clear, full = best_paths(positions, on_table, on, in_hand, noses, jaws, BALL_RADIUS)
             seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH] = clear, full

@@ -21,7 +21,7 @@ from .escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, ROLL, ROLLING,
 from .frame import Frames, Opponent
 from .lines import EASY, LINE_ROWS, NARROW, POTS, nearest, racked, thin_at_end
 from .opponents import SIDE
-from .stroke import ShotBuffers, place, place_anywhere, strike
+from .stroke import ShotBuffers, place, strike
 from .windows import open_part, open_windows
 
 SLIDE = 1.4
@@ -165,7 +165,7 @@ def _put_on_bed(positions, on_table, mask, rows):
                 dy = positions[ball, 1] - POCKET_AIMS[k, AIM_Y]
                 far = (2.0 * BALL_RADIUS + _BEHIND) / max(1e-9, hypot(dx, dy))
                 x, y = positions[ball, 0] + far * dx, positions[ball, 1] + far * dy
-                place_anywhere(positions, on_table, x, y)
+                place(positions, on_table, x, y, True)
                 worth = 0.0
                 if tries == 1:
                     _, _, _, worth = soft(positions, on_table, 1 << ball, 0, DRIVE, rows)
@@ -186,21 +186,21 @@ def put(positions, on_table, mask, anywhere, rows, stream):
         return
     if racked(positions, on_table):
         u, _ = pair(stream)
-        place(positions, on_table, BREAK_X if u < 0.5 else -BREAK_X, BAULK_Y)
+        place(positions, on_table, BREAK_X if u < 0.5 else -BREAK_X, BAULK_Y, False)
         return
     widest, best = 0.0, -1
     for c in range(len(_PLACES)):
-        place(positions, on_table, *_PLACES[c])
+        place(positions, on_table, *_PLACES[c], False)
         if find_pots(positions, on_table, mask, BALL_RADIUS, rows[:1]) and rows[0, TOLERANCE] > widest:
             widest, best = rows[0, TOLERANCE], c
     if best < 0:
         best = 0
         for c in range(len(_PLACES)):
-            place(positions, on_table, *_PLACES[c])
+            place(positions, on_table, *_PLACES[c], False)
             _, _, _, window = soft(positions, on_table, mask, 0, 0.0, rows)
             if window > widest:
                 widest, best = window, c
-    place(positions, on_table, *_PLACES[best])
+    place(positions, on_table, *_PLACES[best], False)
 
 
 @kernel

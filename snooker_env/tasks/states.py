@@ -41,9 +41,7 @@ class FrameState(NamedTuple):
     on_table: Bools
     strokes: int
     opponent: int  # which member of a pool plays, counted from 1; 0: none is drawn
-    unpaid: (
-        int  # what the agent has earned and no reward has paid: points, or with ``reward="frames"`` frames
-    )
+    unpaid: int  # what the agent has earned and no reward has paid: points, or frames with reward="frames"
     due: bool  # whether the episode ended before the agent's first stroke, and the next step reports it
     stream: list[int]  # key and counter of the table's random stream
     rng: dict[str, Any]

@@ -79,20 +79,13 @@ def first_struck(event_time, event_what, n_events, touching, positions, vx, vy):
 
 
 @kernel
-def place(positions, on_table, x, y):
-    """Put a cue ball in hand on the free place of the D nearest to (x, y); it stays if there is none."""
+def place(positions, on_table, x, y, anywhere):
+    """Put a cue ball in hand on the free place of the D, or bed, nearest to (x, y); it stays if none is."""
     on_table[CUE] = False
-    x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS)
-    on_table[CUE] = True
-    if free:
-        positions[CUE, 0], positions[CUE, 1] = x, y
-
-
-@kernel
-def place_anywhere(positions, on_table, x, y):
-    """As ``place``, on the whole bed."""
-    on_table[CUE] = False
-    x, y, free = nearest_anywhere(positions, on_table, x, y, BALL_RADIUS)
+    if anywhere:
+        x, y, free = nearest_anywhere(positions, on_table, x, y, BALL_RADIUS)
+    else:
+        x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS)
     on_table[CUE] = True
     if free:
         positions[CUE, 0], positions[CUE, 1] = x, y
@@ -145,12 +138,9 @@ def address(which, actions, tables, shots, packed, fidelity):
         k = which[j]
         a, p, on = actions[k], positions[k], on_table[k]
         if game[k, IN_HAND] and options[A_PLACEMENT]:
-            if game.shape[1] > ANYWHERE and game[k, ANYWHERE]:
-                x, y = place_anywhere_of(a, options)
-                place_anywhere(p, on, x, y)
-            else:
-                x, y = place_of(a, options)
-                place(p, on, x, y)
+            anywhere = game.shape[1] > ANYWHERE and game[k, ANYWHERE] != 0
+            x, y = place_anywhere_of(a, options) if anywhere else place_of(a, options)
+            place(p, on, x, y, anywhere)
         mask = playable(game[k], bits(on), nominated[k] if nominated.shape[0] else AUTO)
         if options[A_DISCRETE]:
             # a planner plays a choice under several errors in succession: its aim is solved once
@@ -190,10 +180,6 @@ def write_ruling(seen, player, ball_on, free_ball, before, result):
 class ShotBuffers:
     """Work space for up to m shots at once, each with a log of ``log`` events and optionally its path."""
 
-    enlarged: (
-        "dict[int, ShotBuffers]"  # shots of the last run that needed a longer log: row -> their own buffers
-    )
-
     def __init__(self, m: int, log: int = 512, *, path: bool = False):
         self.log: int = log
         # the balls before the shots, then after: [m], [m/s], [rad/s]; the pocket of each, or -1
@@ -219,7 +205,7 @@ class ShotBuffers:
         ends = self.seen, self.potted, self.status, self.duration
         events = self.event_time, self.event_what, self.n_events
         self.played: tuple[Any, ...] = (self.r, self.shots, *ends, *events)
-        self.enlarged = {}
+        self.enlarged: dict[int, ShotBuffers] = {}  # shots of the last run with a longer log of their own
 
     def __len__(self) -> int:
         return len(self.duration)

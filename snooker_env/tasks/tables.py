@@ -146,13 +146,9 @@ class Tables(ABC):
     on_table: Bools  # (n, 22)
     game: Ints  # (n, COLUMNS), of ``game.frame_columns``
     streams: Words  # (n, 2) key and counter of each table's random stream
-    nominated: Ints = np.empty(
-        0, np.int64
-    )  # (n,) of frames: what each striker has nominated; visits: no rows
+    nominated: Ints = np.empty(0, np.int64)  # (n,) of frames: what each striker has nominated
     begun: Bools  # (n,) which tables have an episode, possibly one that has ended
-    packed: tuple[
-        Floats, Floats, Floats
-    ]  # options of the action, deviations of the noise, physical parameters
+    packed: tuple[Floats, Floats, Floats]  # action's options, noise's deviations, physical parameters
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         self.rules, self.n, self.limit = rules, n, limit
@@ -203,17 +199,14 @@ class Tables(ABC):
         game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
         if seen[stroke.SCORED]:
             standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
-        return Played(
-            shot=buffers.shot(j, self.rules),
-            cue=struck(buffers, j),
-            positions=self.positions[k].copy(),
-            on_table=self.on_table[k].copy(),
-            next_on=BallOn(game[BALL_ON]),
-            in_hand=bool(game[IN_HAND]),
-            over=bool(game[OVER]),
-            **judged(seen),
-            **standing,
-        )
+        shot = {"shot": buffers.shot(j, self.rules), "cue": struck(buffers, j)}
+        balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
+        after: Any = {
+            "next_on": BallOn(game[BALL_ON]),
+            "in_hand": bool(game[IN_HAND]),
+            "over": bool(game[OVER]),
+        }
+        return Played(**shot, **balls, **after, **judged(seen), **standing)
 
     def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k."""
@@ -288,7 +281,6 @@ class Tables(ABC):
         return stroke.run_again(buffers, j, k, self.positions[k], self.on_table[k], *world)
 
     # what each task implements
-    # --------------------------------------------------------------------------------------------------------
 
     @abstractmethod
     def step(
