@@ -65,10 +65,8 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
 
     Parameters
     ----------
-    positions : float64 (22, 2)
-        Centres of the balls [m].
-    on_table : bool (22,)
-        Which balls are on the table.
+    positions, on_table : numpy.ndarray
+        float64 (22, 2), centres of the balls [m]; bool (22,), which balls are on the table.
     ax, ay, bx, by : float
         The ends of the segment [m].
     skip1, skip2 : int
@@ -146,10 +144,8 @@ def find_pots(positions, on_table, on, radius, pots):
 
     Parameters
     ----------
-    positions : float64 (22, 2)
-        Centres of the balls [m], the cue ball first.
-    on_table : bool (22,)
-        Which balls are on the table.
+    positions, on_table : numpy.ndarray
+        float64 (22, 2), centres of the balls [m], the cue ball first; bool (22,), which are on the table.
     on : int
         Mask of the balls that may be potted.
     radius : float

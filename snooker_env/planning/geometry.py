@@ -129,10 +129,9 @@ def obstructions(
     ----------
     positions : PositionsLike
         The m positions: anything that ``Positions.of`` accepts.
-    rows : array_like
-        int (n,). Row of ``positions`` for each path, in [0, m).
-    starts, ends : array_like
-        float (n, 2). First and last point of the running ball's centre [m].
+    rows, starts, ends : array_like
+        int (n,), row of ``positions`` for each path, in [0, m); float (n, 2), first and last point of the
+        running ball's centre [m].
     ignore : array_like, optional
         int (j,) or (n, j). Ids of balls that do not count, usually the running ball and its target.
 

@@ -51,20 +51,18 @@ class Position:
     on : str, optional
         What must be struck first: "red", "any_colour" (a red was just potted), or the name of a colour.
         Default: "red" while there is a red, else the lowest colour.
-    in_hand : bool, optional
-        Whether the cue ball may be placed in the D before the stroke; default False.
+    in_hand, over : bool, optional
+        Whether the cue ball may be placed in the D before the stroke; whether the visit has ended: then
+        anything may be on, and the cue ball may be missing. Default False.
     points : int, optional
         Points of the visit so far, in [0, 155]; default 0.
-    over : bool, optional
-        Whether the visit has ended; default False. Then anything may be on, and the cue ball may be missing.
     table : str, Table or None, optional
         The table that the balls must fit on, not stored; None: unbounded cloth. Default: "match".
 
     Raises
     ------
     ValueError
-        If a ball is off the table, in a cushion or over a pocket, balls overlap, or the ball on contradicts
-        them.
+        If a ball is off the table, in a cushion or over a pocket, balls overlap, or the ball on is wrong.
 
     Examples
     --------

@@ -28,8 +28,7 @@ SECOND, THIRD = 0.15, 0.05
 FAR = 0.1
 """Decay of the chance of a pot per metre of both balls' paths [1/m]."""
 RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, FAR)
-"""Constants of ``prospects_of`` for a player with execution errors: points of the rest of the visit, shares
-of the second and third best pot, decay of the chance with distance [1/m]."""
+"""Constants of ``prospects_of`` for a player with execution errors: the four numbers above."""
 SURE = (1e4, 1e-3, 0.0, 0.0)
 """Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left."""
 
@@ -126,10 +125,8 @@ def prospects_of(
         Standard deviation of the cue ball's direction [rad], see ``spread_of``.
     constants : tuple of float, optional
         ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
-    most : int, optional
-        Number of chances for each position; default 4.
-    threads : int, optional
-        Largest number of threads; default 1. Results do not depend on it.
+    most, threads : int, optional
+        Number of chances for each position; default 4. Largest number of threads; default 1.
 
     Returns
     -------

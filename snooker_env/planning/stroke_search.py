@@ -112,13 +112,11 @@ class StrokeSearch:
         position share the looks evenly. The first one proposes pots; where none of these is likelier than
         ``doubtful``, ``at_balls`` and ``over_cushions`` join. Default: ``at_pots``.
     doubtful : float, optional
-        Largest chance of a pot at which strokes without a pot are tried as well, in [0, 1]; default 0.
+        Largest chance of a pot at which strokes without one are tried as well, in [0, 1]; default 0.
     pots_only : bool, optional
         Score by the chance of the pot alone; without a pot, less that of a foul. Default False.
-    noise : str, dict or Noise, optional
-        Execution noise in place of the environment's own.
-    threads : int, optional
-        Number of threads, see ``Planner``. Results do not depend on it.
+    noise, threads : optional
+        As for ``Planner``.
 
     Examples
     --------

@@ -195,29 +195,15 @@ def observe_frame_into(out, k, tables, saved, setting, player):
     to_play = not row[columns.OVER] and row[columns.STRIKER] == player
     left = available(row[columns.ON_TABLE], row[columns.BALL_ON], row[columns.FREE_BALL])
     clock = min(1.0, row[columns.CLOCK] / setting.clock) if setting.clock else 0.0
-    more = (
-        _share(mine, 147.0),
-        _share(other, 147.0),
-        _share(mine - other, 147.0),
-        left / 155.0,
-        1.0 if to_play else 0.0,
-        1.0 if row[columns.FREE_BALL] else 0.0,
-        1.0 if row[columns.PHASE] == columns.CHOICE else 0.0,
-        1.0 if row[columns.MISS_CALLED] else 0.0,
-        1.0 if row[columns.RESPOTTED_BLACK] else 0.0,
-        1.0 if row[columns.BREAKER] == player else 0.0,
-        row[columns.FAILURES] / 2.0,
-        1.0 if row[columns.WARNED] else 0.0,
-        1.0 if row[columns.PHASE] == columns.LOT else 0.0,
-        _share(row[columns.FRAMES_0 + player], 1.0),
-        _share(row[columns.FRAMES_1 - player], 1.0),
-        _share(setting.frames, 1.0),
-        clock,
-        _share(row[columns.MISSES], 5.0),
-        1.0 if row[columns.ANYWHERE] else 0.0,
-    )
-    for c in range(len(more)):
-        out[SIZE + c] = more[c]
+    more = out[SIZE:FRAME_SIZE]
+    more[0], more[1], more[2] = _share(mine, 147.0), _share(other, 147.0), _share(mine - other, 147.0)
+    more[3], more[4], more[5] = left / 155.0, to_play, row[columns.FREE_BALL] != 0
+    more[6], more[7] = row[columns.PHASE] == columns.CHOICE, row[columns.MISS_CALLED] != 0
+    more[8], more[9] = row[columns.RESPOTTED_BLACK] != 0, row[columns.BREAKER] == player
+    more[10], more[11] = row[columns.FAILURES] / 2.0, row[columns.WARNED] != 0
+    more[12], more[13] = row[columns.PHASE] == columns.LOT, _share(row[columns.FRAMES_0 + player], 1.0)
+    more[14], more[15] = _share(row[columns.FRAMES_1 - player], 1.0), _share(setting.frames, 1.0)
+    more[16], more[17], more[18] = clock, _share(row[columns.MISSES], 5.0), row[columns.ANYWHERE] != 0
     if out.shape[0] == FRAME_SIZE:
         return
     for i in range(N_BALLS):

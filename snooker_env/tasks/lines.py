@@ -134,10 +134,8 @@ def line_of(positions, on_table, on, rows):
 
     Parameters
     ----------
-    positions : float64 (22, 2)
-        Centres of the balls [m], the cue ball first.
-    on_table : bool (22,)
-        Which balls are on the table.
+    positions, on_table : numpy.ndarray
+        float64 (22, 2), centres of the balls [m], the cue ball first; bool (22,), which are on the table.
     on : int
         Mask of the balls that may be struck first, bit i for ball i.
     rows : float64 (LINE_ROWS, POT_COLUMNS)

@@ -73,16 +73,11 @@ def executed(speed, side, top, aim, elevation, noise, stream):
 
     Parameters
     ----------
-    speed : float
-        Intended speed of the cue [m/s].
-    side, top : float
-        Intended tip offset over R.
-    aim, elevation : float
-        Intended direction and elevation of the cue [rad].
-    noise : float64 (k,)
-        Standard deviations of the errors, as ``Noise.pack`` returns them.
-    stream : uint64 (2,)
-        Stream of random numbers: key and counter. Three blocks are drawn, or nothing without errors.
+    speed, side, top, aim, elevation : float
+        The intended cue speed [m/s], tip offset over R, direction and elevation of the cue [rad].
+    noise, stream : numpy.ndarray
+        float64 (k,), standard deviations of the errors, as ``Noise.pack`` returns them; uint64 (2,), key and
+        counter of a stream of random numbers: three blocks are drawn, or nothing without errors.
 
     Returns
     -------
@@ -113,16 +108,12 @@ class Noise:
 
     Parameters
     ----------
-    aim_deg : float, optional
-        Aim [deg].
-    speed_rel : float, optional
-        Speed, as a fraction of the speed.
-    speed_abs : float, optional
-        Speed [m/s], combined with the relative part as the root of the sum of squares.
+    aim_deg, elevation_deg : float, optional
+        Aim and elevation [deg].
+    speed_rel, speed_abs : float, optional
+        Speed, as a fraction of the speed, and [m/s], combined as the root of the sum of squares.
     offset_mm : float, optional
         Tip offset [mm], for each of side and height.
-    elevation_deg : float, optional
-        Elevation [deg].
 
     Examples
     --------

@@ -61,11 +61,10 @@ def space(
     kind : {"flat", "balls", "masked"}
         "flat": a Box (121,); "balls": a Dict of the boxes "balls" (22, 5) and "state" (11,); "masked": a Dict
         of the boxes "observations", that of "flat", and "action_mask" (choices,), int8 in {0, 1}.
-    frame : bool, optional
-        Whether the 19 entries of a frame or match follow: shapes (140,) and (30,). Default False.
-    replaced : bool, optional
-        Whether the layout that "replace" restores follows, as with a miss rule: (206,) in all, or the box
-        "replaced" (22, 3). Default False.
+    frame, replaced : bool, optional
+        Whether the 19 entries of a frame or match follow, shapes (140,) and (30,), and whether the layout
+        that "replace" restores, as with a miss rule: (206,) in all, or the box "replaced" (22, 3). Default
+        False.
     choices : int, optional
         Length of "action_mask". Default 540, the discrete actions that only choose a stroke.
 

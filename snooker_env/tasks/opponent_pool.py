@@ -16,8 +16,7 @@ class OpponentPool:
     """Several opponents, one of whom is drawn for each table and frame, by their weights.
 
     The draw comes from the table's own stream and is part of its state: the same seed meets the same
-    opponents, and a saved state plays on exactly. Members may be added at any time, as past selves during
-    training.
+    opponents. Members may be added at any time, as past selves during training.
 
     Parameters
     ----------

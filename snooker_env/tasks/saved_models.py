@@ -174,10 +174,8 @@ def outline(space: spaces.Space[Any]) -> tuple[str, Any]:
 
     Returns
     -------
-    kind : str
-        Name of the space's class.
-    size : str or list of int
-        The number of choices or the spaces of a Dict, as text, else the shape.
+    kind, size : str, and str or list of int
+        Name of the space's class; the number of choices or the spaces of a Dict, as text, else the shape.
 
     Examples
     --------
@@ -207,10 +205,8 @@ class SavedModel:
 
     Attributes
     ----------
-    path : Path
-        The file.
-    field : str
-        Name of the argument that error messages refer to.
+    path, field : Path, str
+        The file, and the name of the argument that error messages refer to.
     data : dict
         The JSON of its ``data``, in which pickles are text.
     observation, action : (str, str or list of int)
