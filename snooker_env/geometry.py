@@ -37,12 +37,10 @@ __all__ = [
     "Bed",
     "Pocket",
 ]
-
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
 """Names of the pockets by index, anticlockwise from (-x, -y): bottom is baulk, right the yellow side."""
 SIDES = ((-1, -1), (1, -1), (1, 0), (1, 1), (-1, 1), (-1, 0))
 """The signs of each pocket's x and y; 0 for y at a middle pocket."""
-
 # Snooker's table: the rules, the layouts and the observations use these.
 BALL_RADIUS = 0.02625
 """Radius of a snooker ball [m]."""
@@ -55,10 +53,8 @@ D_RADIUS = 0.292
 _ACROSS, _ALONG = (D_RADIUS, -D_RADIUS, 0.0, 0.0, 0.0, 0.0), (*[BAULK_Y] * 3, 0.0, HALF_LENGTH / 2, 1.4605)
 COLOUR_SPOTS = np.column_stack([_ACROSS, _ALONG])
 """The spots of yellow, green, brown, blue, pink and black: float64 (6, 2) [m], read-only."""
-
 POCKET_PLACES = np.array([(sx * HALF_WIDTH, sy * HALF_LENGTH) for sx, sy in SIDES])
 """Nominal places of pockets: float64 (6, 2) [m], read-only: where two nose lines meet, or a middle of one."""
-
 AIM_X, AIM_Y, AXIS_X, AXIS_Y, IS_MIDDLE = range(5)
 """Columns of ``POCKET_AIMS``: aim point [m], the axis as outward unit vector, 1 for a middle pocket."""
 # distance from each nose line to the point where the fall meets the pocket's axis [m]

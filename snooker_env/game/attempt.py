@@ -13,7 +13,6 @@ from .balls import CUE, N_BALLS
 
 ATTEMPT_GAP = 2.0 * BALL_RADIUS
 """A gap up to this counts as the best effort [m]: one ball would just fit between cue ball and ball on."""
-
 X, Y, VX, VY, AX, AY, START, END, BALL = 0, 1, 2, 3, 4, 5, 9, 10, 15
 """Columns of a piece of a path, as in ``physics.cloth``."""
 _HALVINGS = 60

@@ -20,15 +20,12 @@ CUE, YELLOW, GREEN, BROWN, BLUE, PINK, BLACK = 0, 16, 17, 18, 19, 20, 21
 """Ids of the cue ball and of the colours; the reds have the ids 1 to 15."""
 N_REDS = 15
 """Number of reds."""
-
 COLOUR_NAMES = ("yellow", "green", "brown", "blue", "pink", "black")
 """Names of the colours in the order of their ids, 16 to 21, and of their values, 2 to 7."""
 NAMES = ("cue", *(f"red {i}" for i in range(1, 16)), *COLOUR_NAMES)
 """Names of the balls by id."""
-
 VALUES = np.array([0] + [1] * 15 + [2, 3, 4, 5, 6, 7], dtype=np.int64)
 """Points by id: int64 (22,), read-only; 0 for the cue ball."""
-
 _BITS = 1 << np.arange(N_BALLS)
 CUE_BIT = 1
 REDS_MASK = 0xFFFE
@@ -62,10 +59,8 @@ class BallOn(IntEnum):
 
 PINK_GAP = 0.0005
 """Gap between the pink on its spot and the red at the apex [m]: small, without contact."""
-
 TOUCH = 1e-6
 """Two balls touch when the gap between them is below this [m]: far below sight, far above rounding."""
-
 REFEREE_TOUCH = 50e-6
 """The referee calls a touching ball when the gap to the cue ball is below this [m]: the eye resolves about 70
 um at 25 cm (one arc minute), and balls that touch come to rest 1 to 40 um apart in the simulation."""

@@ -35,11 +35,9 @@ from .rule_sets import MOST_MISSES, RuleSet, RulesName, rule_set
 
 MOST_BREAK = 155
 """The highest break (a free ball and the colour after it, then 147), points still on the table included."""
-
 SETTLED: dict[str, Any] = {"ball_on": BallOn.NOTHING, "failures": 0, "saved": None, "misses": 0}
 SETTLED |= dict.fromkeys(("free_ball", "miss_called", "warned", "anywhere"), False)
 """The fields of a frame that is over."""
-
 REPLACED = ("on_table", "ball_on", "in_hand", "free_ball", "anywhere")
 """The fields that are restored with a position that is replaced."""
 
@@ -142,15 +140,12 @@ def tuples(value: Any) -> Any:
 
 Choice: TypeAlias = Literal["play", "play_again", "replace", "anywhere"]
 """What may be chosen after a foul."""
-
 CHOICES = get_args(Choice)
 PHASES = ("stroke", "choice", "lot", "over")
 MISS_RULES = ("off", "clear_path", "attempt")
 """Names by the codes of ``frame_columns``."""
 MOST_CLOCK = 2**50
 """Upper limit of a frame's clock [ms]."""
-
-
 _NUMBERS = ("striker", "breaker", "on_table", "failures", "clock", "misses", "rack")
 _INTEGERS = {name: getattr(columns, name.upper()) for name in _NUMBERS} | {"break_points": columns.POINTS}
 _TRUTHS = ("in_hand", "free_ball", "respotted_black", "miss_called", "warned", "anywhere")

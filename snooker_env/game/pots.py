@@ -27,7 +27,6 @@ _MIDDLE_ANGLE, _MIDDLE_WINDOW = (0.0, 15.0, 30.0, 45.0, 60.0, 70.0), (0.073, 0.0
 # Squared cosines of the last angles, less a margin above rounding: below them a window is certainly closed.
 _CORNER_SHUT, _MIDDLE_SHUT = (cos(radians(angle)) ** 2 - 1e-9 for angle in (50.0, 70.0))
 _CORNER_WIDEST, _MIDDLE_WIDEST = max(_CORNER_WINDOW), max(_MIDDLE_WINDOW)
-
 POT_BALL, POT_POCKET, GHOST_X, GHOST_Y, COS_CUT, TOLERANCE = range(6)
 """Columns of a pot: object ball, pocket, ghost ball [m], cosine of the cut, tolerance of the aim [rad]."""
 POT_COLUMNS = 6

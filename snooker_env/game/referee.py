@@ -11,7 +11,6 @@ from .ruling import AUTO, RULE_FLAGS, Before, Facts, Flag, Foul, Outcome, Ruling
 
 FULL_TABLE = ALL_MASK & ~CUE_BIT
 """The mask of all 21 object balls."""
-
 MOST_POINTS = 2**60
 """Upper limit of scores: beyond any play, within the kernel's 64 bits."""
 

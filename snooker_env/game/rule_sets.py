@@ -10,7 +10,6 @@ from .balls import COLOURS_MASK, N_REDS
 
 RulesName: TypeAlias = Literal["snooker", "six_red", "shoot_out"]
 """Names of the rule sets."""
-
 SNOOKER, SIX_RED, SHOOT_OUT = range(3)
 """Codes of the rule sets, for the kernels."""
 
@@ -37,7 +36,6 @@ class RuleSet:
 
 LATE_PENALTY = 5
 """Least penalty in points for a stroke that was not begun within the shot clock."""
-
 _SHOT_CLOCK = (15_000, 10_000)
 RULE_SETS = (
     RuleSet(name="snooker", code=SNOOKER),
@@ -49,7 +47,6 @@ RULE_SETS = (
 """All rule sets, by code."""
 RULES = get_args(RulesName)
 """Their names, by code."""
-
 MOST_MISSES, CLOCK_LIMIT = RULE_SETS[SIX_RED].most_misses, RULE_SETS[SHOOT_OUT].clock
 SHOT_CLOCK = RULE_SETS[SHOOT_OUT].shot_clock
 

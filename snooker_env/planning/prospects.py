@@ -17,10 +17,8 @@ from ..tasks.noise import Noise
 from .positions import Positions
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
-
 WORTH_A_THREAD = 128
 """Smallest number of positions for which another thread is worth its cost."""
-
 FOLLOWS = 25.0
 """Points to expect after a made pot from the rest of the visit; fewer if fewer are left on the table."""
 SECOND, THIRD = 0.15, 0.05

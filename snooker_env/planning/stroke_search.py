@@ -41,12 +41,10 @@ SCHEDULES = (
     (2000, 800, ((40, 8), (16, 25), (5, 95))),
 )
 """Budget, number of looks, and for each round the number of strokes and their further samples."""
-
 LEFT = 0.5
 """Share of a position's value for the opponent that counts."""
 FOUL = 20.0
 """What a foul costs beside its penalty [points]: the opponent may have the balls replaced or a free ball."""
-
 Value: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 """Values [points] of n positions that strokes have left: (n,)."""
 Propose: TypeAlias = Callable[["StrokeSearch", Positions, int, Ints], Proposals]

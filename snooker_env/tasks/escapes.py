@@ -32,7 +32,6 @@ ROLLING = 0.4
 """Tip offset over R with which a ball rolls from the start."""
 LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH = range(4)
 """Columns of a line: direction, how much it may err [rad]; cue speed of an escape [m/s], 0 if seen; worth."""
-
 _ANGLES = 9
 """The rows of ``_REBOUND`` are 10 degrees apart."""
 _REBOUND = (
@@ -55,7 +54,6 @@ _DIRECTIONS, _LEGS = 720, 4
 """Directions tried; most straight parts of an escape, one more than cushions."""
 _SPEEDS, _WIDE = (1.7, 2.8, 4.2), 4.0
 """Cue speeds of an escape [m/s]: the next where one leaves fewer than ``_WIDE`` directions."""
-
 _HALVES = ((AXIS_X, HALF_WIDTH), (AXIS_Y, HALF_LENGTH))
 _BED = np.array([(axis, side, half, -9.0, 9.0) for axis, half in _HALVES for side in (-1.0, 1.0)])
 _NO_JAWS, _NO_FALLS = np.empty((0, 6)), np.empty((0, 3))

@@ -172,7 +172,6 @@ class Noise:
 
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
 """The types that arguments called ``noise`` accept, see ``Noise.of``."""
-
 LEVELS: dict[str, Noise] = {
     "none": Noise(),
     "professional": Noise(aim_deg=0.025, speed_rel=0.0175, offset_mm=0.15, elevation_deg=0.1),

@@ -20,7 +20,6 @@ value / 7, 1 if it may be struck first (a ball on; with a free ball every colour
 STATE_ENTRIES = ("reds", *(ball.name.lower() for ball in BallOn if ball >= 0), "in_hand", "break")
 """Entries of the state of the game: reds left / 15; the ball on as one-hot, from "any_colour" to "black"; 1
 if the cue ball is in hand; points of this break / 155."""
-
 FRAME_ENTRIES = (
     *("score", "opponent_score", "lead", "available", "to_play", "free_ball", "choice", "miss_called"),
     *("respotted_black", "broke", "failures", "warned", "in_lot"),
@@ -35,11 +34,9 @@ that it has won, the opponent's, those that win it (1 in a single frame). The sh
 has passed (0 without a clock); misses m in succession, m / (m + 5); whether the ball in hand goes anywhere."""
 REPLACED_COLUMNS = ("x", "y", "on_table")
 """Columns of the layout that "replace" restores, one row a ball; 0 unless a miss has just been called."""
-
 REACH = 1.1
 """Bound of the spaces that hold places. The noses are at 1; a ball in the mouth of a pocket lies up to 1.013
 on snooker's own tables, and within this bound on any that an environment takes (``table_fit``)."""
-
 _COLUMNS = len(BALL_COLUMNS)
 BALLS_SIZE = N_BALLS * _COLUMNS
 """Numbers in the table of balls, the first part of a flat observation."""

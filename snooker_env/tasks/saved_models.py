@@ -16,13 +16,11 @@ from .._check import refuse
 from .._install import missing
 
 __all__ = ["PLAIN", "SavedModel", "by_train", "entries", "one_thread", "outline", "part"]
-
 MOST = 2**26
 """Most bytes of JSON that are read (SB3 stores the last observations there): a small zip can unpack to more
 than a machine's memory, and JSON to objects 25 times as large."""
 PLAIN = "model.json"
 """The part that replaces ``data`` in zips written by ``agents.publish``, which hold no pickles."""
-
 _ALGORITHMS = (
     ("sb3_contrib", "TQC", {"top_quantiles_to_drop_per_net"}),
     ("sb3_contrib", "TRPO", {"cg_max_steps"}),

@@ -28,17 +28,14 @@ from .options import Rules
 
 AT_ONCE = 1e-9
 """Contacts within this time [s] are simultaneous."""
-
 # Columns of a strike: the cue ball's velocity and spin after it, intended speed, the strike with errors.
 (VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
 STRIKE_COLUMNS = 11
-
 # Columns of the referee's facts: masks of balls, clear paths before a stroke that failed (where misses are
 # called), whether it was an attempt (``miss="attempt"``); and of the ruling (``BREAK``: with this stroke).
 FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, ATTEMPT = range(7)
 PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS = range(7, 14)
 SEEN_COLUMNS = 14
-
 _BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW)
 _WHY = {
     Status.TOO_MANY_EVENTS: f"did not come to rest within {MAX_EVENTS} events: a ball may be held against another; try other physics",

@@ -17,7 +17,6 @@ from ...tasks.observations import SIZE as OBSERVATION_SIZE
 POT_ENTRIES = 13
 """Numbers shown of each of the ``tasks.POTS`` widest pots, see ``with_pots``."""
 SHOWN = OBSERVATION_SIZE + POTS * POT_ENTRIES
-
 # Entries that change sign when the table is mirrored, left and right exchanged.
 BALL_X = 0
 POT_X, CUT = (1, 9, 11), 3
