@@ -74,8 +74,7 @@ POCKET_AIMS = np.array([_aim(sx, sy) for sx, sy in SIDES])
 for _constant in (COLOUR_SPOTS, POCKET_PLACES, POCKET_AIMS):
     _constant.setflags(write=False)
 
-FLAT = 100.0
-"""A straight facing is an arc of this radius [m]: 0.013 mm off a line over its 0.1 m."""
+FLAT = 100.0  # a straight facing is an arc of this radius [m]: 0.013 mm off a line over its 0.1 m
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,8 +18,7 @@ N_BALLS = 22
 """Number of balls, the cue ball included."""
 CUE, YELLOW, GREEN, BROWN, BLUE, PINK, BLACK = 0, 16, 17, 18, 19, 20, 21
 """Ids of the cue ball and of the colours; the reds have the ids 1 to 15."""
-N_REDS = 15
-"""Number of reds."""
+N_REDS = 15  # number of reds
 COLOUR_NAMES = ("yellow", "green", "brown", "blue", "pink", "black")
 """Names of the colours in the order of their ids, 16 to 21, and of their values, 2 to 7."""
 NAMES = ("cue", *(f"red {i}" for i in range(1, 16)), *COLOUR_NAMES)
@@ -57,8 +56,7 @@ class BallOn(IntEnum):
     BLACK = 7
 
 
-PINK_GAP = 0.0005
-"""Gap between the pink on its spot and the red at the apex [m]: small, without contact."""
+PINK_GAP = 0.0005  # gap between the pink on its spot and the red at the apex [m]: small, without contact
 TOUCH = 1e-6
 """Two balls touch when the gap between them is below this [m]: far below sight, far above rounding."""
 REFEREE_TOUCH = 50e-6

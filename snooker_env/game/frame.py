@@ -138,14 +138,11 @@ def tuples(value: Any) -> Any:
     return tuple(map(tuples, value)) if isinstance(value, list | tuple) else value
 
 
-Choice: TypeAlias = Literal["play", "play_again", "replace", "anywhere"]
-"""What may be chosen after a foul."""
+Choice: TypeAlias = Literal["play", "play_again", "replace", "anywhere"]  # what may be chosen after a foul
 CHOICES = get_args(Choice)
 PHASES = ("stroke", "choice", "lot", "over")
-MISS_RULES = ("off", "clear_path", "attempt")
-"""Names by the codes of ``frame_columns``."""
-MOST_CLOCK = 2**50
-"""Upper limit of a frame's clock [ms]."""
+MISS_RULES = ("off", "clear_path", "attempt")  # names by the codes of ``frame_columns``
+MOST_CLOCK = 2**50  # upper limit of a frame's clock [ms]
 _NUMBERS = ("striker", "breaker", "on_table", "failures", "clock", "misses", "rack")
 _INTEGERS = {name: getattr(columns, name.upper()) for name in _NUMBERS} | {"break_points": columns.POINTS}
 _TRUTHS = ("in_hand", "free_ball", "respotted_black", "miss_called", "warned", "anywhere")

@@ -24,12 +24,9 @@ STROKES, PAID, FRAMES_0, FRAMES_1, FIRST_BREAK, CLOCK, MISSES, ANYWHERE, OPPONEN
 SAVED_IN_HAND: 2 for anywhere). Of tables only: strokes of both players; the agent's lead that rewards have
 already paid; frames won in a match and who broke in its first frame; which of a pool plays, from 1."""
 COLUMNS = 33
-(STROKE, CHOICE, LOT, FINISHED) = range(4)
-"""Phases, in the order of ``frame.PHASES``."""
-(PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE) = range(4)
-"""Choices after a foul."""
-(NO_MISSES, CLEAR_PATHS, ATTEMPTS) = range(3)
-"""Miss rules, in the order of ``frame.MISS_RULES``."""
+(STROKE, CHOICE, LOT, FINISHED) = range(4)  # Phases, in the order of ``frame.PHASES``
+(PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE) = range(4)  # choices after a foul
+(NO_MISSES, CLEAR_PATHS, ATTEMPTS) = range(3)  # miss rules, in the order of ``frame.MISS_RULES``
 MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
 
 

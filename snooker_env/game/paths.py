@@ -22,8 +22,7 @@ from .lines import meets
 from .snookered import SLACK, segment_distance
 from .spotting import touches
 
-WINDOW = 1e-9
-"""A narrower opening does not count [rad]: it is rounding."""
+WINDOW = 1e-9  # a narrower opening does not count [rad]: it is rounding
 NO_NOSES, NO_ARCS = np.empty((0, 5)), np.empty((0, 6))
 """No cushions: ``noses`` and ``jaws`` have the rows of ``physics.Table`` (``physics.columns``)."""
 AXIS, SIDE, LEVEL, LOW, HIGH = range(5)

@@ -9,10 +9,8 @@ from .balls import ALL_MASK, COLOURS_MASK, CUE_BIT, N_BALLS, NAMES, REDS_MASK, B
 from .rule_sets import RULES, RulesName
 from .ruling import AUTO, RULE_FLAGS, Before, Facts, Flag, Foul, Outcome, Ruling, VisitEnd, ruling
 
-FULL_TABLE = ALL_MASK & ~CUE_BIT
-"""The mask of all 21 object balls."""
-MOST_POINTS = 2**60
-"""Upper limit of scores: beyond any play, within the kernel's 64 bits."""
+FULL_TABLE = ALL_MASK & ~CUE_BIT  # the mask of all 21 object balls
+MOST_POINTS = 2**60  # upper limit of scores: beyond any play, within the kernel's 64 bits
 
 
 @dataclass(frozen=True, kw_only=True)

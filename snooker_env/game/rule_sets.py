@@ -8,10 +8,8 @@ from typing import Literal, TypeAlias, get_args
 from .._check import choice
 from .balls import COLOURS_MASK, N_REDS
 
-RulesName: TypeAlias = Literal["snooker", "six_red", "shoot_out"]
-"""Names of the rule sets."""
-SNOOKER, SIX_RED, SHOOT_OUT = range(3)
-"""Codes of the rule sets, for the kernels."""
+RulesName: TypeAlias = Literal["snooker", "six_red", "shoot_out"]  # names of the rule sets
+SNOOKER, SIX_RED, SHOOT_OUT = range(3)  # codes of the rule sets, for the kernels
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,8 +32,7 @@ class RuleSet:
         return COLOURS_MASK | ((2 << self.reds) - 2)
 
 
-LATE_PENALTY = 5
-"""Least penalty in points for a stroke that was not begun within the shot clock."""
+LATE_PENALTY = 5  # least penalty in points for a stroke that was not begun within the shot clock
 _SHOT_CLOCK = (15_000, 10_000)
 RULE_SETS = (
     RuleSet(name="snooker", code=SNOOKER),
@@ -45,8 +42,7 @@ RULE_SETS = (
     ),
 )
 """All rule sets, by code."""
-RULES = get_args(RulesName)
-"""Their names, by code."""
+RULES = get_args(RulesName)  # their names, by code
 MOST_MISSES, CLOCK_LIMIT = RULE_SETS[SIX_RED].most_misses, RULE_SETS[SHOOT_OUT].clock
 SHOT_CLOCK = RULE_SETS[SHOOT_OUT].shot_clock
 

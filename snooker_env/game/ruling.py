@@ -11,8 +11,7 @@ from .._jit import kernel
 from .balls import BLACK, COLOURS_MASK, CUE_BIT, N_BALLS, PINK, VALUES, balls_on_kernel, count, next_on_kernel
 from .rule_sets import LATE_PENALTY
 
-AUTO = -1
-"""The referee decides which ball was nominated: the one evidently played at (see ``_nomination``)."""
+AUTO = -1  # the referee decides which ball was nominated: the one evidently played at (see ``_nomination``)
 
 
 class Flag(IntFlag):
@@ -33,8 +32,7 @@ class Flag(IntFlag):
     SHOOT_OUT = 4096  # the rules of the Shoot Out hold
 
 
-RULE_FLAGS = (Flag(0), Flag.SIX_RED, Flag.SHOOT_OUT)
-"""The flag of each rule set, by its code."""
+RULE_FLAGS = (Flag(0), Flag.SIX_RED, Flag.SHOOT_OUT)  # the flag of each rule set, by its code
 
 
 class Foul(IntFlag):

@@ -31,8 +31,7 @@ from ..game.in_hand import place_cue, within_d
 from ..geometry import BALL_RADIUS
 from ..physics.table import Table, TableLike
 
-ON = tuple(ball.name.lower() for ball in BallOn)
-"""The names of all values of "on"."""
+ON = tuple(ball.name.lower() for ball in BallOn)  # the names of all values of "on"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,8 +160,7 @@ class Position:
         return cls(**_read(path), table=table)
 
 
-_NAMES = tuple(f.name for f in fields(Position))
-"""Keys that a position in JSON may have."""
+_NAMES = tuple(f.name for f in fields(Position))  # keys that a position in JSON may have
 
 
 def _known(init: Any) -> Any:

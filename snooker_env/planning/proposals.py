@@ -40,8 +40,7 @@ PLAIN = 0.5
 """Share of the strokes without side."""
 LOST = 0.01
 """Decay of a stroke's chance per metre of both balls' paths [1/m]: the width alone nearly tells it."""
-POWER = 4.0
-"""Power of the chance in a pot's share of the strokes."""
+POWER = 4.0  # power of the chance in a pot's share of the strokes
 ESCAPES, ANYWHERE, MOST_POTS = 8, 8, 16
 """Escapes that share strokes, every which over cushions goes anywhere; pots that share strokes."""
 

@@ -17,14 +17,12 @@ from ..tasks.noise import Noise
 from .positions import Positions
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
-WORTH_A_THREAD = 128
-"""Smallest number of positions for which another thread is worth its cost."""
+WORTH_A_THREAD = 128  # smallest number of positions for which another thread is worth its cost
 FOLLOWS = 25.0
 """Points to expect after a made pot from the rest of the visit; fewer if fewer are left on the table."""
 SECOND, THIRD = 0.15, 0.05
 """Shares of the second and third best pot that count: they leave a choice of where to play next."""
-FAR = 0.1
-"""Decay of the chance of a pot per metre of both balls' paths [1/m]."""
+FAR = 0.1  # decay of the chance of a pot per metre of both balls' paths [1/m]
 RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, FAR)
 """Constants of ``prospects_of`` for a player with execution errors: the four numbers above."""
 SURE = (1e4, 1e-3, 0.0, 0.0)

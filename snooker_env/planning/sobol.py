@@ -12,8 +12,7 @@ import numpy as np
 from .._jit import entry, kernel
 from .._types import Floats
 
-DIMENSIONS = 5
-"""Largest number of coordinates of a point."""
+DIMENSIONS = 5  # largest number of coordinates of a point
 _BITS, _ALL = 32, 0xFFFFFFFF
 # primitive polynomials (degree, inner coefficients) and first direction numbers of dimensions 2 to 5 [Joe &
 # Kuo 2008, table new-joe-kuo-6]

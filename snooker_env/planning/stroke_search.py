@@ -29,10 +29,8 @@ from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import DIMENSIONS, normal_points
 from .strokes import AIM, COLUMNS, SIDE, SPEED, TOP, Dynamics, actions_of
 
-PRIOR = 1.0
-"""Number of samples that the look without error counts as."""
-FEWEST = 8
-"""Least budget of a decision."""
+PRIOR = 1.0  # number of samples that the look without error counts as
+FEWEST = 8  # least budget of a decision
 SCHEDULES = (
     (30, 16, ((4, 2), (2, 3))),
     (60, 32, ((6, 2), (3, 5))),
@@ -41,8 +39,7 @@ SCHEDULES = (
     (2000, 800, ((40, 8), (16, 25), (5, 95))),
 )
 """Budget, number of looks, and for each round the number of strokes and their further samples."""
-LEFT = 0.5
-"""Share of a position's value for the opponent that counts."""
+LEFT = 0.5  # share of a position's value for the opponent that counts
 FOUL = 20.0
 """What a foul costs beside its penalty [points]: the opponent may have the balls replaced or a free ball."""
 Value: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]

@@ -143,8 +143,7 @@ class WatchedVisits(TrialVisits):
         return one
 
 
-FARTHEST = 0.5
-"""Largest tip offset over R: the miscue limit, and the end of the scale of an action."""
+FARTHEST = 0.5  # largest tip offset over R: the miscue limit, and the end of the scale of an action
 NAMES = ("speed", "side", "top", "aim", "elevation")
 """Of the columns of a stroke."""
 Dynamics = tuple[Physics, tuple[int, int]]

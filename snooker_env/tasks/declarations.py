@@ -11,13 +11,10 @@ from ..game.ruling import AUTO
 # Columns of the packed options of an action space.
 A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET, A_DISCRETE = range(6)
 A_NOMINATE, A_DECISION, A_DECLARATION, A_CONCEDE, A_CLAIM, A_LOT = range(6, 12)
-SAYS = ("nominate", "decision", "concede", "claim", "lot")
-"""What an action can say beside the stroke."""
-(SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)
-"""Declarations."""
+SAYS = ("nominate", "decision", "concede", "claim", "lot")  # what an action can say beside the stroke
+(SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)  # declarations
 COLOURS = 6
-STROKE_CHOICES = 540
-"""``discrete_actions.SIZE``, the number of discrete actions that only choose a stroke."""
+STROKE_CHOICES = 540  # ``discrete_actions.SIZE``, the number of discrete actions that only choose a stroke
 
 
 @kernel

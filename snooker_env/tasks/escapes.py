@@ -26,14 +26,11 @@ from ..physics.impact.contact import FAST, collide_cushion, cushion_restitution
 from ..physics.parameters import P_R
 from .windows import turned
 
-ROLL = 0.25
-"""Twice a rolling ball's deceleration [m/s^2]."""
-ROLLING = 0.4
-"""Tip offset over R with which a ball rolls from the start."""
+ROLL = 0.25  # twice a rolling ball's deceleration [m/s^2]
+ROLLING = 0.4  # tip offset over R with which a ball rolls from the start
 LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH = range(4)
 """Columns of a line: direction, how much it may err [rad]; cue speed of an escape [m/s], 0 if seen; worth."""
-_ANGLES = 9
-"""The rows of ``_REBOUND`` are 10 degrees apart."""
+_ANGLES = 9  # the rows of ``_REBOUND`` are 10 degrees apart
 _REBOUND = (
     (0.583, 0.000, 0.1190, 0.0000),
     (0.574, 0.104, 0.1162, 0.0164),
@@ -50,8 +47,7 @@ _REBOUND = (
 velocity along normal and cushion over v, way along each over v^2 [s^2/m]."""
 _MOUTH, _SAME = 0.12, 0.1
 """No cushion is used so near to a pocket's nominal place [m]; escapes so near in direction are one [rad]."""
-_DIRECTIONS, _LEGS = 720, 4
-"""Directions tried; most straight parts of an escape, one more than cushions."""
+_DIRECTIONS, _LEGS = 720, 4  # directions tried; most straight parts of an escape, one more than cushions
 _SPEEDS, _WIDE = (1.7, 2.8, 4.2), 4.0
 """Cue speeds of an escape [m/s]: the next where one leaves fewer than ``_WIDE`` directions."""
 _HALVES = ((AXIS_X, HALF_WIDTH), (AXIS_Y, HALF_LENGTH))
@@ -63,8 +59,7 @@ _X, _Y = HALF_WIDTH - BALL_RADIUS, HALF_LENGTH - BALL_RADIUS
 _CLEAR = (-_X, _X, -_Y, _Y)
 _STEP, _STEPS = 0.0087, (30, 75)
 """Directions tried about an escape: distance [rad]; number on either side, and if none succeeds."""
-_HALVINGS = 3
-"""How often that distance is halved to find where a window ends."""
+_HALVINGS = 3  # how often that distance is halved to find where a window ends
 
 
 @kernel

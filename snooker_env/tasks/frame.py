@@ -41,8 +41,7 @@ from .stroke import ShotBuffers
 from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
 from .visit import Visits
 
-Generators: TypeAlias = Sequence[np.random.Generator]
-"""One for each table, for an opponent in Python."""
+Generators: TypeAlias = Sequence[np.random.Generator]  # one for each table, for an opponent in Python
 
 
 class Opponent(ABC):
@@ -63,8 +62,7 @@ class Opponent(ABC):
         return [(self, which, self.ask(frames, which, generators))]
 
 
-Turn: TypeAlias = tuple[Opponent, Ints, Any]
-"""Who plays on which tables, and what was asked."""
+Turn: TypeAlias = tuple[Opponent, Ints, Any]  # who plays on which tables, and what was asked
 
 
 @dataclass(frozen=True)

@@ -24,20 +24,17 @@ from .opponents import SIDE
 from .stroke import ShotBuffers, place, strike
 from .windows import open_part, open_windows
 
-SLIDE = 1.4
-"""Initial speed of a ball struck in its middle, over the speed with which it rolls on."""
+SLIDE = 1.4  # initial speed of a ball struck in its middle, over the speed with which it rolls on
 BREAK_X = float(SPOTS[0, 0])
 """Where the cue ball stands for the break-off: its x, either sign, on the baulk line [m]."""
 _BREAK_SPEED, _BREAK_SIDE, _BREAK_TOP = 3.4, 0.42, 0.1
 """Of the break-off, thin at the end red, with running side, back to baulk over three cushions: among 6,000
 random ones that return to baulk in 40 trials of a professional, one that leaves hardly a pot."""
-_NUDGE = 0.3
-"""How much faster than needed a cue ball is rolled at a ball [m/s]; its speed varies by a tenth."""
+_NUDGE = 0.3  # how much faster than needed a cue ball is rolled at a ball [m/s]; its speed varies by a tenth
 _STOP = 6.1
 """Squared speed of a ball struck 0.4 R below its middle that slides so far without spin left, over the
 distance [m/s^2]: 0.32 of it, over the cloth's sliding friction of 2 m/s^2."""
-_NEAR_POCKET = 0.09
-"""A cue ball that passes so near to a pocket's aim point is taken to go in [m]."""
+_NEAR_POCKET = 0.09  # a cue ball that passes so near to a pocket's aim point is taken to go in [m]
 
 
 @kernel
@@ -146,10 +143,8 @@ def plain(positions, on_table, on, touching, vary, drive, rows, stream):
 
 _OVER, _BACK = (-0.8, -0.4, 0.0, 0.4, 0.8), (0.0, 0.5)
 _PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in _BACK for x in _OVER)
-_BEHIND = 0.3
-"""How far behind the ghost ball the cue ball is placed, where it may stand anywhere [m]."""
-DRIVE = 4.0
-"""How much farther than needed it rolls where some ball must reach a cushion [m]."""
+_BEHIND = 0.3  # how far behind the ghost ball the cue ball is placed, where it may stand anywhere [m]
+DRIVE = 4.0  # how much farther than needed it rolls where some ball must reach a cushion [m]
 
 
 @kernel

@@ -24,8 +24,7 @@ POTS = 4
 """Number of pots, or of other lines where there is no direct pot, to choose from."""
 LINE_ROWS = POTS + MOST_EDGES
 """Rows of the work space of lines: up to ``POTS`` lines, then room for windows."""
-THIN = 0.62
-"""Of a thin contact: how far the path of the cue ball passes the centre of the ball, over 2 R."""
+THIN = 0.62  # of a thin contact: how far the path of the cue ball passes the centre of the ball, over 2 R
 EASY, NARROW, _SLIT, _APART = 0.01, 0.25 * 0.01, 1e-6, 2e-3
 """Half windows [rad]: a sure one; below it an escape is better; none. Least difference of two lines."""
 

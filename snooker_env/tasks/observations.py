@@ -38,12 +38,10 @@ REACH = 1.1
 """Bound of the spaces that hold places. The noses are at 1; a ball in the mouth of a pocket lies up to 1.013
 on snooker's own tables, and within this bound on any that an environment takes (``table_fit``)."""
 _COLUMNS = len(BALL_COLUMNS)
-BALLS_SIZE = N_BALLS * _COLUMNS
-"""Numbers in the table of balls, the first part of a flat observation."""
+BALLS_SIZE = N_BALLS * _COLUMNS  # numbers in the table of balls, the first part of a flat observation
 SIZE = BALLS_SIZE + len(STATE_ENTRIES)
 """Numbers in the flat observation of a visit (121). Public as ``snooker_env.tasks.OBSERVATION_SIZE``."""
-FRAME_SIZE = SIZE + len(FRAME_ENTRIES)
-"""Numbers in the flat observation of a frame without a miss rule (140)."""
+FRAME_SIZE = SIZE + len(FRAME_ENTRIES)  # numbers in the flat observation of a frame without a miss rule (140)
 REPLACED_SIZE = N_BALLS * len(REPLACED_COLUMNS)
 """Numbers that a miss rule adds to it (66): the layout that "replace" restores."""
 

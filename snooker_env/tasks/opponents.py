@@ -19,8 +19,7 @@ from .stroke import ShotBuffers
 
 Policy: TypeAlias = Callable[[Observation, np.random.Generator], Action]
 """A player in Python: maps the observation from its own side of the table, and a generator, to an action."""
-SIDE = 1
-"""Index of the opponent in the frame, and of its seat."""
+SIDE = 1  # index of the opponent in the frame, and of its seat
 
 
 @entry

@@ -43,10 +43,8 @@ object: a callable(observation, rng) -> action, a player, one with act(observati
 GROUPS = ("task", "action", "view", "shot", "frame")
 """Groups of options: what is played, how one acts, what one sees, what decides a shot, rules of frames."""
 _UNSAID: Any = object()
-OBJECT = "object"
-"""As the option ``opponent``: whoever was passed to the environment as an object."""
-NEVER = 2**62
-"""Stands for no limit of strokes or steps."""
+OBJECT = "object"  # as the option ``opponent``: whoever was passed to the environment as an object
+NEVER = 2**62  # stands for no limit of strokes or steps
 
 
 @dataclass(frozen=True)

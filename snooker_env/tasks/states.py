@@ -16,8 +16,7 @@ from .options import Rules
 
 MOST = 2**53 - 1
 """Largest score and number of strokes in a saved frame: a float, as in observations, is still exact."""
-FAR = 1000.0
-"""Limit of the coordinates of a ball off the table [m]: they mean nothing, but must not overflow."""
+FAR = 1000.0  # limit of the coordinates of a ball off the table [m]: they mean nothing, but must not overflow
 
 
 class State(NamedTuple):

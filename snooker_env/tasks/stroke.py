@@ -26,8 +26,7 @@ from .lines import new_work
 from .noise import executed
 from .options import Rules
 
-AT_ONCE = 1e-9
-"""Contacts within this time [s] are simultaneous."""
+AT_ONCE = 1e-9  # contacts within this time [s] are simultaneous
 # Columns of a strike: the cue ball's velocity and spin after it, intended speed, the strike with errors.
 (VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
 STRIKE_COLUMNS = 11

@@ -12,8 +12,7 @@ from ..physics.bounds import deepest
 from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike
 from .observations import REACH
 
-ROUNDING = 1e-9
-"""Tolerance of noses, jaws and falls [m]."""
+ROUNDING = 1e-9  # tolerance of noses, jaws and falls [m]
 
 
 def table_of(table: TableLike) -> Table:

@@ -11,8 +11,7 @@ from .tables import Crew, Task, Watch
 
 CHUNK = 128
 """Most tables in one call: few enough for the work space to stay in the cache, enough to make calls cheap."""
-LEAST = 8
-"""Smallest number of tables for which another thread or chunk is worth its cost."""
+LEAST = 8  # smallest number of tables for which another thread or chunk is worth its cost
 
 
 def processors() -> int:

@@ -12,8 +12,7 @@ from ..prospects import in_parts
 from .dense_layers import Layers
 from .value_features import LOGIT, value_features
 
-POINTS = 40.0
-"""Unit of U [points]."""
+POINTS = 40.0  # unit of U [points]
 
 
 class LearnedValue:

@@ -18,8 +18,7 @@ from .table_kernels import BALL_INPUTS, STATE
 
 LAYERS = ("ball_1", "ball_2", "pot_1", "pot_2", "context_1", "context_2", "shared", "joint", "scores")
 """The linear layers, in the order of their computation."""
-BLOCK = 128
-"""Tables that are scored together: their intermediate results stay in the processor's cache."""
+BLOCK = 128  # tables that are scored together: their intermediate results stay in the processor's cache
 SCORED = -(-STROKES // 16) * 16
 """Columns of the scores: 144 take less time than 135, because whole registers are written."""
 

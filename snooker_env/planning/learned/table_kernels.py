@@ -9,13 +9,11 @@ from ...tasks.discrete_actions import POTS, SIDES, STROKES, TOPS
 from ...tasks.observations import SIZE as OBSERVATION_SIZE
 from .pot_view import BALL_X, CUT, POT_ENTRIES, POT_X
 
-STATE = OBSERVATION_SIZE - 5 * N_BALLS
-"""Numbers of the game's state in an observation."""
+STATE = OBSERVATION_SIZE - 5 * N_BALLS  # numbers of the game's state in an observation
 BALL_INPUTS = 5 + 2
 _TOPS, _TURN = len(TOPS), (len(SIDES) - 1) * len(TOPS)
 _X1, _X2, _X3 = POT_X
-NEVER = np.float32(-1e8)
-"""The score of a choice that is not available, as in ``sb3_contrib``."""
+NEVER = np.float32(-1e8)  # the score of a choice that is not available, as in ``sb3_contrib``
 # literals are float64, and half as many of them fit into a register
 _ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)
 

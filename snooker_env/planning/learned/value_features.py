@@ -25,11 +25,9 @@ from ..prospects import in_parts
 POTS_SEEN = 6
 POT_ENTRIES = 13
 COLOUR_ENTRIES = 6
-SHARED = 28
-"""Entries of the whole position: see ``_fill``."""
+SHARED = 28  # entries of the whole position: see ``_fill``
 SIZE = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES + SHARED
-FAR = 0.01
-"""Decay of a pot's chance per metre of both balls' paths [1/m]; of the published values."""
+FAR = 0.01  # decay of a pot's chance per metre of both balls' paths [1/m]; of the published values
 LOGIT = SIZE - 1
 """The entry that holds the logit of the likeliest pot, where the network's own estimate begins."""
 _CORNER_EDGE, _MIDDLE_EDGE = cos(radians(50.0)), cos(radians(70.0))
