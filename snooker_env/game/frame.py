@@ -366,8 +366,7 @@ class Frame:
 
         "play": the opponent plays the table as it lies, with the free ball, if any. "play_again": the
         offender plays it, without. "replace", after a miss: the offender plays from ``saved``. "anywhere",
-        after the last miss in succession: the opponent plays from anywhere on the table, without a free
-        ball."""
+        after the last miss in succession: the opponent plays from anywhere, without a free ball."""
         self._in_phase("choice", "choose")
         choice("choice", what, self.choices)
         if what == "replace" and self.saved is None:

@@ -2,8 +2,7 @@
 
 A row (int64, ``COLUMNS`` wide) holds a frame between two strokes; ``frame.Frame`` is its readable face.
 ``after_stroke``, ``choose``, ``draw``, ``claim`` and ``concede`` change it; the caller first asks whether
-they may. What "replace" restores is in ``Layouts``. A visit without a frame has the first five columns only.
-"""
+they may. What "replace" restores is in ``Layouts``. A visit without a frame has the first five only."""
 
 from typing import NamedTuple
 

@@ -155,8 +155,7 @@ def _nomination(on, ball_on, free_ball, first, touching, nominated):
 
 @kernel
 def ruling(before, facts, flags):
-    """The ``Ruling`` on the stroke ``facts`` in the frame ``before``; ``flags``: Flag bits, in the order of
-    the book."""
+    """The ``Ruling`` on the stroke ``facts`` in the frame ``before``; ``flags``: Flag bits."""
     on_table, ball_on, free_ball, lead = before
     first, touching, moved, potted, off, nominated = facts
     reds_and_colours = on_table & ~CUE_BIT

@@ -65,9 +65,7 @@ def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
         for j in range(jaws.shape[0]):
             if segment_distance(jaws[j, 0], jaws[j, 1], cx, cy, ex, ey) < jaws[j, 2] + radius - SLACK:
                 jaw = min(jaw, np.hypot(jaws[j, 0] - cx, jaws[j, 1] - cy) - jaws[j, 2])
-    if jaw < nearest - radius:
-        return -1
-    return mask
+    return -1 if jaw < nearest - radius else mask
 
 
 @kernel

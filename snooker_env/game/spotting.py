@@ -94,8 +94,7 @@ def _spot(positions, on_table, mask, radius):
 def spot_colours(
     positions: Vectors, on_table: Flags, mask: int, *, radius: float = BALL_RADIUS
 ) -> tuple[Floats, Bools]:
-    """New ``positions`` (22, 2) [m] and ``on_table`` (22,), the colours of ``mask`` spotted; or
-    ValueError."""
+    """New ``positions`` (22, 2) [m] and ``on_table`` (22,), ``mask`` spotted; or ValueError."""
     if integer("mask", mask, 0, balls.ALL_MASK) & ~balls.COLOURS_MASK:
         raise refuse("mask", mask, "must name colours only (ids 16 to 21)")
     placed, present = balls.check_table(positions, on_table)

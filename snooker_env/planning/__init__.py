@@ -1,5 +1,4 @@
-"""Planning: play many strokes on copies of positions, under given noise samples, and find strokes by
-geometry.
+"""Planning: play many strokes on copies of positions, under given noise samples; find strokes by geometry.
 
 A planner works in two steps:
 

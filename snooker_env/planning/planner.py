@@ -148,8 +148,7 @@ class Planner:
         of speed, side, top, aim and elevation. Without noise neither is needed.
 
         ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
-        SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes about 20
-        us."""
+        SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes 20 us."""
         after, out = self._played(positions, rows, actions, keys, strokes=strokes, errors=errors)
         return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
 

@@ -92,8 +92,8 @@ class Positions:
         """Collect the positions that an object holds, as a copy; a ``Positions`` is returned as it is.
 
         An environment, of one table or many, wrapped or not, gives all current tables, those of frames as
-        their strikers see them. Or a ``Position``, a state of a visit, a dict of ``Position.to_dict()``, or a
-        list of these."""
+        their strikers see them. Or a ``Position``, a visit's state, a dict of ``to_dict()``, or a list of
+        these."""
         if isinstance(source, Positions):
             return source
         if isinstance(source, Position | Mapping):

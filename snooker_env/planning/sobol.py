@@ -1,5 +1,4 @@
-"""Which points fill a cube evenly? Sobol points, scrambled: of any number of them, each part of the cube gets
-its share.
+"""Which points fill a cube evenly? Sobol points, scrambled: of any number, each part gets its share.
 
 Sobol's sequence in base 2, with the direction numbers of Joe & Kuo (2008), scrambled as Owen (1995) proposed:
 each bit of a coordinate is flipped depending on the bits above it, here by a hash (Burley 2020, Vegdahl

@@ -1,5 +1,4 @@
-"""Which stroke is best? A search over continuous strokes, one shot deep, with a value of what each stroke
-leaves.
+"""Which stroke is best? A search over continuous strokes, one shot deep, with a value of what each leaves.
 
 1. Generators propose strokes (``proposals``), and each is played once without error. Its score is the chance
    of its pot by the pot's width, times its points plus the value of the afterstate. Where strokes without a
@@ -164,8 +163,7 @@ class StrokeSearch:
         """Try strokes in n positions and return them ``Ranked``: each row's first one is to be played.
 
         ``seeds``, int (n,): of the proposals and noise samples; equal seeds give equal decisions. A cue ball
-        in hand is played from where it lies. ValueError if a position is invalid or has no stroke left to
-        play."""
+        in hand is played from where it lies. ValueError if a position is invalid or has no stroke."""
         at = Positions.of(positions).as_visits()
         n, keys = len(at), seeds_of(seeds, len(at))
         check_played(at, np.arange(n), self.planner.table, self.planner.physics.R)

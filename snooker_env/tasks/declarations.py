@@ -1,7 +1,6 @@
 """What does a player say beside its stroke? The colour that it nominates, and whether it concedes, claims or
 lets the other begin. The packed options of an action space say where: ``A_NOMINATE``, ``A_DECISION``,
-``A_DECLARATION`` hold the index of a component of a box action, or -1; of discrete ones, the first 0 or
--1."""
+``A_DECLARATION`` hold the index of a component of a box action, or -1; of choices, 0 or -1."""
 
 from .._jit import kernel
 from ..game import frame_columns as columns

@@ -3,12 +3,11 @@
 Search. A ball that leaves a cushion slides along a curve before it rolls again, so a mirror image misses by
 up to 20 degrees. What becomes of a rolling ball depends on its angle alone, up to a scale: velocities in
 proportion to that before, the curve's length to its square. ``_REBOUND`` holds this, from shots in the
-simulator, for a ball struck ``ROLLING`` above its middle: for the physics "paper" at any speed, for "match"
-up to 2 m/s.
+simulator, for a ball struck ``ROLLING`` above its middle: for "paper" at any speed, for "match" up to 2 m/s.
 
 Aim. Speed, height and side of the strike turn the escape. So the cue ball alone is played with the models of
-the engine until it meets a ball, in directions about that of the search, and sent along the middle of those
-that succeed."""
+the engine until it meets a ball, in directions about that of the search, and sent along the middle of
+successes."""
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 

@@ -15,7 +15,6 @@ physics is planar: no ball leaves the table or jumps over another."""
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -238,8 +237,7 @@ class Frames(Tables):
         crew: Crew,
         which: Ints | None = None,
     ) -> Bools:
-        """One turn of the striker on the tables ``which`` (or all); returns where there was a stroke,
-        (n,)."""
+        """One turn of the strikers on ``which`` (or all); returns where there was a stroke, (n,)."""
         playing = np.flatnonzero(~self.ended()) if which is None else which
         self._played[playing] = 0
         crew(playing, lambda which, b: self.complete(prepare(which, b), out, b, crew, reported=True))
@@ -251,16 +249,13 @@ class Frames(Tables):
         going, striker = ~self.ended(), self.game[:, columns.STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
-            prepare = partial(self._prepared, its, side)
+            prepare: Any = lambda which, b, its=its, side=side: self.prepare(which, its, b, side)  # noqa: E731
             self.turn(prepare, out, crew, np.flatnonzero(going & (striker == side)))
         self._replies[:] = self._played * (striker != AGENT)
         crew(np.flatnonzero(going), lambda which, _: self._finish(which, out))
         out.terminated[~going] = self.game[~going, columns.OVER]
         out.truncated[~going] = ~out.terminated[~going]
         crew(np.flatnonzero(~going), lambda which, _: self._show(which, out, fresh=False))
-
-    def _prepared(self, actions, side, which, buffers):
-        return self.prepare(which, actions, buffers, side)
 
     def go_on(self, which: Ints) -> None:
         """After each turn: the next frame of a match, where one has ended. Here there is none."""

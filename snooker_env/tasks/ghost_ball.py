@@ -122,8 +122,7 @@ def _escape(positions, on_table, on, vary, lines, stream):
 @kernel
 def plain(positions, on_table, on, touching, vary, drive, rows, stream):
     """A stroke without a pot: (speed, side, top, direction): away from a touching ball on; else soft; else an
-    escape; else at a ball on. ``vary``: one from here has failed; ``drive``: how much farther it rolls
-    [m]."""
+    escape; else at a ball on. ``vary``: one from here has failed; ``drive`` [m]."""
     u, _ = pair(stream)
     shift = (1.6 if vary else 0.5) * (u - 0.5)
     for ball in range(1, N_BALLS):

@@ -158,8 +158,8 @@ class Noise:
 
         A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a
         small offset [TP A.31]: with the usual ratio of 30, 0.163 deg per mm. It holds for strokes without
-        intended side; the swerve of a nearly level cue is neglected. ``physics``: as ``Physics.of`` takes it;
-        default "paper"."""
+        intended side; the swerve of a nearly level cue is neglected. ``physics``: see ``Physics.of``; default
+        "paper"."""
         constants = Physics.of(physics)
         tip = self.offset_mm * 1e-3 / constants.R
         return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + constants.end_mass_ratio)))

@@ -58,8 +58,7 @@ def space(
         of the boxes "observations", that of "flat", and "action_mask" (choices,), int8 in {0, 1}.
     frame, replaced : bool, optional
         Whether the 19 entries of a frame or match follow, shapes (140,) and (30,), and whether the layout
-        that "replace" restores, as with a miss rule: (206,) in all, or the box "replaced" (22, 3). Default
-        False.
+        that "replace" restores, as with a miss rule: (206,), or the box "replaced" (22, 3). Default False.
     choices : int, optional
         Length of "action_mask". Default 540, the discrete actions that only choose a stroke.
 

@@ -161,11 +161,9 @@ class Options:
     noise : str, dict or Noise, optional
         Execution errors: the name of a level, or standard deviations, see ``Noise``. Default "none".
     reward : {"points", "points_and_fouls", "pots", "legal", "win", "frames"}, optional
-        Default "points". The first four are available in a visit, "points" and "win" in a frame, "frames"
-        also in a match.
+        Default "points". The first four are of a visit, "points" and "win" of a frame, "frames" also of a match.
     elevation, placement : bool, optional
-        Whether a box action holds the elevation of the cue, and the place in the D for a cue ball in hand;
-        default False.
+        Whether a box action holds the elevation of the cue, and the place of a cue ball in hand. Default False.
     physics : str, dict, Physics or None, optional
         As ``Physics.of`` takes them, with snooker's ball radius. Default "paper".
     table : str or Table, optional
@@ -179,8 +177,7 @@ class Options:
     miss : {"off", "clear_path", "attempt"}, optional
         In a frame: the rule for a foul and a miss (docs/environment/rules.md). Default "off".
     max_strokes : int or None, optional
-        In a frame: strokes of both players after which the referee stops it and its match; default 1000,
-        None: never.
+        In a frame: strokes of both after which the referee stops it and its match; default 1000, None: never.
     one_stroke, trust : bool, optional
         In a visit: whether it ends after its first stroke. In a frame: whether code in an opponent's ``.zip``
         may run. Default False.

@@ -19,8 +19,7 @@ class Played:
     shot : Shot
         The simulated shot, with its path if that was recorded.
     cue : dict of str to float
-        The strike, errors included: "speed" [m/s], "side", "top" (over R, right and up), "aim", "elevation"
-        [rad].
+        The strike, errors included: "speed" [m/s], "side", "top" (over R), "aim", "elevation" [rad].
     player, next_player : int
         Who played it, and whose turn it is next: 0, or in a frame 0 or 1.
     ball_on, next_on : BallOn

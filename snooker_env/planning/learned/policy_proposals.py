@@ -1,5 +1,4 @@
-"""Which strokes does a policy propose? Strokes near the choices that it likes, drawn evenly from its
-probabilities.
+"""Which strokes does a policy propose? Strokes near the choices that it likes, drawn from its probabilities.
 
 The policy scores the 540 discrete choices. A softmax with ``TEMPERATURE`` makes them probabilities, which are
 sampled systematically: a choice with a share of 10 % gets 10 % of the strokes. Each stroke is moved within

@@ -20,8 +20,7 @@ _ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)
 
 @entry
 def read_tables(rows, seen, inputs, at):
-    """Write the inputs of the networks for the tables seen[rows]; returns the number of balls on these
-    tables.
+    """Write the inputs of the networks for the tables seen[rows]; returns the number of balls on them.
 
     ``inputs``: (balls, group, first, pots, context, sides). balls (m, BALL_INPUTS), group (m,): the balls on
     the tables; 0 for a red that is not on, 1 for a red on, 2 and 3 likewise for colours. first (n + 1,): each
