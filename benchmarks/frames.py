@@ -38,10 +38,10 @@ from snooker_env.game.ruling import Foul
 from snooker_env.geometry import BALL_RADIUS
 from snooker_env.tasks.frame import Frames, Seat
 from snooker_env.tasks.ghost_ball import GhostBallOpponent
+from snooker_env.tasks.opponents import UniformOpponent
 from snooker_env.tasks.options import Options
 from snooker_env.tasks.stroke import ATTEMPT, CLEAR_PATH, DOWN, FOULS, ShotBuffers
 from snooker_env.tasks.tables import I_BALL_ON, I_FOULS, I_PENALTY, I_POINTS, Crew
-from snooker_env.tasks.uniform_opponent import UniformOpponent
 
 from ._common.command import Command, at_least, run, save_json
 

@@ -61,7 +61,7 @@ def in_hand(rng, positions, on_table):
 
 def opened_table(rng):
     """One opened table, or None if this frame gave none."""
-    table = layouts.break_off(rng)
+    table = layouts.layout("break_off", rng)
     for _ in range(STROKES):
         table = stroke(rng, *table)
         if table is None:

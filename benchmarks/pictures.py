@@ -8,7 +8,7 @@ import numpy as np
 import snooker_env as sn
 from commands import picture_style
 from snooker_env import Table
-from snooker_env.game.layouts import opened
+from snooker_env.game.layouts import layout
 from snooker_env.game.pots import GHOST_X, GHOST_Y, POT_BALL, pots
 from snooker_env.render.pygame_view import View, rgb_array
 from snooker_env.render.scene import ball_paths, contacts, scene
@@ -28,7 +28,7 @@ def pot(seed):
     """The first table from ``seed`` on with a red that goes in with screw and side, the cue ball coming back;
     the ball and the shot."""
     while True:
-        positions, on_table = opened(np.random.default_rng(seed))
+        positions, on_table = layout("opened", np.random.default_rng(seed))
         for candidate in pots(positions, on_table, 0xFFFE, most=3):
             ball, ghost = int(candidate[POT_BALL]), candidate[[GHOST_X, GHOST_Y]] - positions[0]
             for error in np.radians(np.linspace(-2, 2, 41)):

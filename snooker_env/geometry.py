@@ -5,8 +5,7 @@ kernels' arrays of a ``Bed``. Pockets are numbered as in ``POCKETS``.
 
 Sources. Snooker: WPBSA, playing area 3569 x 1778 mm, spots and D as in the rules; the official templates are
 secret, ours agree with the quoted openings (3.5 in corner, 4 in middle at the fall: ``python -m
-benchmarks.pockets``). Pool: WPA; Alciatore, TP 3.5 and 3.6. UK 8-ball: WEPF. Carom: UMB.
-"""
+benchmarks.pockets``). Pool: WPA; Alciatore, TP 3.5 and 3.6. UK 8-ball: WEPF. Carom: UMB."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -38,12 +37,10 @@ __all__ = [
     "Bed",
     "Pocket",
 ]
-
 POCKETS = ("bottom left", "bottom right", "middle right", "top right", "top left", "middle left")
 """Names of the pockets by index, anticlockwise from (-x, -y): bottom is baulk, right the yellow side."""
 SIDES = ((-1, -1), (1, -1), (1, 0), (1, 1), (-1, 1), (-1, 0))
 """The signs of each pocket's x and y; 0 for y at a middle pocket."""
-
 # Snooker's table: the rules, the layouts and the observations use these.
 BALL_RADIUS = 0.02625
 """Radius of a snooker ball [m]."""
@@ -53,22 +50,11 @@ BAULK_Y = -1.0475
 """The y of the baulk line [m]."""
 D_RADIUS = 0.292
 """Radius of the D [m]; its centre is the brown spot, (0, ``BAULK_Y``)."""
-COLOUR_SPOTS = np.array(
-    [
-        (D_RADIUS, BAULK_Y),
-        (-D_RADIUS, BAULK_Y),
-        (0.0, BAULK_Y),
-        (0.0, 0.0),
-        (0.0, HALF_LENGTH / 2),
-        (0.0, 1.4605),
-    ]
-)
+_ACROSS, _ALONG = (D_RADIUS, -D_RADIUS, 0.0, 0.0, 0.0, 0.0), (*[BAULK_Y] * 3, 0.0, HALF_LENGTH / 2, 1.4605)
+COLOUR_SPOTS = np.column_stack([_ACROSS, _ALONG])
 """The spots of yellow, green, brown, blue, pink and black: float64 (6, 2) [m], read-only."""
-
 POCKET_PLACES = np.array([(sx * HALF_WIDTH, sy * HALF_LENGTH) for sx, sy in SIDES])
-"""Nominal places of the pockets: float64 (6, 2) [m], read-only: where two nose lines meet, or the middle of
-one. Layouts keep balls away from them."""
-
+"""Nominal places of pockets: float64 (6, 2) [m], read-only: where two nose lines meet, or a middle of one."""
 AIM_X, AIM_Y, AXIS_X, AXIS_Y, IS_MIDDLE = range(5)
 """Columns of ``POCKET_AIMS``: aim point [m], the axis as outward unit vector, 1 for a middle pocket."""
 # distance from each nose line to the point where the fall meets the pocket's axis [m]
@@ -78,13 +64,8 @@ _CORNER_AIM, _MIDDLE_AIM = 0.01524, 0.0016
 def _aim(sx, sy):
     if not sy:
         return sx * (HALF_WIDTH - _MIDDLE_AIM), 0.0, sx, 0.0, 1.0
-    return (
-        sx * (HALF_WIDTH - _CORNER_AIM),
-        sy * (HALF_LENGTH - _CORNER_AIM),
-        sx * sqrt(0.5),
-        sy * sqrt(0.5),
-        0.0,
-    )
+    x, y = sx * (HALF_WIDTH - _CORNER_AIM), sy * (HALF_LENGTH - _CORNER_AIM)
+    return x, y, sx * sqrt(0.5), sy * sqrt(0.5), 0.0
 
 
 POCKET_AIMS = np.array([_aim(sx, sy) for sx, sy in SIDES])
@@ -93,33 +74,30 @@ POCKET_AIMS = np.array([_aim(sx, sy) for sx, sy in SIDES])
 for _constant in (COLOUR_SPOTS, POCKET_PLACES, POCKET_AIMS):
     _constant.setflags(write=False)
 
-FLAT = 100.0
-"""A straight facing is an arc of this radius [m]: 0.013 mm off a line over its 0.1 m."""
+FLAT = 100.0  # a straight facing is an arc of this radius [m]: 0.013 mm off a line over its 0.1 m
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pocket:
     """The shape of one kind of pocket, the same at all four corners or at both middles.
 
-    ``Pocket.corner`` and ``Pocket.middle`` make one from published sizes. A jaw leaves the nose at its
-    ``start``, turns away on an arc and goes on straight (its facing), if the arc does not end over the fall.
+    ``Pocket.corner`` and ``Pocket.middle`` make one from published sizes. A jaw leaves the nose at ``start``,
+    turns away on an arc and goes on straight (its facing), if the arc does not end over the fall.
 
     Parameters
     ----------
     is_middle : bool
         True for the middles of the long sides, False for the corners.
     start : float
-        Where the jaws leave the nose [m], in (0, 1]: along the rail from the corner, where the nose lines
-        meet, or from the middle.
+        Where the jaws leave the nose [m], in (0, 1]: from where the nose lines meet, or from the middle.
     jaw_radius : float
         Radius of the arc [m], in [0, 1]; 0 is a sharp point, as in pool.
     turn : float
-        Angle by which a jaw turns from the nose [degrees], in (0, 45] at a corner and (0, 90] in the middle;
+        Angle [degrees] by which a jaw turns from the nose, in (0, 45] at a corner and (0, 90] in the middle;
         the largest makes the two facings parallel.
-    fall_depth : float
-        From the nose line (at a corner, from each) to the centre of the slate's circle [m], in [-1, 1].
-    fall_radius : float
-        Radius of that circle [m], in (0, 1]. A ball begins to drop where its centre crosses it.
+    fall_depth, fall_radius : float
+        From the nose line (at a corner, from each) to the centre of the slate's circle, in [-1, 1], and its
+        radius [m], in (0, 1]. A ball begins to drop where its centre crosses the circle.
 
     Raises
     ------
@@ -143,40 +121,21 @@ class Pocket:
 
     def __post_init__(self) -> None:
         name = "pocket." + ("middle" if truth("pocket.is_middle", self.is_middle) else "corner")
-        straight = 90.0 if self.is_middle else 45.0
-        limits = {
-            "start": (0, 1),
-            "jaw_radius": (0, 1),
-            "turn": (0, straight),
-            "fall_depth": (-1, 1),
-            "fall_radius": (0, 1),
-        }
-        for field, (low, high) in limits.items():
-            open_low = field in ("start", "turn", "fall_radius")
-            object.__setattr__(
-                self, field, number(f"{name}.{field}", getattr(self, field), low, high, open_low=open_low)
-            )
+        most = {"turn": 90.0 if self.is_middle else 45.0}
+        for field in _SIZES:
+            low, open_low = -1 if field == "fall_depth" else 0, field in ("start", "turn", "fall_radius")
+            size = number(f"{name}.{field}", getattr(self, field), low, most.get(field, 1), open_low=open_low)
+            object.__setattr__(self, field, size)
         if not self.throat > 0.0:
-            raise refuse(
-                name,
-                self,
-                "must leave an opening between its jaws: a wider mouth, less turn or a smaller jaw_radius",
-            )
-        if (
-            self.shelf + self.mouth_depth + self.fall_radius <= self._arc_end[1]
-            and not self._ends_over_the_fall
-        ):
-            raise refuse(
-                name,
-                self,
-                "must have the centre of its fall behind the ends of its jaws' arcs, or those ends over the fall",
-            )
+            allowed = "must leave an opening between its jaws: a wider mouth, less turn, a smaller jaw_radius"
+            raise refuse(name, self, allowed)
+        centre = self.shelf + self.mouth_depth + self.fall_radius
+        if centre <= self._arc_end[1] and not self._ends_over_the_fall:
+            allowed = "must have the centre of its fall behind the ends of its jaws' arcs, or those ends over the fall"
+            raise refuse(name, self, allowed)
         if self.fall_radius < self.throat / 2:
-            raise refuse(
-                name,
-                self,
-                "must have a fall at least as wide as the throat, so that no ball passes beside it",
-            )
+            allowed = "must have a fall at least as wide as the throat, so that no ball passes beside it"
+            raise refuse(name, self, allowed)
 
     @classmethod
     def corner(
@@ -188,38 +147,20 @@ class Pocket:
         the mouth to the slate's edge [m], in [-1, 1]; negative where the hole begins before the mouth.
         ``fall_radius``: of the slate's circle [m], in (0, 1]. ``cut``: angle between nose and facing
         [degrees], in [135, 180): 135 makes the facings parallel, the WPA's is 142. ``jaw_radius``: of the arc
-        on which a jaw leaves the nose [m], in [0, 1]; 0 is a sharp point.
-        """
+        on which a jaw leaves the nose [m], in [0, 1]; 0 is a sharp point."""
         mouth, shelf, fall_radius = _sizes("pocket.corner", mouth, shelf, fall_radius)
         depth = (fall_radius + shelf) / sqrt(2.0) - mouth / (2.0 * sqrt(2.0))
         turn = 180.0 - number("pocket.corner.cut", cut, 135, 180)
-        return cls(
-            is_middle=False,
-            start=mouth / sqrt(2.0),
-            jaw_radius=jaw_radius,
-            turn=turn,
-            fall_depth=depth,
-            fall_radius=fall_radius,
-        )
+        return cls(**_named(False, mouth / sqrt(2.0), jaw_radius, turn, depth, fall_radius))
 
     @classmethod
     def middle(
         cls, *, mouth: float, shelf: float, fall_radius: float, cut: float = 90.0, jaw_radius: float = 0.0
     ) -> "Pocket":
-        """Make a middle (side) pocket from its published sizes; ValueError as for ``Pocket``.
-
-        As ``Pocket.corner``, but ``cut`` is in [90, 180): 90 makes the facings parallel, the WPA's is 104.
-        """
+        """Make a middle pocket as ``Pocket.corner``; ``cut`` in [90, 180): 90 is parallel, the WPA's 104."""
         mouth, shelf, fall_radius = _sizes("pocket.middle", mouth, shelf, fall_radius)
         turn = 180.0 - number("pocket.middle.cut", cut, 90, 180)
-        return cls(
-            is_middle=True,
-            start=mouth / 2.0,
-            jaw_radius=jaw_radius,
-            turn=turn,
-            fall_depth=fall_radius + shelf,
-            fall_radius=fall_radius,
-        )
+        return cls(**_named(True, mouth / 2.0, jaw_radius, turn, fall_radius + shelf, fall_radius))
 
     # from the corner, or the middle on the nose line: depth outwards along the axis, offset across it
 
@@ -257,9 +198,8 @@ class Pocket:
     @property
     def _ends_over_the_fall(self) -> bool:
         offset, depth = self._arc_end
-        return (
-            offset**2 + (depth - self.mouth_depth - self.shelf - self.fall_radius) ** 2 < self.fall_radius**2
-        )
+        behind = depth - self.mouth_depth - self.shelf - self.fall_radius
+        return offset**2 + behind**2 < self.fall_radius**2
 
     @property
     def facing(self) -> float:
@@ -274,12 +214,18 @@ class Pocket:
         return 2.0 * (self._arc_end[0] - self.facing * sin(self.taper))
 
 
+_SIZES = ("start", "jaw_radius", "turn", "fall_depth", "fall_radius")
+
+
+def _named(is_middle, *sizes):
+    """The fields of a ``Pocket``."""
+    return {"is_middle": is_middle, **dict(zip(_SIZES, sizes, strict=True))}
+
+
 def _sizes(name, mouth, shelf, fall_radius):
-    return (
-        number(f"{name}.mouth", mouth, 0, 1, open_low=True),
-        number(f"{name}.shelf", shelf, -1, 1),
-        number(f"{name}.fall_radius", fall_radius, 0, 1, open_low=True),
-    )
+    mouth = number(f"{name}.mouth", mouth, 0, 1, open_low=True)
+    shelf = number(f"{name}.shelf", shelf, -1, 1)
+    return mouth, shelf, number(f"{name}.fall_radius", fall_radius, 0, 1, open_low=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -312,9 +258,8 @@ class Bed:
     @property
     def pockets(self) -> tuple[str, ...]:
         """Names of its pockets by index: those of ``POCKETS`` that the table has, in that order."""
-        return tuple(
-            name for name, (_, sy) in zip(POCKETS, SIDES, strict=True) if (self.corner if sy else self.middle)
-        )
+        shapes = [self.corner if sy else self.middle for _, sy in SIDES]
+        return tuple(name for name, shape in zip(POCKETS, shapes, strict=True) if shape)
 
 
 def parts(bed: Bed) -> tuple[Floats, Floats, Floats]:
@@ -335,19 +280,15 @@ def parts(bed: Bed) -> tuple[Floats, Floats, Floats]:
             continue
         a, depth = pocket.start, pocket.fall_depth
         if sy:  # one jaw on the short rail, one on the long rail
-            jaws += _jaw(pocket, (sx * (X - a), sy * Y), (sx, 0), (0, sy)) + _jaw(
-                pocket, (sx * X, sy * (Y - a)), (0, sy), (sx, 0)
-            )
+            jaws += _jaw(pocket, (sx * (X - a), sy * Y), (sx, 0), (0, sy))
+            jaws += _jaw(pocket, (sx * X, sy * (Y - a)), (0, sy), (sx, 0))
             falls.append((sx * (X + depth), sy * (Y + depth), pocket.fall_radius))
         else:
             for way in (-1, 1):
                 jaws += _jaw(pocket, (sx * X, way * a), (0, -way), (sx, 0))
             falls.append((sx * (X + depth), 0.0, pocket.fall_radius))
-    return (
-        np.array(noses, np.float64),
-        np.array(jaws, np.float64).reshape(-1, 6),
-        np.array(falls, np.float64).reshape(-1, 3),
-    )
+    arcs, circles = np.array(jaws, np.float64).reshape(-1, 6), np.array(falls, np.float64).reshape(-1, 3)
+    return np.array(noses, np.float64), arcs, circles
 
 
 def _jaw(pocket, start, onward, outward):
@@ -369,72 +310,42 @@ def _jaw(pocket, start, onward, outward):
     return arcs
 
 
-def _ball(**fields: float) -> Mapping[str, float]:
-    return MappingProxyType(fields)
+def _bed(length, width, corner, middle, **ball):
+    ball = MappingProxyType(ball)
+    return Bed(length=length, width=width, corner=corner, middle=middle, ball=ball)
 
 
 _INCH = 0.0254
-_CORNER = Pocket(
-    is_middle=False, start=0.0976352, jaw_radius=0.0889, turn=45.0, fall_depth=0.047625, fall_radius=0.0889
-)
-_TIGHT = Pocket(
-    is_middle=False, start=0.0934916, jaw_radius=0.0889, turn=45.0, fall_depth=0.047625, fall_radius=0.0889
-)
-_MIDDLE = Pocket(
-    is_middle=True, start=0.109185, jaw_radius=0.0669, turn=90.0, fall_depth=0.05159, fall_radius=0.05319
-)
-_SNOOKER = _ball(R=BALL_RADIUS, M=0.1406, sin_theta=0.4)
+_CORNER = Pocket(**_named(False, 0.0976352, 0.0889, 45.0, 0.047625, 0.0889))
+_TIGHT = Pocket(**_named(False, 0.0934916, 0.0889, 45.0, 0.047625, 0.0889))
+_MIDDLE = Pocket(**_named(True, 0.109185, 0.0669, 90.0, 0.05159, 0.05319))
 
 
 def scaled(pocket: Pocket, factor: float) -> Pocket:
     """A pocket of the same shape, ``factor`` times as large."""
-    lengths = {
-        name: factor * getattr(pocket, name) for name in ("start", "jaw_radius", "fall_depth", "fall_radius")
-    }
-    return Pocket(is_middle=pocket.is_middle, turn=pocket.turn, **lengths)
+    sizes = {name: getattr(pocket, name) * (1.0 if name == "turn" else factor) for name in _SIZES}
+    return Pocket(is_middle=pocket.is_middle, **sizes)
 
 
-PRESETS = MappingProxyType(
-    {
-        # Throats of the corners 86.0 and 80.14 mm.
-        "match": Bed(
-            length=2 * HALF_LENGTH, width=2 * HALF_WIDTH, corner=_CORNER, middle=_MIDDLE, ball=_SNOOKER
-        ),
-        "tight": Bed(
-            length=2 * HALF_LENGTH, width=2 * HALF_WIDTH, corner=_TIGHT, middle=_MIDDLE, ball=_SNOOKER
-        ),
-        # WEPF: at most 7 ft x 3 ft 6 in, balls of 2 in and 116 g (not the cue ball's 1 7/8 in: all equal).
-        # Templates are not published; makers say that pockets are to the balls as in snooker: an estimate,
-        # scaled by the balls, with snooker's nose height.
-        "uk8": Bed(
-            length=84 * _INCH,
-            width=42 * _INCH,
-            corner=scaled(_CORNER, _INCH / BALL_RADIUS),
-            middle=scaled(_MIDDLE, _INCH / BALL_RADIUS),
-            ball=_ball(R=_INCH, M=0.116, sin_theta=0.4),
-        ),
-        # WPA: 100 x 50 in, balls of 2 1/4 in and 5.5 to 6 oz, noses at 63.5 % of the ball, corner mouths 4.5
-        # to 4.625 in at 142 degrees, side 5 to 5.125 at 104, shelves 1 to 2.25 and 0 to 0.375 in. In them:
-        # mouths and shelves of Alciatore's TP 3.6 and 3.5; his fall radii too, which the WPA leaves open.
-        "pool9": Bed(
-            length=100 * _INCH,
-            width=50 * _INCH,
-            corner=Pocket.corner(
-                mouth=4.5875 * _INCH, shelf=1.125 * _INCH, fall_radius=2.75 * _INCH, cut=142.0
-            ),
-            middle=Pocket.middle(
-                mouth=5.0625 * _INCH, shelf=0.1875 * _INCH, fall_radius=3.0 * _INCH, cut=104.0
-            ),
-            ball=_ball(R=1.125 * _INCH, M=0.163, sin_theta=0.27),
-        ),
-        # UMB: 2.84 x 1.42 m, balls of 61 to 61.5 mm and 205 to 220 g, noses 37 mm high.
-        "carom": Bed(
-            length=2.84,
-            width=1.42,
-            corner=None,
-            middle=None,
-            ball=_ball(R=0.03075, M=0.2125, sin_theta=37.0 / 30.75 - 1.0),
-        ),
-    }
-)
+_POOL_CORNER = Pocket.corner(mouth=4.5875 * _INCH, shelf=1.125 * _INCH, fall_radius=2.75 * _INCH, cut=142.0)
+_POOL_MIDDLE = Pocket.middle(mouth=5.0625 * _INCH, shelf=0.1875 * _INCH, fall_radius=3.0 * _INCH, cut=104.0)
+_UK_CORNER, _UK_MIDDLE = (scaled(pocket, _INCH / BALL_RADIUS) for pocket in (_CORNER, _MIDDLE))
+_BEDS = {
+    # throats of the corners 86.0 and 80.14 mm
+    "match": _bed(2 * HALF_LENGTH, 2 * HALF_WIDTH, _CORNER, _MIDDLE, R=BALL_RADIUS, M=0.1406, sin_theta=0.4),
+    "tight": _bed(2 * HALF_LENGTH, 2 * HALF_WIDTH, _TIGHT, _MIDDLE, R=BALL_RADIUS, M=0.1406, sin_theta=0.4),
+    # WEPF: at most 7 ft x 3 ft 6 in, balls of 2 in and 116 g (not the cue ball's 1 7/8 in: all equal).
+    # Templates are not published; makers say that pockets are to the balls as in snooker: an estimate, scaled
+    # by the balls, with snooker's nose height.
+    "uk8": _bed(84 * _INCH, 42 * _INCH, _UK_CORNER, _UK_MIDDLE, R=_INCH, M=0.116, sin_theta=0.4),
+    # WPA: 100 x 50 in, balls of 2 1/4 in and 5.5 to 6 oz, noses at 63.5 % of the ball, corner mouths 4.5 to
+    # 4.625 in at 142 degrees, side 5 to 5.125 at 104, shelves 1 to 2.25 and 0 to 0.375 in. In them: mouths
+    # and shelves of Alciatore's TP 3.6 and 3.5; his fall radii too, which the WPA leaves open.
+    "pool9": _bed(
+        100 * _INCH, 50 * _INCH, _POOL_CORNER, _POOL_MIDDLE, R=1.125 * _INCH, M=0.163, sin_theta=0.27
+    ),
+    # UMB: 2.84 x 1.42 m, balls of 61 to 61.5 mm and 205 to 220 g, noses 37 mm high.
+    "carom": _bed(2.84, 1.42, None, None, R=0.03075, M=0.2125, sin_theta=37.0 / 30.75 - 1.0),
+}
+PRESETS = MappingProxyType(_BEDS)
 """The preset tables by name, each a ``Bed``: "match", "tight", "uk8", "pool9" and "carom". Read-only."""

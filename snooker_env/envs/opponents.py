@@ -7,14 +7,12 @@ from typing import Any, cast
 
 from .._check import choice, refuse
 from ..tasks.declarations import SAYS
-from ..tasks.frame import Frames, Opponent, Seat
+from ..tasks.frame import TABLES, Frames, Opponent, Seat
 from ..tasks.ghost_ball import GhostBallOpponent
-from ..tasks.kinds import TABLES
 from ..tasks.opponent_pool import OpponentPool, PoolOpponent
-from ..tasks.opponents import AskedOpponent, Policy
+from ..tasks.opponents import AskedOpponent, Policy, UniformOpponent
 from ..tasks.options import NEVER, OBJECT, OPPONENTS, Options, options_of
 from ..tasks.tables import Tables
-from ..tasks.uniform_opponent import UniformOpponent
 
 KERNELS: dict[str, type[Opponent]] = {"random": UniformOpponent, "ghost_ball": GhostBallOpponent}
 """Opponents that play as kernels, without a call of Python."""

@@ -1,8 +1,5 @@
-"""How is the table after the referee has finished? Judge, spot, test for a snooker, judge again: one kernel.
-
-The verdict can depend on the table after the stroke (a free ball, a snooker behind the free ball), and that
-table on the verdict (which colours return, what is on next).
-"""
+"""How is the table after the referee has finished? Judge, spot, test for a snooker, judge again: one kernel,
+as the verdict can depend on the table after the stroke, and that table on the verdict."""
 
 import numpy as np
 
@@ -41,13 +38,8 @@ def settle_visit(positions, on_table, ball_on, lead, seen, radius):
 @kernel
 def settle(positions, on_table, situation, facts, flags, jaws, radius):
     """Judge a stroke and set up the table for the next one: a ``Ruling`` with free ball and snooker behind
-    it.
-
-    ``positions`` (22, 2) [m] after the stroke and ``on_table`` (22,) bool *before* it are changed in place;
-    on_table[0] is False if the cue ball is in hand. At the end of the frame only potted balls leave.
-    ``situation``: (ball_on, free_ball, lead) of ``Before``. SNOOKERED and BEHIND_FREE_BALL of ``flags`` are
-    set here. ``jaws``: see ``snookered.NO_JAWS``.
-    """
+    it. ``positions`` after the stroke and ``on_table`` *before* it are changed in place; on_table[0] is False
+    if the cue ball is in hand. SNOOKERED and BEHIND_FREE_BALL of ``flags`` are set here."""
     flags = flags & ~(FLAG.SNOOKERED | FLAG.BEHIND_FREE_BALL)
     ball_on, free_ball, lead = situation
     before = Before(bits(on_table), ball_on, free_ball, lead)
@@ -60,9 +52,8 @@ def settle(positions, on_table, situation, facts, flags, jaws, radius):
         nominating and result.nominated and not result.points
     )
     if result.outcome == OUTCOME.PLAYING and matters:
-        hidden, effective = snookered(
-            positions, on_table, balls_on_kernel(result.ball_on, result.on_table), jaws, radius
-        )
+        on = balls_on_kernel(result.ball_on, result.on_table)
+        hidden, effective = snookered(positions, on_table, on, jaws, radius)
         if hidden:
             flags |= FLAG.SNOOKERED
             if (effective >> result.nominated) & 1 and not result.fouls:
@@ -73,7 +64,6 @@ def settle(positions, on_table, situation, facts, flags, jaws, radius):
 
 @entry(what="the referee of frames", seconds=2)
 def settle_one(positions, on_table, before, facts, flags, jaws, radius):
-    """``settle`` for Python."""
     situation = before.ball_on, before.free_ball, before.lead
     return settle(positions, on_table, situation, facts, flags, jaws, radius)
 
@@ -87,10 +77,8 @@ def settle_table(
     jaws: Vectors = NO_JAWS,
     radius: float = BALL_RADIUS,
 ) -> tuple[Verdict, Floats, Bools]:
-    """Judge a ``Stroke`` and set up the table: the ``Verdict``, new ``positions`` (22, 2) [m], ``on_table``
-    (22,). ``positions`` are after the stroke, ``on_table`` before it, in agreement with
-    ``situation.on_table``. ``snookered`` and ``behind_free_ball`` of the stroke are computed here.
-    ValueError for wrong input."""
+    """Judge a ``Stroke`` and set up the table: ``Verdict``, new ``positions`` (22, 2) [m], ``on_table``
+    (22,), of those after and before it. ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if (mask_of(np.flatnonzero(present)) ^ situation.on_table) & ~1:
         raise refuse("situation.on_table", situation.on_table, "must be the mask of the array on_table")

@@ -1,12 +1,9 @@
 """How near did a snookered striker's cue ball come to a ball on? Exact, for ``miss="attempt"``.
 
 S3 R14(a) demands the striker's best endeavour, which a referee judges. The rule declared here: the cue ball
-passes within ``ATTEMPT_GAP`` of a ball on before its first contact with any ball, or before it comes to rest.
-Until then no ball on has moved, so the gap is that to balls at rest, along the path really played.
-
-The cue ball moves on pieces x + v t + a t^2 / 2. The derivative of its squared distance from a ball is a
-cubic, monotone between its extremes, so bisection finds every minimum.
-"""
+passes within ``ATTEMPT_GAP`` of a ball on, all still at rest, before its first contact with any ball, or
+before it comes to rest. It moves on pieces x + v t + a t^2 / 2. The derivative of its squared distance from a
+ball is a cubic, monotone between its extremes, so bisection finds every minimum."""
 
 import numpy as np
 
@@ -16,7 +13,6 @@ from .balls import CUE, N_BALLS
 
 ATTEMPT_GAP = 2.0 * BALL_RADIUS
 """A gap up to this counts as the best effort [m]: one ball would just fit between cue ball and ball on."""
-
 X, Y, VX, VY, AX, AY, START, END, BALL = 0, 1, 2, 3, 4, 5, 9, 10, 15
 """Columns of a piece of a path, as in ``physics.cloth``."""
 _HALVINGS = 60
@@ -68,9 +64,7 @@ def nearest_on_piece(dx, dy, vx, vy, ax, ay, T):
 
 @kernel
 def closest_approach(segments, n_segments, until, positions, on_table, on, radius):
-    """The smallest gap [m] of the cue ball to a ball of the mask ``on``, up to the time ``until`` [s]; or
-    inf. ``segments``, ``n_segments``: the path log; ``positions``, ``on_table``: before the shot, still
-    unmoved."""
+    """The smallest gap [m] to a ball of the mask ``on`` up to the time ``until`` [s], or inf."""
     best, k = np.inf, 0
     while k < n_segments:
         if segments[k, BALL] != CUE:
@@ -87,9 +81,7 @@ def closest_approach(segments, n_segments, until, positions, on_table, on, radiu
             for i in range(1, N_BALLS):
                 if on_table[i] and (on >> i) & 1:
                     dx, dy = segments[k, X] - positions[i, 0], segments[k, Y] - positions[i, 1]
-                    far = nearest_on_piece(
-                        dx, dy, segments[k, VX], segments[k, VY], segments[k, AX], segments[k, AY], T
-                    )
-                    best = min(best, far - 2.0 * radius)
+                    vx, vy, ax, ay = segments[k, VX], segments[k, VY], segments[k, AX], segments[k, AY]
+                    best = min(best, nearest_on_piece(dx, dy, vx, vy, ax, ay, T) - 2.0 * radius)
         k = following
     return best

@@ -1,8 +1,7 @@
 """Which balls are there, what is each worth and where does it belong? The table's places are in ``geometry``.
 
 Ids: 0 the cue ball, 1 to 15 the reds, 16 to 21 the colours by value. A set of balls is an integer whose bit i
-stands for ball i, or a bool array (22,). Positions are float64 (22, 2) [m] in the table frame.
-"""
+stands for ball i, or a bool array (22,). Positions are float64 (22, 2) [m] in the table frame."""
 
 from collections.abc import Iterable
 from enum import IntEnum
@@ -19,17 +18,13 @@ N_BALLS = 22
 """Number of balls, the cue ball included."""
 CUE, YELLOW, GREEN, BROWN, BLUE, PINK, BLACK = 0, 16, 17, 18, 19, 20, 21
 """Ids of the cue ball and of the colours; the reds have the ids 1 to 15."""
-N_REDS = 15
-"""Number of reds."""
-
+N_REDS = 15  # number of reds
 COLOUR_NAMES = ("yellow", "green", "brown", "blue", "pink", "black")
 """Names of the colours in the order of their ids, 16 to 21, and of their values, 2 to 7."""
 NAMES = ("cue", *(f"red {i}" for i in range(1, 16)), *COLOUR_NAMES)
 """Names of the balls by id."""
-
 VALUES = np.array([0] + [1] * 15 + [2, 3, 4, 5, 6, 7], dtype=np.int64)
 """Points by id: int64 (22,), read-only; 0 for the cue ball."""
-
 _BITS = 1 << np.arange(N_BALLS)
 CUE_BIT = 1
 REDS_MASK = 0xFFFE
@@ -40,17 +35,8 @@ ALL_MASK = 0x3FFFFF
 class BallOn(IntEnum):
     """The ball on: what the striker must hit first. From RED on, the number is its value in points.
 
-    ============= === ==========================================================================
-    NOTHING       -1  Nothing: the frame is over.
-    ANY_COLOUR    0   Any one colour, which the striker nominates: a red was just potted.
-    RED           1   A red.
-    YELLOW        2   The yellow.
-    GREEN         3   The green.
-    BROWN         4   The brown.
-    BLUE          5   The blue.
-    PINK          6   The pink.
-    BLACK         7   The black.
-    ============= === ==========================================================================
+    NOTHING (-1): the frame is over. ANY_COLOUR (0): any one colour, which the striker nominates, as a red was
+    just potted. RED (1), YELLOW (2), GREEN (3), BROWN (4), BLUE (5), PINK (6), BLACK (7): that ball.
 
     Examples
     --------
@@ -70,18 +56,14 @@ class BallOn(IntEnum):
     BLACK = 7
 
 
-PINK_GAP = 0.0005
-"""Gap between the pink on its spot and the red at the apex [m]: small, without contact."""
-
+PINK_GAP = 0.0005  # gap between the pink on its spot and the red at the apex [m]: small, without contact
 TOUCH = 1e-6
 """Two balls touch when the gap between them is below this [m]: far below sight, far above rounding."""
-
 REFEREE_TOUCH = 50e-6
-"""The referee calls a touching ball when the gap to the cue ball is below this [m]. The eye resolves about 70
+"""The referee calls a touching ball when the gap to the cue ball is below this [m]: the eye resolves about 70
 um at 25 cm (one arc minute), and balls that touch come to rest 1 to 40 um apart in the simulation."""
 CLEARANCE = 2.0 * REFEREE_TOUCH
-"""The gap beside a ball or cushion at which a ball is put down [m]: the referee sees that they do not touch.
-"""
+"""The gap beside a ball or cushion at which a ball is put down [m]: the referee sees no contact."""
 
 
 def _spots():
@@ -91,14 +73,9 @@ def _spots():
     spots[YELLOW:] = COLOUR_SPOTS
     pink_y = spots[PINK, 1]
     # Rows sqrt(3) R apart, a pitch of 2 R: each red touches its neighbours. Rounded to mm they would overlap.
-    ball = 1
-    for row in range(5):
-        for k in range(row + 1):
-            spots[ball] = (
-                (2 * k - row) * BALL_RADIUS,
-                pink_y + 2 * BALL_RADIUS + PINK_GAP + row * np.sqrt(3.0) * BALL_RADIUS,
-            )
-            ball += 1
+    for ball, (row, k) in enumerate(((n, k) for n in range(5) for k in range(n + 1)), 1):
+        y = pink_y + 2 * BALL_RADIUS + PINK_GAP + row * np.sqrt(3.0) * BALL_RADIUS
+        spots[ball] = (2 * k - row) * BALL_RADIUS, y
     return spots
 
 
@@ -273,11 +250,8 @@ def check_table(positions: Vectors, on_table: Flags) -> tuple[Floats, Bools]:
     """New copies of ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; ValueError for anything else."""
     present = np.array(on_table)
     if present.shape != (N_BALLS,) or present.dtype != np.bool_:
-        raise refuse(
-            "on_table",
-            f"{present.dtype} array of shape {present.shape}",
-            f"must be bool of shape ({N_BALLS},)",
-        )
+        allowed = f"must be bool of shape ({N_BALLS},)"
+        raise refuse("on_table", f"{present.dtype} array of shape {present.shape}", allowed)
     return array("positions", positions, (N_BALLS, 2)), present
 
 

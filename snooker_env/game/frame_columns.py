@@ -2,8 +2,7 @@
 
 A row (int64, ``COLUMNS`` wide) holds a frame between two strokes; ``frame.Frame`` is its readable face.
 ``after_stroke``, ``choose``, ``draw``, ``claim`` and ``concede`` change it; the caller first asks whether
-they may. What "replace" restores is in ``Layouts``. A visit without a frame has the first five columns only.
-"""
+they may. What "replace" restores is in ``Layouts``. A visit without a frame has the first five only."""
 
 from typing import NamedTuple
 
@@ -16,49 +15,17 @@ from .ruling import FOUL, OUTCOME
 (BALL_ON, IN_HAND, POINTS, OVER, STEPS) = range(5)
 """A ``BallOn``; cue ball in hand; points of the break; whether the episode has ended by the rules; steps."""
 VISIT_COLUMNS = 5
-(
-    FREE_BALL,
-    ON_TABLE,
-    PHASE,
-    STRIKER,
-    BREAKER,
-    SCORE_0,
-    SCORE_1,
-    WINNER,
-    RESPOTTED_BLACK,
-    MISS_CALLED,
-    FAILURES,
-    WARNED,
-    SAVED,
-    SAVED_ON_TABLE,
-    SAVED_BALL_ON,
-    SAVED_IN_HAND,
-    SAVED_FREE_BALL,
-    SAVED_LAYOUT,
-    STROKES,
-    PAID,
-    FRAMES_0,
-    FRAMES_1,
-    FIRST_BREAK,
-    CLOCK,
-    MISSES,
-    ANYWHERE,
-    OPPONENT,
-    RACK,
-) = range(5, 33)
+FREE_BALL, ON_TABLE, PHASE, STRIKER, BREAKER, SCORE_0, SCORE_1, WINNER = range(5, 13)
+RESPOTTED_BLACK, MISS_CALLED, FAILURES, WARNED = range(13, 17)
+SAVED, SAVED_ON_TABLE, SAVED_BALL_ON, SAVED_IN_HAND, SAVED_FREE_BALL, SAVED_LAYOUT = range(17, 23)
+STROKES, PAID, FRAMES_0, FRAMES_1, FIRST_BREAK, CLOCK, MISSES, ANYWHERE, OPPONENT, RACK = range(23, 33)
 """The fields of ``frame.Frame`` and ``frame.Saved`` (SAVED, SAVED_LAYOUT: whether a frame has one;
 SAVED_IN_HAND: 2 for anywhere). Of tables only: strokes of both players; the agent's lead that rewards have
-already paid; frames won in a match and who broke in its first frame; which of a pool of opponents plays,
-from 1 (0: not drawn)."""
+already paid; frames won in a match and who broke in its first frame; which of a pool plays, from 1."""
 COLUMNS = 33
-
-(STROKE, CHOICE, LOT, FINISHED) = range(4)
-"""Phases, in the order of ``frame.PHASES``."""
-(PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE) = range(4)
-"""Choices after a foul."""
-(NO_MISSES, CLEAR_PATHS, ATTEMPTS) = range(3)
-"""Miss rules, in the order of ``frame.MISS_RULES``."""
-
+(STROKE, CHOICE, LOT, FINISHED) = range(4)  # Phases, in the order of ``frame.PHASES``
+(PLAY, PLAY_AGAIN, REPLACE, PLACE_ANYWHERE) = range(4)  # choices after a foul
+(NO_MISSES, CLEAR_PATHS, ATTEMPTS) = range(3)  # miss rules, in the order of ``frame.MISS_RULES``
 MISSED = FOUL.NO_CONTACT | FOUL.WRONG_FIRST
 
 
@@ -79,10 +46,10 @@ class Effort(NamedTuple):
 
 
 class Layouts(NamedTuple):
-    """The positions of the balls on n tables before the last foul."""
+    """The balls on n tables before the last foul: (n, 22, 2) [m], (n, 22)."""
 
-    positions: Floats  # (n, 22, 2) [m]
-    on_table: Bools  # (n, 22) bool
+    positions: Floats
+    on_table: Bools
 
 
 @kernel
@@ -110,9 +77,8 @@ def _end(row, winner):
     """End the frame; what no frame that is over has is cleared (``frame_checks.SETTLED``)."""
     row[PHASE], row[OVER], row[WINNER] = FINISHED, 1, winner
     row[BALL_ON] = -1
-    row[FREE_BALL] = row[MISS_CALLED] = row[FAILURES] = row[WARNED] = row[SAVED] = row[SAVED_LAYOUT] = row[
-        MISSES
-    ] = row[ANYWHERE] = 0
+    row[FREE_BALL] = row[MISS_CALLED] = row[FAILURES] = row[WARNED] = 0
+    row[SAVED] = row[SAVED_LAYOUT] = row[MISSES] = row[ANYWHERE] = 0
 
 
 @kernel
@@ -124,12 +90,9 @@ def lead_of(row, player):
 @kernel
 def needs_snookers(row, player):
     """Whether ``player`` trails by more than is left for them; a free ball is the striker's alone."""
-    left = (
-        available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
-        if row[STRIKER] == player
-        else available(row[ON_TABLE], -1, 0)
-    )
-    return -lead_of(row, player) > left
+    if row[STRIKER] == player:
+        return -lead_of(row, player) > available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL])
+    return -lead_of(row, player) > available(row[ON_TABLE], -1, 0)
 
 
 @kernel
@@ -174,12 +137,8 @@ def after_stroke(row, result, conditions, effort, layout, duration):
     other = 1 - me
     failures, warned, misses = row[FAILURES], row[WARNED], row[MISSES]
     decided = _decided(row)
-    on_table, ball_on, in_hand, free_ball = (
-        row[ON_TABLE],
-        row[BALL_ON],
-        row[IN_HAND] + row[ANYWHERE],
-        row[FREE_BALL],
-    )
+    on_table, ball_on = row[ON_TABLE], row[BALL_ON]
+    in_hand, free_ball = row[IN_HAND] + row[ANYWHERE], row[FREE_BALL]
     row[SCORE_0 + me] += result.points
     row[SCORE_0 + other] += result.penalty
     row[ON_TABLE] = result.on_table
@@ -212,12 +171,8 @@ def after_stroke(row, result, conditions, effort, layout, duration):
     row[FAILURES] = failures + 1 if called and full else 0
     row[MISSES] = misses + 1 if called and rules == SIX_RED else 0
     row[SAVED], row[SAVED_LAYOUT] = 1, layout
-    row[SAVED_ON_TABLE], row[SAVED_BALL_ON], row[SAVED_IN_HAND], row[SAVED_FREE_BALL] = (
-        on_table,
-        ball_on,
-        in_hand,
-        free_ball,
-    )
+    row[SAVED_ON_TABLE], row[SAVED_BALL_ON] = on_table, ball_on
+    row[SAVED_IN_HAND], row[SAVED_FREE_BALL] = in_hand, free_ball
 
 
 @kernel
@@ -252,11 +207,8 @@ def choose(row, what):
     if what == REPLACE:
         row[STRIKER] = 1 - row[STRIKER]
         row[WARNED] = row[FAILURES] >= 2
-        row[ON_TABLE], row[BALL_ON], row[FREE_BALL] = (
-            row[SAVED_ON_TABLE],
-            row[SAVED_BALL_ON],
-            row[SAVED_FREE_BALL],
-        )
+        row[ON_TABLE], row[BALL_ON] = row[SAVED_ON_TABLE], row[SAVED_BALL_ON]
+        row[FREE_BALL] = row[SAVED_FREE_BALL]
         row[IN_HAND], row[ANYWHERE] = row[SAVED_IN_HAND] > 0, row[SAVED_IN_HAND] == 2
         return
     row[FAILURES] = row[SAVED] = row[SAVED_LAYOUT] = 0

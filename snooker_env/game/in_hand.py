@@ -1,8 +1,6 @@
 """Where may the cue ball in hand stand? At the free place nearest to a point, in the D or anywhere; exact.
-
-The centre must be on or within the lines of the D: the baulk line between yellow and green, and the half
-circle behind it. Anywhere on the table: within the rectangle that leaves a gap to the cushions, off pockets.
-"""
+The centre must be on or within the lines of the D; anywhere on the table, within the rectangle that leaves a
+gap to the cushions, off pockets."""
 
 from typing import Any
 
@@ -15,10 +13,8 @@ from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH, 
 from .balls import CLEARANCE, N_BALLS, REFEREE_TOUCH, check_table
 from .spotting import touches
 
-POCKET_REACH = 0.15
-"""Least distance of the cue ball's centre from a pocket's nominal place [m]: clear of the jaws."""
-ROUNDING = 1e-12
-"""Tolerance for points on the lines of the D [m]."""
+POCKET_REACH, ROUNDING = 0.15, 1e-12
+"""Least distance from a pocket's nominal place, clear of the jaws; tolerance on the lines of the D [m]."""
 D_STEP, BED_STEP = 0.005, 0.05
 """Distances between neighbouring places that are tried in the D, and on the whole bed [m]."""
 
@@ -104,12 +100,8 @@ def _better(positions, on_table, wish, p, best, anywhere, radius):
 
 @kernel
 def nearest_place(positions, on_table, x, y, radius):
-    """The free place in the D nearest to (x, y) [m], and whether there is one: (x, y, bool).
-
-    Each ball excludes a disc. The nearest point outside all discs is the wish itself (moved into the D), the
-    nearest point of one circle, or a crossing of two circles or of one with the lines of the D: all are
-    tried. ``on_table[0]`` must be False.
-    """
+    """The free place in the D nearest to (x, y) [m]: (x, y, whether there is one); on_table[0] False. Each
+    ball bars a disc; tried are the wish itself, the nearest points of circles, and all crossings."""
     wish = x, y = _into_d(x, y)
     reach = 2.0 * radius + CLEARANCE
     place = _better(positions, on_table, wish, wish, (x, y, np.inf), False, radius)
@@ -147,11 +139,8 @@ def _disc(positions, on_table, i, reach):
 @kernel
 def nearest_anywhere(positions, on_table, x, y, radius):
     """``nearest_place`` on the whole bed, where pockets bar places too, and edges replace the D's lines."""
-    wide, high, reach = (
-        HALF_WIDTH - radius - CLEARANCE,
-        HALF_LENGTH - radius - CLEARANCE,
-        2.0 * radius + CLEARANCE,
-    )
+    wide, high = HALF_WIDTH - radius - CLEARANCE, HALF_LENGTH - radius - CLEARANCE
+    reach = 2.0 * radius + CLEARANCE
     wish = x, y = min(wide, max(-wide, x)), min(high, max(-high, y))
     place = _better(positions, on_table, wish, wish, (x, y, np.inf), True, radius)
     if place[2] == 0.0:
@@ -193,13 +182,11 @@ def place_cue(
     radius: float = BALL_RADIUS,
     anywhere: bool = False,
 ) -> Place:
-    """The free place (x, y) in the D (``anywhere``: on the bed) nearest to (x, y) [m], whatever
-    ``positions[0]``. ValueError for wrong input, and if there is no free place (which no legal table has)."""
+    """The free place in the D (or on the bed) nearest to (x, y) [m]; ValueError if there is none."""
     placed, present = check_table(positions, on_table)
     present[0] = False
-    px, py, free = _nearest_place(
-        placed, present, number("x", x), number("y", y), float(radius), bool(anywhere)
-    )
+    x, y = number("x", x), number("y", y)
+    px, py, free = _nearest_place(placed, present, x, y, float(radius), bool(anywhere))
     if not free:
         raise refuse("on_table", int(present.sum()), "must leave a free place")
     return px, py

@@ -1,8 +1,5 @@
-"""Which tables can a task start from? Layouts from a stream of random numbers, by geometry only.
-
-A layout is ``positions`` (22, 2) [m] and ``on_table`` (22,) bool, and depends on the stream alone: same key
-and counter, same table. The row of a ball off the table is that of ``balls.SPOTS``.
-"""
+"""Which tables can a task start from? Layouts, ``positions`` (22, 2) [m] and ``on_table`` (22,), by geometry
+only, from a stream of random numbers: same key and counter, same table. Absent balls lie on spots."""
 
 from dataclasses import dataclass
 from math import atan2, cos, hypot, sin
@@ -20,13 +17,8 @@ from .philox import normals, pair, stream_of
 from .pots import POT_COLUMNS, TOLERANCE, find_pots
 from .snookered import NO_JAWS, snookered_from
 
-GAP = 0.001
-"""Least gap between a ball placed at random and any other ball [m]."""
-CUSHION_GAP = 0.05
-"""Least gap between such a ball and a cushion [m]: about a ball's width, to be struck normally."""
-POCKET_GAP = 0.15
-"""Least distance of such a ball's centre from a pocket's nominal place [m]: clear of the jaws."""
-
+GAP, CUSHION_GAP, POCKET_GAP = 0.001, 0.05, 0.15
+"""Least gaps [m] of a ball placed at random to balls, to cushions, and of its centre to pockets."""
 OPENED, BREAK_OFF, LINE_UP, COLOURS, RANDOM, SNOOKERED, POT = range(7)
 """Kinds of layouts, for the kernels."""
 
@@ -40,11 +32,9 @@ def clear(positions, on_table, x, y):
     for k in range(POCKET_PLACES.shape[0]):
         if hypot(POCKET_PLACES[k, 0] - x, POCKET_PLACES[k, 1] - y) < POCKET_GAP:
             return False
-    free = True
+    free, reach = True, 2 * BALL_RADIUS + GAP
     for i in range(N_BALLS):
-        free = free and not (
-            on_table[i] and hypot(positions[i, 0] - x, positions[i, 1] - y) < 2 * BALL_RADIUS + GAP
-        )
+        free = free and not (on_table[i] and hypot(positions[i, 0] - x, positions[i, 1] - y) < reach)
     return free
 
 
@@ -61,11 +51,8 @@ def _put(positions, on_table, ball, kind, stream):
     while True:
         u, v = pair(stream)
         x, y = left + u * (right - left), bottom + v * (top - bottom)
-        if (
-            ball == CUE
-            and kind == COLOURS
-            and not 0.25 <= hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1]) <= 1.2
-        ):
+        far = hypot(x - SPOTS[YELLOW, 0], y - SPOTS[YELLOW, 1])
+        if ball == CUE and kind == COLOURS and not 0.25 <= far <= 1.2:
             continue  # too near to the first ball on, or too far from it
         if clear(positions, on_table, x, y):
             positions[ball, 0], positions[ball, 1] = x, y
@@ -88,8 +75,7 @@ def _opened(positions, on_table, tables, first, last, stream):
 
 @kernel
 def _line_up_y(k):
-    """The y of red k of 15 in the practice line-up on the centre line [m]: two below the blue, seven below
-    the pink, four below the black, two above it; about 112 mm apart, so that a ball just passes."""
+    """The y of red k of 15 [m]: 2 below the blue, 7 below the pink, 4 below the black, 2 above."""
     blue, pink, black = SPOTS[19, 1], SPOTS[20, 1], SPOTS[21, 1]
     low, high = (pink - blue) / 8, (black - pink) / 5
     if k <= 9:
@@ -98,27 +84,19 @@ def _line_up_y(k):
 
 
 SNOOKERED_REDS = 3
-"""The most reds on the table in the layout "snookered"."""
 BEHIND = (0.08, 0.5)
-"""Range of its cue ball's distance from the snookering colour [m]: 1.5 balls to 28 % of the table's width."""
+"""Of the layout "snookered": the most reds; range of the cue ball's distance from the colour before it [m]."""
 
 
 @kernel
 def _hide(positions, on_table, reds, stream):
-    """Try to snooker the cue ball on every red, 1 to ``reds``, by a random colour; returns whether this
-    succeeded.
-
-    The cue ball goes behind the colour as seen from a red, and the rule's tangent test
-    (``snookered.is_snookered``) must agree. An escape needs a cushion, swerve, or the one open edge of a red.
-    """
+    """Try to snooker it on every red, 1 to ``reds``, behind a random colour; returns whether it is."""
     u, v = pair(stream)
     far, _ = pair(stream)
     turn, _ = normals(stream)
     red, colour = 1 + int(u * reds), YELLOW + int(v * (N_BALLS - YELLOW))
-    angle = (
-        atan2(positions[colour, 1] - positions[red, 1], positions[colour, 0] - positions[red, 0])
-        + 0.03 * turn
-    )
+    dx, dy = positions[colour, 0] - positions[red, 0], positions[colour, 1] - positions[red, 1]
+    angle = atan2(dy, dx) + 0.03 * turn
     far = BEHIND[0] + far * (BEHIND[1] - BEHIND[0])
     x, y = positions[colour, 0] + far * cos(angle), positions[colour, 1] + far * sin(angle)
     if not clear(positions, on_table, x, y):
@@ -129,9 +107,9 @@ def _hide(positions, on_table, reds, stream):
 
 
 POT_WINDOWS = {"easy": (4e-3, np.inf), "medium": (1e-3, 4e-3), "hard": (3e-4, 1e-3)}
-"""Difficulty -> range of the tolerance of the layout's widest pot [rad]: by how much the aim may err to
-either side, by ``game.pots``. Along the solved line at 2.3 m/s a professional's execution errors pot 94,
-90 and 61 % of them, a club player's 92, 63 and 24 % (``python -m benchmarks.execution --strokes 2000``)."""
+"""Difficulty -> range of the tolerance of the layout's widest pot [rad], by which the aim may err to either
+side. Along the solved line at 2.3 m/s a professional's execution errors pot 94, 90 and 61 % of them, a club
+player's 92, 63 and 24 % (``python -m benchmarks.execution --strokes 2000``)."""
 
 
 @kernel
@@ -158,10 +136,8 @@ def _deal(code, tables, stream, positions, on_table, pot):
             if _hide(positions, on_table, loose, stream):
                 return
         elif kind == POT:
-            if (
-                find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, pot)
-                and low <= pot[0, TOLERANCE] < high
-            ):
+            many = find_pots(positions, on_table, REDS_MASK, BALL_RADIUS, pot)
+            if many and low <= pot[0, TOLERANCE] < high:
                 return
         else:
             return
@@ -169,8 +145,7 @@ def _deal(code, tables, stream, positions, on_table, pot):
 
 @entry(what="the dealing of tables", seconds=4)
 def deal_tables(which, code, tables, streams, positions, on_table):
-    """Write new layouts for the tables ``which`` into positions (n, 22, 2) [m] and on_table (n, 22);
-    ``code``, ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64, one for each table."""
+    """New layouts for the tables ``which``; ``code``, ``tables``: of a ``Plan``; ``streams`` (n, 2) uint64."""
     pot = np.empty((1, POT_COLUMNS))
     for k in which:
         _deal(code, tables, streams[k], positions[k], on_table[k], pot)
@@ -186,10 +161,9 @@ class Plan:
     ----------
     name : str
         Name of the layout.
-    code : float64 (4,)
-        Kind, number of reds, and the range of tables of the bank or of a pot's tolerance [rad].
-    tables : float64 (b, 22, 2)
-        The bank of opened tables [m]; b = 0 for a layout without one.
+    code, tables : numpy.ndarray
+        float64 (4,): kind, number of reds, and the range of tables of the bank or of a pot's tolerance [rad].
+        float64 (b, 22, 2): the bank of opened tables [m]; b = 0 for a layout without one.
     unfit : tuple of int
         Tables of the bank that do not fit the table played on; others replace them.
 
@@ -215,17 +189,12 @@ class Plan:
         return plan_of, (self.name, self.unfit)
 
 
-_NAMES = {
-    "break_off": (BREAK_OFF, N_REDS),
-    "line_up": (LINE_UP, N_REDS),
-    "colours": (COLOURS, 0),
-    "snookered": (SNOOKERED, SNOOKERED_REDS),
-}
+_NAMES = {"break_off": (BREAK_OFF, N_REDS), "line_up": (LINE_UP, N_REDS)}
+_NAMES |= {"colours": (COLOURS, 0), "snookered": (SNOOKERED, SNOOKERED_REDS)}
 _COUNTED = {"random": RANDOM, "break_off": BREAK_OFF}
 _COUNTS = [str(n) for n in range(N_REDS + 1)]
 LAYOUTS = ("opened", "held_out", *_NAMES)
-"""Names of the layouts without a number: "opened", "held_out", "break_off", "line_up", "colours",
-"snookered"."""
+"""Names without a number: "opened", "held_out", "break_off", "line_up", "colours", "snookered"."""
 
 
 def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
@@ -250,13 +219,14 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     >>> plan_of("random:6").code.tolist()
     [4.0, 6.0, 0.0, 0.0]
     """
-    head, _, which = name.partition(":") if isinstance(name, str) else ("", "", "")
+    name, asked = name if isinstance(name, str) else "", name
+    head, _, which = name.partition(":")
     tables, code = NO_BANK, None
-    if isinstance(name, str) and name in ("opened", "held_out"):
+    if name in ("opened", "held_out"):
         tables = bank_without(unfit)
         part = kept(len(tables))[name == "held_out"]
         code = (OPENED, N_REDS, part.start, part.stop)
-    elif isinstance(name, str) and name in _NAMES:
+    elif name in _NAMES:
         code = (*_NAMES[name], 0, 0)
     elif head in _COUNTED and which in _COUNTS:
         code = (_COUNTED[head], int(which), 0, 0)
@@ -265,7 +235,7 @@ def plan_of(name: str, unfit: tuple[int, ...] = ()) -> Plan:
     if code is None:
         known = ", ".join(map(repr, LAYOUTS))
         allowed = f'must be one of {known}, "pots:easy", "pots:medium", "pots:hard", "random:N" or "break_off:N" with N from 0 to {N_REDS}'
-        raise refuse("layout", name, allowed)
+        raise refuse("layout", asked, allowed)
     return Plan(name, np.array(code, np.float64), tables, unfit if len(tables) else ())
 
 
@@ -281,10 +251,8 @@ def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
 
     Returns
     -------
-    positions : float64 (22, 2)
-        Centres of the balls [m], a new array.
-    on_table : bool (22,)
-        Which balls are on the table, a new array.
+    positions, on_table : numpy.ndarray
+        New arrays, float64 (22, 2), centres of the balls [m], and bool (22,).
 
     Examples
     --------
@@ -298,13 +266,3 @@ def layout(plan: Plan | str, rng: np.random.Generator) -> tuple[Floats, Bools]:
     positions, on_table = np.empty((1, N_BALLS, 2)), np.empty((1, N_BALLS), np.bool_)
     deal_tables(np.zeros(1, np.int64), plan.code, plan.tables, stream_of(rng)[None], positions, on_table)
     return positions[0], on_table[0]
-
-
-def break_off(rng: np.random.Generator) -> tuple[Floats, Bools]:
-    """The start of a frame: the cue ball at its usual place, on either side of the brown."""
-    return layout("break_off", rng)
-
-
-def opened(rng: np.random.Generator) -> tuple[Floats, Bools]:
-    """A table opened by play, all 22 balls on it."""
-    return layout("opened", rng)

@@ -1,9 +1,5 @@
-"""Where do opened tables come from? From a bank of tables opened by simulated play, ``opened.npz``.
-
-Each is a break-off and further hard strokes at the reds until the pack is spread; all 22 balls are on it and
-some red can be potted. ``python -m benchmarks.make_opened`` makes the file. The last ``HELD_OUT`` tables are
-for evaluation (the layout "held_out").
-"""
+"""Where do opened tables come from? From a bank, ``opened.npz``, that ``python -m benchmarks.make_opened``
+makes: a break-off and further hard strokes until the pack is spread, all 22 balls and some pot on a red."""
 
 from functools import cache, lru_cache
 from pathlib import Path
@@ -17,7 +13,6 @@ FILE = Path(__file__).with_name("opened.npz")
 HELD_OUT = 2048
 """Number of tables of the bank that only the layout "held_out" deals, for evaluation."""
 NO_BANK = np.zeros((0, N_BALLS, 2))
-"""An empty bank, for layouts without one."""
 NO_BANK.setflags(write=False)
 
 
@@ -37,8 +32,7 @@ def kept(size: int) -> tuple[range, range]:
 
 @lru_cache(8)
 def bank_without(unfit: tuple[int, ...]) -> Floats:
-    """The bank with each table of ``unfit`` replaced by the next one of its part (held out or not) that fits,
-    so that a stream deals the same tables as before, except for these. Some of each part must be left."""
+    """The bank with each table of ``unfit`` replaced by the next of its part that fits; others stay."""
     if not unfit:
         return bank()
     tables = bank().copy()

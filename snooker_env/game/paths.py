@@ -3,14 +3,12 @@
 *Any part*: in some direction the cue ball, rolling straight, meets a ball on before any ball not on; other
 balls on never obstruct. *Full ball* (S3 R14): it can roll straight onto the centre of some ball on. For reds
 this is "a complete diameter of any Red that is not obstructed by a ball or balls not on": a strip as wide as
-a ball, from the cue ball onto the whole of one red, where only other reds do not matter. A colour's strip
-must be free of all balls, also where several could be on: the striker nominates one of them.
+a ball, where only other reds do not matter. A colour's strip must be free of all balls, also where several
+could be on: the striker nominates one.
 
-A path ends where the cue ball would meet a cushion, nose or jaw (R14 speaks of a path of the cue ball; only
-the test for a snooker leaves cushions out). In hand a path counts that is clear from any place where the cue
-ball may stand (R14(a), and S2 R17 for a snooker). Tried are the places of ``in_hand``; an opening that falls
-between them is in the striker's favour.
-"""
+A path ends at a cushion, nose or jaw (only the test for a snooker leaves cushions out). In hand a path counts
+that is clear from any place where the cue ball may stand (R14(a), and S2 R17 for a snooker). Tried are the
+places of ``in_hand``; an opening that falls between them is in the striker's favour."""
 
 import numpy as np
 
@@ -24,8 +22,7 @@ from .lines import meets
 from .snookered import SLACK, segment_distance
 from .spotting import touches
 
-WINDOW = 1e-9
-"""A narrower opening does not count [rad]: it is rounding."""
+WINDOW = 1e-9  # a narrower opening does not count [rad]: it is rounding
 NO_NOSES, NO_ARCS = np.empty((0, 5)), np.empty((0, 6))
 """No cushions: ``noses`` and ``jaws`` have the rows of ``physics.Table`` (``physics.columns``)."""
 AXIS, SIDE, LEVEL, LOW, HIGH = range(5)
@@ -69,10 +66,9 @@ def full_ball_path(positions, on_table, on, noses, jaws, radius):
             clear = to_cushion(cx, cy, (tx - cx) / d, (ty - cy) / d, noses, jaws, radius) >= run * d - SLACK
             for i in range(1, N_BALLS):
                 if on_table[i] and not (harmless >> i) & 1:
-                    gap = segment_distance(
-                        positions[i, 0], positions[i, 1], cx, cy, cx + run * (tx - cx), cy + run * (ty - cy)
-                    )
-                    clear = clear and gap >= 2.0 * radius - SLACK
+                    x, y = positions[i, 0], positions[i, 1]
+                    ex, ey = cx + run * (tx - cx), cy + run * (ty - cy)
+                    clear = clear and segment_distance(x, y, cx, cy, ex, ey) >= 2.0 * radius - SLACK
             if clear:
                 return True
     return False
@@ -87,36 +83,26 @@ def _open_direction(positions, on_table, on, target, angle, noses, jaws, radius)
     if run == np.inf:
         return False
     for i in range(1, N_BALLS):
-        if (
-            on_table[i]
-            and not (on >> i) & 1
-            and meets(positions[i, 0] - cx, positions[i, 1] - cy, ux, uy, radius) < run
-        ):
+        x, y = positions[i, 0] - cx, positions[i, 1] - cy
+        if on_table[i] and not (on >> i) & 1 and meets(x, y, ux, uy, radius) < run:
             return False
     return to_cushion(cx, cy, ux, uy, noses, jaws, radius) >= run - SLACK
 
 
 @kernel
 def _cushion_edges(edges, n, c, t, towards, noses, jaws, radius):
-    """Append the directions at which a cushion may open or close the path from c to t; returns their number.
-    A nose: the cue ball meets it and the target at the same time, or passes its end. A jaw: also if it
-    grazes it."""
+    """Append directions at which a cushion may open or close the path from c to t; returns the number."""
     (cx, cy), (tx, ty) = c, t
     for k in range(noses.shape[0]):
         level, vertical = noses[k, SIDE] * (noses[k, LEVEL] - radius), noses[k, AXIS] == 0.0
-        away = level - (tx if vertical else ty)
+        away, middle = level - (tx if vertical else ty), ty if vertical else tx
         half2 = 4.0 * radius * radius - away * away
         for end in range(4):
             if end < 2 and half2 < 0.0:
                 continue
-            at = (
-                noses[k, LOW + end - 2]
-                if end >= 2
-                else (ty if vertical else tx) + (2 * end - 1) * np.sqrt(half2)
-            )
-            edges[n] = (
-                np.arctan2(at - cy, level - cx) if vertical else np.arctan2(level - cy, at - cx)
-            ) - towards
+            at = noses[k, LOW + end - 2] if end >= 2 else middle + (2 * end - 1) * np.sqrt(half2)
+            turn = np.arctan2(at - cy, level - cx) if vertical else np.arctan2(level - cy, at - cx)
+            edges[n] = turn - towards
             n += 1
     for k in range(jaws.shape[0]):
         bx, by, reach = jaws[k, ARC_X] - cx, jaws[k, ARC_Y] - cy, jaws[k, ARC_RADIUS] + radius
@@ -144,12 +130,8 @@ def _cushion_edges(edges, n, c, t, towards, noses, jaws, radius):
 
 @entry  # np.sort makes an array, which an inner kernel may not
 def clear_path(positions, on_table, on, noses, jaws, radius):
-    """Whether there is a straight path to any part of a ball on (mask ``on``) from the place of the cue ball.
-
-    It can open or close only at finitely many directions: tangents to a ball or a jaw, to an end of a
-    cushion, and where target and obstacle are met at the same time. So it is exact to test the midpoints
-    between them.
-    """
+    """Whether a straight path leads to any part of a ball on (mask ``on``). It can open or close only at
+    tangents to balls and jaws, ends of cushions, and where two are met at once: midpoints tell."""
     cx, cy = positions[0, 0], positions[0, 1]
     edges = np.empty(4 * N_BALLS + 4 * noses.shape[0] + 6 * jaws.shape[0])
     for target in range(1, N_BALLS):
@@ -187,21 +169,16 @@ def clear_path(positions, on_table, on, noses, jaws, radius):
         for k in range(n - 1):
             low, high = ordered[k], ordered[k + 1]
             inside = low >= -half and high <= half and high - low > WINDOW
-            if inside and _open_direction(
-                positions, on_table, on, target, towards + 0.5 * (low + high), noses, jaws, radius
-            ):
+            angle = towards + 0.5 * (low + high)
+            if inside and _open_direction(positions, on_table, on, target, angle, noses, jaws, radius):
                 return True
     return False
 
 
 @entry(what="the paths of the miss rule", seconds=2)
 def best_paths(positions, on_table, on, in_hand, noses, jaws, radius):
-    """Both tests: (any part, full ball).
-
-    ``in_hand``: 0 the cue ball is played from where it lies, 1 from the D, 2 from anywhere on the bed. In
-    hand, its place in ``positions`` is tried first, if on the table, then others until one has a full-ball
-    path.
-    """
+    """Both tests: (any part, full ball). ``in_hand``: 0 from where it lies, 1 from the D, 2 from anywhere on
+    the bed; its place in ``positions`` is tried first, then others until one has a full-ball path."""
     if on_table[0]:
         full = full_ball_path(positions, on_table, on, noses, jaws, radius)
         clear = full or clear_path(positions, on_table, on, noses, jaws, radius)
@@ -236,11 +213,8 @@ def paths(
     table is in hand: in the D or, with ``anywhere``, on the bed. ValueError for wrong input."""
     placed, present = check_table(positions, on_table)
     if truth("anywhere", anywhere) and present[0]:
-        raise refuse(
-            "anywhere",
-            True,
-            "must be False with the cue ball on the table (on_table[0]): then it is not in hand",
-        )
+        allowed = "must be False with the cue ball on the table (on_table[0]): then it is not in hand"
+        raise refuse("anywhere", True, allowed)
     if integer("on", on, 0, ALL_MASK) & CUE_BIT:
         raise refuse("on", on, "must name object balls only")
     cushions = array("noses", noses, (-1, 5)), array("jaws", jaws, (-1, 6))

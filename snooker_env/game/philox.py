@@ -2,9 +2,7 @@
 
 Philox 4x32-10 [Salmon, Moraes, Dror & Shaw, Parallel random numbers: as easy as 1, 2, 3, SC 2011]: ten rounds
 turn a counter of 128 bits and a key of 64 into 128 random bits. A stream is a uint64 array (2,), key and
-counter; each draw takes one block and adds 1 to the counter. Each table has a key and so an independent
-stream: its numbers never depend on other tables or on the number of threads.
-"""
+counter; each draw takes one block. Each table has its key, so its numbers never depend on other tables."""
 
 from math import cos, log, pi, sin, sqrt
 

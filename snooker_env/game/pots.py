@@ -2,15 +2,13 @@
 
 Object ball b must go along d, the unit vector to the pocket's aim point; the cue ball must arrive at the
 ghost ball G = b - 2 R d. With theta the cut angle (between d and the cue ball's path C -> G), the aim may err
-by::
+by the half window of the pocket as an angle over the magnification of an aiming error at the impact::
 
     tolerance = w(a) / (2 |b pocket|)  *  2 R cos(theta) / |C G|      [rad]
 
-This is the half window of the pocket as an angle of the object ball's path over the magnification of an
-aiming error at the impact. w(a) is the lateral window of the pocket at the angle a off its axis [m], jaws
-included, to a millimetre, for a ball that rolls at 1.5 m/s on table "match"
-(tests/benchmarks/test_pocket_windows.py); it is smaller for a fast ball and larger for a slow one.
-"""
+w(a) is the lateral window of the pocket at the angle a off its axis [m], jaws included, to a millimetre, for
+a ball that rolls at 1.5 m/s on table "match" (tests/benchmarks/test_pocket_windows.py); a fast ball's is
+smaller, a slow one's larger."""
 
 from math import acos, cos, radians, sqrt
 
@@ -18,32 +16,21 @@ import numpy as np
 
 from .._jit import entry, kernel
 from .._types import Flags, Floats, Vectors
-from ..geometry import (
-    AIM_X,
-    AIM_Y,
-    AXIS_X,
-    AXIS_Y,
-    BALL_RADIUS,
-    HALF_LENGTH,
-    HALF_WIDTH,
-    IS_MIDDLE,
-    POCKET_AIMS,
-)
+from ..geometry import AIM_X, AIM_Y, AXIS_X, AXIS_Y, BALL_RADIUS, IS_MIDDLE, POCKET_AIMS
+from ..geometry import HALF_LENGTH as _LENGTH
+from ..geometry import HALF_WIDTH as _WIDTH
 from .balls import N_BALLS
 
 # degrees, metres
 _CORNER_ANGLE, _CORNER_WINDOW = (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), (0.058, 0.055, 0.047, 0.033, 0.016, 0.0)
 _MIDDLE_ANGLE, _MIDDLE_WINDOW = (0.0, 15.0, 30.0, 45.0, 60.0, 70.0), (0.073, 0.071, 0.063, 0.043, 0.018, 0.0)
 # Squared cosines of the last angles, less a margin above rounding: below them a window is certainly closed.
-_CORNER_SHUT, _MIDDLE_SHUT = (
-    cos(radians(angle)) ** 2 - 1e-9 for angle in (_CORNER_ANGLE[-1], _MIDDLE_ANGLE[-1])
-)
+_CORNER_SHUT, _MIDDLE_SHUT = (cos(radians(angle)) ** 2 - 1e-9 for angle in (50.0, 70.0))
 _CORNER_WIDEST, _MIDDLE_WIDEST = max(_CORNER_WINDOW), max(_MIDDLE_WINDOW)
-
 POT_BALL, POT_POCKET, GHOST_X, GHOST_Y, COS_CUT, TOLERANCE = range(6)
 """Columns of a pot: object ball, pocket, ghost ball [m], cosine of the cut, tolerance of the aim [rad]."""
 POT_COLUMNS = 6
-"""Number of columns of a pot."""
+"""Their number."""
 
 
 @kernel
@@ -77,10 +64,8 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
 
     Parameters
     ----------
-    positions : float64 (22, 2)
-        Centres of the balls [m].
-    on_table : bool (22,)
-        Which balls are on the table.
+    positions, on_table : numpy.ndarray
+        float64 (22, 2), centres of the balls [m]; bool (22,), which balls are on the table.
     ax, ay, bx, by : float
         The ends of the segment [m].
     skip1, skip2 : int
@@ -114,8 +99,7 @@ def clear_segment(positions, on_table, ax, ay, bx, by, skip1, skip2, d):
 
 @kernel
 def pot_at(positions, on_table, ball, k, d, least):
-    """The pot of a ball into pocket k: (tolerance, ghost ball x, y, cosine of the cut), the tolerance 0 if
-    there is no pot with one above ``least``. d: diameter of the balls [m]."""
+    """The pot of a ball into pocket k: (tolerance, ghost x, y, cosine of the cut); 0 if below ``least``."""
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     dx, dy = POCKET_AIMS[k, AIM_X] - bx, POCKET_AIMS[k, AIM_Y] - by
     # seen without a root: the object ball would come back towards the cue ball, or the pocket is shut
@@ -133,7 +117,7 @@ def pot_at(positions, on_table, ball, k, d, least):
     if path < 1e-9:
         return 0.0, 0.0, 0.0, 0.0
     # the ghost ball would be in the cushion
-    if abs(gx) > HALF_WIDTH - 0.5 * d + 1e-9 or abs(gy) > HALF_LENGTH - 0.5 * d + 1e-9:
+    if abs(gx) > _WIDTH - 0.5 * d + 1e-9 or abs(gy) > _LENGTH - 0.5 * d + 1e-9:
         return 0.0, 0.0, 0.0, 0.0
     cos_cut = (px * dx + py * dy) / path
     if cos_cut < 0.05:  # a cut of more than 87 degrees
@@ -145,9 +129,8 @@ def pot_at(positions, on_table, ball, k, d, least):
     tolerance = width * of_width
     if width <= 0.0 or tolerance <= least:
         return 0.0, 0.0, 0.0, 0.0
-    if not clear_segment(
-        positions, on_table, bx, by, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], ball, 0, d
-    ):
+    tx, ty = POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y]
+    if not clear_segment(positions, on_table, bx, by, tx, ty, ball, 0, d):
         return 0.0, 0.0, 0.0, 0.0
     if not clear_segment(positions, on_table, cx, cy, gx, gy, ball, 0, d * (1.0 - 1e-9)):
         return 0.0, 0.0, 0.0, 0.0
@@ -160,10 +143,8 @@ def find_pots(positions, on_table, on, radius, pots):
 
     Parameters
     ----------
-    positions : float64 (22, 2)
-        Centres of the balls [m], the cue ball first.
-    on_table : bool (22,)
-        Which balls are on the table.
+    positions, on_table : numpy.ndarray
+        float64 (22, 2), centres of the balls [m], the cue ball first; bool (22,), which are on the table.
     on : int
         Mask of the balls that may be potted.
     radius : float
@@ -222,11 +203,5 @@ def pots(
 ) -> Floats:
     """Direct pots (k, POT_COLUMNS) of the mask ``on``, widest tolerance first, k at most ``most``."""
     out = np.zeros((most, POT_COLUMNS))
-    n = _pots(
-        np.ascontiguousarray(positions, dtype=np.float64),
-        np.ascontiguousarray(on_table, dtype=np.bool_),
-        int(on),
-        radius,
-        out,
-    )
-    return out[:n].copy()
+    placed, present = np.ascontiguousarray(positions, np.float64), np.ascontiguousarray(on_table, np.bool_)
+    return out[: _pots(placed, present, int(on), radius, out)].copy()

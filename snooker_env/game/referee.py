@@ -1,6 +1,7 @@
 """How does Python call the referee? ``judge(Situation, Stroke) -> Verdict``: checked input, named results."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from .._check import choice, integer, refuse
 from .._jit import entry
@@ -8,11 +9,8 @@ from .balls import ALL_MASK, COLOURS_MASK, CUE_BIT, N_BALLS, NAMES, REDS_MASK, B
 from .rule_sets import RULES, RulesName
 from .ruling import AUTO, RULE_FLAGS, Before, Facts, Flag, Foul, Outcome, Ruling, VisitEnd, ruling
 
-FULL_TABLE = ALL_MASK & ~CUE_BIT
-"""The mask of all 21 object balls."""
-
-MOST_POINTS = 2**60
-"""Upper limit of scores: beyond any play, within the kernel's 64 bits."""
+FULL_TABLE = ALL_MASK & ~CUE_BIT  # the mask of all 21 object balls
+MOST_POINTS = 2**60  # upper limit of scores: beyond any play, within the kernel's 64 bits
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,21 +25,16 @@ class Situation:
 
     def __post_init__(self) -> None:
         integer("on_table", self.on_table, 0, ALL_MASK)
-        object.__setattr__(
-            self, "ball_on", BallOn(integer("ball_on", self.ball_on, BallOn.ANY_COLOUR, BallOn.BLACK))
-        )
+        on = BallOn(integer("ball_on", self.ball_on, BallOn.ANY_COLOUR, BallOn.BLACK))
+        object.__setattr__(self, "ball_on", on)
         integer("lead", self.lead, -MOST_POINTS, MOST_POINTS)
         choice("rules", self.rules, RULES)
         if not balls_on(self.ball_on, self.on_table & ~CUE_BIT):
-            raise refuse(
-                "ball_on", self.ball_on.name, "must name balls of which one is on the table (on_table)"
-            )
+            allowed = "must name balls of which one is on the table (on_table)"
+            raise refuse("ball_on", self.ball_on.name, allowed)
         if self.ball_on > BallOn.RED and self.on_table & REDS_MASK:
-            raise refuse(
-                "ball_on",
-                self.ball_on.name,
-                "must be RED or ANY_COLOUR while reds are on the table (on_table)",
-            )
+            allowed = "must be RED or ANY_COLOUR while reds are on the table (on_table)"
+            raise refuse("ball_on", self.ball_on.name, allowed)
         if self.free_ball and self.ball_on == BallOn.ANY_COLOUR:
             raise refuse("free_ball", self.free_ball, "must be False when any colour is on (ball_on)")
 
@@ -78,20 +71,16 @@ class Stroke:
             raise refuse("moved", ids_of(self.moved), "must be some of the touching balls")
         if self.potted & self.off:
             raise refuse("off", ids_of(self.off), "must name no ball that was potted")
-        if (
-            integer("nominated", self.nominated, AUTO, N_BALLS - 1) > 0
-            and not COLOURS_MASK >> self.nominated & 1
-        ):
-            raise refuse(
-                "nominated", self.nominated, "must be a colour (ids 16 to 21), 0 for none or -1 (AUTO)"
-            )
+        ball = integer("nominated", self.nominated, AUTO, N_BALLS - 1)
+        if ball > 0 and not COLOURS_MASK >> ball & 1:
+            allowed = "must be a colour (ids 16 to 21), 0 for none or -1 (AUTO)"
+            raise refuse("nominated", self.nominated, allowed)
 
     @property
     def flags(self) -> Flag:
         """The bool fields as a ``Flag``."""
-        return Flag(
-            sum(flag for flag in Flag if flag not in RULE_FLAGS and getattr(self, str(flag.name).lower()))
-        )
+        acts = (flag for flag in Flag if flag not in RULE_FLAGS)
+        return Flag(sum(flag for flag in acts if getattr(self, str(flag.name).lower())))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,22 +111,15 @@ def _ruling(before, facts, flags):
     return ruling(before, facts, flags)
 
 
+_FACE: dict[str, Any] = {"fouls": Foul, "ball_on": BallOn, "visit_end": VisitEnd, "outcome": Outcome}
+_FACE |= {"in_hand": bool, "free_ball": bool, "stays": lambda stays: None if stays < 0 else bool(stays)}
+"""What the fields of a ``Ruling`` are in a ``Verdict``; the others are integers."""
+
+
 def verdict_of(result: Ruling) -> Verdict:
     """The kernel's ``Ruling`` as a ``Verdict``."""
-    return Verdict(
-        fouls=Foul(result.fouls),
-        penalty=int(result.penalty),
-        points=int(result.points),
-        respotted=int(result.respotted),
-        on_table=int(result.on_table),
-        ball_on=BallOn(result.ball_on),
-        stays=None if result.stays < 0 else bool(result.stays),
-        in_hand=bool(result.in_hand),
-        free_ball=bool(result.free_ball),
-        visit_end=VisitEnd(result.visit_end),
-        outcome=Outcome(result.outcome),
-        nominated=int(result.nominated),
-    )
+    fields = {name: _FACE.get(name, int)(number) for name, number in result._asdict().items()}
+    return Verdict(**fields)
 
 
 def check(situation: Situation, stroke: Stroke) -> None:
@@ -148,20 +130,12 @@ def check(situation: Situation, stroke: Stroke) -> None:
             raise refuse(name, [NAMES[i] for i in ids_of(absent)], "must be on the table before the stroke")
     if stroke.nominated > 0:
         on = balls_on(situation.ball_on, situation.on_table)
-        allowed = (
-            on
-            if situation.ball_on == BallOn.ANY_COLOUR
-            else situation.on_table & ~on
-            if situation.free_ball
-            else 0
-        )
+        free = situation.on_table & ~on if situation.free_ball else 0
+        allowed = on if situation.ball_on == BallOn.ANY_COLOUR else free
         if not allowed >> stroke.nominated & 1:
             what = [NAMES[i] for i in ids_of(allowed & COLOURS_MASK)]
-            raise refuse(
-                "nominated",
-                NAMES[stroke.nominated],
-                f"must be one of {what}" if what else "must be none: no choice is on",
-            )
+            allowed = f"must be one of {what}" if what else "must be none: no choice is on"
+            raise refuse("nominated", NAMES[stroke.nominated], allowed)
 
 
 def numbers_of(situation: Situation, stroke: Stroke) -> tuple[Before, Facts, int]:

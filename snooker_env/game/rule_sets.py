@@ -1,7 +1,6 @@
 """Which game is played? What six-red snooker and the Shoot Out change in the rules of a frame, as data.
 
-``docs/environment/rules.md`` says where each rule comes from, what is left out and why.
-"""
+``docs/environment/rules.md`` says where each rule comes from, what is left out and why."""
 
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
@@ -9,11 +8,8 @@ from typing import Literal, TypeAlias, get_args
 from .._check import choice
 from .balls import COLOURS_MASK, N_REDS
 
-RulesName: TypeAlias = Literal["snooker", "six_red", "shoot_out"]
-"""Names of the rule sets."""
-
-SNOOKER, SIX_RED, SHOOT_OUT = range(3)
-"""Codes of the rule sets, for the kernels."""
+RulesName: TypeAlias = Literal["snooker", "six_red", "shoot_out"]  # names of the rule sets
+SNOOKER, SIX_RED, SHOOT_OUT = range(3)  # codes of the rule sets, for the kernels
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,29 +32,19 @@ class RuleSet:
         return COLOURS_MASK | ((2 << self.reds) - 2)
 
 
-LATE_PENALTY = 5
-"""Least penalty in points for a stroke that was not begun within the shot clock."""
-
+LATE_PENALTY = 5  # least penalty in points for a stroke that was not begun within the shot clock
+_SHOT_CLOCK = (15_000, 10_000)
 RULE_SETS = (
     RuleSet(name="snooker", code=SNOOKER),
     RuleSet(name="six_red", code=SIX_RED, reds=6, most_misses=5, behind_nominated=True),
     RuleSet(
-        name="shoot_out",
-        code=SHOOT_OUT,
-        anywhere=True,
-        cushion=True,
-        clock=600_000,
-        shot_clock=(15_000, 10_000),
+        name="shoot_out", code=SHOOT_OUT, anywhere=True, cushion=True, clock=600_000, shot_clock=_SHOT_CLOCK
     ),
 )
 """All rule sets, by code."""
-RULES = get_args(RulesName)
-"""Their names, by code."""
-
-MOST_MISSES = RULE_SETS[SIX_RED].most_misses
-CLOCK_LIMIT = RULE_SETS[SHOOT_OUT].clock
+RULES = get_args(RulesName)  # their names, by code
+MOST_MISSES, CLOCK_LIMIT = RULE_SETS[SIX_RED].most_misses, RULE_SETS[SHOOT_OUT].clock
 SHOT_CLOCK = RULE_SETS[SHOOT_OUT].shot_clock
-"""The same numbers for the kernels."""
 
 
 def rule_set(name: RulesName) -> RuleSet:

@@ -1,9 +1,7 @@
 """Was the stroke fair, what does it score and who plays on which ball next? The rules of one stroke.
 
-``ruling`` is a pure kernel on integers and masks (bit i is ball i), the same for one table and thousands. It
-does not judge intent or effort (``frame`` has what geometry decides of that), time wasting or conduct. Acts
-outside the simulation, jumps, pushes and double hits are passed in as flags.
-"""
+``ruling`` is a pure kernel on integers and masks (bit i is ball i). It does not judge intent or effort
+(``frame`` has what geometry decides of that); acts outside the simulation are passed in as flags."""
 
 from collections import namedtuple
 from enum import IntEnum, IntFlag
@@ -13,8 +11,7 @@ from .._jit import kernel
 from .balls import BLACK, COLOURS_MASK, CUE_BIT, N_BALLS, PINK, VALUES, balls_on_kernel, count, next_on_kernel
 from .rule_sets import LATE_PENALTY
 
-AUTO = -1
-"""The referee decides which ball was nominated: the one evidently played at (see ``_nomination``)."""
+AUTO = -1  # the referee decides which ball was nominated: the one evidently played at (see ``_nomination``)
 
 
 class Flag(IntFlag):
@@ -35,8 +32,7 @@ class Flag(IntFlag):
     SHOOT_OUT = 4096  # the rules of the Shoot Out hold
 
 
-RULE_FLAGS = (Flag(0), Flag.SIX_RED, Flag.SHOOT_OUT)
-"""The flag of each rule set, by its code."""
+RULE_FLAGS = (Flag(0), Flag.SIX_RED, Flag.SHOOT_OUT)  # the flag of each rule set, by its code
 
 
 class Foul(IntFlag):
@@ -145,11 +141,8 @@ def _top_ball(mask):
 
 @kernel
 def _nomination(on, ball_on, free_ball, first, touching, nominated):
-    """The id of the colour on, or of the free ball, or 0 for none ("any colour" or a free ball need one).
-
-    With AUTO it is the colour first struck among those allowed, the highest if there are several; if none was
-    struck, an allowed colour that the cue ball was touching.
-    """
+    """The id of the colour on, or of the free ball, or 0 for none. With AUTO it is the highest colour first
+    struck among those allowed; if none was struck, an allowed colour that the cue ball was touching."""
     if ball_on != 0 and not free_ball:
         return 0
     if nominated >= 0:
@@ -162,8 +155,7 @@ def _nomination(on, ball_on, free_ball, first, touching, nominated):
 
 @kernel
 def ruling(before, facts, flags):
-    """The ``Ruling`` on the stroke ``facts`` in the frame ``before``; ``flags``: Flag bits. The order is that
-    of the rule book; the highest penalty counts, and a foul scores nothing."""
+    """The ``Ruling`` on the stroke ``facts`` in the frame ``before``; ``flags``: Flag bits."""
     on_table, ball_on, free_ball, lead = before
     first, touching, moved, potted, off, nominated = facts
     reds_and_colours = on_table & ~CUE_BIT
@@ -180,7 +172,7 @@ def ruling(before, facts, flags):
     fair = target | on
     base = max(4, value_on)
     fouls = 0
-    penalty = 0
+    penalty: Any = 0
 
     # 2. First impact. A touching ball that is on counts as struck, as long as the stroke does not move it.
     if touching & moved:
@@ -234,7 +226,7 @@ def ruling(before, facts, flags):
     # 6. No snooker behind the free ball without a score, unless only pink and black are left.
     behind = flags & FLAG.BEHIND_FREE_BALL and (fouls or not down)
     if behind and (
-        (choice and flags & FLAG.SIX_RED) or (free and reds_and_colours != (1 << PINK | 1 << BLACK))
+        (choice and flags & FLAG.SIX_RED) or (free and reds_and_colours != 1 << PINK | 1 << BLACK)
     ):
         fouls |= FOUL.BEHIND_FREE_BALL
         penalty = max(penalty, base)
@@ -248,7 +240,7 @@ def ruling(before, facts, flags):
         penalty = 7
 
     # Points, and the colours that return: after a foul all, else those not potted as the sequence's ball on.
-    points = 0
+    points: Any = 0
     respotted = down & COLOURS_MASK
     if not fouls:
         if ball_on == 1:
@@ -257,29 +249,29 @@ def ruling(before, facts, flags):
             points = value_on
             if ball_on != 0:
                 respotted &= ~on
-    remaining = (reds_and_colours & ~down) | respotted
+    left = (reds_and_colours & ~down) | respotted
 
     # Who plays on, and on which ball.
     stays = 1 if points else 0
-    next_on = next_on_kernel(remaining)
-    if points and ball_on == 1 and remaining & COLOURS_MASK:
+    next_on = next_on_kernel(left)
+    if points and ball_on == 1 and left & COLOURS_MASK:
         next_on = 0
-    visit_end = VISIT.FOUL if fouls else VISIT.CONTINUES if points else VISIT.MISS
-    if remaining == 0 and not fouls:
-        visit_end = VISIT.CLEARANCE
+    end = VISIT.FOUL if fouls else VISIT.CONTINUES if points else VISIT.MISS
+    if left == 0 and not fouls:
+        end = VISIT.CLEARANCE
 
     # The frame ends on an empty table, and with a foul when only the black is left; if level, it returns.
     outcome = OUTCOME.PLAYING
-    if remaining == 0 or (fouls and reds_and_colours == 1 << BLACK):
+    if left == 0 or (fouls and reds_and_colours == 1 << BLACK):
         lead += points - penalty
         if lead == 0:
             outcome = OUTCOME.RESPOTTED_BLACK
-            remaining = respotted = 1 << BLACK
+            left = respotted = 1 << BLACK
             next_on = 7
             stays = -1
         else:
             outcome = OUTCOME.STRIKER_WINS if lead > 0 else OUTCOME.OPPONENT_WINS
-            remaining = respotted = 0
+            left = respotted = 0
             next_on = -1
             stays = 0
     playing = outcome == OUTCOME.PLAYING
@@ -288,16 +280,5 @@ def ruling(before, facts, flags):
         in_hand = 1
     free_next = 1 if playing and fouls and flags & FLAG.SNOOKERED and not flags & FLAG.SHOOT_OUT else 0
     return Ruling(
-        fouls,
-        penalty,  # type: ignore[arg-type]
-        points,  # type: ignore[arg-type]
-        respotted,
-        remaining,
-        next_on,
-        stays,
-        in_hand,
-        free_next,
-        visit_end,
-        outcome,
-        choice,
-    )  # type: ignore[arg-type]
+        fouls, penalty, points, respotted, left, next_on, stays, in_hand, free_next, end, outcome, choice
+    )

@@ -3,44 +3,31 @@
 import numpy as np
 
 from .._types import Ints
-from .frame_columns import (
-    ANYWHERE,
-    BALL_ON,
-    BREAKER,
-    FIRST_BREAK,
-    FRAMES_0,
-    FRAMES_1,
-    FREE_BALL,
-    IN_HAND,
-    PAID,
-    SCORE_0,
-    SCORE_1,
-    STRIKER,
-    WINNER,
-)
+from . import frame_columns as columns
 
 
 def swapped(game: Ints) -> Ints:
     """Rows of frames (m, COLUMNS) as if the players had changed sides: a new array."""
     other = game.copy()
-    for a, b in ((SCORE_0, SCORE_1), (FRAMES_0, FRAMES_1)):
+    for a, b in ((columns.SCORE_0, columns.SCORE_1), (columns.FRAMES_0, columns.FRAMES_1)):
         other[:, a], other[:, b] = game[:, b], game[:, a]
-    for column in (STRIKER, BREAKER, FIRST_BREAK):
+    for column in (columns.STRIKER, columns.BREAKER, columns.FIRST_BREAK):
         other[:, column] = 1 - game[:, column]
-    other[:, WINNER] = np.where(game[:, WINNER] < 0, game[:, WINNER], 1 - game[:, WINNER])
-    other[:, PAID] = -game[:, PAID]
+    winner = game[:, columns.WINNER]
+    other[:, columns.WINNER] = np.where(winner < 0, winner, 1 - winner)
+    other[:, columns.PAID] = -game[:, columns.PAID]
     return other
 
 
 def strikers_own(game: Ints) -> Ints:
     """Rows of frames (m, COLUMNS) with the striker as player 0: a new array."""
-    return np.where(game[:, STRIKER, None] == 1, swapped(game), game)
+    return np.where(game[:, columns.STRIKER, None] == 1, swapped(game), game)
 
 
 def as_visits(game: Ints) -> Ints:
     """Copied rows as a player of visits sees them: free ball as any colour, anywhere as already placed."""
     seen = game.copy()
-    free, anywhere = game[:, FREE_BALL] != 0, game[:, ANYWHERE] != 0
-    seen[free, BALL_ON] = seen[free, FREE_BALL] = 0
-    seen[anywhere, IN_HAND] = seen[anywhere, ANYWHERE] = 0
+    free, anywhere = game[:, columns.FREE_BALL] != 0, game[:, columns.ANYWHERE] != 0
+    seen[free, columns.BALL_ON] = seen[free, columns.FREE_BALL] = 0
+    seen[anywhere, columns.IN_HAND] = seen[anywhere, columns.ANYWHERE] = 0
     return seen

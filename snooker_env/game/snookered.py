@@ -6,9 +6,7 @@ snookered if it can strike one ball on so at both edges, or touches it. A cushio
 curved face of a jaw obstructs an edge and is nearer than any ball not on that does, it counts as open.
 
 In hand the places of ``in_hand.PLACES_IN_D`` are tested, 5 mm apart, then places right beside each ball,
-where most narrow openings are. An opening narrower than the step and away from every ball may be missed; no
-player places a ball more exactly.
-"""
+where most narrow openings are; one narrower than 5 mm and away from every ball may be missed."""
 
 import numpy as np
 
@@ -20,10 +18,8 @@ from .balls import ALL_MASK, CLEARANCE, CUE_BIT, N_BALLS, REFEREE_TOUCH, check_t
 from .in_hand import PLACES_IN_D
 from .spotting import touches
 
-BESIDE = 360
-"""Number of directions in which places beside a ball are tested."""
-SLACK = 1e-9
-"""A ball obstructs only if it is nearer than 2 R by more than this [m]: touching does not obstruct."""
+BESIDE, SLACK = 360, 1e-9
+"""Number of places beside a ball that are tested; nearer than 2 R by more than this [m] a ball obstructs."""
 NO_JAWS = np.empty((0, 3))
 """No curved cushion faces; other arrays (m, 3) hold their circles (x, y, radius) [m]."""
 
@@ -50,8 +46,7 @@ def _edge(cx, cy, tx, ty, side, radius):
 
 @kernel
 def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
-    """Mask of the balls not on, nearest by centres, that hide an edge of ``target`` from (cx, cy); 0: both
-    edges are open; -1: a jaw obstructs an edge and is nearer than those balls."""
+    """Mask of the nearest balls that hide an edge of ``target`` from (cx, cy); 0: none; -1: a jaw does."""
     tx, ty = positions[target, 0], positions[target, 1]
     if np.hypot(tx - cx, ty - cy) <= 2.0 * radius + REFEREE_TOUCH:
         return 0
@@ -70,15 +65,12 @@ def hidden(positions, on_table, on, target, cx, cy, jaws, radius):
         for j in range(jaws.shape[0]):
             if segment_distance(jaws[j, 0], jaws[j, 1], cx, cy, ex, ey) < jaws[j, 2] + radius - SLACK:
                 jaw = min(jaw, np.hypot(jaws[j, 0] - cx, jaws[j, 1] - cy) - jaws[j, 2])
-    if jaw < nearest - radius:
-        return -1
-    return mask
+    return -1 if jaw < nearest - radius else mask
 
 
 @kernel
 def snookered_from(positions, on_table, on, cx, cy, jaws, radius):
-    """Whether the cue ball at (cx, cy) is snookered, and the mask of the effective snookering balls: (bool,
-    int). The mask is 0 if reds are hidden by different balls: then no ball is the effective one."""
+    """Whether it is snookered at (cx, cy), and the mask of the effective balls; 0 if they differ."""
     effective = -1
     for target in range(1, N_BALLS):
         if on_table[target] and (on >> target) & 1:
@@ -92,10 +84,9 @@ def snookered_from(positions, on_table, on, cx, cy, jaws, radius):
 @kernel
 def _open_at(positions, on_table, on, x, y, jaws, radius):
     """Whether the cue ball can stand at (x, y) and is not snookered there."""
-    return (
-        not touches(positions, on_table, x, y, 2.0 * radius + REFEREE_TOUCH)
-        and not snookered_from(positions, on_table, on, x, y, jaws, radius)[0]
-    )
+    if touches(positions, on_table, x, y, 2.0 * radius + REFEREE_TOUCH):
+        return False
+    return not snookered_from(positions, on_table, on, x, y, jaws, radius)[0]
 
 
 @kernel
@@ -112,11 +103,8 @@ def _open_beside(positions, on_table, on, i, jaws, radius):
             if abs(BAULK_Y - y) > gap:
                 break
             px, py = x + (2 * (k - BESIDE) - 1) * np.sqrt(gap * gap - (BAULK_Y - y) ** 2), BAULK_Y
-        if (
-            py <= BAULK_Y
-            and np.hypot(px, py - BAULK_Y) <= D_RADIUS
-            and _open_at(positions, on_table, on, px, py, jaws, radius)
-        ):
+        inside = py <= BAULK_Y and np.hypot(px, py - BAULK_Y) <= D_RADIUS
+        if inside and _open_at(positions, on_table, on, px, py, jaws, radius):
             return True
     return False
 

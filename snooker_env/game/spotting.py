@@ -1,11 +1,9 @@
 """Where does a colour go when it returns? The spotting rule, exact, as kernels.
 
-A colour goes on its own spot; if that is occupied, on the free spot of the highest value; if all are, as near
-its own spot as possible without touching another ball, on the straight line towards the top cushion; if that
-has no room, below the spot (the rules state this for pink and black). A spot is occupied if a ball there
-would touch another as the referee sees it (``balls.REFEREE_TOUCH``). Of several colours, those whose own spot
-is free go first, then the highest value.
-"""
+A colour goes on its own spot; if that is occupied (a ball there would touch another as the referee sees it),
+on the free spot of the highest value; if all are, as near its own spot as possible without touching, on the
+straight line towards the top cushion; if that has no room, below the spot (the rules state this for pink and
+black). Of several colours, those whose own spot is free go first, then the highest value."""
 
 import numpy as np
 
@@ -13,23 +11,13 @@ from .._check import integer, refuse
 from .._jit import entry, kernel
 from .._types import Bools, Flags, Floats, Vectors
 from ..geometry import BALL_RADIUS, HALF_LENGTH
-from .balls import (
-    ALL_MASK,
-    BLACK,
-    CLEARANCE,
-    COLOURS_MASK,
-    N_BALLS,
-    REFEREE_TOUCH,
-    SPOTS,
-    YELLOW,
-    check_table,
-)
+from . import balls
 
 
 @kernel
 def touches(positions, on_table, x, y, reach):
     """Whether the centre of a ball on the table is nearer to (x, y) than ``reach`` [m]."""
-    for i in range(N_BALLS):
+    for i in range(balls.N_BALLS):
         if on_table[i]:
             dx, dy = positions[i, 0] - x, positions[i, 1] - y
             if dx * dx + dy * dy < reach * reach:
@@ -40,22 +28,18 @@ def touches(positions, on_table, x, y, reach):
 @kernel
 def occupied(positions, on_table, x, y, radius):
     """Whether a ball at (x, y) [m] would touch one that is on the table."""
-    return touches(positions, on_table, x, y, 2.0 * radius + REFEREE_TOUCH)
+    return touches(positions, on_table, x, y, 2.0 * radius + balls.REFEREE_TOUCH)
 
 
 @kernel
 def nearest_free(positions, on_table, x, y, direction, radius):
     """The y nearest to ``y`` in ``direction`` (+1 up, -1 down) where a ball on the line ``x`` touches no
-    other [m].
-
-    Ball i excludes y_i - h to y_i + h with h^2 = (2 R + clearance)^2 - (x_i - x)^2; y moves to the far end of
-    each interval that contains it, until none does, which is exact. Cushions are ignored.
-    """
-    reach = 2.0 * radius + CLEARANCE
+    other: it moves to the far end of each interval that a ball bars, until none does, which is exact."""
+    reach = 2.0 * radius + balls.CLEARANCE
     moved = True
     while moved:
         moved = False
-        for i in range(N_BALLS):
+        for i in range(balls.N_BALLS):
             if on_table[i]:
                 dx = positions[i, 0] - x
                 if abs(dx) < reach:
@@ -69,14 +53,14 @@ def nearest_free(positions, on_table, x, y, direction, radius):
 @kernel
 def place_colour(positions, on_table, ball, radius):
     """The place of the colour ``ball`` by the rule: (x, y) [m]; its entry in ``on_table`` must be False."""
-    x, y = SPOTS[ball, 0], SPOTS[ball, 1]
+    x, y = balls.SPOTS[ball, 0], balls.SPOTS[ball, 1]
     if not occupied(positions, on_table, x, y, radius):
         return x, y
-    for spot in range(BLACK, YELLOW - 1, -1):
-        if not occupied(positions, on_table, SPOTS[spot, 0], SPOTS[spot, 1], radius):
-            return SPOTS[spot, 0], SPOTS[spot, 1]
+    for spot in range(balls.BLACK, balls.YELLOW - 1, -1):
+        if not occupied(positions, on_table, balls.SPOTS[spot, 0], balls.SPOTS[spot, 1], radius):
+            return balls.SPOTS[spot, 0], balls.SPOTS[spot, 1]
     up = nearest_free(positions, on_table, x, y, 1.0, radius)
-    if up <= HALF_LENGTH - radius - CLEARANCE:
+    if up <= HALF_LENGTH - radius - balls.CLEARANCE:
         return x, up
     # Twenty-one balls cannot fill a line along the whole table, so there is always room below.
     return x, nearest_free(positions, on_table, x, y, -1.0, radius)
@@ -84,18 +68,18 @@ def place_colour(positions, on_table, ball, radius):
 
 @kernel
 def spot(positions, on_table, mask, radius):
-    """Write the colours in ``mask`` into ``positions`` (22, 2) [m] and ``on_table`` (22,) bool; those still
-    on the table are removed first (the black of a re-spotted black)."""
-    for ball in range(YELLOW, BLACK + 1):
+    """Put the colours in ``mask``, removed first, on ``positions`` (22, 2) [m] and ``on_table``."""
+    for ball in range(balls.YELLOW, balls.BLACK + 1):
         if (mask >> ball) & 1:
             on_table[ball] = False
     waiting = mask
-    for ball in range(BLACK, YELLOW - 1, -1):
-        if (mask >> ball) & 1 and not occupied(positions, on_table, SPOTS[ball, 0], SPOTS[ball, 1], radius):
-            positions[ball, 0], positions[ball, 1] = SPOTS[ball, 0], SPOTS[ball, 1]
+    for ball in range(balls.BLACK, balls.YELLOW - 1, -1):
+        x, y = balls.SPOTS[ball, 0], balls.SPOTS[ball, 1]
+        if (mask >> ball) & 1 and not occupied(positions, on_table, x, y, radius):
+            positions[ball, 0], positions[ball, 1] = x, y
             on_table[ball] = True
             waiting &= ~(1 << ball)
-    for ball in range(BLACK, YELLOW - 1, -1):
+    for ball in range(balls.BLACK, balls.YELLOW - 1, -1):
         if (waiting >> ball) & 1:
             x, y = place_colour(positions, on_table, ball, radius)
             positions[ball, 0], positions[ball, 1] = x, y
@@ -110,10 +94,9 @@ def _spot(positions, on_table, mask, radius):
 def spot_colours(
     positions: Vectors, on_table: Flags, mask: int, *, radius: float = BALL_RADIUS
 ) -> tuple[Floats, Bools]:
-    """New ``positions`` (22, 2) [m] and ``on_table`` (22,) with the colours in ``mask`` placed by the rule.
-    ValueError for wrong arrays, or a mask that contains a ball that is no colour."""
-    if integer("mask", mask, 0, ALL_MASK) & ~COLOURS_MASK:
+    """New ``positions`` (22, 2) [m] and ``on_table`` (22,), ``mask`` spotted; or ValueError."""
+    if integer("mask", mask, 0, balls.ALL_MASK) & ~balls.COLOURS_MASK:
         raise refuse("mask", mask, "must name colours only (ids 16 to 21)")
-    placed, present = check_table(positions, on_table)
+    placed, present = balls.check_table(positions, on_table)
     _spot(placed, present, mask, float(radius))
     return placed, present

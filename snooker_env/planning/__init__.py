@@ -1,5 +1,4 @@
-"""Planning: play many strokes on copies of positions, under given noise samples, and find strokes by
-geometry.
+"""Planning: play many strokes on copies of positions, under given noise samples; find strokes by geometry.
 
 A planner works in two steps:
 
@@ -31,8 +30,7 @@ from .proposals import Proposals, at_balls, at_pots, over_cushions, spread_strok
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import sobol_points
 from .stroke_search import Ranked, StrokeSearch
-from .strokes import action_masks, actions_of, as_actions, pot_aim
-from .trials import Stops
+from .strokes import Stops, action_masks, actions_of, as_actions, pot_aim
 
 __all__ = [
     "RULE_OF_THUMB",

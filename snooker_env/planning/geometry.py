@@ -1,9 +1,5 @@
 """Which strokes does the geometry offer, and what is in the way? Direct pots, balls beside a path and clear
-paths.
-
-The geometry is that of straight lines: no throw, no spin and no cushions. ``pot_aim`` corrects the aim for
-throw, swerve and spin.
-"""
+paths, along straight lines: no throw, no spin, no cushions. ``pot_aim`` corrects the aim for these."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -12,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import array, integer
-from .._jit import entry, kernel
+from .._jit import entry
 from .._types import Integers, Vectors
 from ..game.balls import N_BALLS, balls_on_kernel, bits
 from ..game.frame_columns import BALL_ON
@@ -32,16 +28,13 @@ class Pots(NamedTuple):
 
     Attributes
     ----------
-    ball : numpy.ndarray
-        int64 (m, most). Id of the ball to pot.
-    pocket : numpy.ndarray
-        int64 (m, most). Index into ``snooker_env.POCKETS``.
+    ball, pocket : numpy.ndarray
+        int64 (m, most). Id of the ball to pot, and index into ``snooker_env.POCKETS``.
     ghost : numpy.ndarray
         float64 (m, most, 2). Centre of the cue ball [m] when it touches the object ball.
-    cut : numpy.ndarray
-        float64 (m, most). Angle between the paths of both balls [rad], 0 for a straight pot.
-    tolerance : numpy.ndarray
-        float64 (m, most). Approximate largest error of the aim [rad] with which the ball is still potted.
+    cut, tolerance : numpy.ndarray
+        float64 (m, most). Angle between the paths of both balls [rad], 0 for a straight pot; approximate
+        largest error of the aim [rad] with which the ball is still potted.
 
     Examples
     --------
@@ -63,10 +56,8 @@ class Paths(NamedTuple):
 
     Attributes
     ----------
-    any_part : numpy.ndarray
-        bool (m,). Whether a straight path leads to some part of a ball on.
-    full_ball : numpy.ndarray
-        bool (m,). Whether one leads to the full face of a ball on.
+    any_part, full_ball : numpy.ndarray
+        bool (m,). Whether a straight path leads to some part, and to the full face, of a ball on.
 
     Examples
     --------
@@ -113,29 +104,20 @@ def pots(positions: PositionsLike, most: int = POTS) -> Pots:
     ([21, 21, -1, -1], [3, 4, -1, -1], 0.00023)
     """
     at, most = Positions.of(positions).as_visits(), integer("most", most, 1, 6 * (N_BALLS - 1))
-    m = len(at)
-    out = Pots(
-        np.full((m, most), -1),
-        np.full((m, most), -1),
-        np.zeros((m, most, 2)),
-        np.zeros((m, most)),
-        np.zeros((m, most)),
-    )
+    shape = len(at), most
+    ids, reals = (np.full(shape, -1), np.full(shape, -1)), (np.zeros(shape), np.zeros(shape))
+    out = Pots(*ids, np.zeros((*shape, 2)), *reals)
     _pots(at.positions, at.on_table, at.game, *out)
     return out
 
 
-@kernel
-def _beside(positions, on_table, ax, ay, bx, by, reach, out):
-    for i in range(N_BALLS):
-        out[i] = on_table[i] and segment_distance(positions[i, 0], positions[i, 1], ax, ay, bx, by) < reach
-
-
 @entry
 def _obstructions(positions, on_table, rows, starts, ends, reach, out):
-    for i in range(len(rows)):
-        k = rows[i]
-        _beside(positions[k], on_table[k], starts[i, 0], starts[i, 1], ends[i, 0], ends[i, 1], reach, out[i])
+    for j in range(len(rows)):
+        p, here = positions[rows[j]], on_table[rows[j]]
+        ax, ay, bx, by = starts[j, 0], starts[j, 1], ends[j, 0], ends[j, 1]
+        for i in range(N_BALLS):
+            out[j, i] = here[i] and segment_distance(p[i, 0], p[i, 1], ax, ay, bx, by) < reach
 
 
 def obstructions(
@@ -147,10 +129,9 @@ def obstructions(
     ----------
     positions : PositionsLike
         The m positions: anything that ``Positions.of`` accepts.
-    rows : array_like
-        int (n,). Row of ``positions`` for each path, in [0, m).
-    starts, ends : array_like
-        float (n, 2). First and last point of the running ball's centre [m].
+    rows, starts, ends : array_like
+        int (n,), row of ``positions`` for each path, in [0, m); float (n, 2), first and last point of the
+        running ball's centre [m].
     ignore : array_like, optional
         int (j,) or (n, j). Ids of balls that do not count, usually the running ball and its target.
 
@@ -184,17 +165,14 @@ def obstructions(
 @entry(what="the clear paths of positions", seconds=2, uses=())
 def _clear_paths(positions, on_table, game, noses, jaws, any_part, full_ball):
     for k in range(len(any_part)):
-        on = balls_on_kernel(game[k, BALL_ON], bits(on_table[k]))
-        any_part[k] = on_table[k, 0] and clear_path(positions[k], on_table[k], on, noses, jaws, BALL_RADIUS)
-        full_ball[k] = on_table[k, 0] and full_ball_path(
-            positions[k], on_table[k], on, noses, jaws, BALL_RADIUS
-        )
+        p, here = positions[k], on_table[k]
+        on = balls_on_kernel(game[k, BALL_ON], bits(here))
+        any_part[k] = here[0] and clear_path(p, here, on, noses, jaws, BALL_RADIUS)
+        full_ball[k] = here[0] and full_ball_path(p, here, on, noses, jaws, BALL_RADIUS)
 
 
 def clear_paths(positions: PositionsLike) -> Paths:
     """Determine whether the cue ball can roll straight to a ball on, touching no other ball or cushion first.
-
-    The cushions are those of the match table.
 
     Parameters
     ----------
@@ -204,8 +182,8 @@ def clear_paths(positions: PositionsLike) -> Paths:
     Returns
     -------
     Paths
-        Two bool arrays (m,), of the foul-and-miss rule (``snooker_env.game.paths``); False without a cue
-        ball.
+        Two bool arrays (m,), of the foul-and-miss rule (``snooker_env.game.paths``) with the cushions of the
+        match table; False without a cue ball.
 
     Examples
     --------

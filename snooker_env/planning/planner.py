@@ -1,5 +1,4 @@
-"""What would strokes lead to? ``Planner`` plays them on copies of positions, under given noise samples, by
-the rules, on all cores."""
+"""What would strokes lead to? ``Planner`` plays them on copies of positions by the rules."""
 
 import copy
 import threading
@@ -19,12 +18,11 @@ from ..tasks.noise import Noise, NoiseLike, errors_of
 from ..tasks.observations import OBSERVATIONS
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
-from ..tasks.tables import I_FIRST, I_PENALTY, StepOutput
+from ..tasks.tables import I_FIRST, I_PENALTY
 from ..tasks.threads import Threads, processors
 from .positions import Positions, PositionsLike, bare, check_played, rows_of
-from .strokes import check_strokes, encoded, solved_aims
-from .trials import AIM, Stops, TrialVisits, WatchedVisits, decoded
-from .trials import COLUMNS as STROKE
+from .strokes import AIM, Stops, TrialVisits, WatchedVisits, check_strokes, decoded, encoded, solved_aims
+from .strokes import COLUMNS as STROKE
 
 
 class Outcomes(NamedTuple):
@@ -32,15 +30,12 @@ class Outcomes(NamedTuple):
 
     Attributes
     ----------
-    points : numpy.ndarray
-        float64 (n,). Points scored; 0 for a miss or a foul.
-    goes_on : numpy.ndarray
-        bool (n,). True if the visit continues after the stroke.
+    points, goes_on : numpy.ndarray
+        float64 (n,), points scored, 0 for a miss or a foul; bool (n,), whether the visit continues.
     afterstates : Positions
         n rows: the balls at rest, with colours respotted, and the ball on for the next stroke.
     observations : numpy.ndarray
-        float32 (n, 121). The flat observation of each afterstate, as ``Snooker-v0`` returns it with
-        ``task="visit"``.
+        float32 (n, 121). The flat observation of each afterstate, as with ``task="visit"``.
 
     Examples
     --------
@@ -95,12 +90,10 @@ class Planner:
     ):
         rules = options_in(env_or_options).rules
         errors = rules.noise if noise is None else Noise.of(noise)
-        self._rules = replace(
-            rules, noise=errors, reward=REWARDS[0], one_stroke=False, observation=OBSERVATIONS[0]
-        )
-        self._threads = Threads(
-            min(1024, processors()) if threads is None else integer("threads", threads, 1, 1024)
-        )
+        plain: Any = {"reward": REWARDS[0], "one_stroke": False, "observation": OBSERVATIONS[0]}
+        self._rules = replace(rules, noise=errors, **plain)
+        usual = min(1024, processors())
+        self._threads = Threads(usual if threads is None else integer("threads", threads, 1, 1024))
         self._visits, self._watched = TrialVisits(self._rules, 0), WatchedVisits(self._rules, 0)
         self._lock = threading.Lock()
         self._shots = 0
@@ -155,9 +148,7 @@ class Planner:
         of speed, side, top, aim and elevation. Without noise neither is needed.
 
         ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
-        SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes about 20
-        us.
-        """
+        SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes 20 us."""
         after, out = self._played(positions, rows, actions, keys, strokes=strokes, errors=errors)
         return Outcomes(out.reals[:, 0].copy(), ~after.over, after, out.observations)
 
@@ -173,23 +164,12 @@ class Planner:
     ) -> Stops:
         """Play n strokes as ``play`` does, and return where each ball stopped: ``Stops`` with n rows."""
         visits = copy.copy(self._watched)
-        after, out = self._played(
-            positions, rows, actions, keys, strokes=strokes, errors=errors, visits=visits
-        )
+        exact: Any = {"strokes": strokes, "errors": errors}
+        after, out = self._played(positions, rows, actions, keys, **exact, visits=visits)
         first, penalty = out.counts[:, I_FIRST].copy(), out.counts[:, I_PENALTY].copy()
         return Stops(visits.places, visits.potted, first, out.reals[:, 0].copy(), penalty, ~after.over, after)
 
-    def _played(
-        self,
-        positions: Any,
-        rows: Any,
-        actions: Any = None,
-        keys: Any = None,
-        *,
-        strokes: Any = None,
-        errors: Any = None,
-        visits: TrialVisits | None = None,
-    ) -> tuple[Positions, StepOutput]:
+    def _played(self, positions, rows, actions=None, keys=None, *, strokes=None, errors=None, visits=None):
         """Play the checked strokes on ``visits`` to be filled: the afterstates, and the step's output."""
         at = Positions.of(positions).as_visits()
         which = rows_of(at, rows)
@@ -263,9 +243,7 @@ class Planner:
         *,
         ghosts: Vectors | None = None,
     ) -> NDArray[np.float64]:
-        """Solve the cue ball's directions with this planner's physics and fidelity: float64 (n,).
-
-        See ``snooker_env.planning.pot_aim``."""
+        """Solve aims as ``planning.pot_aim`` with this planner's physics and fidelity: float64 (n,)."""
         dynamics = self.physics, self._rules.fidelity
         return solved_aims(Positions.of(positions), rows, balls, targets, strokes, ghosts, dynamics)
 
@@ -297,9 +275,8 @@ def _streams(keys: Integers | Sequence[Integers] | None, n: int, silent: bool) -
         raise refuse("keys", None, f"must be given with execution noise: {allowed}")
     # NumPy converts a list of large and small integers to floats
     numbers = keys if isinstance(keys, np.ndarray) else np.array(keys, object)
-    if numbers.dtype == object and all(
-        isinstance(k, int | np.integer) and 0 <= k < 2**64 for k in numbers.flat
-    ):
+    whole = (isinstance(k, int | np.integer) and 0 <= k < 2**64 for k in numbers.flat)
+    if numbers.dtype == object and all(whole):
         numbers = numbers.astype(np.uint64)
     if numbers.shape not in ((n,), (n, 2)):
         raise refuse_what("keys", f"array of shape {numbers.shape}", f"must be {allowed}")

@@ -1,5 +1,4 @@
-"""How is a position written down? ``Position``: the balls by name and the ball on, validated; and the arrays
-for the kernels."""
+"""How is a position written down? ``Position``: balls by name, the ball on; the kernels' arrays."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -32,8 +31,7 @@ from ..game.in_hand import place_cue, within_d
 from ..geometry import BALL_RADIUS
 from ..physics.table import Table, TableLike
 
-ON = tuple(ball.name.lower() for ball in BallOn)
-"""The names of all values of "on"."""
+ON = tuple(ball.name.lower() for ball in BallOn)  # the names of all values of "on"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,20 +50,18 @@ class Position:
     on : str, optional
         What must be struck first: "red", "any_colour" (a red was just potted), or the name of a colour.
         Default: "red" while there is a red, else the lowest colour.
-    in_hand : bool, optional
-        Whether the cue ball may be placed in the D before the stroke; default False.
+    in_hand, over : bool, optional
+        Whether the cue ball may be placed in the D before the stroke; whether the visit has ended: then
+        anything may be on, and the cue ball may be missing. Default False.
     points : int, optional
         Points of the visit so far, in [0, 155]; default 0.
-    over : bool, optional
-        Whether the visit has ended; default False. Then anything may be on, and the cue ball may be missing.
     table : str, Table or None, optional
         The table that the balls must fit on, not stored; None: unbounded cloth. Default: "match".
 
     Raises
     ------
     ValueError
-        If a ball is off the table, in a cushion or over a pocket, balls overlap, or the ball on contradicts
-        them.
+        If a ball is off the table, in a cushion or over a pocket, balls overlap, or the ball on is wrong.
 
     Examples
     --------
@@ -109,9 +105,8 @@ class Position:
         _check_layout(positions, on_table, Table.of(table))
         put("on", _named(self.on, mask_of_present(on_table)))
         if not self.over:
-            check_playable(
-                on_table, BallOn[str(self.on).upper()], on="on", cue="cue", balls="the balls given"
-            )
+            on = BallOn[str(self.on).upper()]
+            check_playable(on_table, on, on="on", cue="cue", balls="the balls given")
             x, y = positions[CUE]
             if self.in_hand and not within_d(x, y):
                 what = f"must be False with the cue ball at ({x:g}, {y:g}), outside the D"
@@ -119,21 +114,16 @@ class Position:
 
     def _layout(self) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         positions, on_table = np.zeros((N_BALLS, 2)), np.zeros(N_BALLS, np.bool_)
-        places = {
-            CUE: self.cue,
-            **dict(enumerate(self.reds, 1)),
-            **{colour(name): getattr(self, name) for name in COLOUR_NAMES},
-        }
-        for ball, place in places.items():
+        colours = [getattr(self, name) for name in COLOUR_NAMES]
+        spare = [None] * (N_REDS - len(self.reds))
+        for ball, place in enumerate([self.cue, *self.reds, *spare, *colours]):
             if place is not None:
                 positions[ball], on_table[ball] = place, True
         return positions, on_table
 
     def arrays(self) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
-        """Return the arrays of a ``Positions``: centres [m] (22, 2), on_table (22,), game int64 (5,).
-
-        The game: the ball on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit is
-        over, strokes (0)."""
+        """Return the arrays of a ``Positions``: centres [m] (22, 2), on_table (22,), game int64 (5,): the ball
+        on (a ``BallOn``), whether the cue ball is in hand, points, whether the visit is over, strokes (0)."""
         game = np.array([BallOn[str(self.on).upper()], self.in_hand, self.points, self.over, 0], np.int64)
         return *self._layout(), game
 
@@ -142,16 +132,11 @@ class Position:
         """Make the ``Position`` of one table's arrays, see ``arrays``; reds are numbered anew."""
         places, present = np.asarray(positions, np.float64).tolist(), np.asarray(on_table, np.bool_).tolist()
         ball_on, in_hand, points, over = np.asarray(game).tolist()[:4]
-        named = {
-            name: tuple(places[i])
-            for name, i in {"cue": CUE, **{c: colour(c) for c in COLOUR_NAMES}}.items()
-            if present[i]
-        }
-        reds = tuple(tuple(places[i]) for i in range(1, N_REDS + 1) if present[i])
-        on = BallOn(ball_on).name.lower()
-        return cls(
-            **named, reds=reds, on=on, in_hand=bool(in_hand), points=points, over=bool(over), table=None
-        )
+        ids = {"cue": CUE, **{name: colour(name) for name in COLOUR_NAMES}}
+        balls: Any = {name: tuple(places[i]) for name, i in ids.items() if present[i]}
+        balls["reds"] = tuple(tuple(places[i]) for i in range(1, N_REDS + 1) if present[i])
+        visit: Any = {"in_hand": bool(in_hand), "points": points, "over": bool(over)}
+        return cls(**balls, on=BallOn(ball_on).name.lower(), **visit, table=None)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fields as JSON types, without balls off the table; ``from_dict`` reads them."""
@@ -175,8 +160,7 @@ class Position:
         return cls(**_read(path), table=table)
 
 
-_NAMES = tuple(f.name for f in fields(Position))
-"""Keys that a position in JSON may have."""
+_NAMES = tuple(f.name for f in fields(Position))  # keys that a position in JSON may have
 
 
 def _known(init: Any) -> Any:
@@ -187,11 +171,8 @@ def _known(init: Any) -> Any:
     def checked(self: Position, *args: Any, **fields_: Any) -> None:
         for name in fields_:
             if name not in names:
-                hint = (
-                    "the reds are one list, reds=[(x, y), ...]"
-                    if name.startswith("red")
-                    else f"the fields are {', '.join(names)}"
-                )
+                reds, known = "the reds are one list, reds=[(x, y), ...]", ", ".join(names)
+                hint = reds if name.startswith("red") else f"the fields are {known}"
                 raise TypeError(f"Position got an unexpected keyword argument {name!r}; {hint}")
         init(self, *args, **fields_)
 
@@ -215,9 +196,9 @@ def _named(on: Any, balls: int) -> str:
 
 def _name(ball: int) -> str:
     """The name of a ball as a field of ``Position``."""
-    return (
-        "cue" if ball == CUE else f"reds[{ball - 1}]" if ball <= N_REDS else COLOUR_NAMES[ball - N_REDS - 1]
-    )
+    if ball == CUE:
+        return "cue"
+    return f"reds[{ball - 1}]" if ball <= N_REDS else COLOUR_NAMES[ball - N_REDS - 1]
 
 
 def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], table: Table) -> None:
@@ -237,17 +218,15 @@ def _check_layout(positions: NDArray[np.float64], on_table: NDArray[np.bool_], t
 
 
 def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue: str, balls: str) -> None:
-    """Raise ValueError, with these names of fields, unless there is a stroke to play (as
-    ``tasks.states.checked``)."""
+    """Raise ValueError, with these names of fields, unless there is a stroke to play."""
     present = mask_of_present(on_table)
     if not present & 1:
         raise refuse(cue, None, "must be on the table while the visit goes on")
     if not balls_on(ball_on, present):
         raise refuse(on, ball_on.name.lower(), f"must name balls of which one is on the table ({balls})")
     if ball_on > BallOn.RED and present & REDS_MASK:
-        raise refuse(
-            on, ball_on.name.lower(), f"must be 'red' or 'any_colour' while reds are on the table ({balls})"
-        )
+        allowed = f"must be 'red' or 'any_colour' while reds are on the table ({balls})"
+        raise refuse(on, ball_on.name.lower(), allowed)
     lowest = next_on(present)
     if ball_on not in (BallOn.ANY_COLOUR, lowest):
         what = f"'any_colour' or {BallOn(lowest).name.lower()!r}, the lowest on the table"
@@ -257,9 +236,8 @@ def check_playable(on_table: NDArray[np.bool_], ball_on: BallOn, *, on: str, cue
 def _checked(raw: Any, field: str = "position") -> Mapping[str, Any]:
     """A dict of JSON types that has keys of ``names`` only and no truth values where numbers belong."""
     if not isinstance(raw, Mapping):
-        raise refuse_what(
-            field, f"a {type(raw).__name__}", f"must be a dict with keys of {', '.join(_NAMES)}"
-        )
+        allowed = f"must be a dict with keys of {', '.join(_NAMES)}"
+        raise refuse_what(field, f"a {type(raw).__name__}", allowed)
     for key in raw:
         choice(f"key of {field}", key, _NAMES)
     for key, value in raw.items():

@@ -1,5 +1,4 @@
-"""Which positions are strokes tried on? ``Positions``: arrays with one row for each, taken from environments,
-states or ``Position``."""
+"""Which positions are strokes tried on? ``Positions``: arrays with one row for each."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias, overload
@@ -10,30 +9,9 @@ from numpy.typing import NDArray
 from .._check import array, refuse, refuse_what
 from .._jit import entry
 from .._types import Batches, Environment, FlagRows, Integers, Ints
+from ..game import frame_columns as columns
 from ..game.balls import CUE, N_BALLS, BallOn, bits, mask_of_present
 from ..game.frame import MOST_BREAK
-from ..game.frame_columns import (
-    ANYWHERE,
-    BALL_ON,
-    CHOICE,
-    COLUMNS,
-    FRAMES_0,
-    FRAMES_1,
-    FREE_BALL,
-    IN_HAND,
-    LOT,
-    MISS_CALLED,
-    OVER,
-    PHASE,
-    POINTS,
-    RESPOTTED_BLACK,
-    SCORE_0,
-    SCORE_1,
-    STEPS,
-    VISIT_COLUMNS,
-    Layouts,
-    strikeable,
-)
 from ..game.sides import as_visits, strikers_own
 from ..physics.table import Table
 from ..tasks.observations import SIZE
@@ -45,7 +23,7 @@ from .position import Position, check_playable
 @entry
 def _balls_on(on_table, game, out):
     for k in range(len(out)):
-        on = strikeable(game[k], bits(on_table[k]))
+        on = columns.strikeable(game[k], bits(on_table[k]))
         for i in range(N_BALLS):
             out[k, i] = (on >> i) & 1
 
@@ -62,8 +40,7 @@ class Positions:
     Parameters
     ----------
     positions : array_like
-        float (m, 22, 2). Centres of the balls [m], by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow
-        to black.
+        float (m, 22, 2). Centres [m] by id: 0 the cue ball, 1 to 15 the reds, 16 to 21 yellow to black.
     on_table : array_like
         bool (m, 22). Which balls are on the table.
     game : array_like
@@ -76,8 +53,7 @@ class Positions:
     Raises
     ------
     ValueError
-        If an array has the wrong shape or type, or a number is not finite. Overlapping balls are found when a
-        position is played.
+        If an array has the wrong shape or type, or a number is not finite. Overlaps are refused when played.
 
     Examples
     --------
@@ -95,51 +71,42 @@ class Positions:
         positions: Batches,
         on_table: FlagRows,
         game: Sequence[Integers] | NDArray[np.integer[Any]],
-        saved: Layouts | None = None,
+        saved: columns.Layouts | None = None,
     ):
         self.positions: NDArray[np.float64] = _floats("positions", positions, (-1, N_BALLS, 2))
         m = len(self.positions)
-        present, columns = np.asarray(on_table), np.asarray(game)
+        present, held = np.asarray(on_table), np.asarray(game)
         if present.shape != (m, N_BALLS) or present.dtype != np.bool_:
-            raise refuse_what(
-                "on_table",
-                f"{present.dtype} array of shape {present.shape}",
-                f"must be bool of shape {(m, N_BALLS)}",
-            )
-        if columns.shape not in ((m, VISIT_COLUMNS), (m, COLUMNS)) or columns.dtype.kind not in "iu":
-            allowed = f"must be integers of shape {(m, VISIT_COLUMNS)}, or {(m, COLUMNS)} of frames"
-            raise refuse_what("game", f"{columns.dtype} array of shape {columns.shape}", allowed)
+            allowed = f"must be bool of shape {(m, N_BALLS)}"
+            raise refuse_what("on_table", f"{present.dtype} array of shape {present.shape}", allowed)
+        visits, frames = (m, columns.VISIT_COLUMNS), (m, columns.COLUMNS)
+        if held.shape not in (visits, frames) or held.dtype.kind not in "iu":
+            allowed = f"must be integers of shape {visits}, or {frames} of frames"
+            raise refuse_what("game", f"{held.dtype} array of shape {held.shape}", allowed)
         self.on_table: NDArray[np.bool_] = np.ascontiguousarray(present)
-        self.game: NDArray[np.int64] = np.ascontiguousarray(columns, np.int64)
-        self.saved: Layouts | None = saved
+        self.game: NDArray[np.int64] = np.ascontiguousarray(held, np.int64)
+        self.saved: columns.Layouts | None = saved
 
     @classmethod
     def of(cls, source: "PositionsLike") -> "Positions":
         """Collect the positions that an object holds, as a copy; a ``Positions`` is returned as it is.
 
         An environment, of one table or many, wrapped or not, gives all current tables, those of frames as
-        their strikers see them. Or a ``Position``, a state of a visit, a dict of ``Position.to_dict()``, or a
-        list of these.
-        """
+        their strikers see them. Or a ``Position``, a visit's state, a dict of ``to_dict()``, or a list of
+        these."""
         if isinstance(source, Positions):
             return source
         if isinstance(source, Position | Mapping):
             source = [source]
-        if (
-            isinstance(source, list | tuple)
-            and source
-            and all(isinstance(one, Position | Mapping) for one in source)
-        ):
-            positions, on_table, game = zip(*map(_arrays, source), strict=True)
+        some: Any = source if isinstance(source, list | tuple) else ()
+        if len(some) and all(isinstance(one, Position | Mapping) for one in some):
+            positions, on_table, game = zip(*map(_arrays, some), strict=True)
             return cls(np.stack(positions), np.stack(on_table), np.stack(game))
         tables = getattr(bare(source), "tables", None)
         if isinstance(tables, Tables):
             return _of_tables(tables)
-        raise refuse_what(
-            "positions",
-            f"a {type(source).__name__}",
-            "must be Positions, a Position, a state, a list of these, or an environment",
-        )
+        allowed = "must be Positions, a Position, a state, a list of these, or an environment"
+        raise refuse_what("positions", f"a {type(source).__name__}", allowed)
 
     def __len__(self) -> int:
         return len(self.game)
@@ -162,9 +129,8 @@ class Positions:
             # the kernels are compiled for contiguous arrays
             setattr(taken, name, np.ascontiguousarray(getattr(self, name)[rows]))
         saved = self.saved
-        taken.saved = saved and Layouts(
-            np.ascontiguousarray(saved.positions[rows]), np.ascontiguousarray(saved.on_table[rows])
-        )
+        held: Any = saved and (np.ascontiguousarray(each[rows]) for each in saved)
+        taken.saved = saved and columns.Layouts(*held)
         return taken
 
     def __repr__(self) -> str:
@@ -172,7 +138,7 @@ class Positions:
 
     def copy(self) -> "Positions":
         """Return a copy with arrays of its own."""
-        saved = None if self.saved is None else Layouts(*(each.copy() for each in self.saved))
+        saved = None if self.saved is None else columns.Layouts(*(each.copy() for each in self.saved))
         return Positions(self.positions.copy(), self.on_table.copy(), self.game.copy(), saved)
 
     def as_visits(self) -> "Positions":
@@ -182,78 +148,78 @@ class Positions:
         anywhere is played from where it lies: visits have no ball in hand outside the D."""
         if not self.of_frames:
             return self
-        game = as_visits(self.game)[:, :VISIT_COLUMNS]
-        game[:, STEPS] = 0
+        game = as_visits(self.game)[:, : columns.VISIT_COLUMNS]
+        game[:, columns.STEPS] = 0
         return Positions(self.positions, self.on_table, game)
 
     @property
     def of_frames(self) -> bool:
         """Whether these are positions of frames, not of visits, a bool."""
-        return self.game.shape[1] == COLUMNS
+        return self.game.shape[1] == columns.COLUMNS
 
-    def _of_frame(self, *columns: int) -> NDArray[np.int64]:
+    def _of_frame(self, *which: int) -> NDArray[np.int64]:
         """The columns of frames, int64 (m, k); of visits all 0."""
-        return self.game[:, columns] if self.of_frames else np.zeros((len(self), len(columns)), np.int64)
+        return self.game[:, which] if self.of_frames else np.zeros((len(self), len(which)), np.int64)
 
     @property
     def free_ball(self) -> NDArray[np.bool_]:
         """Whether the striker has a free ball, bool (m,); in visits never."""
-        return self._of_frame(FREE_BALL)[:, 0] != 0
+        return self._of_frame(columns.FREE_BALL)[:, 0] != 0
 
     @property
     def anywhere(self) -> NDArray[np.bool_]:
         """Whether the cue ball in hand may be placed anywhere on the table, bool (m,); in visits never."""
-        return self._of_frame(ANYWHERE)[:, 0] != 0
+        return self._of_frame(columns.ANYWHERE)[:, 0] != 0
 
     @property
     def choice(self) -> NDArray[np.bool_]:
         """Whether the striker may choose what follows the opponent's foul, bool (m,); in visits never."""
-        return self._of_frame(PHASE)[:, 0] == CHOICE
+        return self._of_frame(columns.PHASE)[:, 0] == columns.CHOICE
 
     @property
     def lot(self) -> NDArray[np.bool_]:
         """Whether the striker has won the lot and may choose who begins, bool (m,); in visits never."""
-        return self._of_frame(PHASE)[:, 0] == LOT
+        return self._of_frame(columns.PHASE)[:, 0] == columns.LOT
 
     @property
     def miss_called(self) -> NDArray[np.bool_]:
         """Whether the opponent's foul was called a miss, bool (m,); in visits never."""
-        return self._of_frame(MISS_CALLED)[:, 0] != 0
+        return self._of_frame(columns.MISS_CALLED)[:, 0] != 0
 
     @property
     def respotted_black(self) -> NDArray[np.bool_]:
         """Whether the frame is decided on the re-spotted black, bool (m,); in visits never."""
-        return self._of_frame(RESPOTTED_BLACK)[:, 0] != 0
+        return self._of_frame(columns.RESPOTTED_BLACK)[:, 0] != 0
 
     @property
     def scores(self) -> NDArray[np.int64]:
         """Scores of the striker and of the opponent, int64 (m, 2); in visits 0."""
-        return self._of_frame(SCORE_0, SCORE_1)
+        return self._of_frame(columns.SCORE_0, columns.SCORE_1)
 
     @property
     def frames_won(self) -> NDArray[np.int64]:
         """Frames of the match that the striker and the opponent have won, int64 (m, 2); in visits 0."""
-        return self._of_frame(FRAMES_0, FRAMES_1)
+        return self._of_frame(columns.FRAMES_0, columns.FRAMES_1)
 
     @property
     def ball_on(self) -> NDArray[np.int64]:
         """What must be struck first, a ``BallOn``, without regard to a free ball: int64 (m,), a view."""
-        return self.game[:, BALL_ON]
+        return self.game[:, columns.BALL_ON]
 
     @property
     def in_hand(self) -> NDArray[np.bool_]:
         """Whether the cue ball is in hand, bool (m,)."""
-        return self.game[:, IN_HAND] != 0
+        return self.game[:, columns.IN_HAND] != 0
 
     @property
     def points(self) -> NDArray[np.int64]:
         """Points of each visit so far, int64 (m,); a view."""
-        return self.game[:, POINTS]
+        return self.game[:, columns.POINTS]
 
     @property
     def over(self) -> NDArray[np.bool_]:
         """Whether the visit has ended, bool (m,)."""
-        return self.game[:, OVER] != 0
+        return self.game[:, columns.OVER] != 0
 
     @property
     def balls_on(self) -> NDArray[np.bool_]:
@@ -272,14 +238,9 @@ class Positions:
 def _floats(field: str, values: Any, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """``_check.array``, but without a copy of an array that is valid already."""
     a = np.asarray(values)
-    sound = (
-        a.dtype == np.float64
-        and a.ndim == len(shape)
-        and a.shape[1:] == shape[1:]
-        and a.flags.c_contiguous
-        and np.isfinite(a).all()
-    )
-    return a if sound and not isinstance(values, np.ma.MaskedArray) else array(field, values, shape)
+    right = a.dtype == np.float64 and a.ndim == len(shape) and a.shape[1:] == shape[1:]
+    plain = a.flags.c_contiguous and not isinstance(values, np.ma.MaskedArray)
+    return a if right and plain and np.isfinite(a).all() else array(field, values, shape)
 
 
 def _arrays(one: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.int64]]:
@@ -306,11 +267,11 @@ def bare(env: Any) -> Any:
 def _of_tables(tables: Tables) -> Positions:
     """The positions of an environment's tables, those of frames as their strikers see them."""
     game = tables.game.copy()
-    saved: Layouts | None = getattr(tables, "saved", None)
+    saved: columns.Layouts | None = getattr(tables, "saved", None)
     if saved is None:
-        game[:, STEPS] = 0
+        game[:, columns.STEPS] = 0
         return Positions(tables.positions.copy(), tables.on_table.copy(), game)
-    layouts = Layouts(*(each.copy() for each in saved))
+    layouts = columns.Layouts(*(each.copy() for each in saved))
     return Positions(tables.positions.copy(), tables.on_table.copy(), strikers_own(game), layouts)
 
 
@@ -349,17 +310,13 @@ def check_played(at: Positions, rows: NDArray[np.int64], table: Table, radius: f
     used = np.unique(rows)
     some = at if len(used) == len(at) else at[used]
     on, present = some.ball_on, some.on_table
-    colours = present[:, 16:]
-    reds = present[:, 1:16].any(axis=1)
-    lowest = np.where(reds, int(BallOn.RED), 2 + colours.argmax(axis=1))
+    reds, colours = present[:, 1:16].any(axis=1), present[:, 16:].any(axis=1)
+    lowest = np.where(reds, int(BallOn.RED), 2 + present[:, 16:].argmax(axis=1))
     fine = present[:, CUE] & ~some.over & np.isfinite(some.positions).all(axis=(1, 2))
-    fine &= np.where(
-        on == int(BallOn.ANY_COLOUR), colours.any(axis=1), (on == lowest) & (reds | colours.any(axis=1))
-    )
+    fine &= np.where(on == int(BallOn.ANY_COLOUR), colours, (on == lowest) & (reds | colours))
     fine &= (some.points >= 0) & (some.points <= MOST_BREAK)
     if not fine.all():
-        k = int(used[np.argmin(fine)])
-        _refuse_row(at, k)
+        _refuse_row(at, int(used[np.argmin(fine)]))
     try:
         table.check(some.positions, radius, "positions", present)
     except ValueError:

@@ -1,8 +1,6 @@
 """Which strokes are worth a look? Generators of continuous strokes: at the direct pots, at the balls on that
-are seen, over cushions.
-
-A generator is called with a search, n positions, a number m and n seeds, and returns m strokes for each
-position that it has any for.
+are seen, over cushions. Each is called with a search, n positions, a number m and n seeds, and returns m
+strokes for each position that it has any for.
 
 * ``at_pots``: a pot gets the more strokes, the likelier it is: shares are proportional to chance^4 x worth.
   The strokes at a pot are consecutive points of one scrambled Sobol sequence over the logarithm of the speed,
@@ -10,8 +8,7 @@ position that it has any for.
 * ``at_balls``: in the directions in which a ball on is met first (``tasks.windows``), evenly. Every other
   stroke is hard, since a ball then goes in by chance more often.
 * ``over_cushions``, where hardly anything is seen: about the escapes of ``tasks.escapes``, aimed by the
-  models of the engine.
-"""
+  models of the engine."""
 
 from math import erf, exp, hypot, log, pi, sqrt
 from typing import NamedTuple, Protocol
@@ -33,29 +30,19 @@ from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
 from .positions import Positions
 from .prospects import FAR, FOLLOWS
 from .sobol import sobol
-from .strokes import Dynamics, law_of
-from .trials import AIM, COLUMNS, SIDE, SPEED, TOP
+from .strokes import AIM, COLUMNS, SIDE, SPEED, TOP, Dynamics, law_of
 
-SLOWEST, FASTEST = 0.8, 6.5
-"""Cue speeds of the proposals at pots [m/s]."""
-HIGHEST, WIDEST = 0.45, 0.35
-"""Largest tip offsets over R, up or down and to a side; a corner is drawn in to the disc of radius
-``RIM``."""
+SLOWEST, FASTEST, SOFTEST = 0.8, 6.5, 0.5
+"""Cue speeds of the proposals at pots [m/s]; the smallest of strokes without a pot."""
+HIGHEST, WIDEST, RIM = 0.45, 0.35, 0.49
+"""Largest tip offsets over R, up or down and to a side; radius of the disc that a corner is drawn in to."""
 PLAIN = 0.5
 """Share of the strokes without side."""
-RIM = 0.49
 LOST = 0.01
-"""Decay of a stroke's chance per metre of both balls' paths [1/m]: the width alone nearly says what errors
-leave of a pot."""
-POWER = 4.0
-"""Power of the chance in a pot's share of the strokes."""
-SOFTEST = 0.5
-"""Smallest cue speed of strokes without a pot [m/s]."""
-ESCAPES, ANYWHERE = 8, 8
-"""Number of escapes that strokes are shared among; of the strokes over cushions every ``ANYWHERE``-th goes in
-any direction."""
-MOST_POTS = 16
-"""Number of pots that strokes are shared among, the widest ones."""
+"""Decay of a stroke's chance per metre of both balls' paths [1/m]: the width alone nearly tells it."""
+POWER = 4.0  # power of the chance in a pot's share of the strokes
+ESCAPES, ANYWHERE, MOST_POTS = 8, 8, 16
+"""Escapes that share strokes, every which over cushions goes anywhere; pots that share strokes."""
 
 
 class Search(Protocol):
@@ -89,13 +76,11 @@ class Proposals(NamedTuple):
 
 @kernel
 def pot_chance(positions, pot, spread, far):
-    """Chance of a pot by its width: the aim's error stays within the tolerance; less exp(-``far`` [1/m] x
-    paths)."""
+    """Chance that the aim's error stays within the pot's tolerance, less exp(-``far`` [1/m] x paths)."""
     ball, pocket = int(pot[POT_BALL]), int(pot[POT_POCKET])
     path = hypot(pot[GHOST_X] - positions[0, 0], pot[GHOST_Y] - positions[0, 1])
-    run = hypot(
-        POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
-    )
+    tx, ty = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
+    run = hypot(tx - positions[ball, 0], ty - positions[ball, 1])
     return erf(pot[TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
 
 
@@ -141,10 +126,8 @@ def _propose(balls, seeds, which, spread, law, strokes, chances):
             continue
         total = 0.0
         for j in range(many):
-            weights[j] = (
-                pot_chance(p, lines[j], spread, FAR) ** POWER * (VALUES[int(lines[j, POT_BALL])] + FOLLOWS)
-                + 1e-12
-            )
+            worth = VALUES[int(lines[j, POT_BALL])] + FOLLOWS
+            weights[j] = pot_chance(p, lines[j], spread, FAR) ** POWER * worth + 1e-12
             total += weights[j]
         j, reached = 0, weights[0] / total
         for i in range(m):
@@ -165,9 +148,8 @@ def _plain_stroke(i, seed, hard, stroke):
     """Speed and tip of stroke i without a pot; ``hard``: few balls go in by chance unless it is."""
     _spread_stroke(i, seed, stroke)
     u = sobol(i, 0, seed)
-    stroke[SPEED] = (
-        max(SLOWEST, MAX_SPEED * u ** (1.0 / 3.0)) if hard else SOFTEST * exp(log(FASTEST / SOFTEST) * u)
-    )
+    soft = SOFTEST * exp(log(FASTEST / SOFTEST) * u)
+    stroke[SPEED] = max(SLOWEST, MAX_SPEED * u ** (1.0 / 3.0)) if hard else soft
 
 
 @entry(what="the contacts of positions", seconds=2)
@@ -198,11 +180,8 @@ def _contacts(balls, seeds, strokes, chances):
 @entry(what="the escapes of positions", seconds=5, uses=(escape_aim,))
 def _escapes(balls, seeds, law, strokes, chances):
     """Fill strokes (n, m, 5) and chances (n, m) with strokes over cushions, where hardly anything is seen."""
-    (positions, on_table, game), windows, lines = (
-        balls,
-        np.empty((MOST_EDGES, 3)),
-        np.empty((ESCAPES, POT_COLUMNS)),
-    )
+    (positions, on_table, game), windows = balls, np.empty((MOST_EDGES, 3))
+    lines = np.empty((ESCAPES, POT_COLUMNS))
     law, work, aims = CueLaw(law[0], law[1], 0, 0), new_work(), np.empty(ESCAPES)
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
@@ -220,13 +199,13 @@ def _escapes(balls, seeds, law, strokes, chances):
                 continue
             j = i - i // ANYWHERE
             line, again = lines[j % many], j // many
-            faster = 0.0 if again == 0 else sobol(again - 1, 0, seed + j % many)
+            faster, aside, scramble = 0.0, 0.0, seed + j % many
+            if again:
+                faster = sobol(again - 1, 0, scramble)
+                aside = line[LINE_ROOM] * (2.0 * sobol(again - 1, 4, scramble) - 1.0)
             stroke[SPEED], stroke[SIDE], stroke[TOP] = line[LINE_SPEED] * exp(0.5 * faster), 0.0, ROLLING
             if again == 0:
                 aims[j] = escape_aim(line[LINE_AIM], (stroke[SPEED], 0.0, ROLLING), p, here, on, law, work)
-            aside = (
-                0.0 if again == 0 else line[LINE_ROOM] * (2.0 * sobol(again - 1, 4, seed + j % many) - 1.0)
-            )
             stroke[AIM] = turned(aims[j % many] + aside)
 
 
@@ -276,8 +255,7 @@ def strokes_at(
     which : numpy.ndarray
         int64 (n, m). Index of each stroke's pot, widest first as of ``pots``, at most the last one's.
     speeds_and_tips : numpy.ndarray
-        float64 (n, m, 3). Cue speed [m/s], side and top; a tip outside the disc of radius 0.49 is drawn in to
-        it.
+        float64 (n, m, 3). Cue speed [m/s], side and top; a tip outside the disc of radius 0.49 is drawn in.
     spread, dynamics
         As for ``spread_strokes``.
 
@@ -319,12 +297,8 @@ def at_pots(search: Search, at: Positions, m: int, seeds: Ints) -> Proposals:
     ----------
     search : StrokeSearch
         The search, whose ``spread`` and ``dynamics`` count.
-    at : Positions
-        The n positions.
-    m : int
-        Number of strokes for each.
-    seeds : numpy.ndarray
-        int64 (n,), in [0, 2**32).
+    at, m, seeds
+        As for ``spread_strokes``.
 
     Returns
     -------
@@ -361,7 +335,7 @@ def at_balls(search: Search, at: Positions, m: int, seeds: Integers) -> Proposal
     >>> at_balls(StrokeSearch({}), at, 4, [7]).chances.tolist()
     [[1.0, 1.0, 1.0, 1.0]]
     """
-    made = _nothing(at, m)
+    made = Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))
     _contacts(_balls(at), np.asarray(seeds, np.int64), *made)
     return made
 
@@ -386,11 +360,6 @@ def over_cushions(search: Search, at: Positions, m: int, seeds: Integers) -> Pro
     >>> over_cushions(StrokeSearch({}), hidden, 4, [7]).chances.tolist()
     [[1.0, 1.0, 1.0, 1.0]]
     """
-    made = _nothing(at, m)
+    made = Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))
     _escapes(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics), *made)
     return made
-
-
-def _nothing(at: Positions, m: int) -> Proposals:
-    """Room for m strokes in each position."""
-    return Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))

@@ -1,5 +1,4 @@
-"""How good is a position? The chances of its pots, and the points to expect of them and of what follows, by a
-rule of thumb."""
+"""How good is a position? The chances of its pots, and the points to expect of them and of what follows."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -18,21 +17,14 @@ from ..tasks.noise import Noise
 from .positions import Positions
 
 _ANY_COLOUR = int(BallOn.ANY_COLOUR)
-
-WORTH_A_THREAD = 128
-"""Smallest number of positions for which another thread is worth its cost."""
-
+WORTH_A_THREAD = 128  # smallest number of positions for which another thread is worth its cost
 FOLLOWS = 25.0
-"""Points to expect after a made pot from the rest of the visit; fewer if fewer points are left on the
-table."""
+"""Points to expect after a made pot from the rest of the visit; fewer if fewer are left on the table."""
 SECOND, THIRD = 0.15, 0.05
 """Shares of the second and third best pot that count: they leave a choice of where to play next."""
-FAR = 0.1
-"""Decay of the chance of a pot per metre of both balls' paths [1/m]."""
+FAR = 0.1  # decay of the chance of a pot per metre of both balls' paths [1/m]
 RULE_OF_THUMB = (FOLLOWS, SECOND, THIRD, FAR)
-"""Constants of ``prospects_of`` for a player with execution errors: points of the rest of the visit, shares
-of the second and third best pot, decay of the chance with distance [1/m].
-"""
+"""Constants of ``prospects_of`` for a player with execution errors: the four numbers above."""
 SURE = (1e4, 1e-3, 0.0, 0.0)
 """Constants of ``prospects_of`` for a player without execution errors, who takes all points that are left."""
 
@@ -57,10 +49,8 @@ def _prospects(positions, on_table, ball_on, spread, constants, values, chances)
             ball, pocket = int(lines[j, POT_BALL]), int(lines[j, POT_POCKET])
             gx, gy = lines[j, GHOST_X], lines[j, GHOST_Y]
             path = sqrt((gx - p[0, 0]) ** 2 + (gy - p[0, 1]) ** 2)
-            run = sqrt(
-                (POCKET_AIMS[pocket, AIM_X] - p[ball, 0]) ** 2
-                + (POCKET_AIMS[pocket, AIM_Y] - p[ball, 1]) ** 2
-            )
+            tx, ty = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
+            run = sqrt((tx - p[ball, 0]) ** 2 + (ty - p[ball, 1]) ** 2)
             chance = erf(lines[j, TOLERANCE] / (spread * sqrt(2.0))) * exp(-far * (path + run))
             if j < chances.shape[1]:
                 chances[k, j] = chance
@@ -120,9 +110,8 @@ def prospects_of(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Estimate the value of positions and the chances of their pots by a rule of thumb.
 
-    The chance of a pot is that of a normal error of the aim within its tolerance, less for long paths. Its
-    value is its chance times its points plus what may follow. A position is worth its best pot, plus a small
-    share of the second and the third.
+    The chance of a pot is that of a normal error of the aim within its tolerance, less for long paths; its
+    value that times its points plus what may follow. Small shares of the second and third best pot count too.
 
     Parameters
     ----------
@@ -132,17 +121,14 @@ def prospects_of(
         Standard deviation of the cue ball's direction [rad], see ``spread_of``.
     constants : tuple of float, optional
         ``RULE_OF_THUMB`` (default), or ``SURE`` for a player without execution errors.
-    most : int, optional
-        Number of chances for each position; default 4.
-    threads : int, optional
-        Largest number of threads; default 1. Results do not depend on it.
+    most, threads : int, optional
+        Number of chances for each position; default 4. Largest number of threads; default 1.
 
     Returns
     -------
-    values : numpy.ndarray
-        float64 (n,). Values of the positions [points].
-    chances : numpy.ndarray
-        float64 (n, most). Chance of each of the widest pots, in the order of ``pots``; 0 where there is none.
+    values, chances : numpy.ndarray
+        float64 (n,), values of the positions [points]; float64 (n, most), chance of each of the widest pots,
+        in the order of ``pots``; 0 where there is none.
 
     Examples
     --------
@@ -152,8 +138,7 @@ def prospects_of(
     (True, (1, 4))
     """
     at, n = at.as_visits(), len(at)
-    values, chances, ball_on = np.empty(n), np.empty((n, most)), at.ball_on.copy()
-    balls = at.positions, at.on_table, ball_on
+    values, chances, balls = np.empty(n), np.empty((n, most)), (at.positions, at.on_table, at.ball_on.copy())
 
     def fill(rows: slice) -> None:
         _prospects(*(part[rows] for part in balls), spread, constants, values[rows], chances[rows])

@@ -1,10 +1,8 @@
-"""Which points fill a cube evenly? Sobol points, scrambled: of any number of them, each part of the cube gets
-its share.
+"""Which points fill a cube evenly? Sobol points, scrambled: of any number, each part gets its share.
 
 Sobol's sequence in base 2, with the direction numbers of Joe & Kuo (2008), scrambled as Owen (1995) proposed:
 each bit of a coordinate is flipped depending on the bits above it, here by a hash (Burley 2020, Vegdahl
-2021). A scramble is one seed; each point by itself is uniform, so that means over the points are unbiased.
-"""
+2021). A scramble is one seed; each point by itself is uniform, so that means over the points are unbiased."""
 
 from statistics import NormalDist
 
@@ -13,8 +11,7 @@ import numpy as np
 from .._jit import entry, kernel
 from .._types import Floats
 
-DIMENSIONS = 5
-"""Largest number of coordinates of a point."""
+DIMENSIONS = 5  # largest number of coordinates of a point
 _BITS, _ALL = 32, 0xFFFFFFFF
 # primitive polynomials (degree, inner coefficients) and first direction numbers of dimensions 2 to 5 [Joe &
 # Kuo 2008, table new-joe-kuo-6]
@@ -117,8 +114,7 @@ def sobol_points(n: int, dimensions: int, seed: int) -> Floats:
 
 
 EVEN_SAMPLES = (354, 1840, 979, 2326, 3875)
-"""Keys of five noise samples whose errors of each kind are evenly spread (found by the repository's
-``agents.noise_samples``)."""
+"""Keys of five noise samples whose errors of each kind are evenly spread (of ``agents.noise_samples``)."""
 _NORMAL = np.vectorize(NormalDist().inv_cdf, otypes=[np.float64])
 _AIM_FIRST = [1, 2, 3, 0, 4]
 """Which coordinate becomes which error: the first, the most even one, that of the aim, which matters most."""

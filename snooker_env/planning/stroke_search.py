@@ -1,16 +1,12 @@
-"""Which stroke is best? A search over continuous strokes, one shot deep, with a value of what each stroke
-leaves.
+"""Which stroke is best? A search over continuous strokes, one shot deep, with a value of what each leaves.
 
 1. Generators propose strokes (``proposals``), and each is played once without error. Its score is the chance
    of its pot by the pot's width, times its points plus the value of the afterstate. Where strokes without a
    pot are proposed, the penalty of a foul is deducted, and if the visit ends, the share ``LEFT`` of the value
    of the position for the opponent.
 2. The best meet noise samples, the better ones more of them (sequential halving, Karnin, Koren & Somekh
-   2013). The samples are scrambled Sobol points, common to all strokes of a position. The score is the mean
-   over the samples, with the first look as ``PRIOR`` of them.
-
-Without execution errors the first look is the whole truth and takes the whole budget.
-"""
+   2013): scrambled Sobol points, common to all strokes of a position. The score is the mean over the samples,
+   with the first look as ``PRIOR`` of them. Without execution errors the first look takes the whole budget."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, TypeAlias
@@ -30,13 +26,10 @@ from .positions import Positions, PositionsLike, check_played, seeds_of
 from .proposals import Proposals, at_balls, at_pots, over_cushions
 from .prospects import RULE_OF_THUMB, SURE, prospects_of, spread_of
 from .sobol import DIMENSIONS, normal_points
-from .strokes import Dynamics, actions_of
-from .trials import AIM, COLUMNS, SIDE, SPEED, TOP
+from .strokes import AIM, COLUMNS, SIDE, SPEED, TOP, Dynamics, actions_of
 
-PRIOR = 1.0
-"""Number of samples that the look without error counts as."""
-FEWEST = 8
-"""Least budget of a decision."""
+PRIOR = 1.0  # number of samples that the look without error counts as
+FEWEST = 8  # least budget of a decision
 SCHEDULES = (
     (30, 16, ((4, 2), (2, 3))),
     (60, 32, ((6, 2), (3, 5))),
@@ -45,18 +38,13 @@ SCHEDULES = (
     (2000, 800, ((40, 8), (16, 25), (5, 95))),
 )
 """Budget, number of looks, and for each round the number of strokes and their further samples."""
-
-LEFT = 0.5
-"""Share of a position's value for the opponent that counts."""
+LEFT = 0.5  # share of a position's value for the opponent that counts
 FOUL = 20.0
-"""What a foul costs beside its penalty [points]: the opponent may have the balls replaced or, snookered, has
-a free ball."""
-
+"""What a foul costs beside its penalty [points]: the opponent may have the balls replaced or a free ball."""
 Value: TypeAlias = Callable[[Positions], NDArray[np.floating[Any]]]
 """Values [points] of n positions that strokes have left: (n,)."""
 Propose: TypeAlias = Callable[["StrokeSearch", Positions, int, Ints], Proposals]
-"""A generator: proposals of m strokes for each position, called with the search, the n positions, m and the
-seeds (n,)."""
+"""A generator: proposals of m strokes for each position, of the search, the n positions, m and seeds (n,)."""
 WITHOUT_POTS: tuple[Propose, ...] = (at_balls, over_cushions)
 """The generators for positions in which those of the search have no likely pot."""
 
@@ -68,10 +56,9 @@ class Ranked(NamedTuple):
 
     Attributes
     ----------
-    strokes : numpy.ndarray
-        float64 (n, m, 5). Strokes in SI, see ``Planner``.
-    scores : numpy.ndarray
-        float64 (n, m). Expected points of the stroke and of what follows.
+    strokes, scores : numpy.ndarray
+        float64 (n, m, 5), strokes in SI, see ``Planner``; float64 (n, m), expected points of the stroke and
+        of what follows.
     samples : numpy.ndarray
         int64 (n, m). Noise samples that each stroke met; 0 if it had only the look without error.
 
@@ -90,9 +77,8 @@ class Ranked(NamedTuple):
     def actions(self) -> NDArray[np.float32]:
         """Convert the strokes to actions of ``aim="absolute"``: float32 (n, m, 4)."""
         flat = self.strokes.reshape(-1, COLUMNS)
-        return actions_of(flat[:, SPEED], flat[:, AIM], flat[:, SIDE], flat[:, TOP]).reshape(
-            *self.scores.shape, 4
-        )
+        made = actions_of(flat[:, SPEED], flat[:, AIM], flat[:, SIDE], flat[:, TOP])
+        return made.reshape(*self.scores.shape, 4)
 
 
 def schedule(budget: int) -> tuple[int, tuple[tuple[int, int], ...]]:
@@ -120,13 +106,11 @@ class StrokeSearch:
         position share the looks evenly. The first one proposes pots; where none of these is likelier than
         ``doubtful``, ``at_balls`` and ``over_cushions`` join. Default: ``at_pots``.
     doubtful : float, optional
-        Largest chance of a pot at which strokes without a pot are tried as well, in [0, 1]; default 0.
+        Largest chance of a pot at which strokes without one are tried as well, in [0, 1]; default 0.
     pots_only : bool, optional
         Score by the chance of the pot alone; without a pot, less that of a foul. Default False.
-    noise : str, dict or Noise, optional
-        Execution noise in place of the environment's own.
-    threads : int, optional
-        Number of threads, see ``Planner``. Results do not depend on it.
+    noise, threads : optional
+        As for ``Planner``.
 
     Examples
     --------
@@ -172,16 +156,14 @@ class StrokeSearch:
 
     def _by_rule(self, at: Positions) -> Floats:
         """Values of positions by the rule of thumb [points]: float64 (n,)."""
-        return prospects_of(
-            at, self.spread, SURE if self.noise.silent else RULE_OF_THUMB, threads=self.planner.threads
-        )[0]
+        constants = SURE if self.noise.silent else RULE_OF_THUMB
+        return prospects_of(at, self.spread, constants, threads=self.planner.threads)[0]
 
     def rank(self, positions: PositionsLike, seeds: Integers) -> Ranked:
         """Try strokes in n positions and return them ``Ranked``: each row's first one is to be played.
 
         ``seeds``, int (n,): of the proposals and noise samples; equal seeds give equal decisions. A cue ball
-        in hand is played from where it lies. ValueError if a position is invalid or has no stroke left to
-        play."""
+        in hand is played from where it lies. ValueError if a position is invalid or has no stroke."""
         at = Positions.of(positions).as_visits()
         n, keys = len(at), seeds_of(seeds, len(at))
         check_played(at, np.arange(n), self.planner.table, self.planner.physics.R)
@@ -215,13 +197,11 @@ class StrokeSearch:
         return Ranked(strokes[every, order], scores[every, order], tries[every, order])
 
     def outcomes(self, at: Positions, rows: Ints, strokes: Floats, errors: Floats) -> Outcomes:
-        """Play strokes (m, 5) on ``at[rows]`` under errors (m, 5) in standard deviations, see
-        ``Planner.play``."""
+        """Play strokes (m, 5) on ``at[rows]`` under errors (m, 5) in standard deviations."""
         return self.planner.play(at, rows, strokes=strokes, errors=errors)
 
     def _proposed(self, at: Positions, m: int, seeds: Ints) -> tuple[Floats, Floats, Ints, Bools]:
-        """Strokes (n, m, 5), chances and generators (n, m), and where strokes without a pot are among them
-        (n,)."""
+        """Strokes (n, m, 5), chances and generators (n, m), and where some are without a pot (n,)."""
         generators = (self.propose,) if callable(self.propose) else tuple(self.propose)
         strokes, chances, which = self._shared(generators, at, m, seeds)
         doubt = chances.max(axis=1) <= self.doubtful
@@ -231,9 +211,7 @@ class StrokeSearch:
             strokes[doubt], chances[doubt], which[doubt] = shared
         return strokes, chances, which, doubt | which.any(axis=1)
 
-    def _shared(
-        self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints
-    ) -> tuple[Floats, Floats, Ints]:
+    def _shared(self, generators: Sequence[Propose], at: Positions, m: int, seeds: Ints):
         """Strokes of the generators that have any, in turn; chances; which generator each is of."""
         made = [Proposals(*generate(self, at, m, seeds)) for generate in generators]
         if len(made) == 1:
@@ -246,8 +224,7 @@ class StrokeSearch:
         return strokes, chances, which
 
     def _gains(self, at: Positions, safe: Bools, strokes: Floats, errors: Floats) -> Floats:
-        """What strokes (n, m, s, 5) under errors (n, s, 5) bring, and the value of what they leave: (n, m,
-        s)."""
+        """What strokes (n, m, s, 5) under errors (n, s, 5) bring, and what they leave is worth: (n, m, s)."""
         n, m, s = strokes.shape[:3]
         every = np.broadcast_to(errors[:, None], (n, m, s, DIMENSIONS)).reshape(-1, DIMENSIONS)
         rows = np.repeat(np.arange(n), m * s)
@@ -265,8 +242,7 @@ class StrokeSearch:
 
 
 def in_turn(order: Ints, kinds: Ints) -> Ints:
-    """Rows (n, m) of indices, best first, reordered: the best of each of ``kinds`` (n, m), the second best,
-    ..."""
+    """Rows (n, m) of indices, best first, as the best of each of ``kinds`` (n, m), the second best, ..."""
     sorted_kinds = np.take_along_axis(kinds, order, 1)
     place = np.zeros_like(order)
     for kind in np.unique(kinds):

@@ -1,37 +1,149 @@
 """How does a stroke become an action? The one encoder of strokes, choices of ``action="discrete"`` as
-actions, and the aim solver.
+actions, and the aim solver. A stroke is a row of five numbers in SI, in the columns of ``trials``."""
 
-A stroke is a row of five numbers in SI, in the columns of ``trials``: cue speed [m/s], side and top (tip
-offset over R), the direction in which the cue ball leaves [rad] (the cue itself points aside by the squirt of
-the side), elevation of the cue [rad].
-"""
-
+from dataclasses import replace
 from math import pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._check import array, integer, number, refuse, refuse_what
 from .._jit import entry
-from .._types import Fidelity, Floats, Integers, Scalars, Vector, Vectors
+from .._types import Fidelity, Floats, Integers, Ints, Scalars, Vector, Vectors
 from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from ..physics import cue
+from ..physics.cue import squirt
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
-from ..tasks.arrays import CueLaw
-from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, TARGET_SPAN, Actions
+from ..tasks import stroke
+from ..tasks.arrays import CueLaw, StruckArrays, TableArrays
+from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, TARGET_SPAN, Actions, tip_on_disc
+from ..tasks.declarations import A_END_MASS, A_MAX_OFFSET
 from ..tasks.discrete_actions import SIZE, masks
 from ..tasks.lines import new_work
-from ..tasks.options import Options
+from ..tasks.noise import Noise, with_errors
+from ..tasks.options import Options, Rules
 from ..tasks.pot_aim import solved_aim
-from ..tasks.tables import STROKES_ONLY
+from ..tasks.stroke import ShotBuffers
+from ..tasks.tables import STROKES_ONLY, StepOutput
+from ..tasks.visit import Visits
 from .positions import Positions, PositionsLike, rows_of
-from .trials import AIM, COLUMNS, ELEVATION, SIDE, SPEED, TOP, decoded
 
-FARTHEST = 0.5
-"""Largest tip offset over R: the miscue limit, and the end of the scale of an action."""
+(SPEED, SIDE, TOP, AIM, ELEVATION) = range(5)
+"""Columns of a stroke: cue speed [m/s], tip offset over R to the right and up, direction in which the cue ball
+leaves (the cue itself points aside by the squirt of the side), elevation of the cue [rad]."""
+COLUMNS = 5
+NO_NOISE = Noise()
+
+
+@entry(what="strokes under given errors", seconds=2)
+def _strike(which, strokes, errors, tables, shots, options, noise, silent):
+    """Strike the strokes (n, 5) of the tables ``which`` under standard normal errors (n, 5)."""
+    tables, shots = TableArrays(*tables), StruckArrays(*shots)
+    for j in range(which.shape[0]):
+        k = which[j]
+        speed, aim, elevation = strokes[k, SPEED], strokes[k, AIM], strokes[k, ELEVATION]
+        side, top = tip_on_disc(strokes[k, SIDE], strokes[k, TOP], options[A_MAX_OFFSET])
+        p, on, aim = tables.positions[k], tables.on_table[k], aim - squirt(side, options[A_END_MASS])
+        struck = with_errors(speed, side, top, aim, elevation, errors[k], noise)
+        stroke.strike(struck, p, on, tables.streams[k], options, silent, j, shots)
+
+
+class TrialVisits(Visits):
+    """Visits of one stroke, filled by ``lay``: of strokes (n, 5) with ``errors`` (n, 5), else of actions."""
+
+    errors: Floats | None = None
+
+    def lay(self, after: Positions, streams: np.ndarray, errors: Floats | None = None) -> None:
+        """Put positions on the tables; they are played in place."""
+        self.n, self.errors, self.streams = len(after), errors, streams
+        self.positions, self.on_table, self.game = after.positions, after.on_table, after.game
+
+    def address(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> None:
+        if self.errors is None:
+            super().address(which, actions, buffers)
+            return
+        (options, noise, _), silent = self.packed, NO_NOISE.pack(1.0)
+        _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
+
+
+def decoded(
+    rules: Rules, at: Positions, which: Ints, actions: Floats, nominated: Ints | None = None
+) -> tuple[Floats, Positions]:
+    """Strokes (n, 5) that checked actions mean on ``at[which]``, and n positions with the cue ball so placed.
+
+    ``nominated`` (n,): of frames, what is nominated with each stroke; a choice is a pot of that ball."""
+    visits, after, n = TrialVisits(replace(rules, noise=NO_NOISE), 0), at[which], len(which)
+    visits.lay(after, np.zeros((n, 2), np.uint64))
+    if nominated is not None:
+        visits.nominated = nominated
+    buffers = ShotBuffers(n, 0)
+    visits.address(np.arange(n), actions, buffers)
+    strokes = buffers.shots[:, stroke.CUE_SPEED :].copy()
+    strokes[:, AIM] = np.arctan2(buffers.shots[:, stroke.VY], buffers.shots[:, stroke.VX])
+    return strokes, after
+
+
+class Stops(NamedTuple):
+    """Where n strokes left each ball, as returned by ``Planner.stops``.
+
+    Attributes
+    ----------
+    places, potted : numpy.ndarray
+        float64 (n, 22, 2), centres at rest [m] before colours are respotted, of a potted ball where it fell;
+        int64 (n, 22), pocket of each ball, an index into ``snooker_env.POCKETS``, or -1.
+    first : numpy.ndarray
+        int64 (n,). Id of the ball struck first (the lowest of several at once); -1 if none was.
+    points, penalty : numpy.ndarray
+        float64 (n,), points scored, 0 for a miss or a foul; int64 (n,), penalty points of a foul, or 0.
+    goes_on : numpy.ndarray
+        bool (n,). Whether the visit continues after the stroke.
+    afterstates : Positions
+        n rows: colours respotted, and the ball on for the next stroke.
+
+    Examples
+    --------
+    >>> from snooker_env.planning import Planner, Position
+    >>> stops = Planner({"action": "discrete"}).stops(Position(cue=(0.0, 0.9), black=(0.4, 1.3)), [0], [67])
+    >>> int(stops.first[0]), int(stops.potted[0, 21]), stops.points.tolist()
+    (21, 3, [7.0])
+    """
+
+    places: NDArray[np.float64]
+    potted: NDArray[np.int64]
+    first: NDArray[np.int64]
+    points: NDArray[np.float64]
+    penalty: NDArray[np.int64]
+    goes_on: NDArray[np.bool_]
+    afterstates: Positions
+
+
+class WatchedVisits(TrialVisits):
+    """Trial visits that record where each table's last stroke left the balls."""
+
+    places: Floats
+    potted: Ints
+
+    def output(self, **kwargs: Any) -> StepOutput:
+        """As ``Tables.output``; also allocates ``places`` and ``potted``."""
+        self.places, self.potted = np.zeros((self.n, N_BALLS, 2)), np.zeros((self.n, N_BALLS), np.int64)
+        return super().output(**kwargs)
+
+    def run(self, which: Ints, buffers: ShotBuffers) -> list[int]:
+        unfinished = super().run(which, buffers)
+        m = len(which)
+        self.places[which], self.potted[which] = buffers.r[:m], buffers.potted[:m]
+        return unfinished
+
+    def again(self, which: Ints, j: int, buffers: ShotBuffers) -> ShotBuffers:
+        one = super().again(which, j, buffers)
+        self.places[which[j]], self.potted[which[j]] = one.r[0], one.potted[0]
+        return one
+
+
+FARTHEST = 0.5  # largest tip offset over R: the miscue limit, and the end of the scale of an action
 NAMES = ("speed", "side", "top", "aim", "elevation")
 """Of the columns of a stroke."""
 Dynamics = tuple[Physics, tuple[int, int]]
@@ -74,10 +186,8 @@ def actions_of(speeds: Vector, aims: Vector, side: Scalars = 0.0, top: Scalars =
 
     Parameters
     ----------
-    speeds : array_like
-        float (n,). Cue speeds [m/s], in [0.2, 7].
-    aims : array_like
-        float (n,). Directions in which the cue ball leaves [rad], anticlockwise from +x.
+    speeds, aims : array_like
+        float (n,). Cue speeds [m/s], in [0.2, 7]; directions in which the cue ball leaves [rad].
     side, top : array_like or float, optional
         float, scalar or (n,). Tip offsets over R, to the right and up, each in [-0.5, 0.5]; default 0.
 
@@ -172,10 +282,8 @@ def as_actions(
     ----------
     positions : PositionsLike
         The m positions: anything that ``Positions.of`` accepts.
-    rows : array_like
-        int (n,). Row of ``positions`` for each choice, in [0, m).
-    choices : array_like
-        int (n,). Choices, in [0, 540).
+    rows, choices : array_like
+        int (n,). Row of ``positions`` for each choice, in [0, m); choices, in [0, 540).
     physics : str, dict, Physics or None, optional
         Physical constants with which the aims are solved; default None: the preset "paper".
     fidelity : str, optional
@@ -230,10 +338,8 @@ def pot_aim(
     ----------
     positions : PositionsLike
         The m positions: anything that ``Positions.of`` accepts.
-    rows : array_like
-        int (n,). Row of ``positions`` for each ball, in [0, m).
-    balls : array_like
-        int (n,). Id of the ball to send, in [1, 21].
+    rows, balls : array_like
+        int (n,). Row of ``positions`` for each ball, in [0, m); id of the ball to send, in [1, 21].
     targets : array_like
         float (n, 2). Where to send it [m], for a pocket its ``snooker_env.geometry.POCKET_AIMS[:, :2]``.
     strokes : array_like or float
@@ -241,10 +347,8 @@ def pot_aim(
         speeds [m/s] of strokes in the middle of the ball.
     ghosts : array_like, optional
         float (n, 2). Ghost-ball centres [m]; default: 2 R behind the ball as seen from the target.
-    physics : str, dict, Physics or None, optional
-        Physical constants; default None: the preset "paper".
-    fidelity : str, optional
-        "fast", "standard" (default), "reference" or "euler:N": how impacts are solved.
+    physics, fidelity : optional
+        As for ``as_actions``.
 
     Returns
     -------
@@ -263,13 +367,7 @@ def pot_aim(
 
 
 def solved_aims(
-    at: Positions,
-    rows: Integers,
-    balls: Integers,
-    targets: Vectors,
-    strokes: Any,
-    ghosts: Vectors | None,
-    dynamics: Dynamics,
+    at: Positions, rows: Any, balls: Any, targets: Any, strokes: Any, ghosts: Any, dynamics: Dynamics
 ) -> NDArray[np.float64]:
     """``pot_aim`` with checked physics and fidelity."""
     which, offset = rows_of(at, rows), dynamics[0].max_offset

@@ -21,13 +21,13 @@ from ..game.frame_columns import (
 )
 from ..planning import Positions
 from ..planning.positions import seeds_of
-from ..planning.trials import decoded
+from ..planning.strokes import decoded
+from ..tasks.carry_out import sayings
 from ..tasks.declarations import SAYS
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
 from ..tasks.observations import shaped
 from ..tasks.options import Options
-from ..tasks.saying import sayings
 from ..tasks.visit import Visits
 from .player import BoundPlayer, Strokes, placed
 

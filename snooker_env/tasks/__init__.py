@@ -1,5 +1,4 @@
-"""Tasks: strokes of visits and frames on one table or many. Public here: what actions, observations and
-execution errors mean.
+"""Tasks: strokes of visits and frames. Public here: what actions, observations and execution errors mean.
 
 >>> from snooker_env.tasks import CHOICES, LEVELS, choice_of
 >>> CHOICES, choice_of(pot=0, speed=4, side=1, top=2), LEVELS["club"].aim_deg

@@ -58,22 +58,16 @@ class OutputArrays(NamedTuple):
 class CueLaw(NamedTuple):
     """How the cue strikes, and how balls move and collide."""
 
-    phys: Floats
-    """Packed ``Physics``."""
+    phys: Floats  # packed ``Physics``
     end_mass_ratio: float
-    fidelity: int
+    fidelity: int  # this and the next as ``parse_fidelity`` returns them
     n_steps: int
-    """As ``parse_fidelity`` returns them."""
 
 
 class Work(NamedTuple):
     """Work space of the kernels that seek a line of the cue ball; ``lines.new_work`` makes it."""
 
-    lines: Floats
-    """(LINE_ROWS, POT_COLUMNS): the pots or lines of a table, and windows."""
-    motion: Floats
-    """(2, cloth.COLUMNS)"""
-    state: Ints
-    """(2,) Phases of two balls."""
-    series: Floats
-    """Of the solution of an impact."""
+    lines: Floats  # (LINE_ROWS, POT_COLUMNS): the pots or lines of a table, and windows
+    motion: Floats  # (2, cloth.COLUMNS)
+    state: Ints  # (2,) phases of two balls
+    series: Floats  # of the solution of an impact

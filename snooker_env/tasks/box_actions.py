@@ -20,11 +20,9 @@ from .lines import LINE_ROWS, aim_along, find_lines, line_of, new_work
 
 AIMS = ("absolute", "target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
-"""Smallest and largest cue speed [m/s], for -1 and +1 of an action: from a ball just rolled to the hardest
-power shot."""
+"""Cue speeds [m/s] for -1 and +1 of an action: from a ball just rolled to the hardest power shot."""
 TARGET_SPAN = radians(3.0)
-"""With ``aim="target"``: angle off the target line for +-1 [rad], more than any throw or a club player's
-errors."""
+"""With ``aim="target"``: angle off the target line for +-1 [rad], more than any throw or error."""
 MAX_ELEVATION = radians(30.0)
 
 
@@ -83,31 +81,8 @@ def _shot(a, positions, on_table, on, options, phys):
 
 
 class Actions:
-    """The box action space and the meaning of its components.
-
-    ==== ============ =======================================================================
-    0    cue speed    0.2 to 7.0 m/s, linear
-    1    side         tip offset over R = 0.5 x, + to the right. The point (side, top) is moved
-    2    top          back to the disc of radius 0.5 (the miscue limit) if it lies outside;
-                      top: + above, - below the middle
-    3    aim          "absolute": the angle pi x from +x, anticlockwise, in which the ball
-                      leaves without noise (squirt is compensated, as a player does).
-                      "target": the target line + 3 deg x (see ``line``)
-    4    elevation    only with ``elevation=True``: 0 to 30 deg, linear
-    next place in     only with ``placement=True``: across the D, then from the baulk line (-1)
-    two  the D        to the edge of the D (+1). Ignored unless the cue ball is in hand
-    next nomination   only if it says "nominate". After a red the range is cut in six equal
-                      parts, yellow to black; with a free ball in seven: the ball on itself,
-                      then yellow to black. At other times ignored
-    next decision     only if it says "decision": what to do after a foul of the opponent, else
-                      ignored. Below -1/3: the offender plays again from here. Above 1/3: the
-                      balls are replaced and it plays again, if a miss was called. In between,
-                      or without a miss: play, with this same action
-    last declaration  only if it says "concede", "claim" or "lot". Below -2/3: concede. Above 2/3:
-                      claim the frame, where the rules allow it. At the lot, below 0: the other
-                      player begins. Else: play, with this same action
-    ==== ============ =======================================================================
-    """
+    """The box action space; docs/environment/specification.md says what its components mean: speed, side,
+    top, aim, then elevation, the place in the D (two), nomination, decision, declaration."""
 
     aim: str
     elevation: bool
@@ -119,8 +94,7 @@ class Actions:
     lot: bool
     physics: Physics
     space: spaces.Box
-    size: int
-    """Number of components of an action."""
+    size: int  # components of an action
 
     def __init__(
         self, aim: str, elevation: bool, placement: bool, physics: Physics, says: Collection[str] = ()
@@ -139,51 +113,40 @@ class Actions:
 
     def check(self, action: Action) -> list[float]:
         """The action as a list of floats; ValueError unless it has the right shape, within [-1, 1]."""
-        allowed = f"must have shape ({self.size},), real numbers"
-        try:
-            a = np.asarray(action)
-        except ValueError:
-            raise refuse("action", action, allowed) from None
-        if a.dtype.kind not in "iuf":
-            raise refuse("action", action, allowed)
-        if a.shape != (self.size,):
-            raise refuse_what("action", f"array of shape {a.shape}", allowed)
-        a = a.astype(np.float64).tolist()  # from any type: the kernels are compiled for float64 only
+        a = self._read("action", action, (self.size,)).tolist()
         if not all(-1.0 <= x <= 1.0 for x in a):  # NaN fails too
             raise refuse("action", a, "must be finite and within [-1, 1]")
         return a
 
     def check_many(self, actions: Any, n: int) -> Floats:
         """The actions of n tables, float64 (n, size); ValueError names the first invalid one."""
-        allowed = f"must have shape ({n}, {self.size}), real numbers"
-        try:
-            a = np.asarray(actions)
-        except ValueError:
-            raise refuse("actions", actions, allowed) from None
-        if a.dtype.kind not in "iuf":
-            raise refuse_what("actions", f"array of {a.dtype}", allowed)
-        if a.shape != (n, self.size):
-            raise refuse_what("actions", f"array of shape {a.shape}", allowed)
-        a = a.astype(np.float64, order="C")
+        a = self._read("actions", actions, (n, self.size))
         if not (np.abs(a) <= 1.0).all():  # NaN fails too
             k = int(np.argmin((np.abs(a) <= 1.0).all(axis=1)))
             raise refuse(f"actions[{k}]", a[k].tolist(), "must be finite and within [-1, 1]")
         return a
 
+    def _read(self, field: str, actions: Any, shape: tuple[int, ...]) -> Floats:
+        allowed = f"must have shape {shape}, real numbers"
+        try:
+            a = np.asarray(actions)
+        except ValueError:
+            raise refuse(field, actions, allowed) from None
+        if a.dtype.kind not in "iuf":
+            raise refuse(field, actions, allowed)
+        if a.shape != shape:
+            raise refuse_what(field, f"array of shape {a.shape}", allowed)
+        return a.astype(np.float64, order="C")  # from any type: the kernels are compiled for float64 only
+
     def pack(self) -> Floats:
         """The options for the kernels: float64, in the columns ``A_*`` of ``declarations``."""
         limits = self.physics.end_mass_ratio, self.physics.max_offset
         last = self.size - self.declares  # the components before the declaration
-        where = [
-            last - 1 - self.decision if self.nominate else -1,
-            last - 1 if self.decision else -1,
-            last if self.declares else -1,
-        ]
-        spoken = [self.concede, self.claim, self.lot]
-        return np.array(
-            [self.aim == "target", self.elevation, self.placement, *limits, False, *where, *spoken],
-            np.float64,
-        )
+        nominated = last - 1 - self.decision if self.nominate else -1
+        where = nominated, last - 1 if self.decision else -1, last if self.declares else -1
+        kind = self.aim == "target", self.elevation, self.placement
+        spoken = self.concede, self.claim, self.lot
+        return np.array([*kind, *limits, False, *where, *spoken], np.float64)
 
     def shot(
         self, a: Any, positions: Vectors, on_table: Flags, on: int

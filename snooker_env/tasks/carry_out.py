@@ -5,40 +5,20 @@ from typing import Any
 import numpy as np
 
 from .._jit import entry
-from .._types import Ints
+from .._types import Floats, Ints
+from ..game import frame_columns as columns
 from ..game.balls import YELLOW
-from ..game.frame_columns import (
-    ANYWHERE,
-    CHOICE,
-    IN_HAND,
-    LOT,
-    PHASE,
-    PLAY,
-    PLAY_AGAIN,
-    STRIKER,
-    Layouts,
-    claim,
-    concede,
-    draw,
-)
 from ..game.ruling import AUTO
 from ..physics.cue import squirt
+from . import declarations
 from .arrays import StruckArrays, TableArrays
 from .box_actions import tip_on_disc
-from .declarations import (
-    A_END_MASS,
-    A_MAX_OFFSET,
-    CLAIMS,
-    CONCEDES,
-    OTHER_BEGINS,
-    SAYS_NOTHING,
-    may_declare,
-    nominated_ball,
-)
+from .declarations import A_DECISION, declaration_of, nomination_of
 from .frame import Frames
 from .frame_kernels import choose_as, give_up
+from .options import Rules
 from .rewards import MATCH_REWARDS
-from .stroke import ShotBuffers, place, place_anywhere, strike
+from .stroke import ShotBuffers, place, strike
 
 
 @entry(what="the strokes of players in frames", seconds=3)
@@ -46,37 +26,35 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
     """Strokes of the tables ``which``: shots 0 to m - 1, on the tables ``playing[:m]``; returns m. ``asked``:
     values, place, nominate, decision, declare of ``players.Strokes``; ``codes``: rule set, reward."""
     values, places, nominate, decisions, declared = asked
-    tables, saved, shots = TableArrays(*tables), Layouts(*saved), StruckArrays(*shots)
+    tables, saved, shots = TableArrays(*tables), columns.Layouts(*saved), StruckArrays(*shots)
     (options, noise), (rules, reward), m = packed, codes, 0
     for k in which:
         row, p, on = tables.game[k], tables.positions[k], tables.on_table[k]
-        says = declared[k] if may_declare(declared[k], row) else SAYS_NOTHING
-        if says == CONCEDES:
-            concede(row)
+        says = declared[k] if declarations.may_declare(declared[k], row) else declarations.SAYS_NOTHING
+        if says == declarations.CONCEDES:
+            columns.concede(row)
             give_up(row, reward)
             continue
-        if says == CLAIMS:
-            claim(row)
+        if says == declarations.CLAIMS:
+            columns.claim(row)
             continue
-        if row[PHASE] == LOT:
-            draw(row, 1 - row[STRIKER] if says == OTHER_BEGINS else row[STRIKER])
-            if says == OTHER_BEGINS:
+        if row[columns.PHASE] == columns.LOT:
+            other = says == declarations.OTHER_BEGINS
+            columns.draw(row, 1 - row[columns.STRIKER] if other else row[columns.STRIKER])
+            if other:
                 continue
-        elif row[PHASE] == CHOICE:
-            wish = 0.0 if decisions[k] == PLAY else -1.0 if decisions[k] == PLAY_AGAIN else 1.0
+        elif row[columns.PHASE] == columns.CHOICE:
+            what = decisions[k]
+            wish = 0.0 if what == columns.PLAY else -1.0 if what == columns.PLAY_AGAIN else 1.0
             if not choose_as(k, wish, rules, tables, saved):
                 continue
-        tables.nominated[k] = (
-            AUTO if nominate[k] < 0 else nominated_ball(max(0, nominate[k] - YELLOW + 1), row)
-        )
-        if row[IN_HAND] and not np.isnan(places[k, 0]):
-            if row[ANYWHERE]:
-                place_anywhere(p, on, places[k, 0], places[k, 1])
-            else:
-                place(p, on, places[k, 0], places[k, 1])
+        colour = max(0, nominate[k] - YELLOW + 1)
+        tables.nominated[k] = AUTO if nominate[k] < 0 else declarations.nominated_ball(colour, row)
+        if row[columns.IN_HAND] and not np.isnan(places[k, 0]):
+            place(p, on, places[k, 0], places[k, 1], row[columns.ANYWHERE] != 0)
         speed, aim, elevation = values[k, 0], values[k, 3], values[k, 4]
-        side, top = tip_on_disc(values[k, 1], values[k, 2], options[A_MAX_OFFSET])
-        intended = (speed, side, top, aim - squirt(side, options[A_END_MASS]), elevation)
+        side, top = tip_on_disc(values[k, 1], values[k, 2], options[declarations.A_MAX_OFFSET])
+        intended = (speed, side, top, aim - squirt(side, options[declarations.A_END_MASS]), elevation)
         strike(intended, p, on, tables.streams[k], options, noise, m, shots)
         playing[m] = k
         m += 1
@@ -86,19 +64,31 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
 def carry_out(frames: Frames, which: Ints, asked: tuple[Any, ...], buffers: ShotBuffers, side: int) -> Ints:
     """Carry out the strokes ``asked``, arrays of ``players.Strokes``, up to the strike, with the errors of the
     seat ``side``; returns the tables with a stroke."""
-    playing, codes = (
-        np.empty(len(which), np.int64),
-        (frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward)),
-    )
-    m = _carry_out(
-        which,
-        asked,
-        frames.arrays,
-        frames.saved_arrays,
-        frames.packs[side][:2],
-        codes,
-        buffers.struck,
-        playing,
-    )
+    codes = frames.rules.rule_set.code, MATCH_REWARDS.index(frames.rules.reward)
+    playing, tables = np.empty(len(which), np.int64), (frames.arrays, frames.saved_arrays)
+    m = _carry_out(which, asked, *tables, frames.packs[side][:2], codes, buffers.struck, playing)
     frames.hold_late(playing[:m], buffers)
     return playing[:m]
+
+
+@entry(what="what actions say", seconds=1)
+def _said(actions, options, game, rules, nominated, decisions, declared):
+    """What the strikers of n frames say with their actions: nominations, decisions and declarations (n,)."""
+    for k in range(len(game)):
+        row, a = game[k], actions[k]
+        declared[k] = declaration_of(a, options, row)
+        asked = options[A_DECISION] >= 0 and row[columns.PHASE] == columns.CHOICE
+        wish = a[int(options[A_DECISION])] if asked else 0.0
+        decisions[k] = columns.PLAY_AGAIN if wish < -1.0 / 3.0 else columns.PLAY
+        if wish > 1.0 / 3.0 and columns.may_replace(row, rules):
+            decisions[k] = columns.REPLACE
+        elif wish > 1.0 / 3.0 and columns.may_place_anywhere(row, rules):
+            decisions[k] = columns.PLACE_ANYWHERE
+        nominated[k] = nomination_of(a, options, row)
+
+
+def sayings(rules: Rules, actions: Floats, game: Ints) -> tuple[Ints, Ints, Ints]:
+    """Nominations, decisions and declarations (n,), as in ``players.Strokes``, of checked actions (n, k)."""
+    nominated, decisions, declared = np.empty((3, len(game)), np.int64)
+    _said(actions, rules.actions.pack(), game, rules.rule_set.code, nominated, decisions, declared)
+    return nominated, decisions, declared

@@ -1,47 +1,19 @@
 """What does a player say beside its stroke? The colour that it nominates, and whether it concedes, claims or
 lets the other begin. The packed options of an action space say where: ``A_NOMINATE``, ``A_DECISION``,
-``A_DECLARATION`` hold the index of a component of a box action, or -1; of discrete actions, the first is 0 or
--1."""
+``A_DECLARATION`` hold the index of a component of a box action, or -1; of choices, 0 or -1."""
 
 from .._jit import kernel
+from ..game import frame_columns as columns
 from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
-from ..game.frame_columns import (
-    BALL_ON,
-    CHOICE,
-    FREE_BALL,
-    LOT,
-    ON_TABLE,
-    OVER,
-    PHASE,
-    STROKE,
-    may_claim,
-    strikeable,
-)
 from ..game.ruling import AUTO
 
 # Columns of the packed options of an action space.
-(
-    A_TARGET,
-    A_ELEVATION,
-    A_PLACEMENT,
-    A_END_MASS,
-    A_MAX_OFFSET,
-    A_DISCRETE,
-    A_NOMINATE,
-    A_DECISION,
-    A_DECLARATION,
-    A_CONCEDE,
-    A_CLAIM,
-    A_LOT,
-) = range(12)
-
-SAYS = ("nominate", "decision", "concede", "claim", "lot")
-"""What an action can say beside the stroke."""
-(SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)
-"""Declarations."""
+A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET, A_DISCRETE = range(6)
+A_NOMINATE, A_DECISION, A_DECLARATION, A_CONCEDE, A_CLAIM, A_LOT = range(6, 12)
+SAYS = ("nominate", "decision", "concede", "claim", "lot")  # what an action can say beside the stroke
+(SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)  # declarations
 COLOURS = 6
-STROKE_CHOICES = 540
-"""``discrete_actions.SIZE``, the number of discrete actions that only choose a stroke."""
+STROKE_CHOICES = 540  # ``discrete_actions.SIZE``, the number of discrete actions that only choose a stroke
 
 
 @kernel
@@ -49,16 +21,17 @@ def nominated_ball(n, row):
     """The ball that ``n`` (0 none, 1 to 6 yellow to black) nominates. After a red: that colour or, if it is
     not on the table, the next one that is. Of a free ball: that colour; 0, the ball on itself, if n is 0 or
     the colour is on anyway or not on the table. Else AUTO: nothing."""
-    if row[BALL_ON] == 0:
+    if row[columns.BALL_ON] == 0:
         for c in range(COLOURS):
             ball = YELLOW + (max(n, 1) - 1 + c) % COLOURS
-            if row[ON_TABLE] >> ball & 1:
+            if row[columns.ON_TABLE] >> ball & 1:
                 return ball
         return AUTO
-    if not row[FREE_BALL]:
+    if not row[columns.FREE_BALL]:
         return AUTO
     ball = YELLOW + n - 1
-    free = COLOURS_MASK & row[ON_TABLE] & ~balls_on_kernel(row[BALL_ON], row[ON_TABLE])
+    mask = row[columns.ON_TABLE]
+    free = COLOURS_MASK & mask & ~balls_on_kernel(row[columns.BALL_ON], mask)
     return ball if n > 0 and free >> ball & 1 else 0
 
 
@@ -78,7 +51,7 @@ def nomination_of(a, options, row):
         c = int(a[0])
         return nominated_ball(c // STROKE_CHOICES if c < STROKE_CHOICES * (1 + COLOURS) else 0, row)
     x = 0.5 * (a[int(options[A_NOMINATE])] + 1.0)
-    if row[BALL_ON] == 0:
+    if row[columns.BALL_ON] == 0:
         return nominated_ball(1 + min(COLOURS - 1, int(COLOURS * x)), row)
     return nominated_ball(min(COLOURS, int((1 + COLOURS) * x)), row)
 
@@ -88,17 +61,17 @@ def playable(row, mask, nominated):
     """The balls in ``mask`` that may be struck first once ``nominated`` (0: none; or AUTO) has been said."""
     if nominated > 0:
         return (1 << nominated) & mask
-    return balls_on_kernel(row[BALL_ON], mask) if nominated == 0 else strikeable(row, mask)
+    return balls_on_kernel(row[columns.BALL_ON], mask) if nominated == 0 else columns.strikeable(row, mask)
 
 
 @kernel
 def may_declare(what, row):
     """Whether the striker of a frame may say ``what`` now."""
-    if row[OVER]:
+    if row[columns.OVER]:
         return False
     if what == CONCEDES:
-        return row[PHASE] == STROKE or row[PHASE] == CHOICE
-    return may_claim(row) if what == CLAIMS else row[PHASE] == LOT
+        return row[columns.PHASE] == columns.STROKE or row[columns.PHASE] == columns.CHOICE
+    return columns.may_claim(row) if what == CLAIMS else row[columns.PHASE] == columns.LOT
 
 
 @kernel
@@ -116,7 +89,7 @@ def declaration_of(a, options, row):
                 extra -= 1
     elif options[A_DECLARATION] >= 0:
         x = a[int(options[A_DECLARATION])]
-        if row[PHASE] == LOT:
+        if row[columns.PHASE] == columns.LOT:
             what = OTHER_BEGINS if options[A_LOT] and x < 0.0 else SAYS_NOTHING
         elif x < -2.0 / 3.0 and options[A_CONCEDE]:
             what = CONCEDES

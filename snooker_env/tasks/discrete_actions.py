@@ -17,21 +17,7 @@ from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, fin
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from ..physics.parameters import Physics
-from .declarations import (
-    A_CLAIM,
-    A_CONCEDE,
-    A_LOT,
-    A_NOMINATE,
-    CLAIMS,
-    COLOURS,
-    CONCEDES,
-    OTHER_BEGINS,
-    SAYS,
-    may_declare,
-    may_nominate,
-    nominated_ball,
-    playable,
-)
+from . import declarations
 from .lines import LINE_ROWS, POTS, aim_along, count_lines, find_lines
 from .pot_aim import solved_aim
 
@@ -97,28 +83,32 @@ def masks(which, positions, on_table, game, options, out):
     """Available choices on the tables ``which``, of visits or frames: bool, one row of ``out`` each."""
     rows = np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
-        k, parts = which[j], 1 + COLOURS if options[A_NOMINATE] >= 0 else 1
+        k, parts = which[j], 1 + declarations.COLOURS if options[declarations.A_NOMINATE] >= 0 else 1
         row, mask = game[k], bits(on_table[k])
         for n in range(parts):
-            on = strikeable(row, mask) if parts == 1 else playable(row, mask, nominated_ball(n, row))
-            available = parts == 1 or may_nominate(n, row)
+            on, available = strikeable(row, mask), True
+            if parts > 1:
+                on = declarations.playable(row, mask, declarations.nominated_ball(n, row))
+                available = declarations.may_nominate(n, row)
             many = count_lines(positions[k], on_table[k], on, rows) if available and on_table[k, 0] else 1
             for c in range(SIZE):
                 out[j, n * SIZE + c] = available and c < STROKES * many
         at = parts * SIZE
-        for what, column in ((CONCEDES, A_CONCEDE), (CLAIMS, A_CLAIM), (OTHER_BEGINS, A_LOT)):
+        for what, column in (
+            (declarations.CONCEDES, declarations.A_CONCEDE),
+            (declarations.CLAIMS, declarations.A_CLAIM),
+            (declarations.OTHER_BEGINS, declarations.A_LOT),
+        ):
             if options[column]:
-                out[j, at] = may_declare(what, row)
+                out[j, at] = declarations.may_declare(what, row)
                 at += 1
 
 
 class Choices:
     """The discrete action space and its meaning: ((pot * 9 + speed) * 3 + side) * 5 + top, see ``choice_of``.
-
     With ``nominate``, n * 540 + that: n = 0 nominates nothing, 1 to 6 yellow to black, and the pots are those
     of the ball that is then on. The last choices, as far as they are on: concede, claim, let the other player
-    begin after the lot. What may not be said is played as the stroke of the same remainder.
-    """
+    begin after the lot. What may not be said is played as the stroke of the same remainder."""
 
     size: int = 1
     placement: bool = False
@@ -128,13 +118,13 @@ class Choices:
     claim: bool
     lot: bool
     choices: int
-    """Number of choices in all."""
     space: spaces.Discrete
 
     def __init__(self, physics: Physics, says: Collection[str] = ()):
         self.physics = physics
-        self.nominate, _, self.concede, self.claim, self.lot = (name in says for name in SAYS)
-        self.choices = SIZE * (1 + COLOURS * self.nominate) + self.concede + self.claim + self.lot
+        self.nominate, _, self.concede, self.claim, self.lot = (name in says for name in declarations.SAYS)
+        more = self.concede + self.claim + self.lot
+        self.choices = SIZE * (1 + declarations.COLOURS * self.nominate) + more
         self.space = spaces.Discrete(self.choices)
 
     @property
@@ -163,8 +153,7 @@ class Choices:
 
     def pack(self) -> Floats:
         """The options for the kernels, in the columns ``A_*`` of ``declarations``."""
-        physics, spoken = self.physics, [self.concede, self.claim, self.lot]
-        limits = [physics.end_mass_ratio, physics.max_offset]
-        return np.array(
-            [False, False, False, *limits, True, 0 if self.nominate else -1, -1, -1, *spoken], np.float64
-        )
+        limits = self.physics.end_mass_ratio, self.physics.max_offset
+        spoken = self.concede, self.claim, self.lot
+        where = 0 if self.nominate else -1, -1, -1
+        return np.array([False, False, False, *limits, True, *where, *spoken], np.float64)

@@ -3,13 +3,11 @@
 Search. A ball that leaves a cushion slides along a curve before it rolls again, so a mirror image misses by
 up to 20 degrees. What becomes of a rolling ball depends on its angle alone, up to a scale: velocities in
 proportion to that before, the curve's length to its square. ``_REBOUND`` holds this, from shots in the
-simulator, for a ball struck ``ROLLING`` above its middle: for the physics "paper" at any speed, for "match"
-up to 2 m/s.
+simulator, for a ball struck ``ROLLING`` above its middle: for "paper" at any speed, for "match" up to 2 m/s.
 
 Aim. Speed, height and side of the strike turn the escape. So the cue ball alone is played with the models of
-the engine until it meets a ball, in directions about the one of the search, and sent along the middle of
-those that succeed.
-"""
+the engine until it meets a ball, in directions about that of the search, and sent along the middle of
+successes."""
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 
@@ -27,16 +25,11 @@ from ..physics.impact.contact import FAST, collide_cushion, cushion_restitution
 from ..physics.parameters import P_R
 from .windows import turned
 
-ROLL = 0.25
-"""Twice a rolling ball's deceleration [m/s^2]."""
-ROLLING = 0.4
-"""Tip offset over R with which a ball rolls from the start."""
+ROLL = 0.25  # twice a rolling ball's deceleration [m/s^2]
+ROLLING = 0.4  # tip offset over R with which a ball rolls from the start
 LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH = range(4)
-"""Columns of a line of the cue ball: direction and by how much it may err [rad]; cue speed of an escape
-[m/s], 0 for what is seen; worth among escapes."""
-
-_ANGLES = 9
-"""The rows of ``_REBOUND`` are 10 degrees apart."""
+"""Columns of a line: direction, how much it may err [rad]; cue speed of an escape [m/s], 0 if seen; worth."""
+_ANGLES = 9  # the rows of ``_REBOUND`` are 10 degrees apart
 _REBOUND = (
     (0.583, 0.000, 0.1190, 0.0000),
     (0.574, 0.104, 0.1162, 0.0164),
@@ -49,42 +42,23 @@ _REBOUND = (
     (0.099, 0.928, 0.0046, 0.0317),
     (0.000, 1.000, 0.0000, 0.0000),
 )
-"""A ball rolls into a cushion at speed v, at 0, 10, .. 90 degrees to its normal. When it rolls again: its
-velocity along the normal and along the cushion, over v, and how far it has come along each, over v^2
-[s^2/m]."""
-_MOUTH = 0.12
-"""No cushion is used within this distance of a pocket's nominal place [m]."""
-_DIRECTIONS = 720
-_SPEEDS = (1.7, 2.8, 4.2)
-"""Cue speeds of an escape [m/s]: the next one is tried where the one before leaves no window of ``_WIDE``."""
-_WIDE = 4.0
-"""Number of directions of a window that is wide enough, after a deduction for cushions."""
-_LEGS = 4
-"""Most straight parts of an escape: one more than cushions."""
-_SAME = 0.1
-"""Escapes whose directions differ by less are one [rad]."""
-
-_BED = np.array(
-    [
-        (axis, side, half, -9.0, 9.0)
-        for axis, half in ((AXIS_X, HALF_WIDTH), (AXIS_Y, HALF_LENGTH))
-        for side in (-1.0, 1.0)
-    ]
-)
+"""A ball rolls into a cushion at speed v, at 0, 10, .. 90 degrees to its normal. When it rolls again:
+velocity along normal and cushion over v, way along each over v^2 [s^2/m]."""
+_MOUTH, _SAME = 0.12, 0.1
+"""No cushion is used so near to a pocket's nominal place [m]; escapes so near in direction are one [rad]."""
+_DIRECTIONS, _LEGS = 720, 4  # directions tried; most straight parts of an escape, one more than cushions
+_SPEEDS, _WIDE = (1.7, 2.8, 4.2), 4.0
+"""Cue speeds of an escape [m/s]: the next where one leaves fewer than ``_WIDE`` directions."""
+_HALVES = ((AXIS_X, HALF_WIDTH), (AXIS_Y, HALF_LENGTH))
+_BED = np.array([(axis, side, half, -9.0, 9.0) for axis, half in _HALVES for side in (-1.0, 1.0)])
 _NO_JAWS, _NO_FALLS = np.empty((0, 6)), np.empty((0, 3))
 for _constant in (_BED, _NO_JAWS, _NO_FALLS):
     _constant.setflags(write=False)
-_CLEAR = (
-    BALL_RADIUS - HALF_WIDTH,
-    HALF_WIDTH - BALL_RADIUS,
-    BALL_RADIUS - HALF_LENGTH,
-    HALF_LENGTH - BALL_RADIUS,
-)
+_X, _Y = HALF_WIDTH - BALL_RADIUS, HALF_LENGTH - BALL_RADIUS
+_CLEAR = (-_X, _X, -_Y, _Y)
 _STEP, _STEPS = 0.0087, (30, 75)
-"""Directions about an escape tried for a stroke: their distance [rad]; number on either side, and if none
-succeeds."""
-_HALVINGS = 3
-"""How often that distance is halved to find where a window ends."""
+"""Directions tried about an escape: distance [rad]; number on either side, and if none succeeds."""
+_HALVINGS = 3  # how often that distance is halved to find where a window ends
 
 
 @kernel
@@ -99,13 +73,8 @@ def _rebound(cosine):
     at = atan2(sqrt(max(0.0, 1.0 - cosine * cosine)), cosine) * 18.0 / pi
     k = min(int(at), _ANGLES - 1)
     s = at - k
-    low, high = _REBOUND[k], _REBOUND[k + 1]
-    return (
-        low[0] + s * (high[0] - low[0]),
-        low[1] + s * (high[1] - low[1]),
-        low[2] + s * (high[2] - low[2]),
-        low[3] + s * (high[3] - low[3]),
-    )
+    (a, b, c, d), (a1, b1, c1, d1) = _REBOUND[k], _REBOUND[k + 1]
+    return a + s * (a1 - a), b + s * (b1 - b), c + s * (c1 - c), d + s * (d1 - d)
 
 
 @kernel
@@ -170,12 +139,8 @@ def _keep(lines, first, count, aim, half, speed, worth):
     for k in range(count - 1, at, -1):
         for c in range(4):
             lines[k, c] = lines[k - 1, c]
-    lines[at, LINE_AIM], lines[at, LINE_ROOM], lines[at, LINE_SPEED], lines[at, LINE_WORTH] = (
-        turned(aim),
-        half,
-        speed,
-        worth,
-    )
+    lines[at, LINE_AIM], lines[at, LINE_ROOM] = turned(aim), half
+    lines[at, LINE_SPEED], lines[at, LINE_WORTH] = speed, worth
     return count
 
 
@@ -184,21 +149,19 @@ def find_escapes(positions, on_table, on, lines, first):
     """Write the escapes with the widest windows into the rows from ``first`` on; returns the rows in use."""
     turn, count = 2.0 * pi / _DIRECTIONS, first
     for s in range(len(_SPEEDS)):
-        begin = 0
-        while (
-            begin < _DIRECTIONS
-            and _reaches(positions, on_table, on, cos(begin * turn), sin(begin * turn), _SPEEDS[s]) > 0.0
-        ):
+        begin, speed = 0, _SPEEDS[s]
+        while _reaches(positions, on_table, on, cos(begin * turn), sin(begin * turn), speed) > 0.0:
             begin += 1  # a window must not be cut in two where the directions begin
+            if begin == _DIRECTIONS:
+                break
         worth, run = 0.0, 0
         for k in range(begin, begin + _DIRECTIONS + 1):
-            here = _reaches(positions, on_table, on, cos(k * turn), sin(k * turn), _SPEEDS[s])
+            here = _reaches(positions, on_table, on, cos(k * turn), sin(k * turn), speed)
             if here > 0.0:
                 worth, run = worth + here, run + 1
             elif run:
-                count = _keep(
-                    lines, first, count, (k - 0.5 * (run + 1)) * turn, 0.5 * run * turn, _SPEEDS[s], worth
-                )
+                aim = (k - 0.5 * (run + 1)) * turn
+                count = _keep(lines, first, count, aim, 0.5 * run * turn, speed, worth)
                 worth, run = 0.0, 0
         if count > first and lines[first, LINE_WORTH] >= _WIDE:
             break
@@ -207,8 +170,7 @@ def find_escapes(positions, on_table, on, lines, first):
 
 @kernel(seconds=1, uses=(collide_cushion,))
 def _played(aim, stroke, positions, on_table, law, work):
-    """The ball that the cue ball meets first, by the models of the engine, cushions at fidelity "fast"; 0:
-    none, or a pocket first. ``stroke``: (speed, side, top)."""
+    """The ball that the cue ball meets first, by the engine's models; 0: none, or a pocket."""
     (speed, side, top), phys, motion, state = stroke, law.phys, work.motion, work.state
     R, m = phys[P_R], law.end_mass_ratio
     (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, m), side, top, 0.0, R, m)
@@ -220,13 +182,8 @@ def _played(aim, stroke, positions, on_table, law, work):
         ball, until = 0, min(wall, motion[0, cloth.T_END])
         for i in range(1, N_BALLS):
             x, y, d = positions[i, 0], positions[i, 1], 2.0 * R
-            if (
-                not on_table[i]
-                or x + d < motion[0, cloth.LO_X]
-                or x - d > motion[0, cloth.HI_X]
-                or y + d < motion[0, cloth.LO_Y]
-                or y - d > motion[0, cloth.HI_Y]
-            ):
+            off = x + d < motion[0, cloth.LO_X] or x - d > motion[0, cloth.HI_X]
+            if not on_table[i] or off or y + d < motion[0, cloth.LO_Y] or y - d > motion[0, cloth.HI_Y]:
                 continue
             cloth.begin(motion, state, 1, 0.0, (x, y), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
             t = pair_time(motion, state, 0, 1, now, d)
@@ -262,7 +219,7 @@ def _succeeds(aim, stroke, positions, on_table, on, law, work):
 @kernel(uses=(_succeeds,))
 def escape_aim(about, stroke, positions, on_table, on, law, work):
     """Direction [rad] in which the stroke meets a ball on: the middle of the widest, then nearest window
-    about ``about``, farther away if there is none, as with much side; ``about`` if none succeeds."""
+    about ``about``, or ``about`` itself."""
     best, low, high = 0.0, about, about
     for steps in _STEPS:
         run = 0

@@ -10,43 +10,23 @@ go to the opponent's score; after a foul the agent plays on from where the balls
 A frame that ends in the opponent's first visit is shown by that reset; the next step plays nothing, reports
 the end and pays its reward (``Frames.due``). A cue ball in hand is placed at once on the free place of the D
 nearest to its usual one (``balls.SPOTS``), so that it can be seen; the player may place it elsewhere. The
-physics is planar: no ball leaves the table or jumps over another, so those fouls never occur.
-"""
+physics is planar: no ball leaves the table or jumps over another."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from .._check import refuse
 from .._types import Bools, Floats, Ints, Singles
+from ..game import frame_columns as columns
 from ..game.balls import COLOURS_MASK, CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_present
 from ..game.frame import MISS_RULES, Frame, frame_of, write_frame
-from ..game.frame_columns import (
-    ATTEMPTS,
-    BALL_ON,
-    COLUMNS,
-    FIRST_BREAK,
-    FREE_BALL,
-    IN_HAND,
-    OPPONENT,
-    OVER,
-    PAID,
-    PHASE,
-    POINTS,
-    SCORE_0,
-    SCORE_1,
-    STRIKER,
-    STROKES,
-    Layouts,
-)
 from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
 from . import frame_kernels
-from .attempts import judge_attempts, remember
 from .box_actions import Actions
 from .declarations import A_LOT
 from .discrete_actions import Choices
@@ -54,10 +34,13 @@ from .frame_kernels import AGENT
 from .noise import Noise
 from .observations import FRAME_SIZE, REPLACED_SIZE
 from .options import NEVER, Options, Rules
-from .rewards import MATCH_REWARDS
+from .rewards import FRAMES_PAID, MATCH_REWARDS
 from .states import FrameState, checked_frame
 from .stroke import ShotBuffers
 from .tables import COUNTS, I_POINTS, I_SECONDS, REALS, Crew, StepOutput, Tables
+from .visit import Visits
+
+Generators: TypeAlias = Sequence[np.random.Generator]  # one for each table, for an opponent in Python
 
 
 class Opponent(ABC):
@@ -65,7 +48,7 @@ class Opponent(ABC):
 
     name: str = ""
 
-    def ask(self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]) -> Any:
+    def ask(self, frames: "Frames", which: Ints, generators: Generators) -> Any:
         """What it plays on the tables ``which``, for ``prepare``; None for one that plays as a kernel."""
         return None
 
@@ -73,11 +56,12 @@ class Opponent(ABC):
     def prepare(self, frames: "Frames", which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
         """Carry the strokes out up to the strike; returns the tables with a stroke."""
 
-    def turns(
-        self, frames: "Frames", which: Ints, generators: Sequence[np.random.Generator]
-    ) -> "list[tuple[Opponent, Ints, Any]]":
+    def turns(self, frames: "Frames", which: Ints, generators: Generators) -> "list[Turn]":
         """Who plays on which of the tables ``which``, and what: [(opponent, tables, asked), ...]."""
         return [(self, which, self.ask(frames, which, generators))]
+
+
+Turn: TypeAlias = tuple[Opponent, Ints, Any]  # who plays on which tables, and what was asked
 
 
 @dataclass(frozen=True)
@@ -105,20 +89,14 @@ class Frames(Tables):
     FLAGS: tuple[str, ...] = ("choice", "free_ball", "needs_snookers", "anywhere", "warned")
     COUNTS: tuple[str, ...] = (*COUNTS, "strokes", "opponent_strokes", "winner", *FLAGS, "misses", "failures")
     SIZE = FRAME_SIZE
-    COLUMNS = COLUMNS
+    COLUMNS = columns.COLUMNS
 
     nominated: Ints
     """(n,) The colour that the striker has nominated after a red or as its free ball, 0 for a free ball
-    declined; AUTO, as always between two strokes: the colour first struck. Code that sets it must check
-    it."""
-    due: Bools
-    """(n,) Which episodes have ended in a reset, so that the next step reports their end."""
-
-    seats: tuple[Seat, ...]
-    """The agent's, and the other player's if it does not play alone. One without a player is played by
-    ``turn``."""
-    packs: tuple[Any, ...]
-    """``packed`` of each seat."""
+    declined; AUTO, as always between two strokes: the colour first struck. Unchecked."""
+    due: Bools  # (n,) which episodes have ended in a reset, so that the next step reports their end
+    seats: tuple[Seat, ...]  # the agent's, and the other's if it does not play alone; no player: by ``turn``
+    packs: tuple[Any, ...]  # ``packed`` of each seat
 
     def __init__(
         self, rules: Rules | Options, n: int = 1, *, limit: int = NEVER, seats: Sequence[Seat] | None = None
@@ -126,10 +104,8 @@ class Frames(Tables):
         rules = rules.rules if isinstance(rules, Options) else rules
         super().__init__(rules, n, limit=limit)
         self.sit([Seat.of(rules)] if seats is None else seats)
-        self._saved_positions, self._saved_on_table = (
-            np.zeros((n, N_BALLS, 2)),
-            np.zeros((n, N_BALLS), np.bool_),
-        )
+        self._saved_positions = np.zeros((n, N_BALLS, 2))
+        self._saved_on_table = np.zeros((n, N_BALLS), np.bool_)
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
         self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
@@ -154,9 +130,9 @@ class Frames(Tables):
         self._lot[A_LOT] = any(pack[0][A_LOT] for pack in self.packs)
 
     @property
-    def saved(self) -> Layouts:
+    def saved(self) -> columns.Layouts:
         """Where the balls lay before the last fouls: ``frame_columns.Layouts``."""
-        return Layouts(self._saved_positions, self._saved_on_table)
+        return columns.Layouts(self._saved_positions, self._saved_on_table)
 
     @property
     def saved_arrays(self) -> tuple[Floats, Bools]:
@@ -164,24 +140,17 @@ class Frames(Tables):
         return self._saved_positions, self._saved_on_table
 
     @property
-    def _setting(self) -> tuple[Any, ...]:
+    def _setting(self):
         """For kernels: the parts of ``frame_kernels.Setting``, in a plain tuple."""
         return self._setting_of(self._lot)
 
-    def _setting_of(self, options: Floats) -> tuple[Any, ...]:
+    def _setting_of(self, options):
         """``_setting`` with the packed options of one seat's actions."""
         return *self._numbers, options, self._jaws
 
     def _columns(self) -> tuple[str, ...]:
-        return (
-            *super()._columns(),
-            "_saved_positions",
-            "_saved_on_table",
-            "_replies",
-            "_played",
-            "nominated",
-            "due",
-        )
+        more = ("_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due")
+        return super()._columns() + more
 
     def frame(self, k: int) -> Frame:
         """The ``game.frame.Frame`` on table k."""
@@ -189,37 +158,33 @@ class Frames(Tables):
 
     def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k; with a free ball every colour."""
-        return super().on(k) | (
-            COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, FREE_BALL] else 0
-        )
+        free = COLOURS_MASK & mask_of_present(self.on_table[k]) if self.game[k, columns.FREE_BALL] else 0
+        return super().on(k) | free
 
     def lead(self) -> Ints:
         """The agent's scores minus the opponent's: (n,)."""
-        return self.game[:, SCORE_0 + AGENT] - self.game[:, SCORE_1 - AGENT]
+        return self.game[:, columns.SCORE_0 + AGENT] - self.game[:, columns.SCORE_1 - AGENT]
 
     def stopped(self) -> Bools:
         """Which frames the referee stops after ``max_strokes``: bool (n,)."""
-        return self.game[:, STROKES] >= self.rules.max_strokes
+        return self.game[:, columns.STROKES] >= self.rules.max_strokes
 
     def ended(self) -> Bools:
-        """See ``Tables.ended``."""
         return super().ended() | self.stopped()
 
     def finished(self) -> Bools:
-        """See ``Tables.finished``."""
         return self.ended() & ~self.due
 
     def interrupted(self) -> None:
         """See ``Tables.interrupted``: tables at which it is the opponent's turn."""
-        self.begun[self.game[:, STRIKER] != AGENT] = False
+        self.begun[self.game[:, columns.STRIKER] != AGENT] = False
 
     # a turn
-    # --------------------------------------------------------------------------------------------------------
 
     def prepare(self, which: Ints, actions: Floats, buffers: ShotBuffers, side: int = AGENT) -> Ints:
         """Decisions and strokes of the seat ``side`` up to the strike; returns the tables with a stroke."""
         reads = self.seats[side].actions
-        if reads.nominate or reads.declares or self.game[which, PHASE].any():
+        if reads.nominate or reads.declares or self.game[which, columns.PHASE].any():
             which = which[self.decide(which, actions, side)]
         self.strike(which, actions, buffers, self.packs[side])
         self.hold_late(which, buffers)
@@ -233,10 +198,8 @@ class Frames(Tables):
 
     def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
         """What the strikers say before their strokes; returns which of the tables ``which`` play one."""
-        plays = np.empty(len(which), np.bool_)
-        frame_kernels.decide(
-            which, actions, self.arrays, self.saved_arrays, self._setting_of(self.packs[side][0]), plays
-        )
+        plays, setting = np.empty(len(which), np.bool_), self._setting_of(self.packs[side][0])
+        frame_kernels.decide(which, actions, self.arrays, self.saved_arrays, setting, plays)
         return plays
 
     def complete(
@@ -249,8 +212,7 @@ class Frames(Tables):
         reported: bool,
         alone: bool = False,
     ) -> None:
-        """Play and judge the shots that have been struck. ``reported``: ``out`` reports the strokes; otherwise
-        they are only counted. ``alone``: the table returns to the agent."""
+        """Play and judge the shots struck. ``reported``: in ``out``; ``alone``: the agent plays on."""
         if not len(which):
             return
         unfinished = self.run(which, buffers)
@@ -261,15 +223,12 @@ class Frames(Tables):
 
     def _conclude(self, which, b, out, reported, alone):
         if self.rules.misses:
-            remember(
-                which, self.arrays, self.saved_arrays, b.played, self.rules.table.noses, self.rules.table.jaws
-            )
-        if self._miss == ATTEMPTS:
-            judge_attempts(which, b, self.positions, self.on_table, self.game, self.rules, self.packed[2])
-        played = self._played if reported else self._replies
-        frame_kernels.conclude(
-            which, self.arrays, b.played, self._setting, reported, alone, played, out.arrays
-        )
+            cushions = self.rules.table.noses, self.rules.table.jaws
+            frame_kernels.remember(which, self.arrays, self.saved_arrays, b.played, *cushions)
+        if self._miss == columns.ATTEMPTS:
+            frame_kernels.judge_attempts(which, b, self)
+        tables, played = (self.arrays, b.played, self._setting), self._played if reported else self._replies
+        frame_kernels.conclude(which, *tables, reported, alone, played, out.arrays)
 
     def turn(
         self,
@@ -278,8 +237,7 @@ class Frames(Tables):
         crew: Crew,
         which: Ints | None = None,
     ) -> Bools:
-        """One turn of the striker on the tables ``which`` (those that go on). ``prepare(which, buffers)``: as
-        the method. Returns where there was a stroke, (n,) bool. ``out`` gets the infos."""
+        """One turn of the strikers on ``which`` (or all); returns where there was a stroke, (n,)."""
         playing = np.flatnonzero(~self.ended()) if which is None else which
         self._played[playing] = 0
         crew(playing, lambda which, b: self.complete(prepare(which, b), out, b, crew, reported=True))
@@ -288,45 +246,39 @@ class Frames(Tables):
 
     def turns(self, actions: Sequence[Floats], out: StepOutput, crew: Crew) -> None:
         """One turn on each table that goes on, as player 0 sees it; ``actions``: of each side (n, k)."""
-        going, striker = ~self.ended(), self.game[:, STRIKER].copy()
+        going, striker = ~self.ended(), self.game[:, columns.STRIKER].copy()
         self._played[:] = 0
         for side, its in enumerate(actions):
-            prepare = partial(self._prepared, its, side)
+            prepare: Any = lambda which, b, its=its, side=side: self.prepare(which, its, b, side)  # noqa: E731
             self.turn(prepare, out, crew, np.flatnonzero(going & (striker == side)))
         self._replies[:] = self._played * (striker != AGENT)
         crew(np.flatnonzero(going), lambda which, _: self._finish(which, out))
-        out.terminated[~going] = self.game[~going, OVER]
+        out.terminated[~going] = self.game[~going, columns.OVER]
         out.truncated[~going] = ~out.terminated[~going]
         crew(np.flatnonzero(~going), lambda which, _: self._show(which, out, fresh=False))
-
-    def _prepared(self, actions, side, which, buffers):
-        return self.prepare(which, actions, buffers, side)
 
     def go_on(self, which: Ints) -> None:
         """After each turn: the next frame of a match, where one has ended. Here there is none."""
         return
 
     # steps and resets of the frame task
-    # --------------------------------------------------------------------------------------------------------
 
     def step(
         self, actions: Floats, waiting: Bools, out: StepOutput, crew: Crew, *, same_step: bool = False
     ) -> None:
-        """See ``Tables.step``. After SimulationError a cue ball that was placed and a decision already taken
-        stand, and other tables may have been played. Errors raised by an opponent are passed on."""
+        """See ``Tables.step``. After SimulationError what was placed or decided stands."""
         anew, alone = bool(waiting.any()), len(self.seats) == 1
         playing = np.flatnonzero(~waiting) if anew else np.arange(self.n)
         self._replies[:] = self._played[:] = 0
 
         def play(which, buffers):
             acting = which[~self.due[which]] if self.due.any() else which
-            self.complete(
-                self.prepare(acting, actions, buffers), out, buffers, crew, reported=True, alone=alone
-            )
+            struck = self.prepare(acting, actions, buffers)
+            self.complete(struck, out, buffers, crew, reported=True, alone=alone)
             self.go_on(acting)
             if alone:
                 # even if a state of two players left a decision or lot
-                self.game[acting, STRIKER] = AGENT
+                self.game[acting, columns.STRIKER] = AGENT
                 self._finish(which, out)
 
         crew(playing, play)
@@ -350,13 +302,12 @@ class Frames(Tables):
         """All strokes of the opponent until it is the agent's turn or the frame has ended."""
         opponent = self.seats[1].player
         assert opponent is not None  # ``turn`` plays for two without
-        while len(which := which[(self.game[which, STRIKER] != AGENT) & ~self.ended()[which]]):
+        while len(which := which[(self.game[which, columns.STRIKER] != AGENT) & ~self.ended()[which]]):
             for player, tables, asked in opponent.turns(self, which, crew.generators):
 
                 def play(part, buffers, player=player, asked=asked):
-                    self.complete(
-                        player.prepare(self, part, asked, buffers), out, buffers, crew, reported=False
-                    )
+                    struck = player.prepare(self, part, asked, buffers)
+                    self.complete(struck, out, buffers, crew, reported=False)
                     self.go_on(part)
 
                 crew(tables, play)
@@ -383,8 +334,7 @@ class Frames(Tables):
         crew(which, lambda part, _: self._show(part, out, fresh=True))
 
     def deal(self, which: Ints, *, drawn: bool, breakers: Ints | None = None) -> None:
-        """New frames on the tables ``which``. Who breaks: without ``drawn`` the agent; else ``breakers``
-        (n,), where it is -1 whoever is drawn."""
+        """New frames on ``which``. Who breaks: the agent, or ``drawn``: ``breakers`` (n,), -1 by lot."""
         plan = self.rules.plan
         deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
         breakers = np.full(self.n, -1) if breakers is None else breakers
@@ -408,7 +358,7 @@ class Frames(Tables):
     def pay(self, k: int) -> int:
         """What the agent has earned on table k since it was last paid."""
         unpaid = self._unpaid(k)
-        self.game[k, PAID] += unpaid
+        self.game[k, columns.PAID] += unpaid
         return unpaid
 
     def action_masks(self, which: Ints | None = None, side: int = AGENT) -> Bools:
@@ -417,34 +367,25 @@ class Frames(Tables):
         return self.masks_of(which, self.seats[side].actions, self.packs[side][0])
 
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
-        """See ``Tables.observe``."""
         rows = np.empty((len(which), self.SIZE), np.float32)
         frame_kernels.observe(which, player, self.arrays, self.saved_arrays, self._setting, rows)
         return rows
 
     # states
-    # --------------------------------------------------------------------------------------------------------
 
     def get_state(self, k: int) -> dict[str, Any]:
         """See ``Tables.get_state``: the fields of a ``states.FrameState`` except "rng"."""
-        return {
-            "positions": self.positions[k].tolist(),
-            "on_table": self.on_table[k].tolist(),
-            "frame": self.frame(k).to_dict(),
-            "strokes": int(self.game[k, STROKES]),
-            "opponent": int(self.game[k, OPPONENT]),
-            "unpaid": self._unpaid(k),
-            "due": bool(self.due[k]),
-            "stream": self.streams[k].tolist(),
-        }
+        strokes, opponent = self.game[k, [columns.STROKES, columns.OPPONENT]].tolist()
+        paid = {"opponent": opponent, "unpaid": self._unpaid(k), "due": bool(self.due[k])}
+        return super().get_state(k) | {"frame": self.frame(k).to_dict(), "strokes": strokes} | paid
 
     def _unpaid(self, k):
         """What the agent has earned and no reward has paid yet."""
-        return int(self._worth(k) - self.game[k, PAID])
+        return int(self._worth(k) - self.game[k, columns.PAID])
 
     def _worth(self, k):
         """What the agent has earned in the episode so far, as its reward counts."""
-        return self.game[k, SCORE_0 + AGENT] - self.game[k, SCORE_1 - AGENT]
+        return self.game[k, columns.SCORE_0 + AGENT] - self.game[k, columns.SCORE_1 - AGENT]
 
     def checked(
         self, state: Any, generator: np.random.Generator, *, to_play: bool = False, either: bool = False
@@ -457,66 +398,90 @@ class Frames(Tables):
         if sound.due:
             return sound
         if to_play and over:
-            raise refuse(
-                "state.frame.phase", "over", 'must not be "over": there is no shot to play from this state'
-            )
+            allowed = 'must not be "over": there is no shot to play from this state'
+            raise refuse("state.frame.phase", "over", allowed)
         if to_play and stopped:
             limit = self.rules.max_strokes
-            raise refuse(
-                "state.strokes",
-                sound.strokes,
-                f"must be below max_strokes = {limit}: there is no shot left to play",
-            )
+            allowed = f"must be below max_strokes = {limit}: there is no shot left to play"
+            raise refuse("state.strokes", sound.strokes, allowed)
         if not either and sound.frame.striker != AGENT and not (over or stopped):
-            raise refuse(
-                "state.frame.striker",
-                sound.frame.striker,
-                f"must be {AGENT}, the agent, as always between two steps",
-            )
+            allowed = f"must be {AGENT}, the agent, as always between two steps"
+            raise refuse("state.frame.striker", sound.frame.striker, allowed)
         return sound
 
     def set_state(self, k: int, state: FrameState) -> None:
-        """See ``Tables.set_state``."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         write_frame(state.frame, state.strokes, self.game[k], self.saved, k)
-        self.game[k, OPPONENT] = state.opponent
-        self.game[k, FIRST_BREAK] = state.frame.breaker
-        self.game[k, PAID] = self._worth(k) - state.unpaid
+        self.game[k, columns.OPPONENT] = state.opponent
+        self.game[k, columns.FIRST_BREAK] = state.frame.breaker
+        self.game[k, columns.PAID] = self._worth(k) - state.unpaid
         self.streams[k] = np.array(state.stream, np.uint64)
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, state.due, AUTO
 
     def standing(self, k: int) -> dict[str, Any]:
-        """See ``Tables.standing``."""
         frame = self.frame(k)
-        return {
-            "next_player": frame.striker,
-            "scores": frame.scores,
-            "break_points": frame.break_points,
-            "choice": frame.phase == "choice",
-            "winner": frame.winner,
-            "next_free_ball": frame.free_ball,
-        }
+        now = {"scores": frame.scores, "break_points": frame.break_points, "winner": frame.winner}
+        turn = {"next_player": frame.striker, "next_free_ball": frame.free_ball}
+        return now | turn | {"choice": frame.phase == "choice"}
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
         """See ``Tables.set_position``. Player 0 is at the table; the points are its break."""
-        ball_on, in_hand, points = game[[BALL_ON, IN_HAND, POINTS]].tolist()
-        balls = mask_of_present(on_table) & ~CUE_BIT
-        frame = Frame(
-            break_points=points,
-            on_table=balls,
-            ball_on=BallOn(ball_on),
-            in_hand=bool(in_hand),
-            miss=self.rules.miss,
-            rules=self.rules.game,
-            rack=balls,
-        )
+        ball_on, in_hand, points = game[[columns.BALL_ON, columns.IN_HAND, columns.POINTS]].tolist()
+        balls, rules = mask_of_present(on_table) & ~CUE_BIT, self.rules
+        on: Any = {"ball_on": BallOn(ball_on), "in_hand": bool(in_hand), "break_points": points}
+        frame = Frame(on_table=balls, rack=balls, miss=rules.miss, rules=rules.game, **on)
         self.positions[k], self.on_table[k] = positions, on_table
         write_frame(frame, 0, self.game[k], self.saved, k)
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, False, AUTO
 
     def text(self, k: int) -> str:
-        """See ``Tables.text``."""
         frame = self.frame(k)
         on = frame.ball_on.name.lower().replace("_", " ")
         ended = "" if frame.winner is None else f"   player {frame.winner} wins"
         return f"{frame.scores[0]} - {frame.scores[1]}   player {frame.striker}, break {frame.break_points}   on: {on}{ended}"
+
+
+class Matches(Frames):
+    """n tables, each in a match; stopped by the referee in a frame, it is truncated."""
+
+    COUNTS: tuple[str, ...] = (*Frames.COUNTS, "frames_won", "opponent_frames", "frame")
+
+    def go_on(self, which: Ints) -> None:
+        """Count the frames that have just ended, and set up the next ones unless the match is decided."""
+        ended = which[self.game[which, columns.OVER] != 0]
+        if not len(ended):
+            return
+        goes_on = np.empty(len(ended), np.bool_)
+        frame_kernels.count_frames(ended, self.game, self.rules.frames // 2 + 1, goes_on)
+        if not len(ended := ended[goes_on]):
+            return
+        plan = self.rules.plan
+        deal_tables(ended, plan.code, plan.tables, self.streams, self.positions, self.on_table)
+        alone = len(self.seats) == 1
+        frame_kernels.begin_next(ended, alone, self._reward, plan.in_hand, self.on_table, self.game)
+
+    def _worth(self, k):
+        if self._reward == FRAMES_PAID:
+            return self.game[k, columns.FRAMES_0 + AGENT] - self.game[k, columns.FRAMES_1 - AGENT]
+        return self.game[k, columns.SCORE_0 + AGENT] - self.game[k, columns.SCORE_1 - AGENT]
+
+    def get_state(self, k: int) -> dict[str, Any]:
+        won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()
+        first = int(self.game[k, columns.FIRST_BREAK])
+        match = {"frames": won, "first_break": first, "best_of": self.rules.frames}
+        return super().get_state(k) | match
+
+    def set_state(self, k: int, state: FrameState) -> None:
+        super().set_state(k, state)
+        assert state.frames is not None and state.first_break is not None  # ``checked`` has seen to it
+        match = [columns.FRAMES_0, columns.FRAMES_1, columns.FIRST_BREAK]
+        self.game[k, match] = *state.frames, state.first_break
+        self.game[k, columns.PAID] = self._worth(k) - state.unpaid
+
+    def text(self, k: int) -> str:
+        won = self.game[k, [columns.FRAMES_0, columns.FRAMES_1]].tolist()
+        return f"frames {won[0]} - {won[1]}   {super().text(k)}"
+
+
+TABLES: dict[str, type[Tables]] = {"visit": Visits, "frame": Frames, "match": Matches}
+"""Which class plays each ``task``."""

@@ -4,97 +4,28 @@ parts of ``TableArrays``, ``Layouts``, ``PlayedArrays``, ``OutputArrays`` and ``
 
 from typing import NamedTuple
 
+import numpy as np
+
 from .._jit import entry, kernel
-from .._types import Floats
+from .._types import Floats, Ints
+from ..game import frame_columns as columns
 from ..game.apply_ruling import settle
+from ..game.attempt import ATTEMPT_GAP, closest_approach
 from ..game.balls import BLACK, CUE, N_BALLS, SPOTS, available, bits
-from ..game.frame_columns import (
-    ANYWHERE,
-    BALL_ON,
-    BREAKER,
-    CHOICE,
-    CLOCK,
-    FAILURES,
-    FIRST_BREAK,
-    FRAMES_0,
-    FRAMES_1,
-    FREE_BALL,
-    IN_HAND,
-    LOT,
-    MISS_CALLED,
-    MISSES,
-    NO_MISSES,
-    ON_TABLE,
-    OVER,
-    PAID,
-    PHASE,
-    PLACE_ANYWHERE,
-    PLAY,
-    PLAY_AGAIN,
-    POINTS,
-    REPLACE,
-    RESPOTTED_BLACK,
-    SCORE_0,
-    SCORE_1,
-    STEPS,
-    STRIKER,
-    STROKES,
-    WARNED,
-    WINNER,
-    Conditions,
-    Effort,
-    Layouts,
-    after_stroke,
-    begin_frame,
-    choose,
-    claim,
-    concede,
-    draw,
-    is_late,
-    lead_of,
-    may_place_anywhere,
-    may_replace,
-    needs_snookers,
-    strikeable,
-)
+from ..game.paths import best_paths
 from ..game.philox import pair
 from ..game.rule_sets import SHOOT_OUT, SIX_RED
-from ..game.ruling import AUTO, FLAG, OUTCOME, Facts
+from ..game.ruling import AUTO, FLAG, OUTCOME, Before, Facts, ruling
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
-from ..physics.engine import Status
+from ..physics.engine import EventKind, Status
+from . import declarations, stroke
 from .arrays import OutputArrays, PlayedArrays, TableArrays
-from .declarations import (
-    A_DECISION,
-    A_LOT,
-    A_NOMINATE,
-    CLAIMS,
-    CONCEDES,
-    OTHER_BEGINS,
-    SAYS_NOTHING,
-    declaration_of,
-    nomination_of,
-)
 from .observations import FRAME_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, earned, frame_reward_of
-from .stroke import (
-    ATTEMPT,
-    CLEAR_PATH,
-    FULL_PATH,
-    VX,
-    VY,
-    WX,
-    WY,
-    WZ,
-    place,
-    place_anywhere,
-    reached_cushion,
-    see,
-    write_ruling,
-)
-from .tables import COUNTS, I_BREAK, REALS, keep_last, write_empty_info, write_stroke_info
+from .tables import COUNTS, I_BREAK, REALS, Tables, keep_last, write_empty_info, write_stroke_info
 
 AGENT = 0
-_OK = int(Status.OK)
+_OK, _BALL_BALL = int(Status.OK), int(EventKind.BALL_BALL)
 (I_SCORE, I_OPPONENT_SCORE, I_CLOCK) = range(len(REALS), len(REALS) + 3)
 (I_STROKES, I_REPLIES, I_WINNER) = range(len(COUNTS), len(COUNTS) + 3)
 (I_CHOICE, I_FREE_BALL, I_NEEDS_SNOOKERS, I_ANYWHERE, I_WARNED) = range(len(COUNTS) + 3, len(COUNTS) + 8)
@@ -106,84 +37,75 @@ _OK = int(Status.OK)
 class Setting(NamedTuple):
     """What is the same for all frames of some tables."""
 
-    rules: int
-    """Code of the rule set, as in ``frame_columns.Conditions``."""
+    rules: int  # code of the rule set, as in ``frame_columns.Conditions``
     miss: int
     time_to_play: int
-    reward: int
-    """Code of the reward."""
-    limit: int
-    """Steps after which an episode is truncated."""
-    max_strokes: int
-    """Strokes after which a frame is stopped."""
-    frames: int
-    """Frames that win a match."""
-    clock: int
-    """Time of a frame [ms]; 0: no clock."""
-    options: Floats
-    """Packed, of the action space."""
-    jaws: Floats
-    """(m, 3): see ``snookered.NO_JAWS``."""
+    reward: int  # its code
+    limit: int  # steps after which an episode is truncated
+    max_strokes: int  # strokes after which a frame is stopped
+    frames: int  # frames that win a match
+    clock: int  # time of a frame [ms]; 0: no clock
+    options: Floats  # packed, of the action space
+    jaws: Floats  # (m, 3): see ``snookered.NO_JAWS``
 
 
 @kernel
 def choose_as(k, wish, rules, tables, saved):
     """Make the decision ``wish`` in [-1, 1] after a foul (see ``decide``); whether a stroke follows."""
     row = tables.game[k]
-    what = PLAY_AGAIN if wish < -1.0 / 3.0 else PLAY
+    what = columns.PLAY_AGAIN if wish < -1.0 / 3.0 else columns.PLAY
     if wish > 1.0 / 3.0:
-        what = (
-            REPLACE if may_replace(row, rules) else PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
-        )
-    choose(row, what)
-    if what == REPLACE:
+        anywhere = columns.PLACE_ANYWHERE if columns.may_place_anywhere(row, rules) else columns.PLAY
+        what = columns.REPLACE if columns.may_replace(row, rules) else anywhere
+    columns.choose(row, what)
+    if what == columns.REPLACE:
         p, on, back, back_on = tables.positions[k], tables.on_table[k], saved.positions[k], saved.on_table[k]
         for i in range(N_BALLS):
             p[i, 0], p[i, 1], on[i] = back[i, 0], back[i, 1], back_on[i]
-    return what == PLAY or what == PLACE_ANYWHERE
+    return what == columns.PLAY or what == columns.PLACE_ANYWHERE
 
 
 @kernel
 def give_up(row, reward):
-    """Charge whoever gave the frame up, or lost it by a third miss, with the points left, S4 R5(b), where
-    points are added up: eight for each red, and the colours. Otherwise it would pay to give up at once."""
+    """Charge whoever gave a frame up, or lost by a third miss, with the points left, S4 R5(b)."""
     if reward != FRAMES_PAID:
-        left = available(row[ON_TABLE], -1, 0)
-        row[PAID] += -left if row[WINNER] == AGENT else left
+        left = available(row[columns.ON_TABLE], -1, 0)
+        row[columns.PAID] += -left if row[columns.WINNER] == AGENT else left
 
 
 @entry(what="the decisions of frames", seconds=2)
 def decide(which, actions, tables, saved, setting, plays):
     """What strikers say before a stroke; ``plays[j]``: one follows. A decision below -1/3: the offender plays
     again; above 1/3: from the position before, or by the striker from anywhere, where that may be."""
-    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     options = setting.options
     for j in range(which.shape[0]):
         k = which[j]
         row, a = tables.game[k], actions[k]
-        declared = declaration_of(a, options, row)
-        plays[j] = declared == SAYS_NOTHING
-        if declared == CONCEDES:
-            concede(row)
+        declared = declarations.declaration_of(a, options, row)
+        plays[j] = declared == declarations.SAYS_NOTHING
+        if declared == declarations.CONCEDES:
+            columns.concede(row)
             give_up(row, setting.reward)
-        elif declared == CLAIMS:
-            claim(row)
-        elif row[PHASE] == LOT:
-            draw(row, 1 - row[STRIKER] if declared == OTHER_BEGINS else row[STRIKER])
-        elif row[PHASE] == CHOICE:
-            wish = a[int(options[A_DECISION])] if options[A_DECISION] >= 0 else 0.0
+        elif declared == declarations.CLAIMS:
+            columns.claim(row)
+        elif row[columns.PHASE] == columns.LOT:
+            other = declared == declarations.OTHER_BEGINS
+            columns.draw(row, 1 - row[columns.STRIKER] if other else row[columns.STRIKER])
+        elif row[columns.PHASE] == columns.CHOICE:
+            wish = a[int(options[declarations.A_DECISION])] if options[declarations.A_DECISION] >= 0 else 0.0
             plays[j] = choose_as(k, wish, setting.rules, tables, saved)
-        if plays[j] and options[A_NOMINATE] >= 0:
-            tables.nominated[k] = nomination_of(a, options, row)
+        if plays[j] and options[declarations.A_NOMINATE] >= 0:
+            tables.nominated[k] = declarations.nomination_of(a, options, row)
 
 
 @kernel
 def _hand_back(row):
     """Return the table to the agent, who plays alone."""
-    if not row[OVER] and row[STRIKER] != AGENT:
-        if row[PHASE] == CHOICE:
-            choose(row, PLAY_AGAIN)
-        row[STRIKER] = AGENT  # ``after_stroke`` has ended the break already
+    if not row[columns.OVER] and row[columns.STRIKER] != AGENT:
+        if row[columns.PHASE] == columns.CHOICE:
+            columns.choose(row, columns.PLAY_AGAIN)
+        row[columns.STRIKER] = AGENT  # ``after_stroke`` has ended the break already
 
 
 @kernel
@@ -198,59 +120,57 @@ def _leave_the_black(positions, on_table):
 def hold_late(which, game, rules, time_to_play, v, w, shots):
     """Shots that would not be begun within the shot clock are not played: the cue ball is not struck."""
     for j in range(which.shape[0]):
-        if is_late(game[which[j]], rules, time_to_play):
+        if columns.is_late(game[which[j]], rules, time_to_play):
             v[j, CUE, 0] = v[j, CUE, 1] = w[j, CUE, 0] = w[j, CUE, 1] = w[j, CUE, 2] = 0.0
-            shots[j, VX] = shots[j, VY] = shots[j, WX] = shots[j, WY] = shots[j, WZ] = 0.0
+            for c in range(stroke.VX, stroke.WZ + 1):
+                shots[j, c] = 0.0
 
 
 @entry(what="the referee of frames", seconds=6)
 def conclude(which, tables, shots, setting, reported, alone, played, output):
-    """Judge the shots that came to rest and update tables and frames. ``reported``: infos report the strokes;
-    ``played`` counts them. ``alone``: the table returns to the agent."""
+    """Judge the shots that came to rest. ``reported``: infos report them; ``alone``: the agent plays on."""
     tables, shots, setting = TableArrays(*tables), PlayedArrays(*shots), Setting(*setting)
     out = OutputArrays(*output)
-    rules, conditions = setting.rules, Conditions(setting.rules, setting.miss, setting.time_to_play)
+    rules, conditions = setting.rules, columns.Conditions(setting.rules, setting.miss, setting.time_to_play)
     for j in range(which.shape[0]):
         if shots.status[j] != _OK:
             continue
         k = which[j]
         p, on, row, seen = tables.positions[k], tables.on_table[k], tables.game[k], shots.seen[j]
-        first, touching, moved, potted = see(j, shots, p, on)
+        first, touching, moved, potted = stroke.see(j, shots, p, on)
         for i in range(N_BALLS):
             p[i, 0], p[i, 1] = shots.r[j, i, 0], shots.r[j, i, 1]
-        ball_on, flags = row[BALL_ON], 0
+        ball_on, flags = row[columns.BALL_ON], 0
         if rules == SIX_RED:
             flags = FLAG.SIX_RED
         elif rules == SHOOT_OUT:
             flags = FLAG.SHOOT_OUT
-            if is_late(row, rules, setting.time_to_play):
+            if columns.is_late(row, rules, setting.time_to_play):
                 flags |= FLAG.LATE
-            if not reached_cushion(shots.event_what[j], shots.n_events[j]):
+            if not stroke.reached_cushion(shots.event_what[j], shots.n_events[j]):
                 flags |= FLAG.NO_CUSHION
-        situation = ball_on, row[FREE_BALL], lead_of(row, row[STRIKER])
+        situation = ball_on, row[columns.FREE_BALL], columns.lead_of(row, row[columns.STRIKER])
         facts = Facts(first, touching, moved, potted, 0, tables.nominated[k])
         result = settle(p, on, situation, facts, flags, setting.jaws, BALL_RADIUS)
         tables.nominated[k] = AUTO
-        write_ruling(seen, row[STRIKER], ball_on, row[FREE_BALL], row[POINTS], result)
-        effort = Effort(seen[CLEAR_PATH], seen[FULL_PATH], seen[ATTEMPT])
+        striker, free, points = row[columns.STRIKER], row[columns.FREE_BALL], row[columns.POINTS]
+        stroke.write_ruling(seen, striker, ball_on, free, points, result)
+        effort = columns.Effort(seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH], seen[stroke.ATTEMPT])
         lasted = int(1000.0 * shots.duration[j] + 0.5)
-        after_stroke(row, result, conditions, effort, setting.miss != NO_MISSES, lasted)
-        row[STROKES] += 1
-        if row[OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
+        columns.after_stroke(row, result, conditions, effort, setting.miss != columns.NO_MISSES, lasted)
+        row[columns.STROKES] += 1
+        if row[columns.OVER] and result.outcome == OUTCOME.PLAYING and rules != SHOOT_OUT:  # by a third miss
             give_up(row, setting.reward)
-        if row[PHASE] == LOT:
+        if row[columns.PHASE] == columns.LOT:
             _leave_the_black(p, on)
             u, _ = pair(tables.streams[k])
-            row[STRIKER] = int(2.0 * u)  # the winner of the lot
-            if alone or not setting.options[A_LOT]:
-                draw(row, row[STRIKER])  # who begins
-        if row[IN_HAND] and not row[OVER]:
-            if not row[ANYWHERE]:
-                place(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
-            elif potted & 1:
-                place_anywhere(p, on, SPOTS[CUE, 0], SPOTS[CUE, 1])
-            else:  # where it came to rest
-                place_anywhere(p, on, p[CUE, 0], p[CUE, 1])
+            row[columns.STRIKER] = int(2.0 * u)  # the winner of the lot
+            if alone or not setting.options[declarations.A_LOT]:
+                columns.draw(row, row[columns.STRIKER])  # who begins
+        if row[columns.IN_HAND] and not row[columns.OVER]:
+            lies = row[columns.ANYWHERE] and not potted & 1  # it stays where it came to rest
+            x, y = (p[CUE, 0], p[CUE, 1]) if lies else (SPOTS[CUE, 0], SPOTS[CUE, 1])
+            stroke.place(p, on, x, y, row[columns.ANYWHERE] != 0)
         played[k] += 1
         if reported:
             write_stroke_info(k, out, j, shots, ball_on, result)
@@ -268,41 +188,26 @@ def _share(number, scale):
 def observe_frame_into(out, k, tables, saved, setting, player):
     """Write what ``player`` observes: as in a visit, ``FRAME_ENTRIES`` and, with room, the saved layout."""
     row, present = tables.game[k], tables.on_table[k]
-    on = strikeable(row, bits(present) & ~1)
-    observe_into(out, tables.positions[k], present, row[BALL_ON], on, row[IN_HAND], row[POINTS])
-    mine, other = row[SCORE_0 + player], row[SCORE_1 - player]
-    to_play, left = (
-        not row[OVER] and row[STRIKER] == player,
-        available(row[ON_TABLE], row[BALL_ON], row[FREE_BALL]),
-    )
-    clock = min(1.0, row[CLOCK] / setting.clock) if setting.clock else 0.0
-    more = (
-        _share(mine, 147.0),
-        _share(other, 147.0),
-        _share(mine - other, 147.0),
-        left / 155.0,
-        1.0 if to_play else 0.0,
-        1.0 if row[FREE_BALL] else 0.0,
-        1.0 if row[PHASE] == CHOICE else 0.0,
-        1.0 if row[MISS_CALLED] else 0.0,
-        1.0 if row[RESPOTTED_BLACK] else 0.0,
-        1.0 if row[BREAKER] == player else 0.0,
-        row[FAILURES] / 2.0,
-        1.0 if row[WARNED] else 0.0,
-        1.0 if row[PHASE] == LOT else 0.0,
-        _share(row[FRAMES_0 + player], 1.0),
-        _share(row[FRAMES_1 - player], 1.0),
-        _share(setting.frames, 1.0),
-        clock,
-        _share(row[MISSES], 5.0),
-        1.0 if row[ANYWHERE] else 0.0,
-    )
-    for c in range(len(more)):
-        out[SIZE + c] = more[c]
+    on = columns.strikeable(row, bits(present) & ~1)
+    in_hand, points = row[columns.IN_HAND], row[columns.POINTS]
+    observe_into(out, tables.positions[k], present, row[columns.BALL_ON], on, in_hand, points)
+    mine, other = row[columns.SCORE_0 + player], row[columns.SCORE_1 - player]
+    to_play = not row[columns.OVER] and row[columns.STRIKER] == player
+    left = available(row[columns.ON_TABLE], row[columns.BALL_ON], row[columns.FREE_BALL])
+    clock = min(1.0, row[columns.CLOCK] / setting.clock) if setting.clock else 0.0
+    more = out[SIZE:FRAME_SIZE]
+    more[0], more[1], more[2] = _share(mine, 147.0), _share(other, 147.0), _share(mine - other, 147.0)
+    more[3], more[4], more[5] = left / 155.0, to_play, row[columns.FREE_BALL] != 0
+    more[6], more[7] = row[columns.PHASE] == columns.CHOICE, row[columns.MISS_CALLED] != 0
+    more[8], more[9] = row[columns.RESPOTTED_BLACK] != 0, row[columns.BREAKER] == player
+    more[10], more[11] = row[columns.FAILURES] / 2.0, row[columns.WARNED] != 0
+    more[12], more[13] = row[columns.PHASE] == columns.LOT, _share(row[columns.FRAMES_0 + player], 1.0)
+    more[14], more[15] = _share(row[columns.FRAMES_1 - player], 1.0), _share(setting.frames, 1.0)
+    more[16], more[17], more[18] = clock, _share(row[columns.MISSES], 5.0), row[columns.ANYWHERE] != 0
     if out.shape[0] == FRAME_SIZE:
         return
     for i in range(N_BALLS):
-        at, back = FRAME_SIZE + 3 * i, row[MISS_CALLED] and saved.on_table[k, i]
+        at, back = FRAME_SIZE + 3 * i, row[columns.MISS_CALLED] and saved.on_table[k, i]
         out[at] = saved.positions[k, i, 0] / HALF_WIDTH if back else 0.0
         out[at + 1] = saved.positions[k, i, 1] / HALF_LENGTH if back else 0.0
         out[at + 2] = 1.0 if back else 0.0
@@ -311,7 +216,7 @@ def observe_frame_into(out, k, tables, saved, setting, player):
 @entry(what="the observations of frames", seconds=1)
 def observe(which, player, tables, saved, setting, rows):
     """The observations of ``player`` on the tables ``which``: one of ``rows`` each."""
-    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     for j in range(which.shape[0]):
         observe_frame_into(rows[j], which[j], tables, saved, setting, player)
 
@@ -320,50 +225,50 @@ def observe(which, player, tables, saved, setting, rows):
 def _write_frame_info(k, row, player, replies, out):
     """Write the info of the frame as ``player`` sees it: break, choice, free ball are the striker's."""
     reals, counts = out.reals, out.counts
-    mine, other, at_table = row[SCORE_0 + player], row[SCORE_1 - player], row[STRIKER] == player
-    reals[k, I_BREAK], reals[k, I_SCORE], reals[k, I_OPPONENT_SCORE] = (
-        row[POINTS] if at_table else 0,
-        mine,
-        other,
-    )
-    counts[k, I_STROKES], counts[k, I_REPLIES], counts[k, I_WINNER] = row[STROKES], replies, row[WINNER]
-    counts[k, I_CHOICE], counts[k, I_FREE_BALL] = (
-        at_table and row[PHASE] == CHOICE,
-        at_table and row[FREE_BALL],
-    )
-    counts[k, I_NEEDS_SNOOKERS] = needs_snookers(row, player)
-    reals[k, I_CLOCK] = row[CLOCK] / 1000.0
-    counts[k, I_ANYWHERE], counts[k, I_WARNED] = row[ANYWHERE], row[WARNED]
-    counts[k, I_MISSES], counts[k, I_FAILURES] = row[MISSES], row[FAILURES]
+    mine, other = row[columns.SCORE_0 + player], row[columns.SCORE_1 - player]
+    at_table = row[columns.STRIKER] == player
+    reals[k, I_BREAK], reals[k, I_SCORE] = row[columns.POINTS] if at_table else 0, mine
+    reals[k, I_OPPONENT_SCORE] = other
+    counts[k, I_STROKES], counts[k, I_REPLIES] = row[columns.STROKES], replies
+    counts[k, I_WINNER] = row[columns.WINNER]
+    counts[k, I_CHOICE] = at_table and row[columns.PHASE] == columns.CHOICE
+    counts[k, I_FREE_BALL] = at_table and row[columns.FREE_BALL]
+    counts[k, I_NEEDS_SNOOKERS] = columns.needs_snookers(row, player)
+    reals[k, I_CLOCK] = row[columns.CLOCK] / 1000.0
+    counts[k, I_ANYWHERE], counts[k, I_WARNED] = row[columns.ANYWHERE], row[columns.WARNED]
+    counts[k, I_MISSES], counts[k, I_FAILURES] = row[columns.MISSES], row[columns.FAILURES]
     if counts.shape[1] > I_FRAME:
-        counts[k, I_FRAMES_WON], counts[k, I_OPPONENT_FRAMES] = row[FRAMES_0 + player], row[FRAMES_1 - player]
+        counts[k, I_FRAMES_WON] = row[columns.FRAMES_0 + player]
+        counts[k, I_OPPONENT_FRAMES] = row[columns.FRAMES_1 - player]
         # from 0: the last one of a match that is over, too
-        counts[k, I_FRAME] = row[FRAMES_0] + row[FRAMES_1] - row[OVER]
+        counts[k, I_FRAME] = row[columns.FRAMES_0] + row[columns.FRAMES_1] - row[columns.OVER]
 
 
 @kernel
 def _worth(row, reward):
     """What the agent has earned so far, as the ``reward`` counts it."""
-    return earned(reward, lead_of(row, AGENT), row[FRAMES_0 + AGENT] - row[FRAMES_1 - AGENT])
+    frames_lead = row[columns.FRAMES_0 + AGENT] - row[columns.FRAMES_1 - AGENT]
+    return earned(reward, columns.lead_of(row, AGENT), frames_lead)
 
 
 @entry(what="the steps of frames", seconds=1)
 def finish(which, tables, saved, setting, due, replies, played, output):
     """Write a step's results; ``played`` (n,): whether the agent had a stroke. No end stays ``due``."""
-    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
         row = tables.game[k]
-        row[STEPS] += 1
+        row[columns.STEPS] += 1
         worth = _worth(row, setting.reward)
-        winner = row[WINNER] if row[OVER] else -1
-        out.rewards[k] = frame_reward_of(setting.reward, worth - row[PAID], winner, AGENT)
-        row[PAID], due[k] = worth, False
-        stopped = not row[OVER] and row[STROKES] >= setting.max_strokes
-        out.terminated[k], out.truncated[k] = row[OVER], stopped or row[STEPS] >= setting.limit
+        winner = row[columns.WINNER] if row[columns.OVER] else -1
+        out.rewards[k] = frame_reward_of(setting.reward, worth - row[columns.PAID], winner, AGENT)
+        row[columns.PAID], due[k] = worth, False
+        stopped = not row[columns.OVER] and row[columns.STROKES] >= setting.max_strokes
+        out.terminated[k] = row[columns.OVER]
+        out.truncated[k] = stopped or row[columns.STEPS] >= setting.limit
         if not played[k]:
-            write_empty_info(k, out, row[BALL_ON])
+            write_empty_info(k, out, row[columns.BALL_ON])
         _write_frame_info(k, row, AGENT, replies[k], out)
         observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)
 
@@ -372,23 +277,22 @@ def finish(which, tables, saved, setting, due, replies, played, output):
 def inform(player, game, output):
     """The info of the first table as ``player`` sees it, without a stroke."""
     out = OutputArrays(*output)
-    write_empty_info(0, out, game[0, BALL_ON])
+    write_empty_info(0, out, game[0, columns.BALL_ON])
     _write_frame_info(0, game[0], player, 0, out)
 
 
 @entry(what="the start of a frame", seconds=1)
 def begin(which, drawn, breakers, in_hand, on_table, game, streams):
-    """New frames on tables already dealt. Who breaks: without ``drawn`` the agent; else ``breakers`` (n,),
-    where it is -1 whoever is drawn, and a number is drawn in any case, so that the errors of strokes do not
-    depend on it."""
+    """New frames on tables already dealt. Who breaks: the agent, or if ``drawn``, ``breakers`` (n,), where -1
+    by lot; a number is drawn in any case, so that the errors of strokes do not depend on it."""
     for j in range(which.shape[0]):
         k = which[j]
         breaker = AGENT
         if drawn:
             u, _ = pair(streams[k])
             breaker = breakers[k] if breakers[k] >= 0 else int(2.0 * u)
-        begin_frame(game[k], bits(on_table[k]), breaker, in_hand)
-        game[k, FIRST_BREAK] = breaker
+        columns.begin_frame(game[k], bits(on_table[k]), breaker, in_hand)
+        game[k, columns.FIRST_BREAK] = breaker
 
 
 @entry(what="the frames of a match", seconds=1)
@@ -396,8 +300,8 @@ def count_frames(which, game, needed, goes_on):
     """Count the frames that have ended on the tables ``which``; ``goes_on[j]``: nobody has won ``needed``."""
     for j in range(which.shape[0]):
         row = game[which[j]]
-        row[FRAMES_0 + row[WINNER]] += 1
-        goes_on[j] = row[FRAMES_0 + row[WINNER]] < needed
+        row[columns.FRAMES_0 + row[columns.WINNER]] += 1
+        goes_on[j] = row[columns.FRAMES_0 + row[columns.WINNER]] < needed
 
 
 @entry(what="the next frame of a match", seconds=1)
@@ -406,21 +310,87 @@ def begin_next(which, alone, reward, in_hand, on_table, game):
     for j in range(which.shape[0]):
         k = which[j]
         row = game[k]
-        won, lost, first, steps = row[FRAMES_0], row[FRAMES_1], row[FIRST_BREAK], row[STEPS]
-        paid = row[PAID] if reward == FRAMES_PAID else row[PAID] - lead_of(row, AGENT)
-        begin_frame(row, bits(on_table[k]), AGENT if alone else (first + won + lost) % 2, in_hand)
-        row[FRAMES_0], row[FRAMES_1], row[FIRST_BREAK], row[STEPS], row[PAID] = won, lost, first, steps, paid
+        won, lost = row[columns.FRAMES_0], row[columns.FRAMES_1]
+        first, steps = row[columns.FIRST_BREAK], row[columns.STEPS]
+        paid = row[columns.PAID] if reward == FRAMES_PAID else row[columns.PAID] - columns.lead_of(row, AGENT)
+        columns.begin_frame(row, bits(on_table[k]), AGENT if alone else (first + won + lost) % 2, in_hand)
+        row[columns.FRAMES_0], row[columns.FRAMES_1], row[columns.FIRST_BREAK] = won, lost, first
+        row[columns.STEPS], row[columns.PAID] = steps, paid
 
 
 @entry(what="the resets of frames", seconds=1)
 def show(which, fresh, tables, saved, setting, replies, output, last):
     """Write the results of a reset for the tables ``which``; ``fresh``: ``last`` first keeps the old rows."""
-    tables, saved, setting = TableArrays(*tables), Layouts(*saved), Setting(*setting)
+    tables, saved, setting = TableArrays(*tables), columns.Layouts(*saved), Setting(*setting)
     out = OutputArrays(*output)
     for j in range(which.shape[0]):
         k = which[j]
         if fresh:
             keep_last(k, out, last)
-        write_empty_info(k, out, tables.game[k, BALL_ON])
+        write_empty_info(k, out, tables.game[k, columns.BALL_ON])
         _write_frame_info(k, tables.game[k], AGENT, replies[k], out)
         observe_frame_into(out.observations[k], k, tables, saved, setting, AGENT)
+
+
+@entry(what="the paths of the miss rule", seconds=2)
+def remember(which, tables, saved, shots, noses, jaws):
+    """Record the layouts before the strokes, and which paths were clear before those that struck no ball on
+    first. S3 R14(c) speaks of every ball "that is or could be on": after a red, all colours."""
+    tables, saved, shots = TableArrays(*tables), columns.Layouts(*saved), PlayedArrays(*shots)
+    for j in range(which.shape[0]):
+        if shots.status[j] != _OK:
+            continue
+        k = which[j]
+        positions, on_table, row = tables.positions[k], tables.on_table[k], tables.game[k]
+        mask, seen = bits(on_table), shots.seen[j]
+        first, touching, moved, potted = stroke.see(j, shots, positions, on_table)
+        seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH] = True, False
+        before = Before(mask, row[columns.BALL_ON], row[columns.FREE_BALL], 0)
+        facts = Facts(first, touching, moved, potted, 0, tables.nominated[k])
+        if ruling(before, facts, 0).fouls & columns.MISSED:
+            in_hand, on = row[columns.IN_HAND] + row[columns.ANYWHERE], columns.strikeable(row, mask & ~1)
+            clear, full = best_paths(positions, on_table, on, in_hand, noses, jaws, BALL_RADIUS)
+            seen[stroke.CLEAR_PATH], seen[stroke.FULL_PATH] = clear, full
+        for i in range(N_BALLS):
+            saved.positions[k, i, 0], saved.positions[k, i, 1] = positions[i, 0], positions[i, 1]
+            saved.on_table[k, i] = on_table[i]
+
+
+@entry(what="the strokes of snookered strikers", seconds=1)
+def question(which, on_table, game, status, seen, asked):
+    """Find the shots whose attempt must be judged: ``asked[j]``; all others count as attempts."""
+    for j in range(which.shape[0]):
+        k = which[j]
+        asked[j] = False
+        seen[j, stroke.ATTEMPT] = True
+        if status[j] == _OK and not (seen[j, stroke.CLEAR_PATH] or seen[j, stroke.FULL_PATH]):
+            asked[j] = seen[j, stroke.FIRST] & columns.strikeable(game[k], bits(on_table[k]) & ~1) == 0
+
+
+@entry(what="the attempts of snookered strikers", seconds=1)
+def gap_of(positions, on_table, row, shots, path, j):
+    """How near the cue ball came to a ball on in shot j, before it struck another or came to rest [m]."""
+    shots, (segments, n_segments) = PlayedArrays(*shots), path
+    until, on = shots.duration[j], columns.strikeable(row, bits(on_table) & ~1)
+    for e in range(shots.n_events[j]):
+        if shots.event_what[j, e, 0] == _BALL_BALL and shots.event_what[j, e, 1] == CUE:
+            until = shots.event_time[j, e]
+            break
+    return closest_approach(segments[j], n_segments[j], until, positions, on_table, on, BALL_RADIUS)
+
+
+def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> dict[int, float]:
+    """Write into ``b.seen`` which shots were attempts; returns the gaps [m], by row, of those that struck no
+    ball on and had no clear path: they are played once more, uncounted, with the cue ball's path."""
+    positions, on_table, game, *_ = tables.arrays
+    asked = np.empty(len(which), np.bool_)
+    question(which, on_table, game, b.status, b.seen, asked)
+    gaps = {}
+    for j in np.flatnonzero(asked).tolist():
+        k = which[j]
+        one, at = b, j
+        if not b.segments.shape[1]:
+            one, at = stroke.with_path(b, j, positions[k], on_table[k], tables.rules, tables.packed[2]), 0
+        gaps[j] = gap_of(positions[k], on_table[k], game[k], one.played, (one.segments, one.n_segments), at)
+        b.seen[j, stroke.ATTEMPT] = gaps[j] <= ATTEMPT_GAP
+    return gaps

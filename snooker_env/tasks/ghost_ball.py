@@ -7,22 +7,8 @@ import numpy as np
 
 from .._jit import entry, kernel
 from .._types import Ints
-from ..game.balls import N_BALLS, YELLOW, bits, touching_balls
-from ..game.frame_columns import (
-    ANYWHERE,
-    CHOICE,
-    IN_HAND,
-    LOT,
-    PHASE,
-    PLACE_ANYWHERE,
-    PLAY,
-    SAVED,
-    STRIKER,
-    choose,
-    draw,
-    may_place_anywhere,
-    strikeable,
-)
+from ..game import frame_columns as columns
+from ..game.balls import N_BALLS, SPOTS, YELLOW, bits, touching_balls
 from ..game.philox import pair
 from ..game.pots import COS_CUT, GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..game.rule_sets import SHOOT_OUT
@@ -31,41 +17,149 @@ from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, BAULK_Y, D_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
 from .arrays import StruckArrays
 from .declarations import A_END_MASS, A_NOMINATE, nominated_ball
-from .escapes import ROLL
+from .escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, ROLL, ROLLING, find_escapes
 from .frame import Frames, Opponent
-from .lines import LINE_ROWS, racked
+from .lines import EASY, LINE_ROWS, NARROW, POTS, nearest, racked, thin_at_end
 from .opponents import SIDE
-from .plain_stroke import BREAK_X, SLIDE, break_off, plain, soft
-from .stroke import ShotBuffers, place, place_anywhere, strike
+from .stroke import ShotBuffers, place, strike
+from .windows import open_part, open_windows
 
-_PLACES = tuple(
-    (x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in (0.0, 0.5) for x in (-0.8, -0.4, 0.0, 0.4, 0.8)
-)
-_BEHIND = 0.3
-"""How far behind the ghost ball the cue ball is placed, where it may stand anywhere [m]."""
-DRIVE = 4.0
-"""How much farther than needed a plain stroke would roll where some ball must reach a cushion [m]; a ball
-struck full comes half as far."""
+SLIDE = 1.4  # initial speed of a ball struck in its middle, over the speed with which it rolls on
+BREAK_X = float(SPOTS[0, 0])
+"""Where the cue ball stands for the break-off: its x, either sign, on the baulk line [m]."""
+_BREAK_SPEED, _BREAK_SIDE, _BREAK_TOP = 3.4, 0.42, 0.1
+"""Of the break-off, thin at the end red, with running side, back to baulk over three cushions: among 6,000
+random ones that return to baulk in 40 trials of a professional, one that leaves hardly a pot."""
+_NUDGE = 0.3  # how much faster than needed a cue ball is rolled at a ball [m/s]; its speed varies by a tenth
+_STOP = 6.1
+"""Squared speed of a ball struck 0.4 R below its middle that slides so far without spin left, over the
+distance [m/s^2]: 0.32 of it, over the cloth's sliding friction of 2 m/s^2."""
+_NEAR_POCKET = 0.09  # a cue ball that passes so near to a pocket's aim point is taken to go in [m]
+
+
+@kernel
+def break_off(positions, end_red):
+    """The break-off: (speed, side, top, direction); ``end_red``: the right one, mirrored on the left."""
+    sign = -1.0 if positions[0, 0] < 0.0 else 1.0
+    return _BREAK_SPEED, sign * _BREAK_SIDE, _BREAK_TOP, thin_at_end(positions, end_red, sign)
+
+
+@kernel
+def _goes_in(positions, ball, ux, uy, v2):
+    """Whether a cue ball rolling along u into ``ball``, squared speed v2 [m^2/s^2], may go into a pocket."""
+    x, y = positions[0, 0], positions[0, 1]
+    bx, by = positions[ball, 0] - x, positions[ball, 1] - y
+    along, across = bx * ux + by * uy, bx * uy - by * ux
+    run = along - sqrt(max(0.0, 4.0 * BALL_RADIUS * BALL_RADIUS - across * across))
+    x, y = x + run * ux, y + run * uy
+    nx, ny = (positions[ball, 0] - x) / (2.0 * BALL_RADIUS), (positions[ball, 1] - y) / (2.0 * BALL_RADIUS)
+    fullness = ux * nx + uy * ny
+    # where it rolls after the impact, over the speed before
+    gx, gy = ux - fullness * nx * 5.0 / 7.0, uy - fullness * ny * 5.0 / 7.0
+    left = hypot(gx, gy)
+    end = left * left * v2 / ROLL + 2.0 * BALL_RADIUS
+    for k in range(POCKET_AIMS.shape[0]):
+        px, py = POCKET_AIMS[k, AIM_X] - x, POCKET_AIMS[k, AIM_Y] - y
+        near = min(end, max(0.0, (px * gx + py * gy) / left))
+        if hypot(px - near * gx / left, py - near * gy / left) < _NEAR_POCKET:
+            return True
+    return False
+
+
+@kernel
+def soft(positions, on_table, on, touching, drive, rows):
+    """The soft stroke at the nearest ball on with a window that a player cannot miss: (speed, top, direction)
+    and half the window [rad], 0: none. It is aimed at the middle of what is seen; where the cue ball would
+    follow into a pocket, halfway to an edge, or so that it stops at the ball."""
+    x, y = positions[0, 0], positions[0, 1]
+    best, speed, top, aim, window, windows = -1e9, 0.0, 0.0, 0.0, 0.0, rows[POTS:]
+    many = open_windows(positions, on_table, on, touching, windows)
+    for ball in range(1, N_BALLS):
+        if not (on_table[ball] and (on >> ball) & 1):
+            continue
+        middle, half = open_part(positions, ball, windows, many)
+        if half == 0.0:
+            continue
+        dx, dy = positions[ball, 0] - x, positions[ball, 1] - y
+        far = hypot(dx, dy)
+        run = max(0.0, far - 2.0 * BALL_RADIUS)
+        # its squared speed at the ball
+        arrival = _NUDGE * _NUDGE + 2.0 * _NUDGE * sqrt(ROLL * far) + ROLL * drive
+        for way in range(4):
+            angle, seen = middle + (0.0, 0.5, -0.5, 0.0)[way] * half, 0.5 * half
+            wanted, spin = SLIDE * (sqrt(ROLL * far) + _NUDGE), 0.0
+            worth = 0.0
+            if way == 0:
+                seen = half
+            if way == 3:
+                angle, wanted, spin, worth = atan2(dy, dx), min(5.0, sqrt(_STOP * run) + 0.1), -ROLLING, -1.0
+                seen = min(seen, half - abs(sin(angle - middle)))
+            elif _goes_in(positions, ball, cos(angle), sin(angle), arrival):
+                worth = -5.0
+            if drive > 0.0:
+                wanted = sqrt(wanted * wanted + SLIDE * SLIDE * ROLL * drive)
+            worth += 1e3 * min(seen, EASY) - far
+            if seen > 0.0 and worth > best:
+                best, speed, top, aim, window = worth, wanted, spin, angle, seen
+    return speed, top, aim, window
+
+
+@kernel
+def _escape(positions, on_table, on, vary, lines, stream):
+    """The widest escape: (speed, direction, half its window [rad], 0: none). ``vary``: weighted at random."""
+    best, speed, aim, window = 0.0, 2.0, 0.0, 0.0
+    for k in range(find_escapes(positions, on_table, on, lines, 0)):
+        weight = 1.0
+        if vary:
+            u, _ = pair(stream)
+            weight = 0.3 + 0.7 * u
+        if weight * lines[k, LINE_WORTH] > best:
+            best, speed = weight * lines[k, LINE_WORTH], lines[k, LINE_SPEED]
+            aim, window = lines[k, LINE_AIM], lines[k, LINE_ROOM]
+    return speed, aim, window
+
+
+@kernel
+def plain(positions, on_table, on, touching, vary, drive, rows, stream):
+    """A stroke without a pot: (speed, side, top, direction): away from a touching ball on; else soft; else an
+    escape; else at a ball on. ``vary``: one from here has failed; ``drive`` [m]."""
+    u, _ = pair(stream)
+    shift = (1.6 if vary else 0.5) * (u - 0.5)
+    for ball in range(1, N_BALLS):
+        if ((touching & on) >> ball) & 1:
+            speed = 0.6 if drive == 0.0 else sqrt(0.36 + SLIDE * SLIDE * ROLL * drive)
+            dx, dy = positions[0, 0] - positions[ball, 0], positions[0, 1] - positions[ball, 1]
+            return speed, 0.0, 0.0, atan2(dy, dx) + shift
+    speed, top, aim, window = soft(positions, on_table, on, touching, drive, rows)
+    if window < NARROW:
+        over, other, wide = _escape(positions, on_table, on, vary, rows[:POTS], stream)
+        if wide > window:
+            speed, aim, window, top = over, other, wide, ROLLING
+    if window == 0.0:
+        speed, window, aim = 2.0, 0.1, nearest(positions, on_table, on)
+    return speed, 0.0, top, aim + shift * window
+
+
+_OVER, _BACK = (-0.8, -0.4, 0.0, 0.4, 0.8), (0.0, 0.5)
+_PLACES = tuple((x * D_RADIUS, BAULK_Y - y * D_RADIUS) for y in _BACK for x in _OVER)
+_BEHIND = 0.3  # how far behind the ghost ball the cue ball is placed, where it may stand anywhere [m]
+DRIVE = 4.0  # how much farther than needed it rolls where some ball must reach a cushion [m]
 
 
 @kernel
 def _put_on_bed(positions, on_table, mask, rows):
-    """Place a cue ball behind the ball of the easiest pot, on the line from the pocket, or as near as the bed
-    allows; without a pot, where most of a ball on is seen."""
+    """Place a cue ball behind the ball of the easiest pot; without a pot, where most of a ball on is seen."""
     widest, best_x, best_y = 0.0, positions[0, 0], positions[0, 1]
     for tries in range(2):
         for ball in range(1, N_BALLS):
             if not (on_table[ball] and (mask >> ball) & 1):
                 continue
             for k in range(POCKET_AIMS.shape[0]):
-                dx, dy = (
-                    positions[ball, 0] - POCKET_AIMS[k, AIM_X],
-                    positions[ball, 1] - POCKET_AIMS[k, AIM_Y],
-                )
+                dx = positions[ball, 0] - POCKET_AIMS[k, AIM_X]
+                dy = positions[ball, 1] - POCKET_AIMS[k, AIM_Y]
                 far = (2.0 * BALL_RADIUS + _BEHIND) / max(1e-9, hypot(dx, dy))
-                place_anywhere(
-                    positions, on_table, positions[ball, 0] + far * dx, positions[ball, 1] + far * dy
-                )
+                x, y = positions[ball, 0] + far * dx, positions[ball, 1] + far * dy
+                place(positions, on_table, x, y, True)
                 worth = 0.0
                 if tries == 1:
                     _, _, _, worth = soft(positions, on_table, 1 << ball, 0, DRIVE, rows)
@@ -80,57 +174,46 @@ def _put_on_bed(positions, on_table, mask, rows):
 
 @kernel
 def put(positions, on_table, mask, anywhere, rows, stream):
-    """Place a cue ball in hand for the widest pot, else where most of a ball on is seen; for the break-off to
-    the left or right of the brown, as the stream decides. ``anywhere``: not in the D only."""
+    """Place a cue ball in hand for the widest pot, else where most is seen; for the break-off by lot."""
     if anywhere:
         _put_on_bed(positions, on_table, mask, rows)
         return
     if racked(positions, on_table):
         u, _ = pair(stream)
-        place(positions, on_table, BREAK_X if u < 0.5 else -BREAK_X, BAULK_Y)
+        place(positions, on_table, BREAK_X if u < 0.5 else -BREAK_X, BAULK_Y, False)
         return
     widest, best = 0.0, -1
     for c in range(len(_PLACES)):
-        place(positions, on_table, *_PLACES[c])
+        place(positions, on_table, *_PLACES[c], False)
         if find_pots(positions, on_table, mask, BALL_RADIUS, rows[:1]) and rows[0, TOLERANCE] > widest:
             widest, best = rows[0, TOLERANCE], c
     if best < 0:
         best = 0
         for c in range(len(_PLACES)):
-            place(positions, on_table, *_PLACES[c])
+            place(positions, on_table, *_PLACES[c], False)
             _, _, _, window = soft(positions, on_table, mask, 0, 0.0, rows)
             if window > widest:
                 widest, best = window, c
-    place(positions, on_table, *_PLACES[best])
+    place(positions, on_table, *_PLACES[best], False)
 
 
 @kernel
 def stroke_at(positions, on_table, on, in_hand, failed, drive, rows, stream):
-    """The geometric player's shot: (speed, side, top, direction). ``in_hand``: just placed; ``failed``: a
-    stroke from here has; ``drive``: how much farther than needed one without a pot is to roll [m]."""
+    """The geometric player's shot: (speed, side, top, direction). ``in_hand``: just placed; see ``plain``."""
     end_red = racked(positions, on_table) if in_hand else 0
     if end_red:
         return break_off(positions, end_red)
     touching = touching_balls(positions, on_table)
     x, y = positions[0, 0], positions[0, 1]
     if not failed and find_pots(positions, on_table, on & ~touching, BALL_RADIUS, rows[:1]):
-        ball, pocket, gx, gy = (
-            int(rows[0, POT_BALL]),
-            int(rows[0, POT_POCKET]),
-            rows[0, GHOST_X],
-            rows[0, GHOST_Y],
-        )
-        run = hypot(
-            POCKET_AIMS[pocket, AIM_X] - positions[ball, 0], POCKET_AIMS[pocket, AIM_Y] - positions[ball, 1]
-        )
+        ball, pocket = int(rows[0, POT_BALL]), int(rows[0, POT_POCKET])
+        gx, gy = rows[0, GHOST_X], rows[0, GHOST_Y]
+        tx, ty = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
+        run = hypot(tx - positions[ball, 0], ty - positions[ball, 1])
         # of the cue ball at the impact
         needed = SLIDE * sqrt(ROLL * (run + 0.6)) / max(rows[0, COS_CUT], 0.2)
-        return (
-            min(6.0, SLIDE * sqrt(ROLL * hypot(gx - x, gy - y) + needed * needed)),
-            0.0,
-            0.0,
-            atan2(gy - y, gx - x),
-        )
+        speed = min(6.0, SLIDE * sqrt(ROLL * hypot(gx - x, gy - y) + needed * needed))
+        return speed, 0.0, 0.0, atan2(gy - y, gx - x)
     return plain(positions, on_table, on, touching, failed, drive, rows, stream)
 
 
@@ -148,22 +231,22 @@ def named(positions, on_table, row, aim):
 
 @kernel
 def geometric_turn(positions, on_table, row, rules, rows, stream):
-    """Its turn: (speed, side, top, aim, what it nominates, what it decides after a foul). ``row``: of a visit
-    or frame, after its decision; a cue ball in hand is placed. ``rules``: the code of the rule set."""
-    frame, decision = row.shape[0] > ANYWHERE, PLAY
-    if frame and row[PHASE] == CHOICE:
-        decision = PLACE_ANYWHERE if may_place_anywhere(row, rules) else PLAY
-        choose(row, decision)
-    elif frame and row[PHASE] == LOT:
-        draw(row, row[STRIKER])
-    mask = strikeable(row, bits(on_table) & ~1)
-    if row[IN_HAND]:
-        put(positions, on_table, mask, frame and row[ANYWHERE], rows, stream)
+    """Its turn: (speed, side, top, aim, nomination, decision); a ball in hand is placed."""
+    frame, decision = row.shape[0] > columns.ANYWHERE, columns.PLAY
+    if frame and row[columns.PHASE] == columns.CHOICE:
+        decision = columns.PLACE_ANYWHERE if columns.may_place_anywhere(row, rules) else columns.PLAY
+        columns.choose(row, decision)
+    elif frame and row[columns.PHASE] == columns.LOT:
+        columns.draw(row, row[columns.STRIKER])
+    mask = columns.strikeable(row, bits(on_table) & ~1)
+    if row[columns.IN_HAND]:
+        put(positions, on_table, mask, frame and row[columns.ANYWHERE], rows, stream)
     jitter, _ = pair(stream)
-    failed = frame and row[SAVED] != 0  # it plays from a position that has been restored
+    failed = frame and row[columns.SAVED] != 0  # it plays from a position that has been restored
     drive = DRIVE if rules == SHOOT_OUT else 0.0
-    speed, side, top, aim = stroke_at(positions, on_table, mask, row[IN_HAND], failed, drive, rows, stream)
-    speed *= 1.0 + (0.04 if row[IN_HAND] and racked(positions, on_table) else 0.2) * (jitter - 0.5)
+    placed = row[columns.IN_HAND]
+    speed, side, top, aim = stroke_at(positions, on_table, mask, placed, failed, drive, rows, stream)
+    speed *= 1.0 + (0.04 if placed and racked(positions, on_table) else 0.2) * (jitter - 0.5)
     return speed, side, top, aim, named(positions, on_table, row, aim) if frame else AUTO, decision
 
 
@@ -187,9 +270,8 @@ def geometric_strokes(positions, on_table, game, rules, streams, strokes, nomina
     """The geometric player's strokes (n, 5), nominations and decisions (n,); places cue balls in hand."""
     rows = np.empty((LINE_ROWS, POT_COLUMNS))
     for k in range(len(game)):
-        speed, side, top, aim, colour, decision = geometric_turn(
-            positions[k], on_table[k], game[k], rules, rows, streams[k]
-        )
+        turn = geometric_turn(positions[k], on_table[k], game[k], rules, rows, streams[k])
+        speed, side, top, aim, colour, decision = turn
         nominated[k], decisions[k] = colour, decision
         strokes[k, 0], strokes[k, 1], strokes[k, 2], strokes[k, 3], strokes[k, 4] = speed, side, top, aim, 0.0
 
@@ -200,16 +282,10 @@ def put_in_hand(positions, on_table, game, streams):
     rows = np.empty((LINE_ROWS, POT_COLUMNS))
     for k in range(len(game)):
         row = game[k]
-        if row[IN_HAND]:
-            anywhere = row.shape[0] > ANYWHERE and row[ANYWHERE] != 0
-            put(
-                positions[k],
-                on_table[k],
-                strikeable(row, bits(on_table[k]) & ~1),
-                anywhere,
-                rows,
-                streams[k],
-            )
+        if row[columns.IN_HAND]:
+            anywhere = row.shape[0] > columns.ANYWHERE and row[columns.ANYWHERE] != 0
+            mask = columns.strikeable(row, bits(on_table[k]) & ~1)
+            put(positions[k], on_table[k], mask, anywhere, rows, streams[k])
 
 
 class GhostBallOpponent(Opponent):
@@ -224,11 +300,9 @@ class GhostBallOpponent(Opponent):
     * It allows for neither throw nor position.
     * Its speed varies by a tenth (at the break-off by a fiftieth), and the direction of a plain stroke within
       the window that strikes the ball. From a position restored after its miss it tries no pot and varies
-      more: two exact players cannot repeat one failing stroke for ever.
-    """
+      more: two exact players cannot repeat one failing stroke for ever."""
 
     def prepare(self, frames: Frames, which: Ints, asked: Any, buffers: ShotBuffers) -> Ints:
-        """See ``Opponent.prepare``."""
         _ghost_ball(which, frames.arrays, buffers.struck, frames.packs[SIDE], frames.rules.rule_set.code)
         frames.hold_late(which, buffers)
         return which

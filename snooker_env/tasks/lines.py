@@ -3,8 +3,7 @@
 ``action="discrete"`` chooses among up to ``POTS`` lines; ``aim="target"`` is measured from the first. Without
 a direct pot they are, best first: at the start of a frame, thin at the end red of either side, the break-off;
 where hardly anything is seen, escapes, whose aim is found for the stroke; the middle of the widest window of
-directions in which a ball on is met first, its two edges, thin, and the middles of other windows.
-"""
+directions in which a ball on is met first, its two edges, thin, and the middles of other windows."""
 
 from math import atan2, cos, hypot, pi, sin
 
@@ -25,16 +24,9 @@ POTS = 4
 """Number of pots, or of other lines where there is no direct pot, to choose from."""
 LINE_ROWS = POTS + MOST_EDGES
 """Rows of the work space of lines: up to ``POTS`` lines, then room for windows."""
-THIN = 0.62
-"""Of a thin contact: how far the path of the cue ball passes the centre of the ball, over 2 R."""
-EASY = 0.01
-"""Half a window that a player cannot miss [rad]."""
-NARROW = 0.25 * EASY
-"""Half a window below which an escape is better [rad]."""
-_SLIT = 1e-6
-"""Half a window that is none [rad]."""
-_APART = 2e-3
-"""Two lines differ by at least this [rad]."""
+THIN = 0.62  # of a thin contact: how far the path of the cue ball passes the centre of the ball, over 2 R
+EASY, NARROW, _SLIT, _APART = 0.01, 0.25 * 0.01, 1e-6, 2e-3
+"""Half windows [rad]: a sure one; below it an escape is better; none. Least difference of two lines."""
 
 
 @entry  # it makes arrays, which an inner kernel may not
@@ -49,9 +41,8 @@ def racked(positions, on_table):
     """The end red of the last row if all balls stand as at a start of a frame, with 15 or 6 reds; else 0."""
     end = 0
     for i in range(1, N_BALLS):
-        if on_table[i] and (
-            abs(positions[i, 0] - SPOTS[i, 0]) > 1e-3 or abs(positions[i, 1] - SPOTS[i, 1]) > 1e-3
-        ):
+        dx, dy = positions[i, 0] - SPOTS[i, 0], positions[i, 1] - SPOTS[i, 1]
+        if on_table[i] and (abs(dx) > 1e-3 or abs(dy) > 1e-3):
             return 0
         if on_table[i] and i <= N_REDS:
             end = i
@@ -84,12 +75,8 @@ def _add(lines, count, aim, space):
     for k in range(count):
         if abs(turned(aim - lines[k, LINE_AIM])) < _APART:
             return count
-    lines[count, LINE_AIM], lines[count, LINE_ROOM], lines[count, LINE_SPEED], lines[count, LINE_WORTH] = (
-        turned(aim),
-        space,
-        0.0,
-        0.0,
-    )
+    lines[count, LINE_AIM], lines[count, LINE_ROOM] = turned(aim), space
+    lines[count, LINE_SPEED], lines[count, LINE_WORTH] = 0.0, 0.0
     return count + 1
 
 
@@ -114,8 +101,7 @@ def _seen(positions, on_table, lines, windows, many, count):
 
 @kernel(uses=(find_escapes,))
 def find_lines(positions, on_table, on, rows):
-    """Write up to ``POTS`` lines, best first, into the first rows of ``rows`` (LINE_ROWS, POT_COLUMNS), for
-    a table without a direct pot. Returns their number, at least 1: if need be, at the nearest ball on."""
+    """Write up to ``POTS`` lines into ``rows`` (LINE_ROWS, POT_COLUMNS); returns the number, >= 1."""
     lines, windows = rows[:POTS], rows[POTS:]
     touching, end_red, count = touching_balls(positions, on_table), racked(positions, on_table), 0
     many = open_windows(positions, on_table, on, touching, windows)
@@ -147,10 +133,8 @@ def line_of(positions, on_table, on, rows):
 
     Parameters
     ----------
-    positions : float64 (22, 2)
-        Centres of the balls [m], the cue ball first.
-    on_table : bool (22,)
-        Which balls are on the table.
+    positions, on_table : numpy.ndarray
+        float64 (22, 2), centres of the balls [m], the cue ball first; bool (22,), which are on the table.
     on : int
         Mask of the balls that may be struck first, bit i for ball i.
     rows : float64 (LINE_ROWS, POT_COLUMNS)

@@ -7,31 +7,27 @@ sources. ``python -m benchmarks.execution`` prints pot rates beside them, and wi
 give them.
 
 * "professional", 0.035 deg in all: professionals are said to make 50 to 65 % of long pots, this level that
-  mean of three of our choice (26, 62 and 84 %). A player that always takes the likeliest pot then makes about
-  88 % of those that it tries, 91 % of those with a chance of half or more; professionals are said to make 88
-  to 95 %.
+  mean of three of our choice (26, 62 and 84 %). A player that takes the likeliest pot then makes about 88 %
+  of those that it tries, 91 % of those with a chance of half or more; professionals are said to make 88 to 95.
 * "amateur", 0.048, and "club", 0.114: aim errors of 0.05 deg are given for a good amateur, 0.08 to 0.12 for
-  club players, derived as total errors for pockets with an effective half window of 22 mm. These levels give
-  the same mean rate of four pots on these pockets.
+  club players, as total errors for pockets with an effective half window of 22 mm. These levels give the same
+  mean rate of four pots on these pockets.
 * "robot", 0.046: that of Mathavan, Jackson & Parkin (2015, doi 10.1109/TMECH.2015.2461547) potted 90 % and
   left the cue ball 100 to 200 mm from the planned place, here 0.15 m. The pots ("moderate" in the benchmark)
-  are our choice, and so is putting the whole error of position, that of its predictions included, into the
-  speed.
+  and putting the whole error of position, that of its predictions included, into the speed are our choice.
 * "olympiad", 0.149: the definition of the Computer Olympiad's billiards: aim 0.125 deg, elevation 0.1 deg,
   speed 0.075 m/s, offsets 0.5 mm. The squirt of the offset is added to the aim.
 
 A pot that loses the cue ball counts as missed, also in the fit: 17 % of a professional's strokes at the
 longest straight pot, without spin. If it counted as made, as in the published derivation, the fit would give
 about 0.040, 0.056 and 0.122 deg. The aim errors published for professionals, 0.02 to 0.03 deg, make 83 to 92
-% of those four pots, this level 76 %: both figures cannot be met at once, and we chose the long pots.
+% of those four pots, this level 76 %: both cannot be met at once, and we chose the long pots.
 
 Our choices: aim and squirt have half of the variance each. The errors are independent, so the tip error, as
 large in height, is small: a real cue turns about the bridge, and with the bridge R over the squirt's slope
-(0.35 m) behind the ball squirt cancels the turn. Speed 1.75, 2.5 and 4 %: of pool players it is said that a
-good one rolls a ball a table's length to within an inch or two, 0.5 to 1 % of the speed, a beginner to within
-a diamond, 6 % (Waldron, Pool Table Stimpmeter, 2009). Elevation 0.1 to 0.3 deg, which hardly matters with a
-level cue.
-"""
+(0.35 m) behind the ball squirt cancels the turn. Speed 1.75, 2.5 and 4 %: a good pool player is said to roll
+a ball a table's length to within an inch or two, 0.5 to 1 % of the speed, a beginner to within a diamond, 6 %
+(Waldron, Pool Table Stimpmeter, 2009). Elevation 0.1 to 0.3 deg hardly matters with a level cue."""
 
 from dataclasses import asdict, dataclass, fields
 from math import degrees, hypot, radians, sqrt
@@ -77,16 +73,11 @@ def executed(speed, side, top, aim, elevation, noise, stream):
 
     Parameters
     ----------
-    speed : float
-        Intended speed of the cue [m/s].
-    side, top : float
-        Intended tip offset over R.
-    aim, elevation : float
-        Intended direction and elevation of the cue [rad].
-    noise : float64 (k,)
-        Standard deviations of the errors, as ``Noise.pack`` returns them.
-    stream : uint64 (2,)
-        Stream of random numbers: key and counter. Three blocks are drawn, or nothing without errors.
+    speed, side, top, aim, elevation : float
+        The intended cue speed [m/s], tip offset over R, direction and elevation of the cue [rad].
+    noise, stream : numpy.ndarray
+        float64 (k,), standard deviations of the errors, as ``Noise.pack`` returns them; uint64 (2,), key and
+        counter of a stream of random numbers: three blocks are drawn, or nothing without errors.
 
     Returns
     -------
@@ -117,16 +108,12 @@ class Noise:
 
     Parameters
     ----------
-    aim_deg : float, optional
-        Aim [deg].
-    speed_rel : float, optional
-        Speed, as a fraction of the speed.
-    speed_abs : float, optional
-        Speed [m/s], combined with the relative part as the root of the sum of squares.
+    aim_deg, elevation_deg : float, optional
+        Aim and elevation [deg].
+    speed_rel, speed_abs : float, optional
+        Speed, as a fraction of the speed, and [m/s], combined as the root of the sum of squares.
     offset_mm : float, optional
         Tip offset [mm], for each of side and height.
-    elevation_deg : float, optional
-        Elevation [deg].
 
     Examples
     --------
@@ -156,14 +143,9 @@ class Noise:
                 choice("noise field", key, [f.name for f in fields(cls)])
             return cls(**noise)
         if not isinstance(noise, str) or noise not in LEVELS:
-            raise refuse(
-                "noise",
-                noise,
-                "must be one of "
-                + ", ".join(map(repr, LEVELS))
-                + " or a dict of "
-                + str(list(asdict(cls()))),
-            )
+            names = ", ".join(map(repr, LEVELS))
+            allowed = f"must be one of {names} or a dict of {list(asdict(cls()))}"
+            raise refuse("noise", noise, allowed)
         return LEVELS[noise]
 
     @property
@@ -176,32 +158,20 @@ class Noise:
 
         A tip error of b R to the side turns the ball by (5/2) b / (7/2 + end_mass_ratio), the squirt of a
         small offset [TP A.31]: with the usual ratio of 30, 0.163 deg per mm. It holds for strokes without
-        intended side; the swerve of a nearly level cue is neglected. ``physics``: as ``Physics.of`` takes it;
-        default "paper".
-        """
+        intended side; the swerve of a nearly level cue is neglected. ``physics``: see ``Physics.of``; default
+        "paper"."""
         constants = Physics.of(physics)
         tip = self.offset_mm * 1e-3 / constants.R
         return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + constants.end_mass_ratio)))
 
     def pack(self, R: float) -> Floats:
         """Return float64 (6,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]."""
-        tip = self.offset_mm * 1e-3 / R
-        return np.array(
-            [
-                self.silent,
-                self.speed_abs,
-                self.speed_rel,
-                tip,
-                radians(self.aim_deg),
-                radians(self.elevation_deg),
-            ],
-            np.float64,
-        )
+        tip, turns = self.offset_mm * 1e-3 / R, (radians(self.aim_deg), radians(self.elevation_deg))
+        return np.array([self.silent, self.speed_abs, self.speed_rel, tip, *turns], np.float64)
 
 
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName
 """The types that arguments called ``noise`` accept, see ``Noise.of``."""
-
 LEVELS: dict[str, Noise] = {
     "none": Noise(),
     "professional": Noise(aim_deg=0.025, speed_rel=0.0175, offset_mm=0.15, elevation_deg=0.1),
@@ -210,5 +180,4 @@ LEVELS: dict[str, Noise] = {
     "robot": Noise(aim_deg=0.033, speed_rel=0.08, offset_mm=0.2, elevation_deg=0.1),
     "olympiad": Noise(aim_deg=0.125, speed_abs=0.075, offset_mm=0.5, elevation_deg=0.1),
 }
-"""The levels of execution noise: "none", "professional", "amateur", "club", "robot", "olympiad". The module's
-docstring gives their sources."""
+"""The levels: "none", "professional", "amateur", "club", "robot", "olympiad"; sources: above."""

@@ -8,7 +8,7 @@ from gymnasium import spaces
 from .._check import choice, refuse
 from .._jit import kernel
 from .._types import Bools, Masks, Observation, ObservationKind, Singles
-from ..game.balls import N_BALLS, REDS_MASK, VALUES, bits, count
+from ..game.balls import N_BALLS, REDS_MASK, VALUES, BallOn, bits, count
 from ..geometry import HALF_LENGTH, HALF_WIDTH
 from .declarations import STROKE_CHOICES
 
@@ -17,65 +17,31 @@ OBSERVATIONS = ("flat", "balls", "masked")
 BALL_COLUMNS = ("x", "y", "on_table", "value", "ball_on")
 """Columns of the table of balls: x / 0.889 m and y / 1.7845 m (0 when off the table), 1 if on the table,
 value / 7, 1 if it may be struck first (a ball on; with a free ball every colour)."""
-STATE_ENTRIES = (
-    "reds",
-    "any_colour",
-    "red",
-    "yellow",
-    "green",
-    "brown",
-    "blue",
-    "pink",
-    "black",
-    "in_hand",
-    "break",
-)
+STATE_ENTRIES = ("reds", *(ball.name.lower() for ball in BallOn if ball >= 0), "in_hand", "break")
 """Entries of the state of the game: reds left / 15; the ball on as one-hot, from "any_colour" to "black"; 1
 if the cue ball is in hand; points of this break / 155."""
-
 FRAME_ENTRIES = (
-    "score",
-    "opponent_score",
-    "lead",
-    "available",
-    "to_play",
-    "free_ball",
-    "choice",
-    "miss_called",
-    "respotted_black",
-    "broke",
-    "failures",
-    "warned",
-    "in_lot",
-    "frames_won",
-    "opponent_frames",
-    "frames_needed",
-    "clock",
-    "misses",
-    "anywhere",
+    *("score", "opponent_score", "lead", "available", "to_play", "free_ball", "choice", "miss_called"),
+    *("respotted_black", "broke", "failures", "warned", "in_lot"),
+    *("frames_won", "opponent_frames", "frames_needed", "clock", "misses", "anywhere"),
 )
-"""Entries that a frame adds, from one player's point of view, in [-1, 1] and never clipped. Scores s, its own
-and the opponent's, as s / (s + 147); their difference d / (abs(d) + 147); points on the table / 155. Flags:
-it is its turn, the striker has a free ball, the other player has just fouled (a decision is open), the foul
-was called a miss, the black was re-spotted, it broke off in this frame. Failures in succession from one
-position / 2, and whether the next one loses the frame. Whether the lot is won and its winner decides who
-begins. Of a match, f / (f + 1): the frames that it has won, the opponent's, those that win it (1 in a single
-frame). The share of the frame's time that has been played (0 without a clock); misses m in succession,
-m / (m + 5); whether the cue ball in hand may be placed anywhere."""
+"""Entries that a frame adds, of one player's side, in [-1, 1] and never clipped. Scores s, its own and the
+opponent's, as s / (s + 147); their difference d / (abs(d) + 147); points on the table / 155. Flags: it is its
+turn, the striker has a free ball, the other player has just fouled (a decision is open), the foul was called
+a miss, the black was re-spotted, it broke off. Failures in succession from one position / 2, and whether the
+next loses the frame. Whether the winner of the lot decides who begins. Of a match, f / (f + 1): the frames
+that it has won, the opponent's, those that win it (1 in a single frame). The share of the frame's time that
+has passed (0 without a clock); misses m in succession, m / (m + 5); whether the ball in hand goes anywhere."""
 REPLACED_COLUMNS = ("x", "y", "on_table")
 """Columns of the layout that "replace" restores, one row a ball; 0 unless a miss has just been called."""
-
 REACH = 1.1
 """Bound of the spaces that hold places. The noses are at 1; a ball in the mouth of a pocket lies up to 1.013
 on snooker's own tables, and within this bound on any that an environment takes (``table_fit``)."""
-
 _COLUMNS = len(BALL_COLUMNS)
-BALLS_SIZE = N_BALLS * _COLUMNS
-"""Numbers in the table of balls, the first part of a flat observation."""
+BALLS_SIZE = N_BALLS * _COLUMNS  # numbers in the table of balls, the first part of a flat observation
 SIZE = BALLS_SIZE + len(STATE_ENTRIES)
 """Numbers in the flat observation of a visit (121). Public as ``snooker_env.tasks.OBSERVATION_SIZE``."""
-FRAME_SIZE = SIZE + len(FRAME_ENTRIES)
-"""Numbers in the flat observation of a frame without a miss rule (140)."""
+FRAME_SIZE = SIZE + len(FRAME_ENTRIES)  # numbers in the flat observation of a frame without a miss rule (140)
 REPLACED_SIZE = N_BALLS * len(REPLACED_COLUMNS)
 """Numbers that a miss rule adds to it (66): the layout that "replace" restores."""
 
@@ -90,11 +56,9 @@ def space(
     kind : {"flat", "balls", "masked"}
         "flat": a Box (121,); "balls": a Dict of the boxes "balls" (22, 5) and "state" (11,); "masked": a Dict
         of the boxes "observations", that of "flat", and "action_mask" (choices,), int8 in {0, 1}.
-    frame : bool, optional
-        Whether the 19 entries of a frame or match follow: shapes (140,) and (30,). Default False.
-    replaced : bool, optional
-        Whether the layout that "replace" restores follows, as with a miss rule: (206,) in all, or the box
-        "replaced" (22, 3). Default False.
+    frame, replaced : bool, optional
+        Whether the 19 entries of a frame or match follow, shapes (140,) and (30,), and whether the layout
+        that "replace" restores, as with a miss rule: (206,), or the box "replaced" (22, 3). Default False.
     choices : int, optional
         Length of "action_mask". Default 540, the discrete actions that only choose a stroke.
 
@@ -112,17 +76,14 @@ def space(
     """
     choice("observation", kind, OBSERVATIONS)
     entries = len(STATE_ENTRIES) + (len(FRAME_ENTRIES) if frame else 0)
-    more = REPLACED_SIZE if replaced else 0
     balls = spaces.Box(-REACH, REACH, (N_BALLS, len(BALL_COLUMNS)), np.float32)
     state = spaces.Box(-1.0, 1.0, (entries,), np.float32)
     if kind == "balls":
         parts: dict[str, spaces.Space[Any]] = {"balls": balls, "state": state}
-        return spaces.Dict(
-            parts | {"replaced": spaces.Box(-REACH, REACH, (N_BALLS, len(REPLACED_COLUMNS)), np.float32)}
-            if more
-            else parts
-        )
-    flat = spaces.Box(-REACH, REACH, (BALLS_SIZE + entries + more,), np.float32)
+        if replaced:
+            parts["replaced"] = spaces.Box(-REACH, REACH, (N_BALLS, len(REPLACED_COLUMNS)), np.float32)
+        return spaces.Dict(parts)
+    flat = spaces.Box(-REACH, REACH, (BALLS_SIZE + entries + REPLACED_SIZE * replaced,), np.float32)
     if kind == "masked":
         return spaces.Dict({"observations": flat, "action_mask": spaces.Box(0, 1, (choices,), np.int8)})
     return flat

@@ -1,6 +1,6 @@
 """How does one train against several opponents? One is drawn for each frame, from the table's own stream."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from .._check import integer, number, refuse
 from .._types import Ints
 from ..game.frame_columns import OPPONENT
-from .frame import Frames, Opponent
+from .frame import Frames, Generators, Opponent, Turn
 from .opponents import drawn
 
 
@@ -16,8 +16,7 @@ class OpponentPool:
     """Several opponents, one of whom is drawn for each table and frame, by their weights.
 
     The draw comes from the table's own stream and is part of its state: the same seed meets the same
-    opponents, and a saved state plays on exactly. Members may be added at any time, as past selves during
-    training.
+    opponents. Members may be added at any time, as past selves during training.
 
     Parameters
     ----------
@@ -40,9 +39,8 @@ class OpponentPool:
         self._weights: list[float] = []
         listed = [] if members is None else list(members)
         if members is not None and not listed:
-            raise refuse(
-                "members", listed, "must hold one member at least; leave them out where add(...) follows"
-            )
+            allowed = "must hold one member at least; leave them out where add(...) follows"
+            raise refuse("members", listed, allowed)
         each = [1.0] * len(listed) if weights is None else list(weights)
         if len(each) != len(listed):
             raise refuse("weights", each, f"must be {len(listed)} numbers, one for each member")
@@ -62,23 +60,17 @@ class OpponentPool:
         return tuple(self._weights)
 
     def add(self, member: Any, weight: float = 1.0) -> None:
-        """Add a member, which later frames may draw; an environment checks it when it uses it first.
-        ValueError if the weight is below 0, or the member is a pool."""
-        if (
-            isinstance(member, OpponentPool)
-            or member is None
-            or (isinstance(member, str) and member == "none")
-        ):
-            raise refuse(
-                "member", member, "must be one opponent: a name, a model's file, a callable or a player"
-            )
+        """Add a member, which later frames may draw; ValueError for a pool, or a weight below 0."""
+        nobody = member is None or (isinstance(member, str) and member == "none")
+        if nobody or isinstance(member, OpponentPool):
+            allowed = "must be one opponent: a name, a model's file, a callable or a player"
+            raise refuse("member", member, allowed)
         weight = number("weight", weight, 0.0)
         self._members.append(member)
         self._weights.append(weight)
 
     def set_weight(self, index: int, weight: float) -> None:
-        """Change the weight of ``members[index]``. With 0 it is drawn no more; frames in which it plays go
-        on. ValueError if there is no such member, or the weight is below 0."""
+        """Change the weight of ``members[index]``, 0: not drawn any more; ValueError for a bad number."""
         self._weights[integer("index", index, 0, len(self._members) - 1)] = number("weight", weight, 0.0)
 
 
@@ -102,21 +94,16 @@ class PoolOpponent(Opponent):
         """Nothing: its members play."""
         return which[:0]
 
-    def turns(
-        self, frames: Frames, which: Ints, generators: Sequence[np.random.Generator]
-    ) -> list[tuple[Opponent, Ints, Any]]:
+    def turns(self, frames: Frames, which: Ints, generators: Generators) -> list[Turn]:
         """See ``Opponent.turns``: one entry for each member that plays."""
         self._complete()
         self._draw(frames, which)
         playing = frames.game[which, OPPONENT]
-        turns: list[tuple[Opponent, Ints, Any]] = []
+        turns: list[Turn] = []
         for number_ in np.unique(playing).tolist():
             if number_ > len(self._ready):
-                raise refuse(
-                    "opponent",
-                    f"member {number_ - 1} of a pool",
-                    f"must be below {len(self._ready)}, as many as the pool has",
-                )
+                allowed = f"must be below {len(self._ready)}, as many as the pool has"
+                raise refuse("opponent", f"member {number_ - 1} of a pool", allowed)
             turns += self._ready[number_ - 1].turns(frames, which[playing == number_], generators)
         return turns
 

@@ -29,30 +29,22 @@ TASKS = ("visit", "frame", "match")
 MOST_TIME = 15.0
 """The most time to play [s]: the longest shot clock. With more no stroke would ever be in time."""
 TIME_TO_PLAY = 9.0
-"""Default time [s] from the rest of the balls to the next stroke, in a game with a clock: with the strokes'
-own duration some 14 s a stroke, as in the Shoot Out of professionals."""
+"""Default time [s] between strokes, with a clock: some 14 s a stroke in all, as in professionals' Shoot Out."""
 ACTIONS = ("box", "discrete")
 LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 """What layout="default" means in each task."""
 MAX_STROKES = 1000
-"""Default number of strokes of both players after which the referee stops a frame. Random players that aim
-near a pot needed 284 on average, never more than 560 in 2,000 frames (``benchmarks.frames``); those that only
-foul, or only pass the turn, never finish."""
+"""Default number of strokes after which the referee stops a frame. Random players that aim near a pot needed
+284 on average, at most 560 in 2,000 frames (``benchmarks.frames``); some players never finish."""
 FRAMES = 7
 """Default length of a match: best of 7."""
-OPPONENTS = (
-    "must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an object: a callable(observation, rng) "
-    "-> action, a player, one with act(observations, masks, seeds), an OpponentPool"
-)
-"""What may be the opponent, for messages."""
+OPPONENTS = """must be one of 'none', 'random', 'ghost_ball', the name of another player, a model's file, or an \
+object: a callable(observation, rng) -> action, a player, one with act(observations, masks, seeds), an OpponentPool"""
 GROUPS = ("task", "action", "view", "shot", "frame")
-"""Groups of options: what is played, how one acts, what one sees, what decides a shot, the rules of
-frames."""
+"""Groups of options: what is played, how one acts, what one sees, what decides a shot, rules of frames."""
 _UNSAID: Any = object()
-OBJECT = "object"
-"""As the option ``opponent``: whoever was passed to the environment as an object."""
-NEVER = 2**62
-"""Stands for no limit of strokes or steps."""
+OBJECT = "object"  # as the option ``opponent``: whoever was passed to the environment as an object
+NEVER = 2**62  # stands for no limit of strokes or steps
 
 
 @dataclass(frozen=True)
@@ -63,24 +55,16 @@ class Rules:
     noise: Noise
     physics: Physics
     table: Table
-    fidelity: Solver
-    """As ``parse_fidelity`` returns it."""
-    plan: Plan
-    """How tables are dealt."""
+    fidelity: Solver  # as ``parse_fidelity`` returns it
+    plan: Plan  # how tables are dealt
     reward: str
     observation: ObservationKind
-    miss: MissRule = "off"
-    """In a frame: the rule for a foul and a miss."""
-    max_strokes: int = NEVER
-    """In a frame: strokes of both players after which it is stopped."""
-    one_stroke: bool = False
-    """In a visit: whether it ends after its first stroke."""
-    frames: int = 0
-    """In a match: of how many frames at most; 0 for a single frame, which is no match."""
-    game: RulesName = "snooker"
-    """In a frame: the rule set."""
-    time_to_play: int = 0
-    """In a frame with a clock: from the rest of the balls to the next stroke [ms]."""
+    miss: MissRule = "off"  # of a frame, as all below but one: the rule for a foul and a miss
+    max_strokes: int = NEVER  # strokes of both players after which it is stopped
+    one_stroke: bool = False  # in a visit: whether it ends after its first stroke
+    frames: int = 0  # in a match: of how many frames at most; 0 for a single frame, which is no match
+    game: RulesName = "snooker"  # the rule set
+    time_to_play: int = 0  # with a clock: from the rest of the balls to the next stroke [ms]
 
     @property
     def rule_set(self) -> RuleSet:
@@ -97,9 +81,50 @@ class Rules:
         return self.actions.pack(), self.noise.pack(BALL_RADIUS), self.physics.pack()
 
 
-def _about(group: str, values: str, *, only: str | None = None) -> dict[str, Any]:
-    """The metadata of an option: its group, its values (Markdown), and the only task that has it."""
-    return {"group": group, "values": values, "only": only}
+_ABOUT: dict[str, tuple[str, str | None, str]] = {
+    "task": ("task", None, '"visit", "frame", "match" (all that is of a frame is of a match, too)'),
+    "layout": ("task", None, '"opened", of a frame "break_off"; see Layouts'),
+    "action": ("action", None, '"box", "discrete"'),
+    "aim": ("action", None, '"absolute", "target"'),
+    "observation": ("view", None, '"flat", "balls"; with discrete actions "masked"'),
+    "noise": (
+        "shot",
+        None,
+        '"none", "professional", "amateur", "club", "robot", "olympiad", or a dict of `snooker_env.tasks.Noise`',
+    ),
+    "reward": (
+        "task",
+        None,
+        '"points"; of a visit "points_and_fouls", "pots", "legal"; of a frame "win"; of a match "frames", too',
+    ),
+    "elevation": ("action", None, "whether box actions hold the elevation of the cue"),
+    "placement": ("action", None, "whether box actions hold the place of a cue ball in hand"),
+    "physics": ("shot", None, '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)'),
+    "table": ("shot", None, '"match", "tight", or a `Table` whose noses are where snooker\'s are'),
+    "fidelity": ("shot", None, '"fast", "standard", "reference", "euler:N"'),
+    "one_stroke": ("task", "visit", "whether it ends with its first stroke"),
+    "opponent": (
+        "task",
+        "frame",
+        '"none", "random", "ghost_ball", another name of a player, a `.zip`; or an object: see Opponents',
+    ),
+    "trust": ("task", "frame", "whether the code in an opponent's `.zip` may run"),
+    "miss": ("frame", "frame", '"off", "clear_path", "attempt": the rule for a foul and a miss'),
+    "max_strokes": ("frame", "frame", "strokes after which the frame is stopped; None for never"),
+    "says": (
+        "action",
+        "frame",
+        'some of "nominate", "decision", "concede", "claim", "lot": what actions say beside the stroke',
+    ),
+    "game": ("frame", "frame", '"snooker", "six_red", "shoot_out": the rules of the game'),
+    "time_to_play": (
+        "frame",
+        "frame",
+        "the time from the rest of the balls to the next stroke in the Shoot Out [s], at most 15",
+    ),
+    "frames": ("task", "match", "an odd number: the best of so many"),
+}
+"""Of each option: its group, the only task that has it, its values in Markdown."""
 
 
 def _said(says: Any, flags: Mapping[str, Any]) -> tuple[str, ...]:
@@ -136,12 +161,9 @@ class Options:
     noise : str, dict or Noise, optional
         Execution errors: the name of a level, or standard deviations, see ``Noise``. Default "none".
     reward : {"points", "points_and_fouls", "pots", "legal", "win", "frames"}, optional
-        Default "points". The first four are available in a visit, "points" and "win" in a frame, "frames"
-        also in a match.
-    elevation : bool, optional
-        Whether a box action holds the elevation of the cue; default False.
-    placement : bool, optional
-        Whether a box action holds the place in the D for a cue ball in hand; default False.
+        Default "points". The first four are of a visit, "points" and "win" of a frame, "frames" also of a match.
+    elevation, placement : bool, optional
+        Whether a box action holds the elevation of the cue, and the place of a cue ball in hand. Default False.
     physics : str, dict, Physics or None, optional
         As ``Physics.of`` takes them, with snooker's ball radius. Default "paper".
     table : str or Table, optional
@@ -155,17 +177,15 @@ class Options:
     miss : {"off", "clear_path", "attempt"}, optional
         In a frame: the rule for a foul and a miss (docs/environment/rules.md). Default "off".
     max_strokes : int or None, optional
-        In a frame: strokes of both players after which the referee stops it and its match; default 1000,
-        None: never.
-    one_stroke : bool, optional
-        In a visit: whether it ends after its first stroke; default False.
-    trust : bool, optional
-        In a frame: whether code in an opponent's ``.zip`` may run; default False.
+        In a frame: strokes of both after which the referee stops it and its match; default 1000, None: never.
+    one_stroke, trust : bool, optional
+        In a visit: whether it ends after its first stroke. In a frame: whether code in an opponent's ``.zip``
+        may run. Default False.
     says : sequence of str, optional
         In a frame: what an action says beside the stroke, some of "nominate" (the colour after a red, and a
-        free ball; else it is the one struck first), "decision" (after a foul of the opponent, of box actions
-        only), "concede", "claim" (the frame, where the rules allow it) and "lot" (whether the winner of the
-        lot for a re-spotted black lets the other player begin; else it begins). Default: nothing.
+        free ball; else the one struck first), "decision" (after a foul, of box actions only), "concede",
+        "claim" (the frame, where the rules allow it) and "lot" (whether the winner of the lot for a re-spotted
+        black lets the other player begin; else it begins). Default: nothing.
     nominate, decision, concede, claim, lot : bool, optional
         Whether ``says`` has them: ``decision=True`` adds "decision" to it. To be read as attributes, too.
     game : {"snooker", "six_red", "shoot_out"}, optional
@@ -193,99 +213,27 @@ class Options:
     ('club', 'none')
     """
 
-    task: Literal["visit", "frame", "match"] = field(
-        default="visit",
-        metadata=_about("task", '"visit", "frame", "match" (all that is of a frame is of a match, too)'),
-    )
-    layout: str = field(
-        default="default", metadata=_about("task", '"opened", of a frame "break_off"; see Layouts')
-    )
-    action: Literal["box", "discrete"] = field(default="box", metadata=_about("action", '"box", "discrete"'))
-    aim: Literal["absolute", "target"] = field(
-        default="absolute", metadata=_about("action", '"absolute", "target"')
-    )
-    observation: ObservationKind = field(
-        default="flat", metadata=_about("view", '"flat", "balls"; with discrete actions "masked"')
-    )
-    noise: NoiseLike = field(
-        default="none",
-        metadata=_about(
-            "shot",
-            '"none", "professional", "amateur", "club", "robot", "olympiad", or a dict of `snooker_env.tasks.Noise`',
-        ),
-    )
-    reward: Literal["points", "points_and_fouls", "pots", "legal", "win", "frames"] = field(
-        default="points",
-        metadata=_about(
-            "task",
-            '"points"; of a visit "points_and_fouls", "pots", "legal"; of a frame "win"; of a match "frames", too',
-        ),
-    )
-    elevation: bool = field(
-        default=False, metadata=_about("action", "whether box actions hold the elevation of the cue")
-    )
-    placement: bool = field(
-        default=False, metadata=_about("action", "whether box actions hold the place of a cue ball in hand")
-    )
-    physics: PhysicsLike = field(
-        default="paper",
-        metadata=_about("shot", '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)'),
-    )
-    table: TableLike = field(
-        default="match",
-        metadata=_about("shot", '"match", "tight", or a `Table` whose noses are where snooker\'s are'),
-    )
-    fidelity: Fidelity = field(
-        default="standard", metadata=_about("shot", '"fast", "standard", "reference", "euler:N"')
-    )
-    one_stroke: bool = field(
-        default=False, metadata=_about("task", "whether it ends with its first stroke", only="visit")
-    )
-    opponent: str | Path = field(
-        default="none",
-        metadata=_about(
-            "task",
-            '"none", "random", "ghost_ball", another name of a player, a `.zip`; or an object: see Opponents',
-            only="frame",
-        ),
-    )
-    trust: bool = field(
-        default=False,
-        metadata=_about("task", "whether the code in an opponent's `.zip` may run", only="frame"),
-    )
-    miss: MissRule = field(
-        default="off",
-        metadata=_about(
-            "frame", '"off", "clear_path", "attempt": the rule for a foul and a miss', only="frame"
-        ),
-    )
-    max_strokes: int | None = field(
-        default=MAX_STROKES,
-        metadata=_about("frame", "strokes after which the frame is stopped; None for never", only="frame"),
-    )
-    says: Sequence[str] = field(
-        default=(),
-        metadata=_about(
-            "action",
-            'some of "nominate", "decision", "concede", "claim", "lot": what actions say beside the stroke',
-            only="frame",
-        ),
-    )
-    game: RulesName = field(
-        default="snooker",
-        metadata=_about("frame", '"snooker", "six_red", "shoot_out": the rules of the game', only="frame"),
-    )
-    time_to_play: float = field(
-        default=TIME_TO_PLAY,
-        metadata=_about(
-            "frame",
-            "the time from the rest of the balls to the next stroke in the Shoot Out [s], at most 15",
-            only="frame",
-        ),
-    )
-    frames: int = field(
-        default=FRAMES, metadata=_about("task", "an odd number: the best of so many", only="match")
-    )
+    task: Literal["visit", "frame", "match"] = "visit"
+    layout: str = "default"
+    action: Literal["box", "discrete"] = "box"
+    aim: Literal["absolute", "target"] = "absolute"
+    observation: ObservationKind = "flat"
+    noise: NoiseLike = "none"
+    reward: Literal["points", "points_and_fouls", "pots", "legal", "win", "frames"] = "points"
+    elevation: bool = False
+    placement: bool = False
+    physics: PhysicsLike = "paper"
+    table: TableLike = "match"
+    fidelity: Fidelity = "standard"
+    one_stroke: bool = False
+    opponent: str | Path = "none"
+    trust: bool = False
+    miss: MissRule = "off"
+    max_strokes: int | None = MAX_STROKES
+    says: Sequence[str] = ()
+    game: RulesName = "snooker"
+    time_to_play: float = TIME_TO_PLAY
+    frames: int = FRAMES
     nominate: InitVar[bool] = _UNSAID
     decision: InitVar[bool] = _UNSAID
     concede: InitVar[bool] = _UNSAID
@@ -307,20 +255,13 @@ class Options:
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
             layout = f"break_off:{rule_set(self.game).reds}"
         plan = fitted(layout, table)
-        if choice("observation", self.observation, observations.OBSERVATIONS) == "masked" and not isinstance(
-            actions, Choices
-        ):
-            raise refuse(
-                "observation",
-                self.observation,
-                'must be "flat" or "balls" with action="box": a Box has no masks',
-            )
+        kind = choice("observation", self.observation, observations.OBSERVATIONS)
+        if kind == "masked" and not isinstance(actions, Choices):
+            allowed = 'must be "flat" or "balls" with action="box": a Box has no masks'
+            raise refuse("observation", self.observation, allowed)
         truth("trust", self.trust)
-        choice(
-            "reward",
-            self.reward,
-            {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}[self.task],
-        )
+        rewards = {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}
+        choice("reward", self.reward, rewards[self.task])
         one_stroke = truth("one_stroke", self.one_stroke)
         limit = NEVER
         self._check_task()
@@ -331,49 +272,26 @@ class Options:
             choice("miss", self.miss, MISS_RULES)
             choice("game", self.game, RULES)
             if rule_set(self.game).anywhere and self.miss != "off":
-                raise refuse(
-                    "miss", self.miss, f'must be "off" with game="{self.game}", in which no miss is called'
-                )
+                allowed = f'must be "off" with game="{self.game}", in which no miss is called'
+                raise refuse("miss", self.miss, allowed)
             if not rule_set(self.game).clock and self.time_to_play != TIME_TO_PLAY:
-                raise refuse(
-                    "time_to_play",
-                    self.time_to_play,
-                    f'must be {TIME_TO_PLAY} with game="{self.game}", which has no clock',
-                )
+                allowed = f'must be {TIME_TO_PLAY} with game="{self.game}", which has no clock'
+                raise refuse("time_to_play", self.time_to_play, allowed)
             limit = NEVER if self.max_strokes is None else integer("max_strokes", self.max_strokes, 1, 10**9)
             if not isinstance(self.opponent, str | Path) or not str(self.opponent):
-                raise refuse(
-                    "opponent",
-                    self.opponent,
-                    f"{OPPONENTS}; Options hold text: pass an object to the environment, beside them",
-                )
+                allowed = f"{OPPONENTS}; Options hold text: pass an object to the environment, beside them"
+                raise refuse("opponent", self.opponent, allowed)
             object.__setattr__(self, "opponent", str(self.opponent))
-        read = Rules(
-            actions,
-            noise,
-            physics,
-            table,
-            fidelity,
-            plan,
-            self.reward,
-            self.observation,
-            self.miss,
-            limit,
-            one_stroke,
-            frames,
-            self.game,
-            round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME)),
-        )
+        pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
+        world = actions, noise, physics, table, fidelity, plan, self.reward, self.observation
+        read = Rules(*world, self.miss, limit, one_stroke, frames, self.game, pause)
         object.__setattr__(self, "rules", read)
 
     def _physics(self) -> Physics:
         physics = Physics.of(self.physics)
         if physics.R != BALL_RADIUS:
-            raise refuse(
-                "physics.R",
-                physics.R,
-                f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it",
-            )
+            allowed = f"must be {BALL_RADIUS} in Snooker-v0: spots, rack and pockets are made for it"
+            raise refuse("physics.R", physics.R, allowed)
         physics.check_stopping()
         return physics
 
@@ -389,70 +307,52 @@ class Options:
     def _check_task(self) -> None:
         """Raise ValueError if an option of another task is changed."""
         for f in _FIELDS:
-            only, value = f.metadata["only"], getattr(self, f.name)
+            only, value = _ABOUT[f.name][1], getattr(self, f.name)
             if only is None or self.task == only or (self.task == "match" and only == "frame"):
                 continue
             if not isinstance(value, (type(f.default), np.bool_)) or value != f.default:
-                name, value, usual = (
-                    (self.says[0], True, False) if f.name == "says" else (f.name, value, f.default)
-                )
-                raise refuse(
-                    name, value, f'must be {usual!r} with task="{self.task}"; it belongs to task="{only}"'
-                )
+                says = f.name == "says"
+                name, value, usual = (self.says[0], True, False) if says else (f.name, value, f.default)
+                allowed = f'must be {usual!r} with task="{self.task}"; it belongs to task="{only}"'
+                raise refuse(name, value, allowed)
 
     @classmethod
     def group(cls, name: str, task: str | None = None) -> dict[str, Any]:
         """Return name and default of each option of a group: "task", "action", "view", "shot" or "frame";
         with ``task``, of those that this task has. ValueError if there is no such group or task."""
         choice("name", name, GROUPS)
-        kinds = (
-            TASKS if task is None else {"match": ("frame", "match")}.get(choice("task", task, TASKS), (task,))
-        )
-        return {
-            f.name: f.default
-            for f in _FIELDS
-            if f.metadata["group"] == name and f.metadata["only"] in (None, *kinds)
-        }
+        kinds = TASKS if task is None else {"match": TASKS[1:]}.get(choice("task", task, TASKS), (task,))
+        keys = {key for key, (group, only, _) in _ABOUT.items() if group == name and only in (None, *kinds)}
+        return {f.name: f.default for f in _FIELDS if f.name in keys}
 
     def but(self, **changes: Any) -> "Options":
         """Return a validated copy with some fields changed. ValueError as of ``Options``."""
-        # else they are those of this one
-        flags = {} if "says" not in changes else dict.fromkeys(SAYS, _UNSAID)
+        flags = dict.fromkeys(SAYS, _UNSAID) if "says" in changes else {}  # else they are those of this one
         return replace(self, **flags | changes)
-
-
-def _saying(name: str) -> Any:
-    """Whether options say this."""
-
-    def flag_of(self: Options) -> bool:
-        return name in self.says
-
-    return flag_of
 
 
 _FIELDS = tuple(f for f in fields(Options) if f.init)
 NAMES = (*(f.name for f in _FIELDS), *SAYS)
 for _name in SAYS:
-    setattr(Options, _name, property(_saying(_name), doc=f'Whether ``says`` has "{_name}", a bool.'))
+    _says: Any = lambda self, name=_name: name in self.says  # noqa: E731
+    setattr(Options, _name, property(_says, doc=f'Whether ``says`` has "{_name}", a bool.'))
 
 
 def options_table() -> str:
-    """All options, their defaults and values: a Markdown table, from the fields' metadata."""
+    """All options, their defaults and values: a Markdown table."""
     rows = ["| name | default | values |", "|---|---|---|"]
     for f in _FIELDS:
         default = f'"{f.default}"' if isinstance(f.default, str) else repr(f.default)
-        only = "" if f.metadata["only"] is None else f"of a {f.metadata['only']}: "
-        rows.append(f"| `{f.name}` | `{default}` | {only}{f.metadata['values']} |")
+        _, only, values = _ABOUT[f.name]
+        rows.append(f"| `{f.name}` | `{default}` | {f'of a {only}: ' if only else ''}{values} |")
     return "\n".join(rows) + "\n"
 
 
 def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:
     """The observation space of a game with these options."""
-    rules = options.rules
+    rules, frame = options.rules, options.task != "visit"
     choices = rules.actions.choices if isinstance(rules.actions, Choices) else 0
-    return observations.space(
-        options.observation, frame=options.task != "visit", replaced=rules.misses, choices=choices
-    )
+    return observations.space(options.observation, frame=frame, replaced=rules.misses, choices=choices)
 
 
 def options_of(options: Options | None, keywords: Mapping[str, Any]) -> Options:
@@ -460,16 +360,12 @@ def options_of(options: Options | None, keywords: Mapping[str, Any]) -> Options:
     if options is None:
         for name in keywords:
             if name not in NAMES:
-                raise TypeError(
-                    f"got an unexpected keyword argument {name!r}; the options are {', '.join(NAMES)}"
-                )
+                allowed = f"got an unexpected keyword argument {name!r}; the options are {', '.join(NAMES)}"
+                raise TypeError(allowed)
         return Options(**keywords)
     if not isinstance(options, Options):
         raise refuse("options", options, "must be an Options or None")
     if keywords:
-        raise refuse_what(
-            "options",
-            "an Options",
-            f"must be None with the keywords {sorted(keywords)}: change them with options.but(...)",
-        )
+        allowed = f"must be None with the keywords {sorted(keywords)}: change them with options.but(...)"
+        raise refuse_what("options", "an Options", allowed)
     return options

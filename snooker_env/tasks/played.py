@@ -19,40 +19,29 @@ class Played:
     shot : Shot
         The simulated shot, with its path if that was recorded.
     cue : dict of str to float
-        The strike, errors included: "speed" [m/s], "side", "top" (over R, right and up), "aim", "elevation"
-        [rad].
-    player : int
-        Who played it: 0, or in a frame 0 or 1.
-    ball_on : BallOn
-        What was on.
-    free_ball : bool
-        Whether the player had a free ball.
+        The strike, errors included: "speed" [m/s], "side", "top" (over R), "aim", "elevation" [rad].
+    player, next_player : int
+        Who played it, and whose turn it is next: 0, or in a frame 0 or 1.
+    ball_on, next_on : BallOn
+        What was on, and what is on next; NOTHING when the visit or frame is over.
+    free_ball, next_free_ball : bool
+        Whether the player had a free ball, and whether the next player has one.
     first : tuple of int
         Ids of the balls struck first: one, none, or those struck at the same instant.
     points, penalty : int
         Points scored, and penalty points given to the opponent.
     fouls : Foul
         The rules that the stroke broke.
-    positions : numpy.ndarray
-        float64 (22, 2). The balls after the stroke [m], colours respotted and a cue ball in hand placed.
-    on_table : numpy.ndarray
-        bool (22,). Which balls are on the table then.
-    next_on : BallOn
-        What is on next; NOTHING when the visit or frame is over.
-    next_free_ball : bool
-        Whether the next player has a free ball.
-    next_player : int
-        Whose turn it is next.
+    positions, on_table : numpy.ndarray
+        float64 (22, 2), the balls after the stroke [m], colours respotted and a cue ball in hand placed; bool
+        (22,), which balls are on the table then.
     scores : tuple of int
         In a frame, both scores after the stroke; in a visit, its points so far.
     break_before, break_points : int
         Points of the break before and with this stroke; the latter in a frame 0 if it scored nothing.
-    in_hand : bool
-        Whether the cue ball is in hand next.
-    choice : bool
-        Whether the next player has a decision to make, after a foul.
-    over : bool
-        Whether the visit or frame has ended.
+    in_hand, choice, over : bool
+        Whether the cue ball is in hand next; whether the next player has a decision to make, after a foul;
+        whether the visit or frame has ended.
     winner : int or None
         Who has won the frame.
 
@@ -91,20 +80,12 @@ class Played:
 
 def judged(seen: list[int]) -> dict[str, Any]:
     """The fields of ``Played`` that a row of ``ShotBuffers.seen`` holds."""
-    return {
-        "player": seen[PLAYER],
-        "ball_on": BallOn(seen[WAS_ON]),
-        "free_ball": bool(seen[FREE]),
-        "first": ids_of(seen[FIRST]),
-        "points": seen[SCORED],
-        "penalty": seen[COST],
-        "fouls": Foul(seen[FOULS]),
-        "break_before": seen[BREAK] - seen[SCORED],
-    }
+    cost = {"points": seen[SCORED], "penalty": seen[COST], "fouls": Foul(seen[FOULS])}
+    before = {"ball_on": BallOn(seen[WAS_ON]), "free_ball": bool(seen[FREE]), "player": seen[PLAYER]}
+    return cost | before | {"first": ids_of(seen[FIRST]), "break_before": seen[BREAK] - seen[SCORED]}
 
 
 def struck(buffers: ShotBuffers, j: int) -> dict[str, float]:
     """The field ``cue`` of ``Played``, for shot j."""
-    return dict(
-        zip(("speed", "side", "top", "aim", "elevation"), buffers.shots[j, CUE_SPEED:].tolist(), strict=True)
-    )
+    names = ("speed", "side", "top", "aim", "elevation")
+    return dict(zip(names, buffers.shots[j, CUE_SPEED:].tolist(), strict=True))

@@ -1,7 +1,6 @@
 """In which direction must the cue ball leave to pot a ball? The line of a pot, corrected for throw, swerve
 and the object ball's own curve: the two balls alone are played on unbounded cloth until the object ball
-rolls, and secant steps correct the direction by how far it passes the pocket's aim point. A trial takes a
-microsecond."""
+rolls; secant steps correct the direction by how far it passes the pocket's aim point."""
 
 from math import atan2, hypot, pi
 
@@ -39,10 +38,9 @@ def _passes(aim, stroke, c, b, p, law, work):
     nx, ny = bx - x, by - y
     d = hypot(nx, ny)
     still, impact = (0.0, 0.0, 0.0), Law(phys, law.fidelity, law.n_steps)
-    ball = (v[0], v[1], 0.0)
-    _v1, _w1, v2, w2, solved = collide_balls(
-        ball, w, still, still, (nx / d, ny / d), impact, phys[P_E_B], work.series
-    )
+    ball, normal = (v[0], v[1], 0.0), (nx / d, ny / d)
+    after = collide_balls(ball, w, still, still, normal, impact, phys[P_E_B], work.series)
+    _v1, _w1, v2, w2, solved = after
     if not solved:
         return 9.0
     cloth.begin(motion, state, 1, t, (bx, by), (v2[0], v2[1]), w2, phys)
@@ -62,10 +60,8 @@ def _passes(aim, stroke, c, b, p, law, work):
         cloth.next_phase(motion, state, 1, phys)
         T = 0.0
     gx, gy = motion[1, cloth.X] - bx, motion[1, cloth.Y] - by
-    ux, uy = (
-        motion[1, cloth.VX] + 0.5 * motion[1, cloth.AX] * T,
-        motion[1, cloth.VY] + 0.5 * motion[1, cloth.AY] * T,
-    )
+    ux = motion[1, cloth.VX] + 0.5 * motion[1, cloth.AX] * T
+    uy = motion[1, cloth.VY] + 0.5 * motion[1, cloth.AY] * T
     # still sliding at the pocket: its chord is accurate enough
     if T == 0.0 and gx * qx + gy * qy > 0.9 * away * away:
         ux, uy = gx, gy
@@ -78,8 +74,7 @@ def _passes(aim, stroke, c, b, p, law, work):
 
 @kernel(seconds=5, uses=(collide_balls,))
 def solved_aim(positions, ball, target, ghost, stroke, law, work):
-    """Direction [rad] in which the stroke (speed, side, top, elevation) sends ``ball`` to ``target``, sought
-    from the straight line to ``ghost``; the best one tried if none succeeds (too soft, or too thin a cut)."""
+    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``."""
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     line = atan2(gy - cy, gx - cx)

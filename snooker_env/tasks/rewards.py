@@ -22,8 +22,7 @@ FRAME_REWARDS = ("points", "win")
 last paid, in all the final difference: the first reward includes a first visit of the opponent. ``"win"``: +1
 or -1 when the frame ends, else 0."""
 MATCH_REWARDS = (*FRAME_REWARDS, "frames")
-"""Rewards of a match: points added up over the frames; +1 or -1 when the match ends; +1 or -1 when a frame
-ends."""
+"""Of a match: points added up over the frames; +1 or -1 when the match ends; +1 or -1 when a frame ends."""
 (POINTS_PAID, WIN_PAID, FRAMES_PAID) = range(3)
 
 

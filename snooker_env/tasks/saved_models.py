@@ -1,7 +1,6 @@
 """How is a model's file read safely? As plain data first, without running anything: a zip of
-Stable-Baselines3 or sb3-contrib holds weights and ``data``, JSON in which all but plain values is a pickle
-(of cloudpickle, in base64), whose code runs when loaded. Only ``SavedModel.network`` unpickles, and requires
-consent."""
+Stable-Baselines3 or sb3-contrib holds weights and ``data``, JSON in which all but plain values is a pickle,
+whose code runs when loaded. Only ``SavedModel.network`` unpickles, and requires consent."""
 
 import json
 import zipfile
@@ -17,13 +16,11 @@ from .._check import refuse
 from .._install import missing
 
 __all__ = ["PLAIN", "SavedModel", "by_train", "entries", "one_thread", "outline", "part"]
-
 MOST = 2**26
-"""Largest number of bytes of JSON that are read (SB3 stores the last observations there): a small zip can
-unpack to more than a machine's memory, and JSON to objects 25 times as large."""
+"""Most bytes of JSON that are read (SB3 stores the last observations there): a small zip can unpack to more
+than a machine's memory, and JSON to objects 25 times as large."""
 PLAIN = "model.json"
 """The part that replaces ``data`` in zips written by ``agents.publish``, which hold no pickles."""
-
 _ALGORITHMS = (
     ("sb3_contrib", "TQC", {"top_quantiles_to_drop_per_net"}),
     ("sb3_contrib", "TRPO", {"cg_max_steps"}),
@@ -34,11 +31,9 @@ _ALGORITHMS = (
     ("stable_baselines3", "PPO", {"clip_range", "rollout_buffer_class"}),
     ("stable_baselines3", "A2C", {"gae_lambda", "rollout_buffer_class"}),
 )
-"""Library, class, and the names that only its models save, in addition to those of the classes above. A
-recurrent model has no class of rollout buffers."""
+"""Library, class, and what only its models save beside those above; recurrent: no buffers."""
 _PLAYED = ("policy_class", "policy_kwargs", "observation_space", "action_space")
-"""The pickles that playing needs; others (schedules, callbacks, buffers) may name packages that are
-missing."""
+"""The pickles that playing needs; others (schedules, callbacks, buffers) may name missing packages."""
 _UNPICKLED = {"learning_rate": 0.0, "clip_range": 0.2, "train_freq": 1, "target_entropy": 0.0}
 """What takes the place of a pickle that is left out; else None. Nothing is learned by these."""
 
@@ -47,8 +42,7 @@ _UNPICKLED = {"learning_rate": 0.0, "clip_range": 0.2, "train_freq": 1, "target_
 def one_thread() -> Iterator[None]:
     """Let PyTorch compute on the calling thread alone, as a context: where a model that plays decides.
 
-    PyTorch shares out even small products among a thread for each core; networks of a few layers are slower
-    so, and each core that another process holds makes them wait.
+    Shared out among a thread for each core, networks of a few layers are slower, and wait for busy cores.
 
     Returns
     -------
@@ -92,21 +86,16 @@ def part(path: str | Path, name: str, most: int = MOST) -> bytes:
 
     Raises
     ------
-    ValueError
-        If the part is larger than ``most``.
-    KeyError, zipfile.BadZipFile, OSError
-        If there is no such part, the file is no zip, or it cannot be read.
+    ValueError, KeyError, zipfile.BadZipFile, OSError
+        If the part is larger than ``most``, there is none, the file is no zip, or it cannot be read.
 
     Examples
     --------
     >>> from snooker_env.tasks.saved_models import part
-    >>> import tempfile, zipfile
-    >>> from pathlib import Path
-    >>> file = Path(tempfile.mkdtemp()) / "model.zip"
-    >>> with zipfile.ZipFile(file, "w") as made:
-    ...     made.writestr("data", "{}")
-    >>> part(file, "data")
-    b'{}'
+    >>> part("nowhere.zip", "data")
+    Traceback (most recent call last):
+    ...
+    FileNotFoundError: [Errno 2] No such file or directory: 'nowhere.zip'
     """
     with zipfile.ZipFile(path) as file:
         if file.getinfo(name).file_size > most:
@@ -183,10 +172,8 @@ def outline(space: spaces.Space[Any]) -> tuple[str, Any]:
 
     Returns
     -------
-    kind : str
-        Name of the space's class.
-    size : str or list of int
-        The number of choices or the spaces of a Dict, as text, else the shape.
+    kind, size : str, and str or list of int
+        Name of the space's class; the number of choices or the spaces of a Dict, as text, else the shape.
 
     Examples
     --------
@@ -216,10 +203,8 @@ class SavedModel:
 
     Attributes
     ----------
-    path : Path
-        The file.
-    field : str
-        Name of the argument that error messages refer to.
+    path, field : Path, str
+        The file, and the name of the argument that error messages refer to.
     data : dict
         The JSON of its ``data``, in which pickles are text.
     observation, action : (str, str or list of int)
@@ -247,11 +232,8 @@ class SavedModel:
         try:
             data = entries(path)
             ours = by_train(data)
-            outlines = (
-                []
-                if ours
-                else [_described_outline(data[key]) for key in ("observation_space", "action_space")]
-            )
+            spaces_ = () if ours else ("observation_space", "action_space")
+            outlines = [_described_outline(data[key]) for key in spaces_]
         except Exception as error:  # zipfile and json raise many kinds for other files
             raise refuse(field, str(path), f"must be a model saved by Stable-Baselines3 ({error})") from None
         if ours:
@@ -291,18 +273,13 @@ class SavedModel:
             raise missing(f"{self.field} = {str(self.path)!r} needs {library}", "train") from error
         # keep the caller's random state; no learning
         only_played = {"seed": None, "n_envs": 1, "buffer_size": 1}
-        pickled = [
-            key for key, value in self.data.items() if isinstance(value, dict) and ":serialized:" in value
-        ]
-        left_out = {key: _UNPICKLED.get(key) for key in pickled if key not in _PLAYED}
+        others = [(key, value) for key, value in self.data.items() if key not in _PLAYED]
+        pickled = [key for key, value in others if isinstance(value, dict) and ":serialized:" in value]
+        left_out = {key: _UNPICKLED.get(key) for key in pickled}
         try:
-            return (
-                getattr(module, name)
-                .load(self.path, device="cpu", custom_objects=left_out, **only_played)
-                .policy
-            )
+            kind = getattr(module, name)
+            return kind.load(self.path, device="cpu", custom_objects=left_out, **only_played).policy
         except Exception as error:  # the file's own code may raise anything
             why = str(error).partition("\n")[0]
-            raise self.refused(
-                f"must be a model that {name} can load ({type(error).__name__}: {why})"
-            ) from error
+            allowed = f"must be a model that {name} can load ({type(error).__name__}: {why})"
+            raise self.refused(allowed) from error

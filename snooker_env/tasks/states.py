@@ -2,35 +2,21 @@
 
 from collections.abc import Collection
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .._check import array, flags, integer, refuse, refuse_what, truth
 from .._types import Bools, Floats
-from ..game.balls import (
-    CUE,
-    CUE_BIT,
-    N_BALLS,
-    REDS_MASK,
-    BallOn,
-    balls_on,
-    mask_of_present,
-    next_on,
-    points_available,
-)
+from ..game import balls
 from ..game.frame import MOST_BREAK, Frame
 from ..game.in_hand import within_d
 from ..physics.table import Table
-
-if TYPE_CHECKING:
-    from .options import Rules
+from .options import Rules
 
 MOST = 2**53 - 1
-"""Largest score and number of strokes in a saved frame: a float, as in observations and infos, is still
-exact."""
-FAR = 1000.0
-"""Limit of the coordinates of a ball off the table [m]: they mean nothing, but must not overflow."""
+"""Largest score and number of strokes in a saved frame: a float, as in observations, is still exact."""
+FAR = 1000.0  # limit of the coordinates of a ball off the table [m]: they mean nothing, but must not overflow
 
 
 class State(NamedTuple):
@@ -38,12 +24,11 @@ class State(NamedTuple):
 
     positions: Floats
     on_table: Bools
-    ball_on: BallOn
+    ball_on: balls.BallOn
     in_hand: bool
     points: int
     over: bool
-    stream: list[int]
-    """Key and counter of the table's random stream."""
+    stream: list[int]  # key and counter of the table's random stream
     rng: dict[str, Any]
 
 
@@ -54,22 +39,17 @@ class FrameState(NamedTuple):
     positions: Floats
     on_table: Bools
     strokes: int
-    opponent: int
-    """Which member of a pool plays, counted from 1; 0: none is drawn."""
-    unpaid: int
-    """What the agent has earned and no reward has paid: points, or with ``reward="frames"`` frames."""
-    due: bool
-    """Whether the episode ended before the agent's first stroke, and the next step reports it."""
-    stream: list[int]
-    """Key and counter of the table's random stream."""
+    opponent: int  # which member of a pool plays, counted from 1; 0: none is drawn
+    unpaid: int  # what the agent has earned and no reward has paid: points, or frames with reward="frames"
+    due: bool  # whether the episode ended before the agent's first stroke, and the next step reports it
+    stream: list[int]  # key and counter of the table's random stream
     rng: dict[str, Any]
-    frames: tuple[int, int] | None = None
-    first_break: int | None = None
-    """Of a match: the frames that each player has won, and who broke first."""
-    best_of: int | None = None
-    """Of a match: of how many frames at most."""
+    frames: tuple[int, int] | None = None  # of a match, as all below: the frames that each player has won
+    first_break: int | None = None  # who broke first
+    best_of: int | None = None  # of how many frames at most
 
 
+_NAMES = ("state.positions", "state.on_table")
 FRAME_KEYS = ("frame", "positions", "on_table", "strokes", "opponent", "unpaid", "due", "stream", "rng")
 MATCH_KEYS = (*FRAME_KEYS, "frames", "first_break", "best_of")
 """Keys of the saved state of a frame, and of a match."""
@@ -80,17 +60,11 @@ def check_keys(state: Any, keys: Collection[str]) -> None:
     if not isinstance(state, dict):
         raise refuse("state", state, "must be a state of get_state(), a dict")
     if missing := sorted(set(keys) - set(state)):
-        raise refuse_what(
-            "state",
-            f"a dict without {missing}",
-            f"must be a state of get_state() here, with the keys {list(keys)}",
-        )
+        allowed = f"must be a state of get_state() here, with the keys {list(keys)}"
+        raise refuse_what("state", f"a dict without {missing}", allowed)
     if unknown := [key for key in state if key not in keys]:
-        raise refuse_what(
-            "state",
-            f"a dict with {unknown}",
-            f"must be a state of get_state() here, with the keys {list(keys)} only",
-        )
+        allowed = f"must be a state of get_state() here, with the keys {list(keys)} only"
+        raise refuse_what("state", f"a dict with {unknown}", allowed)
 
 
 def checked_layout(
@@ -98,27 +72,23 @@ def checked_layout(
 ) -> tuple[Floats, Bools]:
     """The arrays positions (22, 2), on_table (22,); ValueError, with one of ``names``, if not a layout."""
     field = names[0]
-    places, present = array(field, positions, (N_BALLS, 2)), flags(names[1], on_table, (N_BALLS,))
+    places, present = array(field, positions, (balls.N_BALLS, 2)), flags(names[1], on_table, (balls.N_BALLS,))
     for i, place in enumerate(positions):
         if any(isinstance(x, bool | np.bool_) for x in place):  # NumPy converts them to 0 and 1
             raise refuse(f"{field}[{i}]", list(place), "must be two real numbers")
     if len(far := np.flatnonzero(np.abs(places).max(axis=1) > FAR)):
-        raise refuse(
-            f"{field}[{far[0]}]", places[far[0]].tolist(), f"must be within {FAR:g} m, also off the table"
-        )
+        allowed = f"must be within {FAR:g} m, also off the table"
+        raise refuse(f"{field}[{far[0]}]", places[far[0]].tolist(), allowed)
     table.check(places, R, field, present)
     return places, present
 
 
 def check_in_hand(field: str, in_hand: bool, name: str, positions: Floats) -> None:
     """ValueError if a cue ball in hand is not in the D, where it is shown until it is placed."""
-    if in_hand and not within_d(*positions[CUE]):
-        x, y = positions[CUE].tolist()
-        raise refuse(
-            field,
-            in_hand,
-            f"must be False with the cue ball at {name}[{CUE}] = ({x:g}, {y:g}), outside the D",
-        )
+    if in_hand and not within_d(*positions[balls.CUE]):
+        x, y = positions[balls.CUE].tolist()
+        allowed = f"must be False with the cue ball at {name}[{balls.CUE}] = ({x:g}, {y:g}), outside the D"
+        raise refuse(field, in_hand, allowed)
 
 
 def _check_like(field, value, known):
@@ -140,9 +110,8 @@ def check_rng(rng: Any, generator: np.random.Generator) -> None:
     try:
         trial.state = rng
     except (TypeError, ValueError, OverflowError) as error:
-        raise refuse(
-            "state.rng", rng, f"must be the state of a {type(trial).__name__} generator ({error})"
-        ) from None
+        allowed = f"must be the state of a {type(trial).__name__} generator ({error})"
+        raise refuse("state.rng", rng, allowed) from None
 
 
 def check_stream(stream: Any) -> list[int]:
@@ -155,59 +124,44 @@ def check_stream(stream: Any) -> list[int]:
 def checked(
     state: Any, table: Table, R: float, generator: np.random.Generator, *, to_play: bool = False
 ) -> State:
-    """The ``State`` that a dict describes; ValueError names the first invalid part, or says that no shot is
-    left with ``to_play``. ``generator``: for the part "rng"; it is not changed."""
+    """The ``State`` of a dict; ValueError names the first wrong part, or if none is left ``to_play``."""
     check_keys(state, State._fields)
-    positions, on_table = checked_layout(
-        ("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R
-    )
+    positions, on_table = checked_layout(_NAMES, state["positions"], state["on_table"], table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
-    ball_on = BallOn(integer("state.ball_on", state["ball_on"], BallOn.NOTHING, BallOn.BLACK))
-    balls = mask_of_present(on_table)
+    number = integer("state.ball_on", state["ball_on"], balls.BallOn.NOTHING, balls.BallOn.BLACK)
+    ball_on = balls.BallOn(number)
+    mask = balls.mask_of_present(on_table)
     if not over:  # then there must be a shot to play
-        lowest = next_on(balls)
-        if not on_table[CUE]:
-            raise refuse(
-                "state.on_table", on_table.tolist(), "must hold the cue ball while the visit goes on"
-            )
-        if not balls_on(ball_on, balls):
-            raise refuse(
-                "state.ball_on", ball_on.name, "must name balls of which one is on the table (state.on_table)"
-            )
-        if ball_on > BallOn.RED and balls & REDS_MASK:
-            raise refuse(
-                "state.ball_on",
-                ball_on.name,
-                "must be RED or ANY_COLOUR while reds are on the table (state.on_table)",
-            )
-        if ball_on not in (BallOn.ANY_COLOUR, lowest):
-            raise refuse(
-                "state.ball_on",
-                ball_on.name,
-                f"must be ANY_COLOUR or {BallOn(lowest).name}, the lowest of state.on_table",
-            )
+        lowest = balls.next_on(mask)
+        if not on_table[balls.CUE]:
+            allowed = "must hold the cue ball while the visit goes on"
+            raise refuse("state.on_table", on_table.tolist(), allowed)
+        if not balls.balls_on(ball_on, mask):
+            allowed = "must name balls of which one is on the table (state.on_table)"
+            raise refuse("state.ball_on", ball_on.name, allowed)
+        if ball_on > balls.BallOn.RED and mask & balls.REDS_MASK:
+            allowed = "must be RED or ANY_COLOUR while reds are on the table (state.on_table)"
+            raise refuse("state.ball_on", ball_on.name, allowed)
+        if ball_on not in (balls.BallOn.ANY_COLOUR, lowest):
+            allowed = f"must be ANY_COLOUR or {balls.BallOn(lowest).name}, the lowest of state.on_table"
+            raise refuse("state.ball_on", ball_on.name, allowed)
         check_in_hand("state.in_hand", in_hand, "state.positions", positions)
     check_rng(state["rng"], generator)
     points, stream = integer("state.points", state["points"], 0, MOST_BREAK), check_stream(state["stream"])
-    more = points_available(balls, ball_on)
+    more = balls.points_available(mask, ball_on)
     if points + more > MOST_BREAK:
-        raise refuse(
-            "state.points",
-            points,
-            f"must be at most {MOST_BREAK - more}: state.on_table and state.ball_on offer {more} more",
-        )
+        allowed = f"must be at most {MOST_BREAK - more}: state.on_table and state.ball_on offer {more} more"
+        raise refuse("state.points", points, allowed)
     if over and to_play:
         raise refuse("state.over", True, "must be False: there is no shot to play from this state")
     return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"])
 
 
-def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) -> FrameState:
+def checked_frame(state: Any, rules: Rules, generator: np.random.Generator) -> FrameState:
     """The ``FrameState`` that a dict describes, under these rules; ValueError names the first wrong part."""
     check_keys(state, MATCH_KEYS if rules.frames else FRAME_KEYS)
     miss, table, R = rules.miss, rules.table, rules.physics.R
-    positions, on_table = checked_layout(
-        ("state.positions", "state.on_table"), state["positions"], state["on_table"], table, R
-    )
+    positions, on_table = checked_layout(_NAMES, state["positions"], state["on_table"], table, R)
     frame = Frame.from_dict(state["frame"], "state.frame")
     strokes = integer("state.strokes", state["strokes"], 0, MOST)
     for k, points in enumerate(frame.scores):
@@ -217,21 +171,14 @@ def checked_frame(state: Any, rules: "Rules", generator: np.random.Generator) ->
     if frame.rules != rules.game:
         raise refuse("state.frame.rules", frame.rules, f"must be {rules.game!r}, as this environment plays")
     if frame.phase == "lot" and not rules.actions.lot:
-        raise refuse(
-            "state.frame.phase",
-            frame.phase,
-            "must not be between two steps: the lot is drawn in the step of the stroke before",
-        )
+        allowed = "must not be between two steps: the lot is drawn in the step of the stroke before"
+        raise refuse("state.frame.phase", frame.phase, allowed)
     if frame.phase != "over":
-        if mask_of_present(on_table) != frame.on_table | CUE_BIT:
-            raise refuse(
-                "state.on_table",
-                on_table.tolist(),
-                "must hold the cue ball and the balls of state.frame.on_table, no others",
-            )
-        check_in_hand(
-            "state.frame.in_hand", frame.in_hand and not frame.anywhere, "state.positions", positions
-        )
+        if balls.mask_of_present(on_table) != frame.on_table | balls.CUE_BIT:
+            allowed = "must hold the cue ball and the balls of state.frame.on_table, no others"
+            raise refuse("state.on_table", on_table.tolist(), allowed)
+        in_d = frame.in_hand and not frame.anywhere
+        check_in_hand("state.frame.in_hand", in_d, "state.positions", positions)
     if frame.saved is not None:
         frame = replace(frame, saved=_checked_saved(frame, table, R))
     stream = check_stream(state["stream"])
@@ -255,11 +202,8 @@ def _checked_match(state, frame, best_of):
     won = integer("state.frames[0]", won[0], 0, needed), integer("state.frames[1]", won[1], 0, needed)
     for k, n in enumerate(won):
         if (n == needed) != (frame.winner == k):
-            raise refuse(
-                f"state.frames[{k}]",
-                n,
-                f"must be {needed} for the winner of a match that is over, else below",
-            )
+            allowed = f"must be {needed} for the winner of a match that is over, else below"
+            raise refuse(f"state.frames[{k}]", n, allowed)
     return won, integer("state.first_break", state["first_break"], 0, 1)
 
 
@@ -273,12 +217,9 @@ def _checked_saved(frame, table, R):
     if not isinstance(saved.layout, tuple) or len(saved.layout) != 2:
         raise refuse(field, saved.layout, "must be positions and on_table, as they were before the foul")
     positions, on_table = checked_layout((f"{field}[0]", f"{field}[1]"), *saved.layout, table, R)
-    if mask_of_present(on_table) != saved.on_table | CUE_BIT:
-        raise refuse(
-            f"{field}[1]",
-            on_table.tolist(),
-            "must hold the cue ball and the balls of state.frame.saved.on_table, no others",
-        )
+    if balls.mask_of_present(on_table) != saved.on_table | balls.CUE_BIT:
+        allowed = "must hold the cue ball and the balls of state.frame.saved.on_table, no others"
+        raise refuse(f"{field}[1]", on_table.tolist(), allowed)
     check_in_hand("state.frame.saved.in_hand", saved.in_hand and not saved.anywhere, f"{field}[0]", positions)
     return replace(saved, layout=layout_of(positions, on_table))
 

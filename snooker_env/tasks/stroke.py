@@ -1,9 +1,8 @@
 """How is one stroke played, on one table or on thousands? ``address`` (placement, action, error, strike),
 then ``engine.run_batch``; each task has its own referee. Row j of the ``ShotBuffers`` is the shot on table
-which[j]. Each table draws from its own stream, so that no result depends on other tables, their number or the
-threads."""
+which[j]. Each table draws from its own stream: no result depends on other tables or threads."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,37 +24,17 @@ from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, playable
 from .lines import new_work
 from .noise import executed
+from .options import Rules
 
-if TYPE_CHECKING:
-    from .options import Rules
-
-AT_ONCE = 1e-9
-"""Contacts within this time [s] are simultaneous."""
-
+AT_ONCE = 1e-9  # contacts within this time [s] are simultaneous
 # Columns of a strike: the cue ball's velocity and spin after it, intended speed, the strike with errors.
 (VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
 STRIKE_COLUMNS = 11
-
 # Columns of the referee's facts: masks of balls, clear paths before a stroke that failed (where misses are
 # called), whether it was an attempt (``miss="attempt"``); and of the ruling (``BREAK``: with this stroke).
-(
-    FIRST,
-    TOUCHING,
-    MOVED,
-    DOWN,
-    CLEAR_PATH,
-    FULL_PATH,
-    ATTEMPT,
-    PLAYER,
-    WAS_ON,
-    FREE,
-    BREAK,
-    SCORED,
-    COST,
-    FOULS,
-) = range(14)
+FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, ATTEMPT = range(7)
+PLAYER, WAS_ON, FREE, BREAK, SCORED, COST, FOULS = range(7, 14)
 SEEN_COLUMNS = 14
-
 _BALL_BALL, _CUSHION, _JAW = int(EventKind.BALL_BALL), int(EventKind.CUSHION), int(EventKind.JAW)
 _WHY = {
     Status.TOO_MANY_EVENTS: f"did not come to rest within {MAX_EVENTS} events: a ball may be held against another; try other physics",
@@ -67,20 +46,17 @@ _WHY = {
 @kernel
 def _played_into(positions, ball, vx, vy, time):
     """Whether the cue ball, struck with (vx, vy) [m/s], was played into the touching ``ball`` that it met at
-    ``time`` [s]: its straight line leads into it, however small the gap and slow the stroke, or they met at
-    once (the physics lets balls without a gap meet along the tangent, too)."""
+    ``time`` [s]: its line leads into it, or they met at once, also along the tangent."""
     dx, dy = positions[ball, 0] - positions[CUE, 0], positions[ball, 1] - positions[CUE, 1]
     speed = np.hypot(vx, vy)
-    return vx * dx + vy * dy > 0.0 and (
-        abs(vx * dy - vy * dx) < 2.0 * BALL_RADIUS * speed or time * speed <= 10.0 * TOUCH
-    )
+    into = abs(vx * dy - vy * dx) < 2.0 * BALL_RADIUS * speed or time * speed <= 10.0 * TOUCH
+    return vx * dx + vy * dy > 0.0 and into
 
 
 @kernel
 def first_struck(event_time, event_what, n_events, touching, positions, vx, vy):
     """Masks, from a shot's log, of the balls struck first, and of the ``touching`` ones that it was played
-    into: a push stroke. One that it is played away from, and meets later off a cushion, is struck but not
-    moved in leaving."""
+    into, a push stroke; one that it meets later off a cushion is struck but not moved in leaving."""
     first, moved, start = 0, 0, np.inf
     for e in range(n_events):
         kind, time = event_what[e, 0], event_time[e]
@@ -99,20 +75,13 @@ def first_struck(event_time, event_what, n_events, touching, positions, vx, vy):
 
 
 @kernel
-def place(positions, on_table, x, y):
-    """Put a cue ball in hand on the free place of the D nearest to (x, y); it stays if there is none."""
+def place(positions, on_table, x, y, anywhere):
+    """Put a cue ball in hand on the free place of the D, or bed, nearest to (x, y); it stays if none is."""
     on_table[CUE] = False
-    x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS)
-    on_table[CUE] = True
-    if free:
-        positions[CUE, 0], positions[CUE, 1] = x, y
-
-
-@kernel
-def place_anywhere(positions, on_table, x, y):
-    """As ``place``, on the whole bed."""
-    on_table[CUE] = False
-    x, y, free = nearest_anywhere(positions, on_table, x, y, BALL_RADIUS)
+    if anywhere:
+        x, y, free = nearest_anywhere(positions, on_table, x, y, BALL_RADIUS)
+    else:
+        x, y, free = nearest_place(positions, on_table, x, y, BALL_RADIUS)
     on_table[CUE] = True
     if free:
         positions[CUE, 0], positions[CUE, 1] = x, y
@@ -133,9 +102,8 @@ def strike(intended, positions, on_table, stream, options, noise, j, shots):
     speed, side, top, aim, elevation = executed(*intended, noise, stream)
     side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
     shot, r, v, w, here = shots.shots[j], shots.r, shots.v, shots.w, shots.here
-    (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = cue.struck(
-        speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS]
-    )
+    struck = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS])
+    (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = struck
     shot[SPEED] = intended[0]
     shot[CUE_SPEED], shot[SIDE], shot[TOP], shot[AIM], shot[ELEVATION] = speed, side, top, aim, elevation
     for i in range(N_BALLS):
@@ -150,9 +118,8 @@ def _same_table(positions, on_table, other, other_on):
     """Whether the balls lie at the same places on two tables."""
     differ = 0
     for i in range(N_BALLS):
-        differ += (
-            on_table[i] != other_on[i] or positions[i, 0] != other[i, 0] or positions[i, 1] != other[i, 1]
-        )
+        moved = positions[i, 0] != other[i, 0] or positions[i, 1] != other[i, 1]
+        differ += on_table[i] != other_on[i] or moved
     return differ == 0
 
 
@@ -167,21 +134,14 @@ def address(which, actions, tables, shots, packed, fidelity):
         k = which[j]
         a, p, on = actions[k], positions[k], on_table[k]
         if game[k, IN_HAND] and options[A_PLACEMENT]:
-            if game.shape[1] > ANYWHERE and game[k, ANYWHERE]:
-                x, y = place_anywhere_of(a, options)
-                place_anywhere(p, on, x, y)
-            else:
-                x, y = place_of(a, options)
-                place(p, on, x, y)
+            anywhere = game.shape[1] > ANYWHERE and game[k, ANYWHERE] != 0
+            x, y = place_anywhere_of(a, options) if anywhere else place_of(a, options)
+            place(p, on, x, y, anywhere)
         mask = playable(game[k], bits(on), nominated[k] if nominated.shape[0] else AUTO)
         if options[A_DISCRETE]:
             # a planner plays a choice under several errors in succession: its aim is solved once
-            if (
-                j == 0
-                or a[0] != solved[0]
-                or mask != mask_before
-                or not _same_table(p, on, positions[which[j - 1]], on_table[which[j - 1]])
-            ):
+            before, new = which[max(0, j - 1)], j == 0 or a[0] != solved[0] or mask != mask_before
+            if new or not _same_table(p, on, positions[before], on_table[before]):
                 chosen = discrete_actions.chosen(int(a[0]), p, on, mask, law, work)
                 solved[0], mask_before = a[0], mask
                 solved[1], solved[2], solved[3], solved[4], solved[5] = chosen
@@ -216,52 +176,32 @@ def write_ruling(seen, player, ball_on, free_ball, before, result):
 class ShotBuffers:
     """Work space for up to m shots at once, each with a log of ``log`` events and optionally its path."""
 
-    log: int
-    r: Floats
-    v: Floats
-    w: Floats
-    here: Bools
-    """(m, 22, 2) [m], (m, 22, 2) [m/s], (m, 22, 3) [rad/s], (m, 22): the balls before the shots, then
-    after."""
-    potted: Ints
-    """(m, 22) the pocket of each ball, or -1."""
-    shots: Floats
-    """(m, STRIKE_COLUMNS) of each strike, columns ``VX`` to ``ELEVATION``."""
-    seen: Ints
-    """(m, SEEN_COLUMNS) facts for the referee and the ruling, columns ``FIRST`` to ``FOULS``."""
-    event_time: Floats
-    event_what: NDArray[np.int32]
-    """(m, log) [s] and (m, log, 3): time; kind, i, j of each event."""
-    segments: Floats
-    """The paths, if they are recorded."""
-    status: Ints
-    n_events: Ints
-    n_segments: Ints
-    duration: Floats
-    """(m,) how each shot ended, and how long it took [s]."""
-    enlarged: "dict[int, ShotBuffers]"
-    """Shots of the last run that needed a longer log: row -> their own buffers."""
-    struck: tuple[Any, ...]
-    played: tuple[Any, ...]
-    """For kernels: the parts of ``StruckArrays`` and ``PlayedArrays``, in plain tuples."""
-
     def __init__(self, m: int, log: int = 512, *, path: bool = False):
-        self.log = log
-        self.r, self.v, self.w = (
-            np.zeros((m, N_BALLS, 2)),
-            np.zeros((m, N_BALLS, 2)),
-            np.zeros((m, N_BALLS, 3)),
-        )
-        self.here, self.potted = np.zeros((m, N_BALLS), np.bool_), np.zeros((m, N_BALLS), np.int64)
-        self.shots, self.seen = np.zeros((m, STRIKE_COLUMNS)), np.zeros((m, SEEN_COLUMNS), np.int64)
-        self.event_time, self.event_what = np.zeros((m, log)), np.zeros((m, log, 3), np.int32)
-        self.segments = np.zeros((m, 2 * log + N_BALLS + 2 if path else 0, cloth.COLUMNS + 2))
-        self.status, self.n_events, self.n_segments = (np.zeros(m, np.int64) for _ in range(3))
-        self.duration = np.zeros(m)
-        self.struck = self.r, self.v, self.w, self.here, self.shots
+        self.log: int = log
+        # the balls before the shots, then after: [m], [m/s], [rad/s]; the pocket of each, or -1
+        self.r: Floats = np.zeros((m, N_BALLS, 2))
+        self.v: Floats = np.zeros((m, N_BALLS, 2))
+        self.w: Floats = np.zeros((m, N_BALLS, 3))
+        self.here: Bools = np.zeros((m, N_BALLS), np.bool_)
+        self.potted: Ints = np.zeros((m, N_BALLS), np.int64)
+        # each strike, columns ``VX`` to ``ELEVATION``; facts for the referee and the ruling, ``FIRST`` to ``FOULS``
+        self.shots: Floats = np.zeros((m, STRIKE_COLUMNS))
+        self.seen: Ints = np.zeros((m, SEEN_COLUMNS), np.int64)
+        # time [s]; kind, i, j of each event; the paths, if they are recorded
+        self.event_time: Floats = np.zeros((m, log))
+        self.event_what: NDArray[np.int32] = np.zeros((m, log, 3), np.int32)
+        self.segments: Floats = np.zeros((m, 2 * log + N_BALLS + 2 if path else 0, cloth.COLUMNS + 2))
+        # how each shot ended, and how long it took [s]
+        self.status: Ints = np.zeros(m, np.int64)
+        self.n_events: Ints = np.zeros(m, np.int64)
+        self.n_segments: Ints = np.zeros(m, np.int64)
+        self.duration: Floats = np.zeros(m)
+        # for kernels: the parts of ``StruckArrays`` and ``PlayedArrays``, in plain tuples
+        self.struck: tuple[Any, ...] = (self.r, self.v, self.w, self.here, self.shots)
+        ends = self.seen, self.potted, self.status, self.duration
         events = self.event_time, self.event_what, self.n_events
-        self.played = self.r, self.shots, self.seen, self.potted, self.status, self.duration, *events
-        self.enlarged = {}
+        self.played: tuple[Any, ...] = (self.r, self.shots, *ends, *events)
+        self.enlarged: dict[int, ShotBuffers] = {}  # shots of the last run with a longer log of their own
 
     def __len__(self) -> int:
         return len(self.duration)
@@ -273,7 +213,7 @@ class ShotBuffers:
         one.v[0, CUE], one.w[0, CUE] = shot[[VX, VY]], shot[[WX, WY, WZ]]
         return one
 
-    def shot(self, j: int, rules: "Rules") -> Shot:
+    def shot(self, j: int, rules: Rules) -> Shot:
         """Shot j as a ``Shot``."""
         n = self.n_events[j]
         events = np.zeros(n, EVENT)
@@ -285,13 +225,13 @@ class ShotBuffers:
         return Shot(*ends, events, segments, rules.physics, rules.table)
 
 
-def run(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
+def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
     """Play the first m shots until all balls are at rest; ``phys``: the packed ``rules.physics``."""
     count(m)
     _simulated(buffers, m, rules, phys)
 
 
-def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> None:
+def _simulated(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
     """The same without counting them."""
     table = rules.table
     buffers.enlarged = {}
@@ -303,7 +243,7 @@ def _simulated(buffers: ShotBuffers, m: int, rules: "Rules", phys: Floats) -> No
 
 
 def run_again(
-    buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats
+    buffers: ShotBuffers, j: int, k: int, positions: Floats, on_table: Bools, rules: Rules, phys: Floats
 ) -> ShotBuffers:
     """Play shot j, on table k, with a longer log in its own buffers; SimulationError if it does not help."""
     one, status = buffers, buffers.status[j]
@@ -319,7 +259,7 @@ def run_again(
 
 
 def with_path(
-    buffers: ShotBuffers, j: int, positions: Floats, on_table: Bools, rules: "Rules", phys: Floats
+    buffers: ShotBuffers, j: int, positions: Floats, on_table: Bools, rules: Rules, phys: Floats
 ) -> ShotBuffers:
     """Play shot j, which came to rest, once more with its path, uncounted; returns its own buffers."""
     one = buffers.again(j, buffers.log, path=True)

@@ -12,25 +12,20 @@ from ..physics.bounds import deepest
 from ..physics.table import SAME_BALL, UNBOUNDED, Table, TableLike
 from .observations import REACH
 
-ROUNDING = 1e-9
-"""Tolerance of noses, jaws and falls [m]."""
+ROUNDING = 1e-9  # tolerance of noses, jaws and falls [m]
 
 
 def table_of(table: TableLike) -> Table:
     """The ``Table`` of an environment's argument; ValueError unless every place that a layout may deal is
     free on it. Spots, rack, D, random and respotted balls lie where |x| <= 0.86275 and |y| <= 1.75825: the
-    noses must be where snooker's are, and no jaw or fall may reach a ball there. Only opened tables have
-    balls in mouths: see ``fitted``."""
+    noses must be where snooker's are, and no jaw or fall may reach a ball there."""
     cloth = Table.of(table)
     if cloth is UNBOUNDED:
         raise refuse("table", table, 'must be "match", "tight" or a Table')
     if cloth.ball_radius is not None and abs(cloth.ball_radius - BALL_RADIUS) > SAME_BALL:
         made = f"this one is made for balls of radius {cloth.ball_radius:g} m, snooker's have {BALL_RADIUS:g}"
-        raise refuse(
-            "table",
-            cloth.name,
-            f'must be "match", "tight" or a Table of snooker\'s bed in Snooker-v0: {made}',
-        )
+        allowed = f'must be "match", "tight" or a Table of snooker\'s bed in Snooker-v0: {made}'
+        raise refuse("table", cloth.name, allowed)
     _check_noses(cloth)
     _check_pockets(cloth)
     past, most = deepest(cloth.jaws, cloth.falls, cloth.bounds, BALL_RADIUS), (REACH - 1.0) * HALF_WIDTH

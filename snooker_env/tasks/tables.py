@@ -70,50 +70,28 @@ def write_empty_info(k, out, ball_on):
 Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
 """Work on some tables, called as ``task(which, buffers)``."""
 Watch: TypeAlias = Callable[[int, stroke.ShotBuffers, int, bool], None]
-"""Called as ``watch(k, buffers, j, reported)`` after each stroke on table k, shot j of the buffers. ``reported``: it is
-the agent's; in a match, either player's."""
+"""Called as ``watch(k, buffers, j, reported)`` after each stroke on table k; ``reported``: the agent's."""
 
 
 class StepOutput:
     """The results of a step or reset of n tables; ``last`` only if one step both ends and starts episodes."""
 
-    observations: Singles
-    """(n, size)"""
-    rewards: Floats
-    terminated: Bools
-    truncated: Bools
-    """(n,) each"""
-    reals: Floats
-    counts: Ints
-    """The data of the infos: one column for each of ``REALS`` and ``COUNTS``."""
-    last_observations: Singles
-    last_reals: Floats
-    last_counts: Ints
-    """The same for the episodes that ended where new ones were started; otherwise without rows."""
-    masks: Masks
-    last_masks: Masks
-    """(n, choices) The available choices, likewise; without rows unless the observations hold them."""
-
-    def __init__(
-        self,
-        n: int,
-        size: int,
-        reals: Sequence[str],
-        counts: Sequence[str],
-        *,
-        last: bool = False,
-        choices: int = 0,
-    ):
-        self.observations = np.zeros((n, size), np.float32)
-        self.rewards = np.zeros(n)
-        self.terminated, self.truncated = np.zeros(n, np.bool_), np.zeros(n, np.bool_)
-        self.reals, self.counts = np.zeros((n, len(reals))), np.zeros((n, len(counts)), np.int64)
+    def __init__(self, n: int, size: int, reals: int, counts: int, *, last: bool = False, choices: int = 0):
+        self.observations: Singles = np.zeros((n, size), np.float32)
+        self.rewards: Floats = np.zeros(n)
+        self.terminated: Bools = np.zeros(n, np.bool_)
+        self.truncated: Bools = np.zeros(n, np.bool_)
+        # the data of the infos: one column for each of ``REALS`` and ``COUNTS``
+        self.reals: Floats = np.zeros((n, reals))
+        self.counts: Ints = np.zeros((n, counts), np.int64)
+        # the same of the episodes that ended where new ones were started; else without rows
         m = n if last else 0
-        self.last_observations = np.zeros((m, size), np.float32)
-        self.last_reals, self.last_counts = np.zeros((m, len(reals))), np.zeros((m, len(counts)), np.int64)
-        self.masks, self.last_masks = (
-            np.zeros((rows if choices else 0, choices), np.int8) for rows in (n, m)
-        )
+        self.last_observations: Singles = np.zeros((m, size), np.float32)
+        self.last_reals: Floats = np.zeros((m, reals))
+        self.last_counts: Ints = np.zeros((m, counts), np.int64)
+        # the available choices, likewise; without rows unless the observations hold them
+        self.masks: Masks = np.zeros((n if choices else 0, choices), np.int8)
+        self.last_masks: Masks = np.zeros((m if choices else 0, choices), np.int8)
 
     @property
     def arrays(self) -> tuple[Any, ...]:
@@ -127,21 +105,12 @@ class StepOutput:
 
 
 class Crew:
-    """Runs ``task(part, buffers)`` on parts of ``which``; here on all at once. ``generators``: one for each
-    table, for an opponent in Python. ``watch``: called after each stroke, or None."""
+    """Runs ``task(part, buffers)``, here on all at once; ``generators``: for Python opponents."""
 
-    buffers: Any
-    """``ShotBuffers``, or None for a crew that allocates its own."""
-    generators: Sequence[Any]
-    watch: Watch | None
-
-    def __init__(
-        self,
-        buffers: stroke.ShotBuffers | None = None,
-        generators: Sequence[Any] = (),
-        watch: Watch | None = None,
-    ):
-        self.buffers, self.generators, self.watch = buffers, generators, watch
+    def __init__(self, buffers: Any = None, generators: Sequence[Any] = (), watch: Watch | None = None):
+        self.buffers: Any = buffers  # ``ShotBuffers``, or None for a crew that allocates its own
+        self.generators: Sequence[Any] = generators
+        self.watch: Watch | None = watch
 
     def __call__(self, which: Ints, task: Task) -> None:
         """Run the task."""
@@ -166,30 +135,20 @@ class Tables(ABC):
 
     REALS: tuple[str, ...] = REALS
     COUNTS: tuple[str, ...] = COUNTS
-    FLAGS: tuple[str, ...] = ()
-    """Those of ``COUNTS`` that infos give as bool."""
-    SIZE = 0
-    """Numbers in an observation."""
-    COLUMNS = 0
-    """Columns of ``game``."""
+    FLAGS: tuple[str, ...] = ()  # those of ``COUNTS`` that infos give as bool
+    SIZE = 0  # numbers in an observation
+    COLUMNS = 0  # of ``game``
 
     rules: Rules
     n: int
     limit: int
-    positions: Floats
-    """(n, 22, 2) [m]"""
-    on_table: Bools
-    """(n, 22)"""
-    game: Ints
-    """(n, COLUMNS): of ``game.frame_columns``."""
-    streams: Words
-    """(n, 2) Key and counter of each table's random stream."""
-    nominated: Ints = np.empty(0, np.int64)
-    """(n,) Of frames: what each striker has nominated. A visit has no rows."""
-    begun: Bools
-    """(n,) Which tables have an episode, possibly one that has ended."""
-    packed: tuple[Floats, Floats, Floats]
-    """For the kernels: options of the action, deviations of the noise, physical parameters."""
+    positions: Floats  # (n, 22, 2) [m]
+    on_table: Bools  # (n, 22)
+    game: Ints  # (n, COLUMNS), of ``game.frame_columns``
+    streams: Words  # (n, 2) key and counter of each table's random stream
+    nominated: Ints = np.empty(0, np.int64)  # (n,) of frames: what each striker has nominated
+    begun: Bools  # (n,) which tables have an episode, possibly one that has ended
+    packed: tuple[Floats, Floats, Floats]  # action's options, noise's deviations, physical parameters
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         self.rules, self.n, self.limit = rules, n, limit
@@ -213,7 +172,8 @@ class Tables(ABC):
         """New arrays for the results of a step or reset, except for ``arrays`` by name."""
         masked = self.rules.actions if self.rules.observation == "masked" else None
         choices = masked.choices if isinstance(masked, Choices) else 0
-        out = StepOutput(self.n, self.SIZE, self.REALS, self.COUNTS, last=last, choices=choices)
+        sizes = self.n, self.SIZE, len(self.REALS), len(self.COUNTS)
+        out = StepOutput(*sizes, last=last, choices=choices)
         for name, array in (arrays or {}).items():
             array[...] = 0
             setattr(out, name, array)
@@ -228,10 +188,8 @@ class Tables(ABC):
 
     def infos(self, reals: Floats, counts: Ints, present: Bools) -> dict[str, Any]:
         """Infos as of Gymnasium's vector environments: arrays, and masks of the tables that they hold for."""
-        infos: dict[str, Any] = {
-            name: column * present for name, column in zip(self.REALS, reals.T, strict=True)
-        }
-        infos |= {name: column * present for name, column in zip(self.COUNTS, counts.T, strict=True)}
+        every = zip((*self.REALS, *self.COUNTS), (*reals.T, *counts.T), strict=True)
+        infos: dict[str, Any] = {name: column * present for name, column in every}
         infos |= {name: infos[name] != 0 for name in self.FLAGS}
         infos["foul"] = infos["fouls"] != 0
         return infos | {f"_{name}": present.copy() for name in infos}
@@ -241,17 +199,14 @@ class Tables(ABC):
         game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
         if seen[stroke.SCORED]:
             standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
-        return Played(
-            shot=buffers.shot(j, self.rules),
-            cue=struck(buffers, j),
-            positions=self.positions[k].copy(),
-            on_table=self.on_table[k].copy(),
-            next_on=BallOn(game[BALL_ON]),
-            in_hand=bool(game[IN_HAND]),
-            over=bool(game[OVER]),
-            **judged(seen),
-            **standing,
-        )
+        shot = {"shot": buffers.shot(j, self.rules), "cue": struck(buffers, j)}
+        balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
+        after: Any = {
+            "next_on": BallOn(game[BALL_ON]),
+            "in_hand": bool(game[IN_HAND]),
+            "over": bool(game[OVER]),
+        }
+        return Played(**shot, **balls, **after, **judged(seen), **standing)
 
     def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k."""
@@ -259,15 +214,13 @@ class Tables(ABC):
 
     def action_masks(self, which: Ints | None = None) -> Bools:
         """Available discrete actions on the tables ``which`` (all if None): bool (len(which), choices)."""
-        return self.masks_of(
-            np.arange(self.n) if which is None else which, self.rules.actions, self.packed[0]
-        )
+        which = np.arange(self.n) if which is None else which
+        return self.masks_of(which, self.rules.actions, self.packed[0])
 
     def masks_of(self, which: Ints, actions: Actions | Choices, options: Floats) -> Bools:
         """``action_masks`` of one space of actions; ``options``: packed, of it."""
-        out = np.empty(
-            (len(which), actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE), np.bool_
-        )
+        choices = actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE
+        out = np.empty((len(which), choices), np.bool_)
         options = options if isinstance(actions, Choices) else STROKES_ONLY
         discrete_actions.masks(which, self.positions, self.on_table, self.game, options, out)
         return out
@@ -311,9 +264,7 @@ class Tables(ABC):
         """Carry the actions (n, k) of the tables ``which`` out up to the strike."""
         self.strike(which, actions, buffers, self.packed)
 
-    def strike(
-        self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: tuple[Floats, Floats, Floats]
-    ) -> None:
+    def strike(self, which: Ints, actions: Floats, buffers: stroke.ShotBuffers, packed: Any) -> None:
         """``address`` with the options and errors of ``packed``."""
         stroke.address(which, actions, self.arrays, buffers.struck, packed, self.rules.fidelity)
 
@@ -326,13 +277,10 @@ class Tables(ABC):
 
     def again(self, which: Ints, j: int, buffers: stroke.ShotBuffers) -> stroke.ShotBuffers:
         """Play shot j once more with a longer log; returns its own buffers."""
-        k = which[j]
-        return stroke.run_again(
-            buffers, j, k, self.positions[k], self.on_table[k], self.rules, self.packed[2]
-        )
+        k, world = which[j], (self.rules, self.packed[2])
+        return stroke.run_again(buffers, j, k, self.positions[k], self.on_table[k], *world)
 
     # what each task implements
-    # --------------------------------------------------------------------------------------------------------
 
     @abstractmethod
     def step(
@@ -353,6 +301,8 @@ class Tables(ABC):
     @abstractmethod
     def get_state(self, k: int) -> dict[str, Any]:
         """Table k as JSON types, without "rng"."""
+        balls = {"positions": self.positions[k].tolist(), "on_table": self.on_table[k].tolist()}
+        return balls | {"stream": self.streams[k].tolist()}
 
     @abstractmethod
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> Any:

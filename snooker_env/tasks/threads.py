@@ -11,8 +11,7 @@ from .tables import Crew, Task, Watch
 
 CHUNK = 128
 """Most tables in one call: few enough for the work space to stay in the cache, enough to make calls cheap."""
-LEAST = 8
-"""Smallest number of tables for which another thread or chunk is worth its cost."""
+LEAST = 8  # smallest number of tables for which another thread or chunk is worth its cost
 
 
 def processors() -> int:
@@ -86,11 +85,8 @@ class Threads(Crew):
         self._pool = None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {k: v for k, v in self.__dict__.items() if k != "_lock"} | {
-            "_pool": None,
-            "_desks": [],
-            "generators": (),
-        }
+        kept = {k: v for k, v in self.__dict__.items() if k != "_lock"}
+        return kept | {"_pool": None, "_desks": [], "generators": ()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, _lock=threading.Lock())  # threads and locks belong to one process

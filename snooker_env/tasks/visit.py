@@ -1,6 +1,5 @@
 """How is a visit played, on one table or on thousands? Strokes until the first miss, foul or clearance: a
-step is ``stroke.address``, ``stroke.run`` and ``_conclude``; new visits go through ``deal_tables`` and
-``_begin``."""
+step is ``stroke.address``, ``stroke.run`` and ``_conclude``; new ones ``deal_tables`` and ``_begin``."""
 
 from typing import Any
 
@@ -129,7 +128,6 @@ class Visits(Tables):
             _begin(which, fresh, plan.in_hand, self.arrays, out.arrays, out.last)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
-        """See ``Tables.reset``."""
 
         def begin(which, buffers):
             self._begin(which[wanted[which]], out)
@@ -140,7 +138,6 @@ class Visits(Tables):
         crew(np.arange(self.n), begin)
 
     def observe(self, which: Ints, player: int = 0) -> Singles:
-        """See ``Tables.observe``."""
         rows = np.empty((len(which), SIZE), np.float32)
         observe(which, self.positions, self.on_table, self.game, rows)
         return rows
@@ -148,18 +145,10 @@ class Visits(Tables):
     def get_state(self, k: int) -> dict[str, Any]:
         """See ``Tables.get_state``: the fields of a ``states.State`` except "rng"."""
         ball_on, in_hand, points, over, _ = self.game[k].tolist()
-        return {
-            "positions": self.positions[k].tolist(),
-            "on_table": self.on_table[k].tolist(),
-            "ball_on": ball_on,
-            "in_hand": bool(in_hand),
-            "points": points,
-            "over": bool(over),
-            "stream": self.streams[k].tolist(),
-        }
+        visit = {"ball_on": ball_on, "in_hand": bool(in_hand), "points": points, "over": bool(over)}
+        return super().get_state(k) | visit
 
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> State:
-        """See ``Tables.checked``."""
         return checked(state, self.rules.table, self.rules.physics.R, generator, to_play=to_play)
 
     def set_state(self, k: int, state: State) -> None:
@@ -172,21 +161,13 @@ class Visits(Tables):
     def standing(self, k: int) -> dict[str, Any]:
         """See ``Tables.standing``: there is one player, whose break is its score."""
         points = int(self.game[k, POINTS])
-        return {
-            "next_player": 0,
-            "scores": (points,),
-            "break_points": points,
-            "choice": False,
-            "winner": None,
-            "next_free_ball": False,
-        }
+        now = {"scores": (points,), "break_points": points, "winner": None, "choice": False}
+        return now | {"next_player": 0, "next_free_ball": False}
 
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """See ``Tables.set_position``."""
         self.positions[k], self.on_table[k], self.game[k] = positions, on_table, game
         self.begun[k] = True
 
     def text(self, k: int) -> str:
-        """See ``Tables.text``."""
         on = BallOn(self.game[k, BALL_ON]).name.lower().replace("_", " ")
         return f"break {self.game[k, POINTS]}   on: {on}   reds: {int(self.on_table[k, 1:16].sum())}"

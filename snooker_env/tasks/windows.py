@@ -3,8 +3,7 @@ lines.
 
 What is met first can change only at the tangents of the balls and where the cue ball would meet a ball on and
 another at once; so one direction of each interval tells. A ball on that touches the cue ball counts as struck
-when it is played away: then every direction away from the touching balls is open.
-"""
+when it is played away: then every direction away from the touching balls is open."""
 
 from math import asin, atan2, cos, floor, hypot, pi, sin, sqrt
 
@@ -22,14 +21,8 @@ MOST_EDGES = 2 * N_BALLS + 2 * (N_BALLS // 2) ** 2
 @kernel
 def half_width(positions, ball):
     """Half the angle under which the cue ball meets a ball: from its middle to a graze [rad]."""
-    return asin(
-        min(
-            1.0,
-            2.0
-            * BALL_RADIUS
-            / hypot(positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1]),
-        )
-    )
+    dx, dy = positions[ball, 0] - positions[0, 0], positions[ball, 1] - positions[0, 1]
+    return asin(min(1.0, 2.0 * BALL_RADIUS / hypot(dx, dy)))
 
 
 @kernel
@@ -61,10 +54,8 @@ def _edges(positions, on_table, on, windows):
             if on_table[j] and ((on >> i) ^ (on >> j)) & 1 and 0.0 < apart < 4.0 * BALL_RADIUS:
                 # where the cue ball touches both
                 height = sqrt(4.0 * BALL_RADIUS * BALL_RADIUS - 0.25 * apart * apart) / apart
-                mx, my = (
-                    0.5 * (positions[i, 0] + positions[j, 0]) - x,
-                    0.5 * (positions[i, 1] + positions[j, 1]) - y,
-                )
+                mx = 0.5 * (positions[i, 0] + positions[j, 0]) - x
+                my = 0.5 * (positions[i, 1] + positions[j, 1]) - y
                 windows[n, EDGE] = atan2(my + height * sx, mx - height * sy)
                 windows[n + 1, EDGE] = atan2(my - height * sx, mx + height * sy)
                 n += 2
@@ -80,17 +71,14 @@ def _edges(positions, on_table, on, windows):
 
 @kernel
 def open_windows(positions, on_table, on, touching, windows):
-    """Write the windows in which the balls in the mask ``on`` are met first, widest first; returns their
-    number. ``touching``: mask of the balls that touch the cue ball; windows (MOST_EDGES, 3)."""
+    """Write the windows (MOST_EDGES, 3) in which balls of the mask ``on`` are met first; returns how many."""
     x, y, away = positions[0, 0], positions[0, 1], (touching & on) != 0
     n = _edges(positions, on_table, on, windows)
     wanted = ~touching if away else on & ~touching  # of the ball met first, 0 for none
     count, shut, is_open, low = 0, -1, False, 0.0
     for k in range(2 * n):  # once round, from the first interval that is shut
-        here, end = (
-            windows[k % n, EDGE] + 2.0 * pi * (k // n),
-            windows[(k + 1) % n, EDGE] + 2.0 * pi * ((k + 1) // n),
-        )
+        here = windows[k % n, EDGE] + 2.0 * pi * (k // n)
+        end = windows[(k + 1) % n, EDGE] + 2.0 * pi * ((k + 1) // n)
         angle, was_open = 0.5 * (here + end), is_open
         is_open = (wanted >> met(positions, on_table, x, y, cos(angle), sin(angle), 1e9)) & 1 != 0
         if shut < 0:
@@ -123,8 +111,7 @@ def room(windows, count, angle):
 
 @kernel
 def open_part(positions, ball, windows, count):
-    """The widest part of a ball on that can be struck: (direction, half its width) [rad], 0: none. Another
-    ball on may be struck as well."""
+    """The widest part of a ball on that can be struck: (direction, half its width) [rad], 0: none."""
     middle, half = towards(positions, ball), half_width(positions, ball)
     best, widest = middle, 0.0
     for k in range(count):

@@ -29,13 +29,20 @@ def settled(arrays, ball_on, free_ball=False, lead=0, **seen):
 
 
 def test_reds_go_colours_return_and_the_cue_ball_comes_to_hand():
-    arrays = layouts.break_off(np.random.default_rng(0))
+    arrays = layouts.layout("break_off", np.random.default_rng(0))
     potted = mask_of([0, 3, BLUE])
     verdict, positions, on_table = settled(arrays, BallOn.RED, first=1 << 3, potted=potted)
     assert verdict.fouls == Foul.CUE_POTTED | Foul.WRONG_POT and verdict.penalty == 5 and verdict.in_hand
     assert np.flatnonzero(~on_table).tolist() == [0, 3]
     assert np.array_equal(positions[BLUE], SPOTS[BLUE])
     assert arrays[1].all()  # those given are untouched
+
+
+def test_the_array_and_the_verdict_agree():
+    verdict, _, on_table = settled(
+        layouts.layout("break_off", np.random.default_rng(0)), BallOn.RED, first=2, potted=mask_of([1, 2])
+    )
+    assert mask_of(np.flatnonzero(on_table)) & ~1 == verdict.on_table
 
 
 @pytest.mark.parametrize(("blocker", "free_ball"), [((0.0, 0.0), True), ((0.5, 0.0), False)])

@@ -28,7 +28,8 @@ def test_wherever_a_layout_may_put_a_ball_the_table_of_the_physics_has_room(name
 
 def test_constants_that_rooms_share_agree():
     assert balls.TOUCH == table.OVERLAP_ALLOWED == 1e-6
-    assert spotting.CLEARANCE is in_hand.CLEARANCE is balls.CLEARANCE  # of every ball that a hand puts down
+    # of every ball that a hand puts down
+    assert spotting.balls.CLEARANCE is in_hand.CLEARANCE is balls.CLEARANCE
     assert layouts.GAP > balls.PINK_GAP > balls.CLEARANCE > balls.REFEREE_TOUCH > balls.TOUCH
     # Half a radius at the end of the action's scale is what ``Physics.max_offset`` allows by default
     actions = Actions("absolute", False, False, Physics())

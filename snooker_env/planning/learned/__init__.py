@@ -1,2 +1,1 @@
-"""What do learned players compute while they play? A policy over strokes and a value of positions, in NumPy
-and compiled kernels."""
+"""What do learned players compute while they play? A policy over strokes, a value of positions."""

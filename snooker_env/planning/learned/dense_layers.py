@@ -1,10 +1,6 @@
 """How are the layers of a small network computed while it plays? By a kernel, on the thread that calls it, in
-a fixed order of sums.
-
-The matrix products of NumPy and torch wake a thread for each core. For networks this small these wait for
-each other longer than they compute, and the last bits depend on the number of rows and of threads. Here a
-row's result depends on that row alone.
-"""
+a fixed order of sums: a row's result depends on that row alone. The matrix products of NumPy and torch wake a
+thread for each core, which wait for each other longer than they compute."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -16,12 +12,8 @@ from ..._jit import entry
 
 @entry(what="the layers of networks", seconds=2)
 def linear(rows, weight, bias, out):
-    """out (n, b) = rows (n, a) @ weight (a, b) + bias (b,): bias + rows[0] weight[0] + rows[1] weight[1] +
-    ..., rounded after each.
-
-    All float32 and contiguous. Two rows and four terms at a time: so the sums stay in registers, and the
-    compiler takes several columns at once.
-    """
+    """out (n, b) = rows (n, a) @ weight (a, b) + bias (b,): bias + rows[0] weight[0] + ..., rounded after
+    each. All float32 and contiguous; two rows, four terms at a time: the sums stay in registers."""
     n, a = rows.shape
     b = weight.shape[1]
     spare = np.empty(b, np.float32)
@@ -65,10 +57,8 @@ class Layers:
     """A multilayer perceptron of layers (out, in) and (out,), copied, with "tanh" or "relu" between them."""
 
     def __init__(self, weights: Sequence[tuple[Any, Any]], activation: str):
-        self._layers = [
-            (np.array(weight.T, np.float32, order="C"), np.array(bias, np.float32))
-            for weight, bias in weights
-        ]
+        turned = [np.array(weight.T, np.float32, order="C") for weight, _ in weights]
+        self._layers = [(w, np.array(bias, np.float32)) for w, (_, bias) in zip(turned, weights, strict=True)]
         self._between = ACTIVATIONS[activation]
 
     @property
@@ -81,9 +71,7 @@ class Layers:
         for k, (weight, bias) in enumerate(self._layers):
             if k:
                 self._between(rows)
-            before, rows = (
-                np.ascontiguousarray(rows, np.float32),
-                np.empty((len(rows), len(bias)), np.float32),
-            )
+            before = np.ascontiguousarray(rows, np.float32)
+            rows = np.empty((len(rows), len(bias)), np.float32)
             linear(before, weight, bias, rows)
         return rows

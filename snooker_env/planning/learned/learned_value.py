@@ -1,9 +1,6 @@
 """What is a position worth by a learned value? V = P x U: the chance that the next stroke scores, times what
-the visit then brings.
-
-The mean of several small networks with two outputs. P starts from the likeliest pot's chance by its width; U
-is positive. ``agents.learning.value_network`` trains them.
-"""
+the visit then brings: the mean of several small networks. P starts from the likeliest pot's chance by its
+width; U is positive. ``agents.learning.value_network`` trains them."""
 
 from collections.abc import Sequence
 
@@ -15,16 +12,12 @@ from ..prospects import in_parts
 from .dense_layers import Layers
 from .value_features import LOGIT, value_features
 
-POINTS = 40.0
-"""Unit of U [points]."""
+POINTS = 40.0  # unit of U [points]
 
 
 class LearnedValue:
-    """The value [points] of n ``Positions``: called with them, it returns float32 (n,).
-
-    ``members``: the layers of each network, (weight (out, in), bias (out,)). ``spread`` [rad]: see
-    ``spread_of``.
-    """
+    """The value [points] of n ``Positions``: called with them, it returns float32 (n,). ``members``: the
+    layers (weight (out, in), bias (out,)) of each network. ``spread`` [rad]: see ``spread_of``."""
 
     def __init__(self, members: Sequence[Sequence[tuple[NDArray, NDArray]]], spread: float, threads: int = 1):
         self._members = [Layers(member, "relu") for member in members]

@@ -1,10 +1,8 @@
-"""Which strokes does a policy propose? Strokes near the choices that it likes, drawn evenly from its
-probabilities.
+"""Which strokes does a policy propose? Strokes near the choices that it likes, drawn from its probabilities.
 
 The policy scores the 540 discrete choices. A softmax with ``TEMPERATURE`` makes them probabilities, which are
 sampled systematically: a choice with a share of 10 % gets 10 % of the strokes. Each stroke is moved within
-the choice's cell of speed, side and top by a Sobol point, so that the grid does not limit the search.
-"""
+the choice's cell of speed, side and top by a Sobol point, so that the grid does not limit the search."""
 
 from typing import Any
 
@@ -19,11 +17,9 @@ from ..strokes import action_masks
 from .pot_view import with_pots
 
 TEMPERATURE = 4.0
-"""Of the policy's scores: above 1, so that strokes which it likes less are tried too (``python -m
-benchmarks.temperature``)."""
+"""Of the scores: above 1, so that less likely ones are tried too (``python -m benchmarks.temperature``)."""
 _SPEEDS, _SIDES, _TOPS = np.array(SPEEDS), np.array(SIDES), np.array(TOPS)
-_STEP = np.gradient(np.log(_SPEEDS))
-"""Width of a cell in the logarithm of the speed."""
+_STEP = np.gradient(np.log(_SPEEDS))  # width of a cell in the logarithm of the speed
 _SIDE_STEP, _TOP_STEP = _SIDES[1] - _SIDES[0], _TOPS[1] - _TOPS[0]
 
 
@@ -45,19 +41,12 @@ class PolicyProposals:
         sums = np.cumsum(likely, axis=1)
         points = np.stack([sobol_points(m, 4, seed ^ 0xBEEF) for seed in seeds.tolist()])
         levels = (np.arange(m) + points[:, :1, 3]) / m  # systematic sampling: one random start a position
-        picks = np.stack(
-            [
-                np.searchsorted(row, level * row[-1], side="right")
-                for row, level in zip(sums, levels, strict=True)
-            ]
-        )
+        each = zip(sums, levels, strict=True)
+        picks = np.stack([np.searchsorted(row, level * row[-1], side="right") for row, level in each])
         picks = np.minimum(picks, CHOICES - 1)
         stroke = picks % STROKES
-        speed, side, top = (
-            stroke // (len(SIDES) * len(TOPS)),
-            stroke // len(TOPS) % len(SIDES),
-            stroke % len(TOPS),
-        )
+        speed, side = stroke // (len(SIDES) * len(TOPS)), stroke // len(TOPS) % len(SIDES)
+        top = stroke % len(TOPS)
         tips = np.empty((*picks.shape, 3))
         tips[..., 0] = _SPEEDS[speed] * np.exp(_STEP[speed] * (points[..., 0] - 0.5))
         plain = (side == SIDES.index(0.0)) & (points[..., 3] < 0.5)

@@ -1,5 +1,4 @@
-"""What does a learned policy see of a table? The flat observation, followed by features of the direct
-pots."""
+"""What does a learned policy see of a table? The flat observation, then features of direct pots."""
 
 from math import hypot, log10
 from typing import Any
@@ -15,10 +14,8 @@ from ...geometry import AIM_X, AIM_Y, BALL_RADIUS, HALF_LENGTH, HALF_WIDTH, POCK
 from ...tasks.discrete_actions import POTS
 from ...tasks.observations import SIZE as OBSERVATION_SIZE
 
-POT_ENTRIES = 13
-"""Numbers shown of each of the ``tasks.POTS`` widest pots, see ``with_pots``."""
+POT_ENTRIES = 13  # numbers shown of each of the ``tasks.POTS`` widest pots, see ``with_pots``
 SHOWN = OBSERVATION_SIZE + POTS * POT_ENTRIES
-
 # Entries that change sign when the table is mirrored, left and right exchanged.
 BALL_X = 0
 POT_X, CUT = (1, 9, 11), 3
@@ -75,5 +72,4 @@ def with_pots(observations: Any) -> Any:
     return shown
 
 
-VIEW_SPACE = spaces.Box(-1.0, 1.0, (SHOWN,), np.float32)
-"""The observation space of the agent."""
+VIEW_SPACE = spaces.Box(-1.0, 1.0, (SHOWN,), np.float32)  # the observation space of the agent

@@ -1,10 +1,6 @@
 """How does a learned policy score strokes while it plays? By kernels on NumPy arrays: a table's scores depend
-on that table alone.
-
-The network is that of ``agents.learning.networks.TableReader`` and ``StrokeHead``: a small network for each
-ball, one for each pot, sums over them, a context, and scores of each pot's strokes.
-tests/agents/learning/test_fused.py compares it with PyTorch's.
-"""
+on that table alone. The network is that of ``agents.learning.networks``
+(tests/agents/learning/test_fused.py): for each ball, for each pot, sums, a context, scores of strokes."""
 
 from collections.abc import Mapping
 
@@ -22,8 +18,7 @@ from .table_kernels import BALL_INPUTS, STATE
 
 LAYERS = ("ball_1", "ball_2", "pot_1", "pot_2", "context_1", "context_2", "shared", "joint", "scores")
 """The linear layers, in the order of their computation."""
-BLOCK = 128
-"""Tables that are scored together: their intermediate results stay in the processor's cache."""
+BLOCK = 128  # tables that are scored together: their intermediate results stay in the processor's cache
 SCORED = -(-STROKES // 16) * 16
 """Columns of the scores: 144 take less time than 135, because whole registers are written."""
 
@@ -52,10 +47,8 @@ class StrokePolicy:
         """The scores of one block of tables."""
         n, width = len(rows), len(self._layers["ball_2"][1])
         state_at = 3 * width + len(self._layers["pot_2"][1])
-        balls, pots = (
-            np.empty((n * (N_BALLS - 1), BALL_INPUTS), np.float32),
-            np.empty((n * POTS, POT_ENTRIES), np.float32),
-        )
+        balls = np.empty((n * (N_BALLS - 1), BALL_INPUTS), np.float32)
+        pots = np.empty((n * POTS, POT_ENTRIES), np.float32)
         groups, first = np.empty(len(balls), np.int64), np.empty(n + 1, np.int64)
         context, sides = np.empty((n, state_at + STATE + 3), np.float32), np.empty(n, np.float32)
         m = table_kernels.read_tables(rows, seen, (balls, groups, first, pots, context, sides), state_at)

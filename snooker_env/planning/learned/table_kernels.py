@@ -1,8 +1,5 @@
-"""What does a policy of strokes compute between its layers? Reading tables, sums over balls and pots, masks.
-
-Each kernel goes over n rows once. The layouts are those of ``agents.learning.networks.TableReader``, with
-which a policy is trained.
-"""
+"""What does a policy of strokes compute between its layers? Reading tables, sums over balls and pots, masks,
+each over n rows once. The layouts are those of ``agents.learning.networks.TableReader``."""
 
 import numpy as np
 
@@ -12,27 +9,23 @@ from ...tasks.discrete_actions import POTS, SIDES, STROKES, TOPS
 from ...tasks.observations import SIZE as OBSERVATION_SIZE
 from .pot_view import BALL_X, CUT, POT_ENTRIES, POT_X
 
-STATE = OBSERVATION_SIZE - 5 * N_BALLS
-"""Numbers of the game's state in an observation."""
+STATE = OBSERVATION_SIZE - 5 * N_BALLS  # numbers of the game's state in an observation
 BALL_INPUTS = 5 + 2
 _TOPS, _TURN = len(TOPS), (len(SIDES) - 1) * len(TOPS)
 _X1, _X2, _X3 = POT_X
-NEVER = np.float32(-1e8)
-"""The score of a choice that is not available, as in ``sb3_contrib``."""
+NEVER = np.float32(-1e8)  # the score of a choice that is not available, as in ``sb3_contrib``
 # literals are float64, and half as many of them fit into a register
 _ZERO, _FIFTH = np.float32(0.0), np.float32(0.2)
 
 
 @entry
 def read_tables(rows, seen, inputs, at):
-    """Write the inputs of the networks for the tables seen[rows]; returns the number of balls on these
-    tables.
+    """Write the inputs of the networks for the tables seen[rows]; returns the number of balls on them.
 
     ``inputs``: (balls, group, first, pots, context, sides). balls (m, BALL_INPUTS), group (m,): the balls on
     the tables; 0 for a red that is not on, 1 for a red on, 2 and 3 likewise for colours. first (n + 1,): each
     table's first row of them. pots (n * POTS, POT_ENTRIES). context[:, at:]: state, cue ball, side. sides
-    (n,): -1 where mirrored, else 1.
-    """
+    (n,): -1 where mirrored, else 1."""
     balls, group, first, pots, context, sides = inputs
     m = 0
     for j in range(rows.shape[0]):
@@ -68,8 +61,7 @@ def read_tables(rows, seen, inputs, at):
 
 @entry
 def sum_balls(codes, group, first, context, width):
-    """ReLU of balls' codes (m, width) in place; sums / 5 of those on, reds, colours into context[:, : 3 *
-    width]."""
+    """ReLU of balls' codes (m, width) in place; sums / 5 of those on, reds, colours into context."""
     for j in range(first.shape[0] - 1):
         sums = context[j]
         for c in range(3 * width):
@@ -123,8 +115,7 @@ def mirrored(choice):
 
 @entry
 def mask_scores(rows, masks, sides, scores, out):
-    """Scores (n, choices) of each pot's (n * POTS, STROKES or more); ``NEVER`` where the mask (in the mirror)
-    is False."""
+    """Scores (n, choices) of each pot's (n * POTS, STROKES or more); ``NEVER`` where the mask is False."""
     for j in range(rows.shape[0]):
         mask, row = masks[rows[j]], out[j]
         for p in range(POTS):

@@ -1,8 +1,5 @@
 """What does a learned value see of a position? The best pots, how open each ball is, where the balls lie, and
-the ball on.
-
-The table is nearly symmetric: it is read mirrored so that the cue ball is on the right.
-"""
+the ball on. The table is nearly symmetric: it is read mirrored so that the cue ball is on the right."""
 
 from math import cos, erf, exp, log, log10, radians, sqrt
 
@@ -28,12 +25,9 @@ from ..prospects import in_parts
 POTS_SEEN = 6
 POT_ENTRIES = 13
 COLOUR_ENTRIES = 6
-SHARED = 28
-"""Entries of the whole position: see ``_fill``."""
+SHARED = 28  # entries of the whole position: see ``_fill``
 SIZE = POTS_SEEN * POT_ENTRIES + 6 * COLOUR_ENTRIES + SHARED
-FAR = 0.01
-"""Decay of the chance of a pot per metre of both balls' paths [1/m]. The published values have learned with
-this one."""
+FAR = 0.01  # decay of a pot's chance per metre of both balls' paths [1/m]; of the published values
 LOGIT = SIZE - 1
 """The entry that holds the logit of the likeliest pot, where the network's own estimate begins."""
 _CORNER_EDGE, _MIDDLE_EDGE = cos(radians(50.0)), cos(radians(70.0))
@@ -88,11 +82,8 @@ def _open(balls, many, open_to):
             if cosine < (_MIDDLE_EDGE if POCKET_AIMS[k, IS_MIDDLE] > 0.0 else _CORNER_EDGE):
                 continue
             width = window(cosine, POCKET_AIMS[k, IS_MIDDLE] > 0.0)
-            if (
-                width <= 0.0
-                or abs(x - d * dx) > HALF_WIDTH - BALL_RADIUS + 1e-9
-                or abs(y - d * dy) > HALF_LENGTH - BALL_RADIUS + 1e-9
-            ):
+            gx, gy = abs(x - d * dx), abs(y - d * dy)
+            if width <= 0.0 or gx > HALF_WIDTH - BALL_RADIUS + 1e-9 or gy > HALF_LENGTH - BALL_RADIUS + 1e-9:
                 continue
             if _clear(balls, many, x, y, POCKET_AIMS[k, AIM_X], POCKET_AIMS[k, AIM_Y], b, d):
                 open_to[b, k] = width / (2.0 * run)
@@ -216,10 +207,7 @@ def _features(positions, on_table, ball_on, spread, out):
 
 def value_features(at, spread, threads=1):
     """Features of n ``Positions`` with the cue ball on the table: float32 (n, SIZE)."""
-    ball_on, out = at.ball_on.copy(), np.empty((len(at), SIZE), np.float32)
-    in_parts(
-        len(at),
-        threads,
-        lambda rows: _features(at.positions[rows], at.on_table[rows], ball_on[rows], spread, out[rows]),
-    )
+    out = np.empty((len(at), SIZE), np.float32)
+    balls = at.positions, at.on_table, at.ball_on.copy()
+    in_parts(len(at), threads, lambda rows: _features(*(each[rows] for each in balls), spread, out[rows]))
     return out
