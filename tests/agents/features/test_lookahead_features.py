@@ -126,11 +126,7 @@ def test_worth_by_hand():
         rows[0, :2, lookahead_features.THERE],
         rows[0, :, lookahead_features.POINTS],
         rows[0, :, lookahead_features.VALUE],
-    ) = (
-        1.0,
-        (1.0, 1 / 7, 1.0),
-        (0.0, 0.5, 1.0),
-    )
+    ) = (1.0, (1.0, 1 / 7, 1.0), (0.0, 0.5, 1.0))
     assert np.allclose(lookahead_features.worth_by_rule(rows), [[7.0, 13.5, -np.inf]])
 
 
