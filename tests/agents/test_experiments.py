@@ -36,7 +36,8 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
         "lineup-1",
         "lineup-2",
         "taught-0",
-    ] and 'echo "lineup-$k ' in Path(command[1]).read_text()
+    ]
+    assert 'echo "lineup-$k ' in Path(command[1]).read_text()
     recipes = [train.recipe_of(train.Settings(**train.parse(run)[1])) for run in runs]
     assert {recipe.name for recipe in recipes} == {
         "ppo_value",
@@ -99,8 +100,5 @@ def test_the_command_of_the_ladder_is_the_one_that_made_the_file(tmp_path):
     # the file is of a version with other names of players
     assert words[:3] == made[:3] == ["python", "-m", "agents.tournament"]
     parsed = tournament.parser().parse_intermixed_args(words[3:])
-    assert (
-        parsed.resume
-        and parsed.out == Path("agents/results/ladder.json")
-        and parsed.markdown == parsed.out.with_suffix(".md")
-    )
+    assert parsed.resume and parsed.out == Path("agents/results/ladder.json")
+    assert parsed.markdown == parsed.out.with_suffix(".md")

@@ -48,10 +48,8 @@ def weights(out):
 def test_the_run_says_what_the_planner_gains(finished):
     found = json.loads((finished / "results.json").read_text())
     assert set(found["evaluation"]) == {"trained", "ghost_ball", "random", "planner", "search"}
-    assert (
-        "after 64 positions of expert iteration, ppo_value" in found["learned"]
-        and "a rule by hand" in found["learned"]
-    )
+    assert "after 64 positions of expert iteration, ppo_value" in found["learned"]
+    assert "a rule by hand" in found["learned"]
     assert found["imitation"][-1]["states"] == 64 and found["imitation"][-1]["value_loss"] > 0
     for name in (f"planner@{finished}", "search"):
         again = summary(play_visits(sn.player(name), 4))

@@ -28,9 +28,8 @@ def test_a_run_goes_on_with_the_tables_that_it_began_with(tmp_path, monkeypatch)
         train, "training_tables", lambda *args, **options: seen.append(options) or original(*args, **options)
     )
     assert train.main(["--resume", "--no-progress", "--steps", "128", "--out", str(tmp_path / "run")]) == 0
-    assert [options["fidelity"] for options in seen] == ["standard"] and results(tmp_path / "run")[
-        "steps"
-    ] == 128
+    assert [options["fidelity"] for options in seen] == ["standard"]
+    assert results(tmp_path / "run")["steps"] == 128
 
 
 def test_agents_with_longer_actions_are_judged(tmp_path):

@@ -35,11 +35,8 @@ def test_the_example_of_a_class_plays(tmp_path, capsys, monkeypatch):
     arguments = ["run", "SnookerBreak-v0", "--agent", "examples.own_player:Softly", "--training-shots", "0"]
     assert main([*arguments, "--episodes", "30", "--out", str(tmp_path)]) == 0
     result = read_result(tmp_path / "SnookerBreak-v0.Softly.json")
-    assert (
-        faults(result) == []
-        and result["agent"]["class"] == "model_free"
-        and result["figures"]["score"]["value"] > 4
-    )
+    assert faults(result) == [] and result["agent"]["class"] == "model_free"
+    assert result["figures"]["score"]["value"] > 4
     assert "SnookerBreak-v0  Softly: " in capsys.readouterr().out
 
 
@@ -187,17 +184,15 @@ def test_ctrl_c_keeps_what_was_played_and_it_can_be_resumed(tmp_path, capsys):
     assert main(arguments) == 130
     assert f"interrupted after {2 * BATCH} of {many} episodes" in capsys.readouterr().err
     part = read_result(out)
-    assert (
-        len(part["rows"]) == 2 * BATCH and part["incomplete"].startswith("interrupted") and faults(part) == []
-    )
+    assert len(part["rows"]) == 2 * BATCH and part["incomplete"].startswith("interrupted")
+    assert faults(part) == []
     assert main([*arguments, "--resume"]) == 0
     whole = read_result(out)
     assert whole["incomplete"] is None and len(whole["rows"]) == many and faults(whole) == []
     assert whole["rows"][: 2 * BATCH] == part["rows"] and len(strokes_of(whole)) == many
     assert main([*arguments, "--resume"]) == 0 and read_result(out) == whole  # left as it is
-    assert (
-        main(arguments) == 2 and "must be a new file" in capsys.readouterr().err and read_result(out) == whole
-    )
+    assert main(arguments) == 2 and "must be a new file" in capsys.readouterr().err
+    assert read_result(out) == whole
     assert main([*arguments, "--force"]) == 0 and read_result(out)["rows"] == whole["rows"]
     forged = part | {"rows": [[*row[:2], 1, 1, 1, 1, 0, 1, 0, 1] for row in part["rows"]]}
     for other, why in (
@@ -267,10 +262,8 @@ def test_wrong_agents_are_refused_in_one_line(tmp_path, capsys):
 def test_names_and_what_is_known_of_them():
     agent = Agent.of("search_60")
     assert (agent.label, agent.training_shots, agent.player(HARD).budget) == ("search_60", 0, 60)
-    assert (
-        Agent.of("planner_500").training_shots is None
-        and Agent.of("planner_500@club").label == "planner_500_club"
-    )
+    assert Agent.of("planner_500").training_shots is None
+    assert Agent.of("planner_500@club").label == "planner_500_club"
     with pytest.warns(DeprecationWarning):
         assert Agent.of("lookahead_30").player(HARD).kind == "search"
 
@@ -278,9 +271,8 @@ def test_names_and_what_is_known_of_them():
 def test_an_alias_may_stand_under_both_names():
     from snooker_env.benchmark.agents import is_reserved
 
-    assert not is_reserved("lookahead_60", ["lookahead_60"]) and not is_reserved(
-        "search_60", ["lookahead_60"]
-    )
+    assert not is_reserved("lookahead_60", ["lookahead_60"])
+    assert not is_reserved("search_60", ["lookahead_60"])
     assert is_reserved("lookahead", ["search_60"]) and is_reserved("lookahead", ["mine:Player"])
 
 
@@ -324,9 +316,8 @@ def test_without_the_libraries_one_line_says_which_to_install(model, monkeypatch
     arguments = ["run", "SnookerPotHard-v0", "--agent", str(model["SnookerPotHard-v0"]), "--trust"]
     assert main([*arguments, "--options", "aim=target"]) == 1
     error = capsys.readouterr().err
-    assert (
-        error.count("\n") == 1 and "needs stable_baselines3" in error and 'pip install -e ".[train]"' in error
-    )
+    assert error.count("\n") == 1 and "needs stable_baselines3" in error
+    assert 'pip install -e ".[train]"' in error
 
 
 def test_a_model_of_the_repository_plays_visits_and_frames():

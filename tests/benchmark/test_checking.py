@@ -143,9 +143,8 @@ def test_a_replay_is_of_every_training_seed_by_the_same_agent():
     strokes[8] = -strokes[8]
     other["strokes"] = packed(strokes)
     wrong = replayed(other, two, 6)
-    assert len(wrong) == 1 and wrong[0].startswith(
-        f"run 1, table {record['rows'][8][1]}: played again other strokes"
-    )
+    assert len(wrong) == 1
+    assert wrong[0].startswith(f"run 1, table {record['rows'][8][1]}: played again other strokes")
     assert replayed(other, two, 2) == []
     with pytest.raises(ValueError, match="must have the 2 training seeds of the file"):
         replayed(record, Agent.of("random"), 6)
@@ -159,12 +158,8 @@ def test_no_text_of_a_file_is_markup_of_the_page():
     )
     text = page([record])
     assert not any(line.startswith(("# h", "## injected")) for line in text.splitlines())
-    assert (
-        "<script>" not in text
-        and "<x>" not in text
-        and "[a]" not in text
-        and "&lt;script&gt;" not in page([sound()])
-    )
+    assert "<script>" not in text and "<x>" not in text and "[a]" not in text
+    assert "&lt;script&gt;" not in page([sound()])
     cells = [line for line in text.splitlines() if "script" in line]
     assert len(cells) == 2 and all("x \\| y \\| # h &lt;script&gt;" in line for line in cells)
     assert plain("ghost_ball *") == "ghost_ball *" and markdown_table(["a|b"], [["c\\"]])[0] == "| a\\|b |"

@@ -58,12 +58,8 @@ def test_help_is_printed_and_nothing_is_compiled(tmp_path):
 @pytest.mark.parametrize(("name", "wrong"), [("paper", "--what"), ("make_opened", "--tables=-1")])
 def test_a_wrong_argument_is_an_error_of_usage(name, wrong):
     code, out, err = ended(started(name, wrong))
-    assert (
-        code == 2
-        and out == ""
-        and err.startswith(f"usage: python -m benchmarks.{name}")
-        and "Traceback" not in err
-    )
+    assert code == 2 and out == "" and err.startswith(f"usage: python -m benchmarks.{name}")
+    assert "Traceback" not in err
 
 
 def interrupted(process, seconds):
@@ -109,11 +105,8 @@ def test_a_file_that_cannot_be_written_is_refused_before_the_work(tmp_path, wher
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
 def test_a_full_disk_is_said_in_one_line():
     code, out, err = ended(started("paper", "--no-pictures", "--json", "/dev/full"))
-    assert (
-        code == 1
-        and "Tables 1 and 2" in out
-        and err == "/dev/full could not be written: No space left on device\n"
-    )
+    assert code == 1 and "Tables 1 and 2" in out
+    assert err == "/dev/full could not be written: No space left on device\n"
     assert Path("/dev/full").is_char_device()
 
 
@@ -182,9 +175,8 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
 def test_a_picture_on_a_full_disk_is_no_empty_file(tmp_path):
     pixels = np.random.default_rng(0).integers(256, size=(50, 80, 3), dtype=np.uint8)
     _command.save_image(tmp_path / "a.png", pixels)
-    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG") and (
-        tmp_path / "a.png"
-    ).stat().st_size > 50 * 80 * 3
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "a.png").stat().st_size > 50 * 80 * 3
     if Path("/dev/full").exists():
         (tmp_path / "full.png").symlink_to("/dev/full")
         with pytest.raises(SystemExit, match="could not be written: No space left on device"):

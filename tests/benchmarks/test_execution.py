@@ -24,9 +24,8 @@ def test_pots_lie_as_they_are_described():
     for pot in pot_shots.POTS:
         cue, ball = pot.positions
         aim = POCKET_AIMS[pot.pocket, :2]
-        assert math.dist(cue, ball) == pytest.approx(pot.far) and math.dist(ball, aim) == pytest.approx(
-            pot.run
-        )
+        assert math.dist(cue, ball) == pytest.approx(pot.far)
+        assert math.dist(ball, aim) == pytest.approx(pot.run)
         way = (aim - ball) / pot.run
         line = ball - 2 * pot_shots.R * way - cue
         assert math.degrees(math.acos(min(1.0, line @ way / math.hypot(*line)))) == pytest.approx(
@@ -40,17 +39,15 @@ def test_pots_lie_as_they_are_described():
     blue, black = (
         next(pot for pot in pot_shots.POTS if pot.name.startswith(name)) for name in ("blue", "black")
     )
-    assert blue.positions[1] == pytest.approx([0.0, 0.0], abs=1e-12) and black.positions[1] == pytest.approx(
-        [0.0, 1.4605], abs=1e-12
-    )
+    assert blue.positions[1] == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert black.positions[1] == pytest.approx([0.0, 1.4605], abs=1e-12)
 
 
 def test_rates_by_geometry_are_those_that_were_published_with_the_aim_errors():
     """Of the four pots at 0.02 and 0.05 deg, with half a window of 22 mm."""
     black, red, blue, long = pot_shots.DERIVED
-    assert [round(100 * pot.rate(0.02)) for pot in (black, red)] == [100, 100] and round(
-        100 * red.rate(0.05)
-    ) == 96
+    assert [round(100 * pot.rate(0.02)) for pot in (black, red)] == [100, 100]
+    assert round(100 * red.rate(0.05)) == 96
     assert [100 * pot.rate(deg) for pot in (blue, long) for deg in (0.02, 0.05)] == pytest.approx(
         [92, 51, 75, 36], abs=1.5
     )

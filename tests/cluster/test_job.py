@@ -70,9 +70,8 @@ def test_a_stopped_job_goes_on_without_playing_anything_twice(tmp_path, stop):
         list(ended(PARTS, SHARED, first, Store(tmp_path)))
     for where in (second, third):
         assert sums(in_order(ended(PARTS, SHARED, where, Store(tmp_path)))) == [0, 0, 1, 3, 6, 10]
-    assert (
-        sorted(first.played_parts + second.played_parts) == list(range(6)) and len(first.played_parts) == stop
-    )
+    assert sorted(first.played_parts + second.played_parts) == list(range(6))
+    assert len(first.played_parts) == stop
     assert not third.played_parts
 
 
@@ -168,10 +167,8 @@ def test_an_evaluation_goes_on_from_what_it_kept(tmp_path, monkeypatch, capsys):
     capsys.readouterr()
     assert protocol.main([*command, "--json", str(kept)]) == 130
     said = capsys.readouterr().err
-    assert (
-        f"what was played is kept in {tmp_path / 'parts'}, the same command goes on" in said
-        and not kept.exists()
-    )
+    assert f"what was played is kept in {tmp_path / 'parts'}, the same command goes on" in said
+    assert not kept.exists()
     assert protocol.main([*command, "--json", str(kept)]) == 0 and len(calls) == 6 + 3
     one, two = (json.loads(file.read_text())["results"] for file in (plain, kept))
     for row in (*one, *two):

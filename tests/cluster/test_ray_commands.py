@@ -115,10 +115,8 @@ def test_an_evaluation_goes_on_after(end, tmp_path, environment, alone):
         _, err = process.communicate(timeout=120)
         assert process.returncode == {"the head is lost": 1, "Ctrl-C": 130, "kill -9": -9}[end], err
         if end == "Ctrl-C":
-            assert (
-                lines_of(err)[-1].startswith("agents.evaluate: interrupted")
-                and "the same command goes on" in err
-            )
+            assert lines_of(err)[-1].startswith("agents.evaluate: interrupted")
+            assert "the same command goes on" in err
         kept = {file.name: file.stat().st_mtime_ns for file in parts.glob("parts/*.npz")}
         assert 2 <= len(kept) < 5 and not out.exists()
         if end == "the head is lost":
@@ -186,7 +184,8 @@ def test_searched_data_are_the_same_files_with_a_cluster_and_without(tmp_path, e
         }
         for name in ("here", "there")
     )
-    assert here == there and sorted(file.name for file in here if file.suffix == ".json") == [
+    assert here == there
+    assert sorted(file.name for file in here if file.suffix == ".json") == [
         "index.json",
         "job.json",
     ]
@@ -231,9 +230,8 @@ def test_a_training_goes_on_from_its_mirror_after_the_head_was_lost(tmp_path, en
         nodes.shutdown()
     assert finished([*TRAIN, *SHORT, "--out", str(tmp_path / "alone")], environment)[0] == 0
     one, other = weights(tmp_path / "alone"), weights(tmp_path / "second")
-    assert one.keys() == other.keys() and all(
-        torch.equal(tensor, other[name]) for name, tensor in one.items()
-    )
+    assert one.keys() == other.keys()
+    assert all(torch.equal(tensor, other[name]) for name, tensor in one.items())
 
 
 QUICK = [
@@ -287,9 +285,5 @@ def test_the_benchmark_prints_what_a_part_costs(tmp_path, environment):
     code, out, err = finished([*command, str(tmp_path / "f")], environment)
     assert code == 0 and not lines_of(err), err
     found = json.loads((tmp_path / "f").read_text())
-    assert (
-        "cost of a part" in out
-        and "a million positions in" in out
-        and min(found["rates"].values()) > 0
-        and found["search"] > 0
-    )
+    assert "cost of a part" in out and "a million positions in" in out and min(found["rates"].values()) > 0
+    assert found["search"] > 0

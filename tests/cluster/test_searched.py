@@ -36,9 +36,8 @@ def test_an_interrupted_search_goes_on_to_the_same_data(tmp_path, monkeypatch, c
         search_data.read(str(parted))
     assert search_data.main([*COMMAND, "--positions", "36", "--out", str(parted)]) == 0 and len(calls) == 4
     one, two = search_data.read(str(whole)), search_data.read(str(parted))
-    assert len(one["scores"]) == 36 and all(
-        np.array_equal(one[name], two[name], equal_nan=True) for name in one
-    )
+    assert len(one["scores"]) == 36
+    assert all(np.array_equal(one[name], two[name], equal_nan=True) for name in one)
     # only what is new
     assert search_data.main([*COMMAND, "--positions", "48", "--out", str(parted)]) == 0 and len(calls) == 5
     assert np.array_equal(search_data.read(str(parted))["positions"][:36], one["positions"])

@@ -108,12 +108,8 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
             row["figures"]["points_a_visit"]["value"]
         )
     text, printed = (tmp_path / "r.md").read_text(), capsys.readouterr().out
-    assert (
-        found["command"] in text
-        and found["machine"] in text
-        and "](p.png)" in text
-        and found["command"].startswith("python -m agents.evaluate --agent")
-    )
+    assert found["command"] in text and found["machine"] in text and "](p.png)" in text
+    assert found["command"].startswith("python -m agents.evaluate --agent")
     lines = text.splitlines()
     for k, line in enumerate(lines):
         if set(line) <= set("|:- ") and line:  # under each table's head
@@ -324,21 +320,18 @@ def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
     assert protocol.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
     printed = capsys.readouterr()
     lost = "interrupted when 1 of 2 parts (layouts under one noise) were complete: the others are lost"
-    assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}" and f"INCOMPLETE: {lost}." in " ".join(
-        printed.out.split()
-    )
+    assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}"
+    assert f"INCOMPLETE: {lost}." in " ".join(printed.out.split())
     found = json.loads((tmp_path / "r.json").read_text())
-    assert found["incomplete"] == lost and [(r["layout"], r["agent"]) for r in found["results"]] == [
+    assert found["incomplete"] == lost
+    assert [(r["layout"], r["agent"]) for r in found["results"]] == [
         ("held_out", "random"),
         ("held_out", "ghost_ball"),
     ]
-    assert (tmp_path / "r.md").read_text() == "whole" and f"INCOMPLETE: {lost}." in (
-        tmp_path / "r.incomplete.md"
-    ).read_text()
-    assert (
-        f"json: {tmp_path / 'r.json'}" in printed.out
-        and f"markdown: {tmp_path / 'r.incomplete.md'}" in printed.out
-    )
+    assert (tmp_path / "r.md").read_text() == "whole"
+    assert f"INCOMPLETE: {lost}." in (tmp_path / "r.incomplete.md").read_text()
+    assert f"json: {tmp_path / 'r.json'}" in printed.out
+    assert f"markdown: {tmp_path / 'r.incomplete.md'}" in printed.out
     assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "r.incomplete.md", "p.png"}
 
 

@@ -39,7 +39,8 @@ def drawn(monkeypatch):
 
 def test_time_begins_with_imitation(tmp_path):
     run = learning_curves.run_of(keep(tmp_path / "a"))
-    assert run["minutes"] * 60 == pytest.approx([100, 160, 400]) and run["end"] == (
+    assert run["minutes"] * 60 == pytest.approx([100, 160, 400])
+    assert run["end"] == (
         1000,
         pytest.approx(700 / 60),
     )
@@ -62,9 +63,8 @@ def test_every_run_is_drawn(tmp_path, drawn, capsys):
     ]
     assert lines == 3 * [[[0, 2.0], [500, 3.5]]]
     ends = [(bar[0].get_xdata()[0], bar[0].get_ydata()[0]) for bar in shots.containers]
-    assert ends == [(1000, 4.0), (1000, 4.0), (2000, 4.0)] and [
-        bar[0].get_xdata()[0] for bar in time.containers
-    ] == 3 * [700 / 60]
+    assert ends == [(1000, 4.0), (1000, 4.0), (2000, 4.0)]
+    assert [bar[0].get_xdata()[0] for bar in time.containers] == 3 * [700 / 60]
     low, high = shots.containers[0][2][0].get_segments()[0][:, 1]
     assert (low, high) == pytest.approx((3.0, 5.0))  # two standard errors
     assert [text.get_text() for text in shots.get_legend().get_texts()] == ["A", "b-0"]

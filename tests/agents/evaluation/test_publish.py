@@ -145,10 +145,8 @@ def test_pretrained_models_play_today(name):
 
 def test_a_run_is_published_with_its_card(run, capsys):
     publish.main([str(run), "--limits", "no safety"])
-    assert (
-        published(run) == ["ppo_mask.json", "ppo_mask.zip"]
-        and "ppo_mask.zip and its card" in capsys.readouterr().out
-    )
+    assert published(run) == ["ppo_mask.json", "ppo_mask.zip"]
+    assert "ppo_mask.zip and its card" in capsys.readouterr().out
     folder = run.parent / "pretrained"
     there, trained = load_player(folder / "ppo_mask.zip").model, load_player(run).model
     assert all(

@@ -280,9 +280,8 @@ def test_no_table_is_too_wide(many, capsys):
     header = ["noise", "agent", *(f"column {k}" for k in range(many))]
     rows = [[f"level {i}", "a|b", *(f"{i}.{k} [low, high]" for k in range(many))] for i in range(3)]
     parts = list(TextTable("wide", header, rows, 2, 2, True).narrow())
-    assert [name for part in parts for name in part.header[2:]] == header[2:] and all(
-        part.header[:2] == header[:2] for part in parts
-    )
+    assert [name for part in parts for name in part.header[2:]] == header[2:]
+    assert all(part.header[:2] == header[:2] for part in parts)
     report.show(parts)
     for part in parts:
         assert (

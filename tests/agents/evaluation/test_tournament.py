@@ -71,9 +71,8 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
     assert faults(found) == [] and found["incomplete"] is None
     assert [p["label"] for p in found["players"]] == ["ghost_ball", "random", "Softly"]
     assert found["protocol"]["anchor"] == "ghost_ball" and found["game"]["noise"] == "professional"
-    assert len(found["rows"]) == 2 + 6 + 2 and {(row[2], row[3]) for row in found["rows"]} == {
-        (s, o) for s in range(3) for o in (0, 1)
-    }
+    assert len(found["rows"]) == 2 + 6 + 2
+    assert {(row[2], row[3]) for row in found["rows"]} == {(s, o) for s in range(3) for o in (0, 1)}
     for player in found["players"]:
         label, decisions = player["label"], player["decisions"]
         k = [p["label"] for p in found["players"]].index(label)
@@ -138,11 +137,8 @@ def test_resumed_is_as_if_it_had_never_stopped(tmp_path, monkeypatch, capsys, pa
     calls = interrupted_at(monkeypatch, 99)
     again = played(tmp_path, "--resume")
     assert len(calls) == 3  # of 6 parts
-    assert (
-        again["rows"] == whole["rows"]
-        and again["figures"] == whole["figures"]
-        and again["incomplete"] is None
-    )
+    assert again["rows"] == whole["rows"] and again["figures"] == whole["figures"]
+    assert again["incomplete"] is None
     assert [p["decisions"] for p in again["players"]] == [p["decisions"] for p in whole["players"]]
     before = (tmp_path / "t.json").read_bytes()
     played(tmp_path, "--resume")  # a complete one is left as it is

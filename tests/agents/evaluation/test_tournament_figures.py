@@ -44,7 +44,8 @@ def invented(t, seeds, rng, best_of=1):
 
 
 def test_the_columns_are_those_of_both_players():
-    assert len(COLUMNS) == len(KEYS) + 2 * len(COUNTED) == len(row(0, 1, 0, 0, 0)) and COLUMNS[6:8] == (
+    assert len(COLUMNS) == len(KEYS) + 2 * len(COUNTED) == len(row(0, 1, 0, 0, 0))
+    assert COLUMNS[6:8] == (
         "points_first",
         "points_second",
     )
@@ -105,12 +106,10 @@ def test_intervals_are_those_of_seeds_drawn_together():
         drawn.append([wins[0].sum() / (4 * n), ANCHOR_ELO + ELO * (s[0] - s[1])])
     low, high = np.quantile(drawn, [0.025, 0.975], axis=0)
     a = found["players"]["a"]
-    assert a["win_rate"]["low"] == pytest.approx(low[0], abs=0.01) and a["win_rate"]["high"] == pytest.approx(
-        high[0], abs=0.01
-    )
-    assert a["elo"]["low"] == pytest.approx(low[1], abs=8) and a["elo"]["high"] == pytest.approx(
-        high[1], abs=8
-    )
+    assert a["win_rate"]["low"] == pytest.approx(low[0], abs=0.01)
+    assert a["win_rate"]["high"] == pytest.approx(high[0], abs=0.01)
+    assert a["elo"]["low"] == pytest.approx(low[1], abs=8)
+    assert a["elo"]["high"] == pytest.approx(high[1], abs=8)
 
 
 def test_intervals_of_elo_cover_the_truth():
@@ -131,10 +130,8 @@ def test_who_never_wins_has_bounds_and_no_interval():
             one[5] = 1  # a and b beat each other, c never wins
     found = figures_of(["a", "b", "c"], rows, "a")["players"]
     assert found["c"]["elo_by_prior"] and not found["b"]["elo_by_prior"]
-    assert (
-        found["c"]["elo"]["low"] is None
-        and found["c"]["elo"]["value"] < found["c"]["elo"]["high"] < found["b"]["elo"]["value"]
-    )
+    assert found["c"]["elo"]["low"] is None
+    assert found["c"]["elo"]["value"] < found["c"]["elo"]["high"] < found["b"]["elo"]["value"]
     assert found["c"]["win_rate"] == {"value": 0.0, "low": 0.0, "high": unseen(60)}
     assert found["a"]["elo"]["value"] == ANCHOR_ELO
     turned = [[*one[:5], 1 - one[5], *one[6:]] for one in rows]
@@ -157,6 +154,5 @@ def test_part_of_a_tournament_has_figures_too():
     found = figures_of(["a", "b", "c", "d"], rows, "a")
     assert found["players"]["c"] is None and len(found["pairs"]) == 1 == len(pairs_of(rows))
     found = figures_of(["a", "b", "c", "d"], rows + [[2, 3, *r[2:]] for r in rows], "a")
-    assert found["players"]["c"]["elo"]["value"] is None and found["players"]["b"]["elo"][
-        "value"
-    ] == pytest.approx(ANCHOR_ELO)
+    assert found["players"]["c"]["elo"]["value"] is None
+    assert found["players"]["b"]["elo"]["value"] == pytest.approx(ANCHOR_ELO)

@@ -107,11 +107,8 @@ def test_what_is_counted_is_what_the_referee_saw(strokes, miss):
                 if player == side:
                     visits[-1] += points
                 before = player, points
-            assert (
-                r[f"scored_{name}"] == sum(visits)
-                and r[f"visits_{name}"] == len(visits)
-                and r[f"best_{name}"] == max(visits)
-            )
+            assert r[f"scored_{name}"] == sum(visits) and r[f"visits_{name}"] == len(visits)
+            assert r[f"best_{name}"] == max(visits)
             assert r[f"strokes_{name}"] == sum(player == side for player, _, _ in mine)
             assert r[f"fouls_{name}"] == sum(player == side and fouls != 0 for player, _, fouls in mine)
         if miss == "off":
@@ -145,9 +142,8 @@ def test_the_order_of_the_players_does_not_matter(second):
 
 def test_a_frame_that_is_stopped_has_no_winner():
     rows = frames(play(ghost_ball(), softly(), [0, 1], max_strokes=7))
-    assert [r["winner"] for r in rows] == [-1] * 4 and {
-        r["strokes_first"] + r["strokes_second"] for r in rows
-    } == {7}
+    assert [r["winner"] for r in rows] == [-1] * 4
+    assert {r["strokes_first"] + r["strokes_second"] for r in rows} == {7}
     assert {r["frame"] for r in rows} == {0}
 
 

@@ -40,12 +40,10 @@ def test_foresight_shows_what_happens_without_errors():
         exact.reset(options={"states": env.get_state()})
         _, rewards, ended, _, _ = exact.step(lookahead_features.PICKS[np.full(5, stroke)])
         row = rows[:, stroke]
-        assert np.allclose(row[:, lookahead_features.POINTS], rewards / 7.0) and np.array_equal(
-            row[:, lookahead_features.GOES_ON] > 0, ~ended
-        )
-        assert not row[:, lookahead_features.SPREAD].any() and np.array_equal(
-            row[:, lookahead_features.SCORED] > 0, rewards > 0
-        )
+        assert np.allclose(row[:, lookahead_features.POINTS], rewards / 7.0)
+        assert np.array_equal(row[:, lookahead_features.GOES_ON] > 0, ~ended)
+        assert not row[:, lookahead_features.SPREAD].any()
+        assert np.array_equal(row[:, lookahead_features.SCORED] > 0, rewards > 0)
         cue = exact.tables.positions[:, 0] / (pot_view.HALF_WIDTH, pot_view.HALF_LENGTH)
         assert np.allclose(
             row[~ended, lookahead_features.CUE_X : lookahead_features.CUE_Y + 1], cue[~ended], atol=1e-6
@@ -78,13 +76,11 @@ def test_foresight_is_the_mean_over_noise_samples_with_the_errors_of_the_tables(
             )
             cue[i] = ~ended * other.tables.positions[:, 0, 1]
         row, goes_on = seen[:, stroke], np.maximum(1, on.sum(0))
-        assert np.allclose(row[:, lookahead_features.POINTS], points.mean(0) / 7.0) and np.allclose(
-            row[:, lookahead_features.SCORED], (points > 0).mean(0)
-        )
+        assert np.allclose(row[:, lookahead_features.POINTS], points.mean(0) / 7.0)
+        assert np.allclose(row[:, lookahead_features.SCORED], (points > 0).mean(0))
         assert np.allclose(row[:, lookahead_features.GOES_ON], on.mean(0)) and 0 < on.mean() < 1
-        assert np.allclose(row[:, lookahead_features.VALUE], worth.mean(0) / 25.0) and np.allclose(
-            row[:, lookahead_features.SPREAD], worth.std(0) / 25.0
-        )
+        assert np.allclose(row[:, lookahead_features.VALUE], worth.mean(0) / 25.0)
+        assert np.allclose(row[:, lookahead_features.SPREAD], worth.std(0) / 25.0)
         assert np.allclose(
             row[:, lookahead_features.FIRST : lookahead_features.THIRD + 1],
             next_best.sum(0) / goes_on[:, None],
@@ -106,9 +102,8 @@ def test_foresight_says_which_stroke_it_is():
         (pot, speed, top) for pot in (0, 1) for speed in (1.3, 2.3, 3.6, 5.3) for top in (-0.4, 0.0, 0.4)
     ]
     there = np.array([[chances[k, pot] > 0 for pot, _, _ in strokes] for k in range(6)])
-    assert len(strokes) == lookahead_features.STROKES_SEEN and np.array_equal(
-        rows[..., lookahead_features.THERE] > 0, there
-    )
+    assert len(strokes) == lookahead_features.STROKES_SEEN
+    assert np.array_equal(rows[..., lookahead_features.THERE] > 0, there)
     assert there[:3, -1].any() and there[3:, -1].any() and np.ptp(chances[:, :2], axis=1).max() > 0.1
     for entry, expected in (
         (lookahead_features.CHANCE, [[chances[k, pot] for pot, _, _ in strokes] for k in range(6)]),
@@ -133,10 +128,8 @@ def test_worth_by_hand():
 def test_noise_samples_are_even():
     errors = errors_of(first_of(EVEN_SAMPLES))
     likely = [-1.2816, -0.5244, 0.0, 0.5244, 1.2816]
-    assert (
-        np.abs(np.sort(errors[:, [0, 3]], axis=0).T - likely).max() < 0.25
-        and np.abs(errors.mean(0)).max() < 0.15
-    )
+    assert np.abs(np.sort(errors[:, [0, 3]], axis=0).T - likely).max() < 0.25
+    assert np.abs(errors.mean(0)).max() < 0.15
     assert np.abs(np.corrcoef(errors[:, :4].T) - np.eye(4)).max() < 0.55
     _, least, median = find(len(EVEN_SAMPLES), keys=200, starts=1)
     assert unevenness(errors) < least < median / 2

@@ -94,11 +94,8 @@ def test_the_buffer_is_sb3s_with_masks_as_bool():
     """What was seen, done and masked belongs to the same step, and the advantages are SB3's."""
     model = with_rollout(made())
     own, (n, k) = model.rollout_buffer, (model.n_steps, TABLES)
-    assert (
-        isinstance(own, BoolMasks)
-        and own.action_masks.dtype == np.bool_
-        and own.action_masks.shape == (n, k, 540)
-    )
+    assert isinstance(own, BoolMasks) and own.action_masks.dtype == np.bool_
+    assert own.action_masks.shape == (n, k, 540)
     other = MaskableRolloutBuffer(
         n, own.observation_space, own.action_space, "cpu", own.gae_lambda, own.gamma, k
     )

@@ -43,9 +43,8 @@ def met():
     masks[:, 7] = True
     seen[5, :110].reshape(22, 5)[1:, :3] = 0.0  # the cue ball alone
     seen[5, OBSERVATION_SIZE:] = 0.0
-    assert (seen[:, BALL_X] < 0).sum() > 50 < (seen[:, BALL_X] > 0).sum() and (
-        seen[:, OBSERVATION_SIZE] == 0
-    ).sum() > 3
+    assert (seen[:, BALL_X] < 0).sum() > 50 < (seen[:, BALL_X] > 0).sum()
+    assert (seen[:, OBSERVATION_SIZE] == 0).sum() > 3
     return seen, masks
 
 
@@ -87,9 +86,8 @@ def test_scores_are_those_of_the_network(policy, met):
     )
     with torch.no_grad():
         quick = scored(policy, seen, masks)
-    assert np.abs(np.where(masks, quick - expected, 0.0)).max() < 1.4e-5 and not np.array_equal(
-        quick, expected
-    )
+    assert np.abs(np.where(masks, quick - expected, 0.0)).max() < 1.4e-5
+    assert not np.array_equal(quick, expected)
     for rows in (slice(0, 1), slice(0, N, 2)):
         actions = policy.predict(seen[rows], action_masks=masks[rows], deterministic=True)[0]
         assert np.array_equal(actions, found[rows].argmax(axis=1))
@@ -116,10 +114,8 @@ def test_values_and_probabilities_are_those_of_the_network(policy, met):
     assert masks[np.arange(N), choices].all() and len(np.unique(choices)) > 50
     with torch.no_grad():
         expected, expected_logs, _ = plain(policy, seen, masks, choices)
-    assert (
-        np.abs(values - expected.numpy()).max() < 1.4e-5
-        and np.abs(logs - expected_logs.numpy()).max() < 1.4e-5
-    )
+    assert np.abs(values - expected.numpy()).max() < 1.4e-5
+    assert np.abs(logs - expected_logs.numpy()).max() < 1.4e-5
     assert values.std() > 1e-2 and logs.std() > 1e-2
 
 
@@ -212,9 +208,8 @@ def test_choices_of_nearly_no_probability_keep_their_logarithm(policy, met):
     policy.fused.zero_grad()
     rollout = Rollout(seen, masks, choices, logs.detach().numpy() - 0.5, nothing, nothing)
     found = policy.fused.ppo_gradient(rows, rollout, Loss(CLIP, 0.0, 0.0))
-    assert np.isclose(found[4], np.exp(0.5) - 1.5, rtol=1e-4) and np.isclose(
-        found[2], entropy.mean().item(), rtol=1e-4
-    )
+    assert np.isclose(found[4], np.exp(0.5) - 1.5, rtol=1e-4)
+    assert np.isclose(found[2], entropy.mean().item(), rtol=1e-4)
 
 
 def test_gradients_of_parts_add_up(policy, met):
@@ -229,9 +224,8 @@ def test_gradients_of_parts_add_up(policy, met):
             policy.fused.ppo_gradient(rows, rollout, LOSS)
         found.append(policy.fused.gradient.clone())
     scale = found[1].abs().max()
-    assert (found[0] + found[2] - found[1]).abs().max() < 1e-5 * scale and (
-        found[0] - found[1]
-    ).abs().max() > 1e-2 * scale
+    assert (found[0] + found[2] - found[1]).abs().max() < 1e-5 * scale
+    assert (found[0] - found[1]).abs().max() > 1e-2 * scale
 
 
 def test_copies_and_new_weights_have_passes_of_their_own(policy, met):
@@ -246,6 +240,5 @@ def test_copies_and_new_weights_have_passes_of_their_own(policy, met):
     other.load_state_dict({name: 0.5 * part for name, part in policy.state_dict().items()}, assign=True)
     with torch.no_grad():
         plain = other.predict_values(torch.as_tensor(seen)).numpy()[:, 0]
-    assert np.allclose(other.fused.act(seen, masks, draws)[1], plain, atol=2e-5) and not np.allclose(
-        plain, want, atol=1e-3
-    )
+    assert np.allclose(other.fused.act(seen, masks, draws)[1], plain, atol=2e-5)
+    assert not np.allclose(plain, want, atol=1e-3)

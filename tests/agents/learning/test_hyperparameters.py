@@ -39,11 +39,8 @@ def test_masks_are_those_of_the_view():
     tables.seed(3)
     seen = tables.reset()
     masks, all_masks = np.array(tables.env_method("action_masks")), tables.unwrapped.tables.action_masks()
-    assert (
-        (masks.sum(1) > 0).any()
-        and (masks.sum(1) < all_masks.sum(1)).any()
-        and not (masks & ~all_masks).any()
-    )
+    assert (masks.sum(1) > 0).any() and (masks.sum(1) < all_masks.sum(1)).any()
+    assert not (masks & ~all_masks).any()
     there = (
         seen[:, pot_view.SHOWN :].reshape(4, lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)[
             :, :, lookahead_features.THERE
@@ -79,10 +76,7 @@ def test_the_end_of_a_visit_is_shown_with_its_pots(shown):
         for k in np.flatnonzero(done):
             last, ended = infos[k]["terminal_observation"], ended + 1
             assert np.array_equal(last[: pot_view.SHOWN], pot_view.with_pots(kept[k][None])[0])
-            assert (
-                last[: pot_view.SHOWN].any()
-                and not last[pot_view.SHOWN :].any()
-                and last.shape == tables.observation_space.shape
-            )
+            assert last[: pot_view.SHOWN].any() and not last[pot_view.SHOWN :].any()
+            assert last.shape == tables.observation_space.shape
     assert ended > 0
     tables.close()

@@ -35,9 +35,8 @@ def test_a_choice_is_worth_its_points_and_what_it_leaves():
         after = prospects_of(Positions.of(env), spread_of(rules.noise, rules.physics))[0]
         if ended.any():  # such a table was dealt anew in the same step
             after = np.where(ended, 0.0, after)
-        assert np.allclose(worth[:, k], rewards + after, rtol=1e-6) and np.array_equal(
-            points_only[:, k], rewards
-        )
+        assert np.allclose(worth[:, k], rewards + after, rtol=1e-6)
+        assert np.array_equal(points_only[:, k], rewards)
     assert worth.max() > 5.0
     there[2:5, 1] = False
     env.reset(options={"states": states})
@@ -53,11 +52,8 @@ def test_half_of_the_tries_are_the_best():
     scores = rng.normal(size=masks.shape)
     picks, there = to_try(scores, masks, rng)
     half = imitation.TRIES // 2
-    assert (
-        picks.shape == (5, imitation.TRIES)
-        and there[:4].all()
-        and np.array_equal(there, np.take_along_axis(masks, picks, 1))
-    )
+    assert picks.shape == (5, imitation.TRIES) and there[:4].all()
+    assert np.array_equal(there, np.take_along_axis(masks, picks, 1))
     for k in range(4):
         best = np.argsort(np.where(masks[k], -scores[k], np.inf))[:half]
         assert set(picks[k, :half]) == set(best) and len(set(picks[k, half:])) == half

@@ -93,22 +93,17 @@ def test_a_choice_is_worth_its_points_and_what_the_judge_says_of_what_it_leaves(
     assert worths[row, column] == pytest.approx(expected, rel=1e-6) and not worths[~there].any()
     assert asked == [out.goes_on.sum()] and 0 < asked[0] < len(row)
     assert np.array_equal(np.unpackbits(masks, axis=1, count=540).astype(bool), action_masks(at))
-    assert np.array_equal(at.positions, before.positions) and np.array_equal(
-        seen, with_pots(at.observations())
-    )
+    assert np.array_equal(at.positions, before.positions)
+    assert np.array_equal(seen, with_pots(at.observations()))
     _, _, *batch = kept[0]  # of the policy and its optimizer, then rows of what is kept
     shown, offered, chosen, tried, gains = batch
-    assert (
-        shown.shape == (4 * 12, seen.shape[1])
-        and offered.dtype == tried.dtype == bool
-        and chosen.dtype == np.int64
-    )
+    assert shown.shape == (4 * 12, seen.shape[1]) and offered.dtype == tried.dtype == bool
+    assert chosen.dtype == np.int64
     for k in range(48):
         own_row = np.flatnonzero((seen == shown[k]).all(axis=1))[0]
         assert np.array_equal(chosen[k], picks[own_row]) and np.array_equal(gains[k], worths[own_row])
-        assert np.array_equal(offered[k], action_masks(at)[own_row]) and np.array_equal(
-            tried[k], there[own_row]
-        )
+        assert np.array_equal(offered[k], action_masks(at)[own_row])
+        assert np.array_equal(tried[k], there[own_row])
 
 
 def test_the_value_of_positions_is_not_touched():
@@ -132,9 +127,8 @@ def test_the_oldest_rounds_are_forgotten(monkeypatch):
     learning = learner(policy(), 8)
     for k in range(5):
         learning.round(some(8, seed=k), lambda left: np.zeros(len(left)), 1.0)
-    assert len(learning._rounds) == 3 and np.array_equal(
-        learning._rounds[-1][0], with_pots(some(8, seed=4).observations())
-    )
+    assert len(learning._rounds) == 3
+    assert np.array_equal(learning._rounds[-1][0], with_pots(some(8, seed=4).observations()))
 
 
 @pytest.mark.parametrize("stop", [1, 3])

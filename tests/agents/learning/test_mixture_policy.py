@@ -256,9 +256,8 @@ def test_throw_sees_the_stroke_as_it_is_played(model, opened):
     def aims(*stroke):
         return dist.aims_of(torch.tensor(stroke).expand(len(opened), POTS, 3))
 
-    assert torch.equal(aims(3.0, 0.0, 0.0), aims(1.0, 0.0, 0.0)) and not torch.equal(
-        aims(0.5, 0.0, 0.0), aims(1.0, 0.0, 0.0)
-    )
+    assert torch.equal(aims(3.0, 0.0, 0.0), aims(1.0, 0.0, 0.0))
+    assert not torch.equal(aims(0.5, 0.0, 0.0), aims(1.0, 0.0, 0.0))
     assert torch.allclose(aims(0.0, 0.9, 0.9), aims(0.0, 0.5**0.5, 0.5**0.5), atol=1e-7)
     assert not torch.allclose(aims(0.0, 0.5, 0.0), aims(0.0, -0.5, 0.0), atol=1e-5)
 
@@ -305,10 +304,8 @@ def test_without_a_pot_the_nearest_ball_on_is_struck(model, without_pots):
     total.backward()
     assert all(torch.isfinite(p.grad).all() for p in model.policy.parameters() if p.grad is not None)
     assert torch.isfinite(total) and torch.isfinite(action).all()
-    assert (
-        model.policy.action_net.no_pot.weight.grad.abs().max() > 0.0
-        and model.policy.action_net.pot.weight.grad.abs().max() == 0.0
-    )
+    assert model.policy.action_net.no_pot.weight.grad.abs().max() > 0.0
+    assert model.policy.action_net.pot.weight.grad.abs().max() == 0.0
     for env, aim in zip(without_pots, dist.mode()[:, 3].tolist(), strict=True):
         off = pi * aim - to_nearest(env.positions, env.on_table, env.on)
         assert abs(sin(off)) < 1e-6 and cos(off) > 0.0
@@ -342,18 +339,15 @@ def test_pots_that_are_not_there_are_never_played(model):
     assert 0 < there.sum() < POTS
     weights = parameters(model, table)[0]
     assert (weights[there.numpy()] > 0.0).all() and not weights[~there.numpy()].any()
-    assert (
-        torch.isfinite(mixture_policy.lines_of(table)).all()
-        and mixture_policy.lines_of(table)[0, :, TOLERANCE].min() > 0.0
-    )
+    assert torch.isfinite(mixture_policy.lines_of(table)).all()
+    assert mixture_policy.lines_of(table)[0, :, TOLERANCE].min() > 0.0
 
 
 def test_learn_save_load_predict(model, opened, tmp_path):
     fresh = hyperparameters.Recipe.of("ppo_absolute", ["n_steps=8", "batch_size=8"])
     learner = fresh.new_model(training_tables(2, threads=1, **fresh.env_kwargs), seed=0)
-    assert type(learner.policy) is AbsolutePolicy and learner.policy.log_std[3].exp().item() == pytest.approx(
-        fresh.first_aim_std
-    )
+    assert type(learner.policy) is AbsolutePolicy
+    assert learner.policy.log_std[3].exp().item() == pytest.approx(fresh.first_aim_std)
     before = {name: p.detach().clone() for name, p in learner.policy.named_parameters()}
     learner.learn(16)
     moved = {

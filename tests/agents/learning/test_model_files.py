@@ -80,9 +80,8 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
             "start": None,
         }
         assert one.env_options == model.env_options and one.action_space == model.action_space
-        assert (
-            type(one.policy) is type(model.policy) and one.policy.observation_space == model.observation_space
-        )
+        assert type(one.policy) is type(model.policy)
+        assert one.policy.observation_space == model.observation_space
         assert np.array_equal(
             one.policy.predict(seen, deterministic=True)[0], model.predict(seen, deterministic=True)[0]
         )

@@ -125,10 +125,8 @@ def test_foresight_scores_each_stroke_by_its_own_outcome(seen):
         return head(reader(torch.cat([seen, rows.flatten(1)], 1))).detach()
 
     before = scores(rows)
-    assert (
-        before.shape == (N, SIZE)
-        and reader(torch.cat([seen, rows.flatten(1)], 1)).shape[1] == CONTEXT + STROKES_SEEN * 32
-    )
+    assert before.shape == (N, SIZE)
+    assert reader(torch.cat([seen, rows.flatten(1)], 1)).shape[1] == CONTEXT + STROKES_SEEN * 32
     other = rows.clone()
     other[:, 7, 2] = 0.5
     moved = (scores(other) - before).abs()

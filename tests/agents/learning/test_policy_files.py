@@ -57,17 +57,11 @@ def test_a_policy_plays_the_available_choice_that_scores_highest(tmp_path):
     masks, at = tables.action_masks(), Positions.of(tables)
     want = np.where(masks, scores, -np.inf).argmax(axis=1)
     expected, bound = Planner(tables).strokes_of(at, np.arange(9), want)[0], player.at(tables)
-    assert (
-        np.array_equal(bound.play(at, np.arange(9)).values, expected)
-        and not masks.all()
-        and len(set(want)) > 2
-    )
+    assert np.array_equal(bound.play(at, np.arange(9)).values, expected) and not masks.all()
+    assert len(set(want)) > 2
     for one, mask in zip(bound.rank(at, np.arange(9)), masks, strict=True):
-        assert (
-            len(one.scores) == min(100, mask.sum())
-            and (np.diff(one.scores) <= 0).all()
-            and one.scores.sum() <= 1.0 + 1e-9
-        )
+        assert len(one.scores) == min(100, mask.sum()) and (np.diff(one.scores) <= 0).all()
+        assert one.scores.sum() <= 1.0 + 1e-9
     other = Layers(WEIGHTS, "relu")(rows)
     expected = np.maximum(rows @ first.T + shift, 0) @ last.T + end
     assert np.allclose(other, expected, atol=1e-4) and not np.allclose(
@@ -156,11 +150,8 @@ def test_it_is_evaluated_like_any_other_agent(tmp_path, capsys):
     }
     assert report["agents"][0]["label"] == "mine-0" and {key: run[key] for key in wanted} == wanted
     first, second = report["results"][:2]
-    assert (
-        first["agent"] == "mine-0"
-        and second["agent"] == "same"
-        and first["figures"]["points_a_visit"] == second["figures"]["points_a_visit"]
-    )
+    assert first["agent"] == "mine-0" and second["agent"] == "same"
+    assert first["figures"]["points_a_visit"] == second["figures"]["points_a_visit"]
     capsys.readouterr()
 
 
@@ -201,11 +192,8 @@ def test_what_is_no_policy_is_refused_in_one_line(tmp_path, changes, says):
         with pytest.raises(ValueError) as info:
             call()
         text = str(info.value)
-        assert (
-            text.startswith(f"agent = {str(file)!r}: must be a policy's .npz: ")
-            and says in text
-            and "\n" not in text
-        )
+        assert text.startswith(f"agent = {str(file)!r}: must be a policy's .npz: ") and says in text
+        assert "\n" not in text
 
 
 def test_nothing_in_a_file_is_unpickled(tmp_path):

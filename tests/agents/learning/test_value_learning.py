@@ -161,10 +161,8 @@ def test_the_network_learns_a_known_value():
     with torch.no_grad():
         p = torch.sigmoid(learning._network(torch.from_numpy(seen))[0]).numpy()
     assert np.abs(p - np.where(seen[:, 1] > 0, 0.9, 0.3)).mean() < 0.08
-    assert (
-        learning.mean_target == pytest.approx(learning._fitted[1][-n:].mean())
-        and 1.0 < learning.mean_target < 4.0
-    )
+    assert learning.mean_target == pytest.approx(learning._fitted[1][-n:].mean())
+    assert 1.0 < learning.mean_target < 4.0
 
 
 def test_each_member_learns_from_batches_of_its_own():

@@ -43,17 +43,15 @@ def test_the_value_is_that_of_the_network(scale):
         np.random.default_rng(0).normal(0, 1.5, (300, SIZE)).astype(np.float32),
     ):
         p, u = by_torch(made, seen)
-        assert value.of(seen) == pytest.approx((p * u).mean(axis=0), rel=1e-4, abs=1e-4) and value.of(
-            seen
-        ).shape == (len(seen),)
+        assert value.of(seen) == pytest.approx((p * u).mean(axis=0), rel=1e-4, abs=1e-4)
+        assert value.of(seen).shape == (len(seen),)
         assert np.isfinite(value.of(seen)).all() and (value.of(seen) >= 0.0).all()
 
 
 def test_the_network_has_the_layers_that_the_file_says():
     sizes = [(SIZE, WIDTHS[0]), (WIDTHS[0], WIDTHS[1]), (WIDTHS[1], 2)]
-    assert [tuple(w.shape) for w in network().weights] == [
-        (MEMBERS, *size) for size in sizes
-    ] and MEMBERS == 4
+    assert [tuple(w.shape) for w in network().weights] == [(MEMBERS, *size) for size in sizes]
+    assert MEMBERS == 4
     assert [tuple(b.shape) for b in network().biases] == [(MEMBERS, 1, b) for _, b in sizes]
     made, seen = network(2), np.random.default_rng(1).normal(0, 1, (50, SIZE)).astype(np.float32)
     p, u = by_torch(made, seen)
@@ -86,9 +84,8 @@ def test_at_first_the_chance_is_the_likeliest_pots_and_what_follows_hardly_diffe
     likeliest = chances_by_width(at, SPREAD).max(axis=1)
     for seed in range(4):
         p, u = by_torch(network(seed), value_features(at, SPREAD))
-        assert np.abs(p - likeliest).max() < 0.03 and all(
-            np.corrcoef(one, likeliest)[0, 1] > 0.999 for one in p
-        )
+        assert np.abs(p - likeliest).max() < 0.03
+        assert all(np.corrcoef(one, likeliest)[0, 1] > 0.999 for one in p)
         assert (u.std(axis=1) < 0.05 * u.mean(axis=1)).all() and 0.4 * POINTS < u.mean() < POINTS
 
 
@@ -107,9 +104,8 @@ def test_the_value_of_a_position_is_that_of_its_features_on_any_number_of_thread
     seen = value_features(at, SPREAD)
     kept = seen.copy()
     value = value_of(made, SPREAD)
-    assert np.array_equal(value(at), value.of(seen)) and np.array_equal(
-        value(at), value_of(made, SPREAD, threads=2)(at)
-    )
+    assert np.array_equal(value(at), value.of(seen))
+    assert np.array_equal(value(at), value_of(made, SPREAD, threads=2)(at))
     assert np.array_equal(seen, kept) and value(at).dtype == np.float32
     alone = [value(at[k : k + 1])[0] for k in range(0, 300, 11)]
     assert np.array_equal(alone, value(at)[::11]) and np.array_equal(value(at[::-1]), value(at)[::-1])

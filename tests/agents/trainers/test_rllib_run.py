@@ -31,14 +31,11 @@ def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
     progress = state["progress"]
     assert progress["shots"] >= 8192 and progress["updates"] == 1 and (out / progress["checkpoint"]).is_dir()
     untrained = read_policy(out / run.UNTRAINED, "out")
-    assert untrained.num_timesteps == 0 and not np.array_equal(
-        untrained.policy.weights[0][0], first.policy.weights[0][0]
-    )
+    assert untrained.num_timesteps == 0
+    assert not np.array_equal(untrained.policy.weights[0][0], first.policy.weights[0][0])
     results = json.loads((out / run.RESULTS).read_text())
-    assert (
-        set(results["evaluation"]) == {"trained", "untrained", "ghost_ball", "random"}
-        and results["versions"]["ray"]
-    )
+    assert set(results["evaluation"]) == {"trained", "untrained", "ghost_ball", "random"}
+    assert results["versions"]["ray"]
     kept, algorithm_of, restore = [], run.algorithm_of, run.restore
 
     def of_runners(made):
@@ -63,11 +60,10 @@ def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
     settings, seed, weights, there = kept
     # the runners play with them too
     assert len(there) == 2 and all(np.array_equal(bias, weights[-1][1]) for bias in there)
-    assert (
-        settings
-        == replace(run.RunSettings(), steps=16000, runners=2, envs=16, eval_visits=4, checkpoint_every=8000)
-        and seed == run.SEEDS
+    assert settings == replace(
+        run.RunSettings(), steps=16000, runners=2, envs=16, eval_visits=4, checkpoint_every=8000
     )
+    assert seed == run.SEEDS
     assert all(
         np.array_equal(a, b)
         for mine, its in zip(first.policy.weights, weights, strict=True)
@@ -109,16 +105,11 @@ def test_a_signal_saves_and_the_run_goes_on(tmp_path):
                 break
         rest = process.stdout.read()
         assert process.wait(120) == 130, "".join(lines) + rest
-    assert (
-        f"Continue with:  python -m agents.train_rllib --resume --out {out}" in rest
-        and "Traceback" not in rest
-    )
+    assert f"Continue with:  python -m agents.train_rllib --resume --out {out}" in rest
+    assert "Traceback" not in rest
     progress = json.loads((out / run.STATE).read_text())["progress"]
-    assert (
-        progress["shots"] > 8000
-        and (out / progress["checkpoint"]).is_dir()
-        and load_player(out).model.num_timesteps == progress["shots"]
-    )
+    assert progress["shots"] > 8000 and (out / progress["checkpoint"]).is_dir()
+    assert load_player(out).model.num_timesteps == progress["shots"]
     began = time.monotonic()
     while (out / "train.lock").exists() and time.monotonic() - began < 10:
         time.sleep(0.1)
