@@ -30,23 +30,12 @@ def test_every_command_is_one_that_its_program_takes(tmp_path):
     assert len(runs) > 25 and len(comparisons) == 16 and len(curves) == 1 and len(runs) + 18 == len(lines)
     assert all(agent.partition("=")[2].startswith(f"{tmp_path}/") for agent in curves[0])
     starts = [run[run.index("--start") + 1] for run in runs if "--start" in run]
-    assert [Path(start).name for start in starts] == [
-        "value-0",
-        "lineup-0",
-        "lineup-1",
-        "lineup-2",
-        "taught-0",
-    ]
+    assert [Path(start).name for start in starts] == str.split("value-0 lineup-0 lineup-1 lineup-2 taught-0")
     assert 'echo "lineup-$k ' in Path(command[1]).read_text()
     recipes = [train.recipe_of(train.Settings(**train.parse(run)[1])) for run in runs]
-    assert {recipe.name for recipe in recipes} == {
-        "ppo_value",
-        "ppo_foresight",
-        "ppo_mask",
-        "ppo_absolute",
-        "ppo_target",
-        "tqc_target",
-    }
+    assert {recipe.name for recipe in recipes} == set(
+        str.split("ppo_value ppo_foresight ppo_mask ppo_absolute ppo_target tqc_target")
+    )
     for comparison in comparisons:
         parsed = parser().parse_args(comparison)
         assert parsed.json.suffix == ".json" and parsed.markdown.with_suffix(".json") == parsed.json

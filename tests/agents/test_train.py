@@ -25,21 +25,9 @@ from snooker_env.progress import Progress
 
 ROOT = Path(__file__).resolve().parents[2]
 AGENTS = ("ppo_mask", "ppo_foresight", "ppo_target", "ppo_absolute", "tqc_target")
-TINY = [
-    "--agent",
-    "ppo_mask",
-    "--envs",
-    "2",
-    "--eval-visits",
-    "4",
-    "--no-progress",
-    "--parallel",
-    "one",
-    "--steps",
-    "512",
-    "--imitate",
-    "0",
-]
+TINY = str.split(
+    "--agent ppo_mask --envs 2 --eval-visits 4 --no-progress --parallel one --steps 512 --imitate 0"
+)
 
 
 def run(out, *options):
@@ -84,21 +72,12 @@ def test_run_leaves_model_figures_and_curves(finished, agent):
     assert {p.name for p in out.iterdir()} == {"checkpoint.pkl", "model.zip", "results.json", "tb"}
     assert list((out / "tb").rglob("events.out.tfevents.*"))
     found = results(out)
-    assert set(found) == {
-        "command",
-        "settings",
-        "steps",
-        "seconds",
-        "parts",
-        "start",
-        "learned",
-        "evaluation",
-        "curve",
-        "imitation",
-        "versions",
-        "git_commit",
-        "processors",
-    }
+    assert set(found) == set(
+        str.split(
+            "command settings steps seconds parts start learned evaluation curve imitation versions "
+            "git_commit processors"
+        )
+    )
     assert found["settings"]["agent"] == agent and found["steps"] == 512
     (part,) = found["parts"]
     assert (part["part"], part["unit"], part["amount"]) == (agent.partition("_")[0].upper(), "shots", 512)

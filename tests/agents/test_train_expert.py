@@ -13,21 +13,9 @@ from agents.learning import callback, expert_iteration
 from agents.learning.models import load_trained
 from snooker_env.benchmark import play_visits, summary
 
-TINY = [
-    "--agent",
-    "ppo_value",
-    "--envs",
-    "4",
-    "--eval-visits",
-    "4",
-    "--no-progress",
-    "--parallel",
-    "one",
-    "--steps",
-    "512",
-    "--imitate",
-    "64",
-]
+TINY = str.split(
+    "--agent ppo_value --envs 4 --eval-visits 4 --no-progress --parallel one --steps 512 --imitate 64"
+)
 
 
 @pytest.fixture(scope="module")

@@ -118,16 +118,9 @@ def test_counts_agree_with_the_summary():
     s = play_visits("ghost_ball", 60, noise="professional")
     for strokes in (s, a_clearance_a_foul_and_a_miss()):
         c, f = counts(strokes), summary(strokes)
-        for name in (
-            "points_a_visit",
-            "pots_a_visit",
-            "fouls_a_visit",
-            "pot_rate",
-            "next_pot_after_a_pot",
-            "colour_value",
-            "high_colours",
-            "centuries",
-            "clearances",
+        for name in str.split(
+            "points_a_visit pots_a_visit fouls_a_visit pot_rate next_pot_after_a_pot colour_value "
+            "high_colours centuries clearances"
         ):
             above, below = FIGURES[name]
             assert c[above].sum() / c[below].sum() == pytest.approx(f[name])

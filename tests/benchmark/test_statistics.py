@@ -94,10 +94,7 @@ def test_paired_ratio():
     base = rng.exponential(10.0, (1, 400))
     exact = played("twice", 2 * base).ratios(played("base", base))["points_a_visit"]
     assert exact["value"] == pytest.approx(2)
-    assert (exact["low"], exact["high"]) in (
-        (None, None),
-        pytest.approx((2, 2)),
-    )
+    assert (exact["low"], exact["high"]) in ((None, None), pytest.approx((2, 2)))
     near = played("near", 2 * base + rng.normal(0, 1, base.shape)).ratios(played("base", base))[
         "points_a_visit"
     ]

@@ -140,18 +140,7 @@ def test_a_full_disk_keeps_what_was_written_and_names_the_file(tmp_path, monkeyp
 def test_an_evaluation_goes_on_from_what_it_kept(tmp_path, monkeypatch, capsys):
     """By the command: interrupted, then given again, then with another option."""
     monkeypatch.setattr(visits, "SIZE", 5)
-    command = [
-        "--agent",
-        "random",
-        "--visits",
-        "20",
-        "--layouts",
-        "held_out",
-        "--noise",
-        "professional",
-        "--resamples",
-        "200",
-    ]
+    command = str.split("--agent random --visits 20 --layouts held_out --noise professional --resamples 200")
     plain, kept = tmp_path / "plain.json", tmp_path / "kept.json"
     assert protocol.main([*command, "--json", str(plain)]) == 0
     original, calls = visits.play_visits, []

@@ -17,22 +17,10 @@ from ray.cluster_utils import Cluster as Nodes
 
 ROOT = Path(__file__).resolve().parents[2]
 NODE = {"num_cpus": 2, "object_store_memory": 100 * 2**20, "include_dashboard": False}
-EVALUATE = [
-    "-m",
-    "agents.evaluate",
-    "--agent",
-    "tests.cluster.players:Noted",
-    "--against",
-    "Noted",
-    "--layouts",
-    "held_out",
-    "--visits",
-    "500",
-    "--noise",
-    "professional",
-    "--resamples",
-    "200",
-]
+EVALUATE = str.split(
+    "-m agents.evaluate --agent tests.cluster.players:Noted --against Noted --layouts held_out --visits "
+    "500 --noise professional --resamples 200"
+)
 TRAIN = [
     "-c",
     "import sys, train, agents.learning.callback as often; often.LEAST, often.SHARE = 1.0, 1.0; sys.exit(train.main(sys.argv[1:]))",
@@ -155,18 +143,7 @@ def test_of_two_equal_jobs_at_once_the_second_is_refused(tmp_path, environment):
 
 
 def test_searched_data_are_the_same_files_with_a_cluster_and_without(tmp_path, environment):
-    command = [
-        "-m",
-        "agents.search",
-        "--agent",
-        "search_30",
-        "--positions",
-        "300",
-        "--noise",
-        "club",
-        "--layout",
-        "random:6",
-    ]
+    command = str.split("-m agents.search --agent search_30 --positions 300 --noise club --layout random:6")
     nodes = Nodes(initialize_head=True, head_node_args=NODE)
     try:
         code, out, err = finished(
@@ -185,10 +162,7 @@ def test_searched_data_are_the_same_files_with_a_cluster_and_without(tmp_path, e
         for name in ("here", "there")
     )
     assert here == there
-    assert sorted(file.name for file in here if file.suffix == ".json") == [
-        "index.json",
-        "job.json",
-    ]
+    assert sorted(file.name for file in here if file.suffix == ".json") == ["index.json", "job.json"]
     assert len(here) == 2 + 3
 
 
@@ -234,19 +208,7 @@ def test_a_training_goes_on_from_its_mirror_after_the_head_was_lost(tmp_path, en
     assert all(torch.equal(tensor, other[name]) for name, tensor in one.items())
 
 
-QUICK = [
-    "-m",
-    "agents.evaluate",
-    "--agent",
-    "random",
-    "--visits",
-    "2",
-    "--layouts",
-    "held_out",
-    "--noise",
-    "none",
-    "--ray",
-]
+QUICK = str.split("-m agents.evaluate --agent random --visits 2 --layouts held_out --noise none --ray")
 
 
 @pytest.mark.parametrize(
@@ -269,19 +231,7 @@ def test_what_is_no_address_is_refused(address, environment):
 
 
 def test_the_benchmark_prints_what_a_part_costs(tmp_path, environment):
-    command = [
-        "-m",
-        "benchmarks.cluster",
-        "--shots",
-        "200",
-        "--parts",
-        "2",
-        "--positions",
-        "2",
-        "--repeats",
-        "1",
-        "--json",
-    ]
+    command = str.split("-m benchmarks.cluster --shots 200 --parts 2 --positions 2 --repeats 1 --json")
     code, out, err = finished([*command, str(tmp_path / "f")], environment)
     assert code == 0 and not lines_of(err), err
     found = json.loads((tmp_path / "f").read_text())

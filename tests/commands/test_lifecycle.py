@@ -80,32 +80,8 @@ def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
     assert not [file for file in tmp_path.rglob("*") if file.suffix in (".nbi", ".nbc")]
 
 
-QUICK = [
-    "--agent",
-    "random",
-    "--visits",
-    "4",
-    "--layouts",
-    "held_out",
-    "--noise",
-    "professional",
-    "--resamples",
-    "100",
-]
-TINY = [
-    "--agent",
-    "ppo_mask",
-    "--envs",
-    "2",
-    "--eval-visits",
-    "4",
-    "--parallel",
-    "one",
-    "--steps",
-    "1",
-    "--imitate",
-    "0",
-]
+QUICK = str.split("--agent random --visits 4 --layouts held_out --noise professional --resamples 100")
+TINY = str.split("--agent ppo_mask --envs 2 --eval-visits 4 --parallel one --steps 1 --imitate 0")
 
 
 def test_any_terminal_will_do(tmp_path):

@@ -38,18 +38,9 @@ def models(tmp_path_factory):
 
 
 def test_json_markdown_and_picture(models, tmp_path, capsys):
-    options = [
-        "--visits",
-        "12",
-        "--layouts",
-        "held_out=20",
-        "colours",
-        "--noise",
-        "none",
-        "club",
-        "--physics",
-        "paper,mu_bb=marlow",
-    ]
+    options = str.split(
+        "--visits 12 --layouts held_out=20 colours --noise none club --physics paper,mu_bb=marlow"
+    )
     options += [
         "--resamples",
         "200",
@@ -64,17 +55,7 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
         (tmp_path / "a" / "r.json").read_text(),
         parse_constant=lambda text: pytest.fail(f"{text} is not JSON"),
     )
-    assert set(found) == {
-        "command",
-        "version",
-        "commit",
-        "machine",
-        "python",
-        "numpy",
-        "protocol",
-        "agents",
-        "results",
-    }
+    assert set(found) == set(str.split("command version commit machine python numpy protocol agents results"))
     assert found["protocol"]["layouts"] == {"held_out": 12, "colours": 12}
     assert [a["label"] for a in found["agents"]] == ["model", "random", "ghost_ball"]
     first, second = found["agents"][0]["runs"]
@@ -82,22 +63,12 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
     assert first["layout"] == "opened" and first["recipe"] == "ppo_mask" and first["gamma"] == 0.95
     assert len(found["results"]) == 3 * 2 * 2
     for row in found["results"]:
-        assert set(row) == {
-            "agent",
-            "layout",
-            "noise",
-            "fidelity",
-            "physics",
-            "visits",
-            "runs",
-            "figures",
-            "ratios",
-            "counted",
-            "longest_break",
-            "by_run",
-            "strokes",
-            "ms_a_decision",
-        }
+        assert set(row) == set(
+            str.split(
+                "agent layout noise fidelity physics visits runs figures ratios counted longest_break "
+                "by_run strokes ms_a_decision"
+            )
+        )
         assert set(row["figures"]) == {*FIGURES, "points_a_visit_iqm", "pots_a_visit_iqm"}
         assert set(row["ratios"]) == {"ghost_ball", "random"} - {row["agent"]}
         assert len(row["by_run"]["points_a_visit"]) == row["runs"] == (2 if row["agent"] == "model" else 1)

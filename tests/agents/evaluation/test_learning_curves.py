@@ -40,10 +40,7 @@ def drawn(monkeypatch):
 def test_time_begins_with_imitation(tmp_path):
     run = learning_curves.run_of(keep(tmp_path / "a"))
     assert run["minutes"] * 60 == pytest.approx([100, 160, 400])
-    assert run["end"] == (
-        1000,
-        pytest.approx(700 / 60),
-    )
+    assert run["end"] == (1000, pytest.approx(700 / 60))
     alone = learning_curves.run_of(keep(tmp_path / "b", imitation=[]))
     assert alone["minutes"] * 60 == pytest.approx([0, 70, 350])
 

@@ -45,10 +45,7 @@ def invented(t, seeds, rng, best_of=1):
 
 def test_the_columns_are_those_of_both_players():
     assert len(COLUMNS) == len(KEYS) + 2 * len(COUNTED) == len(row(0, 1, 0, 0, 0))
-    assert COLUMNS[6:8] == (
-        "points_first",
-        "points_second",
-    )
+    assert COLUMNS[6:8] == ("points_first", "points_second")
 
 
 def test_shares_and_draws():

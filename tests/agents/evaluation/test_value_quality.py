@@ -48,17 +48,7 @@ def test_the_planner_plays_as_without_being_watched():
 
 def test_the_command_writes_its_figures(tmp_path, capsys):
     files = [tmp_path / "q.json", tmp_path / "q.md"]
-    options = [
-        "--agent",
-        "planner_30",
-        "--visits",
-        "3",
-        "--layouts",
-        "colours",
-        "--noise",
-        "club",
-        "professional",
-    ]
+    options = str.split("--agent planner_30 --visits 3 --layouts colours --noise club professional")
     assert value_quality.main([*options, "--json", str(files[0]), "--markdown", str(files[1])]) == 0
     report = json.loads(files[0].read_text())
     assert [one["noise"] for one in report["results"]] == ["club", "professional"]

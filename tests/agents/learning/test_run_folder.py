@@ -21,21 +21,9 @@ from commands.files import write_atomic
 from snooker_env.progress import Progress
 
 ROOT = Path(__file__).resolve().parents[3]
-TINY = [
-    "--agent",
-    "ppo_mask",
-    "--envs",
-    "2",
-    "--eval-visits",
-    "4",
-    "--no-progress",
-    "--parallel",
-    "one",
-    "--steps",
-    "256",
-    "--imitate",
-    "64",
-]
+TINY = str.split(
+    "--agent ppo_mask --envs 2 --eval-visits 4 --no-progress --parallel one --steps 256 --imitate 64"
+)
 
 
 def refused(capsys, *arguments):
