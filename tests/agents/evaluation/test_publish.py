@@ -24,26 +24,10 @@ from agents.players.trained import load_player
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.planning import Positions
 
-FIGURES = {
-    "learned": "In 4 shots nothing.",
-    "versions": {},
-    "evaluation": {},
-    "seconds": 36.0,
-    "steps": 4,
-    "git_commit": "abc",
-    "imitation": [],
-}
-SETTINGS = {
-    "agent": "ppo_mask",
-    "seed": 3,
-    "layout": "",
-    "noise": "",
-    "fidelity": "",
-    "physics": "",
-    "start": "",
-    "set": [],
-    "imitate": 100,
-}
+FIGURES = {"learned": "In 4 shots nothing.", "versions": {}, "evaluation": {}, "seconds": 36.0, "steps": 4}
+FIGURES |= {"git_commit": "abc", "imitation": []}
+SETTINGS = {"agent": "ppo_mask", "seed": 3, "set": [], "imitate": 100}
+SETTINGS |= dict.fromkeys(("layout", "noise", "fidelity", "physics", "start"), "")
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
-"""Is each frame of a tournament played and counted as it should be? Stroke by stroke beside it, and from both
-sides of the table."""
+"""Is each frame of a tournament played and counted as it should be, from both sides of the table?"""
 
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -29,12 +29,7 @@ class Soft:
         return actions
 
 
-def softly():
-    return SeenPlayer(Soft())
-
-
-def ghost_ball():
-    return sn.player("ghost_ball")
+softly, ghost_ball = partial(SeenPlayer, Soft()), partial(sn.player, "ghost_ball")
 
 
 class Careful(SeenPlayer):
@@ -63,14 +58,10 @@ def in_order(rows):
     return sorted(rows, key=lambda r: (exchanged(r), r["seed"], r["frame"]))
 
 
-def play(first, second, seeds, *, tables=128, monkeypatch=None, **more):
+def play(first, second, seeds, *, best_of=1, threads=1, **game):
     """The rows of two players who are made anew."""
-    if monkeypatch is not None:
-        monkeypatch.setattr(tournament_play, "TABLES", tables)
-    best_of, threads = more.pop("best_of", 1), more.pop("threads", 1)
-    return play_pair(
-        (0, 1), (TimedPlayer(first), TimedPlayer(second)), GAME | more, list(seeds), best_of, threads
-    )
+    players = TimedPlayer(first), TimedPlayer(second)
+    return play_pair((0, 1), players, GAME | game, list(seeds), best_of, threads)
 
 
 @pytest.fixture
@@ -93,10 +84,8 @@ def test_what_is_counted_is_what_the_referee_saw(strokes, miss):
     rows = frames(play(ghost_ball(), softly(), [3, 4, 5], miss=miss))
     assert len(rows) == 6 and [r["opener"] for r in rows] == [0, 1] * 3
     for r in in_order(rows):
-        mine, strokes[:] = (
-            strokes[: r["strokes_first"] + r["strokes_second"]],
-            strokes[r["strokes_first"] + r["strokes_second"] :],
-        )
+        many = r["strokes_first"] + r["strokes_second"]
+        mine, strokes[:] = strokes[:many], strokes[many:]
         names = ("second", "first") if exchanged(r) else ("first", "second")
         assert names[mine[0][0]] == ("first", "second")[r["opener"]]  # who breaks
         for side, name in enumerate(names):
@@ -119,18 +108,17 @@ def test_what_is_counted_is_what_the_referee_saw(strokes, miss):
 def test_rows_depend_neither_on_threads_nor_on_how_many_tables_there_are(monkeypatch):
     seeds = range(20, 28)
     want = play(ghost_ball(), softly(), seeds)
-    assert play(ghost_ball(), softly(), seeds, tables=5, monkeypatch=monkeypatch) == want
-    assert play(ghost_ball(), softly(), seeds, threads=2, tables=16, monkeypatch=monkeypatch) == want
+    for tables, threads in ((5, 1), (16, 2)):
+        monkeypatch.setattr(tournament_play, "TABLES", tables)
+        assert play(ghost_ball(), softly(), seeds, threads=threads) == want
     assert play(ghost_ball(), softly(), list(seeds)[3:5]) == want[6:10]
 
 
 @pytest.mark.parametrize("second", [ghost_ball, softly, Geometric])
 def test_the_order_of_the_players_does_not_matter(second):
     """Both are the agent in one frame on each seed."""
-    one, other = (
-        frames(play(ghost_ball(), second(), range(4))),
-        frames(play(second(), ghost_ball(), range(4))),
-    )
+    one = frames(play(ghost_ball(), second(), range(4)))
+    other = frames(play(second(), ghost_ball(), range(4)))
     turned = sorted(other, key=lambda r: (r["seed"], 1 - r["opener"]))
     for a, b in zip(one, turned, strict=True):
         assert (a["seed"], a["opener"], a["winner"]) == (b["seed"], 1 - b["opener"], 1 - b["winner"])

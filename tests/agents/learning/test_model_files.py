@@ -1,5 +1,4 @@
-"""Is a model's file read without running anything of it, and is whatever is wrong in it refused with one
-clear sentence?"""
+"""Is a model's file read without running anything of it, and refused with one sentence if it is wrong?"""
 
 import importlib
 import io
@@ -8,7 +7,8 @@ import re
 import subprocess
 import sys
 import zipfile
-from pathlib import Path
+from contextlib import nullcontext
+from functools import partial
 
 import numpy as np
 import pytest
@@ -25,17 +25,17 @@ from agents.learning.model_files import KEPT, packed, read
 from agents.learning.models import PRETRAINED, load_weights
 from agents.players.trained import load_player
 from tests.bombs import bombed, edited, rezipped
+from tests.processes import ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
 
-
-def made(name, file):
-    """An untrained model of that recipe, saved as train.py does."""
+def made(name, file=None, seed=3):
+    """An untrained model of that recipe, saved as train.py does if there is a file."""
     recipe = Recipe.of(name, n_envs=2)
     tables = training_tables(2, threads=1, view=recipe.view, **recipe.env_kwargs)
-    model = recipe.new_model(tables, 3)
+    model = recipe.new_model(tables, seed)
     model.imitated, model.num_timesteps = 300, 77
-    model.save(file)
+    if file is not None:
+        model.save(file)
     tables.close()
     return model
 
@@ -57,8 +57,7 @@ def plain(mask, tmp_path):
 
 @pytest.mark.parametrize("name", names())
 def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_path):
-    """The network that comes out is that which went in, and so is that of the published file; the caller's
-    random numbers stay."""
+    """What comes out of it and of the published file is what went in; the caller's random numbers stay."""
     model = made(name, tmp_path / "model.zip")
     file = bombed(tmp_path / "model.zip", tmp_path / "bomb.zip", tmp_path / "mark")
     before = torch.get_rng_state()
@@ -66,89 +65,69 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
     assert torch.equal(torch.get_rng_state(), before) and not (tmp_path / "mark").exists()
     (tmp_path / "plain.zip").write_bytes(packed(trained))
     seen = np.random.default_rng(0).uniform(-1, 1, (16, *model.observation_space.shape)).astype(np.float32)
+    wanted = {
+        "recipe": name,
+        "view": Recipe.of(name).view,
+        "num_timesteps": 77,
+        "gamma": model.gamma,
+        "seed": 3,
+    }
+    wanted |= {"imitated": 300, "start": None}
     for one in (trained, read(tmp_path / "plain.zip", "agent")):
-        assert {
-            key: getattr(one, key)
-            for key in ("recipe", "view", "num_timesteps", "gamma", "seed", "imitated", "start")
-        } == {
-            "recipe": name,
-            "view": Recipe.of(name).view,
-            "num_timesteps": 77,
-            "gamma": model.gamma,
-            "seed": 3,
-            "imitated": 300,
-            "start": None,
-        }
+        assert {key: getattr(one, key) for key in wanted} == wanted
         assert one.env_options == model.env_options and one.action_space == model.action_space
         assert type(one.policy) is type(model.policy)
         assert one.policy.observation_space == model.observation_space
-        assert np.array_equal(
-            one.policy.predict(seen, deterministic=True)[0], model.predict(seen, deterministic=True)[0]
-        )
+        played, wanted_play = (m.predict(seen, deterministic=True)[0] for m in (one.policy, model))
+        assert np.array_equal(played, wanted_play)
     with pytest.raises(Exception):  # noqa: B017 - whatever its pickles do
         type(model).load(file, device="cpu")
     assert (tmp_path / "mark").exists()  # these bombs are sharp
 
 
 @pytest.mark.parametrize("weights", [False, True])
-def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, capsys):
-    """Evaluation, --start and publication, of a model of ours and of another, with and without a sound
-    policy.pth."""
+def test_no_command_runs_what_a_file_holds(mask, tmp_path, weights, refused):
+    """Evaluation, --start and publication, of our and another's model, with and without a sound policy.pth."""
     (tmp_path / "run").mkdir()
-    ours = bombed(mask, tmp_path / "run" / "model.zip", tmp_path / "mark", weights)
-    foreign = bombed(
-        mask, tmp_path / "foreign.zip", tmp_path / "mark", weights, change=lambda found: found.pop("recipe")
-    )
+    ours, foreign, mark = tmp_path / "run" / "model.zip", tmp_path / "foreign.zip", tmp_path / "mark"
+    bombed(mask, ours, mark, weights)
+    bombed(mask, foreign, mark, weights, change=lambda found: found.pop("recipe"))
     for file in (ours, foreign, ours.parent):
-        for call in (lambda file=file: Entrant.of(str(file)).trained(), lambda file=file: load_player(file)):
-            if weights or file == foreign:
-                with pytest.raises(ValueError, match=r"^agent = '.*': must be"):
-                    call()
-            else:
-                call()
-    for arguments in (["--start", str(foreign)], ["--start", str(ours), "--agent", "ppo_foresight"]):
-        with pytest.raises(SystemExit):
-            train.main([*arguments, "--out", str(tmp_path / "new"), "--envs", "2", "--no-progress"])
-        assert "start = " in capsys.readouterr().err
-    with pytest.raises(SystemExit):
-        publish.main([str(tmp_path / "run"), "--limits", "none"])
-    assert not (tmp_path / "mark").exists()
+        for call in (lambda file: Entrant.of(str(file)).trained(), load_player):
+            wrong = weights or file == foreign
+            with pytest.raises(ValueError, match=r"^agent = '.*': must be") if wrong else nullcontext():
+                call(file)
+    for arguments in ([foreign], [ours, "--agent", "ppo_foresight"]):
+        new = ["--out", tmp_path / "new", "--envs", "2", "--no-progress"]
+        assert "start = " in refused(train.main, "--start", *arguments, *new)
+    refused(publish.main, tmp_path / "run", "--limits", "none")
+    assert not mark.exists()
 
 
-HOSTILE = [
-    *[
-        (key, value)
-        for key in KEPT
-        for value in ([1], "x" * 9, {"a": 1}, -1, True, float("nan"))
-        if (key, value) != ("start", {"a": 1})
-    ],
-    *[(key, None) for key in ("view", "env_options", "num_timesteps", "gamma")],
-    ("recipe", "../../etc/passwd"),
-    ("recipe", "x" * 10**6),
-    ("recipe", None),
-    ("view", "os.system"),
-    ("gamma", 2),
-    ("num_timesteps", 1.5),
-    ("seen", 7),
-    ("seen", "x"),
-    ("env_options", {"opponent": "x.zip"}),
-    ("env_options", {"aim": ["target"]}),
-    ("env_options", {"action": "box"}),
-    ("env_options", {"physics": {"R": 1}}),
-    ("env_options", {"noise": {"aim": 1}}),
-    ("env_options", {"layout": 3}),
+HOSTILE = [(key, value) for key in KEPT for value in ([1], "x" * 9, {"a": 1}, -1, True, float("nan"))]
+HOSTILE.remove(("start", {"a": 1}))
+HOSTILE += [(key, None) for key in ("view", "env_options", "num_timesteps", "gamma", "recipe")]
+HOSTILE += [("recipe", "../../etc/passwd"), ("recipe", "x" * 10**6), ("view", "os.system"), ("gamma", 2)]
+HOSTILE += [("num_timesteps", 1.5), ("seen", 7), ("seen", "x")]
+HOSTILE += [
+    ("env_options", {name: value})
+    for name, value in (
+        ("opponent", "x.zip"),
+        ("aim", ["target"]),
+        ("action", "box"),
+        ("physics", {"R": 1}),
+        ("noise", {"aim": 1}),
+        ("layout", 3),
+    )
 ]
 
 
 @pytest.mark.parametrize(("key", "value"), HOSTILE)
 def test_wrong_figures_are_refused(plain, tmp_path, key, value):
-    file = rezipped(
-        plain, tmp_path / "wrong.zip", model_json=edited(lambda found: found.update({key: value}))
-    )
-    with pytest.raises(
-        ValueError,
-        match=rf"^agent = {str(file)!r}: must be a model (that train.py saved|of the current ppo_mask)",
-    ) as info:
+    change = edited(lambda found: found.update({key: value}))
+    file = rezipped(plain, tmp_path / "wrong.zip", model_json=change)
+    says = r"must be a model (that train.py saved|of the current ppo_mask)"
+    with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}") as info:
         load_player(file)
     assert type(info.value) is ValueError and len(str(info.value)) < 600
     assert key in str(info.value) or "older" in str(info.value)
@@ -161,11 +140,19 @@ def test_missing_figures_are_refused(plain, tmp_path, key):
         load_player(file)
 
 
-def saved(weights):
-    """Bytes of torch.save."""
-    file = io.BytesIO()
-    torch.save(weights, file)
-    return file.getvalue()
+def other_weights(change):
+    """A change of the bytes of a file of weights by a change of the weights in it."""
+
+    def changed(data):
+        file = io.BytesIO()
+        torch.save(change(torch.load(io.BytesIO(data), weights_only=True)), file)
+        return file.getvalue()
+
+    return changed
+
+
+def of_each(change):
+    return other_weights(lambda weights: {key: change(value) for key, value in weights.items()})
 
 
 def swollen(data):
@@ -184,31 +171,16 @@ OTHER = r"must be a model that train.py saved \(its policy.pth must hold weights
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (lambda weights: weights | {"more": torch.zeros(3)}, OLDER),
-        (lambda weights: dict(list(weights.items())[1:]), OLDER),
-        (lambda weights: {key: value[:1] for key, value in weights.items()}, OLDER),
-        (lambda weights: {key: value.half() for key, value in weights.items()}, OLDER),
-        (lambda weights: {key: torch.zeros_like(value).to_sparse() for key, value in weights.items()}, OLDER),
-        (lambda weights: {key: value * float("nan") for key, value in weights.items()}, OTHER),
-        (lambda weights: weights | {"more": 3}, OTHER),
-        (lambda weights: list(weights.values()), OTHER),
-        (lambda weights: {"a": re.compile("x")}, OTHER),
-        (lambda weights: {"a": np.zeros(3)}, OTHER),
-    ],
-)
-def test_wrong_weights_are_refused(plain, tmp_path, change, says):
-    file = rezipped(
-        plain,
-        tmp_path / "wrong.zip",
-        policy_pth=lambda data: saved(change(torch.load(io.BytesIO(data), weights_only=True))),
-    )
-    with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}"):
-        load_player(file)
-
-
-@pytest.mark.parametrize(
-    ("change", "says"),
-    [
+        (other_weights(lambda weights: weights | {"more": torch.zeros(3)}), OLDER),
+        (other_weights(lambda weights: dict(list(weights.items())[1:])), OLDER),
+        (of_each(lambda value: value[:1]), OLDER),
+        (of_each(lambda value: value.half()), OLDER),
+        (of_each(lambda value: torch.zeros_like(value).to_sparse()), OLDER),
+        (of_each(lambda value: value * float("nan")), OTHER),
+        (other_weights(lambda weights: weights | {"more": 3}), OTHER),
+        (other_weights(lambda weights: list(weights.values())), OTHER),
+        (other_weights(lambda weights: {"a": re.compile("x")}), OTHER),
+        (other_weights(lambda weights: {"a": np.zeros(3)}), OTHER),
         (None, OTHER),
         (lambda data: b"", OTHER),
         (lambda data: b"junk", OTHER),
@@ -217,7 +189,7 @@ def test_wrong_weights_are_refused(plain, tmp_path, change, says):
         (swollen, OLDER),
     ],
 )
-def test_weights_that_are_none_are_refused(plain, tmp_path, change, says):
+def test_wrong_weights_are_refused(plain, tmp_path, change, says):
     file = rezipped(plain, tmp_path / "wrong.zip", policy_pth=change)
     with pytest.raises(ValueError, match=rf"^agent = {str(file)!r}: {says}"):
         load_player(file)
@@ -234,36 +206,25 @@ def test_a_file_says_only_once_what_it_is(plain, tmp_path):
 
 def test_weights_are_handed_on(mask, plain):
     """From a run's file and from the published one, as ``--start`` does."""
+    its = MaskablePPO.load(mask, device="cpu").policy.state_dict()
     for file in (mask, plain):
-        recipe = Recipe.of("ppo_mask")
-        tables = training_tables(2, threads=1, **recipe.env_kwargs)
-        model = recipe.new_model(tables, 9)
+        model = made("ppo_mask", seed=9)
         load_weights(model, file)
-        tables.close()
         assert model.start == {"model": str(file), "shots": 77, "imitated": 300, "start": None}
-        its = MaskablePPO.load(mask, device="cpu").policy
-        assert all(
-            torch.equal(a, b) for a, b in zip(model.policy.parameters(), its.parameters(), strict=True)
-        )
+        weights = model.policy.state_dict()
+        assert its.keys() == weights.keys() and all(torch.equal(its[name], weights[name]) for name in its)
 
 
 def test_the_policy_of_a_judged_model_is_handed_on():
-    """``ppo_value`` holds the network of ``ppo_mask``, which goes on from it; the other way the value would
-    be missing."""
-    judged, models = PRETRAINED / "ppo_value.zip", []
-    for name in ("ppo_mask", "ppo_value"):
-        recipe = Recipe.of(name)
-        tables = training_tables(2, threads=1, **recipe.env_kwargs)
-        models.append(recipe.new_model(tables, 9))
-        tables.close()
-    load_weights(models[0], judged)
+    """``ppo_value`` holds the network of ``ppo_mask``, which goes on from it; the other way misses the value."""
+    judged, model = PRETRAINED / "ppo_value.zip", made("ppo_mask")
+    load_weights(model, judged)
     its = read(judged, "start").policy.state_dict()
-    assert all(torch.equal(its[name], weights) for name, weights in models[0].policy.state_dict().items())
-    assert models[0].start["model"] == str(judged) and models[0].recipe == "ppo_mask"
-    with pytest.raises(
-        ValueError, match=r"start = '.*ppo_mask.zip': must be a model of ppo_value, or .* not of ppo_mask"
-    ):
-        load_weights(models[1], PRETRAINED / "ppo_mask.zip")
+    assert all(torch.equal(its[name], weights) for name, weights in model.policy.state_dict().items())
+    assert model.start["model"] == str(judged) and model.recipe == "ppo_mask"
+    says = r"start = '.*ppo_mask.zip': must be a model of ppo_value, or .* not of ppo_mask"
+    with pytest.raises(ValueError, match=says):
+        load_weights(made("ppo_value"), PRETRAINED / "ppo_mask.zip")
 
 
 def test_a_model_of_another_maker_is_recognised(tmp_path):
@@ -278,9 +239,8 @@ def test_a_missing_library_is_not_called_an_old_model(mask, monkeypatch):
         patch.setitem(sys.modules, "torch", None)
         with pytest.raises(ImportError, match="torch"):
             load_player(mask)
-    monkeypatch.setattr(
-        "agents.learning.hyperparameters.policy", lambda name: importlib.import_module("no_such_library")
-    )
+    missing = partial(importlib.import_module, "no_such_library")
+    monkeypatch.setattr("agents.learning.hyperparameters.policy", lambda name: missing())
     with pytest.raises(ImportError, match="no_such_library"):
         load_player(mask)
 

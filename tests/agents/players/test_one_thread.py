@@ -1,10 +1,7 @@
-"""Does a decision take no more than its own thread? The processor time of all other threads, where simulated
-shots have one processor.
+"""Does a decision take no more than its own thread? Measured is the processor time of all other threads.
 
 Matrix products of NumPy and torch wake a thread for each core: a small network then takes several times the
-processor time, and where the cores are taken it waits. Players are asked in a fresh process, in which both
-libraries are told to use two threads.
-"""
+time. Players are asked in a fresh process, in which both libraries are told to use two threads."""
 
 import json
 import os
@@ -13,15 +10,8 @@ import pytest
 
 from tests.processes import ROOT, python
 
-PLAYERS = (
-    "planner_60",
-    "planner_value_60",
-    "planner_policy_60",
-    "ppo_mask",
-    "ppo_value",
-    "ppo_foresight",
-    "ppo_absolute",
-)
+PLAYERS = [f"planner{kind}_60" for kind in ("", "_value", "_policy")]
+PLAYERS += [f"ppo_{kind}" for kind in ("mask", "value", "foresight", "absolute")]
 MEASURE = """if True:
     import json, os, sys, time
     import numpy as np, torch
@@ -54,11 +44,9 @@ MEASURE = """if True:
 """
 
 
-@pytest.mark.skipif(
-    not hasattr(os, "sched_setaffinity"), reason="threads are bound to a processor on Linux alone"
-)
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="on Linux alone threads can be bound")
 def test_a_decision_takes_one_thread():
-    code = f"import sys; sys.argv[1:] = {list(PLAYERS)!r}\n{MEASURE}"
+    code = f"import sys; sys.argv[1:] = {PLAYERS!r}\n{MEASURE}"
     libraries = {name: "2" for name in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
     found = json.loads(python(code, at=ROOT, **libraries)[0])
     seen = [found.pop(library) for library in ("numpy", "torch")]

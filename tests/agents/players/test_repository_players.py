@@ -1,5 +1,4 @@
-"""Do the repository's players play as players, and are all of them, and its pre-trained models, found by
-name?"""
+"""Do the repository's players play as players, and are all of them known by name?"""
 
 import numpy as np
 import pytest
