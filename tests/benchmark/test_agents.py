@@ -1,10 +1,8 @@
-"""Whom can the benchmark judge? Names, models, classes and programs; and what becomes of those that fail, or
-of Ctrl-C."""
+"""Whom can the benchmark judge: names, models, classes and programs? And what becomes of those that fail?"""
 
 import json
 import shutil
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,8 +22,8 @@ from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.playing import BATCH
 from snooker_env.benchmark.results import strokes_of
 from snooker_env.players import VISITS, Strokes, decided
+from tests.processes import ROOT
 
-ROOT = Path(__file__).parents[2]
 EXAMPLE = f"program:{sys.executable} {ROOT / 'examples/program_player.py'}"
 HARD = TASKS["SnookerPotHard-v0"]
 
@@ -42,10 +40,8 @@ def test_the_example_of_a_class_plays(tmp_path, capsys, monkeypatch):
 
 @pytest.mark.parametrize("task", ["SnookerColours-v0", "SnookerEscape-v0", "SnookerFrame-v0"])
 def test_the_example_of_a_program_plays(tmp_path, task):
-    agent = Agent.of(EXAMPLE, training_shots=0, shots_declared=0)
-    result = judge(
-        TASKS[task], agent, episodes=2 if task == "SnookerFrame-v0" else 8, out=tmp_path / "one.json"
-    )
+    agent, many = Agent.of(EXAMPLE, training_shots=0, shots_declared=0), 2 if TASKS[task].frame else 8
+    result = judge(TASKS[task], agent, episodes=many, out=tmp_path / "one.json")
     assert result["incomplete"] is None and faults(result) == [], result["incomplete"]
     assert result["agent"]["label"] == "program_player" and result["agent"]["declared"]
     assert result["agent"]["class"] == "model_free"
@@ -61,37 +57,31 @@ def program(tmp_path, body):
 
 GOOD = 'print(json.dumps({"speed": 1.0, "aim": 0.0}), flush=True)'
 EACH = "for k, line in enumerate(sys.stdin):\n if k == 3: "
-TWICE = """'{"speed": 1.0, "aim": 0.0}' + chr(10)"""
-BROKEN = {
-    "dies": (f"{EACH}sys.exit(7)\n {GOOD}", "ended with exit code 7 instead of a stroke"),
-    "hangs": (f"{EACH}time.sleep(60)\n {GOOD}", "gave no stroke within 3 s"),
-    "says": (f"{EACH}print('hello', flush=True)\n {GOOD}", "answered 'hello', which is no stroke"),
-    "far": (
-        f'{EACH}print(\'{{"speed": 99, "aim": 0}}\', flush=True)\n {GOOD}',
-        "which is refused: speed = 99: must be a finite number in [0.2, 7]",
-    ),
-    "nominates": (
-        f'{EACH}print(\'{{"nominate": "blue"}}\', flush=True)\n {GOOD}',
-        "field = 'nominate': must be one of",
-    ),
-    "never reads": (
-        f"for k in range(3):\n sys.stdin.readline()\n {GOOD}\ntime.sleep(60)",
-        "gave no stroke within 3 s",
-    ),
-    "prints twice": (
-        f"GOOD = {TWICE}\nfor k, line in enumerate(sys.stdin):\n print(GOOD * (1 + (k == 2)), end='', flush=True)",
-        "without a state: one line for each",
-    ),
-    "prints without end": (
-        f"{EACH}\n  while True: sys.stdout.write('x' * 9999)\n {GOOD}",
-        "answered a line of more than 1,048,576 bytes",
-    ),
-}
+ANSWER = "for k, line in enumerate(sys.stdin):\n print(GOOD * (1 + (k == 2)), end='', flush=True)"
+TWICE = """GOOD = '{"speed": 1.0, "aim": 0.0}' + chr(10)\n""" + ANSWER
+SLEEPS = f"for k in range(3):\n sys.stdin.readline()\n {GOOD}\ntime.sleep(60)"
+FAR, NOMINATES = """'{"speed": 99, "aim": 0}'""", """'{"nominate": "blue"}'"""
+REFUSED = "which is refused: speed = 99: must be a finite number in [0.2, 7]"
 
 
-@pytest.mark.parametrize("how", BROKEN)
-def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tmp_path, capsys, how):
-    body, why = BROKEN[how]
+@pytest.mark.parametrize(
+    ("body", "why"),
+    [
+        (f"{EACH}sys.exit(7)\n {GOOD}", "ended with exit code 7 instead of a stroke"),
+        (f"{EACH}time.sleep(60)\n {GOOD}", "gave no stroke within 3 s"),
+        (f"{EACH}print('hello', flush=True)\n {GOOD}", "answered 'hello', which is no stroke"),
+        (f"{EACH}print({FAR}, flush=True)\n {GOOD}", REFUSED),
+        (f"{EACH}print({NOMINATES}, flush=True)\n {GOOD}", "field = 'nominate': must be one of"),
+        (SLEEPS, "gave no stroke within 3 s"),
+        (TWICE, "without a state: one line for each"),
+        (
+            f"{EACH}\n  while True: sys.stdout.write('x' * 9999)\n {GOOD}",
+            "answered a line of more than 1,048,576 bytes",
+        ),
+    ],
+    ids=str.split("dies hangs says far nominates never-reads prints-twice prints-without-end"),
+)
+def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tmp_path, capsys, body, why):
     agent, out = program(tmp_path, body), tmp_path / "one.json"
     arguments = ["run", "SnookerEscape-v0", "--agent", agent, "--episodes", "6", "--out", str(out)]
     assert main([*arguments, "--timeout", "3", "--training-shots", "0", "--simulated-shots", "0"]) == 1
@@ -105,17 +95,15 @@ def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tm
 
 
 def test_a_program_that_is_not_there(capsys):
-    assert (
-        main(["run", "SnookerEscape-v0", "--agent", "program:no-such-program-here", "--episodes", "6"]) == 1
-    )
+    name = "program:no-such-program-here"
+    assert main(["run", "SnookerEscape-v0", "--agent", name, "--episodes", "6"]) == 1
     assert "cannot be started" in capsys.readouterr().err
     with pytest.raises(AgentError, match="cannot be started"):
-        sn.player("program:no-such-program-here").at({}).play(sn.Position(cue=(0, 0), black=(0, 1)), [0])
+        sn.player(name).at({}).play(sn.Position(cue=(0, 0), black=(0, 1)), [0])
 
 
 def test_a_program_sees_the_state_of_the_protocol(tmp_path):
-    """What it gets is what the server of play answers, for the table of the episode, with a seed for what it
-    draws."""
+    """What it gets is what the server of play answers, with a seed for what it draws."""
     kept = tmp_path / "seen.jsonl"
     body = f"for line in sys.stdin:\n open({str(kept)!r}, 'a').write(line)\n {GOOD}"
     task, agent = TASKS["SnookerColours-v0"], Agent.of(program(tmp_path, body), training_shots=0)
@@ -337,9 +325,7 @@ def test_what_is_kept_is_what_was_played():
     for row, strokes in zip(result["rows"], kept, strict=True):
         env.reset(seed=row[1])
         assert env.step(strokes[0])[1] == row[2]
-    tables = sn.SnookerVectorEnv(1, HARD.judged(**VISITS))
-    tables.reset(seed=[result["rows"][0][1]])
-    exact = decided(
-        player, tables, np.ones(1, bool), sn.players.decision_seeds(0, np.array([result["rows"][0][1]]), 0)
-    )
+    tables, seed = sn.SnookerVectorEnv(1, HARD.judged(**VISITS)), result["rows"][0][1]
+    tables.reset(seed=[seed])
+    exact = decided(player, tables, np.ones(1, bool), sn.players.decision_seeds(0, np.array([seed]), 0))
     assert np.array_equal(kept[0], exact.astype(np.float32)) and not np.array_equal(kept[0], exact)

@@ -1,5 +1,4 @@
-"""Does ``check`` find what no run writes? Each field out of range, sources that do not fit, and what a page
-must not repeat."""
+"""Does ``check`` find what no run writes: fields out of range, wrong sources, and markup for the page?"""
 
 import copy
 from functools import cache
@@ -11,28 +10,23 @@ from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, figures_of, jud
 from snooker_env.benchmark.leaderboard import markdown_table, plain, profile
 from snooker_env.benchmark.results import packed, strokes_of
 from snooker_env.benchmark.schema import RANGES
+from tests.benchmark.records import put
 
 HUGE = 10**400
 
 
 @cache
 def sound():
-    """All episodes of random on the colours, by an agent of another name, which ``check`` does not ask
-    again."""
-    return judge(
-        TASKS["SnookerColours-v0"], Agent(label="any", sources=(sn.player("random"),), training_shots=0)
-    )
+    """All episodes of random on the colours, by a name that ``check`` does not ask again."""
+    agent = Agent(label="any", sources=(sn.player("random"),), training_shots=0)
+    return judge(TASKS["SnookerColours-v0"], agent)
 
 
 def changed(**fields):
     """The sound file with other values, ``part__name=value``."""
     record = copy.deepcopy(sound())
     for name, value in fields.items():
-        inner = record
-        *parts, last = name.split("__")
-        for part in parts:
-            inner = inner[part]
-        inner[last] = value
+        record = put(record, name.split("__"), value)
     return record
 
 
@@ -47,9 +41,8 @@ def test_an_empty_file_is_not_official():
 
 @pytest.mark.parametrize("sources", [[], [""], [7], ["a", None], [["a"]]])
 def test_sources_are_texts(sources):
-    assert "agent.sources: must be texts, one for each training seed" in faults(
-        changed(agent__sources=sources)
-    )
+    wrong = faults(changed(agent__sources=sources))
+    assert "agent.sources: must be texts, one for each training seed" in wrong
 
 
 def test_the_same_source_five_times_makes_nothing_surer():
@@ -59,11 +52,12 @@ def test_the_same_source_five_times_makes_nothing_surer():
     record["figures"] = figures_of(TASKS[record["task"]], "any", record["rows"])
     assert faults(record) == ["agent.sources: must be different: the same one twice makes nothing surer"]
     record["agent"]["sources"] = [f"{k}.zip" for k in range(5)]
-    assert faults(record) == [
-        "agent.sources: 0 and 1 must be different training seeds: their strokes are equal"
-    ]
+    equal = "agent.sources: 0 and 1 must be different training seeds: their strokes are equal"
+    assert faults(record) == [equal]
 
 
+OTHER = "must not be the name of another player"
+BEGINS = "strokes: run 0, table 1000000: search_60 begins with another stroke than the file"
 WRONG = [
     ("timing__seconds", float("nan"), "timing.seconds = nan: must be between 0"),
     ("machine__cores", 0, "machine.cores = 0: must be between 1"),
@@ -81,17 +75,9 @@ WRONG = [
     ("agent__simulated_shots", 7, "agent.simulated_shots = 7: must be 0.0"),
     ("timing__simulated_shots", 7, "agent.simulated_shots = 0.0: must be 0.00"),
     ("agent__sources", ["program:a"], "agent.class = 'model_free': must be 'undeclared'"),
-    (
-        "agent__sources",
-        ["search_60"],
-        "strokes: run 0, table 1000000: search_60 begins with another stroke than the file",
-    ),
-    ("agent__label", "random", "agent.label = 'random': must not be the name of another player"),
-    (
-        "agent__label",
-        "lookahead_120",
-        "agent.label = 'lookahead_120': must not be the name of another player",
-    ),
+    ("agent__sources", ["search_60"], BEGINS),
+    ("agent__label", "random", f"agent.label = 'random': {OTHER}"),
+    ("agent__label", "lookahead_120", f"agent.label = 'lookahead_120': {OTHER}"),
     ("protocol__episodes", 200_000, "protocol.episodes = 200000: must be at most 500 on SnookerColours-v0"),
 ]
 
@@ -106,9 +92,7 @@ def test_a_wrong_value_is_one_line_that_names_its_field(name, value, line):
 
 
 @pytest.mark.parametrize("name", [*RANGES, "figures.score.value", "figures.best", "figures.profile"])
-@pytest.mark.parametrize(
-    "value", [-1, HUGE, -HUGE, 1e999, 10**5000], ids=["-1", "huge", "-huge", "inf", "long"]
-)
+@pytest.mark.parametrize("value", [-1, HUGE, -HUGE, 1e999, 10**5000], ids=str.split("-1 huge -huge inf long"))
 def test_numbers_without_measure_are_lines_too(name, value):
     refused = faults(changed(**{name.replace(".", "__"): value}))
     assert any(line.startswith(name) for line in refused), refused
@@ -117,9 +101,7 @@ def test_numbers_without_measure_are_lines_too(name, value):
 @pytest.mark.parametrize("column", range(len(COLUMNS)))
 @pytest.mark.parametrize("value", [HUGE, 10**5000, -1], ids=["huge", "too long", "-1"])
 def test_numbers_without_measure_in_a_row(column, value):
-    record = changed()
-    record["rows"][3][column] = value
-    refused = faults(record)
+    refused = faults(put(sound(), ("rows", 3, column), value))
     assert refused and all(line.startswith("rows[3]") for line in refused), refused
 
 
@@ -168,9 +150,10 @@ def test_no_text_of_a_file_is_markup_of_the_page():
 def test_a_share_that_was_always_or_never_seen_stands_as_its_bound():
     """In the profile: at least the lower bound if always, at most the upper one if never."""
     task = TASKS["SnookerColours-v0"]
-    rows = [[0, seed, 27, 6, 27, 6, 0, 1, 0, 1] for seed in task.seeds(30)]
-    always = changed(rows=rows, figures=figures_of(task, "random", rows))
-    rows = [[0, seed, 0, 1, 0, 0, 0, 0, 0, 1] for seed in task.seeds(30)]
-    never = changed(rows=rows, figures=figures_of(task, "random", rows))
-    assert profile([always], task)[1][0][1:] == [">= 90.5"] * 6 + ["27"]
-    assert profile([never], task)[1][0][1:] == ["<= 9.5"] * 6 + ["0"]
+    for row, shares, best in (
+        ([27, 6, 27, 6, 0, 1, 0, 1], ">= 90.5", "27"),
+        ([0, 1, 0, 0, 0, 0, 0, 1], "<= 9.5", "0"),
+    ):
+        rows = [[0, seed, *row] for seed in task.seeds(30)]
+        record = changed(rows=rows, figures=figures_of(task, "random", rows))
+        assert profile([record], task)[1][0][1:] == [shares] * 6 + [best]

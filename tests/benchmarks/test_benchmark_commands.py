@@ -1,5 +1,4 @@
-"""Do the benchmarks behave as commands? Help, Ctrl-C, libraries that are missing, files that cannot be
-written, a terminal of ASCII."""
+"""Do the benchmarks behave as commands, with help, Ctrl-C, missing libraries and what cannot be written?"""
 
 import errno
 import json
@@ -16,14 +15,11 @@ import numpy as np
 import pytest
 
 from benchmarks._common import command as _command
+from tests.processes import ROOT
 
-ROOT = Path(__file__).parents[2]
-FOLDER = ROOT / "benchmarks"
-FILES = {file.stem: file for file in FOLDER.glob("*.py") if not file.name.startswith("_")}
-FOLDERS = {
-    file.parent.name: file for file in FOLDER.glob("*/command.py") if not file.parent.name.startswith("_")
-}
-COMMANDS = sorted(FILES | FOLDERS)
+NAMES = [file.stem for file in (ROOT / "benchmarks").glob("*.py")]
+NAMES += [file.parent.name for file in (ROOT / "benchmarks").glob("*/command.py")]
+COMMANDS = sorted(name for name in NAMES if not name.startswith("_"))
 WITHOUT_CHANCE = ("film", "left_out", "nap", "paper", "pockets", "web")
 
 
@@ -79,9 +75,8 @@ def test_ctrl_c_is_one_line_and_leaves_no_file(tmp_path):
 
 def test_ctrl_c_while_libraries_are_loaded_is_one_line_too(tmp_path):
     """A numpy that takes long to load and says that it does."""
-    (tmp_path / "numpy.py").write_text(
-        f"import time\nopen({str(tmp_path / 'loading')!r}, 'w').close()\ntime.sleep(60)"
-    )
+    begins = f"open({str(tmp_path / 'loading')!r}, 'w').close()"
+    (tmp_path / "numpy.py").write_text(f"import time\n{begins}\ntime.sleep(60)")
     process = started("make_opened", PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]))
     give_up = time.monotonic() + 60
     while not (tmp_path / "loading").exists() and time.monotonic() < give_up:
@@ -97,9 +92,8 @@ def test_a_file_that_cannot_be_written_is_refused_before_the_work(tmp_path, wher
     start = time.perf_counter()
     code, out, err = ended(started("paper", "--no-pictures", "--json", place))
     assert code == 2 and out == "" and time.perf_counter() - start < 120
-    assert re.search(
-        re.escape(f"error: json = {str(place)!r}: must be a file that can be written (") + r"\S.*\)\n$", err
-    ), err
+    says = re.escape(f"error: json = {str(place)!r}: must be a file that can be written (")
+    assert re.search(says + r"\S.*\)\n$", err), err
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
@@ -111,38 +105,36 @@ def test_a_full_disk_is_said_in_one_line():
 
 
 def test_what_is_printed_is_written_beside_the_pictures(tmp_path):
-    code, out, err = ended(
-        started("paper", "--out", tmp_path / "new", "--json", tmp_path / "new" / "figures.json")
-    )
-    assert (code, err) == (0, "") and (tmp_path / "new" / "paper.txt").read_text() == out
-    assert {file.name for file in (tmp_path / "new").iterdir()} == set(
-        str.split("paper.txt paper.png paper_data.png figures.json")
-    )
+    new = tmp_path / "new"
+    code, out, err = ended(started("paper", "--out", new, "--json", new / "figures.json"))
+    assert (code, err) == (0, "") and (new / "paper.txt").read_text() == out
+    assert {file.name for file in new.iterdir()} == {
+        "paper.txt",
+        "paper.png",
+        "paper_data.png",
+        "figures.json",
+    }
     code, out, _ = ended(started("left_out", "--out", tmp_path, "--json", tmp_path / "l.json"))
     assert code == 0 and (tmp_path / "left_out.txt").read_text() == out
-    assert set(json.loads((tmp_path / "l.json").read_text())) == set(
-        str.split("air level unequal kicks airborne double_hits")
-    )
+    names = {"air", "level", "unequal", "kicks", "airborne", "double_hits"}
+    assert set(json.loads((tmp_path / "l.json").read_text())) == names
 
 
-MISSING = [
-    ("paper", "scipy", 'scipy is missing; in a clone of the repository:  pip install -e ".[test]"'),
-    (
-        "pictures",
-        "pygame",
-        f'pictures need pygame-ce; install it, in the clone {ROOT}, with: pip install -e ".[render]"',
-    ),
-]
+WITH = f'pictures need pygame-ce; install it, in the clone {ROOT}, with: pip install -e ".[render]"'
 
 
-@pytest.mark.parametrize(("name", "library", "said"), MISSING)
+@pytest.mark.parametrize(
+    ("name", "library", "said"),
+    [
+        ("paper", "scipy", 'scipy is missing; in a clone of the repository:  pip install -e ".[test]"'),
+        ("pictures", "pygame", WITH),
+    ],
+)
 def test_a_library_that_is_missing_is_named_and_how_to_install_it(tmp_path, name, library, said):
-    (tmp_path / f"{library}.py").write_text(
-        f"raise ModuleNotFoundError('No module named {library}', name='{library}')"
-    )
-    code, out, err = ended(started(name, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])))
-    assert (code, out) == (1, "")
-    assert err == said + "\n"
+    error = f"raise ModuleNotFoundError('No module named {library}', name='{library}')"
+    (tmp_path / f"{library}.py").write_text(error)
+    done = ended(started(name, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])))
+    assert done == (1, "", said + "\n")
 
 
 def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
