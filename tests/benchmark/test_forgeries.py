@@ -17,17 +17,15 @@ from snooker_env.benchmark import (
     COLUMNS,
     TASKS,
     Agent,
-    afresh,
     arithmetic,
-    faults,
     figures_of,
     judge,
     read_result,
-    replayed,
     schema,
     write_result,
 )
 from snooker_env.benchmark.__main__ import main
+from snooker_env.benchmark.checking import afresh, faults, replayed
 from snooker_env.benchmark.results import completed, packed, strokes_of
 from snooker_env.benchmark.schema import DATE, FIELDS, PACKAGES, UNPROVED
 from snooker_env.geometry import POCKET_AIMS

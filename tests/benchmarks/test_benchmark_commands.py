@@ -108,12 +108,8 @@ def test_what_is_printed_is_written_beside_the_pictures(tmp_path):
     new = tmp_path / "new"
     code, out, err = ended(started("paper", "--out", new, "--json", new / "figures.json"))
     assert (code, err) == (0, "") and (new / "paper.txt").read_text() == out
-    assert {file.name for file in new.iterdir()} == {
-        "paper.txt",
-        "paper.png",
-        "paper_data.png",
-        "figures.json",
-    }
+    files = sorted(file.name for file in new.iterdir())
+    assert files == ["figures.json", "paper.png", "paper.txt", "paper_data.png"]
     code, out, _ = ended(started("left_out", "--out", tmp_path, "--json", tmp_path / "l.json"))
     assert code == 0 and (tmp_path / "left_out.txt").read_text() == out
     names = {"air", "level", "unequal", "kicks", "airborne", "double_hits"}

@@ -5,17 +5,8 @@ import pytest
 
 import snooker_env as sn
 from benchmarks.pockets import openings, pool_tables, rail_paths
-from benchmarks.pockets.windows import (
-    CORNER,
-    MIDDLE,
-    Engine,
-    LonePocket,
-    Paths,
-    alone,
-    drops,
-    endless,
-    windows,
-)
+from benchmarks.pockets import windows as pocket_windows
+from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, Paths, alone, drops, windows
 from snooker_env.game import pots
 from tests.kernels import from_python
 
@@ -146,9 +137,9 @@ def test_slow_mirrors_are_alciatore_s_pockets_on_the_pool9_table():
         jaws, fall = table.jaws[4 * k : 4 * k + 4], table.falls[k]
         mouth = jaws[jaws[:, 2] == 0.0, :2].mean(axis=0)
         axis = np.arctan2(*(fall[:2] - mouth)[::-1])
-        noses = endless(table.noses, *mouth)
+        noses = pocket_windows.endless(table.noses, *mouth)
         assert len(noses) == 2
-        here = LonePocket(sn.Table(kind, noses, jaws, fall[None]), tuple(mouth), float(axis))
+        here = pocket_windows.LonePocket(sn.Table(kind, noses, jaws, fall[None]), tuple(mouth), float(axis))
         paths = Paths(np.radians(angles), pool_tables.DISTANCE, 0.1, False, False)
         inches = windows(here, paths, physics).width / pool_tables.INCH
         assert inches == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)

@@ -18,12 +18,8 @@ def evaluated(trained, ghost):
 def keep(folder, **changes):
     """A run as train.py keeps it."""
     folder.mkdir()
-    run = {
-        "steps": 1000,
-        "seconds": 700.0,
-        "imitation": [{"states": 50, "seconds": 100.0, "loss": 1.0}],
-        "curve": [{"steps": 0, "points": 2.0}, {"steps": 100, "points": 0.0}, {"steps": 500, "points": 3.5}],
-    }
+    run = {"steps": 1000, "seconds": 700.0, "imitation": [{"states": 50, "seconds": 100.0, "loss": 1.0}]}
+    run["curve"] = [{"steps": at, "points": points} for at, points in ((0, 2.0), (100, 0.0), (500, 3.5))]
     (folder / "results.json").write_text(json.dumps(run | evaluated(4.0, 5.0) | changes))
     return folder
 

@@ -145,18 +145,12 @@ def test_a_published_model_is_replaced_only_when_asked(run, refused):
     assert b"second" in card.read_bytes()
 
 
-@pytest.mark.parametrize(
-    ("setting", "value"),
-    [
-        ("set", ["gamma=0"]),
-        ("noise", "club"),
-        ("start", "runs/a"),
-        ("fidelity", "standard"),
-        ("fidelity", "fast"),
-    ],
-)
-def test_another_way_to_train_needs_another_name(run, refused, setting, value):
-    write(run, {setting: value})
+FIDELITIES = {"fidelity": "standard"}, {"fidelity": "fast"}
+
+
+@pytest.mark.parametrize("settings", [{"set": ["gamma=0"]}, {"noise": "club"}, {"start": "a"}, *FIDELITIES])
+def test_another_way_to_train_needs_another_name(run, refused, settings):
+    write(run, settings)
     assert "name = None: must be given" in refused(publish.main, run, "--limits", "none")
     assert published(run) == []
     publish.main([str(run), "--limits", "none", "--name", "other"])

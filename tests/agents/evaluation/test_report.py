@@ -144,15 +144,9 @@ def result(layout="held_out", runs=1, counted=None, **figures):
     nothing = dict.fromkeys([*report.SHARES, *points], figure(None))
     amounts = {"visits": 30, "runs": runs, "strokes": 60, "ms_a_decision": 1.0, "longest_break": 7}
     shown = {name: figure(value) for name, value in figures.items()}
-    return {
-        **PLAYED,
-        **amounts,
-        **({"counted": counted} if counted else {}),
-        "agent": "a",
-        "layout": layout,
-        "ratios": {},
-        "figures": nothing | {"pots_a_visit": figure(1.0, 0.9, 1.1)} | shown,
-    }
+    found = nothing | {"pots_a_visit": figure(1.0, 0.9, 1.1)} | shown
+    known = {"counted": counted} if counted else {}
+    return PLAYED | amounts | known | {"agent": "a", "layout": layout, "ratios": {}, "figures": found}
 
 
 def test_the_bound_of_what_was_never_seen_is_clopper_and_pearsons():

@@ -3,15 +3,8 @@
 import numpy as np
 import pytest
 
-from agents.evaluation.tournament_figures import (
-    ANCHOR_ELO,
-    COLUMNS,
-    COUNTED,
-    KEYS,
-    figures_of,
-    pairs_of,
-    schedule,
-)
+from agents.evaluation import tournament_figures
+from agents.evaluation.tournament_figures import ANCHOR_ELO, COLUMNS, COUNTED, figures_of, schedule
 from agents.evaluation.tournament_strengths import ELO, bound, chance, compared, linked, strengths
 from snooker_env.benchmark import unseen
 
@@ -27,16 +20,13 @@ def row(first, second, seed, opener, winner, frame=0, **changes):
 
 def invented(t, seeds, rng):
     """Rows of players with these strengths."""
-    return [
-        row(a, b, seed, opener, int(rng.random() > chance(t[a] - t[b])))
-        for a, b in schedule(t)
-        for seed in range(seeds)
-        for opener in (0, 1)
-    ]
+    frames = [(a, b, seed, opener) for a, b in schedule(t) for seed in range(seeds) for opener in (0, 1)]
+    return [row(*frame, int(rng.random() > chance(t[frame[0]] - t[frame[1]]))) for frame in frames]
 
 
 def test_the_columns_are_those_of_both_players():
-    assert len(COLUMNS) == len(KEYS) + 2 * len(COUNTED) == len(row(0, 1, 0, 0, 0))
+    keys = tournament_figures.KEYS
+    assert len(COLUMNS) == len(keys) + 2 * len(COUNTED) == len(row(0, 1, 0, 0, 0))
     assert COLUMNS[6:8] == ("points_first", "points_second")
 
 
@@ -88,10 +78,7 @@ def test_intervals_are_those_of_seeds_drawn_together():
         drawn.append([wins[0].sum() / (4 * n), ANCHOR_ELO + ELO * (s[0] - s[1])])
     bounds, a = np.quantile(drawn, [0.025, 0.975], axis=0).T, found["players"]["a"]
     for name, (low, high), near in zip(("win_rate", "elo"), bounds, (0.01, 8), strict=True):
-        assert (a[name]["low"], a[name]["high"]) == (
-            pytest.approx(low, abs=near),
-            pytest.approx(high, abs=near),
-        )
+        assert [a[name]["low"], a[name]["high"]] == pytest.approx([low, high], abs=near)
 
 
 def test_intervals_of_elo_cover_the_truth():
@@ -131,7 +118,8 @@ def test_part_of_a_tournament_has_figures_too():
     """Pairs that were not played: who cannot be reached from the anchor has no Elo."""
     rows = [row(0, 1, seed, opener, opener) for seed in range(5) for opener in (0, 1)]
     found = figures_of(["a", "b", "c", "d"], rows, "a")
-    assert found["players"]["c"] is None and len(found["pairs"]) == 1 == len(pairs_of(rows))
+    assert found["players"]["c"] is None and len(found["pairs"]) == 1
+    assert len(tournament_figures.pairs_of(rows)) == 1
     found = figures_of(["a", "b", "c", "d"], rows + [[2, 3, *r[2:]] for r in rows], "a")
     assert found["players"]["c"]["elo"]["value"] is None
     assert found["players"]["b"]["elo"]["value"] == pytest.approx(ANCHOR_ELO)

@@ -1,5 +1,4 @@
-"""Is ``FastPPO`` the algorithm of sb3-contrib: the same advantages, updates and files, and the same weights
-from the same seed?"""
+"""Is ``FastPPO`` the algorithm of sb3-contrib: the same advantages, updates, files, and weights of a seed?"""
 
 import io
 
@@ -18,11 +17,8 @@ TABLES = 8
 
 def made(agent="ppo_mask", seed=0, **changes):
     """An untrained agent on a few tables."""
-    changed = [
-        f"{key}={value}"
-        for key, value in ({"n_steps": 16, "n_epochs": 2, "batch_size": 64} | changes).items()
-    ]
-    recipe = Recipe.of(agent, changed, n_envs=TABLES)
+    changes = {"n_steps": 16, "n_epochs": 2, "batch_size": 64} | changes
+    recipe = Recipe.of(agent, [f"{key}={value}" for key, value in changes.items()], n_envs=TABLES)
     return recipe.new_model(training_tables(TABLES, threads=1, view=recipe.view, **recipe.env_kwargs), seed)
 
 
@@ -39,23 +35,19 @@ def weights(model):
 
 @pytest.mark.parametrize("agent", ["ppo_mask", "ppo_value"])
 def test_an_update_is_that_of_sb3(agent):
-    """Of the same rollout in one minibatch, whose order does not matter, by gradient descent: Adam would
-    enlarge rounding errors.
+    """Of one rollout in one minibatch, by gradient descent: Adam would enlarge rounding errors.
 
-    Weights of order 0.1 in float32 allow 1e-6; the update moves them by a thousand times as much.
-    """
+    Weights of order 0.1 in float32 allow 1e-6; the update moves them by a thousand times as much."""
     found, before, said = [], None, []
     for train in (FastPPO.train, MaskablePPO.train):
         model = with_rollout(made(agent, batch_size=16 * TABLES, learning_rate=0.3, vf_coef=0.5))
-        model.policy.optimizer = torch.optim.SGD(
-            [p for n, p in model.policy.named_parameters() if not n.startswith("position_value.")]
-        )
+        learned = [p for n, p in model.policy.named_parameters() if not n.startswith("position_value.")]
+        model.policy.optimizer = torch.optim.SGD(learned)
         before = weights(model)
         train(model)
         found.append(weights(model))
-        said.append(
-            {name: value for name, value in model.logger.name_to_value.items() if name.startswith("train/")}
-        )
+        figures = model.logger.name_to_value
+        said.append({name: figures[name] for name in figures if name.startswith("train/")})
     assert (found[0] - found[1]).abs().max() < 1e-6 and (found[0] - before).abs().max() > 1e-3
     assert said[0].keys() == said[1].keys() and len(said[0]) == 10
     for name, value in said[1].items():
@@ -63,8 +55,7 @@ def test_an_update_is_that_of_sb3(agent):
 
 
 def test_each_epoch_uses_every_shot_once_in_minibatches(monkeypatch):
-    """And scales the advantages of each minibatch by itself, as SB3 does; the last of 128 shots in tens has
-    eight."""
+    """And scales the advantages of each minibatch by itself, as SB3 does; the last of 128 in tens has eight."""
     model, met = with_rollout(made(batch_size=10)), []
     advantages = model.rollout_buffer.advantages.reshape(-1).copy()
 
@@ -96,17 +87,12 @@ def test_the_buffer_is_sb3s_with_masks_as_bool():
     own, (n, k) = model.rollout_buffer, (model.n_steps, TABLES)
     assert isinstance(own, BoolMasks) and own.action_masks.dtype == np.bool_
     assert own.action_masks.shape == (n, k, 540)
-    other = MaskableRolloutBuffer(
-        n, own.observation_space, own.action_space, "cpu", own.gae_lambda, own.gamma, k
-    )
+    spaces = own.observation_space, own.action_space
+    other = MaskableRolloutBuffer(n, *spaces, "cpu", own.gae_lambda, own.gamma, k)
     for t in range(n):
         parts = own.observations[t], own.actions[t], own.rewards[t], own.episode_starts[t]
-        other.add(
-            *parts,
-            torch.as_tensor(own.values[t]),
-            torch.as_tensor(own.log_probs[t]),
-            action_masks=own.action_masks[t],
-        )
+        figures = torch.as_tensor(own.values[t]), torch.as_tensor(own.log_probs[t])
+        other.add(*parts, *figures, action_masks=own.action_masks[t])
     last = model.policy.predict_values(torch.as_tensor(model._last_obs)).detach()
     other.compute_returns_and_advantage(last, model._last_episode_starts)
     for name in ("advantages", "returns", "observations", "actions"):
@@ -155,10 +141,7 @@ def test_its_files_are_read_by_sb3_and_learning_goes_on(agent):
         file.seek(0)
         again = read.load(file, env=model.env, device="cpu")
         assert torch.equal(weights(again), weights(model))
-        masks = np.array(model.env.env_method("action_masks"))
-        actions = [
-            m.predict(model._last_obs, action_masks=masks, deterministic=True)[0] for m in (again, model)
-        ]
-        assert np.array_equal(*actions)
+        seen = {"action_masks": np.array(model.env.env_method("action_masks")), "deterministic": True}
+        assert np.array_equal(*(one.predict(model._last_obs, **seen)[0] for one in (again, model)))
         again.learn(16)
         assert not torch.equal(weights(again), weights(model))

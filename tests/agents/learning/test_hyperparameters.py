@@ -41,12 +41,8 @@ def test_masks_are_those_of_the_view():
     masks, all_masks = np.array(tables.env_method("action_masks")), tables.unwrapped.tables.action_masks()
     assert (masks.sum(1) > 0).any() and (masks.sum(1) < all_masks.sum(1)).any()
     assert not (masks & ~all_masks).any()
-    there = (
-        seen[:, pot_view.SHOWN :].reshape(4, lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)[
-            :, :, lookahead_features.THERE
-        ]
-        > 0
-    )
+    rows = seen[:, pot_view.SHOWN :].reshape(4, lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)
+    there = rows[:, :, lookahead_features.THERE] > 0
     for row, looked_at in zip(masks, there, strict=True):
         assert set(np.flatnonzero(row)) == set(lookahead_features.PICKS[looked_at])
     assert np.array_equal(tables.env_method("action_masks", indices=[2])[0], masks[2])

@@ -29,6 +29,11 @@ def learner(own, n=N, seed=0, threads=1):
     return JudgedChoices(own, OPTIONS, threads, n, np.random.default_rng(seed))
 
 
+def flat(network):
+    """All its weights."""
+    return torch.cat([p.detach().clone().flatten() for p in network.parameters()])
+
+
 def some(n=N, seed=0, layout="random:6"):
     return Positions.of(tables(n, layout=layout, seed=seed))
 
@@ -36,17 +41,15 @@ def some(n=N, seed=0, layout="random:6"):
 def played(own, at):
     """What the policy's best choices lead to, without errors."""
     masks = action_masks(at)
+    seen = torch.as_tensor(with_pots(at.observations()))
     with torch.no_grad():
-        scores = own.get_distribution(
-            torch.as_tensor(with_pots(at.observations())), masks
-        ).distribution.logits.numpy()
+        scores = own.get_distribution(seen, masks).distribution.logits.numpy()
     picks = np.where(masks, scores, -np.inf).argmax(axis=1)
     return Planner({"action": "discrete", "fidelity": "fast"}, threads=1).play(at, np.arange(len(at)), picks)
 
 
 def test_the_policy_prefers_what_the_judge_likes():
-    """Two judges, one for each end of the table: both policies leave the cue ball where it pays, and still
-    pot."""
+    """Two judges, one for each end of the table: both policies leave the cue ball where it pays, and pot."""
     ends, made, fresh = [], [], some(200, seed=99)
     for sign in (-1.0, 1.0):
         own = policy()
@@ -109,15 +112,12 @@ def test_a_choice_is_worth_its_points_and_what_the_judge_says_of_what_it_leaves(
 def test_the_value_of_positions_is_not_touched():
     """It learns apart: the policy's rounds leave its weights as they are."""
     own = policy()
-    before = [p.detach().clone() for p in own.position_value.parameters()]
-    reader = torch.cat([p.detach().flatten() for p in own.features_extractor.parameters()])
+    value, reader = flat(own.position_value), flat(own.features_extractor)
     learning = learner(own, 16)
     for k in range(2):
         learning.round(some(16, seed=k), lambda left: np.zeros(len(left)), 1.0)
-    assert all(torch.equal(a, b) for a, b in zip(before, own.position_value.parameters(), strict=True))
-    assert not torch.equal(
-        reader, torch.cat([p.detach().flatten() for p in own.features_extractor.parameters()])
-    )
+    assert torch.equal(value, flat(own.position_value))
+    assert not torch.equal(reader, flat(own.features_extractor))
     learning.round(some(16), lambda left: np.zeros(len(left)), 0.5)
     assert [group["lr"] for group in learning._optimizer.param_groups] == [pytest.approx(0.5 * RATE)]
 
@@ -152,7 +152,5 @@ def test_it_goes_on_from_a_saved_state_bit_for_bit_on_any_number_of_threads(stop
     second._rng.bit_generator.state = generator
     second.set_state(state)
     go_on(second, range(stop, 4))
-    assert all(
-        torch.equal(a, b) for a, b in zip(first_policy.parameters(), second_policy.parameters(), strict=True)
-    )
+    assert torch.equal(flat(first_policy), flat(second_policy))
     assert list(first.losses) == list(second.losses)

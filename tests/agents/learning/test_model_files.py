@@ -65,14 +65,8 @@ def test_every_recipe_is_read_from_its_file_and_no_pickle_of_it_runs(name, tmp_p
     assert torch.equal(torch.get_rng_state(), before) and not (tmp_path / "mark").exists()
     (tmp_path / "plain.zip").write_bytes(packed(trained))
     seen = np.random.default_rng(0).uniform(-1, 1, (16, *model.observation_space.shape)).astype(np.float32)
-    wanted = {
-        "recipe": name,
-        "view": Recipe.of(name).view,
-        "num_timesteps": 77,
-        "gamma": model.gamma,
-        "seed": 3,
-    }
-    wanted |= {"imitated": 300, "start": None}
+    wanted = {"recipe": name, "view": Recipe.of(name).view, "num_timesteps": 77, "gamma": model.gamma}
+    wanted |= {"seed": 3, "imitated": 300, "start": None}
     for one in (trained, read(tmp_path / "plain.zip", "agent")):
         assert {key: getattr(one, key) for key in wanted} == wanted
         assert one.env_options == model.env_options and one.action_space == model.action_space
@@ -109,17 +103,9 @@ HOSTILE.remove(("start", {"a": 1}))
 HOSTILE += [(key, None) for key in ("view", "env_options", "num_timesteps", "gamma", "recipe")]
 HOSTILE += [("recipe", "../../etc/passwd"), ("recipe", "x" * 10**6), ("view", "os.system"), ("gamma", 2)]
 HOSTILE += [("num_timesteps", 1.5), ("seen", 7), ("seen", "x")]
-HOSTILE += [
-    ("env_options", {name: value})
-    for name, value in (
-        ("opponent", "x.zip"),
-        ("aim", ["target"]),
-        ("action", "box"),
-        ("physics", {"R": 1}),
-        ("noise", {"aim": 1}),
-        ("layout", 3),
-    )
-]
+OPTIONS = {"opponent": "x.zip", "aim": ["target"], "action": "box", "physics": {"R": 1}, "layout": 3}
+OPTIONS["noise"] = {"aim": 1}
+HOSTILE += [("env_options", {name: value}) for name, value in OPTIONS.items()]
 
 
 @pytest.mark.parametrize(("key", "value"), HOSTILE)

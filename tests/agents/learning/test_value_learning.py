@@ -1,6 +1,7 @@
 """Are the value's targets those of the docstring, recomputed by hand, and does the network come to them?"""
 
 import pickle
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -20,8 +21,7 @@ def learner(n, seed=0):
 
 
 def a_round(n, rng, scale=1.0):
-    """Features, features of what is left, points, whether the visit went on, whether its first sample was
-    followed."""
+    """Features, those of what is left, points, whether it went on, whether its first sample was followed."""
     goes_on = rng.random((n, SAMPLES)) < 0.6
     after = (rng.normal(0, scale, (n, SAMPLES, SIZE)) * goes_on[..., None]).astype(np.float16)
     points = np.where(goes_on, rng.integers(1, 8, (n, SAMPLES)), 0).astype(np.float64)
@@ -51,27 +51,22 @@ def worth(network, row):
 
 
 def by_hand(network, rounds):
-    """Targets (rounds, n): backup of each round, and 0.7 of how far the next round's target was from its
-    value, if it followed."""
+    """Targets (rounds, n): each round's backup, and 0.7 of how far the next target was from its value."""
     n = len(rounds[0][0])
     targets = np.zeros((len(rounds), n))
     for i in range(n):
         for t in reversed(range(len(rounds))):
             _, after, points, goes_on, follows = rounds[t]
-            gains = [
-                points[i, j] + (worth(network, after[i, j]) if goes_on[i, j] else 0.0) for j in range(SAMPLES)
-            ]
-            targets[t, i] = sum(gains) / SAMPLES
+            gains = [goes_on[i, j] * worth(network, after[i, j]) for j in range(SAMPLES)]
+            targets[t, i] = (sum(gains) + points[i].sum()) / SAMPLES
             if follows[i] and t + 1 < len(rounds):
-                targets[t, i] += 0.7 * (
-                    targets[t + 1, i] - worth(network, rounds[t + 1][0][i].astype(np.float16))
-                )
+                value = worth(network, rounds[t + 1][0][i].astype(np.float16))
+                targets[t, i] += 0.7 * (targets[t + 1, i] - value)
     return targets
 
 
 def test_the_targets_recomputed():
-    """Four rounds of nine tables: some visits go on through all of them, some end, some are cut by an
-    exploratory stroke."""
+    """Four rounds of nine tables: visits that go on, that end, or that an exploratory stroke cuts."""
     rng, learning = np.random.default_rng(3), learner(9)
     rounds = [a_round(9, rng) for _ in range(4)]
     for one in rounds:
@@ -90,8 +85,7 @@ def test_the_targets_recomputed():
 
 
 def test_the_first_targets_are_returns():
-    """Points, and what followed as far as it is known; beyond it, and beyond an exploratory stroke, a
-    guess."""
+    """Points and what followed; beyond what is known, and beyond an exploratory stroke, a guess."""
     rng, learning = np.random.default_rng(2), learner(6)
     rounds = [a_round(6, rng) for _ in range(3)]
     for one in rounds:
@@ -112,9 +106,8 @@ def test_the_oldest_rounds_are_forgotten(monkeypatch):
     for one in rounds:
         learning.add(*one)
     assert len(learning._rounds) == 4
-    assert learning._targets().reshape(4, 5) == pytest.approx(
-        by_hand(layers(learning), rounds[3:]), rel=1e-3, abs=2e-3
-    )
+    expected = by_hand(layers(learning), rounds[3:])
+    assert learning._targets().reshape(4, 5) == pytest.approx(expected, rel=1e-3, abs=2e-3)
 
 
 def test_nothing_given_is_changed():
@@ -127,11 +120,9 @@ def test_nothing_given_is_changed():
 
 
 def test_the_network_learns_a_known_value():
-    """Strokes that end the visit: with one feature the mean is 7 points, without it 1, and a second says how
-    many samples score.
+    """Strokes that end the visit: one feature says if they bring 7 points or 1, a second how many score.
 
-    Then the loss falls, V comes to the mean, and P to the share of samples that score.
-    """
+    Then the loss falls, V comes to the mean, and P to the share of samples that score."""
     rng, n, learning = np.random.default_rng(0), 64, learner(64)
     nothing = np.zeros((n, 8, SIZE), np.float16)
 
@@ -140,13 +131,8 @@ def test_the_network_learns_a_known_value():
         seen[:, :3] = rng.integers(0, 2, (n, 3))
         made = rng.random((n, 8)) < np.where(seen[:, 1] > 0, 0.9, 0.3)[:, None]
         seen[:, LOGIT] = 0.5
-        return (
-            seen,
-            nothing,
-            made * np.where(seen[:, 0] > 0, 7.0, 1.0)[:, None],
-            np.zeros((n, 8), bool),
-            np.zeros(n, bool),
-        )
+        points = made * np.where(seen[:, 0] > 0, 7.0, 1.0)[:, None]
+        return seen, nothing, points, np.zeros((n, 8), bool), np.zeros(n, bool)
 
     for _ in range(30):
         learning.add(*play())
@@ -166,8 +152,7 @@ def test_the_network_learns_a_known_value():
 
 
 def test_each_member_learns_from_batches_of_its_own():
-    """Members that start alike are apart after a fit, and each moves as fast as a network that learns
-    alone."""
+    """Members that start alike are apart after a fit, each as far from it as a network that learns alone."""
     rng, learning = np.random.default_rng(4), learner(16)
     alone = ValueLearning(ValueNetwork(members=1), SPREAD, 16, np.random.default_rng(0))
     with torch.no_grad():
@@ -180,23 +165,19 @@ def test_each_member_learns_from_batches_of_its_own():
         for given in rounds:
             one.add(*given)
         one.fit(1.0)
-    moved = [
-        (p - start).flatten(1).norm(dim=1)
-        for p, start in zip(learning._network.parameters(), before, strict=True)
-    ]
-    whole = torch.stack(moved).norm(dim=0)
-    own = torch.stack(
-        [(p - start).norm() for p, start in zip(alone._network.parameters(), before, strict=True)]
-    ).norm()
-    assert all(
-        not torch.equal(p[a], p[b]) for p in learning._network.weights for a in range(4) for b in range(a)
-    )
-    assert whole.tolist() == pytest.approx([own.item()] * 4, rel=0.15)
+
+    def moved(one):
+        """How far each member came."""
+        pairs = zip(one._network.parameters(), before, strict=True)
+        return torch.stack([(p - start).flatten(1).norm(dim=1) for p, start in pairs]).norm(dim=0).tolist()
+
+    for p in learning._network.weights:
+        assert not any(torch.equal(p[a], p[b]) for a, b in combinations(range(4), 2))
+    assert moved(learning) == pytest.approx(moved(alone) * 4, rel=0.15)
 
 
 def test_values_spread_backwards_along_a_visit():
-    """State A leads to B without points, B to 10 points and the end: by backups alone A comes to the value of
-    B. No visit was played on."""
+    """A leads to B without points, B to 10 points and the end: by backups alone A comes to B's value."""
     n, learning = 32, learner(32)
     a, b = np.zeros((n, SIZE), np.float32), np.zeros((n, SIZE), np.float32)
     a[:, 0], b[:, 1] = 1.0, 1.0
@@ -212,8 +193,7 @@ def test_values_spread_backwards_along_a_visit():
 
 
 def test_no_gradient_is_left_behind():
-    """Whoever learns next, PPO or the policy's own steps, clips the gradients of the whole policy: these must
-    not count there."""
+    """Whoever learns next clips the gradients of the whole policy: these must not count there."""
     learning = learner(5)
     learning.add(*a_round(5, np.random.default_rng(0)))
     learning.fit(1.0)
@@ -253,8 +233,5 @@ def test_learning_goes_on_from_a_saved_state_bit_for_bit():
         second.set_state(state)
         go_on(second, rounds[stop:])
         for one in (first, second):
-            assert all(
-                torch.equal(a, b)
-                for a, b in zip(whole._network.parameters(), one._network.parameters(), strict=True)
-            )
+            assert all(map(torch.equal, whole._network.parameters(), one._network.parameters()))
             assert list(one.losses) == list(whole.losses) and one.mean_target == whole.mean_target

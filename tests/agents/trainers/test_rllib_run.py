@@ -74,19 +74,9 @@ def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
 
 def test_a_signal_saves_and_the_run_goes_on(tmp_path):
     out = tmp_path / "run"
-    command = [
-        sys.executable,
-        "-u",
-        "-m",
-        "agents.train_rllib",
-        "--steps",
-        "1000000",
-        "--out",
-        str(out),
-        *SHORT,
-    ]
+    command = [sys.executable, "-u", "-m", "agents.train_rllib", "--steps", "1000000", "--out", str(out)]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
-    with subprocess.Popen(command, cwd=ROOT, **pipes) as process:
+    with subprocess.Popen([*command, *SHORT], cwd=ROOT, **pipes) as process:
         assert process.stdout is not None
         lines = []
         for line in process.stdout:
