@@ -75,9 +75,12 @@ def test_signal_saves_and_the_resumed_run_equals_an_uninterrupted_one(
         assert run(out, "--agent", agent) == 128 + number
     assert f"--resume --out {out}" in capsys.readouterr().out and not (out / "results.json").exists()
     kept = pickle.loads((out / "checkpoint.pkl").read_bytes())["running"]
-    monkeypatch.setattr(
-        kind, "_on_training_start", lambda self: start(self) or begun.append(self.training_env.running)
-    )
+
+    def watched(self):
+        start(self)
+        begun.append(self.training_env.running)
+
+    monkeypatch.setattr(kind, "_on_training_start", watched)
     assert resume(out) == 0
     # visits go on where they were, with their sums
     assert np.array_equal(begun, [kept]) and (agent == "tqc_target" or kept[1].any())

@@ -27,19 +27,23 @@ class Watched:
         return self.player.play(positions, seeds)
 
 
+def strokes(**columns):
+    """``Strokes`` of these columns, with nothing in the others."""
+    n = len(columns["visit"])
+    usual = {"cleared": np.zeros(n, bool), "cue": np.zeros((n, 2)), "tolerance": np.zeros(n)}
+    arrays = {name: np.array(column) for name, column in columns.items()}
+    return Strokes(visits=max(columns["visit"]) + 1, decision_seconds=0.0, **usual | arrays)
+
+
 def test_counts_of_a_visit_by_hand():
     """Two visits: red, black, red with nothing after; then a miss."""
-    s = Strokes(
-        visits=2,
-        visit=np.array([0, 1, 0, 0, 0]),
-        number=np.array([0, 0, 1, 2, 3]),
-        points=np.array([1.0, 0, 7, 1, 0]),
-        foul=np.array([False, False, False, False, True]),
-        ball_on=np.array([BallOn.RED, BallOn.RED, BallOn.ANY_COLOUR, BallOn.RED, 0]),
-        cleared=np.zeros(5, bool),
-        cue=np.zeros((5, 2)),
-        tolerance=np.array([1e-2, 0, 1e-3, 1e-2, 0]),
-        decision_seconds=0.0,
+    s = strokes(
+        visit=[0, 1, 0, 0, 0],
+        number=[0, 0, 1, 2, 3],
+        points=[1.0, 0, 7, 1, 0],
+        foul=[False, False, False, False, True],
+        ball_on=[BallOn.RED, BallOn.RED, BallOn.ANY_COLOUR, BallOn.RED, 0],
+        tolerance=[1e-2, 0, 1e-3, 1e-2, 0],
     )
     assert s.following.tolist() == [2, -1, 3, 4, -1]
     first = {"points": 9, "pots": 3, "strokes": 4, "fouls": 1, "goes_on": 3, "followed": 2, "easy": 2}
@@ -53,17 +57,13 @@ def test_counts_of_a_visit_by_hand():
 
 def a_clearance_a_foul_and_a_miss():
     """The last ball goes in for a century (points as no shot brings them); it goes in by a foul; it stays."""
-    return Strokes(
-        visits=3,
-        visit=np.array([0, 1, 2, 0]),
-        number=np.array([0, 0, 0, 1]),
-        points=np.array([95.0, 0, 0, 7]),
-        foul=np.array([False, True, False, False]),
-        ball_on=np.array([BallOn.ANY_COLOUR, BallOn.BLACK, BallOn.BLACK, BallOn.BLACK]),
-        cleared=np.array([False, True, False, True]),
-        cue=np.zeros((4, 2)),
-        tolerance=np.zeros(4),
-        decision_seconds=0.0,
+    return strokes(
+        visit=[0, 1, 2, 0],
+        number=[0, 0, 0, 1],
+        points=[95.0, 0, 0, 7],
+        foul=[False, True, False, False],
+        ball_on=[BallOn.ANY_COLOUR, BallOn.BLACK, BallOn.BLACK, BallOn.BLACK],
+        cleared=[False, True, False, True],
     )
 
 

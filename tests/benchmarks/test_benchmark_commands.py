@@ -1,6 +1,7 @@
 """Do the benchmarks behave as commands, with help, Ctrl-C, missing libraries and what cannot be written?"""
 
 import errno
+import importlib
 import json
 import os
 import re
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 
 from benchmarks._common import command as _command
+from benchmarks._common import kept, package_copies
 from tests.processes import ROOT
 
 NAMES = [file.stem for file in (ROOT / "benchmarks").glob("*.py")]
@@ -161,3 +163,44 @@ def test_a_picture_on_a_full_disk_is_no_empty_file(tmp_path):
         (tmp_path / "full.png").symlink_to("/dev/full")
         with pytest.raises(SystemExit, match="could not be written: No space left on device"):
             _command.save_image(tmp_path / "full.png", pixels)
+
+
+@pytest.fixture
+def build(tmp_path, monkeypatch):
+    monkeypatch.setattr(kept, "BUILD", tmp_path / "build")
+    return tmp_path / "build"
+
+
+def test_folders_are_made_once_and_whole(build):
+    made = []
+
+    def make(folder):
+        made.append(folder)
+        (folder / "file").write_text("whole")
+        if len(made) == 1:
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError, match="No space"):
+        kept.kept_folder("x", make)
+    assert not list(build.iterdir())
+    for _ in range(2):
+        assert (kept.kept_folder("x", make) / "file").read_text() == "whole"
+    assert len(made) == 2 and [file.name for file in build.iterdir()] == ["x"] and build / "x" not in made
+
+
+def test_the_faster_of_two_processes_counts(build):
+    def make(folder):
+        (folder / "file").write_text("slower")
+        (build / "x").mkdir()
+        (build / "x" / "file").write_text("faster")
+
+    assert (kept.kept_folder("x", make) / "file").read_text() == "faster"
+    assert [file.name for file in build.iterdir()] == ["x"]
+
+
+def test_commits_and_copies_of_the_package_are_kept_there(build):
+    learner = importlib.import_module("benchmarks.learner")
+    tree = learner.tree_of("HEAD")
+    assert tree.parent == build and (tree / "train.py").is_file()
+    (module,) = package_copies.load("snooker_env_copy", {"__init__.py": "", "here.py": "VALUE = 3"}, ["here"])
+    assert module.VALUE == 3 and build in Path(module.__file__).parents

@@ -156,8 +156,3 @@ def test_the_frames_of_a_match_are_broken_in_turn(strokes):
         assert max(won.count(0), won.count(1)) == 2 and won.count(won[-1]) == 2  # it ends when it is decided
     alone = frames(play(ghost_ball(), softly(), [0, 1, 2]))
     assert [r for r in rows if r["frame"] == 0] == alone
-
-
-def test_a_random_player_meets_a_planner_of_discrete_choices():
-    rows = frames(play(sn.player("random"), ghost_ball(), [0, 1], max_strokes=60))
-    assert len(rows) == 4 and all(r["strokes_second"] > 0 for r in rows)

@@ -380,8 +380,6 @@ def test_the_widest_of_several_is_taken(aimer):
 
 
 def test_a_visit_is_longer_than_the_plain_players():
-    plain, own = (
-        play_visits(sn.player(name), 30, noise="none", threads=1).made.sum()
-        for name in ("ghost_ball", "geometric")
-    )
+    players = sn.player("ghost_ball"), sn.player("geometric")
+    plain, own = (play_visits(one, 30, noise="none", threads=1).made.sum() for one in players)
     assert own > 1.5 * plain

@@ -100,10 +100,9 @@ def test_the_buffer_is_sb3s_with_masks_as_bool():
     assert np.array_equal(own.action_masks, other.action_masks != 0) and own.advantages.std() > 0.1
     flat = own.observations.reshape(n * k, -1), own.action_masks.reshape(n * k, -1)
     assert np.take_along_axis(flat[1], own.actions.reshape(n * k, 1), 1).all()
+    parts = map(torch.as_tensor, (flat[0], own.actions.reshape(-1), flat[1]))
     with torch.no_grad():
-        values, logs, _ = model.policy.evaluate_actions(
-            torch.as_tensor(flat[0]), torch.as_tensor(own.actions.reshape(-1)), torch.as_tensor(flat[1])
-        )
+        values, logs, _ = model.policy.evaluate_actions(*parts)
     assert np.abs(values[:, 0].numpy() - own.values.reshape(-1)).max() < 1e-5
     assert np.abs(logs.numpy() - own.log_probs.reshape(-1)).max() < 1e-5
     offered = flat[0][:, 121::13][:, :4].sum(1)  # the masks are those of the pots that were seen
