@@ -1,6 +1,7 @@
 """Does ``check`` find what no run writes: fields out of range, wrong sources, and markup for the page?"""
 
 import copy
+from datetime import datetime, timedelta, timezone
 from functools import cache
 
 import pytest
@@ -9,7 +10,8 @@ import snooker_env as sn
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, figures_of, judge, page, replayed
 from snooker_env.benchmark.leaderboard import markdown_table, plain, profile
 from snooker_env.benchmark.results import packed, strokes_of
-from snooker_env.benchmark.schema import RANGES
+from snooker_env.benchmark.schema import DATE, LONG_LINE, RANGES
+from snooker_env.benchmark.schema import line as one_line
 from tests.benchmark.records import put
 
 HUGE = 10**400
@@ -58,27 +60,37 @@ def test_the_same_source_five_times_makes_nothing_surer():
 
 OTHER = "must not be the name of another player"
 BEGINS = "strokes: run 0, table 1000000: search_60 begins with another stroke than the file"
+ALIKE = ["r\u0430ndom", "RANDOM", "Random", "random.", "ghost-ball"]
+"""Labels that a reader would take for a built-in player."""
+TEXTS = ["two\nlines", "\x1b[2J", "\ud800", "x" * 2001]
+TOMORROW = (datetime.now(timezone.utc) + timedelta(days=1)).strftime(DATE)
+DATES = ["2999-01-01T00:00:00Z", "2026-11-20T23:59:59Z", "1970-01-01T00:00:00Z", TOMORROW]
+"""In the future, or before the project."""
 WRONG = [
-    ("timing__seconds", float("nan"), "timing.seconds = nan: must be between 0"),
-    ("machine__cores", 0, "machine.cores = 0: must be between 1"),
-    ("agent__label", "x | y |\n\n# h <script>", "agent.label = 'x | y"),
-    ("agent__label", "", "agent.label = '': must be 1 to 20 letters"),
-    ("agent__label", "random\n", "agent.label = 'random"),
-    ("machine__cpu", "evil\n\n## injected", "machine.cpu = 'evil"),
-    ("machine__platform", "", "machine.platform = ''"),
-    ("software__snooker_env", "999 | x", "software.snooker_env = '999 | x': must be a version"),
-    ("software__torch", "<b>", "software.torch = '<b>': must be a version"),
+    ("timing.seconds", float("nan"), "timing.seconds = nan: must be between 0"),
+    ("machine.cores", 0, "machine.cores = 0: must be between 1"),
+    ("agent.label", "x | y |\n\n# h <script>", "agent.label = 'x | y"),
+    ("agent.label", "", "agent.label = '': must be 1 to 20 letters"),
+    ("agent.label", "random\n", "agent.label = 'random"),
+    ("machine.cpu", "evil\n\n## injected", "machine.cpu = 'evil"),
+    ("machine.platform", "", "machine.platform = ''"),
+    ("software.snooker_env", "999 | x", "software.snooker_env = '999 | x': must be a version"),
+    ("software.torch", "<b>", "software.torch = '<b>': must be a version"),
     ("commit", "a commit", "commit = 'a commit': must be a commit's hash"),
     ("date", "whenever", "date = 'whenever': must be a time in UTC"),
     ("date", "2026-13-01T00:00:00Z", "date = "),
-    ("agent__simulated_shots", None, "agent.simulated_shots = None: must be 0.0"),
-    ("agent__simulated_shots", 7, "agent.simulated_shots = 7: must be 0.0"),
-    ("timing__simulated_shots", 7, "agent.simulated_shots = 0.0: must be 0.00"),
-    ("agent__sources", ["program:a"], "agent.class = 'model_free': must be 'undeclared'"),
-    ("agent__sources", ["search_60"], BEGINS),
-    ("agent__label", "random", f"agent.label = 'random': {OTHER}"),
-    ("agent__label", "lookahead_120", f"agent.label = 'lookahead_120': {OTHER}"),
-    ("protocol__episodes", 200_000, "protocol.episodes = 200000: must be at most 500 on SnookerColours-v0"),
+    ("agent.simulated_shots", None, "agent.simulated_shots = None: must be 0.0"),
+    ("agent.simulated_shots", 7, "agent.simulated_shots = 7: must be 0.0"),
+    ("timing.simulated_shots", 7, "agent.simulated_shots = 0.0: must be 0.00"),
+    ("agent.sources", ["program:a"], "agent.class = 'model_free': must be 'undeclared'"),
+    ("agent.sources", ["search_60"], BEGINS),
+    ("agent.label", "random", f"agent.label = 'random': {OTHER}"),
+    ("agent.label", "lookahead_120", f"agent.label = 'lookahead_120': {OTHER}"),
+    ("protocol.episodes", 200_000, "protocol.episodes = 200000: must be at most 500 on SnookerColours-v0"),
+    *(("agent.label", name, "agent.label = ") for name in ALIKE),
+    *(("command", text, "command = ") for text in TEXTS),
+    *(("agent.sources", [text], "agent.sources: must be texts, one for each") for text in TEXTS),
+    *(("date", date, f"date = '{date}': must be between 2026-11-21") for date in DATES),
 ]
 
 
@@ -86,9 +98,14 @@ WRONG = [
     ("name", "value", "line"), WRONG, ids=[f"{name}-{k}" for k, (name, _, _) in enumerate(WRONG)]
 )
 def test_a_wrong_value_is_one_line_that_names_its_field(name, value, line):
-    refused = faults(changed(**{name: value}))
+    refused = faults(put(sound(), name, value))
     assert any(one.startswith(line) for one in refused), refused
     assert all("\n" not in one and len(one) < 200 for one in refused)
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_any_text_can_be_made_one_line(text):
+    assert LONG_LINE[0].fullmatch(one_line(text))
 
 
 @pytest.mark.parametrize("name", [*RANGES, "figures.score.value", "figures.best", "figures.profile"])

@@ -6,19 +6,18 @@ import os
 import subprocess
 import sys
 import zlib
-from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.benchmark import COLUMNS, TASKS, Agent, figures_of, judge, schema
+from snooker_env.benchmark import COLUMNS, TASKS, Agent, figures_of, judge
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.checking import afresh, faults, replayed
 from snooker_env.benchmark.provenance import arithmetic
 from snooker_env.benchmark.results import completed, packed, read_result, strokes_of, write_result
-from snooker_env.benchmark.schema import DATE, FIELDS, PACKAGES, UNPROVED
+from snooker_env.benchmark.schema import FIELDS, PACKAGES, UNPROVED
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import pot_aim, pots
 from snooker_env.players import VISITS, Strokes
@@ -123,6 +122,9 @@ def test_a_known_planner_is_not_model_free(name, training):
     """Its own strokes, as if no shot had been simulated for them."""
     record = judge(HARD, Agent.of(name, training_shots=training), episodes=4)
     assert faults(record) == [] and record["agent"]["class"] == "planning"
+    record["timing"]["simulated_shots"] = 1  # fewer than its first strokes take
+    (line,) = faults(completed(copy.deepcopy(record), HARD))
+    assert line.startswith("timing.simulated_shots = 1: must be at least ")
     record["timing"]["simulated_shots"] = 0
     record["agent"] |= {"simulated_shots": 0.0, "class": "model_free"}
     kind, shots = faults(record)
