@@ -244,19 +244,6 @@ def test_resume_refuses_a_broken_checkpoint(finished, tmp_path, refused):
         assert f"resume = '{file}': must be a complete checkpoint" in error
 
 
-def test_every_player_meets_the_same_tables():
-    seen = []
-
-    class Watching(type(sn.player("ghost_ball"))):
-        def play(self, positions, seeds):
-            seen.append(positions.positions)
-            return super().play(positions, seeds)
-
-    first, second = (summary(play_visits(Watching(), 3)) for _ in range(2))
-    half = len(seen) // 2
-    assert first == second and all(map(np.array_equal, seen[:half], seen[half:])) and len(seen) == 2 * half
-
-
 @pytest.fixture
 def judged(finished, monkeypatch):
     """Called with the settings of an agent: the options under which its evaluation plays."""
