@@ -358,10 +358,6 @@ def test_it_learns(tmp_path, agent, steps, least):
     assert gain > least and gain > 3 * trained["points_a_visit_se"]
 
 
-# what a recipe says, and the changes that were asked for
-# ------------------------------------------------------------------------------------------------------------
-
-
 def test_a_run_goes_on_with_the_tables_that_it_began_with(tmp_path, monkeypatch):
     """Whatever its recipe says by then."""
     folder, seen, original = tmp_path / "recipes", [], train.training_tables

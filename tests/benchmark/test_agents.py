@@ -3,6 +3,7 @@
 import json
 import shutil
 import sys
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -94,13 +95,19 @@ def test_a_program_that_is_not_there(capsys):
         sn.player(name).at({}).play(sn.Position(cue=(0, 0), black=(0, 1)), [0])
 
 
-def test_a_program_sees_the_state_of_the_protocol(tmp_path):
-    """What it gets is what the server of play answers, with a seed for what it draws."""
+def watching(tmp_path):
+    """A program that keeps what it is sent, and a call that reads it."""
     kept = tmp_path / "seen.jsonl"
     body = f"for line in sys.stdin:\n open({str(kept)!r}, 'a').write(line)\n {GOOD}"
-    task, agent = TASKS["SnookerColours-v0"], Agent.of(program(tmp_path, body), training_shots=0)
+    return program(tmp_path, body), lambda: list(map(json.loads, kept.read_text("utf-8").splitlines()))
+
+
+def test_a_program_sees_the_state_of_the_protocol(tmp_path):
+    """What it gets is what the server of play answers, with a seed for what it draws."""
+    name, seen = watching(tmp_path)
+    task, agent = TASKS["SnookerColours-v0"], Agent.of(name, training_shots=0)
     assert judge(task, agent, episodes=2)["agent"]["class"] == "undeclared"
-    states = [json.loads(line) for line in kept.read_text().splitlines()]
+    states = seen()
     balls = {"cue", "yellow", "green", "brown", "blue", "pink", "black"}
     assert set(states[0]["positions"]) == balls and "Balls (x to the right" in states[0]["text"]
     assert states[0]["phase"] == "stroke" and states[0]["ball_on"] == "yellow"
@@ -113,15 +120,11 @@ def test_a_program_sees_the_points_as_its_own(tmp_path):
     tables.reset(seed=1)
     at = sn.Positions.of(tables)
     at.points[0] = 5
-    seen = tmp_path / "seen.jsonl"
-    body = f"for line in sys.stdin:\n open({str(seen)!r}, 'a').write(line)\n {GOOD}"
-    player = ProgramPlayer(program(tmp_path, body).removeprefix("program:"))
-    try:
+    name, seen = watching(tmp_path)
+    with closing(ProgramPlayer(name.removeprefix("program:"))) as player:
         strokes = player.at(tables).play(at, [3])
-    finally:
-        player.close()
     assert strokes.values.tolist() == [[1.0, 0.0, 0.0, 0.0, 0.0]]
-    state = json.loads(seen.read_text(encoding="utf-8"))
+    (state,) = seen()
     assert state["scores"] == [5, 0] and state["break"] == 5
 
 
@@ -159,8 +162,8 @@ def test_ctrl_c_keeps_what_was_played_and_it_can_be_resumed(tmp_path, capsys):
     Interrupted.asked = 0
     out = tmp_path / "one.json"
     many = 2 * BATCH + 30
-    arguments = ["run", "SnookerPotHard-v0", "--agent", f"{__name__}:Interrupted", "--training-shots", "0"]
-    arguments += ["--episodes", str(many), "--out", str(out)]
+    command = f"run SnookerPotHard-v0 --agent {__name__}:Interrupted --training-shots 0 --episodes {many}"
+    arguments = [*command.split(), "--out", str(out)]
     assert main(arguments) == 130
     assert f"interrupted after {2 * BATCH} of {many} episodes" in capsys.readouterr().err
     part = read_result(out)

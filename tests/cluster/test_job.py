@@ -156,9 +156,6 @@ def test_an_evaluation_goes_on_from_what_it_kept(tmp_path, monkeypatch, capsys):
     assert "its rekey is false, and true is asked for" in capsys.readouterr().err
 
 
-# whose the folder of a job is, with processes of their own
-# ------------------------------------------------------------------------------------------------------------
-
 ABOUT = {"command": "agents.evaluate", "noise": ["club"]}
 HOLDS = f"""
 import sys

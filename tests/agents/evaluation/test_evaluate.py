@@ -4,7 +4,6 @@ import json
 import os
 import re
 import shutil
-import sys
 import zipfile
 from pathlib import Path
 
@@ -127,39 +126,18 @@ def test_bad_input_ends_with_one_clear_line(options, says, refused):
     assert re.search(says, refused(protocol.main, "--agent", *options.split()))
 
 
-OWN = """
-class Soft:
-    options = {"action": "discrete"}
-    def act(self, observations, masks, seeds):
-        return [30] * len(seeds)
-
-class Mute:
-    options, act = {}, None
-
-class Worldly(Soft):
-    options = {"noise": "none"}
-
-class Discreet(Soft):
-    options = {"action": "discreet"}
-
-silent = 3
-"""
-
-
-def test_a_player_of_ones_own_is_compared(tmp_path, monkeypatch):
-    (tmp_path / "mine.py").write_text(OWN)
-    monkeypatch.delitem(sys.modules, "mine", raising=False)  # another test's
-    monkeypatch.syspath_prepend(tmp_path)
-    file = tmp_path / "r.json"
-    assert protocol.main(["--agent", "mine:Soft", "me=mine:Soft", *QUICK, "--json", str(file)]) == 0
+def test_a_player_of_ones_own_is_compared(tmp_path):
+    file, own = tmp_path / "r.json", "tests.agents.own_players"
+    assert protocol.main(["--agent", f"{own}:Softly", f"me={own}:Softly", *QUICK, "--json", str(file)]) == 0
     rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in read(file)["results"]}
-    assert rows.keys() == {"Soft", "me", "ghost_ball"} and rows["Soft"] == rows["me"] != rows["ghost_ball"]
+    assert rows.keys() == {"Softly", "me", "ghost_ball"}
+    assert rows["Softly"] == rows["me"] != rows["ghost_ball"]
     for name, why in (
-        ("mine:Mute", "player = a Mute: must be a player"),
-        ("mine:silent", "player = 'mine:silent': must be MODULE:CLASS of a player .TypeError"),
-        ("mine:Nobody", "player = 'mine:Nobody': must be MODULE:CLASS of a player .AttributeError"),
-        ("mine:Worldly", "key of the options of player Worldly = 'noise'"),
-        ("mine:Discreet", "action = 'discreet'"),
+        (f"{own}:Mute", "player = a Mute: must be a player"),
+        (f"{own}:silent", f"player = '{own}:silent': must be MODULE:CLASS of a player .TypeError"),
+        (f"{own}:Nobody", f"player = '{own}:Nobody': must be MODULE:CLASS of a player .AttributeError"),
+        (f"{own}:Loud", "key of the options of player Loud = 'noise'"),
+        (f"{own}:Discreet", "action = 'discreet'"),
         ("nothere:Soft", "player = 'nothere:Soft': .*ModuleNotFoundError"),
     ):
         with pytest.raises(ValueError, match=why):

@@ -2,7 +2,6 @@
 
 import json
 import re
-import sys
 
 import pytest
 
@@ -11,45 +10,9 @@ from agents.evaluation.tournament_figures import COLUMNS, figures_of
 from agents.evaluation.tournament_file import FIELDS, NUMBER, PLAYER, faults
 from tests.processes import ROOT
 
-OWN = """
-import numpy as np
-from snooker_env.tasks.observations import FRAME_ENTRIES
-
-class Softly:
-    options = {"aim": "target"}
-    def act(self, observations, masks, seeds):
-        actions = np.zeros((len(seeds), 4), np.float32)
-        actions[:, 0] = -0.4
-        return actions
-
-class Decides(Softly):
-    options = {"aim": "target", "decision": True}
-    def act(self, observations, masks, seeds):
-        return np.tile(np.array([-0.4, 0, 0, 0], np.float32), (len(seeds), 1))
-
-class Names(Softly):
-    options = {"task": "frame", "aim": "target", "decision": True, "nominate": True, "concede": True, "lot": True}
-    def act(self, observations, masks, seeds):
-        assert observations.shape == (len(seeds), 121 + len(FRAME_ENTRIES))
-        return np.tile(np.array([-0.4, 0, 0, 0, 0.9, -1, 0], np.float32), (len(seeds), 1))
-
-class Loud(Softly):
-    options = {"noise": "none"}
-
-class Mute:
-    options, act = {}, None
-"""
-PLAYERS = ("ghost_ball", "random", "mine:Softly")
+OWN = "tests.agents.own_players"
+PLAYERS = ("ghost_ball", "random", f"{OWN}:Softly")
 QUICK = str.split("--frames 6 --resamples 100 --max-strokes 120 --threads 1 --quiet")
-
-
-@pytest.fixture(autouse=True)
-def own(tmp_path, monkeypatch):
-    (tmp_path / "mine.py").write_text(OWN)
-    monkeypatch.syspath_prepend(tmp_path)
-    sys.modules.pop("mine", None)  # another test's
-    yield
-    sys.modules.pop("mine", None)
 
 
 @pytest.fixture
@@ -94,12 +57,12 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
 
 
 def test_a_player_of_frames_says_all_that_an_opponent_may(tmp_path):
-    found = played(tmp_path, "--frames", "2", players=("mine:Decides", "mine:Names"))
+    found = played(tmp_path, "--frames", "2", players=(f"{OWN}:Decides", f"{OWN}:Names"))
     assert all(p["decisions"] for p in found["players"])
 
 
 def test_a_match_is_the_unit(tmp_path, capsys):
-    found = played(tmp_path, "--match", "3", "--noise", "none", players=("ghost_ball", "mine:Softly"))
+    found = played(tmp_path, "--match", "3", "--noise", "none", players=("ghost_ball", f"{OWN}:Softly"))
     assert faults(found) == [] and len(found["rows"]) > 6 == found["figures"]["players"]["Softly"]["matches"]
     assert "matches, each the best of 3 frames" in " ".join(capsys.readouterr().out.split())
 
@@ -169,8 +132,8 @@ MAIN = "agents/results/main.json"
         ("ghost_ball nobody", "agent = 'nobody': must be random, "),
         ("ghost_ball ghost_ball", "player = 'ghost_ball': must be another"),
         ("ghost_ball x=ghost_ball,random", "player = 'x=ghost_ball,random': must be one player"),
-        ("ghost_ball mine:Mute", "player = a Mute: must be a player: at.rules. and play"),
-        ("ghost_ball mine:Loud", "key of the options of player Loud = 'noise'"),
+        (f"ghost_ball {OWN}:Mute", "player = a Mute: must be a player: at.rules. and play"),
+        (f"ghost_ball {OWN}:Loud", "key of the options of player Loud = 'noise'"),
         ("ghost_ball random --frames 7", "frames = 7: must be even"),
         ("ghost_ball random --frames 0", "frames = 0: must be an integer in \\[2"),
         ("ghost_ball random --match 4", "match = 4: must be odd"),

@@ -125,9 +125,6 @@ def test_part_of_a_tournament_has_figures_too():
     assert found["players"]["b"]["elo"]["value"] == pytest.approx(ANCHOR_ELO)
 
 
-# strengths by Bradley and Terry: those that are known, and finite where wins alone do not decide
-
-
 def expected(t, matches):
     """The wins that players of these strengths have on average."""
     t = np.asarray(t)

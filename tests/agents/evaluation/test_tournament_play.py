@@ -1,9 +1,7 @@
 """Is each frame of a tournament played and counted as it should be, from both sides of the table?"""
 
 from functools import partial
-from typing import ClassVar
 
-import numpy as np
 import pytest
 
 import snooker_env as sn
@@ -14,29 +12,19 @@ from agents.players import Geometric
 from snooker_env import SnookerVectorEnv
 from snooker_env.players import SeenPlayer
 from snooker_env.tasks.stroke import FOULS, PLAYER, SCORED
+from tests.agents.own_players import Softly
 
 GAME = {"noise": "professional", "max_strokes": 1000}
 
 
-class Soft:
-    """Sees observations: every stroke along the potting line, at one speed."""
-
-    options: ClassVar = {"aim": "target"}
-
-    def act(self, observations, masks, seeds):
-        actions = np.zeros((len(seeds), 4), np.float32)
-        actions[:, 0] = -0.4
-        return actions
-
-
-softly, ghost_ball = partial(SeenPlayer, Soft()), partial(sn.player, "ghost_ball")
+softly, ghost_ball = partial(SeenPlayer, Softly()), partial(sn.player, "ghost_ball")
 
 
 class Careful(SeenPlayer):
     """Must not be asked where there is nothing to play."""
 
     def __init__(self):
-        super().__init__(Soft())
+        super().__init__(Softly())
 
     def play(self, positions, seeds):
         assert len(positions) and not positions.over.any()

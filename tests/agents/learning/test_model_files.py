@@ -242,10 +242,6 @@ def test_whoever_plays_no_model_waits_for_no_torch():
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT).returncode == 0
 
 
-# the policy of another trainer: plain weights in an .npz
-# ------------------------------------------------------------------------------------------------------------
-
-
 ABOUT = {"trainer": "mine", "activation": "tanh", "shots": 12, "seed": 3, "gamma": 0.9}
 ABOUT |= {"env_options": {"noise": "club"}}
 QUICK = str.split("--visits 4 --layouts held_out --noise club --resamples 100")

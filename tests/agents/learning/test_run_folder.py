@@ -1,5 +1,4 @@
-"""Does a run's folder belong to one run at a time, whatever ends it, and does a run that stopped while it
-imitated go on exactly?"""
+"""Does a run's folder belong to one run at a time, and does one that stopped while it imitated go on exactly?"""
 
 import os
 import pickle
@@ -89,10 +88,6 @@ def test_what_a_killed_run_left_is_no_other_run(tmp_path, refused):
     (tmp_path / "checkpoint.tmp.pkl").write_text("mine")
     assert "is not empty" in refused(train.main, *TINY, "--out", tmp_path)
     assert (tmp_path / "checkpoint.tmp.pkl").exists() and not (tmp_path / "train.lock").exists()
-
-
-# stopped while it imitates
-# ------------------------------------------------------------------------------------------------------------
 
 
 def after(rounds, monkeypatch, act):
@@ -200,10 +195,6 @@ def test_an_interruption_before_the_first_save_is_reported(tmp_path, capsys, mon
     assert run(tmp_path / "run") == 130
     assert capsys.readouterr().err == "Interrupted. Nothing was saved yet: start the run again.\n"
     assert not list((tmp_path / "run").iterdir())
-
-
-# a full disk
-# ------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("broken", ["fsync", "replace"])

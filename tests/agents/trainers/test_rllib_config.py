@@ -1,5 +1,4 @@
-"""Is what RLlib's runners collect what the tables play, and are the weights that are kept those of its
-module?"""
+"""Is what RLlib's runners collect what the tables play, and are the kept weights those of its module?"""
 
 from pathlib import Path
 
@@ -27,8 +26,7 @@ def algorithm():
 
 
 def test_what_runners_collect_is_what_single_tables_play(algorithm):
-    """Each table of each runner has a seed of its own; the steps that only reset a table are left out; every
-    choice was available."""
+    """Each table has a seed of its own; steps that only reset are left out; every choice was available."""
     samples = algorithm.env_runner_group.foreach_env_runner(
         lambda runner: runner.sample(num_timesteps=160), local_env_runner=False
     )
