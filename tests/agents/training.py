@@ -1,4 +1,4 @@
-"""How does a test train, and what does it read of a run's folder? Tiny runs, in this process."""
+"""How does a test train, stop what runs, and read what is left? Tiny runs, in this process."""
 
 import json
 
@@ -19,6 +19,20 @@ def run(out, *options):
 
 def resume(out, *options):
     return train.main(["--resume", "--no-progress", "--out", str(out), *options])
+
+
+def interrupted_at(monkeypatch, owner, name, call, error=KeyboardInterrupt):
+    """Let ``owner.name`` raise when it is called for the so-manyth time; a list with an item for each call."""
+    original, calls = getattr(owner, name), []
+
+    def counted(*arguments, **options):
+        calls.append(1)
+        if len(calls) == call:
+            raise error
+        return original(*arguments, **options)
+
+    monkeypatch.setattr(owner, name, counted)
+    return calls
 
 
 def results(out):

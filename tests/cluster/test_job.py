@@ -14,6 +14,7 @@ from agents.evaluation import protocol, visits
 from agents.evaluation.entrants import Entrant
 from snooker_env import player
 from snooker_env.benchmark import play_visits, tables_of
+from tests.agents.training import interrupted_at
 from tests.cluster.players import AT, same
 from tests.processes import ROOT
 
@@ -131,15 +132,7 @@ def test_an_evaluation_goes_on_from_what_it_kept(tmp_path, monkeypatch, capsys):
     command = str.split("--agent random --visits 20 --layouts held_out --noise professional --resamples 200")
     plain, kept = tmp_path / "plain.json", tmp_path / "kept.json"
     assert protocol.main([*command, "--json", str(plain)]) == 0
-    original, calls = visits.play_visits, []
-
-    def play(*args, **options):
-        calls.append(1)
-        if len(calls) == 6:
-            raise KeyboardInterrupt
-        return original(*args, **options)
-
-    monkeypatch.setattr(visits, "play_visits", play)
+    calls = interrupted_at(monkeypatch, visits, "play_visits", 6)
     command += ["--keep", str(tmp_path / "parts")]
     capsys.readouterr()
     assert protocol.main([*command, "--json", str(kept)]) == 130

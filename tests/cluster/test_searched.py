@@ -5,6 +5,7 @@ import pytest
 
 from agents.evaluation import search_data, searched
 from snooker_env.planning import Planner, Positions
+from tests.agents.training import interrupted_at
 
 COMMAND = ["--agent", "search_30", "--noise", "club", "--layout", "random:6"]
 
@@ -23,15 +24,7 @@ def search(out, positions, *more):
 def test_an_interrupted_search_goes_on_to_the_same_data(tmp_path, monkeypatch, capsys):
     whole, parted = tmp_path / "whole", tmp_path / "parted"
     assert search(whole, 30) == 0  # rounded up to 36
-    original, calls = searched.arrived, []
-
-    def arrived(*given):
-        calls.append(1)
-        if len(calls) == 2:
-            raise KeyboardInterrupt
-        return original(*given)
-
-    monkeypatch.setattr(searched, "arrived", arrived)
+    calls = interrupted_at(monkeypatch, searched, "arrived", 2)
     assert search(parted, 36) == 130
     assert "12 of 36 positions are kept" in capsys.readouterr().err
     with pytest.raises(ValueError, match="must hold complete data"):

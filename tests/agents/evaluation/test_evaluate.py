@@ -16,6 +16,7 @@ from agents.learning.hyperparameters import Recipe
 from commands.physics_option import physics_option, physics_text
 from snooker_env.benchmark import FIGURES
 from snooker_env.physics.parameters import Physics
+from tests.agents.training import interrupted_at
 
 QUICK = str.split("--visits 12 --layouts held_out --noise professional --resamples 200")
 
@@ -197,23 +198,10 @@ def test_a_picture_that_fails_loses_no_figures(tmp_path, monkeypatch):
 BOTH = ["--agent", "random", *QUICK, "--layouts", "held_out", "colours"]
 
 
-def interrupted_at(monkeypatch, call):
-    """Ctrl-C when ``play_agent`` is called for the so-manyth time."""
-    original, calls = protocol.play_agent, []
-
-    def play_agent(*arguments):
-        calls.append(1)
-        if len(calls) == call:
-            raise KeyboardInterrupt
-        return original(*arguments)
-
-    monkeypatch.setattr(protocol, "play_agent", play_agent)
-
-
 def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
     """And spares a file that is there already."""
     (tmp_path / "r.md").write_text("whole")
-    interrupted_at(monkeypatch, 4)
+    interrupted_at(monkeypatch, protocol, "play_agent", 4)
     assert protocol.main([*BOTH, *outputs(tmp_path)]) == 130
     printed = capsys.readouterr()
     lost = "interrupted when 1 of 2 parts (layouts under one noise) were complete: the others are lost"
@@ -229,7 +217,7 @@ def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
 
 
 def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatch, capsys):
-    interrupted_at(monkeypatch, 2)
+    interrupted_at(monkeypatch, protocol, "play_agent", 2)
     assert protocol.main([*BOTH, *outputs(tmp_path)]) == 130
     printed = capsys.readouterr()
     lost = "interrupted when 0 of 2 parts (layouts under one noise) were complete: nothing is kept"
@@ -238,10 +226,7 @@ def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatc
 
 
 def test_ctrl_c_before_play_is_one_line(monkeypatch, capsys):
-    def stop():
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(protocol.snooker_env, "warmup", stop)
+    interrupted_at(monkeypatch, protocol.snooker_env, "warmup", 1)
     assert protocol.main(["--agent", "random", *QUICK]) == 130
     assert capsys.readouterr().err == "agents.evaluate: interrupted\n"
 

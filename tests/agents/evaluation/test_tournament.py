@@ -8,6 +8,7 @@ import pytest
 from agents.evaluation import tournament, tournament_play
 from agents.evaluation.tournament_figures import COLUMNS, figures_of
 from agents.evaluation.tournament_file import FIELDS, NUMBER, PLAYER, faults
+from tests.agents.training import interrupted_at
 from tests.processes import ROOT
 
 OWN = "tests.agents.own_players"
@@ -67,29 +68,15 @@ def test_a_match_is_the_unit(tmp_path, capsys):
     assert "matches, each the best of 3 frames" in " ".join(capsys.readouterr().out.split())
 
 
-def interrupted_at(monkeypatch, call, error=KeyboardInterrupt):
-    """Stopped when ``play_pair`` is called for the so-manyth time."""
-    original, calls = tournament_play.play_pair, []
-
-    def play_pair(*arguments):
-        calls.append(1)
-        if len(calls) == call:
-            raise error
-        return original(*arguments)
-
-    monkeypatch.setattr(tournament_play, "play_pair", play_pair)
-    return calls
-
-
 def test_resumed_is_as_if_it_had_never_stopped(tmp_path, monkeypatch, capsys, parts):
     whole = played(tmp_path, name="whole.json")
     with monkeypatch.context() as patch:
-        interrupted_at(patch, 4)
+        interrupted_at(patch, tournament_play, "play_pair", 4)
         part = played(tmp_path, code=130)
     assert capsys.readouterr().err == "agents.tournament: interrupted after 10 of 18 frames: these are kept\n"
     assert part["incomplete"] == "interrupted after 10 of 18 frames: these are kept" and faults(part) == []
     assert part["rows"] == whole["rows"][:10] and part["figures"] != whole["figures"]
-    calls = interrupted_at(monkeypatch, 99)
+    calls = interrupted_at(monkeypatch, tournament_play, "play_pair", 99)
     again = played(tmp_path, "--resume")
     assert len(calls) == 3  # of 6 parts
     for key in ("rows", "figures", "incomplete"):
@@ -101,7 +88,7 @@ def test_resumed_is_as_if_it_had_never_stopped(tmp_path, monkeypatch, capsys, pa
 
 
 def test_what_a_player_fails_at_keeps_what_was_played(tmp_path, monkeypatch, parts):
-    interrupted_at(monkeypatch, 3, RuntimeError("no chalk"))
+    interrupted_at(monkeypatch, tournament_play, "play_pair", 3, RuntimeError("no chalk"))
     with pytest.raises(RuntimeError, match="no chalk"):
         played(tmp_path)
     found = json.loads((tmp_path / "t.json").read_text())
@@ -109,7 +96,7 @@ def test_what_a_player_fails_at_keeps_what_was_played(tmp_path, monkeypatch, par
 
 
 def test_ctrl_c_at_once_keeps_nothing(tmp_path, monkeypatch, capsys):
-    interrupted_at(monkeypatch, 1)
+    interrupted_at(monkeypatch, tournament_play, "play_pair", 1)
     assert tournament.main([*PLAYERS, *QUICK, "--out", str(tmp_path / "t.json")]) == 130
     assert not (tmp_path / "t.json").exists() and "nothing is kept" in capsys.readouterr().err
 
@@ -162,7 +149,7 @@ def test_bad_input_ends_with_one_clear_line(options, says, refused, monkeypatch)
 
 def test_another_tournament_is_not_gone_on_with(tmp_path, refused, parts, monkeypatch):
     with monkeypatch.context() as patch:
-        interrupted_at(patch, 2)
+        interrupted_at(patch, tournament_play, "play_pair", 2)
         played(tmp_path, code=130)
     again = [tournament.main, *QUICK, "--out", tmp_path / "t.json", "--resume"]
     for change, what in (("--noise club", "game"), ("--seed 5", "protocol"), ("--max-strokes 9", "game")):
