@@ -140,14 +140,14 @@ def test_of_two_equal_jobs_at_once_the_second_is_refused(tmp_path, environment, 
 def test_searched_data_are_the_same_files_with_a_cluster_and_without(tmp_path, environment, nodes):
     command = str.split("-m agents.search --agent search_30 --positions 300 --noise club --layout random:6")
     files = []
-    for name, more in (("there", ["--ray", nodes[0].address]), ("here", [])):
+    for name, more in (("far", ["--ray", nodes[0].address]), ("here", [])):
         folder = tmp_path / name
         code, out, err = finished([*command, "--out", folder, *more], environment)
         assert code == 0 and not lines_of(err) and out.startswith("384 positions"), err
-        found = [file for file in folder.rglob("*") if file.is_file()]
-        files.append({file.relative_to(folder): file.read_bytes() for file in found})
-    there, here = files
-    assert here == there
+        written = [file for file in folder.rglob("*") if file.is_file()]
+        files.append({file.relative_to(folder): file.read_bytes() for file in written})
+    far, here = files
+    assert here == far
     assert sorted(file.name for file in here if file.suffix == ".json") == ["index.json", "job.json"]
     assert len(here) == 2 + 3
 

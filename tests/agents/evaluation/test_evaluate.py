@@ -128,17 +128,19 @@ def test_bad_input_ends_with_one_clear_line(options, says, refused):
 
 
 def test_a_player_of_ones_own_is_compared(tmp_path):
-    file, own = tmp_path / "r.json", "tests.agents.own_players"
-    assert protocol.main(["--agent", f"{own}:Softly", f"me={own}:Softly", *QUICK, "--json", str(file)]) == 0
+    file, users = tmp_path / "r.json", "tests.agents.user_players"
+    assert (
+        protocol.main(["--agent", f"{users}:Softly", f"me={users}:Softly", *QUICK, "--json", str(file)]) == 0
+    )
     rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in read(file)["results"]}
     assert rows.keys() == {"Softly", "me", "ghost_ball"}
     assert rows["Softly"] == rows["me"] != rows["ghost_ball"]
     for name, why in (
-        (f"{own}:Mute", "player = a Mute: must be a player"),
-        (f"{own}:silent", f"player = '{own}:silent': must be MODULE:CLASS of a player .TypeError"),
-        (f"{own}:Nobody", f"player = '{own}:Nobody': must be MODULE:CLASS of a player .AttributeError"),
-        (f"{own}:Loud", "key of the options of player Loud = 'noise'"),
-        (f"{own}:Discreet", "action = 'discreet'"),
+        (f"{users}:Mute", "player = a Mute: must be a player"),
+        (f"{users}:silent", f"player = '{users}:silent': must be MODULE:CLASS of a player .TypeError"),
+        (f"{users}:Nobody", f"player = '{users}:Nobody': must be MODULE:CLASS of a player .AttributeError"),
+        (f"{users}:Loud", "key of the options of player Loud = 'noise'"),
+        (f"{users}:Discreet", "action = 'discreet'"),
         ("nothere:Soft", "player = 'nothere:Soft': .*ModuleNotFoundError"),
     ):
         with pytest.raises(ValueError, match=why):

@@ -11,8 +11,8 @@ from agents.evaluation.tournament_file import FIELDS, NUMBER, PLAYER, faults
 from tests.agents.training import interrupted_at
 from tests.processes import ROOT
 
-OWN = "tests.agents.own_players"
-PLAYERS = ("ghost_ball", "random", f"{OWN}:Softly")
+USERS = "tests.agents.user_players"
+PLAYERS = ("ghost_ball", "random", f"{USERS}:Softly")
 QUICK = str.split("--frames 6 --resamples 100 --max-strokes 120 --threads 1 --quiet")
 
 
@@ -58,12 +58,12 @@ def test_json_markdown_check_and_show(tmp_path, capsys):
 
 
 def test_a_player_of_frames_says_all_that_an_opponent_may(tmp_path):
-    found = played(tmp_path, "--frames", "2", players=(f"{OWN}:Decides", f"{OWN}:Names"))
+    found = played(tmp_path, "--frames", "2", players=(f"{USERS}:Decides", f"{USERS}:Names"))
     assert all(p["decisions"] for p in found["players"])
 
 
 def test_a_match_is_the_unit(tmp_path, capsys):
-    found = played(tmp_path, "--match", "3", "--noise", "none", players=("ghost_ball", f"{OWN}:Softly"))
+    found = played(tmp_path, "--match", "3", "--noise", "none", players=("ghost_ball", f"{USERS}:Softly"))
     assert faults(found) == [] and len(found["rows"]) > 6 == found["figures"]["players"]["Softly"]["matches"]
     assert "matches, each the best of 3 frames" in " ".join(capsys.readouterr().out.split())
 
@@ -119,8 +119,8 @@ MAIN = "agents/results/main.json"
         ("ghost_ball nobody", "agent = 'nobody': must be random, "),
         ("ghost_ball ghost_ball", "player = 'ghost_ball': must be another"),
         ("ghost_ball x=ghost_ball,random", "player = 'x=ghost_ball,random': must be one player"),
-        (f"ghost_ball {OWN}:Mute", "player = a Mute: must be a player: at.rules. and play"),
-        (f"ghost_ball {OWN}:Loud", "key of the options of player Loud = 'noise'"),
+        (f"ghost_ball {USERS}:Mute", "player = a Mute: must be a player: at.rules. and play"),
+        (f"ghost_ball {USERS}:Loud", "key of the options of player Loud = 'noise'"),
         ("ghost_ball random --frames 7", "frames = 7: must be even"),
         ("ghost_ball random --frames 0", "frames = 0: must be an integer in \\[2"),
         ("ghost_ball random --match 4", "match = 4: must be odd"),

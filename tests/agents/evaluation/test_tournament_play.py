@@ -12,7 +12,7 @@ from agents.players import Geometric
 from snooker_env import SnookerVectorEnv
 from snooker_env.players import SeenPlayer
 from snooker_env.tasks.stroke import FOULS, PLAYER, SCORED
-from tests.agents.own_players import Softly
+from tests.agents.user_players import Softly
 
 GAME = {"noise": "professional", "max_strokes": 1000}
 
