@@ -129,9 +129,8 @@ def test_bad_input_ends_with_one_clear_line(options, says, refused):
 
 def test_a_player_of_ones_own_is_compared(tmp_path):
     file, users = tmp_path / "r.json", "tests.agents.user_players"
-    assert (
-        protocol.main(["--agent", f"{users}:Softly", f"me={users}:Softly", *QUICK, "--json", str(file)]) == 0
-    )
+    agents = ["--agent", f"{users}:Softly", f"me={users}:Softly"]
+    assert protocol.main([*agents, *QUICK, "--json", str(file)]) == 0
     rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in read(file)["results"]}
     assert rows.keys() == {"Softly", "me", "ghost_ball"}
     assert rows["Softly"] == rows["me"] != rows["ghost_ball"]

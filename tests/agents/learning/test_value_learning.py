@@ -32,25 +32,22 @@ def a_round(n, rng, scale=1.0):
     return rng.normal(0, scale, (n, SIZE)).astype(np.float32), after, points, goes_on, follows
 
 
-def layers(learning):
-    """Weights and biases of each layer: of all members."""
-    network = learning._network
-    return [
-        (w.detach().double().numpy(), b.detach().double().numpy())
-        for w, b in zip(network.weights, network.biases, strict=True)
-    ]
+def by_numpy(network, rows):
+    """P and U of every member: (MEMBERS, n) each."""
+    both = []
+    for member in range(MEMBERS):
+        x = rows.astype(np.float64)
+        for k, (weight, bias) in enumerate(zip(network.weights, network.biases, strict=True)):
+            x = x @ weight[member].detach().double().numpy() + bias[member].detach().double().numpy()
+            x = np.maximum(x, 0.0) if k < 2 else x
+        chance = 1.0 / (1.0 + np.exp(-(rows[:, LOGIT].astype(np.float64) + x[:, 0])))
+        both.append((chance, 40.0 * np.log1p(np.exp(x[:, 1]))))
+    return np.array(both).swapaxes(0, 1)
 
 
 def worth(network, row):
-    """The value of one row of features by the ``layers`` of a network: the mean of its members."""
-    values = []
-    for member in range(4):
-        x = row.astype(np.float64)
-        for k, (weight, bias) in enumerate(network):
-            x = x @ weight[member] + bias[member, 0]
-            x = np.maximum(x, 0.0) if k < 2 else x
-        values.append(40.0 * np.log1p(np.exp(x[1])) / (1.0 + np.exp(-(float(row[LOGIT]) + x[0]))))
-    return np.mean(values)
+    """The value of one row of features: the mean of the members."""
+    return np.prod(by_numpy(network, row[None]), axis=0).mean()
 
 
 def by_hand(network, rounds):
@@ -74,15 +71,15 @@ def test_the_targets_recomputed():
     rounds = [a_round(9, rng) for _ in range(4)]
     for one in rounds:
         learning.add(*one)
-    expected = by_hand(layers(learning), rounds)
+    expected = by_hand(learning._network, rounds)
     assert learning._targets().reshape(4, 9) == pytest.approx(expected, rel=1e-3, abs=2e-3) and LAMBDA == 0.7
     follows = np.array([one[4] for one in rounds[:-1]])
-    without = by_hand(layers(learning), [(*one[:4], np.zeros(9, bool)) for one in rounds])
+    without = by_hand(learning._network, [(*one[:4], np.zeros(9, bool)) for one in rounds])
     moved = np.abs(expected - without)[:-1] > 1e-3
     # corrected where it was followed, and only there
     assert np.array_equal(moved, follows) and 5 < follows.sum() < 22
     later = [*rounds[:-1], (rounds[-1][0], rounds[-1][1], rounds[-1][2] + 30.0, *rounds[-1][3:])]
-    reached = np.abs(by_hand(layers(learning), later) - expected) > 1.0
+    reached = np.abs(by_hand(learning._network, later) - expected) > 1.0
     assert np.array_equal(reached[2], follows[2]) and np.array_equal(reached[1], follows[2] & follows[1])
     assert reached[1].any()  # a correction reaches two rounds back
 
@@ -109,7 +106,7 @@ def test_the_oldest_rounds_are_forgotten(monkeypatch):
     for one in rounds:
         learning.add(*one)
     assert len(learning._rounds) == 4
-    expected = by_hand(layers(learning), rounds[3:])
+    expected = by_hand(learning._network, rounds[3:])
     assert learning._targets().reshape(4, 5) == pytest.approx(expected, rel=1e-3, abs=2e-3)
 
 
@@ -284,14 +281,8 @@ def test_the_network_has_the_layers_that_the_file_says():
     assert MEMBERS == 4
     assert [tuple(b.shape) for b in network().biases] == [(MEMBERS, 1, b) for _, b in sizes]
     made, seen = network(2), np.random.default_rng(1).normal(0, 1, (50, SIZE)).astype(np.float32)
-    p, u = by_torch(made, seen)
-    for member in range(MEMBERS):
-        x = seen.astype(np.float64)
-        for k, (weight, bias) in enumerate(zip(made.weights, made.biases, strict=True)):
-            x = x @ weight[member].detach().double().numpy() + bias[member].detach().double().numpy()
-            x = np.maximum(x, 0.0) if k < 2 else x
-        assert p[member] == pytest.approx(1 / (1 + np.exp(-(seen[:, LOGIT] + x[:, 0]))), abs=1e-5)
-        assert u[member] == pytest.approx(POINTS * np.log1p(np.exp(x[:, 1])), rel=1e-4)
+    (p, u), (chance, points) = by_torch(made, seen), by_numpy(made, seen)
+    assert p == pytest.approx(chance, abs=1e-5) and u == pytest.approx(points, rel=1e-4) and POINTS == 40.0
 
 
 def test_the_members_start_apart_and_each_reads_its_own_rows():
@@ -301,9 +292,8 @@ def test_the_members_start_apart_and_each_reads_its_own_rows():
     together = [one.detach() for one in made(seen)]
     for member in range(MEMBERS):  # each reads its own rows
         alone = [one[member].detach() for one in made(seen[member])]
-        assert all(
-            torch.allclose(one[member], own, atol=1e-4) for one, own in zip(together, alone, strict=True)
-        )
+        for one, own in zip(together, alone, strict=True):
+            assert torch.allclose(one[member], own, atol=1e-4)
     made(seen)[1][2].sum().backward()
     reached = [(w.grad != 0).flatten(1).any(1).tolist() for w in made.weights]
     assert reached == [[False, False, True, False]] * 3
