@@ -41,8 +41,8 @@ def environment(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def nodes():
-    """A cluster; its head may be lost and another one begun."""
+def nodes(environment):
+    """A cluster, whose workers take that environment; its head may be lost and another one begun."""
     made = [Nodes(initialize_head=True, head_node_args=NODE)]
     yield made
     made[-1].shutdown()
