@@ -1,7 +1,5 @@
-"""Does ``train.py`` train a value and a policy by expert iteration, judge them honestly, and resume at any
-moment?"""
+"""Does ``train.py`` train by expert iteration, judge what it learned honestly, and resume at any moment?"""
 
-import json
 import signal
 
 import numpy as np
@@ -10,48 +8,30 @@ import pytest
 import snooker_env as sn
 import train
 from agents.learning import callback, expert_iteration
-from agents.learning.models import load_trained
 from snooker_env.benchmark import play_visits, summary
+from tests.agents import training
+from tests.agents.training import results, resume, weights
 
-TINY = [
-    "--agent",
-    "ppo_value",
-    "--envs",
-    "4",
-    "--eval-visits",
-    "4",
-    "--no-progress",
-    "--parallel",
-    "one",
-    "--steps",
-    "512",
-    "--imitate",
-    "64",
-]
+EXPERT = ["--agent", "ppo_value", "--envs", "4", "--imitate", "64"]
+
+
+def run(out, *options):
+    return training.run(out, *EXPERT, *options)
 
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     """The folder of an uninterrupted run."""
     out = tmp_path_factory.mktemp("expert") / "run"
-    assert train.main([*TINY, "--out", str(out)]) == 0
+    assert run(out) == 0
     return out
 
 
-def weights(out):
-    """Every parameter of the saved model, flat: policy and value."""
-    return np.concatenate(
-        [p.detach().numpy().ravel() for p in load_trained(out, "agent").policy.parameters()]
-    )
-
-
 def test_the_run_says_what_the_planner_gains(finished):
-    found = json.loads((finished / "results.json").read_text())
+    found = results(finished)
     assert set(found["evaluation"]) == {"trained", "ghost_ball", "random", "planner", "search"}
-    assert (
-        "after 64 positions of expert iteration, ppo_value" in found["learned"]
-        and "a rule by hand" in found["learned"]
-    )
+    assert "after 64 positions of expert iteration, ppo_value" in found["learned"]
+    assert "a rule by hand" in found["learned"]
     assert found["imitation"][-1]["states"] == 64 and found["imitation"][-1]["value_loss"] > 0
     for name in (f"planner@{finished}", "search"):
         again = summary(play_visits(sn.player(name), 4))
@@ -61,7 +41,7 @@ def test_the_run_says_what_the_planner_gains(finished):
 @pytest.mark.parametrize("at", [8, 40])
 def test_a_signal_in_expert_iteration_loses_nothing(finished, tmp_path, monkeypatch, capsys, at):
     """Before and after the value has begun to learn."""
-    original, out = expert_iteration.ExpertIteration.round, tmp_path / "run"
+    original = expert_iteration.ExpertIteration.round
 
     def interrupted(self):
         original(self)
@@ -70,14 +50,14 @@ def test_a_signal_in_expert_iteration_loses_nothing(finished, tmp_path, monkeypa
 
     with monkeypatch.context() as patch:
         patch.setattr(expert_iteration.ExpertIteration, "round", interrupted)
-        assert train.main([*TINY, "--out", str(out)]) == 128 + signal.SIGTERM
+        assert run(tmp_path) == 128 + signal.SIGTERM
     assert f"Saved at {at} of 64 positions" in capsys.readouterr().out
-    assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
-    assert np.array_equal(weights(out), weights(finished))
+    assert resume(tmp_path) == 0
+    assert np.array_equal(weights(tmp_path), weights(finished))
 
 
 def test_a_signal_in_ppo_loses_nothing_and_the_rewards_stay_judged(finished, tmp_path, monkeypatch):
-    original, out, judged = callback.RunCallback._on_step, tmp_path / "run", []
+    original, judged = callback.RunCallback._on_step, []
 
     def interrupted(self):
         judged.append(self.training_env.judge is not None)
@@ -86,23 +66,17 @@ def test_a_signal_in_ppo_loses_nothing_and_the_rewards_stay_judged(finished, tmp
         return original(self)
 
     monkeypatch.setattr(callback.RunCallback, "_on_step", interrupted)
-    assert train.main([*TINY, "--out", str(out)]) == 128 + signal.SIGINT
-    assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
+    assert run(tmp_path) == 128 + signal.SIGINT and resume(tmp_path) == 0
     assert judged and all(judged)
-    assert np.array_equal(weights(out), weights(finished))
+    assert np.array_equal(weights(tmp_path), weights(finished))
 
 
-def test_ppo_without_a_learned_value_is_refused(tmp_path, capsys):
-    with pytest.raises(SystemExit):
-        train.main([*TINY[:-1], "0", "--out", str(tmp_path / "run")])
-    assert "imitate = 0: must be 1 or more for ppo_value without --start" in capsys.readouterr().err
+def test_ppo_without_a_learned_value_is_refused(tmp_path, refused):
+    error = refused(train.main, *training.TINY, *EXPERT, "--imitate", "0", "--out", tmp_path / "run")
+    assert "imitate = 0: must be 1 or more for ppo_value without --start" in error
     assert not (tmp_path / "run").exists()
 
 
 def test_a_run_that_starts_from_a_model_has_its_value(finished, tmp_path):
-    out = tmp_path / "run"
-    assert (
-        train.main([*TINY[:-2], "--start", str(finished), "--set", "learning_rate=0.0", "--out", str(out)])
-        == 0
-    )
-    assert np.array_equal(weights(out), weights(finished))
+    assert run(tmp_path, "--imitate", "0", "--start", str(finished), "--set", "learning_rate=0.0") == 0
+    assert np.array_equal(weights(tmp_path), weights(finished))

@@ -1,31 +1,22 @@
-"""Whom can the benchmark judge? Names, models, classes and programs; and what becomes of those that fail, or
-of Ctrl-C."""
+"""Whom can the benchmark judge: names, models, classes and programs? And what becomes of those that fail?"""
 
 import json
 import shutil
 import sys
-from pathlib import Path
+from contextlib import closing
 
 import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.benchmark import (
-    TASKS,
-    Agent,
-    AgentError,
-    ProgramPlayer,
-    faults,
-    judge,
-    read_result,
-    write_result,
-)
+from snooker_env.benchmark import TASKS, Agent, faults, judge, read_result, write_result
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.playing import BATCH
 from snooker_env.benchmark.results import strokes_of
+from snooker_env.play.program import AgentError, ProgramPlayer
 from snooker_env.players import VISITS, Strokes, decided
+from tests.processes import ROOT
 
-ROOT = Path(__file__).parents[2]
 EXAMPLE = f"program:{sys.executable} {ROOT / 'examples/program_player.py'}"
 HARD = TASKS["SnookerPotHard-v0"]
 
@@ -35,20 +26,15 @@ def test_the_example_of_a_class_plays(tmp_path, capsys, monkeypatch):
     arguments = ["run", "SnookerBreak-v0", "--agent", "examples.own_player:Softly", "--training-shots", "0"]
     assert main([*arguments, "--episodes", "30", "--out", str(tmp_path)]) == 0
     result = read_result(tmp_path / "SnookerBreak-v0.Softly.json")
-    assert (
-        faults(result) == []
-        and result["agent"]["class"] == "model_free"
-        and result["figures"]["score"]["value"] > 4
-    )
+    assert faults(result) == [] and result["agent"]["class"] == "model_free"
+    assert result["figures"]["score"]["value"] > 4
     assert "SnookerBreak-v0  Softly: " in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("task", ["SnookerColours-v0", "SnookerEscape-v0", "SnookerFrame-v0"])
 def test_the_example_of_a_program_plays(tmp_path, task):
-    agent = Agent.of(EXAMPLE, training_shots=0, shots_declared=0)
-    result = judge(
-        TASKS[task], agent, episodes=2 if task == "SnookerFrame-v0" else 8, out=tmp_path / "one.json"
-    )
+    agent, many = Agent.of(EXAMPLE, training_shots=0, shots_declared=0), 2 if TASKS[task].frame else 8
+    result = judge(TASKS[task], agent, episodes=many, out=tmp_path / "one.json")
     assert result["incomplete"] is None and faults(result) == [], result["incomplete"]
     assert result["agent"]["label"] == "program_player" and result["agent"]["declared"]
     assert result["agent"]["class"] == "model_free"
@@ -64,37 +50,31 @@ def program(tmp_path, body):
 
 GOOD = 'print(json.dumps({"speed": 1.0, "aim": 0.0}), flush=True)'
 EACH = "for k, line in enumerate(sys.stdin):\n if k == 3: "
-TWICE = """'{"speed": 1.0, "aim": 0.0}' + chr(10)"""
-BROKEN = {
-    "dies": (f"{EACH}sys.exit(7)\n {GOOD}", "ended with exit code 7 instead of a stroke"),
-    "hangs": (f"{EACH}time.sleep(60)\n {GOOD}", "gave no stroke within 3 s"),
-    "says": (f"{EACH}print('hello', flush=True)\n {GOOD}", "answered 'hello', which is no stroke"),
-    "far": (
-        f'{EACH}print(\'{{"speed": 99, "aim": 0}}\', flush=True)\n {GOOD}',
-        "which is refused: speed = 99: must be a finite number in [0.2, 7]",
-    ),
-    "nominates": (
-        f'{EACH}print(\'{{"nominate": "blue"}}\', flush=True)\n {GOOD}',
-        "field = 'nominate': must be one of",
-    ),
-    "never reads": (
-        f"for k in range(3):\n sys.stdin.readline()\n {GOOD}\ntime.sleep(60)",
-        "gave no stroke within 3 s",
-    ),
-    "prints twice": (
-        f"GOOD = {TWICE}\nfor k, line in enumerate(sys.stdin):\n print(GOOD * (1 + (k == 2)), end='', flush=True)",
-        "without a state: one line for each",
-    ),
-    "prints without end": (
-        f"{EACH}\n  while True: sys.stdout.write('x' * 9999)\n {GOOD}",
-        "answered a line of more than 1,048,576 bytes",
-    ),
-}
+ANSWER = "for k, line in enumerate(sys.stdin):\n print(GOOD * (1 + (k == 2)), end='', flush=True)"
+TWICE = """GOOD = '{"speed": 1.0, "aim": 0.0}' + chr(10)\n""" + ANSWER
+SLEEPS = f"for k in range(3):\n sys.stdin.readline()\n {GOOD}\ntime.sleep(60)"
+FAR, NOMINATES = """'{"speed": 99, "aim": 0}'""", """'{"nominate": "blue"}'"""
+REFUSED = "which is refused: speed = 99: must be a finite number in [0.2, 7]"
 
 
-@pytest.mark.parametrize("how", BROKEN)
-def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tmp_path, capsys, how):
-    body, why = BROKEN[how]
+@pytest.mark.parametrize(
+    ("body", "why"),
+    [
+        (f"{EACH}sys.exit(7)\n {GOOD}", "ended with exit code 7 instead of a stroke"),
+        (f"{EACH}time.sleep(60)\n {GOOD}", "gave no stroke within 3 s"),
+        (f"{EACH}print('hello', flush=True)\n {GOOD}", "answered 'hello', which is no stroke"),
+        (f"{EACH}print({FAR}, flush=True)\n {GOOD}", REFUSED),
+        (f"{EACH}print({NOMINATES}, flush=True)\n {GOOD}", "field = 'nominate': must be one of"),
+        (SLEEPS, "gave no stroke within 3 s"),
+        (TWICE, "without a state: one line for each"),
+        (
+            f"{EACH}\n  while True: sys.stdout.write('x' * 9999)\n {GOOD}",
+            "answered a line of more than 1,048,576 bytes",
+        ),
+    ],
+    ids=str.split("dies hangs says far nominates never-reads prints-twice prints-without-end"),
+)
+def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tmp_path, capsys, body, why):
     agent, out = program(tmp_path, body), tmp_path / "one.json"
     arguments = ["run", "SnookerEscape-v0", "--agent", agent, "--episodes", "6", "--out", str(out)]
     assert main([*arguments, "--timeout", "3", "--training-shots", "0", "--simulated-shots", "0"]) == 1
@@ -108,22 +88,26 @@ def test_a_program_that_fails_is_said_in_one_line_and_what_was_played_is_kept(tm
 
 
 def test_a_program_that_is_not_there(capsys):
-    assert (
-        main(["run", "SnookerEscape-v0", "--agent", "program:no-such-program-here", "--episodes", "6"]) == 1
-    )
+    name = "program:no-such-program-here"
+    assert main(["run", "SnookerEscape-v0", "--agent", name, "--episodes", "6"]) == 1
     assert "cannot be started" in capsys.readouterr().err
     with pytest.raises(AgentError, match="cannot be started"):
-        sn.player("program:no-such-program-here").at({}).play(sn.Position(cue=(0, 0), black=(0, 1)), [0])
+        sn.player(name).at({}).play(sn.Position(cue=(0, 0), black=(0, 1)), [0])
+
+
+def watching(tmp_path):
+    """A program that keeps what it is sent, and a call that reads it."""
+    kept = tmp_path / "seen.jsonl"
+    body = f"for line in sys.stdin:\n open({str(kept)!r}, 'a').write(line)\n {GOOD}"
+    return program(tmp_path, body), lambda: list(map(json.loads, kept.read_text("utf-8").splitlines()))
 
 
 def test_a_program_sees_the_state_of_the_protocol(tmp_path):
-    """What it gets is what the server of play answers, for the table of the episode, with a seed for what it
-    draws."""
-    kept = tmp_path / "seen.jsonl"
-    body = f"for line in sys.stdin:\n open({str(kept)!r}, 'a').write(line)\n {GOOD}"
-    task, agent = TASKS["SnookerColours-v0"], Agent.of(program(tmp_path, body), training_shots=0)
+    """What it gets is what the server of play answers, with a seed for what it draws."""
+    name, seen = watching(tmp_path)
+    task, agent = TASKS["SnookerColours-v0"], Agent.of(name, training_shots=0)
     assert judge(task, agent, episodes=2)["agent"]["class"] == "undeclared"
-    states = [json.loads(line) for line in kept.read_text().splitlines()]
+    states = seen()
     balls = {"cue", "yellow", "green", "brown", "blue", "pink", "black"}
     assert set(states[0]["positions"]) == balls and "Balls (x to the right" in states[0]["text"]
     assert states[0]["phase"] == "stroke" and states[0]["ball_on"] == "yellow"
@@ -136,15 +120,11 @@ def test_a_program_sees_the_points_as_its_own(tmp_path):
     tables.reset(seed=1)
     at = sn.Positions.of(tables)
     at.points[0] = 5
-    seen = tmp_path / "seen.jsonl"
-    body = f"for line in sys.stdin:\n open({str(seen)!r}, 'a').write(line)\n {GOOD}"
-    player = ProgramPlayer(program(tmp_path, body).removeprefix("program:"))
-    try:
+    name, seen = watching(tmp_path)
+    with closing(ProgramPlayer(name.removeprefix("program:"))) as player:
         strokes = player.at(tables).play(at, [3])
-    finally:
-        player.close()
     assert strokes.values.tolist() == [[1.0, 0.0, 0.0, 0.0, 0.0]]
-    state = json.loads(seen.read_text(encoding="utf-8"))
+    (state,) = seen()
     assert state["scores"] == [5, 0] and state["break"] == 5
 
 
@@ -182,22 +162,20 @@ def test_ctrl_c_keeps_what_was_played_and_it_can_be_resumed(tmp_path, capsys):
     Interrupted.asked = 0
     out = tmp_path / "one.json"
     many = 2 * BATCH + 30
-    arguments = ["run", "SnookerPotHard-v0", "--agent", f"{__name__}:Interrupted", "--training-shots", "0"]
-    arguments += ["--episodes", str(many), "--out", str(out)]
+    command = f"run SnookerPotHard-v0 --agent {__name__}:Interrupted --training-shots 0 --episodes {many}"
+    arguments = [*command.split(), "--out", str(out)]
     assert main(arguments) == 130
     assert f"interrupted after {2 * BATCH} of {many} episodes" in capsys.readouterr().err
     part = read_result(out)
-    assert (
-        len(part["rows"]) == 2 * BATCH and part["incomplete"].startswith("interrupted") and faults(part) == []
-    )
+    assert len(part["rows"]) == 2 * BATCH and part["incomplete"].startswith("interrupted")
+    assert faults(part) == []
     assert main([*arguments, "--resume"]) == 0
     whole = read_result(out)
     assert whole["incomplete"] is None and len(whole["rows"]) == many and faults(whole) == []
     assert whole["rows"][: 2 * BATCH] == part["rows"] and len(strokes_of(whole)) == many
     assert main([*arguments, "--resume"]) == 0 and read_result(out) == whole  # left as it is
-    assert (
-        main(arguments) == 2 and "must be a new file" in capsys.readouterr().err and read_result(out) == whole
-    )
+    assert main(arguments) == 2 and "must be a new file" in capsys.readouterr().err
+    assert read_result(out) == whole
     assert main([*arguments, "--force"]) == 0 and read_result(out)["rows"] == whole["rows"]
     forged = part | {"rows": [[*row[:2], 1, 1, 1, 1, 0, 1, 0, 1] for row in part["rows"]]}
     for other, why in (
@@ -267,10 +245,8 @@ def test_wrong_agents_are_refused_in_one_line(tmp_path, capsys):
 def test_names_and_what_is_known_of_them():
     agent = Agent.of("search_60")
     assert (agent.label, agent.training_shots, agent.player(HARD).budget) == ("search_60", 0, 60)
-    assert (
-        Agent.of("planner_500").training_shots is None
-        and Agent.of("planner_500@club").label == "planner_500_club"
-    )
+    assert Agent.of("planner_500").training_shots is None
+    assert Agent.of("planner_500@club").label == "planner_500_club"
     with pytest.warns(DeprecationWarning):
         assert Agent.of("lookahead_30").player(HARD).kind == "search"
 
@@ -278,9 +254,8 @@ def test_names_and_what_is_known_of_them():
 def test_an_alias_may_stand_under_both_names():
     from snooker_env.benchmark.agents import is_reserved
 
-    assert not is_reserved("lookahead_60", ["lookahead_60"]) and not is_reserved(
-        "search_60", ["lookahead_60"]
-    )
+    assert not is_reserved("lookahead_60", ["lookahead_60"])
+    assert not is_reserved("search_60", ["lookahead_60"])
     assert is_reserved("lookahead", ["search_60"]) and is_reserved("lookahead", ["mine:Player"])
 
 
@@ -324,9 +299,8 @@ def test_without_the_libraries_one_line_says_which_to_install(model, monkeypatch
     arguments = ["run", "SnookerPotHard-v0", "--agent", str(model["SnookerPotHard-v0"]), "--trust"]
     assert main([*arguments, "--options", "aim=target"]) == 1
     error = capsys.readouterr().err
-    assert (
-        error.count("\n") == 1 and "needs stable_baselines3" in error and 'pip install -e ".[train]"' in error
-    )
+    assert error.count("\n") == 1 and "needs stable_baselines3" in error
+    assert 'pip install -e ".[train]"' in error
 
 
 def test_a_model_of_the_repository_plays_visits_and_frames():
@@ -346,9 +320,7 @@ def test_what_is_kept_is_what_was_played():
     for row, strokes in zip(result["rows"], kept, strict=True):
         env.reset(seed=row[1])
         assert env.step(strokes[0])[1] == row[2]
-    tables = sn.SnookerVectorEnv(1, HARD.judged(**VISITS))
-    tables.reset(seed=[result["rows"][0][1]])
-    exact = decided(
-        player, tables, np.ones(1, bool), sn.players.decision_seeds(0, np.array([result["rows"][0][1]]), 0)
-    )
+    tables, seed = sn.SnookerVectorEnv(1, HARD.judged(**VISITS)), result["rows"][0][1]
+    tables.reset(seed=[seed])
+    exact = decided(player, tables, np.ones(1, bool), sn.players.decision_seeds(0, np.array([seed]), 0))
     assert np.array_equal(kept[0], exact.astype(np.float32)) and not np.array_equal(kept[0], exact)

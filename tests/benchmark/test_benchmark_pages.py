@@ -1,16 +1,14 @@
-"""Do the benchmark's pages say what the code does? The tables of tasks and fields, and the leaderboard as the
-command makes it."""
+"""Do the benchmark's pages say what the code does, and is the leaderboard as the command makes it?"""
 
 import re
-from pathlib import Path
 
 import pytest
 
 from snooker_env.benchmark import FREE, TASKS, arithmetic, faults, page, read_result
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.schema import FIELDS, NUMBER, UNPROVED
+from tests.processes import ROOT
 
-ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "docs/benchmark.md").read_text(encoding="utf-8")
 FILES = sorted((ROOT / "leaderboard").glob("*.json"))
 KINDS = {str: "text", int: "integer", bool: "boolean", list: "list", dict: "object", NUMBER: "number"}
@@ -19,27 +17,14 @@ KINDS = {str: "text", int: "integer", bool: "boolean", list: "list", dict: "obje
 @pytest.mark.parametrize("name", TASKS)
 def test_the_table_of_tasks(name):
     task = TASKS[name]
-    others = ", ".join(
-        f"{key}={value}" for key, value in task.changes.items() if key not in ("noise", "layout")
-    )
-    row = [
-        f"`{name}`",
-        task.frozen["noise"],
-        others,
-        task.changes["layout"],
-        task.judged_layout,
-        task.measure,
-        f"{task.episodes:,}",
-    ]
-    assert f"| {' | '.join(row)} |" in TEXT
+    more = [f"{key}={value}" for key, value in task.changes.items() if key not in ("noise", "layout")]
+    row = [f"`{name}`", task.frozen["noise"], ", ".join(more), task.changes["layout"], task.judged_layout]
+    assert f"| {' | '.join([*row, task.measure, f'{task.episodes:,}'])} |" in TEXT
 
 
 def test_every_option_is_called_free_or_frozen():
-    free, frozen = (
-        TEXT.split("### What is free and what is frozen")[1]
-        .split("### Tables")[0]
-        .split("Everything else is frozen:")
-    )
+    section = TEXT.split("### What is free and what is frozen")[1].split("### Tables")[0]
+    free, frozen = section.split("Everything else is frozen:")
     assert all(f"`{name}`" in free for name in FREE)
     assert all(f"`{name}`" in frozen.split("Passing")[0] for name in TASKS["SnookerBreak-v0"].frozen)
 
@@ -66,9 +51,8 @@ def test_what_stands_on_the_leaderboard_is_sound_and_official(file):
 
 def test_the_leaderboard_is_the_page_of_its_files():
     """And it names as missing what ``make.sh`` judges and no file holds."""
-    labels = re.findall(
-        r"^judge (\w+)", (ROOT / "leaderboard/make.sh").read_text(encoding="utf-8"), re.MULTILINE
-    )
+    script = (ROOT / "leaderboard/make.sh").read_text(encoding="utf-8")
+    labels = re.findall(r"^judge (\w+)", script, re.MULTILINE)
     text = (ROOT / "docs/leaderboard.md").read_text(encoding="utf-8")
     assert text == page([read_result(file) for file in FILES], labels)
     assert len(labels) > 10 and ("Missing: " in text) == (len(FILES) < len(labels) * len(TASKS))
@@ -85,7 +69,6 @@ def test_the_examples_on_the_page_run(tmp_path, monkeypatch):
     assert len(blocks) == 2 and (tmp_path / "model.zip").is_file()
     (command,) = [one for one in re.findall(r"^\$ ((?:.*\\\n)*.*)", TEXT, re.MULTILINE) if "model.zip" in one]
     words = command.replace("\\\n", " ").split()
-    assert (
-        words[:3] == ["python", "-m", "snooker_env.benchmark"] and main([*words[3:], "--episodes", "10"]) == 0
-    )
+    assert words[:3] == ["python", "-m", "snooker_env.benchmark"]
+    assert main([*words[3:], "--episodes", "10"]) == 0
     assert faults(read_result(tmp_path / "SnookerPotHard-v0.model.json")) == []

@@ -1,7 +1,7 @@
-"""Does ``check`` find what no run writes? Each field out of range, sources that do not fit, and what a page
-must not repeat."""
+"""Does ``check`` find what no run writes: fields out of range, wrong sources, and markup for the page?"""
 
 import copy
+from datetime import datetime, timedelta, timezone
 from functools import cache
 
 import pytest
@@ -10,29 +10,25 @@ import snooker_env as sn
 from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, figures_of, judge, page, replayed
 from snooker_env.benchmark.leaderboard import markdown_table, plain, profile
 from snooker_env.benchmark.results import packed, strokes_of
-from snooker_env.benchmark.schema import RANGES
+from snooker_env.benchmark.schema import DATE, LONG_LINE, RANGES
+from snooker_env.benchmark.schema import line as one_line
+from tests.benchmark.records import put
 
 HUGE = 10**400
 
 
 @cache
 def sound():
-    """All episodes of random on the colours, by an agent of another name, which ``check`` does not ask
-    again."""
-    return judge(
-        TASKS["SnookerColours-v0"], Agent(label="any", sources=(sn.player("random"),), training_shots=0)
-    )
+    """All episodes of random on the colours, by a name that ``check`` does not ask again."""
+    agent = Agent(label="any", sources=(sn.player("random"),), training_shots=0)
+    return judge(TASKS["SnookerColours-v0"], agent)
 
 
 def changed(**fields):
     """The sound file with other values, ``part__name=value``."""
     record = copy.deepcopy(sound())
     for name, value in fields.items():
-        inner = record
-        *parts, last = name.split("__")
-        for part in parts:
-            inner = inner[part]
-        inner[last] = value
+        record = put(record, name.split("__"), value)
     return record
 
 
@@ -47,9 +43,8 @@ def test_an_empty_file_is_not_official():
 
 @pytest.mark.parametrize("sources", [[], [""], [7], ["a", None], [["a"]]])
 def test_sources_are_texts(sources):
-    assert "agent.sources: must be texts, one for each training seed" in faults(
-        changed(agent__sources=sources)
-    )
+    wrong = faults(changed(agent__sources=sources))
+    assert "agent.sources: must be texts, one for each training seed" in wrong
 
 
 def test_the_same_source_five_times_makes_nothing_surer():
@@ -59,40 +54,43 @@ def test_the_same_source_five_times_makes_nothing_surer():
     record["figures"] = figures_of(TASKS[record["task"]], "any", record["rows"])
     assert faults(record) == ["agent.sources: must be different: the same one twice makes nothing surer"]
     record["agent"]["sources"] = [f"{k}.zip" for k in range(5)]
-    assert faults(record) == [
-        "agent.sources: 0 and 1 must be different training seeds: their strokes are equal"
-    ]
+    equal = "agent.sources: 0 and 1 must be different training seeds: their strokes are equal"
+    assert faults(record) == [equal]
 
 
+OTHER = "must not be the name of another player"
+BEGINS = "strokes: run 0, table 1000000: search_60 begins with another stroke than the file"
+ALIKE = ["r\u0430ndom", "RANDOM", "Random", "random.", "ghost-ball"]
+"""Labels that a reader would take for a built-in player."""
+TEXTS = ["two\nlines", "\x1b[2J", "\ud800", "x" * 2001]
+TOMORROW = (datetime.now(timezone.utc) + timedelta(days=1)).strftime(DATE)
+DATES = ["2999-01-01T00:00:00Z", "2026-11-20T23:59:59Z", "1970-01-01T00:00:00Z", TOMORROW]
+"""In the future, or before the project."""
 WRONG = [
-    ("timing__seconds", float("nan"), "timing.seconds = nan: must be between 0"),
-    ("machine__cores", 0, "machine.cores = 0: must be between 1"),
-    ("agent__label", "x | y |\n\n# h <script>", "agent.label = 'x | y"),
-    ("agent__label", "", "agent.label = '': must be 1 to 20 letters"),
-    ("agent__label", "random\n", "agent.label = 'random"),
-    ("machine__cpu", "evil\n\n## injected", "machine.cpu = 'evil"),
-    ("machine__platform", "", "machine.platform = ''"),
-    ("software__snooker_env", "999 | x", "software.snooker_env = '999 | x': must be a version"),
-    ("software__torch", "<b>", "software.torch = '<b>': must be a version"),
+    ("timing.seconds", float("nan"), "timing.seconds = nan: must be between 0"),
+    ("machine.cores", 0, "machine.cores = 0: must be between 1"),
+    ("agent.label", "x | y |\n\n# h <script>", "agent.label = 'x | y"),
+    ("agent.label", "", "agent.label = '': must be 1 to 20 letters"),
+    ("agent.label", "random\n", "agent.label = 'random"),
+    ("machine.cpu", "evil\n\n## injected", "machine.cpu = 'evil"),
+    ("machine.platform", "", "machine.platform = ''"),
+    ("software.snooker_env", "999 | x", "software.snooker_env = '999 | x': must be a version"),
+    ("software.torch", "<b>", "software.torch = '<b>': must be a version"),
     ("commit", "a commit", "commit = 'a commit': must be a commit's hash"),
     ("date", "whenever", "date = 'whenever': must be a time in UTC"),
     ("date", "2026-13-01T00:00:00Z", "date = "),
-    ("agent__simulated_shots", None, "agent.simulated_shots = None: must be 0.0"),
-    ("agent__simulated_shots", 7, "agent.simulated_shots = 7: must be 0.0"),
-    ("timing__simulated_shots", 7, "agent.simulated_shots = 0.0: must be 0.00"),
-    ("agent__sources", ["program:a"], "agent.class = 'model_free': must be 'undeclared'"),
-    (
-        "agent__sources",
-        ["search_60"],
-        "strokes: run 0, table 1000000: search_60 begins with another stroke than the file",
-    ),
-    ("agent__label", "random", "agent.label = 'random': must not be the name of another player"),
-    (
-        "agent__label",
-        "lookahead_120",
-        "agent.label = 'lookahead_120': must not be the name of another player",
-    ),
-    ("protocol__episodes", 200_000, "protocol.episodes = 200000: must be at most 500 on SnookerColours-v0"),
+    ("agent.simulated_shots", None, "agent.simulated_shots = None: must be 0.0"),
+    ("agent.simulated_shots", 7, "agent.simulated_shots = 7: must be 0.0"),
+    ("timing.simulated_shots", 7, "agent.simulated_shots = 0.0: must be 0.00"),
+    ("agent.sources", ["program:a"], "agent.class = 'model_free': must be 'undeclared'"),
+    ("agent.sources", ["search_60"], BEGINS),
+    ("agent.label", "random", f"agent.label = 'random': {OTHER}"),
+    ("agent.label", "lookahead_120", f"agent.label = 'lookahead_120': {OTHER}"),
+    ("protocol.episodes", 200_000, "protocol.episodes = 200000: must be at most 500 on SnookerColours-v0"),
+    *(("agent.label", name, "agent.label = ") for name in ALIKE),
+    *(("command", text, "command = ") for text in TEXTS),
+    *(("agent.sources", [text], "agent.sources: must be texts, one for each") for text in TEXTS),
+    *(("date", date, f"date = '{date}': must be between 2026-11-21") for date in DATES),
 ]
 
 
@@ -100,15 +98,18 @@ WRONG = [
     ("name", "value", "line"), WRONG, ids=[f"{name}-{k}" for k, (name, _, _) in enumerate(WRONG)]
 )
 def test_a_wrong_value_is_one_line_that_names_its_field(name, value, line):
-    refused = faults(changed(**{name: value}))
+    refused = faults(put(sound(), name, value))
     assert any(one.startswith(line) for one in refused), refused
     assert all("\n" not in one and len(one) < 200 for one in refused)
 
 
+@pytest.mark.parametrize("text", TEXTS)
+def test_any_text_can_be_made_one_line(text):
+    assert LONG_LINE[0].fullmatch(one_line(text))
+
+
 @pytest.mark.parametrize("name", [*RANGES, "figures.score.value", "figures.best", "figures.profile"])
-@pytest.mark.parametrize(
-    "value", [-1, HUGE, -HUGE, 1e999, 10**5000], ids=["-1", "huge", "-huge", "inf", "long"]
-)
+@pytest.mark.parametrize("value", [-1, HUGE, -HUGE, 1e999, 10**5000], ids=str.split("-1 huge -huge inf long"))
 def test_numbers_without_measure_are_lines_too(name, value):
     refused = faults(changed(**{name.replace(".", "__"): value}))
     assert any(line.startswith(name) for line in refused), refused
@@ -117,9 +118,7 @@ def test_numbers_without_measure_are_lines_too(name, value):
 @pytest.mark.parametrize("column", range(len(COLUMNS)))
 @pytest.mark.parametrize("value", [HUGE, 10**5000, -1], ids=["huge", "too long", "-1"])
 def test_numbers_without_measure_in_a_row(column, value):
-    record = changed()
-    record["rows"][3][column] = value
-    refused = faults(record)
+    refused = faults(put(sound(), ("rows", 3, column), value))
     assert refused and all(line.startswith("rows[3]") for line in refused), refused
 
 
@@ -143,9 +142,8 @@ def test_a_replay_is_of_every_training_seed_by_the_same_agent():
     strokes[8] = -strokes[8]
     other["strokes"] = packed(strokes)
     wrong = replayed(other, two, 6)
-    assert len(wrong) == 1 and wrong[0].startswith(
-        f"run 1, table {record['rows'][8][1]}: played again other strokes"
-    )
+    assert len(wrong) == 1
+    assert wrong[0].startswith(f"run 1, table {record['rows'][8][1]}: played again other strokes")
     assert replayed(other, two, 2) == []
     with pytest.raises(ValueError, match="must have the 2 training seeds of the file"):
         replayed(record, Agent.of("random"), 6)
@@ -159,12 +157,8 @@ def test_no_text_of_a_file_is_markup_of_the_page():
     )
     text = page([record])
     assert not any(line.startswith(("# h", "## injected")) for line in text.splitlines())
-    assert (
-        "<script>" not in text
-        and "<x>" not in text
-        and "[a]" not in text
-        and "&lt;script&gt;" not in page([sound()])
-    )
+    assert "<script>" not in text and "<x>" not in text and "[a]" not in text
+    assert "&lt;script&gt;" not in page([sound()])
     cells = [line for line in text.splitlines() if "script" in line]
     assert len(cells) == 2 and all("x \\| y \\| # h &lt;script&gt;" in line for line in cells)
     assert plain("ghost_ball *") == "ghost_ball *" and markdown_table(["a|b"], [["c\\"]])[0] == "| a\\|b |"
@@ -173,9 +167,10 @@ def test_no_text_of_a_file_is_markup_of_the_page():
 def test_a_share_that_was_always_or_never_seen_stands_as_its_bound():
     """In the profile: at least the lower bound if always, at most the upper one if never."""
     task = TASKS["SnookerColours-v0"]
-    rows = [[0, seed, 27, 6, 27, 6, 0, 1, 0, 1] for seed in task.seeds(30)]
-    always = changed(rows=rows, figures=figures_of(task, "random", rows))
-    rows = [[0, seed, 0, 1, 0, 0, 0, 0, 0, 1] for seed in task.seeds(30)]
-    never = changed(rows=rows, figures=figures_of(task, "random", rows))
-    assert profile([always], task)[1][0][1:] == [">= 90.5"] * 6 + ["27"]
-    assert profile([never], task)[1][0][1:] == ["<= 9.5"] * 6 + ["0"]
+    for row, shares, best in (
+        ([27, 6, 27, 6, 0, 1, 0, 1], ">= 90.5", "27"),
+        ([0, 1, 0, 0, 0, 0, 0, 1], "<= 9.5", "0"),
+    ):
+        rows = [[0, seed, *row] for seed in task.seeds(30)]
+        record = changed(rows=rows, figures=figures_of(task, "random", rows))
+        assert profile([record], task)[1][0][1:] == [shares] * 6 + [best]

@@ -1,5 +1,4 @@
-"""Does ``check`` refuse what nobody played? Forged points, strokes, episodes, versions and dates, and a
-change of every field."""
+"""Does ``check`` refuse what nobody played: forged points, strokes, episodes, dates, and any other value?"""
 
 import base64
 import copy
@@ -7,34 +6,24 @@ import os
 import subprocess
 import sys
 import zlib
-from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import snooker_env as sn
-from snooker_env.benchmark import (
-    COLUMNS,
-    TASKS,
-    Agent,
-    afresh,
-    arithmetic,
-    faults,
-    figures_of,
-    judge,
-    read_result,
-    replayed,
-    schema,
-    write_result,
-)
+from snooker_env.benchmark import COLUMNS, TASKS, Agent, figures_of, judge
 from snooker_env.benchmark.__main__ import main
-from snooker_env.benchmark.results import completed, packed, strokes_of
-from snooker_env.benchmark.schema import DATE, FIELDS, PACKAGES, UNPROVED
+from snooker_env.benchmark.checking import afresh, faults, replayed
+from snooker_env.benchmark.provenance import arithmetic
+from snooker_env.benchmark.results import completed, packed, read_result, strokes_of, write_result
+from snooker_env.benchmark.schema import FIELDS, PACKAGES, UNPROVED
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.planning import pot_aim, pots
 from snooker_env.players import VISITS, Strokes
+from tests.benchmark.records import at, put
 
+OTHER_STROKE = "strokes: run {}, table 1000000: {} begins with another stroke than the file"
 COLOURS, BREAK, HARD = (TASKS[f"Snooker{name}-v0"] for name in ("Colours", "Break", "PotHard"))
 
 
@@ -97,9 +86,8 @@ def test_rows_101_to_500(official):
     strokes = strokes_of(official)
     record["strokes"] = packed(strokes[:100] + [np.resize(one, (6, one.shape[1])) for one in strokes[100:]])
     refused = faults(record)
-    assert all(line.startswith(("rows[10", "rows[11")) for line in refused[:-1]) and refused[-1].endswith(
-        " more faults"
-    )
+    assert all(line.startswith(("rows[10", "rows[11")) for line in refused[:-1])
+    assert refused[-1].endswith(" more faults")
 
 
 @pytest.mark.parametrize("name", ["random", "ghost_ball", "search_30", "ppo_mask"])
@@ -108,18 +96,14 @@ def test_the_name_of_a_known_player_for_other_strokes(name):
     record = judge(HARD, agent(), episodes=30)
     assert faults(record) == []
     record["agent"] |= {"label": name, "sources": [name]}
-    assert (
-        faults(record)[0] == f"strokes: run 0, table 1000000: {name} begins with another stroke than the file"
-    )
+    assert faults(record)[0] == OTHER_STROKE.format(0, name)
 
 
 def test_other_strokes_of_a_later_training_seed():
     record = judge(HARD, Agent(label="two", sources=("random", "search_30"), training_shots=0), episodes=4)
     assert faults(record) == []
     record["agent"]["sources"] = ["random", "ghost_ball"]
-    assert faults(record) == [
-        "strokes: run 1, table 1000000: ghost_ball begins with another stroke than the file"
-    ]
+    assert faults(record) == [OTHER_STROKE.format(1, "ghost_ball")]
 
 
 def test_simulated_shots_that_the_agent_does_not_need():
@@ -138,6 +122,9 @@ def test_a_known_planner_is_not_model_free(name, training):
     """Its own strokes, as if no shot had been simulated for them."""
     record = judge(HARD, Agent.of(name, training_shots=training), episodes=4)
     assert faults(record) == [] and record["agent"]["class"] == "planning"
+    record["timing"]["simulated_shots"] = 1  # fewer than its first strokes take
+    (line,) = faults(completed(copy.deepcopy(record), HARD))
+    assert line.startswith("timing.simulated_shots = 1: must be at least ")
     record["timing"]["simulated_shots"] = 0
     record["agent"] |= {"simulated_shots": 0.0, "class": "model_free"}
     kind, shots = faults(record)
@@ -157,47 +144,10 @@ def test_known_players_were_trained_as_they_say(name, training, says):
     assert faults(record) == [says]
 
 
-def test_a_known_planner_simulates_what_its_first_strokes_take():
-    record = judge(HARD, Agent.of("search_30"), episodes=3)
-    assert faults(record) == []
-    record["timing"]["simulated_shots"] = 1
-    (line,) = faults(completed(record, HARD))
-    assert line.startswith("timing.simulated_shots = 1: must be at least ")
-
-
-@pytest.mark.parametrize("label", ["r\u0430ndom", "RANDOM", "Random", "random.", "ghost-ball"])
-def test_a_label_that_a_reader_would_take_for_a_built_in_player(official, label):
-    record = copy.deepcopy(official)
-    record["agent"] |= {"sources": ["mine:Player"], "label": label}
-    assert [line for line in faults(record) if line.startswith("agent.label = ")]
-
-
-@pytest.mark.parametrize("text", ["two\nlines", "\x1b[2J", "\ud800", "x" * 2001])
-def test_texts_are_one_line(official, text):
-    assert [line for line in faults(official | {"command": text}) if line.startswith("command = ")]
-    record = copy.deepcopy(official)
-    record["agent"] |= {"sources": [text]}
-    assert [line for line in faults(record) if line.startswith("agent.sources: must be texts, one for each")]
-    assert schema.LONG_LINE[0].fullmatch(schema.line(text))
-
-
 def test_another_version(official):
-    record = copy.deepcopy(official)
-    record["software"]["snooker_env"] = "9.9.9"
+    record = put(official, "software.snooker_env", "9.9.9")
     assert faults(record) == [f"software.snooker_env = '9.9.9': must be {PACKAGES[-1]}"]
     assert PACKAGES[-1] == sn.__version__
-
-
-@pytest.mark.parametrize(
-    "date", ["2999-01-01T00:00:00Z", "2026-11-20T23:59:59Z", "1970-01-01T00:00:00Z", "tomorrow"]
-)
-def test_a_date_in_the_future_or_before_the_project(official, date):
-    date = (datetime.now(timezone.utc) + timedelta(days=1)).strftime(DATE) if date == "tomorrow" else date
-    assert [
-        line
-        for line in faults(official | {"date": date})
-        if line.startswith(f"date = '{date}': must be between 2026-11-21")
-    ]
 
 
 def test_repeated_keys(official, tmp_path, capsys):
@@ -209,10 +159,8 @@ def test_repeated_keys(official, tmp_path, capsys):
         file.write_text(text.replace(f'"{name}":', f'"{name}": 1,\n "{name}":', 1), encoding="utf-8")
         with pytest.raises(ValueError, match=f"the key '{name}' stands there twice"):
             read_result(file)
-        assert (
-            main(["check", str(file)]) == 1
-            and f"the key '{name}' stands there twice" in capsys.readouterr().out
-        )
+        assert main(["check", str(file)]) == 1
+        assert f"the key '{name}' stands there twice" in capsys.readouterr().out
 
 
 def test_a_truncated_file(official, tmp_path):
@@ -223,12 +171,10 @@ def test_a_truncated_file(official, tmp_path):
         file.write_bytes(whole[:many])
         with pytest.raises(ValueError, match="must be JSON"):
             read_result(file)
-    short = copy.deepcopy(official)
-    short["strokes"]["data"] = short["strokes"]["data"][: len(short["strokes"]["data"]) // 8 * 4]
-    assert (
-        faults(short)[0].startswith("strokes.data = more than ")
-        and "or cut off: must be " in faults(short)[0]
-    )
+    data = official["strokes"]["data"]
+    short = put(official, "strokes.data", data[: len(data) // 8 * 4])
+    assert faults(short)[0].startswith("strokes.data = more than ")
+    assert "or cut off: must be " in faults(short)[0]
 
 
 def test_one_flipped_bit_of_a_stroke(boxes):
@@ -245,10 +191,10 @@ def test_one_flipped_bit_of_a_stroke(boxes):
         other = bytearray(raw)
         other[bit // 8] ^= 1 << bit % 8
         record["strokes"] = boxes["strokes"] | {"data": base64.b64encode(bytes(other)).decode()}
-        wrong = faults(record)
-        assert wrong[0].startswith("strokes.") if wrong else zlib.decompress(other) == zlib.decompress(raw), (
-            bit
-        )
+        if wrong := faults(record):
+            assert wrong[0].startswith("strokes."), bit
+        else:
+            assert zlib.decompress(other) == zlib.decompress(raw), bit
     record["strokes"] = boxes["strokes"] | {"sha256": "0" * 64}
     assert faults(record)[0].startswith("strokes.sha256 = ")
 
@@ -265,16 +211,14 @@ def test_other_strokes_are_found_by_what_they_score(boxes):
 
 
 def test_strokes_too_few_and_too_many(boxes):
-    for more, line in (
-        (1, "rows[3].strokes = 2: must be 1, as its strokes play"),
-        (-1, "rows[3].strokes = 0: must be more: the episode"),
-    ):
+    for more, line in ((1, "2: must be 1, as its strokes play"), (-1, "0: must be more: the episode")):
         record, strokes = copy.deepcopy(boxes), strokes_of(boxes)
         record["rows"][3][COLUMNS.index("strokes")] += more
         strokes[3] = np.resize(strokes[3], (1 + more, 7))
         record["strokes"] = packed(strokes)
         record["agent"]["simulated_shots"] = 0.0
-        assert any(one.startswith(line) for one in faults(consistent(HARD, record))), faults(record)
+        refused = faults(consistent(HARD, record))
+        assert any(one.startswith(f"rows[3].strokes = {line}") for one in refused), refused
 
 
 @pytest.mark.parametrize("value", [1.5, -1.0000001, np.nan, np.inf])
@@ -282,10 +226,8 @@ def test_strokes_outside_the_space(boxes, value):
     record, strokes = copy.deepcopy(boxes), [one.copy() for one in strokes_of(boxes)]
     strokes[7][0, 0] = value
     record["strokes"] = packed(strokes)
-    assert (
-        faults(record)[0].startswith("strokes.data[")
-        and "must be finite and within [-1, 1]" in faults(record)[0]
-    )
+    assert faults(record)[0].startswith("strokes.data[")
+    assert "must be finite and within [-1, 1]" in faults(record)[0]
 
 
 def test_swapped_episodes_and_other_seeds(boxes):
@@ -302,25 +244,17 @@ def test_swapped_episodes_and_other_seeds(boxes):
     later = copy.deepcopy(boxes)
     for row in later["rows"]:
         row[1] += 1
-    assert faults(later) == [
-        "rows[0]: run 0, table 1000001: must be run 0, table 1000000, as the protocol says"
-    ]
+    says = "rows[0]: run 0, table 1000001: must be run 0, table 1000000, as the protocol says"
+    assert faults(later) == [says]
 
 
 def test_rows_more_or_fewer(boxes):
     strokes = strokes_of(boxes)
-    for rows, some in (
-        (boxes["rows"][:-1], strokes[:-1]),
-        (boxes["rows"] + boxes["rows"][-1:], strokes + strokes[-1:]),
-    ):
-        record = consistent(HARD, boxes | {"rows": rows, "strokes": packed(some)})
-        assert faults(record)[0].startswith(
-            f"rows: must be 24 episodes, 24 for each training seed, not {len(rows)}"
-        )
-
-
-# every field
-# ------------------------------------------------------------------------------------------------------------
+    for episodes in (list(range(23)), [*range(24), 23]):
+        rows = [boxes["rows"][k] for k in episodes]
+        record = consistent(HARD, boxes | {"rows": rows, "strokes": packed([strokes[k] for k in episodes])})
+        says = f"rows: must be 24 episodes, 24 for each training seed, not {len(rows)}"
+        assert faults(record)[0].startswith(says)
 
 
 def leaves(value, path=()):
@@ -331,36 +265,28 @@ def leaves(value, path=()):
 
 def others(value):
     """Other values: of the same type, and of another."""
-    near = {
-        int: lambda: [value + 1, value - 1, 0, 10**400],
-        float: lambda: [value * (1 + 2**-52) + 5e-324],
-        str: lambda: [value + "x", value[1:], value.upper()],
-        bool: lambda: [not value],
-    }.get(type(value), list)()
-    wrong = [None, True, "other", 7, -1, 0.5, [], {}, ["a"]]
-    return [one for one in near + wrong if type(one) is not type(value) or one != value]
+    tried = [None, not value if isinstance(value, bool) else True, "other", 7, -1, 0.5, [], {}, ["a"]]
+    if type(value) is int:
+        tried += [value + 1, value - 1, 0, 10**400]
+    if isinstance(value, float):
+        tried += [value * (1 + 2**-52) + 5e-324]
+    if isinstance(value, str):
+        tried += [value + "x", value[1:], value.upper()]
+    return [one for one in tried if type(one) is not type(value) or one != value]
 
 
 def test_a_change_of_any_field_is_refused_or_one_of_those_that_nothing_proves(boxes):
-    """All but a few rows and words of the profile are tried; what passes must be a field that the page calls
-    unproved."""
+    """All but a few rows are tried; what passes must be a field that the page calls unproved."""
     passed = set()
     for path in leaves(boxes):
         if path[0] == "rows" and path[1] not in (0, 23):
             continue
         for value in others(at(boxes, path)):
-            record = put(boxes, path, value)
-            if faults(record) == []:
+            if faults(put(boxes, path, value)) == []:
                 passed.add(".".join(part for part in path if isinstance(part, str)))
     assert passed <= set(UNPROVED), passed - set(UNPROVED)
-    assert passed >= {
-        "agent.label",
-        "agent.sources",
-        "machine.cpu",
-        "timing.seconds",
-        "commit",
-        "software.numpy",
-    }
+    least = "agent.label agent.sources machine.cpu timing.seconds commit software.numpy"
+    assert passed.issuperset(least.split())
 
 
 @pytest.mark.parametrize("change", [{"more": None}, {"iqm": ...}])
@@ -368,18 +294,6 @@ def test_figures_have_their_fields_and_no_others(boxes, change):
     """Also where the value of a field more, or of a field less, is null."""
     figures = {name: value for name, value in (boxes["figures"] | change).items() if value is not ...}
     assert faults(boxes | {"figures": figures})[0].startswith("figures: must have the fields score, iqm, ")
-
-
-def at(record, path):
-    for key in path:
-        record = record[key]
-    return record
-
-
-def put(record, path, value):
-    record = copy.deepcopy(record)
-    at(record, path[:-1])[path[-1]] = value
-    return record
 
 
 def test_what_is_called_unproved_can_be_changed_unseen(boxes):
@@ -393,12 +307,9 @@ def test_what_is_called_unproved_can_be_changed_unseen(boxes):
     record["timing"] = {"seconds": 1.0, "simulated_shots": 6, "one_table_ms": 2.0}
     record |= {"command": "none", "commit": "0" * 40, "date": "2026-11-22T00:00:00Z", "incomplete": "stopped"}
     assert faults(record) == []
-    changed = {name for name in FIELDS if at(record, name.split(".")) != at(boxes, name.split("."))}
+    changed = {name for name in FIELDS if at(record, name) != at(boxes, name)}
     assert changed == {*UNPROVED, "agent.class", "agent.budget"}
 
-
-# elsewhere
-# ------------------------------------------------------------------------------------------------------------
 
 CHECK = """
 import sys
@@ -408,39 +319,24 @@ print(arithmetic(), *faults(read_result(sys.argv[1])), sep="\\n")
 
 
 def test_where_strokes_end_otherwise_that_is_said_first(tmp_path):
-    """With the system's functions for processors without fused multiply-add, whose last bits differ: no
-    forger is suspected."""
+    """With the system's functions without fused multiply-add, whose last bits differ: nobody is suspected."""
     file = tmp_path / "one.json"
     judge(TASKS["SnookerFrame-v0"], Agent.of("ghost_ball"), episodes=40, out=file)
     here = os.environ | {"PYTHONPATH": str(Path(sn.__file__).parents[1]), "SNOOKER_ENV_QUIET": "1"}
-    refused = {}
-    for where, tunables in (
-        ("here", ""),
-        ("there", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable"),
-    ):
-        run = subprocess.run(
-            [sys.executable, "-c", CHECK, file],
-            env=here | {"GLIBC_TUNABLES": tunables},
-            capture_output=True,
-            check=True,
-        )
-        refused[where] = run.stdout.decode().splitlines()
-    assert refused["here"] == [arithmetic()]
-    if refused["there"][0] == arithmetic():
+    command, printed = [sys.executable, "-c", CHECK, file], []
+    for tunables in ("", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable"):
+        env = here | {"GLIBC_TUNABLES": tunables}
+        run = subprocess.run(command, env=env, capture_output=True, check=True)
+        printed.append(run.stdout.decode().splitlines())
+    assert printed[0] == [arithmetic()]
+    if printed[1][0] == arithmetic():
         pytest.skip("this system has no such functions, or this processor has no others")
-    assert refused["there"][1].startswith(
-        f"machine.arithmetic = {arithmetic()!r}: must be {refused['there'][0]!r} to check it here"
-    )
-    assert refused["there"][2].startswith("rows[")
-
-
-# the agent itself
-# ------------------------------------------------------------------------------------------------------------
+    says = f"machine.arithmetic = {arithmetic()!r}: must be {printed[1][0]!r} to check it here"
+    assert printed[1][1].startswith(says) and printed[1][2].startswith("rows[")
 
 
 def test_fresh_seeds_find_an_agent_that_knew_the_tables():
-    """It remembers the strokes that potted on the judged tables, by where the balls lie; elsewhere it plays
-    anything."""
+    """It remembers the strokes that potted on the judged tables; elsewhere it plays anything."""
     known = {}
 
     class Remembers(Aims):
@@ -461,11 +357,8 @@ def test_fresh_seeds_find_an_agent_that_knew_the_tables():
     record = judge(HARD, peeks, episodes=100)
     assert faults(record) == [] and record["figures"]["score"]["value"] > 0.85
     mean, _, refused = afresh(record, peeks, 100, 5_000_000)
-    assert (
-        mean < 0.7
-        and refused[0].startswith("figures.score.value = ")
-        and refused[0].endswith("as on fresh seeds")
-    )
+    assert mean < 0.7 and refused[0].startswith("figures.score.value = ")
+    assert refused[0].endswith("as on fresh seeds")
     honest = judge(HARD, agent(), episodes=100)
     assert afresh(honest, agent(), 100, 5_000_000)[2] == []
 

@@ -1,6 +1,5 @@
 """Is a result what was played? Rows, figures, counted shots, and a check that finds whatever was changed."""
 
-import copy
 import json
 
 import numpy as np
@@ -8,26 +7,16 @@ import pytest
 from scipy import stats
 
 import snooker_env as sn
-from snooker_env.benchmark import (
-    COLUMNS,
-    HELD_OUT_SEED,
-    TASKS,
-    Agent,
-    budget_of,
-    faults,
-    figures_of,
-    interval,
-    judge,
-    page,
-    play_episodes,
-    read_result,
-    unseen,
-)
+from snooker_env.benchmark import COLUMNS, TASKS, Agent, faults, figures_of, interval, judge, page, unseen
 from snooker_env.benchmark.__main__ import main
 from snooker_env.benchmark.leaderboard import LEGEND, board, lines
+from snooker_env.benchmark.playing import play_episodes
+from snooker_env.benchmark.results import budget_of, read_result
 from snooker_env.benchmark.schema import FIELDS
+from snooker_env.benchmark.tasks import HELD_OUT_SEED
 from snooker_env.planning import Planner
 from snooker_env.players import VISITS, BoundPlayer, Strokes, decision_seeds
+from tests.benchmark.records import at, put
 
 EPISODES = 24
 
@@ -37,13 +26,8 @@ def made(tmp_path_factory):
     """A result of each task by ghost_ball."""
     folder = tmp_path_factory.mktemp("results")
     for name, task in TASKS.items():
-        judge(
-            task,
-            Agent.of("ghost_ball"),
-            episodes=4 if task.frame else EPISODES,
-            out=folder / f"{name}.json",
-            command="a test",
-        )
+        more = {"episodes": 4 if task.frame else EPISODES, "out": folder / f"{name}.json"}
+        judge(task, Agent.of("ghost_ball"), command="a test", **more)
     return folder
 
 
@@ -55,18 +39,13 @@ def result(made, name="SnookerBreak-v0"):
 def test_what_is_written_is_sound(made, name):
     record = result(made, name)
     assert faults(record) == []
-    assert (
-        record["protocol"]["official"] is False
-        and record["incomplete"] is None
-        and record["agent"]["class"] == "model_free"
-    )
+    assert record["protocol"]["official"] is False and record["incomplete"] is None
+    assert record["agent"]["class"] == "model_free"
     assert [row[1] for row in record["rows"]] == TASKS[name].seeds(len(record["rows"]))
     assert record["timing"]["one_table_ms"] > 0
     written = (made / f"{name}.json").read_text(encoding="utf-8")
-    assert (
-        json.loads(written) == record
-        and max(len(line) for line in written.splitlines() if '"data"' not in line) < 140
-    )
+    assert json.loads(written) == record
+    assert all(len(line) < 140 for line in written.splitlines() if '"data"' not in line)
 
 
 def test_rows_are_the_visits_that_the_environment_plays(made):
@@ -94,9 +73,8 @@ def test_figures_are_those_of_the_rows(made):
     record = result(made)
     scores = np.array([row[COLUMNS.index("score")] for row in record["rows"]], float)
     f = record["figures"]
-    assert f["score"]["value"] == pytest.approx(scores.mean()) and f["iqm"]["value"] == pytest.approx(
-        stats.trim_mean(scores, 0.25)
-    )
+    assert f["score"]["value"] == pytest.approx(scores.mean())
+    assert f["iqm"]["value"] == pytest.approx(stats.trim_mean(scores, 0.25))
     assert f["best"] == scores.max() and f["by_run"] == [pytest.approx(scores.mean())]
     rng = np.random.default_rng(5)
     drawn = scores[rng.integers(len(scores), size=(20_000, len(scores)))].mean(axis=1)
@@ -110,80 +88,58 @@ def test_figures_are_those_of_the_rows(made):
 
 def test_several_training_seeds_are_drawn_too():
     rng = np.random.default_rng(0)
-    rows = [
-        [run, table, x, 1, x, 0, 0, 0, 0, 1]
-        for run in range(3)
-        for table, x in enumerate(rng.integers(0, 40, 50) + 20 * run)
-    ]
-    record = figures_of(TASKS["SnookerBreak-v0"], "a", rows)
-    alone = figures_of(TASKS["SnookerBreak-v0"], "a", rows[:50])
-    assert record["score"]["high"] - record["score"]["low"] > 2 * (
-        alone["score"]["high"] - alone["score"]["low"]
+    points = [rng.integers(0, 40, 50) + 20 * run for run in range(3)]
+    rows = [[k, table, x, 1, x, 0, 0, 0, 0, 1] for k in range(3) for table, x in enumerate(points[k])]
+    record, alone, part = (
+        figures_of(TASKS["SnookerBreak-v0"], "a", some) for some in (rows, rows[:50], rows[:-1])
     )
-    assert record["by_run"] == pytest.approx(
-        [np.mean([row[2] for row in rows[50 * k : 50 * k + 50]]) for k in range(3)]
-    )
-    assert figures_of(TASKS["SnookerBreak-v0"], "a", rows[:-1]) is None
+    widths = [one["score"]["high"] - one["score"]["low"] for one in (record, alone)]
+    assert widths[0] > 2 * widths[1] and part is None
+    assert record["by_run"] == pytest.approx([one.mean() for one in points])
 
 
-def changed(record, path, value):
-    record = copy.deepcopy(record)
-    inner = record
-    for key in path[:-1]:
-        inner = inner[key]
-    inner[path[-1]] = value
-    return record
-
-
-TAMPERED = [
-    (("figures", "score", "value"), 99.0, "figures.score.value = 99.0: must be "),
-    (("figures", "profile", 1, "high"), 0.9, "figures.profile[1].high = 0.9: must be "),
-    (("rows", 3, 2), 147, "rows[3].score = 147: must be "),
-    (
-        ("rows", 5, 1),
-        HELD_OUT_SEED + 999,
-        f"rows[5]: run 0, table {HELD_OUT_SEED + 999}: must be run 0, table ",
-    ),
-    (("rows", 5, 1), HELD_OUT_SEED, "rows[5]: run 0, table 1000000: must be run 0, table 1000005"),
-    (("rows", 2, 3), 1001, "rows[2].strokes = 1001: must be between 0 and 1000"),
-    (("rows", 2), [1, 2], "rows[2] = [1, 2]: must be 10 whole numbers"),
-    (("rows", 2, 6), 2, "rows[2].fouls = 2: must be "),
-    (("protocol", "episodes"), 25, "rows: must be 25 episodes, 25 for each training seed, not 24"),
-    (("protocol", "version"), 7, "protocol.version = 7: must be 1"),
-    (("protocol", "official"), True, "protocol.official = True: must be False by the other fields"),
-    (("task",), "SnookerBreak-v1", "task = 'SnookerBreak-v1': must be one of SnookerBreak-v0"),
-    (("agent", "class"), "planning", "agent.class = 'planning': must be 'model_free'"),
-    (("agent", "budget"), "1M", "agent.budget = '1M': must be 'none'"),
-    (("software", "numpy"), 2, "software.numpy = 2: must be a text or null"),
-    (("machine", "colour"), 2, "machine.colour: is no field of version 3"),
-    (("extra",), 2, "extra: is no field of version 3"),
-    (("incomplete",), False, "incomplete = False: must be a text or null"),
-]
+OTHER = HELD_OUT_SEED + 999
 
 
 @pytest.mark.parametrize(
-    ("path", "value", "line"), TAMPERED, ids=lambda x: ".".join(map(str, x)) if isinstance(x, tuple) else None
+    ("path", "value", "line"),
+    [
+        ("figures.score.value", 99.0, "figures.score.value = 99.0: must be "),
+        ("figures.profile.1.high", 0.9, "figures.profile[1].high = 0.9: must be "),
+        ("rows.3.2", 147, "rows[3].score = 147: must be "),
+        ("rows.5.1", OTHER, f"rows[5]: run 0, table {OTHER}: must be run 0, table "),
+        ("rows.5.1", HELD_OUT_SEED, "rows[5]: run 0, table 1000000: must be run 0, table 1000005"),
+        ("rows.2.3", 1001, "rows[2].strokes = 1001: must be between 0 and 1000"),
+        ("rows.2", [1, 2], "rows[2] = [1, 2]: must be 10 whole numbers"),
+        ("rows.2.6", 2, "rows[2].fouls = 2: must be "),
+        ("protocol.episodes", 25, "rows: must be 25 episodes, 25 for each training seed, not 24"),
+        ("protocol.version", 7, "protocol.version = 7: must be 1"),
+        ("protocol.official", True, "protocol.official = True: must be False by the other fields"),
+        ("task", "SnookerBreak-v1", "task = 'SnookerBreak-v1': must be one of SnookerBreak-v0"),
+        ("agent.class", "planning", "agent.class = 'planning': must be 'model_free'"),
+        ("agent.budget", "1M", "agent.budget = '1M': must be 'none'"),
+        ("software.numpy", 2, "software.numpy = 2: must be a text or null"),
+        ("machine.colour", 2, "machine.colour: is no field of version 3"),
+        ("extra", 2, "extra: is no field of version 3"),
+        ("incomplete", False, "incomplete = False: must be a text or null"),
+    ],
 )
 def test_a_tampered_file_fails_at_the_right_field(made, path, value, line):
-    refused = faults(changed(result(made), path, value))
+    refused = faults(put(result(made), path, value))
     assert any(one.startswith(line) for one in refused), refused
 
 
 @pytest.mark.parametrize("field", FIELDS)
 def test_a_missing_field_is_named(made, field):
     record = result(made)
-    inner = record
     *parts, last = field.split(".")
-    for part in parts:
-        inner = inner[part]
-    del inner[last]
+    del at(record, parts)[last]
     assert f"{field}: is missing" in faults(record)
 
 
 def test_simulated_shots_are_counted():
     class Thinks(BoundPlayer):
-        """Plays 7 shots on copies of each table before each stroke, 3 more by ``simulate``, and one batch of
-        5."""
+        """Before each stroke: 7 shots on copies of each table, 3 by ``simulate``, and one batch of 5."""
 
         def play(self, positions, seeds):
             at, rng = sn.Positions.of(positions), np.random.default_rng(0)
@@ -193,20 +149,14 @@ def test_simulated_shots_are_counted():
                 for _ in range(3):
                     sn.simulate([(0.0, 0.0)], [(1.0, 0.0)], [(0.0, 0.0, 0.0)])
                 sn.simulate_batch(np.zeros((5, 1, 2)), np.zeros((5, 1, 2)), np.zeros((5, 1, 3)))
-            return Strokes(
-                np.column_stack(
-                    [np.full((len(at), 3), [2.0, 0, 0]), rng.uniform(-3, 3, len(at)), np.zeros(len(at))]
-                )
-            )
+            still = np.zeros(len(at))
+            return Strokes(np.column_stack([still + 2.0, still, still, rng.uniform(-3, 3, len(at)), still]))
 
     agent = Agent(label="thinks", sources=(Thinks(),), training_shots=40_000)
     record = judge(TASKS["SnookerPotHard-v0"], agent, episodes=9)
     assert sum(row[3] for row in record["rows"]) == 9 and record["timing"]["simulated_shots"] == 9 * 15
-    assert (record["agent"]["simulated_shots"], record["agent"]["class"], record["agent"]["budget"]) == (
-        15.0,
-        "planning",
-        "50k",
-    )
+    wanted = {"simulated_shots": 15.0, "class": "planning", "budget": "50k"}
+    assert {name: record["agent"][name] for name in wanted} == wanted
     # the opponent's strokes and the agent's own are not counted
     frames = judge(TASKS["SnookerFrame-v0"], agent, episodes=1)
     assert frames["timing"]["simulated_shots"] == 15 * sum(row[3] for row in frames["rows"]) > 15
@@ -257,15 +207,10 @@ def test_bounds_of_what_was_always_or_never_seen():
 def test_agents_draw_their_runs_apart():
     """With another label other training seeds are drawn; with the same label the same."""
     task, points = TASKS["SnookerColours-v0"], np.random.default_rng(0).integers(0, 9, 40)
-    rows = [
-        [run, table, x, 1, x, 0, 0, 0, 0, 1] for run in range(5) for table, x in enumerate(points + 5 * run)
-    ]
+    rows = [[k, table, x, 1, x, 0, 0, 0, 0, 1] for k in range(5) for table, x in enumerate(points + 5 * k)]
     one, same, other = (figures_of(task, label, rows)["score"] for label in ("a", "a", "b"))
-    assert (
-        one == same
-        and one["value"] == other["value"]
-        and (one["low"], one["high"]) != (other["low"], other["high"])
-    )
+    assert one == same and one["value"] == other["value"]
+    assert (one["low"], one["high"]) != (other["low"], other["high"])
     alone = [figures_of(task, label, rows[:40])["score"] for label in ("a", "b")]
     assert alone[0] == alone[1]  # of one run only the tables are drawn, the same for all agents
 
@@ -292,9 +237,12 @@ def test_tables_fit_100_columns(made, capsys):
 
 def test_the_order_of_the_table_is_class_budget_score(made):
     rows = []
-    labels, scores = ("d", "b", "a", "c", "e"), (99.0, 5.0, 6.0, 1.0, 1.0)
-    for label, shots, training, value in zip(
-        labels, (10, 0, 0, 0, 10), (0, 0, 0, 10**6, 50_000), scores, strict=True
+    for label, shots, training, value in (
+        ("d", 10, 0, 99.0),
+        ("b", 0, 0, 5.0),
+        ("a", 0, 0, 6.0),
+        ("c", 0, 10**6, 1.0),
+        ("e", 10, 50_000, 1.0),
     ):
         one = result(made)
         one["agent"] |= {"label": label, "simulated_shots": float(shots), "training_shots": training}

@@ -5,22 +5,11 @@ import pytest
 
 import snooker_env as sn
 from agents.evaluation import protocol
-from snooker_env.benchmark import (
-    FIGURES,
-    HELD_OUT_SEED,
-    Strokes,
-    counts,
-    play_visits,
-    rollouts,
-    summary,
-    tables_of,
-)
+from snooker_env.benchmark import HELD_OUT_SEED, play_visits, rollouts, tables_of
+from snooker_env.benchmark.rollouts import FIGURES, Strokes, counts, summary
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.game.balls import BallOn
 from snooker_env.game.opened import HELD_OUT
-
-# strokes and counts
-# ------------------------------------------------------------------------------------------------------------
 
 
 class Watched:
@@ -38,63 +27,43 @@ class Watched:
         return self.player.play(positions, seeds)
 
 
+def strokes(**columns):
+    """``Strokes`` of these columns, with nothing in the others."""
+    n = len(columns["visit"])
+    usual = {"cleared": np.zeros(n, bool), "cue": np.zeros((n, 2)), "tolerance": np.zeros(n)}
+    arrays = {name: np.array(column) for name, column in columns.items()}
+    return Strokes(visits=max(columns["visit"]) + 1, decision_seconds=0.0, **usual | arrays)
+
+
 def test_counts_of_a_visit_by_hand():
     """Two visits: red, black, red with nothing after; then a miss."""
-    s = Strokes(
-        visits=2,
-        visit=np.array([0, 1, 0, 0, 0]),
-        number=np.array([0, 0, 1, 2, 3]),
-        points=np.array([1.0, 0, 7, 1, 0]),
-        foul=np.array([False, False, False, False, True]),
-        ball_on=np.array([BallOn.RED, BallOn.RED, BallOn.ANY_COLOUR, BallOn.RED, 0]),
-        cleared=np.zeros(5, bool),
-        cue=np.zeros((5, 2)),
-        tolerance=np.array([1e-2, 0, 1e-3, 1e-2, 0]),
-        decision_seconds=0.0,
+    s = strokes(
+        visit=[0, 1, 0, 0, 0],
+        number=[0, 0, 1, 2, 3],
+        points=[1.0, 0, 7, 1, 0],
+        foul=[False, False, False, False, True],
+        ball_on=[BallOn.RED, BallOn.RED, BallOn.ANY_COLOUR, BallOn.RED, 0],
+        tolerance=[1e-2, 0, 1e-3, 1e-2, 0],
     )
     assert s.following.tolist() == [2, -1, 3, 4, -1]
-    c = {name: values.tolist() for name, values in counts(s).items()}
-    assert c == {
-        "points": [9, 0],
-        "pots": [3, 0],
-        "strokes": [4, 1],
-        "fouls": [1, 0],
-        "goes_on": [3, 0],
-        "followed": [2, 0],
-        "easy": [2, 0],
-        "colours": [1, 0],
-        "colour_points": [7, 0],
-        "high": [1, 0],
-        "reds": [2, 0],
-        "high_after_red": [1, 0],
-        "clearances": [0, 0],
-        "visits": [1, 1],
-        "centuries": [0, 0],
-        "maximums": [0, 0],
-    }
-    f = summary(s)
-    assert (f["points_a_visit"], f["pots_a_visit"], f["next_pot_after_a_pot"], f["high_colours"]) == (
-        4.5,
-        1.5,
-        pytest.approx(2 / 3),
-        1.0,
-    )
+    first = {"points": 9, "pots": 3, "strokes": 4, "fouls": 1, "goes_on": 3, "followed": 2, "easy": 2}
+    first |= {"colours": 1, "colour_points": 7, "high": 1, "reds": 2, "high_after_red": 1, "visits": 1}
+    wanted = {name: [first.get(name, 0), int(name in ("strokes", "visits"))] for name in counts(s)}
+    assert {name: values.tolist() for name, values in counts(s).items()} == wanted
+    assert set(wanted) == {*first, "clearances", "centuries", "maximums"}
+    means = {"points_a_visit": 4.5, "pots_a_visit": 1.5, "next_pot_after_a_pot": 2 / 3, "high_colours": 1.0}
+    assert {name: summary(s)[name] for name in means} == pytest.approx(means)
 
 
 def a_clearance_a_foul_and_a_miss():
-    """Three visits: the last ball goes in for a century (points as no shot brings them); it goes in by a
-    foul; it stays."""
-    return Strokes(
-        visits=3,
-        visit=np.array([0, 1, 2, 0]),
-        number=np.array([0, 0, 0, 1]),
-        points=np.array([95.0, 0, 0, 7]),
-        foul=np.array([False, True, False, False]),
-        ball_on=np.array([BallOn.ANY_COLOUR, BallOn.BLACK, BallOn.BLACK, BallOn.BLACK]),
-        cleared=np.array([False, True, False, True]),
-        cue=np.zeros((4, 2)),
-        tolerance=np.zeros(4),
-        decision_seconds=0.0,
+    """The last ball goes in for a century (points as no shot brings them); it goes in by a foul; it stays."""
+    return strokes(
+        visit=[0, 1, 2, 0],
+        number=[0, 0, 0, 1],
+        points=[95.0, 0, 0, 7],
+        foul=[False, True, False, False],
+        ball_on=[BallOn.ANY_COLOUR, BallOn.BLACK, BallOn.BLACK, BallOn.BLACK],
+        cleared=[False, True, False, True],
     )
 
 
@@ -104,30 +73,21 @@ def test_a_foul_clears_no_table():
     assert f["clearances"] == f["centuries"] == pytest.approx(1 / 3)
 
 
-@pytest.mark.parametrize(
-    ("points", "century", "maximum"), [(99, 0, 0), (100, 1, 0), (146, 1, 0), (147, 1, 1)]
-)
-def test_centuries_and_maximums(points, century, maximum):
+def test_centuries_and_maximums():
     s = a_clearance_a_foul_and_a_miss()
-    s.points[0] = points - s.points[-1]
-    c = counts(s)
-    assert c["centuries"].tolist() == [century, 0, 0] and c["maximums"].tolist() == [maximum, 0, 0]
+    for points, century, maximum in ((99, 0, 0), (100, 1, 0), (146, 1, 0), (147, 1, 1)):
+        s.points[0] = points - s.points[-1]
+        c = counts(s)
+        assert c["centuries"].tolist() == [century, 0, 0] and c["maximums"].tolist() == [maximum, 0, 0]
 
 
 def test_counts_agree_with_the_summary():
     s = play_visits("ghost_ball", 60, noise="professional")
     for strokes in (s, a_clearance_a_foul_and_a_miss()):
         c, f = counts(strokes), summary(strokes)
-        for name in (
-            "points_a_visit",
-            "pots_a_visit",
-            "fouls_a_visit",
-            "pot_rate",
-            "next_pot_after_a_pot",
-            "colour_value",
-            "high_colours",
-            "centuries",
-            "clearances",
+        for name in str.split(
+            "points_a_visit pots_a_visit fouls_a_visit pot_rate next_pot_after_a_pot colour_value "
+            "high_colours centuries clearances"
         ):
             above, below = FIGURES[name]
             assert c[above].sum() / c[below].sum() == pytest.approx(f[name])
@@ -152,9 +112,6 @@ def test_the_cue_balls_place_is_kept_unless_it_was_potted(monkeypatch):
     assert np.isnan(s.cue[~stayed]).all() and np.array_equal(s.cue[stayed], places[stayed])
 
 
-# conditions
-# ------------------------------------------------------------------------------------------------------------
-
 USUAL = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
 
 
@@ -174,10 +131,6 @@ def test_an_agent_is_played_under_its_condition(change):
         assert np.array_equal(getattr(strokes, name), getattr(wanted, name), equal_nan=name == "cue"), name
     assert outcome.counted["points"].tolist() == [wanted.a_visit(wanted.points).tolist()]
     assert np.array_equal(strokes.cue, usual.cue, equal_nan=True) == (not change)
-
-
-# tables
-# ------------------------------------------------------------------------------------------------------------
 
 
 def test_a_control_has_other_errors_and_the_same_first_strokes():

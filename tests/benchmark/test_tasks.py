@@ -1,5 +1,4 @@
-"""Are the tasks of the benchmark what they promise? Frozen options, both checkers, spawned workers, and
-tables that nobody trains on."""
+"""Are the tasks of the benchmark what they promise: frozen options, and tables that nobody trains on?"""
 
 import dataclasses
 import json
@@ -27,11 +26,15 @@ IDS = tuple(TASKS)
 DOCS = Path(__file__).parents[2] / "docs"
 
 
+def many(name, n, **options):
+    return gymnasium.make_vec(name, num_envs=n, vectorization_mode="vector_entry_point", **options)
+
+
 def test_every_registered_id_but_snooker_is_a_task():
     assert set(ENTRY_POINTS) == {ID, *TASKS}
     for name in TASKS:
         assert name == gymnasium.make(name).unwrapped.TASK and TASKS[name].id == name
-        assert name == gymnasium.make_vec(name, num_envs=2, vectorization_mode="vector_entry_point").TASK
+        assert name == many(name, 2).TASK
 
 
 @pytest.mark.parametrize("name", IDS)
@@ -65,7 +68,7 @@ def test_what_is_frozen_is_refused(name):
         with pytest.raises(ValueError, match=f"^{option} = .*: must be left out: {name} freezes it at"):
             gymnasium.make(name, **{option: value})
     with pytest.raises(ValueError, match=r"^noise = 'none': must be left out: "):
-        gymnasium.make_vec(name, num_envs=2, vectorization_mode="vector_entry_point", noise="none")
+        many(name, 2, noise="none")
     with pytest.raises(ValueError, match=r"^options = a Options: must be left out"):
         gymnasium.make(name, options=sn.Options())
     with pytest.raises(TypeError, match="unexpected keyword argument 'colour'"):
@@ -73,34 +76,19 @@ def test_what_is_frozen_is_refused(name):
 
 
 def test_what_is_free_is_taken():
-    env = gymnasium.make(
-        "SnookerBreak-v0",
-        aim="target",
-        observation="balls",
-        elevation=True,
-        placement=True,
-        render_mode="ansi",
-    )
+    free = {"aim": "target", "observation": "balls", "elevation": True, "placement": True}
+    env = gymnasium.make("SnookerBreak-v0", render_mode="ansi", **free)
     assert env.action_space.shape == (7,) and env.observation_space["state"].shape == (11,)
     assert gymnasium.make("SnookerLineUp-v0", action="discrete").action_space.n > 100
     assert gymnasium.make("SnookerFrame-v0", decision=True, placement=True).action_space.shape == (7,)
-    envs = gymnasium.make_vec(
-        "SnookerEscape-v0",
-        num_envs=3,
-        vectorization_mode="vector_entry_point",
-        threads=1,
-        autoreset_mode="SameStep",
-        aim="target",
-    )
+    envs = many("SnookerEscape-v0", 3, threads=1, autoreset_mode="SameStep", aim="target")
     assert envs.reset(seed=1)[0].shape == (3, OBSERVATION_SIZE) and envs.threads == 1
     with pytest.raises(ValueError, match='belongs to task="frame"'):
         gymnasium.make("SnookerBreak-v0", decision=True)
 
 
 def test_an_escape_is_one_stroke_whose_reward_is_1_if_it_is_legal():
-    envs = gymnasium.make_vec(
-        "SnookerEscape-v0", num_envs=300, vectorization_mode="vector_entry_point", autoreset_mode="Disabled"
-    )
+    envs = many("SnookerEscape-v0", 300, autoreset_mode="Disabled")
     envs.reset(seed=7)
     actions = envs.action_space.sample() * [1, 0.2, 0.2, 1]
     _, rewards, terminated, truncated, infos = envs.step(actions.astype(np.float32))
@@ -134,19 +122,18 @@ def test_judged_tables_are_not_those_of_training(name):
     assert len(set(seeds)) == 30 and min(seeds) >= HELD_OUT_SEED == 1_000_000
     assert task.options().layout != "held_out" and task.judged().layout == task.judged_layout
     if name in ("SnookerBreak-v0", "SnookerBreakClub-v0"):
-        trained = {layout("opened", np.random.default_rng(seed))[0].round(6).tobytes() for seed in range(300)}
-        judged = {
-            layout(task.judged_layout, np.random.default_rng(seed))[0].round(6).tobytes() for seed in seeds
-        }
+        trained, judged = (
+            {layout(name, np.random.default_rng(seed))[0].round(6).tobytes() for seed in some}
+            for name, some in (("opened", range(300)), (task.judged_layout, seeds))
+        )
         assert len(judged) == 30 and not trained & judged
     else:
         assert task.judged_layout == task.options().layout
 
 
 def test_tables_are_different_and_always_the_same():
-    assert (
-        tables_of("colours", 40) == tables_of("colours", 60)[:40] and len(set(tables_of("colours", 60))) == 60
-    )
+    assert tables_of("colours", 40) == tables_of("colours", 60)[:40]
+    assert len(set(tables_of("colours", 60))) == 60
     with pytest.raises(ValueError, match=r"^task = 'SnookerBreak-v9': must be one of 'SnookerBreak-v0', "):
         task_of("SnookerBreak-v9")
 
@@ -210,40 +197,26 @@ def test_a_mirrored_table_is_no_other_table(monkeypatch):
     assert made == tuple(HELD_OUT_SEED + 2 * k for k in range(5))
 
 
-# what the notes say
-# ------------------------------------------------------------------------------------------------------------
+class Constant:
+    options = {"action": "discrete"}  # noqa: RUF012
+
+    def act(self, observations, masks, seeds):
+        return np.full(len(seeds), choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.2)))
 
 
-def noted_share(task, before):
-    """The share that a task's note names, and as the page of the benchmark and that of the task repeat it
-    [%]."""
+@pytest.mark.parametrize(
+    ("name", "page", "player", "before", "near"),
+    [
+        ("SnookerFrame-v0", "task_frame", Constant(), "A constant choice wins", 3.0),
+        ("SnookerEscape-v0", "task_escape", "ghost_ball", "ghost_ball escapes from", 1.0),
+    ],
+)
+def test_the_notes_say_how_often_a_simple_player_wins(name, page, player, before, near):
+    """And the page of the benchmark and that of the task repeat it."""
+    task = TASKS[name]
     (share,) = re.findall(rf"{before} (\d+\.\d) %", task.note)
-    page = {"SnookerFrame-v0": "task_frame", "SnookerEscape-v0": "task_escape"}[task.id]
-    for name in ("benchmark", f"environment/{page}"):
-        assert f"{before} {share} %" in " ".join(
-            (DOCS / f"{name}.md").read_text(encoding="utf-8").replace("`", "").split()
-        )
-    return float(share)
-
-
-def test_what_a_constant_choice_wins():
-    task = TASKS["SnookerFrame-v0"]
-
-    class Constant:
-        options = {"action": "discrete"}  # noqa: RUF012
-
-        def act(self, observations, masks, seeds):
-            return np.full(len(seeds), choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.2)))
-
-    rows = play_episodes(task, Constant(), task.seeds(task.episodes)).rows
-    assert 100 * np.mean([row[2] for row in rows]) == pytest.approx(
-        noted_share(task, "A constant choice wins"), abs=3.0
-    )
-
-
-def test_how_often_ghost_ball_escapes():
-    task = TASKS["SnookerEscape-v0"]
-    rows = play_episodes(task, "ghost_ball", task.seeds(task.episodes)).rows
-    assert 100 * np.mean([row[2] for row in rows]) == pytest.approx(
-        noted_share(task, "ghost_ball escapes from"), abs=1.0
-    )
+    for file in ("benchmark", f"environment/{page}"):
+        words = (DOCS / f"{file}.md").read_text(encoding="utf-8").replace("`", "").split()
+        assert f"{before} {share} %" in " ".join(words)
+    rows = play_episodes(task, player, task.seeds(task.episodes)).rows
+    assert 100 * np.mean([row[2] for row in rows]) == pytest.approx(float(share), abs=near)

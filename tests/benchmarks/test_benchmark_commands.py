@@ -1,7 +1,7 @@
-"""Do the benchmarks behave as commands? Help, Ctrl-C, libraries that are missing, files that cannot be
-written, a terminal of ASCII."""
+"""Do the benchmarks behave as commands, with help, Ctrl-C, missing libraries and what cannot be written?"""
 
 import errno
+import importlib
 import json
 import os
 import re
@@ -16,14 +16,12 @@ import numpy as np
 import pytest
 
 from benchmarks._common import command as _command
+from benchmarks._common import kept, package_copies
+from tests.processes import ROOT
 
-ROOT = Path(__file__).parents[2]
-FOLDER = ROOT / "benchmarks"
-FILES = {file.stem: file for file in FOLDER.glob("*.py") if not file.name.startswith("_")}
-FOLDERS = {
-    file.parent.name: file for file in FOLDER.glob("*/command.py") if not file.parent.name.startswith("_")
-}
-COMMANDS = sorted(FILES | FOLDERS)
+NAMES = [file.stem for file in (ROOT / "benchmarks").glob("*.py")]
+NAMES += [file.parent.name for file in (ROOT / "benchmarks").glob("*/command.py")]
+COMMANDS = sorted(name for name in NAMES if not name.startswith("_"))
 WITHOUT_CHANCE = ("film", "left_out", "nap", "paper", "pockets", "web")
 
 
@@ -58,12 +56,8 @@ def test_help_is_printed_and_nothing_is_compiled(tmp_path):
 @pytest.mark.parametrize(("name", "wrong"), [("paper", "--what"), ("make_opened", "--tables=-1")])
 def test_a_wrong_argument_is_an_error_of_usage(name, wrong):
     code, out, err = ended(started(name, wrong))
-    assert (
-        code == 2
-        and out == ""
-        and err.startswith(f"usage: python -m benchmarks.{name}")
-        and "Traceback" not in err
-    )
+    assert code == 2 and out == "" and err.startswith(f"usage: python -m benchmarks.{name}")
+    assert "Traceback" not in err
 
 
 def interrupted(process, seconds):
@@ -83,9 +77,8 @@ def test_ctrl_c_is_one_line_and_leaves_no_file(tmp_path):
 
 def test_ctrl_c_while_libraries_are_loaded_is_one_line_too(tmp_path):
     """A numpy that takes long to load and says that it does."""
-    (tmp_path / "numpy.py").write_text(
-        f"import time\nopen({str(tmp_path / 'loading')!r}, 'w').close()\ntime.sleep(60)"
-    )
+    begins = f"open({str(tmp_path / 'loading')!r}, 'w').close()"
+    (tmp_path / "numpy.py").write_text(f"import time\n{begins}\ntime.sleep(60)")
     process = started("make_opened", PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)]))
     give_up = time.monotonic() + 60
     while not (tmp_path / "loading").exists() and time.monotonic() < give_up:
@@ -101,63 +94,45 @@ def test_a_file_that_cannot_be_written_is_refused_before_the_work(tmp_path, wher
     start = time.perf_counter()
     code, out, err = ended(started("paper", "--no-pictures", "--json", place))
     assert code == 2 and out == "" and time.perf_counter() - start < 120
-    assert re.search(
-        re.escape(f"error: json = {str(place)!r}: must be a file that can be written (") + r"\S.*\)\n$", err
-    ), err
+    says = re.escape(f"error: json = {str(place)!r}: must be a file that can be written (")
+    assert re.search(says + r"\S.*\)\n$", err), err
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
 def test_a_full_disk_is_said_in_one_line():
     code, out, err = ended(started("paper", "--no-pictures", "--json", "/dev/full"))
-    assert (
-        code == 1
-        and "Tables 1 and 2" in out
-        and err == "/dev/full could not be written: No space left on device\n"
-    )
+    assert code == 1 and "Tables 1 and 2" in out
+    assert err == "/dev/full could not be written: No space left on device\n"
     assert Path("/dev/full").is_char_device()
 
 
 def test_what_is_printed_is_written_beside_the_pictures(tmp_path):
-    code, out, err = ended(
-        started("paper", "--out", tmp_path / "new", "--json", tmp_path / "new" / "figures.json")
-    )
-    assert (code, err) == (0, "") and (tmp_path / "new" / "paper.txt").read_text() == out
-    assert {file.name for file in (tmp_path / "new").iterdir()} == {
-        "paper.txt",
-        "paper.png",
-        "paper_data.png",
-        "figures.json",
-    }
+    new = tmp_path / "new"
+    code, out, err = ended(started("paper", "--out", new, "--json", new / "figures.json"))
+    assert (code, err) == (0, "") and (new / "paper.txt").read_text() == out
+    files = sorted(file.name for file in new.iterdir())
+    assert files == ["figures.json", "paper.png", "paper.txt", "paper_data.png"]
     code, out, _ = ended(started("left_out", "--out", tmp_path, "--json", tmp_path / "l.json"))
     assert code == 0 and (tmp_path / "left_out.txt").read_text() == out
-    assert set(json.loads((tmp_path / "l.json").read_text())) == {
-        "air",
-        "level",
-        "unequal",
-        "kicks",
-        "airborne",
-        "double_hits",
-    }
+    names = {"air", "level", "unequal", "kicks", "airborne", "double_hits"}
+    assert set(json.loads((tmp_path / "l.json").read_text())) == names
 
 
-MISSING = [
-    ("paper", "scipy", 'scipy is missing; in a clone of the repository:  pip install -e ".[test]"'),
-    (
-        "pictures",
-        "pygame",
-        f'pictures need pygame-ce; install it, in the clone {ROOT}, with: pip install -e ".[render]"',
-    ),
-]
+WITH = f'pictures need pygame-ce; install it, in the clone {ROOT}, with: pip install -e ".[render]"'
 
 
-@pytest.mark.parametrize(("name", "library", "said"), MISSING)
+@pytest.mark.parametrize(
+    ("name", "library", "said"),
+    [
+        ("paper", "scipy", 'scipy is missing; in a clone of the repository:  pip install -e ".[test]"'),
+        ("pictures", "pygame", WITH),
+    ],
+)
 def test_a_library_that_is_missing_is_named_and_how_to_install_it(tmp_path, name, library, said):
-    (tmp_path / f"{library}.py").write_text(
-        f"raise ModuleNotFoundError('No module named {library}', name='{library}')"
-    )
-    code, out, err = ended(started(name, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])))
-    assert (code, out) == (1, "")
-    assert err == said + "\n"
+    error = f"raise ModuleNotFoundError('No module named {library}', name='{library}')"
+    (tmp_path / f"{library}.py").write_text(error)
+    done = ended(started(name, PYTHONPATH=os.pathsep.join([str(tmp_path), str(ROOT)])))
+    assert done == (1, "", said + "\n")
 
 
 def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
@@ -182,10 +157,50 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
 def test_a_picture_on_a_full_disk_is_no_empty_file(tmp_path):
     pixels = np.random.default_rng(0).integers(256, size=(50, 80, 3), dtype=np.uint8)
     _command.save_image(tmp_path / "a.png", pixels)
-    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG") and (
-        tmp_path / "a.png"
-    ).stat().st_size > 50 * 80 * 3
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "a.png").stat().st_size > 50 * 80 * 3
     if Path("/dev/full").exists():
         (tmp_path / "full.png").symlink_to("/dev/full")
         with pytest.raises(SystemExit, match="could not be written: No space left on device"):
             _command.save_image(tmp_path / "full.png", pixels)
+
+
+@pytest.fixture
+def build(tmp_path, monkeypatch):
+    monkeypatch.setattr(kept, "BUILD", tmp_path / "build")
+    return tmp_path / "build"
+
+
+def test_folders_are_made_once_and_whole(build):
+    made = []
+
+    def make(folder):
+        made.append(folder)
+        (folder / "file").write_text("whole")
+        if len(made) == 1:
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError, match="No space"):
+        kept.kept_folder("x", make)
+    assert not list(build.iterdir())
+    for _ in range(2):
+        assert (kept.kept_folder("x", make) / "file").read_text() == "whole"
+    assert len(made) == 2 and [file.name for file in build.iterdir()] == ["x"] and build / "x" not in made
+
+
+def test_the_faster_of_two_processes_counts(build):
+    def make(folder):
+        (folder / "file").write_text("slower")
+        (build / "x").mkdir()
+        (build / "x" / "file").write_text("faster")
+
+    assert (kept.kept_folder("x", make) / "file").read_text() == "faster"
+    assert [file.name for file in build.iterdir()] == ["x"]
+
+
+def test_commits_and_copies_of_the_package_are_kept_there(build):
+    learner = importlib.import_module("benchmarks.learner")
+    tree = learner.tree_of("HEAD")
+    assert tree.parent == build and (tree / "train.py").is_file()
+    (module,) = package_copies.load("snooker_env_copy", {"__init__.py": "", "here.py": "VALUE = 3"}, ["here"])
+    assert module.VALUE == 3 and build in Path(module.__file__).parents

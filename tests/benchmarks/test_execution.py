@@ -1,5 +1,4 @@
-"""Do the levels of ``noise`` play as the published figures say, and does ``benchmarks.execution`` measure
-that rightly?"""
+"""Do the levels of ``noise`` play as published, and does ``benchmarks.execution`` measure that rightly?"""
 
 import math
 
@@ -24,36 +23,28 @@ def test_pots_lie_as_they_are_described():
     for pot in pot_shots.POTS:
         cue, ball = pot.positions
         aim = POCKET_AIMS[pot.pocket, :2]
-        assert math.dist(cue, ball) == pytest.approx(pot.far) and math.dist(ball, aim) == pytest.approx(
-            pot.run
-        )
+        assert math.dist(cue, ball) == pytest.approx(pot.far)
+        assert math.dist(ball, aim) == pytest.approx(pot.run)
         way = (aim - ball) / pot.run
         line = ball - 2 * pot_shots.R * way - cue
-        assert math.degrees(math.acos(min(1.0, line @ way / math.hypot(*line)))) == pytest.approx(
-            pot.cut, abs=1e-5
-        )
-        assert pot.gain == pytest.approx(
-            math.hypot(*line) * pot.run / (2 * pot_shots.R * math.cos(math.radians(pot.cut)))
-        )
+        far = math.hypot(*line)
+        assert math.degrees(math.acos(min(1.0, line @ way / far))) == pytest.approx(pot.cut, abs=1e-5)
+        gain = far * pot.run / (2 * pot_shots.R * math.cos(math.radians(pot.cut)))
+        assert pot.gain == pytest.approx(gain)
         assert (np.abs(pot.positions) < [0.8628, 1.7583]).all()
     assert all(pot.positions[0, 1] < -0.8 for pot in pot_shots.LONG)
-    blue, black = (
-        next(pot for pot in pot_shots.POTS if pot.name.startswith(name)) for name in ("blue", "black")
-    )
-    assert blue.positions[1] == pytest.approx([0.0, 0.0], abs=1e-12) and black.positions[1] == pytest.approx(
-        [0.0, 1.4605], abs=1e-12
-    )
+    for name, spot in (("blue", [0.0, 0.0]), ("black", [0.0, 1.4605])):
+        pot = next(pot for pot in pot_shots.POTS if pot.name.startswith(name))
+        assert pot.positions[1] == pytest.approx(spot, abs=1e-12)
 
 
 def test_rates_by_geometry_are_those_that_were_published_with_the_aim_errors():
     """Of the four pots at 0.02 and 0.05 deg, with half a window of 22 mm."""
     black, red, blue, long = pot_shots.DERIVED
-    assert [round(100 * pot.rate(0.02)) for pot in (black, red)] == [100, 100] and round(
-        100 * red.rate(0.05)
-    ) == 96
-    assert [100 * pot.rate(deg) for pot in (blue, long) for deg in (0.02, 0.05)] == pytest.approx(
-        [92, 51, 75, 36], abs=1.5
-    )
+    assert [round(100 * pot.rate(0.02)) for pot in (black, red)] == [100, 100]
+    assert round(100 * red.rate(0.05)) == 96
+    rates = [100 * pot.rate(deg) for pot in (blue, long) for deg in (0.02, 0.05)]
+    assert rates == pytest.approx([92, 51, 75, 36], abs=1.5)
 
 
 def test_without_errors_every_pot_goes_in_and_stays_so_just_within_its_window():
@@ -81,15 +72,13 @@ def test_amateurs_pot_as_their_published_aim_errors_say(level):
 
 def test_the_robot_pots_and_places_as_published():
     shots = shots_of(pot_shots.MODERATE)
-    assert published.mean_rate(shots, "robot", 2000, PHYSICS, TABLE) == pytest.approx(
-        published.ROBOT_POTS, abs=0.025
-    )
+    rate = published.mean_rate(shots, "robot", 2000, PHYSICS, TABLE)
+    assert rate == pytest.approx(published.ROBOT_POTS, abs=0.025)
     assert 0.12 < published.mean_place(shots, "robot", 1000, PHYSICS, TABLE) < 0.18
 
 
 def test_placement_of_speed_errors_alone():
-    """As far as the stop shifts with the speed, times the speed's error, along the cue ball's way and
-    across."""
+    """As far as the stop shifts with the speed, times the speed's error, along the way and across."""
     for shot in shots_of(pot_shots.MODERATE[:3]):
         ends = []
         for share in (0.99, 1.01):
@@ -100,9 +89,8 @@ def test_placement_of_speed_errors_alone():
         found = pot_shots.rolls(shot, Noise(speed_rel=0.01), 1500, 3, PHYSICS, TABLE)
         distance, along, across = found.placement
         assert found.rate == 1.0 and distance == pytest.approx(math.hypot(*shift), rel=0.1)
-        assert (along, across) == pytest.approx(
-            (abs(shift @ way), abs(shift @ [-way[1], way[0]])), rel=0.1, abs=1e-3
-        )
+        expected = abs(shift @ way), abs(shift @ [-way[1], way[0]])
+        assert (along, across) == pytest.approx(expected, rel=0.1, abs=1e-3)
 
 
 def test_directions_by_cause():
@@ -123,8 +111,7 @@ def test_the_likeliest_pot_scores_as_often_as_it_was_given_and_more_often_than_t
 
 
 def test_professionals_pot_in_play_about_what_they_do():
-    """88 to 95 % of what they choose; where the chance is less than half a player of a match would play
-    safe."""
+    """88 to 95 % of what they choose; where the chance is less than half they would play safe."""
     made, expected = in_play.in_play("professional", 60, 3)
     low, high = published.CHOSEN
     likely = made[expected >= published.LIKELY]

@@ -1,22 +1,12 @@
-"""Are the pockets' windows what they should be? Narrower for firm shots, the same for clean ones, and pool's
-as Alciatore has them."""
+"""Are the pockets' windows narrower for firm shots, the same for clean ones, and pool's as published?"""
 
 import numpy as np
 import pytest
 
 import snooker_env as sn
 from benchmarks.pockets import openings, pool_tables, rail_paths
-from benchmarks.pockets.windows import (
-    CORNER,
-    MIDDLE,
-    Engine,
-    LonePocket,
-    Paths,
-    alone,
-    drops,
-    endless,
-    windows,
-)
+from benchmarks.pockets import windows as pocket_windows
+from benchmarks.pockets.windows import CORNER, MIDDLE, Engine, Paths, alone, drops, windows
 from snooker_env.game import pots
 from tests.kernels import from_python
 
@@ -28,10 +18,8 @@ SPEEDS = (0.5, 1.0, 6.0)
 def widths(preset, table, pocket, speeds=SPEEDS, rolling=True):
     """Lateral windows [mm] by angle and speed, from 0.3 m."""
     here, angles = alone(sn.Table.preset(table), pocket), np.radians(ANGLES[pocket])[:, None]
-    return (
-        1e3
-        * windows(here, Paths(angles, 0.3, np.array(speeds), rolling, False), sn.Physics.preset(preset)).width
-    )
+    paths = Paths(angles, 0.3, np.array(speeds), rolling, False)
+    return 1e3 * windows(here, paths, sn.Physics.preset(preset)).width
 
 
 @pytest.mark.parametrize("rolling", [True, False])
@@ -53,22 +41,16 @@ def test_a_firm_ball_that_meets_a_jaw_of_a_middle_pocket_may_come_out_again(pres
 @pytest.mark.parametrize("preset", PRESETS)
 def test_the_tight_corners_are_never_wider(preset):
     for rolling in (True, False):
-        speeds = (1.0, 2.0, 4.0, 6.0, 9.0)
-        assert (
-            widths(preset, "tight", CORNER, speeds, rolling)
-            < widths(preset, "match", CORNER, speeds, rolling)
-        ).all()
+        at = CORNER, (1.0, 2.0, 4.0, 6.0, 9.0), rolling
+        assert (widths(preset, "tight", *at) < widths(preset, "match", *at)).all()
 
 
 @pytest.mark.parametrize("preset", PRESETS)
 @pytest.mark.parametrize("pocket", [CORNER, MIDDLE])
 @pytest.mark.parametrize("table", TABLES)
 def test_the_clean_opening_is_the_same_at_all_speeds(preset, table, pocket):
-    here, physics, speeds = (
-        alone(sn.Table.preset(table), pocket),
-        sn.Physics.preset(preset),
-        (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0),
-    )
+    here, physics = alone(sn.Table.preset(table), pocket), sn.Physics.preset(preset)
+    speeds = (0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0)
     assert openings.all_clean_drop(here, speeds, physics)
     clean, free = openings.clean(here, physics.R), openings.untouched(here, speeds, True, physics)
     assert (free > clean - 5e-5).all()
@@ -86,28 +68,19 @@ def test_a_window_is_what_a_dense_scan_finds():
         assert abs(hit.sum() * step - found.width) < 1.5e-3
         low, high = float(found.low), float(found.high)
         at = np.array([low - 1e-7, low, high, high + 1e-7])
-        assert drops(here, angle, 0.3, speed, True, physics, Engine(), at).tolist() == [
-            False,
-            True,
-            True,
-            False,
-        ]
+        dropped = drops(here, angle, 0.3, speed, True, physics, Engine(), at)
+        assert dropped.tolist() == [False, True, True, False]
 
 
 def test_pots_are_offered_by_these_windows():
-    """Of a rolling ball at 1.5 m/s: at the angles of the table of ``game.pots`` to a millimetre, between them
-    to 2.5."""
+    """Of a rolling ball at 1.5 m/s: at the angles of ``game.pots`` to a millimetre, between them to 2.5."""
     given, physics = from_python(pots.window), sn.Physics.preset("match")
     for pocket, nodes in ((CORNER, pots._CORNER_ANGLE), (MIDDLE, pots._MIDDLE_ANGLE)):
         for angles, most in ((np.array(nodes), 1e-3), (0.5 * np.add(nodes[1:], nodes[:-1]), 2.5e-3)):
-            found = windows(
-                alone(sn.Table.preset("match"), pocket),
-                Paths(np.radians(angles), 0.3, 1.5, True, False),
-                physics,
-            ).width
-            assert [given(np.cos(a), pocket == MIDDLE) for a in np.radians(angles)] == pytest.approx(
-                found, abs=most
-            )
+            paths = Paths(np.radians(angles), 0.3, 1.5, True, False)
+            wide = windows(alone(sn.Table.preset("match"), pocket), paths, physics).width
+            offered = [given(np.cos(a), pocket == MIDDLE) for a in np.radians(angles)]
+            assert offered == pytest.approx(wide, abs=most)
 
 
 def test_no_window_where_the_ball_stops_short():
@@ -125,9 +98,8 @@ def test_the_openings_are_those_that_table_py_speaks_of():
         ("match", MIDDLE, "fall to jaw", 100.96),
         ("tight", MIDDLE, "fall to jaw", 100.96),
     ):
-        assert 1e3 * openings.openings(alone(sn.Table.preset(table), pocket))[name] == pytest.approx(
-            mm, abs=0.006
-        )
+        metres = openings.openings(alone(sn.Table.preset(table), pocket))[name]
+        assert 1e3 * metres == pytest.approx(mm, abs=0.006)
 
 
 def test_a_throat_is_moved_by_what_is_asked_and_a_fall_too():
@@ -165,11 +137,9 @@ def test_slow_mirrors_are_alciatore_s_pockets_on_the_pool9_table():
         jaws, fall = table.jaws[4 * k : 4 * k + 4], table.falls[k]
         mouth = jaws[jaws[:, 2] == 0.0, :2].mean(axis=0)
         axis = np.arctan2(*(fall[:2] - mouth)[::-1])
-        noses = endless(table.noses, *mouth)
+        noses = pocket_windows.endless(table.noses, *mouth)
         assert len(noses) == 2
-        here = LonePocket(sn.Table(kind, noses, jaws, fall[None]), tuple(mouth), float(axis))
-        found = (
-            windows(here, Paths(np.radians(angles), pool_tables.DISTANCE, 0.1, False, False), physics).width
-            / pool_tables.INCH
-        )
-        assert found == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)
+        here = pocket_windows.LonePocket(sn.Table(kind, noses, jaws, fall[None]), tuple(mouth), float(axis))
+        paths = Paths(np.radians(angles), pool_tables.DISTANCE, 0.1, False, False)
+        inches = windows(here, paths, physics).width / pool_tables.INCH
+        assert inches == pytest.approx([pool_tables.published(kind, a) for a in angles], abs=0.01)

@@ -1,5 +1,4 @@
-"""Do fifty whole frames end by the rules, with every point and ball accounted for, and can the checks of that
-fail?"""
+"""Do fifty whole frames end by the rules, with every point and ball, and can the checks of that fail?"""
 
 import pytest
 

@@ -1,8 +1,8 @@
-"""Which players do the tests of the cluster send? One that writes down what it plays, one that needs too
-much, one that fails."""
+"""Which players do the tests of the cluster send? Some note what they play, others fail at it."""
 
 import os
 import time
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +11,9 @@ from snooker_env.players.search import SearchPlayer
 
 
 def note(decision, n):
-    """Note this process and its decision for n tables in the file of $NOTED, if there is one, and take the
-    time of $SLOW for it.
+    """Note this process and its decision for n tables in the file of $NOTED, and take the time of $SLOW for it.
 
-    If the file of $HANGS is there, a node with $DIES says so in it and hangs: it is to be killed. The others
-    wait until it does.
-    """
+    If the file of $HANGS is there, a node with $DIES says so in it and hangs, to be killed; the others wait."""
     if "NOTED" in os.environ:
         with Path(os.environ["NOTED"]).open("a") as file:
             file.write(f"{os.getpid()} {decision} {n}\n")
@@ -24,10 +21,19 @@ def note(decision, n):
     hangs, began = Path(os.environ.get("HANGS", "none")), time.monotonic()
     if hangs.exists() and "DIES" in os.environ:
         hangs.write_text(str(os.getpid()))
-    while (
-        hangs.exists() and ("DIES" in os.environ or not hangs.read_text()) and time.monotonic() - began < 60
-    ):
+    while hangs.exists() and time.monotonic() - began < 60:
+        if "DIES" not in os.environ and hangs.read_text():
+            break
         time.sleep(0.05)
+
+
+AT = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
+
+
+def same(a, b):
+    """Whether two plays are alike in all that does not measure time."""
+    names = [f.name for f in fields(a) if f.name not in ("decision_seconds", "simulated")]
+    return all(np.array_equal(getattr(a, name), getattr(b, name), equal_nan=name == "cue") for name in names)
 
 
 class Noted:

@@ -1,26 +1,22 @@
-"""Is a job the same in parts as in one go, and does it go on after it was stopped? Without Ray: every part is
-played in this process."""
+"""Is a job the same in parts as in one go, and does it go on after it was stopped? In this process, without Ray."""
 
 import json
-from dataclasses import fields
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from agents.cluster.job import Here, Part, ended, in_order, keys_of
-from agents.cluster.keep import Store, digest_of, packed, unpacked
+from agents.cluster.keep import Keep, Store, digest_of, packed, unpacked
 from agents.evaluation import protocol, visits
 from agents.evaluation.entrants import Entrant
 from snooker_env import player
 from snooker_env.benchmark import play_visits, tables_of
-
-AT = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
-
-
-def same(a, b):
-    """All that does not measure time."""
-    names = [f.name for f in fields(a) if f.name not in ("decision_seconds", "simulated")]
-    return all(np.array_equal(getattr(a, name), getattr(b, name), equal_nan=name == "cue") for name in names)
+from tests.agents.training import interrupted_at
+from tests.cluster.players import AT, same
+from tests.processes import ROOT
 
 
 @pytest.mark.parametrize("name", ["random", "ghost_ball", "best_pot_30", "planner_30"])
@@ -70,27 +66,23 @@ def test_a_stopped_job_goes_on_without_playing_anything_twice(tmp_path, stop):
         list(ended(PARTS, SHARED, first, Store(tmp_path)))
     for where in (second, third):
         assert sums(in_order(ended(PARTS, SHARED, where, Store(tmp_path)))) == [0, 0, 1, 3, 6, 10]
-    assert (
-        sorted(first.played_parts + second.played_parts) == list(range(6)) and len(first.played_parts) == stop
-    )
+    assert sorted(first.played_parts + second.played_parts) == list(range(6))
+    assert len(first.played_parts) == stop
     assert not third.played_parts
 
 
 def test_another_job_is_refused_by_name(tmp_path):
-    store = Store(tmp_path)
-    store.join({"noise": ["club"], "agents": {"a": "1"}})
+    store, job = Store(tmp_path), {"noise": ["club"], "agents": {"a": "1"}}
+    store.join(job)
     list(ended(PARTS, SHARED, Sums(), store))
-    store.join({"noise": ["club"], "agents": {"a": "1"}})
-    for about, says in (
-        ({"noise": ["none"], "agents": {"a": "1"}}, r'its noise is \["club"\], and \["none"\] is asked for'),
-        ({"noise": ["club"], "agents": {"a": "2"}}, "its agents is"),
-        (
-            {"noise": ["club"], "agents": {"a": "1"}, "rekey": True},
-            "its rekey is null, and true is asked for",
-        ),
+    store.join(job)
+    for change, says in (
+        ({"noise": ["none"]}, r'its noise is \["club"\], and \["none"\] is asked for'),
+        ({"agents": {"a": "2"}}, "its agents is"),
+        ({"rekey": True}, "its rekey is null, and true is asked for"),
     ):
         with pytest.raises(ValueError, match=says):
-            store.join(about)
+            store.join(job | change)
     (tmp_path / "job.json").unlink()
     with pytest.raises(ValueError, match=r"holds parts and no job.json"):
         store.join({})
@@ -100,15 +92,11 @@ def test_another_job_is_refused_by_name(tmp_path):
 
 
 def test_other_weights_options_or_seeds_are_other_parts():
-    key = lambda part, shared=SHARED: keys_of([part], shared)[0]  # noqa: E731
-    first = key(PARTS[1])
-    assert (
-        first
-        == key(Part("visits", "x", {"n": 1}))
-        == key(Part("visits", "y", {"n": 1}), {"y": {"weights": b"abc"}})
-    )
-    others = [key(PARTS[2]), key(Part("worths", "x", {"n": 1})), key(PARTS[1], {"x": {"weights": b"abd"}})]
-    assert len({first, *others}) == 4
+    def key(kind="visits", name="x", n=1, weights=b"abc"):
+        return keys_of([Part(kind, name, {"n": n})], {name: {"weights": weights}})[0]
+
+    assert key() == keys_of([PARTS[1]], SHARED)[0] == key(name="y")
+    assert len({key(), key(n=2), key("worths"), key(weights=b"abd")}) == 4
 
 
 def test_a_damaged_part_is_played_again(tmp_path):
@@ -141,37 +129,16 @@ def test_a_full_disk_keeps_what_was_written_and_names_the_file(tmp_path, monkeyp
 def test_an_evaluation_goes_on_from_what_it_kept(tmp_path, monkeypatch, capsys):
     """By the command: interrupted, then given again, then with another option."""
     monkeypatch.setattr(visits, "SIZE", 5)
-    command = [
-        "--agent",
-        "random",
-        "--visits",
-        "20",
-        "--layouts",
-        "held_out",
-        "--noise",
-        "professional",
-        "--resamples",
-        "200",
-    ]
+    command = str.split("--agent random --visits 20 --layouts held_out --noise professional --resamples 200")
     plain, kept = tmp_path / "plain.json", tmp_path / "kept.json"
     assert protocol.main([*command, "--json", str(plain)]) == 0
-    original, calls = visits.play_visits, []
-
-    def play(*args, **options):
-        calls.append(1)
-        if len(calls) == 6:
-            raise KeyboardInterrupt
-        return original(*args, **options)
-
-    monkeypatch.setattr(visits, "play_visits", play)
+    calls = interrupted_at(monkeypatch, visits, "play_visits", 6)
     command += ["--keep", str(tmp_path / "parts")]
     capsys.readouterr()
     assert protocol.main([*command, "--json", str(kept)]) == 130
     said = capsys.readouterr().err
-    assert (
-        f"what was played is kept in {tmp_path / 'parts'}, the same command goes on" in said
-        and not kept.exists()
-    )
+    assert f"what was played is kept in {tmp_path / 'parts'}, the same command goes on" in said
+    assert not kept.exists()
     assert protocol.main([*command, "--json", str(kept)]) == 0 and len(calls) == 6 + 3
     one, two = (json.loads(file.read_text())["results"] for file in (plain, kept))
     for row in (*one, *two):
@@ -182,8 +149,63 @@ def test_an_evaluation_goes_on_from_what_it_kept(tmp_path, monkeypatch, capsys):
     assert "its rekey is false, and true is asked for" in capsys.readouterr().err
 
 
+ABOUT = {"command": "agents.evaluate", "noise": ["club"]}
+HOLDS = f"""
+import sys
+from agents.cluster.keep import Keep
+with Keep(None, "local", {ABOUT!r}) as keep:
+    keep.store.write("parts/a.npz", b"a")
+    print(keep.store, flush=True)
+    if sys.stdin.readline() == "complete\\n":
+        keep.done()
+"""
+
+
+@pytest.fixture
+def holder(tmp_path, monkeypatch):
+    """Another process with the same job, in whose folder is a part; and that folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    process = subprocess.Popen([sys.executable, "-c", HOLDS], **pipes)
+    yield process, tmp_path / process.stdout.readline().strip()
+    process.kill()
+    process.communicate()
+
+
+def test_a_job_that_another_process_plays_is_refused_by_its_name(holder):
+    process, folder = holder
+    says = rf"keep = '.*{folder.name}'.*: process {process.pid} on .* does.*give another --keep"
+    with pytest.raises(ValueError, match=says) as error:
+        Keep(None, "10.0.0.1:6379", ABOUT)  # wherever it is played
+    assert "\n" not in str(error.value) and (folder / "parts" / "a.npz").read_bytes() == b"a"
+    other = ABOUT | {"noise": ["none"]}
+    for url, address, about in (("other", "local", ABOUT), (None, "local", other), (None, None, ABOUT)):
+        with Keep(url, address, about) as keep:
+            assert keep.store is None or Path(keep.store.url).resolve() != folder.resolve()
+
+
+@pytest.mark.parametrize("end", ["complete", "stopped", "killed"])
+def test_its_folder_is_free_then_and_gone_when_it_is_complete(holder, end):
+    process, folder = holder
+    if end == "killed":
+        process.kill()
+    process.communicate(f"{end}\n")
+    assert process.returncode == (-9 if end == "killed" else 0)
+    assert list(folder.parent.iterdir()) == ([] if end == "complete" else [folder])
+    with Keep(None, "local", ABOUT) as keep:
+        assert Path(keep.store.url).resolve() == folder.resolve()
+        assert keep.store.names("parts") == (set() if end == "complete" else {"a.npz"})
+        keep.done()
+    assert not list(folder.parent.iterdir())
+
+
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "runs").write_text("a file")
+    with pytest.raises(ValueError, match=r"keep = .*must be a folder or URL that can be written"):
+        Keep(None, "local", ABOUT)
+
+
 def test_digests_know_bytes_from_texts():
-    assert (
-        len({digest_of({"a": b"1"}), digest_of({"a": "1"}), digest_of({"a": 1}), digest_of({"a": [b"1"]})})
-        == 4
-    )
+    assert len({digest_of({"a": value}) for value in (b"1", "1", 1)} | {digest_of({"a": [b"1"]})}) == 4

@@ -99,9 +99,8 @@ def test_what_cannot_be_written_is_refused(tmp_path):
     with pytest.raises(ValueError, match=r"keep = .*file/x.*must be a folder or URL that can be written"):
         Store(str(tmp_path / "file" / "x"))
     pytest.importorskip("fsspec")
-    with pytest.raises(
-        ValueError, match="mirror = 'nothing://x': must be a folder or URL that can be written"
-    ):
+    says = "mirror = 'nothing://x': must be a folder or URL that can be written"
+    with pytest.raises(ValueError, match=says):
         Store("nothing://x", "mirror")
 
 
@@ -119,22 +118,23 @@ def test_who_resumes_goes_on_from_the_newest_checkpoint(tmp_path):
 
     def saved(out, data):
         (out / mirror.CHECKPOINT).write_bytes(data)
-        mirror.copied(out, data)
+        copied(out, data)
 
-    mirror.Mirror(url).claim(a, {}, resume=False)
+    def resumed(out):
+        again = Mirror(url)
+        again.fetch(out)
+        again.claim(out, {}, resume=True)
+        return (out / mirror.CHECKPOINT).read_bytes()
+
+    Mirror(url).claim(a, {}, resume=False)
     saved(a, b"100")
-    other = mirror.Mirror(url)
-    other.fetch(b)
-    other.claim(b, {}, resume=True)
+    assert resumed(b) == b"100"
     saved(b, b"500")
-    again = mirror.Mirror(url)
-    again.fetch(a)
-    assert (a / mirror.CHECKPOINT).read_bytes() == b"500"
-    again.claim(a, {}, resume=True)
+    assert resumed(a) == b"500"
     saved(a, b"600")
     (b / mirror.CHECKPOINT).write_bytes(b"550")  # B has gone on by itself
     with pytest.raises(ValueError, match="another machine"):
-        mirror.Mirror(url).fetch(b)
+        Mirror(url).fetch(b)
     assert (b / mirror.CHECKPOINT).read_bytes() == b"550"
     for out in (a, b):
-        mirror.left(out)
+        left(out)

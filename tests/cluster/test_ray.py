@@ -1,16 +1,15 @@
-"""Is what a cluster plays what one machine plays, even if a node dies in the middle? On two nodes of Ray on
-this machine."""
+"""Is what a cluster plays what one machine plays, even if a node dies amid it? On two nodes of this machine."""
 
 import os
 import socket
 import threading
 import time
 from contextlib import contextmanager
-from dataclasses import fields
-from pathlib import Path
+from itertools import product
 
 import numpy as np
 import pytest
+from positions import tables
 
 pytest.importorskip("ray", reason='Ray is not installed: pip install -e ".[cluster]"')
 from ray.cluster_utils import Cluster as Nodes
@@ -24,10 +23,11 @@ from agents.evaluation.entrants import Entrant
 from agents.evaluation.travel import sent
 from agents.learning import self_play
 from snooker_env.benchmark import tables_of
+from snooker_env.planning import Positions
+from tests.cluster.players import AT, same
+from tests.processes import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 NODE = {"num_cpus": 1, "object_store_memory": 100 * 2**20, "include_dashboard": False}
-AT = {"layout": "held_out", "noise": "professional", "fidelity": "standard", "physics": "paper"}
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -36,10 +36,8 @@ def folder(tmp_path_factory):
     made = tmp_path_factory.mktemp("notes")
     with pytest.MonkeyPatch.context() as patch:
         patience = {"RAY_task_oom_retry_delay_base_ms": 100}  # with workers and nodes that died
-        for server in ("raylet", "core_worker"):
-            patience |= {
-                f"RAY_{server}_rpc_server_reconnect_timeout_{which}_s": 1 for which in ("base", "max")
-            }
+        for server, which in product(("raylet", "core_worker"), ("base", "max")):
+            patience[f"RAY_{server}_rpc_server_reconnect_timeout_{which}_s"] = 1
         for name, value in {"PYTHONPATH": ROOT, "OMP_NUM_THREADS": 1, "SLOW": 0.15, **patience}.items():
             patch.setenv(name, str(value))
         for name in ("NOTED", "HANGS"):
@@ -100,14 +98,8 @@ def noted(folder):
     return [tuple(map(int, line.split())) for line in (folder / "noted").read_text().splitlines()]
 
 
-def same(a, b):
-    names = [f.name for f in fields(a) if f.name not in ("decision_seconds", "simulated")]
-    return all(np.array_equal(getattr(a, name), getattr(b, name), equal_nan=name == "cue") for name in names)
-
-
 def results_of(agents, seeds, where, count=None):
-    """The results of all parts of these agents, in their order; ``count`` gets the number of each part that
-    has ended."""
+    """The results of all parts of these agents, in order; ``count`` gets the number of each that has ended."""
     shared = {f"{a.label} {k}": protocol.sent(a, k) for a in agents for k in range(len(a.runs))}
     parts = [one for a in agents for one in visits.parts_of(f"{a.label} 0", 0, AT, seeds, False)]
 
@@ -129,10 +121,8 @@ def test_two_nodes_play_what_one_machine_plays(cluster, folder, monkeypatch):
     assert cluster.cores == 2
     far, near = results_of(agents, seeds, cluster), results_of(agents, seeds, Here())
     for agent in agents:
-        one, other = (
-            protocol.play_agent(agent, AT, seeds, 100, False, results).strokes[0] for results in (far, near)
-        )
-        assert same(one, other), agent.label
+        played = [protocol.play_agent(agent, AT, seeds, 100, False, one).strokes[0] for one in (far, near)]
+        assert same(*played), agent.label
     assert len({process for process, *_ in noted(folder)} - {os.getpid()}) == 2
 
 
@@ -148,18 +138,8 @@ def test_a_node_killed_amid_an_evaluation_is_survived_and_nothing_counts_twice(
     assert same(metrics.strokes[0], protocol.play_agent(agent, AT, seeds, 100).strokes[0])
 
 
-def positions(n):
-    from snooker_env import SnookerVectorEnv
-    from snooker_env.planning import Positions
-
-    tables = SnookerVectorEnv(n, layout="random:9")
-    tables.reset(seed=3)
-    return Positions.of(tables)
-
-
 def test_a_node_killed_amid_training_leaves_the_result_as_it_is(nodes, cluster, monkeypatch):
-    """Expert iteration: by this process alone, by two nodes, and by two of which one dies in the third
-    round."""
+    """Expert iteration by this process alone, and by two nodes of which one dies in the fourth round."""
     torch = pytest.importorskip("torch")
     from agents.features.views import training_tables
     from agents.learning.expert_iteration import ExpertIteration
@@ -186,13 +166,9 @@ def test_a_node_killed_amid_training_leaves_the_result_as_it_is(nodes, cluster, 
 
 
 def _some_choices():
-    at = positions(3)
-    given = {
-        "at": self_play.positions_given(at),
-        "rows": np.arange(3),
-        "picks": np.zeros(3, int),
-        "keys": np.arange(3, dtype=np.uint64),
-    }
+    at = Positions.of(tables(3, seed=3, layout="random:9"))
+    given = {"at": self_play.positions_given(at), "rows": np.arange(3), "picks": np.zeros(3, int)}
+    given["keys"] = np.arange(3, dtype=np.uint64)
     return {"run": "r", "options": {"noise": "club"}, "value": lambda left: np.ones(len(left))}, [given]
 
 
@@ -216,11 +192,9 @@ def test_what_befalls_a_worker_is_one_line(cluster, monkeypatch):
 
 def test_the_data_of_imitation_are_the_same(cluster, monkeypatch):
     from agents.learning.imitation import Expert
-    from snooker_env import SnookerVectorEnv
 
     monkeypatch.setattr(self_play, "SLICE", 3)
-    env = SnookerVectorEnv(8, action="discrete", noise="club", layout="random:9")
-    env.reset(seed=5)
+    env = tables(8, seed=5, action="discrete", noise="club", layout="random:9")
     picks = np.array([np.flatnonzero(mask)[[1, 8, 20]] for mask in env.action_masks()])
     there = np.ones(picks.shape, bool)
     here, there_too = (
@@ -245,27 +219,32 @@ def test_a_node_killed_amid_a_search_for_data_is_survived_and_nothing_counts_twi
     for key, alone in zip(keys, in_order(ended(parts, shared, Here())), strict=True):
         far = store.part(key)
         assert far.keys() == alone.keys() and len(alone["scores"]) == searched.TABLES * searched.ROUNDS
-        assert all(
-            np.array_equal(one, far[name], equal_nan=one.dtype.kind == "f") for name, one in alone.items()
-        )
+        for name, one in alone.items():
+            assert np.array_equal(one, far[name], equal_nan=one.dtype.kind == "f"), name
+
+
+@contextmanager
+def only_node(**variables):
+    """A cluster of which one node plays, with these in its environment; the head has none of it."""
+    made, joined = Nodes(initialize_head=True, head_node_args=NODE | {"num_cpus": 0}), None
+    try:
+        made.add_node(num_cpus=1, object_store_memory=100 * 2**20, env_vars=variables)
+        made.wait_for_nodes()
+        joined = connected(made.address)
+        yield joined
+    finally:
+        if joined is not None:
+            joined.close()
+        made.shutdown()
 
 
 def test_a_worker_that_ray_ends_for_its_memory_is_one_line(monkeypatch):
-    """On a node whose limit is already passed; the head, which plays nothing, has none of it."""
+    """On a node whose limit is already passed."""
     monkeypatch.setenv("SLOW", "60")
-    made, found = Nodes(initialize_head=True, head_node_args=NODE | {"num_cpus": 0}), None
-    try:
-        found = connected(made.address)
-        limit = {"RAY_memory_usage_threshold": "0.001", "RAY_memory_monitor_refresh_ms": "100"}
-        made.add_node(num_cpus=1, object_store_memory=100 * 2**20, env_vars=limit)
-        made.wait_for_nodes()
-        agent, seeds = Entrant.of("tests.cluster.players:Noted"), tables_of("held_out", 2)
-        with pytest.raises(ClusterError, match=r"^a part was given up, .*memory"):
-            protocol.play_agent(agent, AT, seeds, 100, False, results_of([agent], seeds, found))
-    finally:
-        if found is not None:
-            found.close()
-        made.shutdown()
+    limit = {"RAY_memory_usage_threshold": "0.001", "RAY_memory_monitor_refresh_ms": "100"}
+    agent, seeds = Entrant.of("tests.cluster.players:Noted"), tables_of("held_out", 2)
+    with only_node(**limit) as where, pytest.raises(ClusterError, match=r"^a part was given up, .*memory"):
+        protocol.play_agent(agent, AT, seeds, 100, False, results_of([agent], seeds, where))
 
 
 def test_a_cluster_on_this_machine_is_its_own_whatever_the_environment_says(nodes, monkeypatch):
@@ -281,29 +260,16 @@ def test_a_cluster_on_this_machine_is_its_own_whatever_the_environment_says(node
 def test_a_node_with_other_software_or_none_is_refused(tmp_path, lack):
     """The only node that plays finds another version of a library first, or one that cannot be imported."""
     if lack == "numba is missing":
-        (tmp_path / "other" / "numba").mkdir(parents=True)
-        (tmp_path / "other" / "numba" / "__init__.py").write_text(
-            "raise ModuleNotFoundError('none', name='numba')\n"
-        )
+        (tmp_path / "numba.py").write_text("raise ModuleNotFoundError('none', name='numba')\n")
         says = r"the node [\d.]+ has no numba: install the same clone on every node \(pip install"
     else:
-        info = tmp_path / "other" / "numpy-1.2.3.dist-info"
-        info.mkdir(parents=True)
+        info = tmp_path / "numpy-1.2.3.dist-info"
+        info.mkdir()
         (info / "METADATA").write_text("Metadata-Version: 2.1\nName: numpy\nVersion: 1.2.3\n")
         says = r"the node [\d.]+: it holds other software: numpy is 1.2.3 there and [\d.]+ here. Install the same"
-    made, found = Nodes(initialize_head=True, head_node_args=NODE | {"num_cpus": 0}), None
-    try:
-        path = f"{tmp_path / 'other'}{os.pathsep}{ROOT}"
-        made.add_node(num_cpus=1, object_store_memory=100 * 2**20, env_vars={"PYTHONPATH": path})
-        made.wait_for_nodes()
-        found = connected(made.address)
-        agent, seeds = Entrant.of("random"), tables_of("held_out", 2)
-        with pytest.raises(ClusterError, match=says):
-            list(results_of([agent], seeds, found))
-    finally:
-        if found is not None:
-            found.close()
-        made.shutdown()
+    path, seeds = f"{tmp_path}{os.pathsep}{ROOT}", tables_of("held_out", 2)
+    with only_node(PYTHONPATH=path) as where, pytest.raises(ClusterError, match=says):
+        list(results_of([Entrant.of("random")], seeds, where))
 
 
 def test_nothing_is_left_running():

@@ -9,21 +9,14 @@ from pathlib import Path
 import pytest
 
 from commands import lifecycle
-
-ROOT = Path(__file__).resolve().parents[2]
-MODULES = ("evaluate", "publish", "curves", "noise_samples", "report")
+from tests.processes import ROOT
 
 
-def python(*arguments, **variables):
+def python(*arguments, stdout=subprocess.PIPE, **variables):
     """What a python process does in the repository."""
-    return subprocess.run(
-        [sys.executable, *arguments],
-        capture_output=True,
-        cwd=ROOT,
-        env=os.environ | variables,
-        timeout=300,
-        encoding="utf-8",
-    )
+    pipes = {"stdout": stdout, "stderr": subprocess.PIPE, "encoding": "utf-8"}
+    command = [sys.executable, *map(str, arguments)]
+    return subprocess.run(command, cwd=ROOT, env=os.environ | variables, timeout=300, **pipes)
 
 
 def without(package, target, *arguments):
@@ -42,36 +35,29 @@ runpy.{start}, run_name="__main__")
     return python("-c", code)
 
 
-@pytest.mark.parametrize("package", ["torch", "sb3_contrib", "numpy"])
-def test_train_says_what_is_missing(package):
-    done = without(package, "train.py")
-    assert done.returncode == 1
-    assert (
-        done.stderr
-        == f'train.py: {package} is missing; in a clone of the repository:  pip install -e ".[train]"\n'
-    )
+@pytest.mark.parametrize(
+    ("package", "extra", "command"),
+    [
+        ("torch", "train", "train.py"),
+        ("sb3_contrib", "train", "train.py"),
+        ("numpy", "train", "train.py"),
+        ("yaml", "train", "agents.evaluate --agent random"),
+        ("torch", "train", "agents.evaluate --agent ppo_mask"),
+        ("matplotlib", "test", "agents.curves runs/x"),
+        ("numba", "train", "agents.noise_samples"),
+        ("yaml", "train", "agents.publish runs/x --limits none"),
+    ],
+)
+def test_a_command_says_what_is_missing(package, extra, command):
+    target, *arguments = command.split()
+    done = without(package, target, *arguments)
+    where = f'in a clone of the repository:  pip install -e ".[{extra}]"'
+    assert done.stderr == f"{target}: {package} is missing; {where}\n" and done.returncode == 1
 
 
 @pytest.mark.parametrize(
-    ("package", "extra", "module", "arguments"),
-    [
-        ("yaml", "train", "evaluate", ["--agent", "random"]),
-        ("torch", "train", "evaluate", ["--agent", "ppo_mask"]),
-        ("matplotlib", "test", "curves", ["runs/x"]),
-        ("numba", "train", "noise_samples", []),
-        ("yaml", "train", "publish", ["runs/x", "--limits", "none"]),
-    ],
+    "module", [f"agents.{name}" for name in ("evaluate", "publish", "curves", "noise_samples", "report")]
 )
-def test_a_command_says_what_is_missing(package, extra, module, arguments):
-    done = without(package, f"agents.{module}", *arguments)
-    assert done.returncode == 1
-    assert (
-        done.stderr
-        == f'agents.{module}: {package} is missing; in a clone of the repository:  pip install -e ".[{extra}]"\n'
-    )
-
-
-@pytest.mark.parametrize("module", [f"agents.{name}" for name in MODULES])
 def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
     """And compiles nothing: the cache stays empty."""
     done = python("-m", module, "--help", NUMBA_CACHE_DIR=str(tmp_path), COLUMNS="120")
@@ -80,55 +66,24 @@ def test_help_is_of_the_command_as_it_is_called(module, tmp_path):
     assert not [file for file in tmp_path.rglob("*") if file.suffix in (".nbi", ".nbc")]
 
 
-QUICK = [
-    "--agent",
-    "random",
-    "--visits",
-    "4",
-    "--layouts",
-    "held_out",
-    "--noise",
-    "professional",
-    "--resamples",
-    "100",
-]
-TINY = [
-    "--agent",
-    "ppo_mask",
-    "--envs",
-    "2",
-    "--eval-visits",
-    "4",
-    "--parallel",
-    "one",
-    "--steps",
-    "1",
-    "--imitate",
-    "0",
-]
+QUICK = str.split("--agent random --visits 4 --layouts held_out --noise professional --resamples 100")
+TINY = str.split("--agent ppo_mask --envs 2 --eval-visits 4 --parallel one --steps 1 --imitate 0")
 
 
 def test_any_terminal_will_do(tmp_path):
     """One with few letters shows "?" for the others; the files are whole."""
-    encoding, name = "ascii", str(tmp_path / "r\u00e9sum\u00e9 \u2192.json")
-    done = python("-m", "agents.evaluate", *QUICK, "--json", name, PYTHONIOENCODING=encoding)
-    assert done.returncode == 0 and not done.stderr.strip().startswith("Traceback"), done.stderr
+    name, run = tmp_path / "r\u00e9sum\u00e9 \u2192.json", tmp_path / "\u2192"
+
+    def printed(*arguments):
+        done = python(*arguments, PYTHONIOENCODING="ascii")
+        assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
+        return done.stdout
+
+    printed("-m", "agents.evaluate", *QUICK, "--json", name)
     assert json.loads(Path(name).read_text())["results"]
-    assert python("-m", "agents.report", "--show", name, PYTHONIOENCODING=encoding).returncode == 0
-    done = python("train.py", *TINY, "--out", str(tmp_path / "\u2192"), PYTHONIOENCODING=encoding)
-    assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
-    assert "Means of 4 held-out visits" in done.stdout
-    assert (
-        python(
-            "-m",
-            "agents.curves",
-            str(tmp_path / "\u2192"),
-            "--out",
-            str(tmp_path / "\u2192.png"),
-            PYTHONIOENCODING=encoding,
-        ).returncode
-        == 0
-    )
+    printed("-m", "agents.report", "--show", name)
+    assert "Means of 4 held-out visits" in printed("train.py", *TINY, "--out", run)
+    printed("-m", "agents.curves", run, "--out", tmp_path / "\u2192.png")
 
 
 def test_ctrl_c_is_one_line(capsys):
@@ -148,15 +103,6 @@ def test_a_reader_that_leaves_ends_a_command_in_one_line_at_most(arguments, tmp_
     reading, writing = os.pipe()
     os.close(reading)
     with open(writing, "w") as nobody:
-        done = subprocess.run(
-            [sys.executable, *arguments, *out],
-            cwd=ROOT,
-            stdout=nobody,
-            stderr=subprocess.PIPE,
-            text=True,
-            timeout=300,
-        )
-    assert done.returncode == 1 and "Traceback" not in done.stderr
-    assert done.stderr == (
-        "train.py: its output was closed. Nothing was saved yet: start the run again.\n" if out else ""
-    )
+        done = python(*arguments, *out, stdout=nobody)
+    closed = "train.py: its output was closed. Nothing was saved yet: start the run again.\n"
+    assert done.returncode == 1 and done.stderr == (closed if out else "")

@@ -1,11 +1,9 @@
-"""Does ``agents.evaluate`` play, report and keep what it is asked to, and refuse what it should, whatever
-stops it?"""
+"""Does ``agents.evaluate`` play, report, keep and refuse what it should, whatever stops it?"""
 
 import json
 import os
 import re
 import shutil
-import sys
 import zipfile
 from pathlib import Path
 
@@ -18,8 +16,18 @@ from agents.learning.hyperparameters import Recipe
 from commands.physics_option import physics_option, physics_text
 from snooker_env.benchmark import FIGURES
 from snooker_env.physics.parameters import Physics
+from tests.agents.training import interrupted_at
 
-QUICK = ["--visits", "12", "--layouts", "held_out", "--noise", "professional", "--resamples", "200"]
+QUICK = str.split("--visits 12 --layouts held_out --noise professional --resamples 200")
+
+
+def outputs(folder):
+    files = (("--json", "r.json"), ("--markdown", "r.md"), ("--picture", "p.png"))
+    return [word for option, name in files for word in (option, str(folder / name))]
+
+
+def read(file):
+    return json.loads(file.read_text(), parse_constant=lambda text: pytest.fail(f"{text} is not JSON"))
 
 
 @pytest.fixture(scope="module")
@@ -38,82 +46,33 @@ def models(tmp_path_factory):
 
 
 def test_json_markdown_and_picture(models, tmp_path, capsys):
-    options = [
-        "--visits",
-        "12",
-        "--layouts",
-        "held_out=20",
-        "colours",
-        "--noise",
-        "none",
-        "club",
-        "--physics",
-        "paper,mu_bb=marlow",
-    ]
-    options += [
-        "--resamples",
-        "200",
-        "--json",
-        str(tmp_path / "a" / "r.json"),
-        "--markdown",
-        str(tmp_path / "r.md"),
-    ]
+    options = "--visits 12 --layouts held_out=20 colours --noise none club --resamples 200 --physics"
     agents = ["--agent", f"model={models / 'm-*'}", "random", "--against", "ghost_ball", "random"]
-    assert protocol.main([*agents, *options, "--picture", str(tmp_path / "p.png")]) == 0
-    found = json.loads(
-        (tmp_path / "a" / "r.json").read_text(),
-        parse_constant=lambda text: pytest.fail(f"{text} is not JSON"),
-    )
-    assert set(found) == {
-        "command",
-        "version",
-        "commit",
-        "machine",
-        "python",
-        "numpy",
-        "protocol",
-        "agents",
-        "results",
-    }
+    files = outputs(tmp_path / "new")
+    assert protocol.main([*agents, *options.split(), "paper,mu_bb=marlow", *files]) == 0
+    found = read(tmp_path / "new" / "r.json")
+    names = "command version commit machine python numpy protocol agents results"
+    assert sorted(found) == sorted(names.split())
     assert found["protocol"]["layouts"] == {"held_out": 12, "colours": 12}
     assert [a["label"] for a in found["agents"]] == ["model", "random", "ghost_ball"]
     first, second = found["agents"][0]["runs"]
     assert (first["seconds"], first["imitated"], second["seconds"], second["imitated"]) == (2.0, 0, None, 300)
     assert first["layout"] == "opened" and first["recipe"] == "ppo_mask" and first["gamma"] == 0.95
     assert len(found["results"]) == 3 * 2 * 2
+    names = "agent layout noise fidelity physics visits runs figures ratios counted longest_break by_run"
     for row in found["results"]:
-        assert set(row) == {
-            "agent",
-            "layout",
-            "noise",
-            "fidelity",
-            "physics",
-            "visits",
-            "runs",
-            "figures",
-            "ratios",
-            "counted",
-            "longest_break",
-            "by_run",
-            "strokes",
-            "ms_a_decision",
-        }
+        assert sorted(row) == sorted(f"{names} strokes ms_a_decision".split())
         assert set(row["figures"]) == {*FIGURES, "points_a_visit_iqm", "pots_a_visit_iqm"}
         assert set(row["ratios"]) == {"ghost_ball", "random"} - {row["agent"]}
         assert len(row["by_run"]["points_a_visit"]) == row["runs"] == (2 if row["agent"] == "model" else 1)
         for f in [*row["figures"].values(), *(r for ratio in row["ratios"].values() for r in ratio.values())]:
             assert set(f) == {"value", "low", "high"}
             assert f["low"] is None or f["low"] <= f["high"]
-        assert np.mean(row["by_run"]["points_a_visit"]) == pytest.approx(
-            row["figures"]["points_a_visit"]["value"]
-        )
-    text, printed = (tmp_path / "r.md").read_text(), capsys.readouterr().out
-    assert (
-        found["command"] in text
-        and found["machine"] in text
-        and "](p.png)" in text
-        and found["command"].startswith("python -m agents.evaluate --agent")
-    )
+        mean = row["figures"]["points_a_visit"]["value"]
+        assert np.mean(row["by_run"]["points_a_visit"]) == pytest.approx(mean)
+    text, printed = (tmp_path / "new" / "r.md").read_text(), capsys.readouterr().out
+    assert found["command"] in text and found["machine"] in text and "](p.png)" in text
+    assert found["command"].startswith("python -m agents.evaluate --agent")
     lines = text.splitlines()
     for k, line in enumerate(lines):
         if set(line) <= set("|:- ") and line:  # under each table's head
@@ -121,116 +80,70 @@ def test_json_markdown_and_picture(models, tmp_path, capsys):
             assert lines[k - 1].count("|") == width == lines[k + 1].count("|")
     points = report._pm(found["results"][0]["figures"]["points_a_visit"])
     assert points in text and points in printed and "2 training seeds, fewer than 5" in printed
-    assert (tmp_path / "p.png").read_bytes()[:4] == b"\x89PNG"
+    assert (tmp_path / "new" / "p.png").read_bytes()[:4] == b"\x89PNG"
 
 
 def test_figures_do_not_depend_on_the_company(models, tmp_path):
     rows = []
     for company in ([], ["random", f"other={models / 'm-0'}"]):
         file = tmp_path / f"{len(company)}.json"
-        protocol.main(
-            ["--agent", *company, f"m={models / 'm-0'},{models / 'm-1'}", *QUICK, "--json", str(file)]
-        )
-        found = json.loads(file.read_text())["results"]
-        rows.append(
-            [
-                {key: r[key] for key in r if key != "ms_a_decision"}
-                for r in found
-                if r["agent"] in ("m", "ghost_ball")
-            ]
-        )
+        agents = [*company, f"m={models / 'm-0'},{models / 'm-1'}"]
+        protocol.main(["--agent", *agents, *QUICK, "--json", str(file)])
+        same = [row for row in read(file)["results"] if row["agent"] in ("m", "ghost_ball")]
+        rows.append([{key: row[key] for key in row if key != "ms_a_decision"} for row in same])
     assert rows[0] == rows[1] and len(rows[0]) == 2
 
 
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        (["--agent", "nobody"], "agent = 'nobody': must be random, "),
-        (
-            ["--agent", str(Path(__file__))],
-            "agent = .*test_evaluate.py': must be a model saved by Stable-Baselines3",
-        ),
-        (["--agent", "x=nowhere-*"], "agent = 'nowhere-\\*': must be"),
-        (["--agent", "random", "random"], "agent = 'random': must be another"),
-        (["--agent", "random", "--against", "me"], "against = 'me': must be one of random, ghost_ball"),
-        (["--agent", "random", "--layouts", "moon=3"], "layout = 'moon': must be one of"),
-        (["--agent", "random", "--layouts", "colours=x"], "layouts = 'colours=x': must be LAYOUT or"),
-        (["--agent", "random", "--visits", "1"], "visits = 1: must be an integer in \\[2"),
-        (["--agent", "random", "--noise", "loud"], "noise = 'loud': must be one of"),
-        (["--agent", "random", "--fidelity", "true"], "fidelity = 'true': must be"),
-        (["--agent", "random", "--physics", "mars"], "physics = 'mars': must be one of"),
-        (["--agent", "random", "--physics", "paper,mu_bb"], "physics = 'paper,mu_bb': must be PRESET"),
-        (["--agent", "random", "--physics", "paper,mu_bb=-1"], "mu_bb"),
-        (["--agent", "random", "--physics", "paper,R=0.03"], "physics = 'paper,R=0.03': must leave R"),
-        (["--agent", "random", "--physics", "paper,mu_s=0"], "physics.mu_s = 0.0: must be > 0"),
-        (["--agent", "random", "--physics", "paper,mu_r=0"], "physics.mu_r = 0.0: must be > 0"),
-        (["--agent", "search_1"], "player = 'search_1': must end in a number of simulated shots from 8"),
-        (["--agent", "random", "--json", "tests"], "json = 'tests': must be a file"),
-        (
-            ["--agent", "random", "--json", "pyproject.toml/r.json"],
-            "json = 'pyproject.toml/r.json': must be a file",
-        ),
-        (
-            ["--agent", "random", "--markdown", "/proc/none/r.md"],
-            "markdown = '/proc/none/r.md': must be a file",
-        ),
-        (["--agent", "random", "--picture", "tests"], "picture = '': must be one of .*'.png'"),
-        (["--agent", "random", "--picture", "p.md"], "picture = '.md': must be one of .*'.png'"),
-        (["--agent", "random", "--resamples", "5"], "resamples = 5: must be an integer in"),
-        (
-            ["--agent", "random", "--layouts", "colours", "--picture", "p.png"],
-            "layouts = 'colours': must hold held_out",
-        ),
+        ("nobody", "agent = 'nobody': must be random, "),
+        (__file__, "agent = .*test_evaluate.py': must be a model saved by Stable-Baselines3"),
+        ("x=nowhere-*", "agent = 'nowhere-\\*': must be"),
+        ("random random", "agent = 'random': must be another"),
+        ("random --against me", "against = 'me': must be one of random, ghost_ball"),
+        ("random --layouts moon=3", "layout = 'moon': must be one of"),
+        ("random --layouts colours=x", "layouts = 'colours=x': must be LAYOUT or"),
+        ("random --visits 1", "visits = 1: must be an integer in \\[2"),
+        ("random --noise loud", "noise = 'loud': must be one of"),
+        ("random --fidelity true", "fidelity = 'true': must be"),
+        ("random --physics mars", "physics = 'mars': must be one of"),
+        ("random --physics paper,mu_bb", "physics = 'paper,mu_bb': must be PRESET"),
+        ("random --physics paper,mu_bb=-1", "mu_bb"),
+        ("random --physics paper,R=0.03", "physics = 'paper,R=0.03': must leave R"),
+        ("random --physics paper,mu_s=0", "physics.mu_s = 0.0: must be > 0"),
+        ("random --physics paper,mu_r=0", "physics.mu_r = 0.0: must be > 0"),
+        ("search_1", "player = 'search_1': must end in a number of simulated shots from 8"),
+        ("random --json tests", "json = 'tests': must be a file"),
+        ("random --json pyproject.toml/r.json", "json = 'pyproject.toml/r.json': must be a file"),
+        ("random --markdown /proc/none/r.md", "markdown = '/proc/none/r.md': must be a file"),
+        ("random --picture tests", "picture = '': must be one of .*'.png'"),
+        ("random --picture p.md", "picture = '.md': must be one of .*'.png'"),
+        ("random --resamples 5", "resamples = 5: must be an integer in"),
+        ("random --layouts colours --picture p.png", "layouts = 'colours': must hold held_out"),
     ],
 )
-def test_bad_input_ends_with_one_clear_line(options, says, capsys):
-    with pytest.raises(SystemExit) as stop:
-        protocol.main(options)
-    assert stop.value.code == 2
-    assert re.search(says, capsys.readouterr().err.strip().splitlines()[-1])
+def test_bad_input_ends_with_one_clear_line(options, says, refused):
+    assert re.search(says, refused(protocol.main, "--agent", *options.split()))
 
 
-OWN = """
-class Soft:
-    options = {"action": "discrete"}
-    def act(self, observations, masks, seeds):
-        return [30] * len(seeds)
-
-class Mute:
-    options, act = {}, None
-
-class Worldly(Soft):
-    options = {"noise": "none"}
-
-class Discreet(Soft):
-    options = {"action": "discreet"}
-
-silent = 3
-"""
-
-
-def test_a_player_of_ones_own_is_compared(tmp_path, monkeypatch):
-    (tmp_path / "mine.py").write_text(OWN)
-    monkeypatch.delitem(sys.modules, "mine", raising=False)  # another test's
-    monkeypatch.syspath_prepend(tmp_path)
-    assert (
-        protocol.main(["--agent", "mine:Soft", "me=mine:Soft", *QUICK, "--json", str(tmp_path / "r.json")])
-        == 0
-    )
-    found = json.loads((tmp_path / "r.json").read_text())
-    rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in found["results"]}
-    assert rows.keys() == {"Soft", "me", "ghost_ball"} and rows["Soft"] == rows["me"] != rows["ghost_ball"]
+def test_a_player_of_ones_own_is_compared(tmp_path):
+    file, users = tmp_path / "r.json", "tests.agents.user_players"
+    agents = ["--agent", f"{users}:Softly", f"me={users}:Softly"]
+    assert protocol.main([*agents, *QUICK, "--json", str(file)]) == 0
+    rows = {row["agent"]: row["figures"]["pots_a_visit"]["value"] for row in read(file)["results"]}
+    assert rows.keys() == {"Softly", "me", "ghost_ball"}
+    assert rows["Softly"] == rows["me"] != rows["ghost_ball"]
     for name, why in (
-        ("Mute", "player = a Mute: must be a player"),
-        ("silent", "player = 'mine:silent': must be MODULE:CLASS of a player .TypeError"),
-        ("Nobody", "player = 'mine:Nobody': must be MODULE:CLASS of a player .AttributeError"),
-        ("Worldly", "key of the options of player Worldly = 'noise'"),
-        ("Discreet", "action = 'discreet'"),
+        (f"{users}:Mute", "player = a Mute: must be a player"),
+        (f"{users}:silent", f"player = '{users}:silent': must be MODULE:CLASS of a player .TypeError"),
+        (f"{users}:Nobody", f"player = '{users}:Nobody': must be MODULE:CLASS of a player .AttributeError"),
+        (f"{users}:Loud", "key of the options of player Loud = 'noise'"),
+        (f"{users}:Discreet", "action = 'discreet'"),
+        ("nothere:Soft", "player = 'nothere:Soft': .*ModuleNotFoundError"),
     ):
         with pytest.raises(ValueError, match=why):
-            protocol.Entrant.of(f"mine:{name}").trained()
-    with pytest.raises(ValueError, match=r"player = 'nothere:Soft': .*ModuleNotFoundError"):
-        protocol.Entrant.of("nothere:Soft").trained()
+            protocol.Entrant.of(name).trained()
 
 
 def test_a_path_with_a_colon_is_a_path(models, tmp_path):
@@ -239,6 +152,9 @@ def test_a_path_with_a_colon_is_a_path(models, tmp_path):
     for path in (r"C:\runs\m-0\model.zip", "a/b:c", "10:00"):
         with pytest.raises(ValueError, match="or name existing models"):
             protocol.Entrant.of(f"x={path}")
+
+
+FOREIGN = "agent = '.*': must be a model saved by Stable-Baselines3"
 
 
 @pytest.mark.parametrize("which", ["x={0},random", "x=random,{0}", "x={0},agents.players:Geometric"])
@@ -250,9 +166,7 @@ def test_players_and_models_under_one_label_are_refused(which, models):
 @pytest.mark.parametrize(
     ("file", "text", "says"),
     [
-        ("model.zip", "junk", "agent = '.*': must be a model saved by Stable-Baselines3"),
-        ("model.zip", {"data": "junk"}, "agent = '.*': must be a model saved by Stable-Baselines3"),
-        ("model.zip", {}, "agent = '.*': must be a model saved by Stable-Baselines3"),
+        *(("model.zip", text, FOREIGN) for text in ("junk", {"data": "junk"}, {})),
         ("results.json", '{"seconds": 2.0', "agent = '.*results.json': must be JSON"),
         ("results.json", "[2.0]", "agent = '.*results.json': must hold seconds"),
         ("results.json", '{"seconds": "2 h"}', "results.json: seconds = '2 h': must be a finite number"),
@@ -277,74 +191,35 @@ def test_a_picture_that_fails_loses_no_figures(tmp_path, monkeypatch):
         raise RuntimeError("no ink")
 
     monkeypatch.setattr("agents.evaluation.destinations.draw", draw)
-    outputs = [
-        "--json",
-        str(tmp_path / "r.json"),
-        "--markdown",
-        str(tmp_path / "r.md"),
-        "--picture",
-        str(tmp_path / "p.png"),
-    ]
     with pytest.raises(RuntimeError, match="no ink"):
-        protocol.main(["--agent", "random", *QUICK, *outputs])
-    assert json.loads((tmp_path / "r.json").read_text())["results"] and (tmp_path / "r.md").read_text()
+        protocol.main(["--agent", "random", *QUICK, *outputs(tmp_path)])
+    assert read(tmp_path / "r.json")["results"] and (tmp_path / "r.md").read_text()
 
 
-ALL = ("held_out", "colours")
-
-
-def outputs(folder):
-    return [
-        "--json",
-        str(folder / "r.json"),
-        "--markdown",
-        str(folder / "r.md"),
-        "--picture",
-        str(folder / "p.png"),
-    ]
-
-
-def interrupted_at(monkeypatch, call):
-    """Ctrl-C when ``play_agent`` is called for the so-manyth time."""
-    original, calls = protocol.play_agent, []
-
-    def play_agent(*arguments):
-        calls.append(1)
-        if len(calls) == call:
-            raise KeyboardInterrupt
-        return original(*arguments)
-
-    monkeypatch.setattr(protocol, "play_agent", play_agent)
+BOTH = ["--agent", "random", *QUICK, "--layouts", "held_out", "colours"]
 
 
 def test_ctrl_c_keeps_what_was_complete(tmp_path, monkeypatch, capsys):
     """And spares a file that is there already."""
     (tmp_path / "r.md").write_text("whole")
-    interrupted_at(monkeypatch, 4)
-    assert protocol.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
+    interrupted_at(monkeypatch, protocol, "play_agent", 4)
+    assert protocol.main([*BOTH, *outputs(tmp_path)]) == 130
     printed = capsys.readouterr()
     lost = "interrupted when 1 of 2 parts (layouts under one noise) were complete: the others are lost"
-    assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}" and f"INCOMPLETE: {lost}." in " ".join(
-        printed.out.split()
-    )
-    found = json.loads((tmp_path / "r.json").read_text())
-    assert found["incomplete"] == lost and [(r["layout"], r["agent"]) for r in found["results"]] == [
-        ("held_out", "random"),
-        ("held_out", "ghost_ball"),
-    ]
-    assert (tmp_path / "r.md").read_text() == "whole" and f"INCOMPLETE: {lost}." in (
-        tmp_path / "r.incomplete.md"
-    ).read_text()
-    assert (
-        f"json: {tmp_path / 'r.json'}" in printed.out
-        and f"markdown: {tmp_path / 'r.incomplete.md'}" in printed.out
-    )
+    assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}"
+    assert f"INCOMPLETE: {lost}." in " ".join(printed.out.split())
+    found, part = read(tmp_path / "r.json"), tmp_path / "r.incomplete.md"
+    assert found["incomplete"] == lost
+    complete = [(row["layout"], row["agent"]) for row in found["results"]]
+    assert complete == [("held_out", "random"), ("held_out", "ghost_ball")]
+    assert (tmp_path / "r.md").read_text() == "whole" and f"INCOMPLETE: {lost}." in part.read_text()
+    assert f"json: {tmp_path / 'r.json'}" in printed.out and f"markdown: {part}" in printed.out
     assert {p.name for p in tmp_path.iterdir()} == {"r.json", "r.md", "r.incomplete.md", "p.png"}
 
 
 def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatch, capsys):
-    interrupted_at(monkeypatch, 2)
-    assert protocol.main(["--agent", "random", *QUICK, "--layouts", *ALL, *outputs(tmp_path)]) == 130
+    interrupted_at(monkeypatch, protocol, "play_agent", 2)
+    assert protocol.main([*BOTH, *outputs(tmp_path)]) == 130
     printed = capsys.readouterr()
     lost = "interrupted when 0 of 2 parts (layouts under one noise) were complete: nothing is kept"
     assert printed.err.splitlines()[-1] == f"agents.evaluate: {lost}" and not printed.out
@@ -352,10 +227,7 @@ def test_ctrl_c_before_anything_was_complete_writes_nothing(tmp_path, monkeypatc
 
 
 def test_ctrl_c_before_play_is_one_line(monkeypatch, capsys):
-    def stop():
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(protocol.snooker_env, "warmup", stop)
+    interrupted_at(monkeypatch, protocol.snooker_env, "warmup", 1)
     assert protocol.main(["--agent", "random", *QUICK]) == 130
     assert capsys.readouterr().err == "agents.evaluate: interrupted\n"
 
@@ -390,10 +262,9 @@ def test_a_terminal_that_is_gone_loses_no_file(tmp_path, monkeypatch):
 
 def test_a_physics_is_named_as_it_was_given():
     for text in ("paper", "match", "paper,mu_bb=marlow", "match,mu_bb=0.06"):
-        assert physics_text(physics_option(text)) == text
-        assert Physics.of(physics_option(text)) == Physics.of(
-            physics_option(physics_text(physics_option(text)))
-        )
+        option = physics_option(text)
+        assert physics_text(option) == text
+        assert Physics.of(option) == Physics.of(physics_option(physics_text(option)))
     assert physics_text("match") == "match" and Physics.of(physics_option("match,mu_bb=0.06")).mu_bb == 0.06
     for wrong in ("nothing", "paper,mu_bb", "paper,colour=1"):
         with pytest.raises(ValueError):

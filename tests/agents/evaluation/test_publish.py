@@ -24,26 +24,10 @@ from agents.players.trained import load_player
 from snooker_env.envs.vector import SnookerVectorEnv
 from snooker_env.planning import Positions
 
-FIGURES = {
-    "learned": "In 4 shots nothing.",
-    "versions": {},
-    "evaluation": {},
-    "seconds": 36.0,
-    "steps": 4,
-    "git_commit": "abc",
-    "imitation": [],
-}
-SETTINGS = {
-    "agent": "ppo_mask",
-    "seed": 3,
-    "layout": "",
-    "noise": "",
-    "fidelity": "",
-    "physics": "",
-    "start": "",
-    "set": [],
-    "imitate": 100,
-}
+FIGURES = {"learned": "In 4 shots nothing.", "versions": {}, "evaluation": {}, "seconds": 36.0, "steps": 4}
+FIGURES |= {"git_commit": "abc", "imitation": []}
+SETTINGS = {"agent": "ppo_mask", "seed": 3, "set": [], "imitate": 100}
+SETTINGS |= dict.fromkeys(("layout", "noise", "fidelity", "physics", "start"), "")
 
 
 @pytest.fixture(scope="module")
@@ -70,13 +54,6 @@ def run(model, tmp_path, monkeypatch):
 def write(folder, settings=None, **figures):
     found = {"command": "python train.py", **FIGURES, "settings": SETTINGS | (settings or {}), **figures}
     (folder / "results.json").write_text(json.dumps(found))
-
-
-def refused(capsys, *arguments):
-    with pytest.raises(SystemExit) as stop:
-        publish.main([*map(str, arguments)])
-    assert stop.value.code == 2
-    return capsys.readouterr().err.strip().splitlines()[-1]
 
 
 def published(folder):
@@ -106,27 +83,21 @@ def test_pretrained_models_hold_figures_and_weights_alone(name, monkeypatch):
         assert set(json.loads(file.read("model.json"))) == {*KEPT, "seen"}
         with zipfile.ZipFile(io.BytesIO(file.read("policy.pth"))) as inner:
             pickled = [inner.read(part) for part in inner.namelist() if part.endswith(".pkl")]
-    called = {
-        argument
-        for opcode, argument, _ in pickletools.genops(*pickled)
-        if opcode.name in ("GLOBAL", "STACK_GLOBAL", "INST")
-    }
+    calls = ("GLOBAL", "STACK_GLOBAL", "INST")
+    called = {name for opcode, name, _ in pickletools.genops(*pickled) if opcode.name in calls}
     assert called == {"torch._utils _rebuild_tensor_v2", "torch FloatStorage", "collections OrderedDict"}
     load = torch.load
 
     def forbidden(*arguments, **options):
         raise AssertionError("unpickled")
 
+    def careful(*arguments, weights_only=False, **more):
+        return load(*arguments, weights_only=True, **more) if weights_only else forbidden()
+
     for library in (pickle, cloudpickle):
         for function in ("load", "loads"):
             monkeypatch.setattr(library, function, forbidden)
-    monkeypatch.setattr(
-        torch,
-        "load",
-        lambda *a, weights_only=False, **more: (
-            load(*a, weights_only=True, **more) if weights_only else forbidden()
-        ),
-    )
+    monkeypatch.setattr(torch, "load", careful)
     weights = load_player(models.PRETRAINED / f"{name}.zip").model.policy.state_dict()
     digest = hashlib.sha256()
     for key in sorted(weights):
@@ -145,16 +116,14 @@ def test_pretrained_models_play_today(name):
 
 def test_a_run_is_published_with_its_card(run, capsys):
     publish.main([str(run), "--limits", "no safety"])
-    assert (
-        published(run) == ["ppo_mask.json", "ppo_mask.zip"]
-        and "ppo_mask.zip and its card" in capsys.readouterr().out
-    )
+    assert published(run) == ["ppo_mask.json", "ppo_mask.zip"]
+    assert "ppo_mask.zip and its card" in capsys.readouterr().out
     folder = run.parent / "pretrained"
     there, trained = load_player(folder / "ppo_mask.zip").model, load_player(run).model
-    assert all(
-        (a == b).all() for a, b in zip(there.policy.parameters(), trained.policy.parameters(), strict=True)
-    )
-    assert {key: getattr(there, key) for key in KEPT} == {key: getattr(trained, key) for key in KEPT}
+    weights = [one.policy.state_dict() for one in (there, trained)]
+    assert weights[0].keys() == weights[1].keys()
+    assert all(torch.equal(weights[0][name], weights[1][name]) for name in weights[0])
+    assert all(getattr(there, key) == getattr(trained, key) for key in KEPT)
     card = json.loads((folder / "ppo_mask.json").read_text())
     assert (card["limits"], card["hours"], card["imitated"], card["start"]) == ("no safety", 0.01, 0, None)
 
@@ -166,71 +135,60 @@ def test_the_card_counts_what_was_imitated_and_names_the_start(run):
     assert card["imitated"] == 128 and card["start"] == "runs/a"
 
 
-def test_a_published_model_is_replaced_only_when_asked(run, capsys):
+def test_a_published_model_is_replaced_only_when_asked(run, refused):
     publish.main([str(run), "--limits", "first"])
-    before = (run.parent / "pretrained" / "ppo_mask.json").read_bytes()
-    assert "name = 'ppo_mask': must be new" in refused(capsys, run, "--limits", "second")
-    assert (run.parent / "pretrained" / "ppo_mask.json").read_bytes() == before
+    card = run.parent / "pretrained" / "ppo_mask.json"
+    before = card.read_bytes()
+    assert "name = 'ppo_mask': must be new" in refused(publish.main, run, "--limits", "second")
+    assert card.read_bytes() == before
     publish.main([str(run), "--limits", "second", "--replace"])
-    assert b"second" in (run.parent / "pretrained" / "ppo_mask.json").read_bytes()
+    assert b"second" in card.read_bytes()
 
 
-@pytest.mark.parametrize(
-    "settings",
-    [
-        {"set": ["gamma=0"]},
-        {"noise": "club"},
-        {"start": "runs/a"},
-        {"fidelity": "standard"},
-        {"fidelity": "fast"},
-    ],
-)
-def test_another_way_to_train_needs_another_name(run, capsys, settings):
+FIDELITIES = {"fidelity": "standard"}, {"fidelity": "fast"}
+
+
+@pytest.mark.parametrize("settings", [{"set": ["gamma=0"]}, {"noise": "club"}, {"start": "a"}, *FIDELITIES])
+def test_another_way_to_train_needs_another_name(run, refused, settings):
     write(run, settings)
-    assert "name = None: must be given" in refused(capsys, run, "--limits", "none")
+    assert "name = None: must be given" in refused(publish.main, run, "--limits", "none")
     assert published(run) == []
     publish.main([str(run), "--limits", "none", "--name", "other"])
     assert published(run) == ["other.json", "other.zip"]
 
 
 @pytest.mark.parametrize("name", ["a/b", "../a", "", ".a", "a b", "search", "ghost_ball"])
-def test_bad_names_are_refused(run, capsys, name):
-    assert f"name = {name!r}: must" in refused(capsys, run, "--limits", "none", "--name", name)
+def test_bad_names_are_refused(run, refused, name):
+    assert f"name = {name!r}: must" in refused(publish.main, run, "--limits", "none", "--name", name)
     assert published(run) == []
 
 
-def test_limits_must_say_something(run, capsys):
-    assert "limits = ' ': must say" in refused(capsys, run, "--limits", " ")
+def test_limits_must_say_something(run, refused):
+    assert "limits = ' ': must say" in refused(publish.main, run, "--limits", " ")
 
 
 @pytest.mark.parametrize(
     "content",
     ["", "{", "[]", "3", "{}", json.dumps({"settings": SETTINGS}), json.dumps({"settings": 3, **FIGURES})],
 )
-def test_broken_results_are_refused(run, capsys, content):
+def test_broken_results_are_refused(run, refused, content):
     (run / "results.json").write_text(content)
-    assert f"run = {str(run)!r}: must be the folder of a finished run" in refused(
-        capsys, run, "--limits", "none"
-    )
+    error = refused(publish.main, run, "--limits", "none")
+    assert f"run = {str(run)!r}: must be the folder of a finished run" in error
     assert published(run) == []
 
 
-def test_a_file_that_is_no_model_is_refused(run, capsys):
-    whole = (run / "model.zip").read_bytes()
+def test_a_file_that_is_no_model_is_refused(run, refused):
+    file, publishing = run / "model.zip", [publish.main, run, "--limits", "none"]
+    whole = file.read_bytes()
     for content in (b"junk", b"", whole[: len(whole) // 2]):
-        (run / "model.zip").write_bytes(content)
-        assert f"run = {str(run / 'model.zip')!r}: must be a model that train.py saved" in refused(
-            capsys, run, "--limits", "none"
-        )
-    (run / "model.zip").unlink()
-    assert "must be a model's .zip or a folder that holds model.zip" in refused(
-        capsys, run, "--limits", "none"
-    )
+        file.write_bytes(content)
+        assert f"run = {str(file)!r}: must be a model that train.py saved" in refused(*publishing)
+    file.unlink()
+    assert "must be a model's .zip or a folder that holds model.zip" in refused(*publishing)
     (run / "checkpoint.pkl").write_bytes(b"")
-    with pytest.raises(
-        ValueError,
-        match=f"^agent = .*this run has not ended, continue it with: python train.py --resume --out {run}$",
-    ):
+    says = f"this run has not ended, continue it with: python train.py --resume --out {run}$"
+    with pytest.raises(ValueError, match=f"^agent = .*{says}"):
         Entrant.of(str(run)).trained()
     assert published(run) == []
 

@@ -1,5 +1,4 @@
-"""Do the words of an evaluation follow from its figures? Invented agents, and the exact sentences and
-cells."""
+"""Do the words of an evaluation follow from its figures? Invented agents, exact sentences and cells."""
 
 import json
 import re
@@ -9,6 +8,7 @@ import pytest
 from scipy import stats
 
 from agents.evaluation import report
+from agents.evaluation.training_summary import conclusion
 from commands.tables import WIDTH, TextTable
 from snooker_env.benchmark import most_points, unseen
 
@@ -17,20 +17,9 @@ GHOST = {"from": "ghost_ball"}
 
 def run(seed, **changes):
     """A training run as agents/evaluation/protocol.py keeps it."""
-    usual = {
-        "from": f"m-{seed}",
-        "recipe": "r",
-        "seed": seed,
-        "shots": 1000,
-        "imitated": 0,
-        "seconds": 10.0,
-        "gamma": 0.95,
-        "layout": "opened",
-        "noise": "none",
-        "fidelity": "fast",
-        "physics": "paper",
-    }
-    return usual | changes
+    trained = {"from": f"m-{seed}", "recipe": "r", "seed": seed, "shots": 1000, "imitated": 0, "gamma": 0.95}
+    under = {"layout": "opened", "noise": "none", "fidelity": "fast", "physics": "paper"}
+    return trained | under | {"seconds": 10.0} | changes
 
 
 def agent(label, seeds=(0, 1, 2, 3, 4), **changes):
@@ -40,57 +29,40 @@ def agent(label, seeds=(0, 1, 2, 3, 4), **changes):
 def report_of(*agents, layouts=("held_out",)):
     """A report of these agents before anything was played."""
     axes = {"noise": ["none", "club"], "fidelity": ["standard"], "physics": ["paper"]}
-    return {
-        "agents": list(agents),
-        "protocol": {"layouts": dict.fromkeys(layouts, 10), **axes, "against": ["b"]},
-        "results": [],
-    }
+    played = {"layouts": dict.fromkeys(layouts, 10), **axes, "against": ["b"]}
+    return {"agents": list(agents), "protocol": played, "results": []}
 
 
 def said(*agents, **more):
     return report.fairness(report_of(*agents, **more))
 
 
+UNKNOWN = "Whether the trained agents had equal {} is not known: no record for b."
+
+
 @pytest.mark.parametrize(
-    ("changes", "sentence"),
+    ("changes", "which", "sentence"),
     [
-        ({"shots": 2000}, "The trained agents had unequal shots (1,000 to 2,000)."),
-        ({"imitated": 300}, "The trained agents had unequal positions imitated (0 to 300)."),
-        ({"seconds": 12.0}, "The trained agents had unequal seconds of training (10 to 12)."),
-        (
-            {"seconds": None},
-            "Whether the trained agents had equal seconds of training is not known: no record for b.",
-        ),
-        (
-            {"imitated": None},
-            "Whether the trained agents had equal positions imitated is not known: no record for b.",
-        ),
+        ({}, 0, "The trained agents had equal positions imitated (0)."),
+        ({"shots": 2000}, 1, "The trained agents had unequal shots (1,000 to 2,000)."),
+        ({"imitated": 300}, 0, "The trained agents had unequal positions imitated (0 to 300)."),
+        ({"seconds": 12.0}, 2, "The trained agents had unequal seconds of training (10 to 12)."),
+        ({"seconds": 10.9}, 2, "The trained agents had equal seconds of training (10 to 11)."),
+        ({"seconds": None}, 2, UNKNOWN.format("seconds of training")),
+        ({"imitated": None}, 0, UNKNOWN.format("positions imitated")),
     ],
 )
-def test_what_agents_were_given(changes, sentence):
-    equal = [
-        "The trained agents had equal positions imitated (0).",
-        "The trained agents had equal shots (1,000).",
-        "The trained agents had equal seconds of training (10).",
-    ]
-    assert said(agent("a"), agent("b")) == equal
-    words = sentence.split("equal ")[1].split(" (")[0].split(" is not")[0]
-    assert said(agent("a"), agent("b", **changes)) == [
-        sentence if f"equal {words} (" in line else line for line in equal
-    ]
-
-
-def test_times_that_hardly_differ_are_equal():
-    assert "The trained agents had equal seconds of training (100 to 109)." in said(
-        agent("a", seconds=100.0), agent("b", seconds=109.0)
-    )
+def test_what_agents_were_given(changes, which, sentence):
+    amounts = ("positions imitated (0)", "shots (1,000)", "seconds of training (10)")
+    wanted = [f"The trained agents had equal {amount}." for amount in amounts]
+    wanted[which] = sentence
+    assert said(agent("a"), agent("b", **changes)) == wanted
 
 
 def test_copies_of_one_model_are_one_seed():
     assert said(agent("a")) == []
-    assert said(agent("a", (0, 0, 0, 0, 0))) == [
-        "a has 1 training seed: its intervals say nothing about other seeds."
-    ]
+    alone = "a has 1 training seed: its intervals say nothing about other seeds."
+    assert said(agent("a", (0, 0, 0, 0, 0))) == [alone]
     assert said(agent("a", (0, 1, 1, 1, 1))) == ["a has 2 training seeds, fewer than 5."]
     assert report.agents_tables(report_of(agent("a", (0, 1, 1))))[1].rows[0][1] == "2"
 
@@ -103,9 +75,8 @@ def test_who_was_trained_on_what_is_played_is_named():
 
 
 def test_the_agents():
-    trained, long = report.agents_tables(
-        report_of(agent("a", imitated=300, seconds=None), {"label": "ghost_ball", "runs": [GHOST]})
-    )
+    ghost = {"label": "ghost_ball", "runs": [GHOST]}
+    trained, long = report.agents_tables(report_of(agent("a", imitated=300, seconds=None), ghost))
     assert trained.header == ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
     assert trained.rows == [
         ["a", "r", "none", "fast", "paper", "0.95"],
@@ -114,12 +85,15 @@ def test_the_agents():
     assert long.header == ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
     assert long.rows == [["a", "5", "300", "1,000", "", ""]]
     assert report.agents_tables(report_of(agent("a")))[1].rows[0][-3:] == ["1,000", "10", "100"]
-    planner = {"label": "p", "runs": [{"from": "planner_500"}]}  # its weights are known only when it plays
-    assert report.agents_tables(report_of(planner))[0].rows == [
-        ["p", "pre-trained, by the noise played", "", "", "", ""]
-    ]
-    own = {"label": "p", "runs": [{"from": "planner_mine:Mine"}]}
-    assert report.agents_tables(report_of(own))[0].rows[0][1] == "not trained"
+    for name, recipe in (
+        ("planner_500", "pre-trained, by the noise played"),  # its weights are known only when it plays
+        ("planner_mine:Mine", "not trained"),
+    ):
+        played = report_of({"label": "p", "runs": [{"from": name}]})
+        assert report.agents_tables(played)[0].rows == [["p", recipe, "", "", "", ""]]
+
+
+PLAYED = {"layout": "held_out", "noise": "none", "fidelity": "standard", "physics": "paper", "runs": 1}
 
 
 def figure(value, low=None, high=None):
@@ -129,42 +103,29 @@ def figure(value, low=None, high=None):
 def row(label, noise, points, shares, ratios):
     """What an agent did: points a visit, three shares, ratios of points."""
     names = ("next_pot_after_a_pot", "easy_pot_left_by_a_pot", "high_colour_after_a_red")
-    figures = {"points_a_visit": figure(points)} | {
-        name: figure(share) for name, share in zip(names, shares, strict=True)
-    }
-    return {
-        "agent": label,
-        "layout": "held_out",
-        "noise": noise,
-        "fidelity": "standard",
-        "physics": "paper",
-        "visits": 2000,
-        "runs": 1,
-        "figures": figures,
-        "ratios": {other: {"points_a_visit": ratio} for other, ratio in ratios.items()},
-    }
+    figures = dict(zip(names, map(figure, shares), strict=True)) | {"points_a_visit": figure(points)}
+    more = {other: {"points_a_visit": ratio} for other, ratio in ratios.items()}
+    return PLAYED | {"agent": label, "noise": noise, "visits": 2000, "figures": figures, "ratios": more}
 
 
 @pytest.mark.parametrize(
-    ("ratio", "words"),
+    ("ratio", "words", "more"),
     [
-        ((2.0, 1.8, 2.2), "2.00 [1.80, 2.20] times the points of b"),
-        ((0.5, 0.4, 0.6), "0.50 [0.40, 0.60] times the points of b"),
-        (
-            (1.1, 0.9, 1.3),
-            "1.10 [0.90, 1.30] times the points of b, a difference that 2,000 visits do not show",
-        ),
+        ((2.0, 1.8, 2.2), "2.00 [1.80, 2.20]", ""),
+        ((0.5, 0.4, 0.6), "0.50 [0.40, 0.60]", ""),
+        ((1.1, 0.9, 1.3), "1.10 [0.90, 1.30]", ", a difference that 2,000 visits do not show"),
     ],
 )
-def test_the_comparison_says_whose_is_which(ratio, words):
+def test_the_comparison_says_whose_is_which(ratio, words, more):
     made = report_of(agent("a"), agent("b"))
     made["results"] = [
         row("a", "none", 20.0, (0.9, 0.5, 0.4), {"b": figure(*ratio)}),
         row("b", "none", 10.0, (0.6, 0.2, None), {"a": figure(9.0, 8.0, 10.0)}),
     ]
+    shares = "after a pot it pots again: 90.0 against 60.0 %; an easy pot is left: 50.0 against 20.0 %"
     assert report.comparison(made) == [  # the other way round is not given again
         "On layout held_out, noise none, fidelity standard, physics paper:",
-        f"a makes {words}; after a pot it pots again: 90.0 against 60.0 %; an easy pot is left: 50.0 against 20.0 %.",
+        f"a makes {words} times the points of b{more}; {shares}.",
     ]
 
 
@@ -178,39 +139,15 @@ def test_a_under_b():
     assert table.rows == [["a", "none", "4.00", "1.00"], ["b", "club", "3.00", "2.00"]]
 
 
-# tables
-# ------------------------------------------------------------------------------------------------------------
-
-
-def result(layout="held_out", visits=30, runs=1, strokes=60, counted=None, **figures):
+def result(layout="held_out", runs=1, counted=None, **figures):
     """What an agent did: only what is given."""
-    names = [
-        *report.SHARES,
-        "points_a_visit",
-        "points_a_visit_iqm",
-        "pots_a_visit",
-        "pots_a_visit_iqm",
-        "colour_value",
-    ]
-    found = {
-        "pots_a_visit": figure(1.0, 0.9, 1.1),
-        **{name: figure(value) for name, value in figures.items()},
-    }
-    return {
-        "agent": "a",
-        "layout": layout,
-        "noise": "none",
-        "fidelity": "standard",
-        "physics": "paper",
-        "visits": visits,
-        "runs": runs,
-        "strokes": strokes,
-        "ms_a_decision": 1.0,
-        "longest_break": 7,
-        "ratios": {},
-        **({"counted": counted} if counted else {}),
-        "figures": {name: figure(None) for name in names} | found,
-    }
+    points = ("points_a_visit", "points_a_visit_iqm", "pots_a_visit_iqm", "colour_value")
+    nothing = dict.fromkeys([*report.SHARES, *points], figure(None))
+    amounts = {"visits": 30, "runs": runs, "strokes": 60, "ms_a_decision": 1.0, "longest_break": 7}
+    shown = {name: figure(value) for name, value in figures.items()}
+    found = nothing | {"pots_a_visit": figure(1.0, 0.9, 1.1)} | shown
+    known = {"counted": counted} if counted else {}
+    return PLAYED | amounts | known | {"agent": "a", "layout": layout, "ratios": {}, "figures": found}
 
 
 def test_the_bound_of_what_was_never_seen_is_clopper_and_pearsons():
@@ -224,13 +161,11 @@ def test_the_bound_of_what_was_never_seen_is_clopper_and_pearsons():
     ("name", "value", "more", "cell"),
     [
         ("centuries", 0.0, {}, "0.0 [0.0, 9.5]"),
-        # of runs on the same tables each table counts once
-        ("centuries", 0.0, {"runs": 5}, "0.0 [0.0, 9.5]"),
+        ("centuries", 0.0, {"runs": 5}, "0.0 [0.0, 9.5]"),  # each table counts once
         ("clearances", 1.0, {}, "100.0 [90.5, 100.0]"),
         ("pot_rate", 1.0, {}, "100.0 [95.1, 100.0]"),
         ("pot_rate", 1.0, {"runs": 2}, "100.0 [90.5, 100.0]"),
-        # 30 visits, a pot each, half of them the last ball
-        ("next_pot_after_a_pot", 0.0, {"clearances": 0.5}, "0.0 [0.0, 18.1]"),
+        ("next_pot_after_a_pot", 0.0, {"clearances": 0.5}, "0.0 [0.0, 18.1]"),  # half were the last ball
         ("high_colours", 0.0, {}, "0.0"),  # how many colours there were is not known
         ("high_colours", 0.0, {"counted": {"colours": 30.0}}, "0.0 [0.0, 9.5]"),
         ("centuries", 0.5, {}, "50.0"),
@@ -248,8 +183,7 @@ def tables_of(*results, layouts):
 
 
 def test_what_cannot_be_on_a_layout_is_left_out():
-    """Pink or black where there are no colours, a next pot where there is one ball, centuries of 27
-    points."""
+    """Pink or black without colours, a next pot of one ball, centuries of 27 points."""
     shares = {"centuries": 0.0, "maximums": 0.0, "clearances": 0.5, "pot_rate": 0.5, "fouls_a_visit": 0.1}
     layouts = {"pots:easy": 30, "colours": 30, "random:10": 30, "opened": 30}
     tables = tables_of(*(result(layout, **shares) for layout in layouts), layouts=layouts)
@@ -267,9 +201,8 @@ def test_what_cannot_be_on_a_layout_is_left_out():
 
 
 def test_rows_and_columns_without_a_figure_are_left_out():
-    table = TextTable(
-        "t", ["k", "l", "a", "b", "c"], [["1", "x", "", "5", ""], ["2", "y", "", "", ""]], 2, 3
-    ).tidy()
+    rows = [["1", "x", "", "5", ""], ["2", "y", "", "", ""]]
+    table = TextTable("t", ["k", "l", "a", "b", "c"], rows, 2, 3).tidy()
     assert (table.header, table.rows, table.left) == (["k", "l", "b"], [["1", "x", "5"]], 2)
     assert list(TextTable("t", ["k", "a"], [["1", ""]], 1, 1).tidy().narrow()) == []
 
@@ -280,16 +213,11 @@ def test_no_table_is_too_wide(many, capsys):
     header = ["noise", "agent", *(f"column {k}" for k in range(many))]
     rows = [[f"level {i}", "a|b", *(f"{i}.{k} [low, high]" for k in range(many))] for i in range(3)]
     parts = list(TextTable("wide", header, rows, 2, 2, True).narrow())
-    assert [name for part in parts for name in part.header[2:]] == header[2:] and all(
-        part.header[:2] == header[:2] for part in parts
-    )
+    assert [name for part in parts for name in part.header[2:]] == header[2:]
+    assert all(part.header[:2] == header[:2] for part in parts)
     report.show(parts)
-    for part in parts:
-        assert (
-            part.title == "wide"
-            if len(parts) == 1
-            else re.fullmatch(rf"wide \(\d+ of {len(parts)}\)", part.title)
-        )
+    pattern = "wide" if len(parts) == 1 else rf"wide \(\d+ of {len(parts)}\)"
+    assert all(re.fullmatch(pattern, part.title) for part in parts)
     printed = capsys.readouterr().out
     assert max(map(len, printed.splitlines())) <= WIDTH == 100
     assert all(f"{i}.{k} [low, high]" in printed for i in range(3) for k in range(many))
@@ -298,30 +226,23 @@ def test_no_table_is_too_wide(many, capsys):
 
 
 def test_an_incomplete_evaluation_says_so(capsys):
-    made = report_of({"label": "a", "runs": [GHOST]}) | {
-        "results": [result(centuries=0.0)],
-        "incomplete": "interrupted at once",
-    }
+    made = report_of({"label": "a", "runs": [GHOST]})
+    made |= {"results": [result(centuries=0.0)], "incomplete": "interrupted at once"}
     made["protocol"]["noise"] = ["none", "club"]
     assert next(report.parts(made)) == "INCOMPLETE: interrupted at once."
     report.show(report.parts(made))
     assert "INCOMPLETE" in capsys.readouterr().out
 
 
-# kept figures
-# ------------------------------------------------------------------------------------------------------------
-
 KEPT = sorted((Path(report.__file__).parents[1] / "results").glob("*.json"))
 
 
 def test_the_markdown_of_kept_figures_is_that_of_today(tmp_path, capsys):
-    """``python -m agents.report agents/results/*.json`` was run since the last change of report.py; and it
-    prints no wide table."""
+    """``python -m agents.report agents/results/*.json`` was run since report.py changed; no table is wide."""
     for file in KEPT:
         made = report.read(file)
-        assert file.with_suffix(".md").read_text() == report.markdown(
-            made, report.picture_of(made, file.parent)
-        ), file
+        written = report.markdown(made, report.picture_of(made, file.parent))
+        assert file.with_suffix(".md").read_text() == written, file
         report.show(report.parts(made))
         assert max(len(line.rstrip()) for line in capsys.readouterr().out.splitlines()) <= 100
 
@@ -330,17 +251,14 @@ def test_no_two_titles_are_alike():
     titles = [report.title(report.read(file)) for file in KEPT]
     assert len(KEPT) == 20 and len(set(titles)) == 20
     assert titles[0] == "How search and ghost_ball play on break_off, noise none"
-    assert (
-        "How agents trained under one fidelity play under another, on held_out: fast, standard and reference"
-        in titles
-    )
-    assert (
-        "How planners trained under one noise play under another, on held_out: none, professional, amateur and club"
-        in titles
-    )
+    for who, axis, values in (
+        ("agents", "fidelity", "fast, standard and reference"),
+        ("planners", "noise", "none, professional, amateur and club"),
+    ):
+        assert f"How {who} trained under one {axis} play under another, on held_out: {values}" in titles
 
 
-def test_the_command_writes_the_markdown_beside(tmp_path, capsys):
+def test_the_command_writes_the_markdown_beside(tmp_path, capsys, refused):
     file = tmp_path / "r.json"
     file.write_bytes(KEPT[1].read_bytes())
     assert report.main([str(file)]) == 0 and capsys.readouterr().out == f"{tmp_path / 'r.md'}\n"
@@ -348,6 +266,42 @@ def test_the_command_writes_the_markdown_beside(tmp_path, capsys):
     assert report.main(["--show", str(file)]) == 0 and "IQM" in capsys.readouterr().out
     for text in ("{}", "[", json.dumps(json.loads(file.read_text()) | {"results": [{}]})):
         file.write_text(text)
-        with pytest.raises(SystemExit) as stop:
-            report.main([str(file)])
-        assert stop.value.code == 2 and "must be what agents.evaluate writes" in capsys.readouterr().err
+        assert "must be what agents.evaluate writes" in refused(report.main, file)
+
+
+def concluded(*players):
+    """The conclusion from (points, error, share of next pots) of the trained agent, ghost_ball and random."""
+    figures = {}
+    for name, (points, se, *share) in zip(("trained", "ghost_ball", "random"), players, strict=True):
+        means = {"pots_a_visit": points / 3, "points_a_visit": points, "points_a_visit_se": se}
+        figures[name] = means | {"visits": 100, "next_pot_after_a_pot": share[0] if share else 0.9}
+    return conclusion("ppo_mask", 1000, 0, figures)
+
+
+POOR = (0.5, 0.1)
+ALIKE = "is not shown by 100 visits to be better than"
+WORSE = "0.03 pots and 0.10 points a visit against 0.67 pots"
+
+
+@pytest.mark.parametrize(
+    ("trained", "ghost", "random", "words"),
+    [
+        ((1.0, 0.3), (0.9, 0.3), (0.5, 0.3), f"{ALIKE} random strokes: 0.33 pots"),
+        ((0.1, 0.1), (0.9, 0.3), (2.0, 0.1), f"plays worse than random strokes: {WORSE}"),
+        ((3.0, 0.3), (2.9, 0.3), POOR, f"{ALIKE} ghost_ball"),
+        ((2.8, 0.3), (2.9, 0.3), POOR, f"{ALIKE} ghost_ball"),
+        ((2.0, 0.1), (9.0, 0.3), POOR, "better than random strokes but worse than ghost_ball"),
+        ((9.0, 0.3), (2.9, 0.3), POOR, "ppo_mask is better than ghost_ball"),
+        # each player's own share of next pots, whichever is greater
+        ((9.0, 0.3, 0.6), (2.9, 0.3, 0.661), POOR, "follows in 60.0 % against 66.1 %."),
+        ((9.0, 0.3, 0.898), (2.9, 0.3, 0.661), POOR, "follows in 89.8 % against 66.1 %."),
+    ],
+)
+def test_the_conclusion_claims_only_what_the_figures_show(trained, ghost, random, words):
+    assert words in concluded(trained, ghost, random)
+
+
+@pytest.mark.parametrize("shares", [(None, 0.6), (0.6, None)])
+def test_a_share_of_next_pots_that_is_not_known_is_not_given(shares):
+    sentence = concluded((9.0, 0.3, shares[0]), (2.9, 0.3, shares[1]), POOR)
+    assert "ppo_mask is better than ghost_ball" in sentence and "%" not in sentence

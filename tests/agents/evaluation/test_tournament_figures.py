@@ -1,29 +1,15 @@
-"""Do the figures of a tournament follow from its frames as they say? Invented frames, and a plain bootstrap
-beside."""
+"""Do a tournament's figures follow from its frames, beside a plain bootstrap, and are its strengths right?"""
 
 import numpy as np
 import pytest
 
-from agents.evaluation.tournament_figures import (
-    ANCHOR_ELO,
-    COLUMNS,
-    COUNTED,
-    KEYS,
-    figures_of,
-    pairs_of,
-    schedule,
-)
-from agents.evaluation.tournament_strengths import ELO, chance, strengths
+from agents.evaluation import tournament_figures
+from agents.evaluation.tournament_figures import ANCHOR_ELO, COLUMNS, COUNTED, figures_of, schedule
+from agents.evaluation.tournament_strengths import ELO, bound, chance, compared, linked, strengths
 from snooker_env.benchmark import unseen
 
-SOUND = {
-    "points": (60, 30),
-    "scored": (50, 30),
-    "visits": (10, 10),
-    "strokes": (30, 20),
-    "fouls": (0, 2),
-    "best": (20, 12),
-}
+SOUND = {"points": (60, 30), "scored": (50, 30), "visits": (10, 10), "strokes": (30, 20)}
+SOUND |= {"fouls": (0, 2), "best": (20, 12)}
 
 
 def row(first, second, seed, opener, winner, frame=0, **changes):
@@ -32,22 +18,16 @@ def row(first, second, seed, opener, winner, frame=0, **changes):
     return [first, second, seed, opener, frame, winner, *(x for name in COUNTED for x in counted[name])]
 
 
-def invented(t, seeds, rng, best_of=1):
+def invented(t, seeds, rng):
     """Rows of players with these strengths."""
-    rows = []
-    for a, b in schedule(t):
-        for seed in range(seeds):
-            for opener in (0, 1):
-                for frame in range(best_of):
-                    rows.append(row(a, b, seed, opener, int(rng.random() > chance(t[a] - t[b])), frame))
-    return rows
+    frames = [(a, b, seed, opener) for a, b in schedule(t) for seed in range(seeds) for opener in (0, 1)]
+    return [row(*frame, int(rng.random() > chance(t[frame[0]] - t[frame[1]]))) for frame in frames]
 
 
 def test_the_columns_are_those_of_both_players():
-    assert len(COLUMNS) == len(KEYS) + 2 * len(COUNTED) == len(row(0, 1, 0, 0, 0)) and COLUMNS[6:8] == (
-        "points_first",
-        "points_second",
-    )
+    keys = tournament_figures.KEYS
+    assert len(COLUMNS) == len(keys) + 2 * len(COUNTED) == len(row(0, 1, 0, 0, 0))
+    assert COLUMNS[6:8] == ("points_first", "points_second")
 
 
 def test_shares_and_draws():
@@ -63,10 +43,8 @@ def test_shares_and_draws():
 
 
 def test_points_breaks_fouls_and_strokes_are_each_players_own():
-    rows = [
-        row(0, 1, 0, 0, 0),
-        row(0, 1, 0, 1, 0, scored=(10, 5), visits=(30, 10), best=(9, 40), fouls=(1, 0), points=(10, 25)),
-    ]
+    other = {"scored": (10, 5), "visits": (30, 10), "best": (9, 40), "fouls": (1, 0), "points": (10, 25)}
+    rows = [row(0, 1, 0, 0, 0), row(0, 1, 0, 1, 0, **other)]
     a, b = (figures_of(["a", "b"], rows, "a")["players"][label] for label in "ab")
     assert a["points_a_frame"]["value"] == 35.0 and b["points_a_frame"]["value"] == 27.5
     assert a["average_break"]["value"] == 60 / 40 and b["average_break"]["value"] == 35 / 20
@@ -77,13 +55,8 @@ def test_points_breaks_fouls_and_strokes_are_each_players_own():
 
 def test_a_match_is_one_unit():
     """The best of three: 2-0, and 1-1 with a frame that was stopped, which is a draw."""
-    rows = [
-        row(0, 1, 0, 0, 0),
-        row(0, 1, 0, 0, 0, 1),
-        row(0, 1, 0, 1, 0),
-        row(0, 1, 0, 1, -1, 1),
-        row(0, 1, 0, 1, 1, 2),
-    ]
+    frames = ((0, 0, 0), (0, 0, 1), (1, 0, 0), (1, -1, 1), (1, 1, 2))
+    rows = [row(0, 1, 0, opener, winner, frame) for opener, winner, frame in frames]
     a = figures_of(["a", "b"], rows, "a")["players"]["a"]
     assert (a["matches"], a["frames"], a["won"], a["drawn"]) == (2, 5, 1.5, 1)
     assert a["win_rate"]["value"] == 0.75 and a["frame_rate"]["value"] == pytest.approx(3.5 / 5)
@@ -103,23 +76,17 @@ def test_intervals_are_those_of_seeds_drawn_together():
         np.add.at(wins, (table[:, 1], table[:, 0]), weight * (table[:, 5] == 1))
         s = strengths(wins)
         drawn.append([wins[0].sum() / (4 * n), ANCHOR_ELO + ELO * (s[0] - s[1])])
-    low, high = np.quantile(drawn, [0.025, 0.975], axis=0)
-    a = found["players"]["a"]
-    assert a["win_rate"]["low"] == pytest.approx(low[0], abs=0.01) and a["win_rate"]["high"] == pytest.approx(
-        high[0], abs=0.01
-    )
-    assert a["elo"]["low"] == pytest.approx(low[1], abs=8) and a["elo"]["high"] == pytest.approx(
-        high[1], abs=8
-    )
+    bounds, a = np.quantile(drawn, [0.025, 0.975], axis=0).T, found["players"]["a"]
+    for name, (low, high), near in zip(("win_rate", "elo"), bounds, (0.01, 8), strict=True):
+        assert [a[name]["low"], a[name]["high"]] == pytest.approx([low, high], abs=near)
 
 
 def test_intervals_of_elo_cover_the_truth():
     """Of 200 tournaments 95 % of the intervals hold the true difference, within what 200 can tell."""
     t, held = [0.6, 0.0, -0.4], 0
     for k in range(200):
-        elo = figures_of(["a", "b", "c"], invented(t, 60, np.random.default_rng(k)), "b", resamples=200)[
-            "players"
-        ]["a"]["elo"]
+        rows = invented(t, 60, np.random.default_rng(k))
+        elo = figures_of(["a", "b", "c"], rows, "b", resamples=200)["players"]["a"]["elo"]
         held += elo["low"] <= ANCHOR_ELO + ELO * 0.6 <= elo["high"]
     assert 178 <= held <= 199
 
@@ -129,17 +96,13 @@ def test_who_never_wins_has_bounds_and_no_interval():
     for one in rows:
         if one[:2] == [0, 1] and one[2] % 3 == 0:
             one[5] = 1  # a and b beat each other, c never wins
-    found = figures_of(["a", "b", "c"], rows, "a")["players"]
-    assert found["c"]["elo_by_prior"] and not found["b"]["elo_by_prior"]
-    assert (
-        found["c"]["elo"]["low"] is None
-        and found["c"]["elo"]["value"] < found["c"]["elo"]["high"] < found["b"]["elo"]["value"]
-    )
-    assert found["c"]["win_rate"] == {"value": 0.0, "low": 0.0, "high": unseen(60)}
-    assert found["a"]["elo"]["value"] == ANCHOR_ELO
+    a, b, c = figures_of(["a", "b", "c"], rows, "a")["players"].values()
+    assert c["elo_by_prior"] and not b["elo_by_prior"] and c["elo"]["low"] is None
+    assert c["elo"]["value"] < c["elo"]["high"] < b["elo"]["value"]
+    assert c["win_rate"] == {"value": 0.0, "low": 0.0, "high": unseen(60)} and a["elo"]["value"] == ANCHOR_ELO
     turned = [[*one[:5], 1 - one[5], *one[6:]] for one in rows]
     other = figures_of(["a", "b", "c"], turned, "a")["players"]["c"]["elo"]
-    assert other["high"] is None and other["low"] == pytest.approx(2 * ANCHOR_ELO - found["c"]["elo"]["high"])
+    assert other["high"] is None and other["low"] == pytest.approx(2 * ANCHOR_ELO - c["elo"]["high"])
 
 
 def test_a_slow_player_with_fewer_seeds_counts_each_opponent_alike():
@@ -155,8 +118,77 @@ def test_part_of_a_tournament_has_figures_too():
     """Pairs that were not played: who cannot be reached from the anchor has no Elo."""
     rows = [row(0, 1, seed, opener, opener) for seed in range(5) for opener in (0, 1)]
     found = figures_of(["a", "b", "c", "d"], rows, "a")
-    assert found["players"]["c"] is None and len(found["pairs"]) == 1 == len(pairs_of(rows))
+    assert found["players"]["c"] is None and len(found["pairs"]) == 1
+    assert len(tournament_figures.pairs_of(rows)) == 1
     found = figures_of(["a", "b", "c", "d"], rows + [[2, 3, *r[2:]] for r in rows], "a")
-    assert found["players"]["c"]["elo"]["value"] is None and found["players"]["b"]["elo"][
-        "value"
-    ] == pytest.approx(ANCHOR_ELO)
+    assert found["players"]["c"]["elo"]["value"] is None
+    assert found["players"]["b"]["elo"]["value"] == pytest.approx(ANCHOR_ELO)
+
+
+def expected(t, matches):
+    """The wins that players of these strengths have on average."""
+    t = np.asarray(t)
+    return matches * chance(t[:, None] - t[None]) * (1 - np.eye(len(t)))
+
+
+def test_the_expected_wins_give_the_strengths_back():
+    rng = np.random.default_rng(0)
+    for k in (2, 3, 8):
+        t = rng.normal(0.0, 2.0, k)
+        matches = rng.integers(1, 300, (k, k))
+        found = strengths(expected(t, np.triu(matches, 1) + np.triu(matches, 1).T), prior=0.0)
+        assert found == pytest.approx(t - t.mean(), abs=1e-8)
+
+
+def test_two_players_have_the_closed_form():
+    """Three wins for one loss: 400 log10(3) points of Elo; with the added draw (w + 1/2) / (l + 1/2)."""
+    for wins, losses in ((75, 25), (300.5, 10)):
+        a, b = strengths([[0, wins], [losses, 0]], prior=0.0)
+        assert ELO * (a - b) == pytest.approx(400 * np.log10(wins / losses))
+        a, b = strengths([[0, wins], [losses, 0]])
+        assert ELO * (a - b) == pytest.approx(400 * np.log10((wins + 0.5) / (losses + 0.5)))
+    a, b = strengths([[0, 100], [0, 0]])  # no loss at all
+    assert ELO * (a - b) == pytest.approx(400 * np.log10(100.5 / 0.5))
+
+
+def test_no_other_strengths_are_likelier():
+    rng = np.random.default_rng(1)
+    wins = rng.integers(0, 9, (5, 5)) * (1 - np.eye(5))
+    w = wins + 0.5 * ((wins + wins.T) > 0)
+
+    def likelihood(t):
+        return (w * np.log(chance(t[:, None] - t[None]))).sum()
+
+    best = strengths(wins)
+    assert all(likelihood(best + rng.normal(0, 0.01, 5)) < likelihood(best) for _ in range(50))
+
+
+def test_many_tables_at_once_are_those_one_by_one_however_extreme():
+    rng = np.random.default_rng(2)
+    tables = np.stack([rng.binomial(100, p, (4, 4)) * (1.0 - np.eye(4)) for p in (0.0, 0.001, 0.5, 1.0)])
+    tables[0, 0, 1:] = tables[0, 1, 2:] = tables[0, 2, 3:] = 100.0  # each beats all after him
+    together = strengths(tables)
+    assert np.isfinite(together).all() and (np.diff(together[0]) < 0).all()
+    for k in range(4):
+        assert together[k] == pytest.approx(strengths(tables[k]), abs=1e-8)
+
+
+def test_who_can_be_compared_by_results_alone():
+    """0 and 1 beat each other; 2 beats both and is never beaten; 3 loses to all; 4 plays nobody."""
+    wins = np.zeros((5, 5))
+    wins[0, 1] = wins[1, 0] = wins[2, 0] = wins[2, 1] = 3
+    wins[[0, 1, 2], 3] = 3
+    assert compared(wins, 0).tolist() == [True, True, False, False, False]
+    assert compared(wins, 2).tolist() == [False, False, True, False, False]
+    assert linked((wins + wins.T) > 0, 1).tolist() == [True, True, True, True, False]
+    wins[3, 2] = 1  # now 2 has lost to 3, who lost to 0
+    assert compared(wins, 0).tolist() == [True, True, True, True, False]
+
+
+def test_the_bound_of_one_who_won_all():
+    """Against one equal opponent, n matches: p^n = 5 %."""
+    for n in (1, 10, 200):
+        p = 0.05 ** (1 / n)
+        assert bound([0.3], [n]) == pytest.approx(0.3 + np.log(p / (1 - p)), abs=1e-9)
+    assert bound([0.0, 0.0], [5, 5]) == pytest.approx(bound([0.0], [10]))
+    assert bound([0.0], [0]) == -np.inf

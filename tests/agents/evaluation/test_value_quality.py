@@ -11,8 +11,7 @@ from snooker_env.benchmark import play_visits, tables_of
 
 
 def test_every_position_is_compared_with_what_followed(monkeypatch):
-    """A value that knows the points of the visit so far: their sum with what followed is the visit's,
-    whichever stroke it is."""
+    """By a value that knows the points of the visit so far: with what followed they are the visit's."""
     player = sn.player("search_30")
     seen = []
     original = value_quality.play_visits
@@ -39,26 +38,15 @@ def test_every_position_is_compared_with_what_followed(monkeypatch):
 
 
 def test_the_planner_plays_as_without_being_watched():
-    player = sn.player("search_30")
-    seeds = tables_of("held_out", 4)
-    plain = play_visits(sn.player("search_30"), 4, first_seed=seeds)
+    player, seeds = sn.player("search_30"), tables_of("held_out", 4)
+    plain = play_visits(player, 4, first_seed=seeds)
     watched = play_visits(value_quality.Recording(player), 4, first_seed=seeds)
     assert np.array_equal(plain.points, watched.points)
 
 
 def test_the_command_writes_its_figures(tmp_path, capsys):
     files = [tmp_path / "q.json", tmp_path / "q.md"]
-    options = [
-        "--agent",
-        "planner_30",
-        "--visits",
-        "3",
-        "--layouts",
-        "colours",
-        "--noise",
-        "club",
-        "professional",
-    ]
+    options = str.split("--agent planner_30 --visits 3 --layouts colours --noise club professional")
     assert value_quality.main([*options, "--json", str(files[0]), "--markdown", str(files[1])]) == 0
     report = json.loads(files[0].read_text())
     assert [one["noise"] for one in report["results"]] == ["club", "professional"]
@@ -74,7 +62,5 @@ def test_the_command_writes_its_figures(tmp_path, capsys):
         (["--layouts", "x"], "layout = 'x'"),
     ],
 )
-def test_bad_input_is_one_clear_error(capsys, options, said):
-    with pytest.raises(SystemExit) as stop:
-        value_quality.main(options)
-    assert stop.value.code == 2 and said in capsys.readouterr().err
+def test_bad_input_is_one_clear_error(refused, options, said):
+    assert said in refused(value_quality.main, *options)

@@ -1,5 +1,4 @@
-"""Does ``python -m agents.watch`` show what an agent plays? The same visit as the protocol plays, as a page,
-as data and as films."""
+"""Does ``python -m agents.watch`` show the visit that the protocol plays, as a page, as data and as films?"""
 
 import json
 
@@ -64,20 +63,18 @@ def test_the_first_visit_that_is_long_enough_is_taken(capsys):
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        (["--agent", "nobody"], "agent"),
-        (["--out", "a.exe"], "must be one of '.html'"),
-        (["--out", "a.html", "--speed", "2"], "a film"),
-        (["--out", "a.mp4", "--size", "big"], "WIDTHxHEIGHT"),
-        (["--out", "a.mp4", "--size", "321x180"], "even"),
-        (["--tries", "0"], "tries"),
-        (["--out", "a.gif", "--fps", "0"], "fps"),
-        (["--layout", "nowhere"], "layout"),
-        (["--noise", "loud"], "noise"),
+        ("--agent nobody", "agent"),
+        ("--out a.exe", "must be one of '.html'"),
+        ("--out a.html --speed 2", "a film"),
+        ("--out a.mp4 --size big", "WIDTHxHEIGHT"),
+        ("--out a.mp4 --size 321x180", "even"),
+        ("--tries 0", "tries"),
+        ("--out a.gif --fps 0", "fps"),
+        ("--layout nowhere", "layout"),
+        ("--noise loud", "noise"),
     ],
 )
-def test_wrong_arguments_are_named(wrong, words, capsys, tmp_path, monkeypatch):
+def test_wrong_arguments_are_named(wrong, words, refused, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(SystemExit) as stop:
-        watch.main(["--agent", "ghost_ball", *wrong])
-    assert stop.value.code == 2 and words in capsys.readouterr().err
+    assert words in refused(watch.main, "--agent", "ghost_ball", *wrong.split())
     assert list(tmp_path.iterdir()) == []

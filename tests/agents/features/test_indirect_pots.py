@@ -1,5 +1,4 @@
-"""Does ``agents.features.indirect_pots`` find the banks, plants and cannons there are, and no others, and do
-the aims it solves pot?"""
+"""Does ``agents.features.indirect_pots`` find all banks, plants and cannons, and do the aims it solves pot?"""
 
 from math import atan2, cos, hypot, pi, sin
 
@@ -17,10 +16,8 @@ from agents.features.indirect_pots import (
     GHOST_X,
     GHOST_Y,
     KIND,
-    OTHER,
     PLANT,
     POCKET,
-    TOLERANCE,
 )
 from agents.players.aim_search import Aimer, widest_run
 from snooker_env.benchmark import play_visits
@@ -53,13 +50,16 @@ def found(places, ball_on=BallOn.RED, most=200):
     return ind.indirect(*table(places), int(ball_on), MATCH, PAPER, most)
 
 
-def one(shots, **wanted):
-    """The only shot with these entries in the columns named."""
-    keep = np.ones(len(shots), bool)
+def with_entries(shots, **wanted):
+    """The shots with these entries in the columns named."""
     for name, value in wanted.items():
-        keep &= shots[:, getattr(ind, name)] == value
-    assert keep.sum() == 1, shots
-    return shots[keep][0]
+        shots = shots[shots[:, getattr(ind, name)] == value]
+    return shots
+
+
+def one(shots, **wanted):
+    (shot,) = with_entries(shots, **wanted)
+    return shot
 
 
 @pytest.fixture(scope="module")
@@ -93,11 +93,15 @@ def simulated(places, stroke, turn=0.0):
 def met(shot, kind, *balls):
     """How many events of a kind these balls have."""
     events = shot.events[shot.events["kind"] == kind]
-    return int(
-        (events["i"] == balls[0]).sum()
-        if len(balls) == 1
-        else ((events["i"] == balls[0]) & (events["j"] == balls[1])).sum()
-    )
+    for name, ball in zip("ij", balls, strict=False):
+        events = events[events[name] == ball]
+    return len(events)
+
+
+def potted_when_turned(places, stroke, half, ball):
+    """Whether the ball still goes in where the stroke is turned within its half width, and not beyond."""
+    turns = (-2.0, -0.8, 0.8, 2.0)
+    return [simulated(places, stroke, turn * half).potted[ball] == TOP_RIGHT for turn in turns]
 
 
 BANKED = {CUE: (0.2, -0.9), 1: (-0.2, -0.2)}
@@ -118,8 +122,8 @@ def test_a_bank_is_the_mirror_image_and_goes_in(aimer):
     played = simulated(BANKED, stroke)
     assert played.potted[1] == TOP_RIGHT and played.potted[CUE] < 0
     assert met(played, EventKind.CUSHION, 1) == 1 and met(played, EventKind.BALL_BALL, CUE, 1) == 1
-    good = [simulated(BANKED, stroke, turn * half).potted[1] == TOP_RIGHT for turn in (-2.0, -0.8, 0.8, 2.0)]
-    assert good == [False, True, True, False]  # the width is the true one, and the aim its middle
+    # the width is the true one, and the aim its middle
+    assert potted_when_turned(BANKED, stroke, half, 1) == [False, True, True, False]
 
 
 def contact(start, angle, ball):
@@ -130,8 +134,7 @@ def contact(start, angle, ball):
 
 
 def half_window_over_slope(passes, pocket):
-    """The tolerance of straight lines: ``passes(turn)`` is the last leg for a turn of the cue ball's, its
-    start and its direction."""
+    """The tolerance of straight lines: ``passes(turn)`` is the last leg's start and direction for a turn."""
 
     def aside(turn):
         start, d = passes(turn)
@@ -162,7 +165,7 @@ def test_the_tolerance_of_a_bank_is_what_the_straight_lines_allow():
         off = -(HALF_WIDTH - R)
         return red + d * (off - red[0]) / d[0], np.array((-d[0], d[1]))
 
-    assert shot[TOLERANCE] == pytest.approx(half_window_over_slope(last_leg, TOP_RIGHT), rel=1e-6)
+    assert shot[ind.TOLERANCE] == pytest.approx(half_window_over_slope(last_leg, TOP_RIGHT), rel=1e-6)
 
 
 def test_the_tolerance_of_a_plant_is_what_the_straight_lines_allow():
@@ -174,19 +177,18 @@ def test_the_tolerance_of_a_plant_is_what_the_straight_lines_allow():
         d = first - contact(cue, angle + turn, first)
         return second, (second - contact(first, atan2(*d[::-1]), second)) / (2 * R)
 
-    assert shot[TOLERANCE] == pytest.approx(half_window_over_slope(last_leg, TOP_RIGHT), rel=1e-6)
+    assert shot[ind.TOLERANCE] == pytest.approx(half_window_over_slope(last_leg, TOP_RIGHT), rel=1e-6)
 
 
 def test_the_tolerance_of_a_cannon_is_what_the_straight_lines_allow():
     """Nearly: the geometry takes differences over a 24th of the other ball's width for the slope."""
-    shots = found(OFF)
-    corners = [shot for shot in shots if shot[KIND] == CANNON and shot[POCKET] not in (2, 5)]
+    blue = np.array(OFF[BLUE])
+    corners = [shot for shot in with_entries(found(OFF), KIND=CANNON) if shot[POCKET] not in (2, 5)]
     assert corners
     for shot in corners:
         cue, first, angle = aimed(shot, OFF)
-        blue = np.array(OFF[BLUE])
 
-        def last_leg(turn, cue=cue, first=first, angle=angle, blue=blue):
+        def last_leg(turn, cue=cue, first=first, angle=angle):
             d = (first - contact(cue, angle + turn, first)) / (2 * R)
             at = contact(first, atan2(*d[::-1]), blue)
             centres = (blue - at) / (2 * R)
@@ -194,7 +196,9 @@ def test_the_tolerance_of_a_cannon_is_what_the_straight_lines_allow():
             after = d - 5 / 7 * 0.5 * (1 + PAPER.e_b) * (d @ centres) * centres
             return at, after / np.hypot(*after)
 
-        assert shot[TOLERANCE] == pytest.approx(half_window_over_slope(last_leg, int(shot[POCKET])), rel=0.25)
+        assert shot[ind.TOLERANCE] == pytest.approx(
+            half_window_over_slope(last_leg, int(shot[POCKET])), rel=0.25
+        )
 
 
 def test_a_plant_drives_the_second_red_in(aimer):
@@ -203,15 +207,13 @@ def test_a_plant_drives_the_second_red_in(aimer):
     d = (pocket - second) / np.hypot(*(pocket - second))
     meets = second - 2 * R * d
     assert shot[[AIM_X, AIM_Y]] == pytest.approx(meets, abs=1e-12)
-    assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(
-        first - 2 * R * (meets - first) / np.hypot(*(meets - first)), abs=1e-12
-    )
+    ghost = first - 2 * R * (meets - first) / np.hypot(*(meets - first))
+    assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(ghost, abs=1e-12)
     stroke, half, _, _ = tried(aimer, PLANTED, shot)
     played = simulated(PLANTED, stroke)
     assert played.potted[2] == TOP_RIGHT and played.potted[CUE] < 0
     assert met(played, EventKind.BALL_BALL, CUE, 1) >= 1 and met(played, EventKind.BALL_BALL, CUE, 2) == 0
-    good = [simulated(PLANTED, stroke, turn * half).potted[2] == TOP_RIGHT for turn in (-2.0, -0.8, 0.8, 2.0)]
-    assert good == [False, True, True, False]
+    assert potted_when_turned(PLANTED, stroke, half, 2) == [False, True, True, False]
 
 
 def test_a_set_plant_is_aimed_along_the_line_of_the_two_reds(aimer):
@@ -221,41 +223,34 @@ def test_a_set_plant_is_aimed_along_the_line_of_the_two_reds(aimer):
     first = second - 2 * R * np.array((cos(angle), sin(angle)))
     places = {CUE: (0.3, 0.3), 1: tuple(first), 2: tuple(second)}
     shot = one(found(places), KIND=PLANT, BALL=1, OTHER=2, POCKET=TOP_RIGHT)
-    assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(
-        first - 2 * R * np.array((cos(angle), sin(angle))), abs=1e-9
-    )
+    ghost = first - 2 * R * np.array((cos(angle), sin(angle)))
+    assert shot[[GHOST_X, GHOST_Y]] == pytest.approx(ghost, abs=1e-9)
     stroke, half, _, _ = tried(aimer, places, shot)
     assert simulated(places, stroke).potted[2] == TOP_RIGHT and half > 5e-3
     first = second - 2 * R * np.array((cos(angle + 0.2), sin(angle + 0.2)))
-    shots = found({CUE: (0.3, 0.3), 1: tuple(first), 2: tuple(second)})
-    assert not ((shots[:, KIND] == PLANT) & (shots[:, POCKET] == TOP_RIGHT)).any()
+    shots = found(places | {1: tuple(first)})
+    assert len(with_entries(shots, KIND=PLANT, POCKET=TOP_RIGHT)) == 0
 
 
 def test_a_cannon_goes_off_the_other_ball(aimer):
-    shots = found(OFF)
-    for shot in shots[(shots[:, KIND] == CANNON)]:
+    cannons = with_entries(found(OFF), KIND=CANNON)
+    for shot in cannons:
         at = shot[[AIM_X, AIM_Y]]
-        assert (
-            shot[BALL] == 1
-            and shot[OTHER] == BLUE
-            and hypot(*(at - OFF[BLUE])) == pytest.approx(2 * R, abs=1e-9)
-        )
+        assert shot[BALL] == 1 and shot[ind.OTHER] == BLUE
+        assert hypot(*(at - OFF[BLUE])) == pytest.approx(2 * R, abs=1e-9)
         before, centres = (at - OFF[1]) / np.hypot(*(at - OFF[1])), (OFF[BLUE] - at) / (2 * R)
         sliding = before - 0.5 * (1 + PAPER.e_b) * (before @ centres) * centres
         # what is left when the cloth has made both spins the ball's own
         rolling = 5 / 7 * sliding + 2 / 7 * before
         pocket = POCKET_AIMS[int(shot[POCKET]), :2] - at
         assert rolling @ pocket / np.hypot(*rolling) == pytest.approx(np.hypot(*pocket), rel=1e-9)
-    hits = [(shot, tried(aimer, OFF, shot)) for shot in shots if shot[KIND] == CANNON]
+    hits = [(shot, tried(aimer, OFF, shot)) for shot in cannons]
     hits = [(shot, hit[0]) for shot, hit in hits if hit is not None]
     assert hits
     for shot, stroke in hits:
         played = simulated(OFF, stroke)
-        assert (
-            played.potted[1] == shot[POCKET]
-            and met(played, EventKind.BALL_BALL, 1, BLUE) >= 1
-            and played.potted[BLUE] < 0
-        )
+        assert played.potted[1] == shot[POCKET] and met(played, EventKind.BALL_BALL, 1, BLUE) >= 1
+        assert played.potted[BLUE] < 0
 
 
 def between(a, b, share, aside=0.0):
@@ -276,21 +271,14 @@ def between(a, b, share, aside=0.0):
     ],
 )
 def test_a_ball_on_any_leg_blocks_it(places, wanted, leg, side):
-    def offered(more):
-        shots = found({**places, **more})
-        keep = np.ones(len(shots), bool)
-        for name, value in wanted.items():
-            keep &= shots[:, getattr(ind, name)] == value
-        return shots[keep]
-
-    shot = offered({})[0]
-    wanted = {**wanted, "POCKET": shot[POCKET]}
+    shot = with_entries(found(places), **wanted)[0]
     where, ghost = shot[[AIM_X, AIM_Y]], shot[[GHOST_X, GHOST_Y]]
     last = places[2] if shot[KIND] == PLANT else where
     a, b = [(places[CUE], ghost), (places[1], where), (last, POCKET_AIMS[int(shot[POCKET]), :2])][leg]
-    aims = lambda shots: [s for s in shots if np.allclose(s[[AIM_X, AIM_Y]], where)]  # noqa: E731
-    assert len(aims(offered({PINK: between(a, b, 0.5, side * 1.98 * R)}))) == 0
-    assert len(aims(offered({PINK: between(a, b, 0.5, side * 2.02 * R)}))) == 1
+    for aside, many in ((1.98 * R, 0), (2.02 * R, 1)):
+        shots = found(places | {PINK: between(a, b, 0.5, side * aside)})
+        shots = with_entries(shots, **wanted | {"POCKET": shot[POCKET]})
+        assert sum(np.allclose(one[[AIM_X, AIM_Y]], where) for one in shots) == many
 
 
 def test_only_balls_that_may_go_down_together_are_planted():
@@ -331,8 +319,8 @@ def test_mirrored_tables_offer_the_mirrored_shots():
     for places in [*no_direct(4, len), BANKED, PLANTED, OFF]:
         here, there = found(places), found(mirrored(places))
         assert len(here) == len(there) > 0
-        assert here[:, TOLERANCE] == pytest.approx(there[:, TOLERANCE], rel=1e-6)
-        assert (here[:, [KIND, BALL, OTHER]] == there[:, [KIND, BALL, OTHER]]).all()
+        assert here[:, ind.TOLERANCE] == pytest.approx(there[:, ind.TOLERANCE], rel=1e-6)
+        assert (here[:, [KIND, BALL, ind.OTHER]] == there[:, [KIND, BALL, ind.OTHER]]).all()
         assert here[:, columns] * (-1, 1, -1, 1) == pytest.approx(there[:, columns], abs=1e-7)
         kinds |= set(here[:, KIND])
     assert kinds == {BANK, PLANT, CANNON}
@@ -347,14 +335,12 @@ def test_mirrored_tables_are_played_with_mirrored_aims(aimer):
 
 
 def test_where_the_plain_line_pots_it_is_played():
-    """Where the widest pot goes in along its solved line, that stroke is the one; elsewhere others are
-    found."""
+    """Where the widest pot goes in along its solved line, that stroke is it; elsewhere there are others."""
     env = SnookerVectorEnv(60, layout="held_out")
     env.reset(seed=3)
     at, planner = Positions.of(env), Planner({"action": "discrete"})
-    plain = planner.strokes_of(
-        at, np.arange(60), np.full(60, choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0)))
-    )[0]
+    choice = choice_of(0, SPEEDS.index(2.3), SIDES.index(0.0), TOPS.index(0.0))
+    plain = planner.strokes_of(at, np.arange(60), np.full(60, choice))[0]
     searched = sn.player("geometric").at(env).play(at, np.zeros(60, int)).values
     made = planner.play(at, np.arange(60), strokes=plain).points > 0
     assert 30 < made.sum() < 60 and np.allclose(searched[made], plain[made], atol=1e-6)
@@ -394,8 +380,6 @@ def test_the_widest_of_several_is_taken(aimer):
 
 
 def test_a_visit_is_longer_than_the_plain_players():
-    plain, own = (
-        play_visits(sn.player(name), 30, noise="none", threads=1).made.sum()
-        for name in ("ghost_ball", "geometric")
-    )
+    players = sn.player("ghost_ball"), sn.player("geometric")
+    plain, own = (play_visits(one, 30, noise="none", threads=1).made.sum() for one in players)
     assert own > 1.5 * plain

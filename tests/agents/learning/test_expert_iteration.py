@@ -1,5 +1,4 @@
-"""Do value, policy and planner learn from each other as the file says, and does a stopped run end where an
-uninterrupted one does?"""
+"""Do value, policy and planner learn from each other, and does a stopped run end as an uninterrupted one?"""
 
 import pickle
 
@@ -43,6 +42,11 @@ def weights(model):
     return {name: tensor.clone() for name, tensor in model.policy.state_dict().items()}
 
 
+def alike(some, others):
+    """Whether arrays are equal, one by one."""
+    return len(some) == len(others) and all(map(np.array_equal, some, others))
+
+
 def timeless(state):
     """A state without its clock."""
     return plain({**state, "seconds": 0, "curve": [{**one, "seconds": 0} for one in state["curve"]]})
@@ -71,8 +75,7 @@ def a_run(seed=5, threads=1):
 
 
 def test_a_stopped_run_ends_where_an_uninterrupted_one_does():
-    """Bit for bit, stopped in each phase: before anything has learned, after the value's first steps, amid
-    the rest."""
+    """Bit for bit, stopped before anything has learned, after the value's first steps, and amid the rest."""
     model, whole = a_run()
     expected, ended = timeless(whole.get_state()), weights(model)
     assert whole.done == STATES and whole.curve[-1]["states"] == STATES
@@ -97,52 +100,41 @@ def test_both_networks_learn_and_the_seed_matters():
     run = run_to(ExpertIteration(model, venv, STATES, 5, 1), STATES)
     after = weights(model)
     moved = {name for name in after if not torch.equal(before[name], after[name])}
-    assert any(name.startswith("position_value.") for name in moved) and any(
-        name.startswith("features_extractor.") for name in moved
-    )
-    assert any(name.startswith("action_net.") for name in moved) and all(
-        torch.isfinite(tensor).all() for tensor in after.values()
-    )
+    assert any(name.startswith("position_value.") for name in moved)
+    assert any(name.startswith("features_extractor.") for name in moved)
+    assert any(name.startswith("action_net.") for name in moved)
+    assert all(torch.isfinite(tensor).all() for tensor in after.values())
     last = run.curve[-1]
-    assert (
-        set(last) == {"states", "seconds", "loss", "value_loss", "value"}
-        and last["value"] > 0.0
-        and last["seconds"] >= 0.0
-    )
+    assert set(last) == {"states", "seconds", "loss", "value_loss", "value"} and last["value"] > 0.0
+    assert last["seconds"] >= 0.0
     assert timeless(a_run(seed=7)[1].get_state()) != timeless(run.get_state())
 
 
 def test_the_rule_and_even_proposals_come_first():
-    """To the round: an eighth of all positions by the rule of thumb, before the value is fitted, and a fifth
-    with even proposals."""
+    """To the round: an eighth of all positions by the rule of thumb, a fifth with even proposals."""
     model, venv = model_and_tables()
     run = ExpertIteration(model, venv, 320, 5, 1)
-    seen = []
-    while run.done < 80:
-        before = run.done
+    for done in range(0, 80, N):
+        assert run.done == done
         run.round()
-        seen.append(
-            (
-                before,
-                isinstance(run._sent["value"], LearnedValue),
-                run._sent["policy"] is not None,
-                bool(run._value.losses),
-            )
-        )
-    assert seen == [(done, done > 40, done >= 64, done >= 40) for done in range(0, 80, N)]
+        assert isinstance(run._sent["value"], LearnedValue) == (done > 40)
+        assert (run._sent["policy"] is not None) == (done >= 64)
+        assert bool(run._value.losses) == (done >= 40)  # the value is fitted
 
 
 def test_a_round_keeps_what_its_samples_led_to(monkeypatch):
-    """Features of the position and of what each sample left, points, ends; the next position is what the
-    played stroke left."""
+    """Features before and after, points, ends; the next position is what the played stroke left."""
     model, venv = model_and_tables()
     run, added, played = ExpertIteration(model, venv, STATES, 5, 1), [], []
     search = search_of(run._sent, 1)
     spread, outcomes = search.spread, search.outcomes
     monkeypatch.setattr(run._value, "add", lambda *one: added.append(one))
-    monkeypatch.setattr(
-        search, "outcomes", lambda *given: played.append((given, outcomes(*given))) or played[-1][1]
-    )
+
+    def watched(*given):
+        played.append((given, outcomes(*given)))
+        return played[-1][1]
+
+    monkeypatch.setattr(search, "outcomes", watched)
     monkeypatch.setattr(run._value, "fit", lambda remaining: None)
     followed = 0
     for _ in range(6):
@@ -150,21 +142,16 @@ def test_a_round_keeps_what_its_samples_led_to(monkeypatch):
         run._play()
         (given, rows, strokes, _), out = played[-1]
         seen, after, points, goes_on, follows = added[-1]
-        assert np.array_equal(seen, value_features(at, spread).astype(np.float16)) and np.array_equal(
-            given.positions, at.positions
-        )
+        assert np.array_equal(seen, value_features(at, spread).astype(np.float16))
+        assert np.array_equal(given.positions, at.positions)
         assert rows.tolist() == [*np.repeat(np.arange(N), FRESH), *range(N)]
         for i in range(N):
             assert (strokes[FRESH * i : FRESH * (i + 1)] == strokes[FRESH * i]).all()
             for j in range(FRESH):
                 k = FRESH * i + j
                 assert points[i, j] == out.points[k] and goes_on[i, j] == out.goes_on[k]
-                left = (
-                    value_features(out.afterstates[[k]], spread)[0].astype(np.float16)
-                    if out.goes_on[k]
-                    else np.zeros(seen.shape[1])
-                )
-                assert np.array_equal(after[i, j], left)
+                left = value_features(out.afterstates[[k]], spread)[0].astype(np.float16)
+                assert np.array_equal(after[i, j], left if out.goes_on[k] else np.zeros(seen.shape[1]))
             now = run._at.positions[i]
             if follows[i]:
                 assert goes_on[i, 0] and np.array_equal(now, out.afterstates.positions[FRESH * i])
@@ -189,12 +176,9 @@ def test_visits_begin_in_all_layouts_by_their_shares(monkeypatch):
     counts = np.bincount([places[one.tobytes()] for one in drawn.positions], minlength=len(STARTS)) / 3000
     assert counts == pytest.approx([share for _, share in STARTS], abs=0.03)
     drawn.positions[:] = 0.0
-    assert all(np.array_equal(one.positions, before) for one, before in zip(starts._pools, kept, strict=True))
-    again, other = Starts(3, "opened", SHOT), Starts(4, "opened", SHOT)
-    assert all(np.array_equal(one.positions, before) for one, before in zip(again._pools, kept, strict=True))
-    assert not any(
-        np.array_equal(one.positions, before) for one, before in zip(other._pools, kept, strict=True)
-    )
+    assert alike([one.positions for one in starts._pools], kept)
+    again, other = ([one.positions for one in Starts(seed, "opened", SHOT)._pools] for seed in (3, 4))
+    assert alike(again, kept) and not any(map(np.array_equal, other, kept))
 
 
 @pytest.mark.parametrize(
@@ -211,13 +195,8 @@ def test_wrong_options_are_refused_before_anything_is_played(changes, complaint)
         training_tables(2, threads=1, **Recipe.of("ppo_value", env_kwargs=changes).env_kwargs)
 
 
-# the judge of PPO
-# ------------------------------------------------------------------------------------------------------------
-
-
 def test_a_judge_adds_its_value_only_where_the_visit_goes_on():
-    """Against the same tables without a judge: rewards and the judge's word on what the stroke left, nothing
-    after the end."""
+    """Against the same tables without a judge: rewards and its word on what was left, none after the end."""
     judged, usual = (training_tables(24, threads=1, **{**OPTIONS, "layout": "random:6"}) for _ in range(2))
     asked, on = [], 0
 
@@ -239,9 +218,8 @@ def test_a_judge_adds_its_value_only_where_the_visit_goes_on():
         assert np.array_equal(rewards[done], points[done]) and np.array_equal(asked[-1], left)
         assert rewards[~done] == pytest.approx(points[~done] + 50.0 + 10.0 * left[:, 0, 1], rel=1e-6)
         # an episode's return is that of the points alone
-        assert [info.get("episode", {}).get("r") for info in infos] == [
-            info.get("episode", {}).get("r") for info in plain_infos
-        ]
+        returns = [[info.get("episode", {}).get("r") for info in some] for some in (infos, plain_infos)]
+        assert returns[0] == returns[1]
         on += (~done).sum()
     assert on > 20 and len(asked) == 6
 
@@ -253,10 +231,6 @@ def test_ppo_is_judged_by_the_models_own_value():
     at = Positions.of(tables(10, layout="random:5"))
     expected = value_of(model.policy.position_value, spread_of(LEVELS["professional"]))(at)
     assert np.array_equal(venv.judge(at), expected) and venv.judge.threads == 2
-
-
-# the file of a model
-# ------------------------------------------------------------------------------------------------------------
 
 
 def test_ppo_leaves_the_value_of_positions_alone():
@@ -286,12 +260,6 @@ def test_policy_and_value_are_saved_and_read_together(tmp_path):
         assert np.array_equal(PolicyProposals(one.policy.fused).scores(at)[0], scores)
     assert packed(again) == packed(trained)
     env = tables(3, noise="professional", aim="absolute")
-    files = [tmp_path / name for name in ("model.zip", "plain.zip", "")]  # the last one: the folder
-    played = [
-        player(f"planner_30@{file}").at(env).play(Positions.of(env), np.arange(3)).values for file in files
-    ]
-    assert (
-        np.array_equal(played[0], played[1])
-        and np.array_equal(played[0], played[2])
-        and played[0].any(axis=1).all()
-    )
+    planners = [player(f"planner_30@{tmp_path / name}") for name in ("model.zip", "plain.zip", "")]
+    one, *others = (made.at(env).play(Positions.of(env), np.arange(3)).values for made in planners)
+    assert alike([one, one], others) and one.any(axis=1).all()

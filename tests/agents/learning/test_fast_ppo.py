@@ -1,5 +1,4 @@
-"""Is ``FastPPO`` the algorithm of sb3-contrib: the same advantages, updates and files, and the same weights
-from the same seed?"""
+"""Is ``FastPPO`` the algorithm of sb3-contrib: the same advantages, updates, files, and weights of a seed?"""
 
 import io
 
@@ -18,11 +17,8 @@ TABLES = 8
 
 def made(agent="ppo_mask", seed=0, **changes):
     """An untrained agent on a few tables."""
-    changed = [
-        f"{key}={value}"
-        for key, value in ({"n_steps": 16, "n_epochs": 2, "batch_size": 64} | changes).items()
-    ]
-    recipe = Recipe.of(agent, changed, n_envs=TABLES)
+    changes = {"n_steps": 16, "n_epochs": 2, "batch_size": 64} | changes
+    recipe = Recipe.of(agent, [f"{key}={value}" for key, value in changes.items()], n_envs=TABLES)
     return recipe.new_model(training_tables(TABLES, threads=1, view=recipe.view, **recipe.env_kwargs), seed)
 
 
@@ -39,23 +35,19 @@ def weights(model):
 
 @pytest.mark.parametrize("agent", ["ppo_mask", "ppo_value"])
 def test_an_update_is_that_of_sb3(agent):
-    """Of the same rollout in one minibatch, whose order does not matter, by gradient descent: Adam would
-    enlarge rounding errors.
+    """Of one rollout in one minibatch, by gradient descent: Adam would enlarge rounding errors.
 
-    Weights of order 0.1 in float32 allow 1e-6; the update moves them by a thousand times as much.
-    """
+    Weights of order 0.1 in float32 allow 1e-6; the update moves them by a thousand times as much."""
     found, before, said = [], None, []
     for train in (FastPPO.train, MaskablePPO.train):
         model = with_rollout(made(agent, batch_size=16 * TABLES, learning_rate=0.3, vf_coef=0.5))
-        model.policy.optimizer = torch.optim.SGD(
-            [p for n, p in model.policy.named_parameters() if not n.startswith("position_value.")]
-        )
+        learned = [p for n, p in model.policy.named_parameters() if not n.startswith("position_value.")]
+        model.policy.optimizer = torch.optim.SGD(learned)
         before = weights(model)
         train(model)
         found.append(weights(model))
-        said.append(
-            {name: value for name, value in model.logger.name_to_value.items() if name.startswith("train/")}
-        )
+        figures = model.logger.name_to_value
+        said.append({name: figures[name] for name in figures if name.startswith("train/")})
     assert (found[0] - found[1]).abs().max() < 1e-6 and (found[0] - before).abs().max() > 1e-3
     assert said[0].keys() == said[1].keys() and len(said[0]) == 10
     for name, value in said[1].items():
@@ -63,8 +55,7 @@ def test_an_update_is_that_of_sb3(agent):
 
 
 def test_each_epoch_uses_every_shot_once_in_minibatches(monkeypatch):
-    """And scales the advantages of each minibatch by itself, as SB3 does; the last of 128 shots in tens has
-    eight."""
+    """And scales the advantages of each minibatch by itself, as SB3 does; the last of 128 in tens has eight."""
     model, met = with_rollout(made(batch_size=10)), []
     advantages = model.rollout_buffer.advantages.reshape(-1).copy()
 
@@ -94,22 +85,14 @@ def test_the_buffer_is_sb3s_with_masks_as_bool():
     """What was seen, done and masked belongs to the same step, and the advantages are SB3's."""
     model = with_rollout(made())
     own, (n, k) = model.rollout_buffer, (model.n_steps, TABLES)
-    assert (
-        isinstance(own, BoolMasks)
-        and own.action_masks.dtype == np.bool_
-        and own.action_masks.shape == (n, k, 540)
-    )
-    other = MaskableRolloutBuffer(
-        n, own.observation_space, own.action_space, "cpu", own.gae_lambda, own.gamma, k
-    )
+    assert isinstance(own, BoolMasks) and own.action_masks.dtype == np.bool_
+    assert own.action_masks.shape == (n, k, 540)
+    spaces = own.observation_space, own.action_space
+    other = MaskableRolloutBuffer(n, *spaces, "cpu", own.gae_lambda, own.gamma, k)
     for t in range(n):
         parts = own.observations[t], own.actions[t], own.rewards[t], own.episode_starts[t]
-        other.add(
-            *parts,
-            torch.as_tensor(own.values[t]),
-            torch.as_tensor(own.log_probs[t]),
-            action_masks=own.action_masks[t],
-        )
+        figures = torch.as_tensor(own.values[t]), torch.as_tensor(own.log_probs[t])
+        other.add(*parts, *figures, action_masks=own.action_masks[t])
     last = model.policy.predict_values(torch.as_tensor(model._last_obs)).detach()
     other.compute_returns_and_advantage(last, model._last_episode_starts)
     for name in ("advantages", "returns", "observations", "actions"):
@@ -117,10 +100,9 @@ def test_the_buffer_is_sb3s_with_masks_as_bool():
     assert np.array_equal(own.action_masks, other.action_masks != 0) and own.advantages.std() > 0.1
     flat = own.observations.reshape(n * k, -1), own.action_masks.reshape(n * k, -1)
     assert np.take_along_axis(flat[1], own.actions.reshape(n * k, 1), 1).all()
+    parts = map(torch.as_tensor, (flat[0], own.actions.reshape(-1), flat[1]))
     with torch.no_grad():
-        values, logs, _ = model.policy.evaluate_actions(
-            torch.as_tensor(flat[0]), torch.as_tensor(own.actions.reshape(-1)), torch.as_tensor(flat[1])
-        )
+        values, logs, _ = model.policy.evaluate_actions(*parts)
     assert np.abs(values[:, 0].numpy() - own.values.reshape(-1)).max() < 1e-5
     assert np.abs(logs.numpy() - own.log_probs.reshape(-1)).max() < 1e-5
     offered = flat[0][:, 121::13][:, :4].sum(1)  # the masks are those of the pots that were seen
@@ -158,10 +140,7 @@ def test_its_files_are_read_by_sb3_and_learning_goes_on(agent):
         file.seek(0)
         again = read.load(file, env=model.env, device="cpu")
         assert torch.equal(weights(again), weights(model))
-        masks = np.array(model.env.env_method("action_masks"))
-        actions = [
-            m.predict(model._last_obs, action_masks=masks, deterministic=True)[0] for m in (again, model)
-        ]
-        assert np.array_equal(*actions)
+        seen = {"action_masks": np.array(model.env.env_method("action_masks")), "deterministic": True}
+        assert np.array_equal(*(one.predict(model._last_obs, **seen)[0] for one in (again, model)))
         again.learn(16)
         assert not torch.equal(weights(again), weights(model))

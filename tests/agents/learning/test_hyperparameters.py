@@ -9,12 +9,6 @@ from agents.learning import hyperparameters
 from snooker_env.planning.learned import pot_view
 
 
-@pytest.mark.parametrize("name", hyperparameters.names())
-def test_every_recipe_stands(name):
-    recipe = hyperparameters.Recipe.of(name)
-    assert recipe.name == name and recipe.n_timesteps > 0
-
-
 def test_a_recipe_with_a_wrong_value_is_refused(tmp_path, monkeypatch):
     text = (hyperparameters.FOLDER / "ppo_mask.yml").read_text().replace("gamma: 0.95", "gamma: 1.5")
     (tmp_path / "mine.yml").write_text(text)
@@ -39,17 +33,10 @@ def test_masks_are_those_of_the_view():
     tables.seed(3)
     seen = tables.reset()
     masks, all_masks = np.array(tables.env_method("action_masks")), tables.unwrapped.tables.action_masks()
-    assert (
-        (masks.sum(1) > 0).any()
-        and (masks.sum(1) < all_masks.sum(1)).any()
-        and not (masks & ~all_masks).any()
-    )
-    there = (
-        seen[:, pot_view.SHOWN :].reshape(4, lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)[
-            :, :, lookahead_features.THERE
-        ]
-        > 0
-    )
+    assert (masks.sum(1) > 0).any() and (masks.sum(1) < all_masks.sum(1)).any()
+    assert not (masks & ~all_masks).any()
+    rows = seen[:, pot_view.SHOWN :].reshape(4, lookahead_features.STROKES_SEEN, lookahead_features.ENTRIES)
+    there = rows[:, :, lookahead_features.THERE] > 0
     for row, looked_at in zip(masks, there, strict=True):
         assert set(np.flatnonzero(row)) == set(lookahead_features.PICKS[looked_at])
     assert np.array_equal(tables.env_method("action_masks", indices=[2])[0], masks[2])
@@ -79,10 +66,7 @@ def test_the_end_of_a_visit_is_shown_with_its_pots(shown):
         for k in np.flatnonzero(done):
             last, ended = infos[k]["terminal_observation"], ended + 1
             assert np.array_equal(last[: pot_view.SHOWN], pot_view.with_pots(kept[k][None])[0])
-            assert (
-                last[: pot_view.SHOWN].any()
-                and not last[pot_view.SHOWN :].any()
-                and last.shape == tables.observation_space.shape
-            )
+            assert last[: pot_view.SHOWN].any() and not last[pot_view.SHOWN :].any()
+            assert last.shape == tables.observation_space.shape
     assert ended > 0
     tables.close()

@@ -8,11 +8,13 @@ import torch
 from positions import tables
 
 from agents.features.views import training_tables
-from agents.learning import judged_choices
+from agents.learning import imitation, judged_choices
 from agents.learning.hyperparameters import Recipe
+from agents.learning.imitation import Expert, Imitation, to_try
 from agents.learning.judged_choices import RATE, JudgedChoices
-from snooker_env.planning import Planner, Positions, action_masks
+from snooker_env.planning import Planner, Positions, action_masks, prospects_of, spread_of
 from snooker_env.planning.learned.pot_view import with_pots
+from snooker_env.tasks.discrete_actions import SIZE, STROKES
 
 OPTIONS = {"noise": "professional", "fidelity": "fast"}
 N = 64
@@ -29,6 +31,11 @@ def learner(own, n=N, seed=0, threads=1):
     return JudgedChoices(own, OPTIONS, threads, n, np.random.default_rng(seed))
 
 
+def flat(network):
+    """All its weights."""
+    return torch.cat([p.detach().clone().flatten() for p in network.parameters()])
+
+
 def some(n=N, seed=0, layout="random:6"):
     return Positions.of(tables(n, layout=layout, seed=seed))
 
@@ -36,17 +43,15 @@ def some(n=N, seed=0, layout="random:6"):
 def played(own, at):
     """What the policy's best choices lead to, without errors."""
     masks = action_masks(at)
+    seen = torch.as_tensor(with_pots(at.observations()))
     with torch.no_grad():
-        scores = own.get_distribution(
-            torch.as_tensor(with_pots(at.observations())), masks
-        ).distribution.logits.numpy()
+        scores = own.get_distribution(seen, masks).distribution.logits.numpy()
     picks = np.where(masks, scores, -np.inf).argmax(axis=1)
     return Planner({"action": "discrete", "fidelity": "fast"}, threads=1).play(at, np.arange(len(at)), picks)
 
 
 def test_the_policy_prefers_what_the_judge_likes():
-    """Two judges, one for each end of the table: both policies leave the cue ball where it pays, and still
-    pot."""
+    """Two judges, one for each end of the table: both policies leave the cue ball where it pays, and pot."""
     ends, made, fresh = [], [], some(200, seed=99)
     for sign in (-1.0, 1.0):
         own = policy()
@@ -93,36 +98,28 @@ def test_a_choice_is_worth_its_points_and_what_the_judge_says_of_what_it_leaves(
     assert worths[row, column] == pytest.approx(expected, rel=1e-6) and not worths[~there].any()
     assert asked == [out.goes_on.sum()] and 0 < asked[0] < len(row)
     assert np.array_equal(np.unpackbits(masks, axis=1, count=540).astype(bool), action_masks(at))
-    assert np.array_equal(at.positions, before.positions) and np.array_equal(
-        seen, with_pots(at.observations())
-    )
+    assert np.array_equal(at.positions, before.positions)
+    assert np.array_equal(seen, with_pots(at.observations()))
     _, _, *batch = kept[0]  # of the policy and its optimizer, then rows of what is kept
     shown, offered, chosen, tried, gains = batch
-    assert (
-        shown.shape == (4 * 12, seen.shape[1])
-        and offered.dtype == tried.dtype == bool
-        and chosen.dtype == np.int64
-    )
+    assert shown.shape == (4 * 12, seen.shape[1]) and offered.dtype == tried.dtype == bool
+    assert chosen.dtype == np.int64
     for k in range(48):
         own_row = np.flatnonzero((seen == shown[k]).all(axis=1))[0]
         assert np.array_equal(chosen[k], picks[own_row]) and np.array_equal(gains[k], worths[own_row])
-        assert np.array_equal(offered[k], action_masks(at)[own_row]) and np.array_equal(
-            tried[k], there[own_row]
-        )
+        assert np.array_equal(offered[k], action_masks(at)[own_row])
+        assert np.array_equal(tried[k], there[own_row])
 
 
 def test_the_value_of_positions_is_not_touched():
     """It learns apart: the policy's rounds leave its weights as they are."""
     own = policy()
-    before = [p.detach().clone() for p in own.position_value.parameters()]
-    reader = torch.cat([p.detach().flatten() for p in own.features_extractor.parameters()])
+    value, reader = flat(own.position_value), flat(own.features_extractor)
     learning = learner(own, 16)
     for k in range(2):
         learning.round(some(16, seed=k), lambda left: np.zeros(len(left)), 1.0)
-    assert all(torch.equal(a, b) for a, b in zip(before, own.position_value.parameters(), strict=True))
-    assert not torch.equal(
-        reader, torch.cat([p.detach().flatten() for p in own.features_extractor.parameters()])
-    )
+    assert torch.equal(value, flat(own.position_value))
+    assert not torch.equal(reader, flat(own.features_extractor))
     learning.round(some(16), lambda left: np.zeros(len(left)), 0.5)
     assert [group["lr"] for group in learning._optimizer.param_groups] == [pytest.approx(0.5 * RATE)]
 
@@ -132,9 +129,8 @@ def test_the_oldest_rounds_are_forgotten(monkeypatch):
     learning = learner(policy(), 8)
     for k in range(5):
         learning.round(some(8, seed=k), lambda left: np.zeros(len(left)), 1.0)
-    assert len(learning._rounds) == 3 and np.array_equal(
-        learning._rounds[-1][0], with_pots(some(8, seed=4).observations())
-    )
+    assert len(learning._rounds) == 3
+    assert np.array_equal(learning._rounds[-1][0], with_pots(some(8, seed=4).observations()))
 
 
 @pytest.mark.parametrize("stop", [1, 3])
@@ -158,7 +154,92 @@ def test_it_goes_on_from_a_saved_state_bit_for_bit_on_any_number_of_threads(stop
     second._rng.bit_generator.state = generator
     second.set_state(state)
     go_on(second, range(stop, 4))
-    assert all(
-        torch.equal(a, b) for a, b in zip(first_policy.parameters(), second_policy.parameters(), strict=True)
-    )
+    assert torch.equal(flat(first_policy), flat(second_policy))
     assert list(first.losses) == list(second.losses)
+
+
+def opened(n, noise="professional"):
+    venv = training_tables(n, threads=1, action="discrete", noise=noise, layout="opened")
+    venv.seed(3)
+    venv.reset()
+    return venv
+
+
+def test_a_choice_is_worth_its_points_and_what_it_leaves():
+    """Against the tables themselves, which play the same choices without errors."""
+    venv = opened(8, noise="none")
+    env = venv.unwrapped.tables
+    picks = np.array([np.flatnonzero(m)[[20, 37, 60]] for m in env.action_masks()])
+    there = np.ones(picks.shape, bool)
+    states = env.get_state()
+    worth = Expert(env, 2, np.random.default_rng(0)).worth(picks, there)
+    points_only = Expert(env, 1, np.random.default_rng(0), ahead=False).worth(picks, there)
+    rules = env.tables.rules
+    for k in range(picks.shape[1]):
+        env.reset(options={"states": states})
+        _, rewards, ended, _, _ = env.unwrapped.step(picks[:, k])
+        after = prospects_of(Positions.of(env), spread_of(rules.noise, rules.physics))[0]
+        if ended.any():  # such a table was dealt anew in the same step
+            after = np.where(ended, 0.0, after)
+        assert np.allclose(worth[:, k], rewards + after, rtol=1e-6)
+        assert np.array_equal(points_only[:, k], rewards)
+    assert worth.max() > 5.0
+    there[2:5, 1] = False
+    env.reset(options={"states": states})
+    some = Expert(env, 1, np.random.default_rng(0)).worth(picks, there)
+    assert not some[~there].any() and np.array_equal(some[there], worth[there])
+
+
+def test_half_of_the_tries_are_the_best():
+    rng = np.random.default_rng(0)
+    masks = np.zeros((5, SIZE), bool)
+    masks[:, : 2 * STROKES] = True
+    masks[4, STROKES // 2 :] = False  # few choices
+    scores = rng.normal(size=masks.shape)
+    picks, there = to_try(scores, masks, rng)
+    half = imitation.TRIES // 2
+    assert picks.shape == (5, imitation.TRIES) and there[:4].all()
+    assert np.array_equal(there, np.take_along_axis(masks, picks, 1))
+    for k in range(4):
+        best = np.argsort(np.where(masks[k], -scores[k], np.inf))[:half]
+        assert set(picks[k, :half]) == set(best) and len(set(picks[k, half:])) == half
+    assert there[4, :half].all() and set(picks[4][there[4]]) <= set(range(STROKES // 2))
+
+
+def test_the_pupil_becomes_the_softmax_of_worths():
+    """One round of positions with made-up worths, learned by heart."""
+    venv = opened(4)
+    model = Recipe.of("ppo_mask").new_model(venv, 0)
+    seen, masks = venv.reset(), np.array(venv.env_method("action_masks"))
+    rng = np.random.default_rng(0)
+    picks, there = to_try(rng.normal(size=masks.shape), masks, rng)
+    worths = rng.uniform(0.0, 4.0, SIZE)[picks].astype(np.float32)
+    optimizer = torch.optim.Adam(model.policy.parameters(), 1e-3)
+    losses = [
+        imitation.fit_values(model.policy, optimizer, seen, masks, picks, there, worths) for _ in range(400)
+    ]
+    assert losses[-1] < 0.05 * np.var(worths) < losses[0]
+    with torch.no_grad():
+        logits = model.policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
+        value = model.policy.predict_values(torch.as_tensor(seen)).numpy()
+    for k in range(4):
+        learned = logits[k, picks[k]][there[k]]
+        assert np.corrcoef(learned, worths[k][there[k]])[0, 1] > 0.97
+        slope = np.polyfit(worths[k][there[k]], learned, 1)[0]
+        assert slope == pytest.approx(1.0 / imitation.TEMPERATURE, rel=0.1)
+        p = np.exp(logits[k])
+        fitted = value[k] + imitation.TEMPERATURE * (learned - (p * np.maximum(logits[k], -1e3)).sum())
+        assert np.sqrt(np.mean((fitted - worths[k][there[k]]) ** 2)) < 0.3
+
+
+def test_imitation_is_reproducible_on_any_number_of_threads():
+    found = []
+    for threads in (1, 2):
+        venv = opened(8)
+        model = Recipe.of("ppo_mask").new_model(venv, 5)
+        run = Imitation(model, venv, 64, 5, threads)
+        while run.done < 64:
+            run.round()
+        assert run.curve[-1]["states"] == 64
+        found.append(torch.cat([p.detach().flatten() for p in model.policy.parameters()]))
+    assert torch.equal(*found)

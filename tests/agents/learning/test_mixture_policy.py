@@ -1,5 +1,4 @@
-"""Is ``mixture_policy`` the density it says it is, and do its aims follow the pots' lines as the environment
-computes them?"""
+"""Is ``mixture_policy`` the density it says it is, and do its aims follow the pots' lines of the environment?"""
 
 from copy import copy
 from math import atan2, cos, pi, sin
@@ -38,16 +37,15 @@ def tables(layout, n):
 
 def seen(envs):
     """What a policy sees of them, a tensor."""
-    return torch.as_tensor(
-        pot_view.with_pots(np.concatenate([Positions.of(env).observations() for env in envs]))
-    )
+    observations = [Positions.of(env).observations() for env in envs]
+    return torch.as_tensor(pot_view.with_pots(np.concatenate(observations)))
 
 
 def one_red(cue, red):
-    """What a policy sees of a table that holds just these."""
+    """A table that holds just these: positions, on_table."""
     positions, on_table = np.zeros((N_BALLS, 2)), np.arange(N_BALLS) < 2
     positions[0], positions[1] = cue, red
-    return shown(positions, on_table)
+    return positions, on_table
 
 
 def shown(positions, on_table):
@@ -84,8 +82,7 @@ def without_pots():
 
 
 def density(model, table, n=1):
-    """The mixture at a table, or n times at the same one: a copy, for a policy has but one that it sets
-    anew."""
+    """The mixture at a table, or n times at the same one: a copy of the policy's own, which it sets anew."""
     read = model.policy.extract_features(table)
     return copy(model.policy._get_action_dist_from_latent(read.repeat(n, 1)))
 
@@ -98,16 +95,13 @@ def parameters(model, table):
 
 
 def mixture(model, table, action):
-    """Logarithm of the density of an action, by the formula of the module's docstring; an aim counts at all
-    its images."""
+    """Logarithm of an action's density, by the formula of the module; an aim counts at all its images."""
     weights, means, stds, aim_stds, dist = parameters(model, table)
     strokes = torch.as_tensor(action[:3], dtype=torch.float32).expand(1, POTS, 3)
     aims = dist.aims_of(strokes)[0].detach().double().numpy()
-    parts = []
+    parts, images_of = [], action[3] + np.array([-4.0, -2.0, 0.0, 2.0, 4.0])
     for k in np.flatnonzero(weights > 0):
-        images = logsumexp(
-            norm.logpdf(action[3] + np.array([-4.0, -2.0, 0.0, 2.0, 4.0]), aims[k], aim_stds[k])
-        )
+        images = logsumexp(norm.logpdf(images_of, aims[k], aim_stds[k]))
         parts.append(np.log(weights[k]) + norm.logpdf(action[:3], means[k], stds).sum() + images)
     return logsumexp(parts)
 
@@ -130,7 +124,7 @@ def test_log_prob_is_that_of_the_mixture(model, opened):
 
 @torch.no_grad()
 def test_aim_wraps_at_the_seam(model):
-    table = one_red((0.5, 0.0), (-0.4, 0.0))  # the left middle pocket lies straight ahead: at +-1
+    table = shown(*one_red((0.5, 0.0), (-0.4, 0.0)))  # the left middle pocket lies straight ahead: at +-1
     weights, means, _, aim_stds, dist = parameters(model, table)
     at = mixture_policy.lines_of(table)[0, :, LINE]
     c = int(np.argmax(1.0 - np.abs(np.abs(at.numpy()) - 1.0)))
@@ -138,11 +132,10 @@ def test_aim_wraps_at_the_seam(model):
     aim = dist.aims_of(dist.means)[0, c].item()
     for off in (-2.0, -0.5, 0.5, 2.0):
         inside = float(nearest_image(torch.tensor(aim + off * aim_stds[c], dtype=torch.float64)))
-        found = [
-            dist.log_prob(torch.tensor([[*means[c], inside + turn]], dtype=torch.float32)).item()
-            for turn in (-2.0, 0.0, 2.0)
-        ]
-        assert found == pytest.approx([mixture(model, table, np.array([*means[c], inside]))] * 3, abs=5e-3)
+        expected = mixture(model, table, np.array([*means[c], inside]))
+        for turn in (-2.0, 0.0, 2.0):
+            action = torch.tensor([[*means[c], inside + turn]], dtype=torch.float32)
+            assert dist.log_prob(action).item() == pytest.approx(expected, abs=5e-3)
     torch.manual_seed(0)
     dist = density(model, table, 4000)
     aims = dist.sample()[:, 3].numpy()
@@ -153,8 +146,7 @@ def test_aim_wraps_at_the_seam(model):
 
 @torch.no_grad()
 def test_density_integrates_to_one(model, opened):
-    """Over the whole circle of aims, for a given stroke: what is left must be the mixture of the strokes
-    alone, which is Gaussian."""
+    """Over the whole circle of aims: what is left must be the mixture of the strokes alone, a Gaussian."""
     table = opened[:1]
     weights, means, stds, aim_stds, _ = parameters(model, table)
     n = int(2.0 / (0.5 * aim_stds.min()))  # equal steps of half a deviation sum a Gaussian to many digits
@@ -173,10 +165,8 @@ def test_samples_follow_the_density(model, opened):
     weights, means, stds, aim_stds, _ = parameters(model, opened[:1])
     dist = density(model, opened[:1], n)
     actions = dist.sample()
-    aside = (
-        nearest_image(actions[:, None, 3] - dist.aims_of(actions[:, None, :3].expand(n, POTS, 3))).numpy()
-        / aim_stds
-    )
+    aims = dist.aims_of(actions[:, None, :3].expand(n, POTS, 3))
+    aside = nearest_image(actions[:, None, 3] - aims).numpy() / aim_stds
     of = np.abs(aside).argmin(1)  # the pots' lines lie many deviations apart
     assert np.sort(np.abs(aside), 1)[:, 1].min() > 8.0
     assert np.bincount(of, minlength=POTS) / n == pytest.approx(weights, abs=2.0 / np.sqrt(n))
@@ -189,23 +179,18 @@ def test_samples_follow_the_density(model, opened):
 
 @torch.no_grad()
 def test_aims_follow_the_lines_of_the_environment(model):
-    """Without throw: every line is the direction to the pot's ghost ball, and what the environment plays
-    leaves along it."""
+    """Without throw every line leads to the pot's ghost ball, and what the environment plays leaves along it."""
     throw = model.policy.action_net.throw
     learned = throw.last.weight.clone()
     throw.start()
     try:
         for env in tables("opened", 8):
             dist = density(model, seen([env]))
-            aims, found = (
-                dist.aims_of(dist.means)[0].double().numpy() * pi,
-                pots(env.positions, env.on_table, env.on, most=POTS),
-            )
-            ghosts = found[:, 2:4] - env.positions[0]
+            aims = dist.aims_of(dist.means)[0].double().numpy() * pi
+            found = pots(env.positions, env.on_table, env.on, most=POTS)
+            ghosts = (found[:, 2:4] - env.positions[0]) @ [1.0, 1j]
             assert len(found) > 1
-            assert np.exp(1j * aims[: len(found)]) == pytest.approx(
-                (ghosts[:, 0] + 1j * ghosts[:, 1]) / np.hypot(*ghosts.T), abs=2e-6
-            )
+            assert np.exp(1j * aims[: len(found)]) == pytest.approx(ghosts / np.abs(ghosts), abs=2e-6)
             dist.log_weights = torch.arange(POTS, 0, -1.0)[None]  # the widest pot
             action = dist.mode()[0].clamp(-1.0, 1.0).tolist()
             actions = env.tables.rules.actions
@@ -219,20 +204,18 @@ def test_aims_follow_the_lines_of_the_environment(model):
 
 @torch.no_grad()
 def test_throw_turns_the_ghost_ball_round_the_object_ball(model):
-    """Geometry in the frame of the table, for a turn of the line of centres in proportion to the sine of the
-    cut."""
+    """In the frame of the table, for a turn of the line of centres in proportion to the cut's sine."""
 
     class Known(torch.nn.Module):
         def forward(self, known):
             return 0.2 * known[..., :1]
 
     cue, red = np.array((0.1, -0.3)), np.array((0.0, 0.4))
-    positions, on_table = np.zeros((N_BALLS, 2)), np.arange(N_BALLS) < 2
-    positions[0], positions[1] = cue, red
-    found = pots(positions, on_table, mask_of([1]), most=POTS)
+    table = one_red(cue, red)
+    found = pots(*table, mask_of([1]), most=POTS)
     throw = mixture_policy.Throw()
     throw.net = Known()
-    lines = mixture_policy.lines_of(one_red(cue, red))
+    lines = mixture_policy.lines_of(shown(*table))
     turns = throw(lines, torch.zeros(1, POTS, 3))[0].double().numpy() * pi
     cuts = set()
     for k, (_, pocket, gx, gy, *_) in enumerate(found):
@@ -242,9 +225,8 @@ def test_throw_turns_the_ghost_ball_round_the_object_ball(model):
         turn = THROW_UNIT * 2 * 0.2 * sine
         turned = (cos(turn) * d[0] - sin(turn) * d[1], sin(turn) * d[0] + cos(turn) * d[1])
         ghost = red - 2 * R * np.array(turned) - cue
-        assert turns[k] == pytest.approx(
-            atan2(ghost[1], ghost[0]) - atan2(path[1], path[0]), rel=1e-3, abs=1e-7
-        )
+        expected = atan2(ghost[1], ghost[0]) - atan2(path[1], path[0])
+        assert turns[k] == pytest.approx(expected, rel=1e-3, abs=1e-7)
         cuts.add(sine > 0)
     assert len(cuts) == 2 and np.abs(turns).max() > 1e-4 and not turns[len(found) :].any()
 
@@ -256,9 +238,8 @@ def test_throw_sees_the_stroke_as_it_is_played(model, opened):
     def aims(*stroke):
         return dist.aims_of(torch.tensor(stroke).expand(len(opened), POTS, 3))
 
-    assert torch.equal(aims(3.0, 0.0, 0.0), aims(1.0, 0.0, 0.0)) and not torch.equal(
-        aims(0.5, 0.0, 0.0), aims(1.0, 0.0, 0.0)
-    )
+    assert torch.equal(aims(3.0, 0.0, 0.0), aims(1.0, 0.0, 0.0))
+    assert not torch.equal(aims(0.5, 0.0, 0.0), aims(1.0, 0.0, 0.0))
     assert torch.allclose(aims(0.0, 0.9, 0.9), aims(0.0, 0.5**0.5, 0.5**0.5), atol=1e-7)
     assert not torch.allclose(aims(0.0, 0.5, 0.0), aims(0.0, -0.5, 0.0), atol=1e-5)
 
@@ -305,24 +286,19 @@ def test_without_a_pot_the_nearest_ball_on_is_struck(model, without_pots):
     total.backward()
     assert all(torch.isfinite(p.grad).all() for p in model.policy.parameters() if p.grad is not None)
     assert torch.isfinite(total) and torch.isfinite(action).all()
-    assert (
-        model.policy.action_net.no_pot.weight.grad.abs().max() > 0.0
-        and model.policy.action_net.pot.weight.grad.abs().max() == 0.0
-    )
+    assert model.policy.action_net.no_pot.weight.grad.abs().max() > 0.0
+    assert model.policy.action_net.pot.weight.grad.abs().max() == 0.0
     for env, aim in zip(without_pots, dist.mode()[:, 3].tolist(), strict=True):
         off = pi * aim - to_nearest(env.positions, env.on_table, env.on)
         assert abs(sin(off)) < 1e-6 and cos(off) > 0.0
     for k in range(3):
-        own = action[k].detach().numpy()
-        assert dist.log_prob(action)[k].item() == pytest.approx(
-            mixture(model, table[k : k + 1], own.astype(float)), abs=5e-3
-        )
+        expected = mixture(model, table[k : k + 1], action[k].detach().numpy().astype(float))
+        assert dist.log_prob(action)[k].item() == pytest.approx(expected, abs=5e-3)
 
 
 @torch.no_grad()
 def test_the_nearest_ball_that_is_on_is_meant(model):
-    """Two reds are on and a nearer blue is not; neither red can be potted, and the second is the nearer
-    one."""
+    """Two reds are on, the second the nearer one, and a nearer blue is not; neither red can be potted."""
     rng, seen_ones, on_table = np.random.default_rng(0), 0, np.isin(np.arange(N_BALLS), (0, 1, 2, 19))
     while seen_ones < 5:
         positions = np.zeros((N_BALLS, 2))
@@ -337,34 +313,26 @@ def test_the_nearest_ball_that_is_on_is_meant(model):
 
 
 def test_pots_that_are_not_there_are_never_played(model):
-    table = one_red((0.5, 0.0), (-0.4, 0.0))
+    table = shown(*one_red((0.5, 0.0), (-0.4, 0.0)))
     there = mixture_policy.lines_of(table)[0, :, OFFERED] > 0.0
     assert 0 < there.sum() < POTS
     weights = parameters(model, table)[0]
     assert (weights[there.numpy()] > 0.0).all() and not weights[~there.numpy()].any()
-    assert (
-        torch.isfinite(mixture_policy.lines_of(table)).all()
-        and mixture_policy.lines_of(table)[0, :, TOLERANCE].min() > 0.0
-    )
+    assert torch.isfinite(mixture_policy.lines_of(table)).all()
+    assert mixture_policy.lines_of(table)[0, :, TOLERANCE].min() > 0.0
 
 
 def test_learn_save_load_predict(model, opened, tmp_path):
     fresh = hyperparameters.Recipe.of("ppo_absolute", ["n_steps=8", "batch_size=8"])
     learner = fresh.new_model(training_tables(2, threads=1, **fresh.env_kwargs), seed=0)
-    assert type(learner.policy) is AbsolutePolicy and learner.policy.log_std[3].exp().item() == pytest.approx(
-        fresh.first_aim_std
-    )
+    assert type(learner.policy) is AbsolutePolicy
+    assert learner.policy.log_std[3].exp().item() == pytest.approx(fresh.first_aim_std)
     before = {name: p.detach().clone() for name, p in learner.policy.named_parameters()}
     learner.learn(16)
-    moved = {
-        name.split(".")[0]
-        for name, p in learner.policy.named_parameters()
-        if not torch.equal(p, before[name])
-    }
-    assert moved == {"features_extractor", "action_net", "value_net", "log_std"}
-    assert not torch.equal(
-        learner.policy.action_net.throw.last.weight, before["action_net.throw.last.weight"]
-    )
+    moved = {name for name, p in learner.policy.named_parameters() if not torch.equal(p, before[name])}
+    parts = {name.split(".")[0] for name in moved}
+    assert parts == {"features_extractor", "action_net", "value_net", "log_std"}
+    assert "action_net.throw.last.weight" in moved
     assert all(torch.isfinite(p).all() for p in learner.policy.parameters())
     for made in (learner, model):
         made.save(tmp_path / "model.zip")

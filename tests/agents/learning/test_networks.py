@@ -5,26 +5,9 @@ import pytest
 import torch
 
 from agents.features.lookahead_features import CUE_X, ENTRIES, PICKS, SPACE, STROKES_SEEN
-from agents.learning.networks import (
-    BALL,
-    CONTEXT,
-    POT,
-    ForesightReader,
-    OutcomeHead,
-    StrokeHead,
-    TableReader,
-    ValueHead,
-)
+from agents.learning import networks
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.planning.learned.pot_view import (
-    BALL_X,
-    CUT,
-    POT_ENTRIES,
-    POT_X,
-    SHOWN,
-    VIEW_SPACE,
-    with_pots,
-)
+from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, VIEW_SPACE, with_pots
 from snooker_env.tasks.discrete_actions import POTS, SIDES, SIZE, SPEEDS, STROKES, TOPS
 from snooker_env.tasks.observations import SIZE as SEEN
 
@@ -38,16 +21,15 @@ def seen():
     observations, _ = tables.reset(seed=1)
     rng = np.random.default_rng(0)
     for _ in range(3):
-        observations, *_ = tables.step(
-            np.array([rng.choice(np.flatnonzero(m)) for m in tables.action_masks()])
-        )
+        choices = [rng.choice(np.flatnonzero(mask)) for mask in tables.action_masks()]
+        observations, *_ = tables.step(np.array(choices))
     return torch.as_tensor(with_pots(observations))
 
 
 @pytest.fixture
 def net():
     torch.manual_seed(0)
-    reader, head, value = TableReader(VIEW_SPACE), StrokeHead(), ValueHead()
+    reader, head, value = networks.TableReader(VIEW_SPACE), networks.StrokeHead(), networks.ValueHead()
     return lambda x: (head(reader(x)).detach(), value(reader(x)).detach(), reader)
 
 
@@ -76,7 +58,7 @@ def test_balls_on_are_summed_apart(net, seen):
     """Read of that sum alone, a table changes with each ball that is on and with no other."""
     reader = net(seen)[2]
     with torch.no_grad():
-        reader.context[0].weight[:, BALL:] = 0.0
+        reader.context[0].weight[:, networks.BALL :] = 0.0
     before, met = net(seen)[1], 0
     for ball in range(1, 22):
         on = (seen[:, 5 * ball + 2] > 0) & (seen[:, 5 * ball + 4] > 0)
@@ -102,7 +84,7 @@ def test_a_mirror_turns_the_side_spin(net, seen):
     reader = net(seen)[2]
     with torch.no_grad():
         reader.context[0].weight[:, -1] = 0.0
-    assert reader.context[0].in_features == 3 * BALL + POT + (SEEN - 110) + 3
+    assert reader.context[0].in_features == 3 * networks.BALL + networks.POT + (SEEN - 110) + 3
     scores, values, _ = net(seen)
     turned, turned_values, _ = net(mirrored(seen))
     expected = scores.reshape(N, POTS, len(SPEEDS), len(SIDES), len(TOPS)).flip(3).reshape(N, SIZE)
@@ -115,7 +97,7 @@ def test_a_mirror_turns_the_side_spin(net, seen):
 
 def test_foresight_scores_each_stroke_by_its_own_outcome(seen):
     torch.manual_seed(0)
-    reader, head = ForesightReader(SPACE), OutcomeHead()
+    reader, head = networks.ForesightReader(SPACE), networks.OutcomeHead()
     rng = np.random.default_rng(0)
     rows = torch.as_tensor(rng.uniform(-1, 1, (N, STROKES_SEEN, ENTRIES)).astype(np.float32))
     rows[:, :, 0] = 1.0
@@ -125,10 +107,8 @@ def test_foresight_scores_each_stroke_by_its_own_outcome(seen):
         return head(reader(torch.cat([seen, rows.flatten(1)], 1))).detach()
 
     before = scores(rows)
-    assert (
-        before.shape == (N, SIZE)
-        and reader(torch.cat([seen, rows.flatten(1)], 1)).shape[1] == CONTEXT + STROKES_SEEN * 32
-    )
+    assert before.shape == (N, SIZE)
+    assert reader(torch.cat([seen, rows.flatten(1)], 1)).shape[1] == networks.CONTEXT + STROKES_SEEN * 32
     other = rows.clone()
     other[:, 7, 2] = 0.5
     moved = (scores(other) - before).abs()
@@ -142,5 +122,5 @@ def test_foresight_scores_each_stroke_by_its_own_outcome(seen):
         reader.context[0].weight[:, -1] = 0.0
     here, there = scores(rows), head(reader(torch.cat([mirrored(seen), flipped.flatten(1)], 1))).detach()
     off_centre = seen[:, BALL_X] != 0.0
-    assert torch.allclose(here[off_centre], there[off_centre], atol=1e-5) and seen.shape[1] == SHOWN
+    assert torch.allclose(here[off_centre], there[off_centre], atol=1e-5)
     assert not torch.allclose(here, scores(flipped), atol=1e-4)

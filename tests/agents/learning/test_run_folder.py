@@ -1,7 +1,5 @@
-"""Does a run's folder belong to one run at a time, whatever ends it, and does a run that stopped while it
-imitated go on exactly?"""
+"""Does a run's folder belong to one run at a time, and does one that stopped while it imitated go on exactly?"""
 
-import json
 import os
 import pickle
 import signal
@@ -19,35 +17,17 @@ from agents.players.trained import load_player
 from commands import lock
 from commands.files import write_atomic
 from snooker_env.progress import Progress
+from tests.agents import training
+from tests.agents.training import TINY, results, resume, weights
+from tests.processes import ROOT
 
-ROOT = Path(__file__).resolve().parents[3]
-TINY = [
-    "--agent",
-    "ppo_mask",
-    "--envs",
-    "2",
-    "--eval-visits",
-    "4",
-    "--no-progress",
-    "--parallel",
-    "one",
-    "--steps",
-    "256",
-    "--imitate",
-    "64",
-]
+CONTINUE = "Continue with:  python train.py --resume --out"
+NO_SPACE = (28, "No space left on device")
 
 
-def refused(capsys, *arguments):
-    """The one-line error with which these arguments are refused."""
-    with pytest.raises(SystemExit) as stop:
-        train.main([*arguments])
-    assert stop.value.code == 2
-    return capsys.readouterr().err.strip().splitlines()[-1]
-
-
-# one run a folder
-# ------------------------------------------------------------------------------------------------------------
+def run(out, *options):
+    """With few shots, after some imitation."""
+    return training.run(out, "--steps", "256", "--imitate", "64", *options)
 
 
 @pytest.fixture
@@ -71,16 +51,14 @@ time.sleep(600)
 @pytest.mark.parametrize("more", [[], ["--resume"]])
 @pytest.mark.parametrize("holds", [[], ["checkpoint.pkl"]], ids=["imitating", "saved"])
 def test_a_folder_in_use_is_refused_by_the_name_of_the_process(
-    other, tmp_path, capsys, monkeypatch, more, holds
+    other, tmp_path, refused, monkeypatch, more, holds
 ):
     monkeypatch.setattr(train.snooker_env, "warmup", None)  # nothing is compiled before
     for name in holds:
         (tmp_path / name).write_bytes(b"of the other")
-    error = refused(capsys, *TINY, "--out", str(tmp_path), *more)
-    assert (
-        f"out = {str(tmp_path)!r}: must be a folder that no other process uses: process {other.pid} on "
-        in error
-    )
+    error = refused(train.main, *TINY, "--out", tmp_path, *more)
+    why = f"out = {str(tmp_path)!r}: must be a folder that no other process uses: process {other.pid} on "
+    assert why in error
     assert " since 20" in error and f"(kill -INT {other.pid})" in error and "another --out" in error
     assert sorted(p.name for p in tmp_path.iterdir()) == [*holds, "train.lock"]
     assert all((tmp_path / name).read_bytes() == b"of the other" for name in holds)
@@ -100,20 +78,16 @@ def test_a_lock_ends_with_its_process(other, tmp_path):
     lock.Lock(tmp_path).release()
 
 
-def test_what_a_killed_run_left_is_no_other_run(tmp_path, capsys):
+def test_what_a_killed_run_left_is_no_other_run(tmp_path, refused):
     left = ("train.lock", f".checkpoint.{16 * '0'}.tmp.pkl", f".model.{16 * 'f'}.tmp.zip")
     for name in left:
         (tmp_path / name).write_text("half")
     (tmp_path / "tb").mkdir()
-    assert train.main([*TINY, "--imitate", "0", "--out", str(tmp_path)]) == 0
+    assert training.run(tmp_path) == 0
     assert {p.name for p in tmp_path.iterdir()} == {"checkpoint.pkl", "model.zip", "results.json", "tb"}
     (tmp_path / "checkpoint.tmp.pkl").write_text("mine")
-    assert "is not empty" in refused(capsys, *TINY, "--out", str(tmp_path))
+    assert "is not empty" in refused(train.main, *TINY, "--out", tmp_path)
     assert (tmp_path / "checkpoint.tmp.pkl").exists() and not (tmp_path / "train.lock").exists()
-
-
-# stopped while it imitates
-# ------------------------------------------------------------------------------------------------------------
 
 
 def after(rounds, monkeypatch, act):
@@ -137,18 +111,13 @@ def interrupt():
 def whole(tmp_path_factory):
     """An uninterrupted run."""
     out = tmp_path_factory.mktemp("runs") / "whole"
-    assert train.main([*TINY, "--out", str(out)]) == 0
+    assert run(out) == 0
     return out
-
-
-def weights(out):
-    model = load_player(out).model
-    return np.concatenate([p.detach().numpy().ravel() for p in model.policy.parameters()])
 
 
 def untimed(out):
     """The results but for what the clock says."""
-    found = json.loads((out / "results.json").read_text())
+    found = results(out)
     imitation = [{key: at[key] for key in ("states", "loss")} for at in found["imitation"]]
     return [imitation, *(found[name] for name in ("settings", "steps", "curve", "evaluation", "learned"))]
 
@@ -160,12 +129,11 @@ def test_a_signal_saves_what_was_imitated_and_resume_goes_on_exactly(
     out = tmp_path / "run"
     with monkeypatch.context() as patch:
         after(20, patch, lambda: signal.raise_signal(number))
-        assert train.main([*TINY, "--out", str(out)]) == 128 + number
-    printed = capsys.readouterr().out
-    assert f"Saved at 40 of 64 positions. Continue with:  python train.py --resume --out {out}" in printed
+        assert run(out) == 128 + number
+    assert f"Saved at 40 of 64 positions. {CONTINUE} {out}" in capsys.readouterr().out
     assert {p.name for p in out.iterdir()} == {"checkpoint.pkl"}
     assert signal.getsignal(number) in (signal.default_int_handler, signal.SIG_DFL)
-    assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
+    assert resume(out) == 0
     assert "imitation, 40 of 64 positions" in capsys.readouterr().out
     assert np.array_equal(weights(out), weights(whole)) and untimed(out) == untimed(whole)
     assert len(untimed(out)[0]) == 20 and load_player(out).model.imitated == 64
@@ -178,13 +146,10 @@ def test_imitation_is_saved_at_intervals(whole, tmp_path, capsys, monkeypatch):
         patch.setattr(callback, "LEAST", -1.0)
         patch.setattr(callback, "SHARE", np.inf)
         after(13, patch, interrupt)
-        assert train.main([*TINY, "--out", str(out)]) == 130
-    assert (
-        f"Interrupted. The last checkpoint is complete. Continue with:  python train.py --resume --out {out}"
-        in capsys.readouterr().err
-    )
+        assert run(out) == 130
+    assert f"Interrupted. The last checkpoint is complete. {CONTINUE} {out}" in capsys.readouterr().err
     assert pickle.loads((out / "checkpoint.pkl").read_bytes())["imitating"]["done"] == 24
-    assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
+    assert resume(out) == 0
     assert np.array_equal(weights(out), weights(whole)) and untimed(out) == untimed(whole)
 
 
@@ -195,9 +160,8 @@ def test_a_second_signal_acts_at_once_whichever_it_is(first, second):
     with callback.Stop() as stop:
         signal.raise_signal(first)
         assert stop.signal == first
-        assert signal.getsignal(second) == (
-            signal.default_int_handler if second == signal.SIGINT else signal.SIG_DFL
-        )
+        plain = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
+        assert signal.getsignal(second) == plain[second]
     assert before == [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
 
 
@@ -221,21 +185,16 @@ def test_saves_are_rare(tmp_path, monkeypatch):
             return None
 
     monkeypatch.setattr(callback, "save_checkpoint", save)
-    assert callback.imitate(
-        Lessons(), tmp_path, train.Settings(), Lessons(), callback.Stop(), Progress("", 2000, "", quiet=True)
-    )
+    silent = Progress("", 2000, "", quiet=True)
+    assert callback.imitate(Lessons(), tmp_path, train.Settings(), Lessons(), callback.Stop(), silent)
     assert saves[0] == 31.0 and np.array_equal(np.diff(saves), [506.0] * 3)
 
 
 def test_an_interruption_before_the_first_save_is_reported(tmp_path, capsys, monkeypatch):
     after(3, monkeypatch, interrupt)
-    assert train.main([*TINY, "--out", str(tmp_path / "run")]) == 130
+    assert run(tmp_path / "run") == 130
     assert capsys.readouterr().err == "Interrupted. Nothing was saved yet: start the run again.\n"
     assert not list((tmp_path / "run").iterdir())
-
-
-# a full disk
-# ------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("broken", ["fsync", "replace"])
@@ -244,7 +203,7 @@ def test_failed_write_leaves_the_old_file_alone(tmp_path, monkeypatch, broken):
     write_atomic(path, b"old")
 
     def fail(*_):
-        raise OSError(28, "No space left on device")
+        raise OSError(*NO_SPACE)
 
     with monkeypatch.context() as patch:
         patch.setattr(os, broken, fail)
@@ -272,20 +231,17 @@ def test_a_full_disk_ends_it_in_one_line(tmp_path, monkeypatch, full):
 
     def replace(source, target):
         if Path(target).name == full and (full != "checkpoint.pkl" or Path(target).exists()):
-            raise OSError(28, "No space left on device")
+            raise OSError(*NO_SPACE)
         original(source, target)
 
     with monkeypatch.context() as patch:
         patch.setattr(os, "replace", replace)
         with pytest.raises(SystemExit) as stop:
-            train.main([*TINY, "--imitate", "0", "--checkpoint-every", "1", "--out", str(out)])
-    why = f"train.py: {out / full} cannot be written: No space left on device. "
-    assert (
-        stop.value.code
-        == f"{why}The last checkpoint is complete. Continue with:  python train.py --resume --out {out}"
-    )
+            run(out, "--imitate", "0", "--checkpoint-every", "1")
+    why = f"train.py: {out / full} cannot be written: No space left on device"
+    assert stop.value.code == f"{why}. The last checkpoint is complete. {CONTINUE} {out}"
     assert not [p.name for p in out.iterdir() if ".tmp" in p.name or p.suffix == ".lock"]
-    assert train.main(["--resume", "--no-progress", "--out", str(out)]) == 0
+    assert resume(out) == 0
 
 
 def test_the_systems_own_limit_is_reported_in_one_line(tmp_path):
@@ -294,15 +250,12 @@ def test_the_systems_own_limit_is_reported_in_one_line(tmp_path):
 import resource, runpy, sys
 import train
 resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000))
-sys.exit(train.main({[*TINY, "--imitate", "0", "--out", str(tmp_path / "run")]!r}))
+sys.exit(train.main({[*TINY, "--out", str(tmp_path / "run")]!r}))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, timeout=300)
     file = tmp_path / "run" / "checkpoint.pkl"
-    assert done.returncode == 1
-    assert (
-        done.stderr
-        == f"train.py: {file} cannot be written: File too large. Nothing was saved yet: start the run again.\n"
-    )
+    why = f"train.py: {file} cannot be written: File too large"
+    assert done.stderr == f"{why}. Nothing was saved yet: start the run again.\n" and done.returncode == 1
     assert {p.name for p in file.parent.iterdir()} <= {"tb"}
 
 

@@ -1,5 +1,7 @@
-"""Do the repository's players play as players, and are all of them, and its pre-trained models, found by
-name?"""
+"""Do the repository's players play as players, and are all of them known by name?"""
+
+import json
+import os
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from agents.players.trained import load_player, read_model
 from snooker_env.planning import Planner, Positions
 from snooker_env.players.weights import FOLDER, levels
 from snooker_env.tasks import Noise
+from tests.processes import ROOT, python
 
 NAMES = ("geometric", "foresight_rule", *pretrained())
 
@@ -34,9 +37,8 @@ def test_a_player_is_a_function_of_a_position_and_a_seed(name):
         assert np.array_equal(player.play(at[k : k + 1], seeds[k : k + 1]).values[0], together.values[k])
     if hasattr(player, "rank"):
         for k, one in enumerate(player.rank(at, seeds)):
-            assert (
-                np.array_equal(one.strokes.values[0], together.values[k]) and (np.diff(one.scores) <= 0).all()
-            )
+            assert np.array_equal(one.strokes.values[0], together.values[k])
+            assert (np.diff(one.scores) <= 0).all()
 
 
 def test_a_policy_ranks_its_choices_by_probability():
@@ -77,3 +79,49 @@ def test_files_of_others_are_left_to_others(tmp_path):
     with pytest.raises(ValueError, match=r"must be a model's \.zip or a folder"):
         load_player(tmp_path)
     assert Noise().silent
+
+
+PLAYERS = [f"planner{kind}_60" for kind in ("", "_value", "_policy")]
+PLAYERS += [f"ppo_{kind}" for kind in ("mask", "value", "foresight", "absolute")]
+MEASURE = """if True:
+    import json, os, sys, time
+    import numpy as np, torch
+    import snooker_env as sn
+    from snooker_env.planning import Positions
+
+    os.sched_setaffinity(0, [min(os.sched_getaffinity(0))])  # of this thread: the libraries have made theirs
+
+    def share(act):  # of the processor time that other threads took
+        act(), act()  # compiled and loaded
+        time.sleep(0.2)  # a library's threads look for more work before they rest
+        whole, own = time.process_time(), time.thread_time()
+        while time.thread_time() - own < 0.15:
+            act()
+        return (time.process_time() - whole) / (time.thread_time() - own) - 1.0
+
+    def decisions(name, tables):
+        env = sn.SnookerVectorEnv(tables, noise="professional", threads=1)
+        env.reset(seed=3)
+        player, at = sn.player(name).at(env), Positions.of(env)
+        return lambda: player.play(at, np.arange(tables))
+
+    rows, weight = np.ones((2, 256, 256), np.float32)
+    tensor = torch.from_numpy(rows)
+    found = {"numpy": share(lambda: rows @ weight), "torch": share(lambda: tensor @ tensor)}
+    for name in sys.argv[1:]:
+        for tables in (1, 64):
+            found[f"{name} {tables}"] = share(decisions(name, tables))
+    print(json.dumps(found))
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="on Linux alone threads can be bound")
+def test_a_decision_takes_one_thread():
+    code = f"import sys; sys.argv[1:] = {PLAYERS!r}\n{MEASURE}"
+    libraries = {name: "2" for name in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
+    found = json.loads(python(code, at=ROOT, **libraries)[0])
+    seen = [found.pop(library) for library in ("numpy", "torch")]
+    if min(seen) < 0.2:
+        pytest.skip(f"the libraries use no second thread here: {seen}")
+    assert len(found) == 2 * len(PLAYERS)
+    assert not {what: round(share, 2) for what, share in found.items() if share > 0.05}

@@ -1,5 +1,4 @@
-"""Is what RLlib's runners collect what the tables play, and are the weights that are kept those of its
-module?"""
+"""Is what RLlib's runners collect what the tables play, and are the kept weights those of its module?"""
 
 from pathlib import Path
 
@@ -27,8 +26,7 @@ def algorithm():
 
 
 def test_what_runners_collect_is_what_single_tables_play(algorithm):
-    """Each table of each runner has a seed of its own; the steps that only reset a table are left out; every
-    choice was available."""
+    """Each table has a seed of its own; steps that only reset are left out; every choice was available."""
     samples = algorithm.env_runner_group.foreach_env_runner(
         lambda runner: runner.sample(num_timesteps=160), local_env_runner=False
     )
@@ -57,9 +55,8 @@ def test_what_runners_collect_is_what_single_tables_play(algorithm):
                 assert np.array_equal(row["observations"], seen["observations"][t])
                 assert np.array_equal(row["action_mask"], seen["action_mask"][t])
                 row, reward, terminated, _, _ = env.step(int(action))
-                assert reward == episode.get_rewards()[t] and terminated == (
-                    episode.is_terminated and t == len(actions) - 1
-                )
+                assert reward == episode.get_rewards()[t]
+                assert terminated == (episode.is_terminated and t == len(actions) - 1)
             assert np.array_equal(row["observations"], seen["observations"][-1])
             assert np.array_equal(row["action_mask"], seen["action_mask"][-1])
     assert ends > 60 and matched == set(own)
@@ -75,11 +72,8 @@ def test_the_weights_that_are_kept_are_those_of_the_module(algorithm):
     with torch.no_grad():
         found = module.forward_inference({"obs": dict(batch)})["action_dist_inputs"].numpy()
     scores = Layers(config.layers_of(algorithm), config.ACTIVATION)(flat)
-    assert (
-        np.allclose(found[masks], scores[masks], atol=1e-5)
-        and (found[~masks] < -1e37).all()
-        and not masks.all()
-    )
+    assert np.allclose(found[masks], scores[masks], atol=1e-5) and (found[~masks] < -1e37).all()
+    assert not masks.all()
 
 
 def test_no_two_tables_of_a_run_or_of_neighbouring_runs_have_one_seed():
@@ -88,7 +82,5 @@ def test_no_two_tables_of_a_run_or_of_neighbouring_runs_have_one_seed():
     seeds = [
         one for seed in parts for runner in range(1, 9) for one in config.seeds_of_runner(seed, runner, 8192)
     ]
-    assert (
-        len(set(seeds)) == len(seeds)
-        and config.seeds_of_runner(3, 2, 5) == config.seeds_of_runner(3, 2, 8)[:5]
-    )
+    assert len(set(seeds)) == len(seeds)
+    assert config.seeds_of_runner(3, 2, 5) == config.seeds_of_runner(3, 2, 8)[:5]

@@ -1,5 +1,4 @@
-"""Does ``python -m agents.train_rllib`` train, save, go on and judge? Checkpoints, a signal, wrong options
-and folders."""
+"""Does ``python -m agents.train_rllib`` train, save, go on, judge and refuse, by what its tables play?"""
 
 import json
 import re
@@ -31,14 +30,11 @@ def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
     progress = state["progress"]
     assert progress["shots"] >= 8192 and progress["updates"] == 1 and (out / progress["checkpoint"]).is_dir()
     untrained = read_policy(out / run.UNTRAINED, "out")
-    assert untrained.num_timesteps == 0 and not np.array_equal(
-        untrained.policy.weights[0][0], first.policy.weights[0][0]
-    )
+    assert untrained.num_timesteps == 0
+    assert not np.array_equal(untrained.policy.weights[0][0], first.policy.weights[0][0])
     results = json.loads((out / run.RESULTS).read_text())
-    assert (
-        set(results["evaluation"]) == {"trained", "untrained", "ghost_ball", "random"}
-        and results["versions"]["ray"]
-    )
+    assert set(results["evaluation"]) == {"trained", "untrained", "ghost_ball", "random"}
+    assert results["versions"]["ray"]
     kept, algorithm_of, restore = [], run.algorithm_of, run.restore
 
     def of_runners(made):
@@ -57,27 +53,19 @@ def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run, "algorithm_of", made_with)
         patch.setattr(run, "restore", restored)
-        assert (
-            run.main(["--resume", "--steps", "16000", "--runners", "2", "--out", str(out), *SHORT[2:]]) == 0
-        )
+        more = ["--steps", "16000", "--runners", "2", *SHORT[2:]]
+        assert run.main(["--resume", "--out", str(out), *more]) == 0
     settings, seed, weights, there = kept
     # the runners play with them too
     assert len(there) == 2 and all(np.array_equal(bias, weights[-1][1]) for bias in there)
-    assert (
-        settings
-        == replace(run.RunSettings(), steps=16000, runners=2, envs=16, eval_visits=4, checkpoint_every=8000)
-        and seed == run.SEEDS
-    )
-    assert all(
-        np.array_equal(a, b)
-        for mine, its in zip(first.policy.weights, weights, strict=True)
-        for a, b in zip(mine, its, strict=True)
-    )
+    asked = {"steps": 16000, "runners": 2, "envs": 16, "eval_visits": 4, "checkpoint_every": 8000}
+    assert settings == replace(run.RunSettings(), **asked) and seed == run.SEEDS
+    for mine, its in zip(first.policy.weights, weights, strict=True):
+        assert len(mine) == len(its) and all(map(np.array_equal, mine, its))
     after = json.loads((out / run.STATE).read_text())["progress"]
     assert after["shots"] >= progress["shots"] + 7500 and after["updates"] == 2 and after["parts"] == 2
-    assert (
-        [file.name for file in out.glob("checkpoint-*")] == [after["checkpoint"]] != [progress["checkpoint"]]
-    )
+    left = [file.name for file in out.glob("checkpoint-*")]
+    assert left == [after["checkpoint"]] != [progress["checkpoint"]]
     assert load_player(out).model.num_timesteps == after["shots"]
     assert run.main(["--resume", "--steps", "16000", "--out", str(out)]) == 0
     assert "nothing left to train" in capsys.readouterr().out
@@ -86,20 +74,9 @@ def test_a_run_is_saved_goes_on_and_is_judged(tmp_path, capsys):
 
 def test_a_signal_saves_and_the_run_goes_on(tmp_path):
     out = tmp_path / "run"
-    command = [
-        sys.executable,
-        "-u",
-        "-m",
-        "agents.train_rllib",
-        "--steps",
-        "1000000",
-        "--out",
-        str(out),
-        *SHORT,
-    ]
-    with subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-    ) as process:
+    command = [sys.executable, "-u", "-m", "agents.train_rllib", "--steps", "1000000", "--out", str(out)]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    with subprocess.Popen([*command, *SHORT], cwd=ROOT, **pipes) as process:
         assert process.stdout is not None
         lines = []
         for line in process.stdout:
@@ -109,16 +86,11 @@ def test_a_signal_saves_and_the_run_goes_on(tmp_path):
                 break
         rest = process.stdout.read()
         assert process.wait(120) == 130, "".join(lines) + rest
-    assert (
-        f"Continue with:  python -m agents.train_rllib --resume --out {out}" in rest
-        and "Traceback" not in rest
-    )
+    assert f"Continue with:  python -m agents.train_rllib --resume --out {out}" in rest
+    assert "Traceback" not in rest
     progress = json.loads((out / run.STATE).read_text())["progress"]
-    assert (
-        progress["shots"] > 8000
-        and (out / progress["checkpoint"]).is_dir()
-        and load_player(out).model.num_timesteps == progress["shots"]
-    )
+    assert progress["shots"] > 8000 and (out / progress["checkpoint"]).is_dir()
+    assert load_player(out).model.num_timesteps == progress["shots"]
     began = time.monotonic()
     while (out / "train.lock").exists() and time.monotonic() - began < 10:
         time.sleep(0.1)
@@ -129,24 +101,22 @@ def test_a_signal_saves_and_the_run_goes_on(tmp_path):
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        (["--steps", "0"], "steps = 0: must be an integer in [1, "),
-        (["--runners", "0"], "runners = 0: must be an integer in [1, 1024]"),
-        (["--envs", "9000"], "envs = 9000: must be an integer in [1, 8192]"),
-        (["--noise", "loud"], "noise = 'loud'"),
-        (["--layout", "moon"], "layout = 'moon'"),
-        (["--layout", "held_out"], "layout = 'held_out': must be another for training"),
-        (["--eval-visits", "1"], "eval_visits = 1"),
-        (["--resume"], "must be the folder of a run with a checkpoint"),
+        ("--steps 0", "steps = 0: must be an integer in [1, "),
+        ("--runners 0", "runners = 0: must be an integer in [1, 1024]"),
+        ("--envs 9000", "envs = 9000: must be an integer in [1, 8192]"),
+        ("--noise loud", "noise = 'loud'"),
+        ("--layout moon", "layout = 'moon'"),
+        ("--layout held_out", "layout = 'held_out': must be another for training"),
+        ("--eval-visits 1", "eval_visits = 1"),
+        ("--resume", "must be the folder of a run with a checkpoint"),
     ],
 )
-def test_wrong_options_are_refused_in_one_line_before_anything_starts(tmp_path, options, says, capsys):
-    with pytest.raises(SystemExit) as stop:
-        run.main([*options, "--out", str(tmp_path / "run")])
-    assert stop.value.code == 2 and says in capsys.readouterr().err.strip().splitlines()[-1]
+def test_wrong_options_are_refused_in_one_line_before_anything_starts(tmp_path, options, says, refused):
+    assert says in refused(run.main, *options.split(), "--out", tmp_path / "run")
     assert not (tmp_path / "run").exists()
 
 
-def test_an_update_without_a_sample_ends_the_run_in_one_line(tmp_path):
+def test_an_update_without_a_sample_ends_the_run_in_one_line(tmp_path, monkeypatch):
     """What was played before is kept."""
 
     class Silent:
@@ -154,28 +124,21 @@ def test_an_update_without_a_sample_ends_the_run_in_one_line(tmp_path):
             return {"learners": {}}
 
     saved = []
-    with (
-        pytest.MonkeyPatch.context() as patch,
-        pytest.raises(SystemExit, match=r"no env runner gave a sample in 600 s; saved at 7 shots"),
-    ):
-        patch.setattr(run, "save", lambda *parts: saved.append(parts))
+    monkeypatch.setattr(run, "save", lambda *parts: saved.append(parts))
+    with pytest.raises(SystemExit, match=r"no env runner gave a sample in 600 s; saved at 7 shots"):
         run.train(tmp_path, run.RunSettings(), run.Counters(shots=7), Silent(), run.Stop())
     assert len(saved) == 1
 
 
-def test_folders_that_do_not_fit_are_refused(tmp_path, capsys):
-    def refused(*options):
-        with pytest.raises(SystemExit) as stop:
-            run.main(["--out", str(tmp_path), *options])
-        assert stop.value.code == 2
-        return capsys.readouterr().err.strip().splitlines()[-1]
-
+def test_folders_that_do_not_fit_are_refused(tmp_path, refused):
+    here = [run.main, "--out", tmp_path]
     (tmp_path / "mine.txt").write_text("mine")
-    assert "is not empty (it holds mine.txt): --resume continues it, --out names another folder" in refused()
+    why = "is not empty (it holds mine.txt): --resume continues it, --out names another folder"
+    assert why in refused(*here)
     (tmp_path / "state.json").write_text("{}")
-    assert "must be the folder of a run with a checkpoint" in refused("--resume")
+    assert "must be the folder of a run with a checkpoint" in refused(*here, "--resume")
     progress = {"shots": 5, "updates": 1, "seconds": 1.0, "parts": 1, "checkpoint": "checkpoint-000001"}
     (tmp_path / "state.json").write_text(json.dumps({"settings": {"envs": 16}, "progress": progress}))
-    assert "checkpoint-000001 is missing" in refused("--resume")
+    assert "checkpoint-000001 is missing" in refused(*here, "--resume")
     (tmp_path / "checkpoint-000001").mkdir()
-    assert "envs = 32: must be 16, as in the run in" in refused("--resume", "--envs", "32")
+    assert "envs = 32: must be 16, as in the run in" in refused(*here, "--resume", "--envs", "32")
