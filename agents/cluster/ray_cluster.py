@@ -136,8 +136,7 @@ class Cluster(Here):
             yield running.pop(one), self._result(one)
 
     def _result(self, one):
-        """The result of a part. Raises ClusterError for what befell its machine, else the part's own
-        error."""
+        """The result of a part. ClusterError for what befell its machine, else the part's own error."""
         exceptions = self._ray.exceptions
         try:
             result, processor = self._ray.get(one)
@@ -176,8 +175,7 @@ def fault_of(cause, node):
 
 
 def _task():
-    """What a worker does. Made inside another function, it is sent as code: the node may lack this
-    package."""
+    """What a worker does. As an inner function it is sent as code: the node may lack this package."""
 
     def play(task, shared, args, wanted):
         from agents.cluster.job import ClusterError, run

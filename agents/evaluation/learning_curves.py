@@ -1,5 +1,4 @@
-"""How fast do agents learn? A chart of the points a visit in training, over the time they have trained and
-over their shots.
+"""How fast do agents learn? A chart of the points a visit over the time and the shots of training.
 
     python -m agents.curves "ppo_mask=runs/mask-?" "pots only=runs/gamma0-?" [--json FILE] [--out agents/pictures/curves.png]
     python -m agents.curves --from                    the chart again, from agents/pictures/curves.json
@@ -10,9 +9,8 @@ tables, a run at its end, without exploration, with two standard errors. A run t
 line where it begins to play; what a run with --start brought along is not counted. Shots are taken to be
 spread evenly over the time, and the machine was shared: minutes say a factor, not a percentage.
 
-The runs of version 0.1.0 were not kept. In their place agents/pictures/curves.json holds, for each agent, the
-range of its seeds' lines, read off the chart of that version, and the ends with 95 % intervals from
-agents/results.
+The runs of version 0.1.0 were not kept: agents/pictures/curves.json holds, for each agent, the range of its
+seeds' lines, read off the chart of that version, and the ends with 95 % intervals from agents/results.
 """
 
 from itertools import cycle

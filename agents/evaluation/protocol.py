@@ -95,8 +95,7 @@ def _conditions(report, seeds):
 
 
 def all_parts(report, agents, seeds):
-    """The parts of everything that the report's protocol says, in the order in which ``evaluate`` takes their
-    results."""
+    """The parts of all that the report's protocol says, in the order in which ``evaluate`` takes them."""
     p = report["protocol"]
     return [
         part
@@ -167,8 +166,7 @@ def parser():
 
 
 def checked(args):
-    """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError before
-    anything is played."""
+    """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError."""
     agents = entrants_of(args.agent, args, "agent")
     labels = [agent.label for agent in agents]
     for label in args.against:
@@ -201,7 +199,7 @@ def checked(args):
 
 
 def evaluate(report, agents, seeds, shown, results):
-    """Add the figures of everything that the report's protocol says to it, a whole condition at a time.
+    """Add the figures of all that the report's protocol says to it, a whole condition at a time.
 
     ``shown`` becomes the strokes of the main condition, by label; ``results``: those of ``all_parts``.
     """
@@ -295,8 +293,7 @@ def main(argv=None):
 
 
 def write(report, shown, args):
-    """Write what was asked for and print the tables. A file that cannot be written is named at the end, and
-    the others are there."""
+    """Write what was asked for and print the tables; files that cannot be written are named at the end."""
     files, failed = {name: getattr(args, name) for name in ("json", "markdown", "picture")}, []
     if "incomplete" in report:
         files = {name: spared(file) for name, file in files.items()}

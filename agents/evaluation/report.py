@@ -1,12 +1,9 @@
-"""How is an evaluation reported? Its tables and sentences, for a terminal and as Markdown; every word follows
-from the figures.
-
-``report`` is what agents/evaluation/protocol.py writes as JSON. The Markdown is made again from it, without
-playing, by
+"""How is an evaluation reported? Tables and sentences for a terminal and as Markdown, all from its figures.
 
     python -m agents.report agents/results/*.json
 
-which writes ``agents/results/*.md``; --show prints the tables instead.
+writes ``agents/results/*.md`` again from what agents/evaluation/protocol.py keeps as JSON, without playing;
+--show prints the tables instead.
 """
 
 import os
@@ -80,8 +77,7 @@ def _picked(report, **condition):
 
 
 def main_condition(report):
-    """Where the comparison in words, and the picture, are taken: the usual of everything that was played,
-    else its first value."""
+    """Where comparison and picture are taken: the usual of everything that was played, else its first value."""
     p = report["protocol"]
     return {
         name: USUAL[name] if USUAL[name] in p[key] else next(iter(p[key]))
@@ -96,8 +92,7 @@ def _listed(words):
 
 
 def title(report):
-    """What is compared: an axis under whose values agents were trained and play, or agents and where they
-    play; or who met."""
+    """What is compared: an axis of training and of play, or agents and where they play; or who met."""
     if tournament_report.is_tournament(report):
         return tournament_report.title(report)
     p, layouts = report["protocol"], _listed(report["protocol"]["layouts"])

@@ -74,8 +74,7 @@ def checked(args):
 
 
 def read(url):
-    """The data of a folder or URL: a dict of arrays as of ``agents.evaluation.searched.play``. Raises
-    ValueError if they are incomplete."""
+    """The data of a folder or URL: arrays as of ``searched.play``. ValueError if they are incomplete."""
     store = Store(url, "out", only_read=True)
     index = store.read(INDEX)
     keys = [] if index is None else json.loads(index)["parts"]
@@ -87,8 +86,7 @@ def read(url):
 
 @command("agents.search")
 def main(argv=None):
-    """Check, search, write. Exit code 0; 130 if it was interrupted, 1 if the cluster could not play on: what
-    was searched is kept."""
+    """Check, search, write. Exit code 0; 130: interrupted; 1: the cluster stopped. What was searched is kept."""
     p = parser()
     args = p.parse_args(argv)
     try:

@@ -149,8 +149,7 @@ def _fewer(text, labels, most):
 
 
 class Tournament:
-    """The round robin as far as it was played; ``before``: the content of an incomplete file to go on
-    with."""
+    """The round robin as far as it was played; ``before``: content of an incomplete file to go on with."""
 
     def __init__(self, entrants, protocol, game, command, before=None):
         self.entrants, self.protocol, self.game, self.command = entrants, protocol, game, command
@@ -224,9 +223,7 @@ class Tournament:
 
 @command("agents.tournament")
 def main(argv=None):
-    """Check, play, report. Exit code 0; 1 if a checked file is wrong; 2 for wrong arguments; 130 if it was
-    interrupted: what was played is kept.
-    """
+    """Check, play, report. Exit code 0; 1: a checked file is wrong; 2: wrong arguments; 130: interrupted, kept."""
     p = parser()
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_intermixed_args(argv)

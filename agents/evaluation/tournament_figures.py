@@ -1,5 +1,4 @@
-"""Which figures follow from the frames of a tournament? Shares of wins, breaks, fouls and strengths, each
-with its interval.
+"""Which figures follow from the frames of a tournament? Wins, breaks, fouls and strengths, with intervals.
 
 Everything is computed from the rows alone. What is resampled are the seeds: the two matches on one seed, one
 opened by each player, stay together, and all pairs with the same number of seeds have the same seeds in each
@@ -18,8 +17,8 @@ from .metrics import bounded
 from .tournament_strengths import ELO, PRIOR, bound, compared, linked, strengths
 
 KEYS = ("first", "second", "seed", "opener", "frame", "winner")
-"""Of a row: indices of the two players; seed of the match; who of them (0 or 1) broke in its first frame; the
-frame's index in the match; who won it, -1 if it was stopped."""
+"""Of a row: indices of the players; seed; who of them broke in the match's first frame (0 or 1); the frame's
+index in the match; its winner, -1 if it was stopped."""
 COUNTED = ("points", "scored", "visits", "strokes", "fouls", "best")
 """What is counted of each player: points, those of its own pots, visits, strokes, fouls, its best visit."""
 COLUMNS = (*KEYS, *(f"{name}_{side}" for name in COUNTED for side in KEYS[:2]))
@@ -36,8 +35,7 @@ RATIOS = {
 
 @dataclass
 class PlayedPair:
-    """The frames of two players, summed for each seed; ``sums``: name -> float (2, seeds), one row for each
-    player."""
+    """The frames of two players, summed for each seed; ``sums``: name -> float (2, seeds), a row a player."""
 
     players: tuple
     sums: dict

@@ -1,5 +1,4 @@
-"""What is the file of a tournament? Its fields with their meanings, one row for each frame, and whether it is
-what it says.
+"""What is the file of a tournament? Its fields, one row for each frame, and whether it is what it says.
 
 Software, machine, command, commit and date are those of a benchmark's result (``docs/benchmark.md``).
 """
@@ -97,8 +96,7 @@ def result_of(protocol, game, players, rows, *, command, load, incomplete):
 
 
 def faults(content):
-    """Check the file of a tournament: a line for each fault of its fields, its players, which frames it
-    holds, and its figures."""
+    """Check a tournament's file: a line for each fault of fields, players, frames and figures."""
     wrong = faults_of_fields(content, FIELDS, RANGES, VERSION)
     if wrong:
         return wrong
@@ -185,8 +183,7 @@ def _differences(value, want, name):
 
 
 def kept(path, protocol, game, sources):
-    """The content of an incomplete file of the same tournament; ``sources``: label and source of each player.
-    Raises ValueError."""
+    """The content of an incomplete file of the same tournament. Raises ValueError."""
     content = read_result(path)
     wrong = faults(content)
     if wrong:

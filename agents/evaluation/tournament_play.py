@@ -1,5 +1,4 @@
-"""How do two players meet? Many frames side by side, on the tables of one vector environment; each seed
-twice, opened once by each.
+"""How do two players meet? Many frames side by side; each seed twice, opened once by each.
 
 In one of the two matches on a seed the first player is the environment's agent, in the other the second is:
 the two sides are not quite alike, since a cue ball in hand waits for a player without placement at its usual
@@ -33,8 +32,7 @@ CHUNK = 100
 
 
 class TimedPlayer:
-    """A player whose ``decisions`` are counted and timed, ``seconds`` together; ``seed``: of what it
-    draws."""
+    """A player whose ``decisions`` are counted and timed, ``seconds`` together; ``seed``: of its draws."""
 
     def __init__(self, player, seed=0):
         self._player, self.seed = player, seed
@@ -60,8 +58,7 @@ class Encounter:
     """Some matches of two players, and how far each table is. Side 0 is the agent, side 1 the opponent.
 
     ``pair``: indices of the players, ``exchanged`` if the second of them is the agent; ``queue``: seed and
-    opening side of the matches that no table has begun; ``rows``: one for each frame that has ended, columns
-    ``COLUMNS``.
+    opening side of matches that no table has begun; ``rows``: one for each ended frame, columns ``COLUMNS``.
     """
 
     pair: tuple
@@ -158,8 +155,7 @@ class Encounter:
 
 
 def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
-    """Play two matches on each seed: a row for each frame, columns ``tournament_figures.COLUMNS``, by seeds,
-    openers and frames.
+    """Two matches on each seed: a row for each frame, columns ``COLUMNS``, by seeds, openers and frames.
 
     ``players``: those of the ``pair`` of indices; ``game``: options of the frames; ``threads`` change
     nothing; ``tick`` is called with the number of matches that have ended.
@@ -242,8 +238,7 @@ def _tables(meeting, options, opponent, threads):
 def _renewed(tables, meeting, done, before):
     """Begin the next frames where frames have ended. Returns where the next frame is over at once.
 
-    A new match is dealt from its seed; in the next frame of a match the table's random numbers go on. Tables
-    without a match: dealt, too.
+    A new match is dealt from its seed; in a next frame, and on tables without a match, random numbers go on.
     """
     anew = (meeting.unit != before).any(1) & meeting.going
     seeds = [int(seed) if new else None for seed, new in zip(meeting.unit[:, 0], anew, strict=True)]

@@ -1,5 +1,4 @@
-"""How is a tournament shown? The order of the players, the cross table and what they did, for a terminal and
-as Markdown."""
+"""How is a tournament shown? Who won, the cross table and how they play, for a terminal and as Markdown."""
 
 from commands.tables import TextTable, page, shown
 

@@ -1,5 +1,4 @@
-"""How strong is each player, on one scale? The model of Bradley and Terry, fitted to wins, draws and losses
-of all pairs.
+"""How strong is each player, on one scale? Bradley and Terry's model, fitted to the results of all pairs.
 
 Player i beats player j with probability p_ij = 1 / (1 + exp(t_j - t_i)) [Bradley & Terry, Biometrika 39
 (1952) 324]. A draw is half a win for each. The strengths t maximise the sum of w_ij log p_ij over all pairs,
@@ -24,8 +23,7 @@ ROUNDS = 200
 def strengths(wins, prior=PRIOR):
     """The strengths (..., k) of k players, with mean 0, for one or many tables of wins.
 
-    ``wins[..., i, j]``: how often i beat j, draws as halves; every player must be linked to every other by
-    pairs that met.
+    ``wins[..., i, j]``: how often i beat j, draws as halves; pairs that met must link all players.
     """
     w = np.array(wins, np.float64)
     k = w.shape[-1]
@@ -68,11 +66,9 @@ def compared(wins, anchor):
 
 
 def bound(others, matches, level=0.95):
-    """The least strength of a player that won all its independent matches (m,) against players of known
-    strengths (m,).
+    """The least strength of a player that won all its matches (m,) against players of strengths (m,).
 
-    At the bound, winning all has the probability 1 - level. For one that lost all: negate the strengths and
-    the bound.
+    There winning all has the probability 1 - level. For one that lost all: negate strengths and bound.
     """
     others, matches = np.asarray(others, np.float64), np.asarray(matches, np.float64)
     if matches.sum() <= 0:

@@ -1,5 +1,4 @@
-"""How does a player travel to another machine? By name, with the bytes of its model; a player of one's own
-with a digest of its module."""
+"""How does a player travel to another machine? By name, with its model's bytes or its module's digest."""
 
 import atexit
 import hashlib

@@ -1,5 +1,4 @@
-"""How good is a learned value of positions? What it says before each stroke of a planner, beside the points
-that really followed.
+"""How good is a learned value of positions? What it says before a planner's strokes, beside what followed.
 
     python -m agents.value_quality --agent planner --visits 500 --noise professional club
     python -m agents.value_quality --agent planner@runs/ppo_value-0 --json quality.json --markdown quality.md

@@ -1,7 +1,7 @@
 """How are the visits of an evaluation cut into parts, and put together again?
 
-A player's strokes depend on positions and seeds alone, and the seeds on the table and the decision: so the
-parts together are what one machine plays at once.
+A player's strokes depend on positions and seeds alone, the seeds on the table and the decision: so the parts
+together are what one machine plays at once.
 """
 
 import numpy as np
@@ -42,8 +42,7 @@ def play(shared, args, threads):
 
 
 def joined(results, total):
-    """The ``Strokes`` of all visits from the results of their parts, in the order in which one machine plays
-    them at once."""
+    """The ``Strokes`` of all visits from their parts, in the order in which one machine plays them at once."""
     columns = {name: np.concatenate([one[name] for one in results]) for name in COLUMNS}
     columns["visit"] = np.concatenate([one["visit"] + SIZE * n for n, one in enumerate(results)])
     order = np.lexsort((columns["visit"], columns["number"]))

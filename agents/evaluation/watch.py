@@ -34,8 +34,7 @@ SUFFIXES = (".html", ".json", *FILMS)
 
 
 def visit(player, seed, **options):
-    """A ``SnookerEnv`` after one whole visit of the player, with its history; the same visit as
-    ``play_visits`` gives for that seed."""
+    """A ``SnookerEnv`` after a whole visit, with its history; the visit of ``play_visits`` for that seed."""
     env = sn.SnookerEnv(**VISITS, **options)
     bound, decision = player.at(env), 0
     env.keep_history = True

@@ -1,5 +1,4 @@
-"""Which indirect pots does a position offer, and where must the cue ball be sent for them? From geometry
-alone.
+"""Which indirect pots does a position offer, and where must the cue ball be sent? From geometry alone.
 
 * bank: the object ball goes off one cushion into a pocket. It is aimed at the pocket's mirror image in the
   line where a ball's centre meets that cushion: the nose less R.
@@ -11,10 +10,8 @@ alone.
 Every shot is a chain of straight legs, and no other ball may be nearer than 2 R to any of them. An error of
 the cue ball's aim becomes one of the object ball's direction, magnified by path / (2 R cos cut) as in
 ``game.pots``, and again at the next impact. The half window of the pocket, divided by all of it, is the
-shot's geometric tolerance.
-
-The geometry leaves out throw and the true rebound off a cushion, which change directions by several degrees:
-``aim_search`` solves the aims in the simulator.
+shot's geometric tolerance. Throw and the true rebound off a cushion, which change directions by several
+degrees, are left out: ``aim_search`` solves the aims in the simulator.
 """
 
 from math import asin, atan2, cos, hypot, sin, sqrt
@@ -46,22 +43,19 @@ from snooker_env.kernels import TOLERANCE as POT_TOLERANCE
 DIRECT, BANK, PLANT, CANNON = range(4)
 """Kinds of shots."""
 (KIND, BALL, OTHER, POCKET, AIM_X, AIM_Y, GHOST_X, GHOST_Y, TOLERANCE, REACH) = range(10)
-"""Columns of a shot: its kind, the ball to strike first, the other ball (-1 if there is none), the pocket,
-the point that the first ball is sent to, where the cue ball meets it, the geometric tolerance [rad], and how
-far off its line [rad] the right aim may lie."""
+"""Columns of a shot: its kind, the ball to strike first, the other ball (or -1), the pocket, the point that the
+first ball is sent to, where the cue ball meets it, the geometric tolerance and the aim's reach [rad]."""
 COLUMNS = 10
 
 _RED = int(BallOn.RED)
 _THROW = 0.09
 """How far [rad] friction may throw a ball off the line of centres, about."""
 _BENT = 0.2
-"""How far [rad] the path off a cushion or a ball may lie from the geometric one, as a turn of the ball's
-direction before it."""
+"""How far [rad] the path off a cushion or a ball may lie from the geometric one, as a turn before it."""
 _THINNEST = 0.05
 """Cosine of the thinnest cut, as ``game.pots`` has it."""
 _CLOSE = 2.5 * BALL_RADIUS
-"""Two balls whose centres are nearer than this [m] make a set plant, if the line through them leads into a
-pocket."""
+"""Balls whose centres are nearer than this [m] make a set plant, if their line leads into a pocket."""
 _FAR = 1.2
 """Longest path [m] of a ball to the one that it goes off."""
 _SAMPLES = 24
@@ -72,8 +66,7 @@ MOST = 3
 
 @kernel
 def _first_leg(positions, present, ball, dx, dy):
-    """The cue ball's way to send ``ball`` along d: (ghost x, ghost y, 2 R cos cut / path); the last is 0 if
-    there is none."""
+    """The way to send ``ball`` along d: (ghost x, ghost y, 2 R cos cut / path); the last is 0 without one."""
     cx, cy = positions[0, 0], positions[0, 1]
     reach = 2.0 * BALL_RADIUS
     gx, gy = positions[ball, 0] - reach * dx, positions[ball, 1] - reach * dy
@@ -92,8 +85,7 @@ def _first_leg(positions, present, ball, dx, dy):
 
 @kernel
 def _keep(shots, count, what, aim, ghost, tolerance, reach):
-    """Put a shot, what = (kind, ball, other, pocket), in its place among the ``count`` widest so far; returns
-    how many there are then."""
+    """Put a shot, what = (kind, ball, other, pocket), among the ``count`` widest; returns how many there are."""
     if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
         return count
     at = min(count, shots.shape[0] - 1)
@@ -285,8 +277,7 @@ def _cannons(positions, present, ball, other, e, shots, count):
 
 @kernel
 def _find(positions, on_table, ball_on, noses, e, present, shots):
-    """Fill ``shots`` (m, COLUMNS) with the indirect ones, widest first; returns how many there are.
-    ``present`` (22,): work space."""
+    """Fill ``shots`` (m, COLUMNS), widest first; returns their number. ``present`` (22,): work space."""
     count, on = 0, balls_on(ball_on, bits(on_table))
     for i in range(N_BALLS):
         present[i] = on_table[i] and i > 0  # the cue ball leaves its place
@@ -350,7 +341,6 @@ def direct(positions, on_table, ball_on, most=MOST):
 
 
 def indirect(positions, on_table, ball_on, table, physics, most=MOST):
-    """The banks, plants and cannons (k, COLUMNS) on a ``Table`` that the geometry offers, widest first,
-    ``most`` at the most."""
+    """The banks, plants and cannons (k, COLUMNS) on a ``Table``, widest first, ``most`` at the most."""
     shots = np.empty((most, COLUMNS))
     return shots[: _indirect(positions, on_table, ball_on, table.noses, physics.e_b, shots)]

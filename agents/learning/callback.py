@@ -1,5 +1,4 @@
-"""How is a running training saved and stopped? Checkpoints, the learning curve and an orderly stop, by a
-callback of SB3."""
+"""How is a running training saved and stopped? Checkpoints, curve and an orderly stop, by an SB3 callback."""
 
 import signal
 import time
@@ -22,8 +21,7 @@ LOSSES = {
 
 
 class Stop:
-    """A context that records SIGINT and SIGTERM: the run is saved and ends after the current update. A second
-    signal acts at once."""
+    """Notes SIGINT and SIGTERM: the run is saved and ends after the current update. A second one acts at once."""
 
     def __init__(self):
         self.signal = None
@@ -116,8 +114,7 @@ class RunCallback(BaseCallback):
 
 
 LEAST, SHARE = 30.0, 0.01
-"""Seconds of pre-training that a kill may lose, and the largest share of its time for saving: slow saves come
-less often.
+"""Seconds of pre-training that a kill may lose, and the largest share of its time for saving.
 
 A checkpoint holds 3.3 kB for each imitated position (of agents with a lookahead): 35 MB for the 10,000 of
 ``ppo_foresight``, written in half a second. One of expert iteration holds at most 41,000 positions with 2.3

@@ -1,13 +1,10 @@
-"""How do a value, a policy and a planner make each other stronger? By expert iteration (Anthony, Tian &
-Barber 2017).
+"""How do value, policy and planner make each other stronger? Expert iteration (Anthony, Tian & Barber 2017).
 
 Visits are played by the planner, which judges strokes by the value and takes its proposals from the policy.
 From every position the value learns by a backup (``value_learning``), and the policy learns the values of
 choices, each simulated once under execution noise and judged by the value (``judged_choices``). So the
-planner grows stronger, and with it the value and the policy. The first rounds judge by the rule of thumb.
-
-The simulations of a round, two thirds of its time, are played in slices by ``where``: this process or a
-cluster. The learner stays here.
+planner grows stronger, and with it the value and the policy. The first rounds judge by the rule of thumb. The
+simulations of a round, two thirds of its time, are played in slices by ``where``: this process or a cluster.
 
 PPO then improves the policy further, with the value as reward-to-go: ``judge_rewards``.
 """
@@ -39,8 +36,7 @@ STARTS = (("", 0.6), *((name, 0.06) for name in _EACH), ("colours", 0.1))
 POOL = 4096
 """Positions in which visits begin, of all layouts."""
 HAND, EVEN = 6_144, 30_720
-"""Positions judged by the rule of thumb, and positions with even proposals; at most an eighth and a fifth of
-all."""
+"""Positions judged by the rule of thumb, and with even proposals; at most an eighth and a fifth of all."""
 
 
 class Starts:
@@ -68,9 +64,8 @@ class Starts:
 class ExpertIteration:
     """Expert iteration in ``states`` positions; it has the interface of ``imitation.Imitation``.
 
-    ``before``: of ``get_state``, with the model restored: the result equals that of an uninterrupted run, bit
-    for bit. ``where``: who plays the slices, ``Here`` by default, or a ``Cluster``; the result does not
-    depend on it.
+    ``before``: of ``get_state``, with the model restored: the result equals that of an uninterrupted run, bit for
+    bit. ``where``: who plays the slices, ``Here`` or a ``Cluster``; the result does not depend on it.
     """
 
     def __init__(self, model, venv, states, seed, threads, before=None, where=None):
@@ -174,7 +169,6 @@ class ExpertIteration:
 
 
 def judge_rewards(venv, policy, threads):
-    """Let the training tables add the learned value of the afterstate to each reward: the reward-to-go of PPO
-    with gamma = 0."""
+    """Let the tables add the learned value of the afterstate to each reward: PPO's reward-to-go at gamma = 0."""
     rules = venv.unwrapped.tables.options.rules
     venv.judge = value_of(policy.position_value, spread_of(rules.noise, rules.physics), threads)

@@ -1,9 +1,8 @@
 """How does ``MaskablePPO`` learn quickly from many tables? By the fused passes of ``TablePolicy``.
 
-The algorithm, its rollouts, its hyperparameters, its files and what it reports are those of sb3-contrib, and
-``MaskablePPO.load`` reads its models. Three things differ: ``TablePolicy.forward`` draws the choices of a
-rollout, masks are kept as bool, and an update computes the gradient of a minibatch with
-``FusedTable.ppo_gradient``.
+The algorithm, its rollouts, hyperparameters, files and reports are those of sb3-contrib. Three things differ:
+``TablePolicy.forward`` draws the choices of a rollout, masks are kept as bool, and an update computes the
+gradient of a minibatch with ``FusedTable.ppo_gradient``.
 """
 
 from typing import Any

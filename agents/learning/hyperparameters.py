@@ -1,5 +1,4 @@
-"""How is an agent defined? By its hyperparameters (``hyperparams/NAME.yml``, in the format of RL Baselines3
-Zoo), with Stable-Baselines3.
+"""How is an agent defined? By its ``hyperparams/NAME.yml``, in RL Baselines3 Zoo's format, for SB3.
 
 Additional keys: ``algo`` (the algorithm; the file is named after the agent), ``view`` (the observation: pots
 or foresight), ``imitation`` (positions of pre-training by imitation), ``expert`` (true: expert iteration in
@@ -60,8 +59,7 @@ KINDS = {
     "learning_rate": (rate, 0, 1),
     "first_aim_std": (number, 1e-6, 10),
 }
-"""Kind, least and largest value of each hyperparameter. Advantages are normalised, so a batch has at least
-two shots."""
+"""Kind, least and largest value of each; advantages are normalised, so a batch has two shots or more."""
 
 
 def names():
@@ -71,11 +69,9 @@ def names():
 
 @dataclass
 class Recipe:
-    """The definition of an agent: the keys named here, and in ``settings`` the algorithm's own
-    hyperparameters.
+    """The definition of an agent: the keys named here, the algorithm's own hyperparameters in ``settings``.
 
-    ``fidelity_given``: whether the fidelity of ``env_kwargs`` was asked for; else it is the recipe's, which
-    saves time in training alone.
+    ``fidelity_given``: whether that of ``env_kwargs`` was asked for; else the recipe's saves training time.
     """
 
     name: str
@@ -93,11 +89,9 @@ class Recipe:
 
     @classmethod
     def of(cls, name, changes=(), env_kwargs=None, **more):
-        """The recipe of that name with some "key=value" changed, then options of the environment and other
-        keys. Raises ValueError.
+        """The recipe of that name with "key=value" changed, then environment options and other keys. ValueError.
 
-        Algorithm, policy, network, view and action belong together: a change of them needs a recipe of its
-        own.
+        Algorithm, policy, network, view and action belong together: to change them takes another recipe.
         """
         file = FOLDER / f"{choice('agent', name, names())}.yml"
         written = yaml.safe_load(file.read_text(encoding="utf-8"))
@@ -183,8 +177,7 @@ def _changes(changes, keys):
 
 
 def _options(options, more, usual, policy):
-    """The environment's options with ``more`` of them; where ``policy`` needs it, actions must be read as
-    ``usual``. The environment checks the values."""
+    """Environment options with ``more``; if ``policy`` needs it, actions must be read as ``usual``."""
     known = (*ACTION_OPTIONS, *SHOT_OPTIONS, *TRAINING_OPTIONS)
     if not isinstance(options, dict):
         raise refuse("env_kwargs", options, f"must be a dict with keys of {', '.join(known)}")

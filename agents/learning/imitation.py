@@ -1,5 +1,4 @@
-"""How is a policy pre-trained by imitation? It is fitted to the one-shot values of the search; PPO continues
-from there.
+"""How is a policy pre-trained by imitation? It is fitted to the search's one-shot values; then PPO goes on.
 
 ``train.py`` does this for the recipes with ``imitation``, or with ``--imitate POSITIONS``.
 
@@ -26,8 +25,7 @@ from ..cluster.job import Here
 from .worths import worths
 
 TRIES = 48
-"""Trials in each position: half of them the learner's best choices, half random. Where there are at most half
-as many choices, each is tried twice."""
+"""Trials in each position: half the learner's best choices, half random; of few choices each is tried twice."""
 TEMPERATURE = 1.0
 """The difference in points that makes a choice e times as likely."""
 KEPT = 50_000
@@ -40,8 +38,7 @@ USED = ("action", "aim", "elevation", "placement", "noise", "physics", "table", 
 
 
 class Expert:
-    """Evaluates choices on the tables of a ``SnookerVectorEnv``; ``ahead``: with the value of the afterstate;
-    ``where``: who simulates."""
+    """Evaluates choices on a ``SnookerVectorEnv``; ``ahead``: with what they leave; ``where``: who simulates."""
 
     def __init__(self, tables, threads, rng, ahead=True, where=None):
         self._tables, self._rng, self._where = tables, rng, where or Here(threads)
@@ -71,11 +68,9 @@ def to_try(scores, masks, rng):
 
 
 class Imitation:
-    """Imitation in ``states`` positions of visits that ``model.policy`` plays; with gamma = 0 the value is
-    the points alone.
+    """Imitation in ``states`` positions of visits that ``model.policy`` plays; with gamma = 0 points alone count.
 
-    ``before``: of ``get_state``, with the model and its tables restored: the result equals that of an
-    uninterrupted run, bit for bit.
+    ``before``: of ``get_state``, model and tables restored: the result equals an uninterrupted run, bit for bit.
     """
 
     def __init__(self, model, venv, states, seed, threads, before=None, where=None):

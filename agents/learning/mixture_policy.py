@@ -1,5 +1,4 @@
-"""How can a policy learn an angle of the full circle? By a mixture of strokes, one along the line of each
-direct pot.
+"""How can a policy learn an angle of the full circle? By a mixture of strokes, along the lines of direct pots.
 
 A plain Gaussian over ``action="box", aim="absolute"`` never learns: a random direction almost never pots.
 Here the geometry is in the policy and the environment sees plain numbers. The density of an action (speed,
@@ -38,8 +37,8 @@ LINE_ENTRIES = 6
 LEAST_TOLERANCE = 5e-4
 """Least scale of the exploration [rad]: about a professional's error of aim (0.03 degrees)."""
 THROW_UNIT = 0.3
-"""Unit of the learned turn of the line of centres [rad]: a few times the largest throw. Adam's steps have one
-size whatever the unit, and the throw is learned from pots and misses alone."""
+"""Unit of the learned turn of the line of centres [rad], a few times the largest throw: Adam's steps have one
+size whatever the unit."""
 
 
 def lines_of(seen):
@@ -81,11 +80,9 @@ class LineReader(TableReader):
 
 
 class Throw(nn.Module):
-    """Lines (n, POTS, LINE_ENTRIES) and strokes (n, POTS, 3) -> the angle / pi by which to turn each line, at
-    first 0.
+    """Lines (n, POTS, LINE_ENTRIES) and strokes (n, POTS, 3) -> the angle / pi by which to turn each line.
 
-    Friction throws the object ball off the line of centres. The angle depends on cut, path and stroke alone,
-    not on the place on the table, and changes its sign in a mirror.
+    Friction throws the object ball off the line of centres, by an angle of cut, path and stroke alone.
     """
 
     def __init__(self, width=32):
@@ -134,8 +131,7 @@ class MixtureHead(nn.Module):
         self.throw.start()
 
     def forward(self, read):
-        """One pass: logarithms of the weights (n, POTS), means (n, POTS, 3), lines, and a function that gives
-        the aims of strokes."""
+        """Logarithms of the weights (n, POTS), means (n, POTS, 3), lines, and a function for aims of strokes."""
         n = len(read)
         end = CONTEXT + POTS * POT
         codes, side = read[:, CONTEXT:end].reshape(n, POTS, POT), read[:, end, None]
@@ -152,8 +148,7 @@ class MixtureHead(nn.Module):
 
 
 class StrokeMixture(Distribution):
-    """The density of this module's docstring, of actions (n, 4). ``log_std`` (4,): of speed, side, top, and
-    of aim in tolerances."""
+    """The density of actions (n, 4). ``log_std`` (4,): of speed, side, top, and of aim in tolerances."""
 
     def proba_distribution_net(self, log_std_init=0.0):
         """The head and the deviations."""

@@ -1,5 +1,4 @@
-"""Which networks read a snooker table? Small networks shared by balls and by pots, sums over them, and a head
-that scores every stroke.
+"""Which networks read a snooker table? Small ones shared by balls and by pots, sums, and a head for strokes.
 
 The order of balls or pots must not matter: each ball's row goes through one network and each pot's through
 another (deep sets, Zaheer et al. 2017). Masked sums of the balls' codes, of the pots' codes and the game's
@@ -38,8 +37,7 @@ def mlp(*sizes):
 
 
 class TableReader(BaseFeaturesExtractor):
-    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, and -1 where the table was
-    mirrored, else 1."""
+    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, -1 if mirrored, else 1."""
 
     def __init__(self, observation_space, width=32):
         super().__init__(observation_space, CONTEXT + POTS * POT + 1)
@@ -94,8 +92,7 @@ class StrokeHead(nn.Module):
 
 
 class ForesightReader(TableReader):
-    """The view ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context and a code for each
-    outcome."""
+    """The view ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context, a code an outcome."""
 
     def __init__(self, observation_space):
         super().__init__(observation_space)
@@ -121,8 +118,7 @@ class ForesightReader(TableReader):
 
 
 class OutcomeHead(nn.Module):
-    """The features of ``ForesightReader`` -> a score for each of all choices; only the simulated ones may be
-    played."""
+    """The features of ``ForesightReader`` -> a score for each choice; only simulated ones may be played."""
 
     def __init__(self):
         super().__init__()
@@ -192,8 +188,7 @@ class TablePolicy(_Policy):
         return {name: part for name, part in self.__dict__.items() if name != "_fused"}
 
     def forward(self, obs, deterministic=False, action_masks=None):
-        """As in the base class. Drawing with masks, in a rollout, is quick: one random number a table from
-        PyTorch's generator."""
+        """As in the base class; to draw with masks is quick: one random number of PyTorch's a table."""
         if deterministic or not self._plays(obs, action_masks):
             return super().forward(obs, deterministic, action_masks)
         choices, values, logs = self.fused.act(*_arrays(obs, action_masks), torch.rand(len(obs)).numpy())
@@ -222,8 +217,7 @@ def _arrays(obs, action_masks):
 
 
 class JudgedPolicy(TablePolicy):
-    """``TablePolicy`` with the value of positions that judges it; saved together, learned apart
-    (``expert_iteration``)."""
+    """``TablePolicy`` with the value of positions that judges it; saved together, learned apart."""
 
     def _build(self, lr_schedule):
         super()._build(lr_schedule)

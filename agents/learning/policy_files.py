@@ -1,5 +1,4 @@
-"""How is the policy of another trainer stored in a file? As the weights of its layers, an ``.npz`` of NumPy
-without any code.
+"""How is the policy of another trainer stored? As the weights of its layers, an ``.npz`` without any code.
 
 RLlib, TorchRL and a loop of one's own each save in a way of their own, most of them as pickles. Where the
 policy is a plain multilayer perceptron from the flat observation to the 540 choices, its weights are all
@@ -30,8 +29,7 @@ ABOUT = {"trainer": "RLlib", "activation": "tanh", "shots": 0, "seed": 0, "gamma
 
 
 def packed_policy(weights, **about):
-    """A policy as the bytes of its file. ``weights``: as in ``dense_layers.Layers``; ``about``: a value for
-    each key of ``ABOUT``."""
+    """A policy as its file's bytes; ``weights``: as of ``dense_layers.Layers``; ``about``: all of ``ABOUT``."""
     if set(about) != set(ABOUT):
         raise refuse("about", sorted(about), f"must have the keys {', '.join(ABOUT)}")
     arrays = {}
@@ -48,8 +46,7 @@ def write_policy(path, weights, **about):
 
 
 def read_policy(path, field):
-    """The ``Trained`` policy in a file, its network ``dense_layers.Layers``. Raises ValueError, naming
-    ``field``; nothing is unpickled."""
+    """The ``Trained`` policy in a file, its network ``Layers``. ValueError, naming ``field``; no pickles."""
     try:
         with zipfile.ZipFile(path) as parts:
             if sum(part.file_size for part in parts.infolist()) > MOST:

@@ -20,8 +20,7 @@ from .models import CHECKPOINT, zipped
 
 
 def claimed(out, resume):
-    """The ``Lock`` on the folder of a new run (made here) or of one to resume. Raises ValueError if the
-    folder is unfit or in use."""
+    """The ``Lock`` on the folder of a new run (made here) or of one to resume. ValueError if it is unfit."""
     if not (out / LOCK).exists():
         _check(out, resume)
     out.mkdir(parents=True, exist_ok=True)

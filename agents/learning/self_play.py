@@ -1,5 +1,4 @@
-"""How is a round of self-play simulated, here or by many workers? In slices of ``SLICE`` positions, by the
-weights of the learner.
+"""How is a round of self-play simulated, here or by many workers? In slices, by the weights of the learner.
 
 The learner draws all random numbers and cuts the positions into slices; a slice is computed from these alone,
 and no position's results depend on those beside it (``dense_layers``). So a training does not depend on the

@@ -40,9 +40,8 @@ class ValueLearning:
         self.losses = deque(maxlen=100)
 
     def add(self, seen, after, points, goes_on, follows):
-        """Keep a round: features (n, SIZE) of the positions and (n, s, SIZE) of what s samples left, their
-        points and whether the visit went on (n, s), and whether the first sample was really played on
-        (n,)."""
+        """Keep a round: features (n, SIZE) of positions and (n, s, SIZE) of what s samples left, points and
+        whether visits went on (n, s), and whether the first sample was really played on (n,)."""
         self._rounds.append((seen.astype(np.float16), after, points.astype(np.float32), goes_on, follows))
         del self._rounds[: -max(1, KEPT // self._n)]
 

@@ -1,5 +1,4 @@
-"""How is the value of a position computed? V = P x U: the chance that the next stroke scores, times what the
-visit then brings.
+"""How is the value of a position computed? V = P x U: the chance to score, times what the visit then brings.
 
 One small network with two outputs (``ValueNetwork``). P starts from the likeliest pot's chance by its width;
 U is positive. It is trained with torch; ``snooker_env.planning.learned.LearnedValue`` plays the same weights.
@@ -15,8 +14,7 @@ from snooker_env.planning.learned.value_features import LOGIT, SIZE
 
 WIDTHS = (160, 96)
 MEMBERS = 4
-"""Number of networks whose mean is the value: each starts and learns apart, and errors that they do not share
-cancel."""
+"""Networks whose mean is the value: each learns apart, and errors that they do not share cancel."""
 
 
 class ValueNetwork(nn.Module):

@@ -1,5 +1,4 @@
-"""What are choices worth by the search's rule of thumb? A task of imitation, in which each is simulated
-once."""
+"""What are choices worth by the search's rule of thumb? A task of imitation: each is simulated once."""
 
 import numpy as np
 
@@ -9,8 +8,7 @@ from .self_play import of_choices, once
 
 
 def play(shared, args, threads):
-    """The task: ``shared`` has "run" (an id), "options", "spread" and "ahead"; ``args`` is as of
-    ``self_play.choices``."""
+    """The task. ``shared``: "run" (an id), "options", "spread", "ahead"; ``args``: of ``self_play.choices``."""
     planner = once(("worths", shared["run"], threads), lambda: Planner(shared["options"], threads=threads))
     points, goes_on, left, _ = planner.play(Positions(*args["at"]), args["rows"], args["picks"], args["keys"])
     ahead = prospects_of(left, shared["spread"], threads=planner.threads)[0]

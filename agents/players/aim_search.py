@@ -31,8 +31,7 @@ AIMS = 40
 
 
 def widest_run(good):
-    """Start and length of the longest run of True in each row of ``good`` (m, n); of equal ones that nearest
-    to the middle."""
+    """Start and length of the longest run of True in each row of ``good`` (m, n), that nearest the middle."""
     m, n = good.shape
     lengths, run = np.zeros((m, n), np.int64), np.zeros(m, np.int64)
     for i in range(n):
@@ -87,8 +86,8 @@ class Aimer:
         return strokes
 
     def widest(self, one, shots):
-        """The shot with the widest interval of aims that pot, simulated on the only position of ``one``: (its
-        stroke, half the width [rad], index of the shot, index of the speed); None if none pots."""
+        """The shot with the widest potting interval of aims in the only position of ``one``: (its stroke, half
+        the width [rad], index of the shot, index of the speed); None if none pots."""
         if len(shots) == 0:
             return None
         lines = self._solve(one, np.zeros(len(shots), np.int64), shots, SPEEDS).ravel()
@@ -104,8 +103,7 @@ class Aimer:
         return plain(speeds[best : best + 1], [middle])[0], 0.5 * width, *divmod(best, len(SPEEDS))
 
     def _scan(self, one, speeds, lines, reaches):
-        """Middle and width [rad] of the widest interval of aims that pot, within ``reaches`` of ``lines``:
-        (m,) each, 0 if none does."""
+        """Middle and width [rad] of the widest potting interval near ``lines``: (m,) each, 0 without one."""
         steps = 2.0 * reaches / AIMS
         aims = lines[:, None] + steps[:, None] * (np.arange(AIMS) - 0.5 * (AIMS - 1))
         tries = plain(np.repeat(speeds, AIMS), aims.ravel())
@@ -113,8 +111,7 @@ class Aimer:
         return lines + steps * (starts + 0.5 * (lengths - 1) - 0.5 * (AIMS - 1)), steps * lengths
 
     def _solve(self, at, rows, shots, speeds):
-        """Directions of the cue ball (m, s) [rad] that send the first ball of each shot (m, COLUMNS) to its
-        aim point at each speed."""
+        """Directions of the cue ball (m, s) [rad] for shots (m, COLUMNS) at their aim points at each speed."""
         m, s = len(shots), len(speeds)
         aims = np.empty((m, s))
         plain = shots[:, BALL] < 0.0

@@ -1,5 +1,4 @@
-"""How does the player ``geometric`` play? Direct pots, else banks, plants and cannons; aims are solved in the
-simulator."""
+"""How does the player ``geometric`` play? Direct pots, else banks, plants and cannons; aims are simulated."""
 
 import numpy as np
 

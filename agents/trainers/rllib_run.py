@@ -1,5 +1,4 @@
-"""How is an agent trained with RLlib from the command line? Trains, saves, resumes, and judges the policy on
-held-out tables.
+"""How is an agent trained with RLlib from the command line? Trains, saves, resumes, judges on held-out tables.
 
     python -m agents.train_rllib                             300,000 shots with one env runner: some minutes
     python -m agents.train_rllib --runners 2 --out runs/two  two env runners, each with its own tables
@@ -8,8 +7,7 @@ held-out tables.
 
 Files of a run folder: ``policy.npz``, the policy as plain weights; ``untrained.npz``, the same before the
 first update; ``results.json``, every figure; ``state.json`` and a folder ``checkpoint-N`` of RLlib's own,
-from which a run goes on. That folder holds pickles, and loading a pickle runs code: --resume only your own
-runs.
+from which a run goes on. It holds pickles, whose loading runs code: --resume only your own runs.
 
 A resumed run has the weights, the optimiser and the counters of the checkpoint. It is not bit for bit the
 uninterrupted one: RLlib saves neither the tables nor the random generators of its runners. They begin anew,
@@ -172,8 +170,7 @@ def claimed(out, resume):
 
 
 def save(out, settings, progress, algorithm):
-    """A checkpoint: RLlib's folder first, then the file that names it, so that a kill at any time leaves a
-    whole one."""
+    """A checkpoint: RLlib's folder first, then the file that names it: a kill leaves a whole one."""
     name = f"checkpoint-{progress.updates:06d}"
     if progress.checkpoint != name:
         half = (out / f"{name}.tmp").absolute()
@@ -223,8 +220,7 @@ def _train(out, settings, progress, algorithm, stop, shown):
 
 
 def judge(out, settings, progress):
-    """Held-out visits of the policy, of itself before the training, and of simple players, in
-    ``results.json`` and as a table."""
+    """Held-out visits of the policy, trained and not, and of simple players: ``results.json`` and a table."""
     files = {"trained": POLICY, "untrained": UNTRAINED}
     players = {name: player_of_model(read_policy(out / file, "out")) for name, file in files.items()}
     players |= {name: snooker_env.player(name) for name in ("ghost_ball", "random")}

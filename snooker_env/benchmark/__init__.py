@@ -1,5 +1,4 @@
-"""The benchmark: named tasks with frozen options, and how agents are judged on them.
-``python -m snooker_env.benchmark`` runs it."""
+"""The benchmark, ``python -m snooker_env.benchmark``: tasks with frozen options, and how agents are judged."""
 
 from ..play.program import AgentError, ProgramPlayer
 from .agents import Agent

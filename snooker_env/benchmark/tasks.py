@@ -66,10 +66,7 @@ class Task:
     note: str = ""
 
     def options(self, **free: Any) -> Options:
-        """The options of the task as it is trained: frozen ones and these of ``FREE``.
-
-        ValueError for a frozen option or a wrong value, TypeError for a keyword that is no option.
-        """
+        """The options of the task as it is trained: frozen ones and these of ``FREE``; ValueError for others."""
         frees = ", ".join(FREE)
         for name in (name for name in free if name not in FREE):
             if name == "options":
@@ -105,10 +102,7 @@ class Task:
         return self.changes.get("task") == "frame"
 
     def seeds(self, n: int) -> list[int]:
-        """The seeds of the first n judged tables; of frames, which share their rack, those of the errors.
-
-        ValueError if n is not in [1, 2**20], or the layout has fewer tables.
-        """
+        """The seeds of the first n judged tables (of frames: of the errors); ValueError if there are fewer."""
         integer("episodes", n, 1, 2**20)
         return (
             list(range(HELD_OUT_SEED, HELD_OUT_SEED + n)) if self.frame else tables_of(self.judged_layout, n)
