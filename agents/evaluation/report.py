@@ -135,11 +135,8 @@ def _seeds(runs):
     return len({run["seed"] for run in runs})
 
 
-COSTS = (
-    ("imitated", "positions imitated", 0.0),
-    ("shots", "shots", 0.0),
-    ("seconds", "seconds of training", SAME),
-)
+_SECONDS = "seconds", "seconds of training", SAME
+COSTS = (("imitated", "positions imitated", 0.0), ("shots", "shots", 0.0), _SECONDS)
 """What a training costs: its key, its name, and by what share it may differ to be called equal."""
 
 
@@ -245,17 +242,11 @@ def _columns(against, most):
     def times(other):
         return lambda r: _pm(r["ratios"][other]["points_a_visit"]) if other in r["ratios"] else ""
 
-    breaks = {
-        "centuries %": ("centuries", CENTURY),
-        "147s %": ("maximums", MAXIMUM),
-        "clearances %": ("clearances", 0),
-    }
+    breaks = {"centuries %": ("centuries", CENTURY), "147s %": ("maximums", MAXIMUM)}
+    breaks["clearances %"] = ("clearances", 0)
+    points = {"points a visit": figure("points_a_visit"), "IQM": figure("points_a_visit_iqm")}
     return {
-        "points": {
-            "points a visit": figure("points_a_visit"),
-            "IQM": figure("points_a_visit_iqm"),
-            "best": lambda r: str(r["longest_break"]),
-        },
+        "points": points | {"best": lambda r: str(r["longest_break"])},
         "points against others": {f"times {other}": times(other) for other in against},
         "pots": {"pots a visit": figure("pots_a_visit"), "IQM": figure("pots_a_visit_iqm")},
         "breaks": {heading: share(name) for heading, (name, least) in breaks.items() if least <= most},

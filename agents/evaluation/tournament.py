@@ -184,11 +184,8 @@ class Tournament:
         ``tick`` is called with the number of matches that have ended, ``saved`` after each part.
         """
         done = {tuple(row[:3]) for row in self.rows}
-        parts = [
-            part
-            for part in self.parts
-            if not all((*part.args["pair"], seed) in done for seed in part.args["seeds"])
-        ]
+        played = lambda part: all((*part.args["pair"], seed) in done for seed in part.args["seeds"])  # noqa: E731
+        parts = [part for part in self.parts if not played(part)]
         shared = {"players": {"players": [sent(entrant, 0) for entrant in self.entrants]}}
         here = self._here(parts, shared["players"], threads, tick)
         for k, result in here if where.here else ended(parts, shared, where):
@@ -208,13 +205,8 @@ class Tournament:
     def result(self, incomplete=None):
         """The content of the file; ``incomplete``: why frames are missing."""
         players = [
-            {
-                "label": entrant.label,
-                "source": entrant.runs[0],
-                "training": entrant.trained()[0],
-                "decisions": decisions,
-                "seconds": seconds,
-            }
+            {"label": entrant.label, "source": entrant.runs[0], "training": entrant.trained()[0]}
+            | {"decisions": decisions, "seconds": seconds}
             for entrant, (decisions, seconds) in zip(self.entrants, self.times, strict=True)
         ]
         about = {"command": self.command, "load": self.load, "incomplete": incomplete}

@@ -106,12 +106,8 @@ def figures_of(labels, rows, anchor, resamples=RESAMPLES):
         mine = [(pair, pair.players.index(k)) for pair in pairs if k in pair.players]
         players[label] = _player(mine, resamples) | elo[k] if mine else None
     shares = [_pair(pair, labels, resamples) for pair in pairs]
-    return {
-        "players": players,
-        "pairs": shares,
-        "opener": _opener(pairs, resamples),
-        "stopped": sum(pair.stopped for pair in pairs),
-    }
+    shared = {"opener": _opener(pairs, resamples), "stopped": sum(pair.stopped for pair in pairs)}
+    return {"players": players, "pairs": shares, **shared}
 
 
 def _player(mine, resamples):
@@ -126,16 +122,13 @@ def _player(mine, resamples):
     figures["drawn"] = sum(pair.draws for pair, _ in mine)
     for name, won, many in (("win_rate", "won", "matches"), ("frame_rate", "frames_won", "frames")):
         shares = [pair.sums[won][side].sum() / pair.sums[many][side].sum() for pair, side in mine]
-        samples = [
-            pair.samples(pair.sums[won][side], resamples) / pair.samples(pair.sums[many][side], resamples)
-            for pair, side in mine
-        ]
+        drawn_of = lambda sums, pair, side: pair.samples(pair.sums[sums][side], resamples)  # noqa: E731
+        samples = [drawn_of(won, pair, side) / drawn_of(many, pair, side) for pair, side in mine]
         figures[name] = _share(np.mean(shares), 1.0, np.mean(samples, axis=0), seeds)
     for name, (above, below) in RATIOS.items():
-        known = (
-            (sums[above] / sums[below], drawn[above] / drawn[below]) if sums[below] else (np.nan, [np.nan])
-        )
-        figures[name] = figure(*known)
+        known = bool(sums[below])
+        drawn_ratio = drawn[above] / drawn[below] if known else [np.nan]
+        figures[name] = figure(sums[above] / sums[below] if known else np.nan, drawn_ratio)
     return figures | {"highest_break": max(pair.best[side] for pair, side in mine)}
 
 
@@ -143,15 +136,10 @@ def _pair(pair, labels, resamples):
     """The figures of two players against each other."""
     won, matches, n = pair.sums["won"], pair.sums["matches"][0].sum(), pair.seeds
     opening = [_share(wins.sum(), n, pair.samples(wins, resamples) / n, n) for wins in pair.opened]
-    return {
-        "first": labels[pair.players[0]],
-        "second": labels[pair.players[1]],
-        "matches": int(matches),
-        "won": float(won[0].sum()),
-        "drawn": pair.draws,
-        "win_rate": _share(won[0].sum(), matches, pair.samples(won[0], resamples) / matches, n),
-        "when_opening": opening,
-    }
+    first, second = (labels[k] for k in pair.players)
+    made = {"first": first, "second": second, "matches": int(matches), "won": float(won[0].sum())}
+    made |= {"drawn": pair.draws, "when_opening": opening}
+    return made | {"win_rate": _share(won[0].sum(), matches, pair.samples(won[0], resamples) / matches, n)}
 
 
 def _opener(pairs, resamples):

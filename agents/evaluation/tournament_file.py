@@ -101,13 +101,11 @@ def faults(content):
     if wrong:
         return wrong
     protocol = content["protocol"]
-    for name, value, want in (
-        ("schema.name", content["schema"]["name"], NAME),
-        ("schema.version", content["schema"]["version"], VERSION),
-        ("columns", content["columns"], list(COLUMNS)),
-        ("protocol.prior", protocol["prior"], PRIOR),
-        ("protocol.anchor_elo", protocol["anchor_elo"], ANCHOR_ELO),
-    ):
+    form = {"schema.name": NAME, "schema.version": VERSION, "columns": list(COLUMNS)}
+    form |= {"protocol.prior": PRIOR, "protocol.anchor_elo": ANCHOR_ELO}
+    for name, want in form.items():
+        room, _, field = name.rpartition(".")
+        value = (content[room] if room else content)[field]
         if value != want:
             wrong.append(f"{name} = {value!r}: must be {want!r} for this version of snooker_env")
     for k, player in enumerate(content["players"]):
@@ -189,11 +187,8 @@ def kept(path, protocol, game, sources):
     if wrong:
         raise refuse("out", str(path), f"must be the file of a tournament to go on with ({wrong[0]})")
     players = [(player["label"], player["source"]) for player in content["players"]]
-    for name, was, now in (
-        ("protocol", content["protocol"], protocol),
-        ("game", content["game"], game),
-        ("players", players, sources),
-    ):
-        if was != now:
+    now = {"protocol": protocol, "game": game, "players": sources}
+    for name, was in (content | {"players": players}).items():
+        if name in now and was != now[name]:
             raise refuse("out", str(path), f"must be a file with the same {name} to go on with: it has {was}")
     return content

@@ -182,10 +182,8 @@ def play(shared, args, threads, tick=None):
     ``shared``: "players", of ``travel.sent``. ``args``: "pair" (indices), "seeds" of the matches, "draws"
     (each player's ``drawn``), "game" as it stands in the file, "best_of"; ``tick`` is that of ``play_pair``.
     """
-    players = [
-        TimedPlayer(arrived(shared["players"][k]), seed)
-        for k, seed in zip(args["pair"], args["draws"], strict=True)
-    ]
+    both = zip(args["pair"], args["draws"], strict=True)
+    players = [TimedPlayer(arrived(shared["players"][k]), seed) for k, seed in both]
     game = args["game"] | {"physics": physics_option(args["game"]["physics"])}
     rows = play_pair(tuple(args["pair"]), players, game, args["seeds"], args["best_of"], threads, tick)
     counted = {name: np.array([player.count[name] for player in players]) for name in players[0].count}
@@ -200,9 +198,8 @@ def _play(meeting, agent, opponent, game, threads, tick):
     tables = _tables(meeting, options, opponent, threads)
     _, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
     meeting.begun(meeting.going, info)
-    moved = np.zeros(
-        len(meeting.frame), bool
-    )  # since the reset: only then is a state sure to hold a stroke to play
+    # since the reset: only then is a state sure to hold a stroke to play
+    moved = np.zeros(len(meeting.frame), bool)
     over = info["winner"] >= 0  # won by the opponent in its first visit: the next step plays nothing
     while (going := meeting.going).any():
         to_play = going & ~over

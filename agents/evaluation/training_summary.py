@@ -24,9 +24,8 @@ def evaluate(recipe, model, visits, part_of):
     players = {"trained": trained, "ghost_ball": player("ghost_ball"), "random": player("random")}
     if trained.learned is not None:
         players |= {"planner": SearchPlayer("planner", learned=trained.learned), "search": player("search")}
-    shared: dict[str, Any] = {"noise": "none"} | {
-        key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS
-    }
+    chosen = {key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS}
+    shared: dict[str, Any] = {"noise": "none"} | chosen
     # some learn on "fast" to save time, and are meant to play on the usual fidelity
     if not recipe.fidelity_given:
         shared.pop("fidelity", None)
@@ -43,9 +42,8 @@ def evaluate(recipe, model, visits, part_of):
 
 
 def _better(a, b):
-    return a["points_a_visit"] - b["points_a_visit"] > 2.0 * np.hypot(
-        a["points_a_visit_se"], b["points_a_visit_se"]
-    )
+    error = np.hypot(a["points_a_visit_se"], b["points_a_visit_se"])
+    return a["points_a_visit"] - b["points_a_visit"] > 2.0 * error
 
 
 def conclusion(agent, steps, imitated, figures, start=None):

@@ -67,11 +67,8 @@ def quality(player, visits, layout, noise):
         figures[name] = {"mean": float(of.mean()), "correlation": correlation}
     groups = np.array_split(np.argsort(value, kind="stable"), max(1, min(GROUPS, len(visit) // LEAST)))
     figures["groups"] = [
-        {
-            "value": float(value[rows].mean()),
-            "followed": float(followed[rows].mean()),
-            "se": _standard_error(followed[rows], visit[rows]),
-        }
+        {"value": float(value[rows].mean()), "followed": float(followed[rows].mean())}
+        | {"se": _standard_error(followed[rows], visit[rows])}
         for rows in groups
     ]
     return figures

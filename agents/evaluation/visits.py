@@ -30,15 +30,12 @@ def play(shared, args, threads):
     """The task: the strokes of some visits, a dict of arrays."""
     k, seeds = args["k"], args["seeds"]
     options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}
-    rekey = k if args["rekey"] else None
-    strokes = play_visits(
-        arrived(shared), len(seeds), first_seed=seeds, seed=k, threads=threads, rekey=rekey, **options
-    )
+    one, rekey = arrived(shared), k if args["rekey"] else None
+    options |= {"first_seed": seeds, "seed": k, "threads": threads, "rekey": rekey}
+    strokes = play_visits(one, len(seeds), **options)
     columns = {name: getattr(strokes, name) for name in COLUMNS}
-    return columns | {
-        "seconds": np.float64(strokes.decision_seconds),
-        "simulated": np.int64(strokes.simulated),
-    }
+    more = {"seconds": np.float64(strokes.decision_seconds), "simulated": np.int64(strokes.simulated)}
+    return columns | more
 
 
 def joined(results, total):

@@ -84,6 +84,13 @@ def _first_leg(positions, present, ball, dx, dy):
 
 
 @kernel
+def _width(k, dx, dy):
+    """Width [m] of pocket k for a ball that comes along d; 0 if none gets in."""
+    along = dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y]
+    return window(along, POCKET_AIMS[k, IS_MIDDLE] > 0.0)
+
+
+@kernel
 def _keep(shots, count, what, aim, ghost, tolerance, reach):
     """Put a shot, what = (kind, ball, other, pocket), among the ``count`` widest; returns how many there are."""
     if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
@@ -95,12 +102,9 @@ def _keep(shots, count, what, aim, ghost, tolerance, reach):
         at -= 1
     row = shots[at]
     row[KIND], row[BALL], row[OTHER], row[POCKET] = what
-    (row[AIM_X], row[AIM_Y]), (row[GHOST_X], row[GHOST_Y]), row[TOLERANCE], row[REACH] = (
-        aim,
-        ghost,
-        tolerance,
-        reach,
-    )
+    row[AIM_X], row[AIM_Y] = aim
+    row[GHOST_X], row[GHOST_Y] = ghost
+    row[TOLERANCE], row[REACH] = tolerance, reach
     return min(count + 1, shots.shape[0])
 
 
@@ -126,9 +130,7 @@ def _banks(positions, present, ball, noses, shots, count):
             if not noses[j, 3] <= (qy if across_x else qx) <= noses[j, 4]:
                 continue
             ex, ey = (-dx, dy) if across_x else (dx, -dy)
-            width = window(
-                ex * POCKET_AIMS[k, AXIS_X] + ey * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
-            )
+            width = _width(k, ex, ey)
             if width <= 0.0:
                 continue
             gx, gy, gain = _first_leg(positions, present, ball, dx, dy)
@@ -160,9 +162,7 @@ def _plants(positions, present, ball, other, shots, count):
         if run < 1e-9:
             continue
         dx, dy = dx / run, dy / run
-        width = window(
-            dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
-        )
+        width = _width(k, dx, dy)
         if width <= 0.0 or ux * dx + uy * dy < _THINNEST:
             continue
         half = width / (2.0 * run)
@@ -252,9 +252,7 @@ def _cannons(positions, present, ball, other, e, shots, count):
                 else:
                     b = middle
             qx, qy, ix, iy, ox, oy = _off(ax, ay, ux, uy, apart, a, e)
-            width = window(
-                ox * POCKET_AIMS[k, AXIS_X] + oy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
-            )
+            width = _width(k, ox, oy)
             if width <= 0.0:
                 continue
             gx, gy, gain = _first_leg(positions, present, ball, ix, iy)
@@ -269,9 +267,8 @@ def _cannons(positions, present, ball, other, e, shots, count):
                 continue
             if not clear_segment(positions, present, qx, qy, kx, ky, ball, other, reach):
                 continue
-            count = _keep(
-                shots, count, (CANNON, ball, other, k), (qx, qy), (gx, gy), tolerance, _BENT * turn * gain
-            )
+            reaches = _BENT * turn * gain
+            count = _keep(shots, count, (CANNON, ball, other, k), (qx, qy), (gx, gy), tolerance, reaches)
     return count
 
 
@@ -312,23 +309,13 @@ def direct_pots(positions, on_table, ball_on, shots, counts):
         for j in range(counts[t]):
             pocket, row = int(found[j, POT_POCKET]), shots[t, j]
             row[KIND], row[BALL], row[OTHER], row[POCKET] = DIRECT, found[j, POT_BALL], -1, pocket
-            row[AIM_X], row[AIM_Y], row[GHOST_X], row[GHOST_Y] = (
-                POCKET_AIMS[pocket, POCKET_X],
-                POCKET_AIMS[pocket, POCKET_Y],
-                found[j, POT_X],
-                found[j, POT_Y],
-            )
+            row[AIM_X], row[AIM_Y] = POCKET_AIMS[pocket, POCKET_X], POCKET_AIMS[pocket, POCKET_Y]
+            row[GHOST_X], row[GHOST_Y] = found[j, POT_X], found[j, POT_Y]
             row[TOLERANCE] = row[REACH] = found[j, POT_TOLERANCE]
         if counts[t] == 0:
             row, angle = shots[t, 0], line_of(p, on_table[t], on, space)
-            row[KIND], row[BALL], row[OTHER], row[POCKET], row[TOLERANCE], row[REACH] = (
-                DIRECT,
-                -1,
-                -1,
-                -1,
-                0.0,
-                0.0,
-            )
+            row[KIND], row[TOLERANCE], row[REACH] = DIRECT, 0.0, 0.0
+            row[BALL] = row[OTHER] = row[POCKET] = -1
             row[AIM_X] = row[GHOST_X] = p[0, 0] + cos(angle)
             row[AIM_Y] = row[GHOST_Y] = p[0, 1] + sin(angle)
 

@@ -11,12 +11,8 @@ from stable_baselines3.common.callbacks import BaseCallback
 from .run_folder import save_checkpoint
 
 POINTS_OF_THE_CURVE = 20
-LOSSES = {
-    "policy": "train/policy_gradient_loss",
-    "value": "train/value_loss",
-    "actor": "train/actor_loss",
-    "critic": "train/critic_loss",
-}
+_NAMES = "policy_gradient_loss", "value_loss", "actor_loss", "critic_loss"
+LOSSES = {name.partition("_")[0]: name for name in _NAMES}
 """The losses that are shown, by the names under which SB3 records them: of PPO, of SAC and TQC."""
 
 
@@ -89,7 +85,8 @@ class RunCallback(BaseCallback):
         rollout, losses = rollout_of(self.model), self.model.logger.name_to_value
         rounds = goal_of(self.model, self.settings.steps) // rollout
         words = [f"round {self.num_timesteps // rollout + 1:,} of {rounds:,}"]
-        words += [f"{name} loss {losses[key]:.3g}" for name, key in LOSSES.items() if key in losses]
+        known = ((name, losses.get(f"train/{key}")) for name, key in LOSSES.items())
+        words += [f"{name} loss {loss:.3g}" for name, loss in known if loss is not None]
         words += [f"{np.mean(recent):.2f} points a visit"] if recent else []
         self.figures = ", ".join(words)
         self.stopping = self.stop.signal is not None

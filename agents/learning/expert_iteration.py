@@ -101,15 +101,9 @@ class ExpertIteration:
 
     def get_state(self):
         """The state, beside the model and the process's random generators; most of it are positions."""
-        return {
-            "done": self.done,
-            "curve": self.curve,
-            "seconds": self.seconds,
-            "rng": self._rng.bit_generator.state,
-            "at": positions_given(self._at),
-            "value": self._value.get_state(),
-            "choices": self._choices.get_state(),
-        }
+        made = {name: getattr(self, name) for name in ("done", "curve", "seconds")}
+        made |= {"rng": self._rng.bit_generator.state, "at": positions_given(self._at)}
+        return made | {"value": self._value.get_state(), "choices": self._choices.get_state()}
 
     def round(self):
         """Play a stroke from every position and learn; each twentieth of all is an entry of ``curve``."""

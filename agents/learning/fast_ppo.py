@@ -39,30 +39,23 @@ class FastPPO(MaskablePPO):
 
     def train(self):
         """Update the policy on the rollout in the buffer."""
-        policy, usual = (
-            self.policy,
-            self.clip_range_vf is None and self.target_kl is None and self.device.type == "cpu",
-        )
+        policy = self.policy
+        usual = self.clip_range_vf is None and self.target_kl is None and self.device.type == "cpu"
         if not usual or not isinstance(policy, TablePolicy) or not policy.has_fused:
             super().train()
             return
         self.policy.set_training_mode(True)
         self._update_learning_rate(self.policy.optimizer)
-        clip, fused, buffer = (
-            self.clip_range(self._current_progress_remaining),
-            policy.fused,
-            self.rollout_buffer,
-        )
+        clip, fused = self.clip_range(self._current_progress_remaining), policy.fused
+        buffer = self.rollout_buffer
         n = buffer.buffer_size * buffer.n_envs
         seen, masks = buffer.observations.reshape(n, -1), buffer.action_masks.reshape(n, -1)
         actions, before, advantages, returns = (
             a.reshape(n) for a in (buffer.actions, buffer.log_probs, buffer.advantages, buffer.returns)
         )
         scaled, figures = np.empty_like(advantages), []
-        rollout, loss = (
-            Rollout(seen, masks, actions, before, scaled, returns),
-            Loss(clip, self.ent_coef, self.vf_coef),
-        )
+        rollout = Rollout(seen, masks, actions, before, scaled, returns)
+        loss = Loss(clip, self.ent_coef, self.vf_coef)
         for _ in range(self.n_epochs):
             order = np.random.permutation(n)  # noqa: NPY002 - as SB3: a checkpoint holds its state
             for start in range(0, n, self.batch_size or n):

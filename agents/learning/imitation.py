@@ -22,7 +22,7 @@ import torch
 from snooker_env.planning import Positions, spread_of
 
 from ..cluster.job import Here
-from .worths import worths
+from .self_play import judged
 
 TRIES = 48
 """Trials in each position: half the learner's best choices, half random; of few choices each is tried twice."""
@@ -51,7 +51,8 @@ class Expert:
         row, column = np.nonzero(valid)
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
         worth, at = np.zeros(picks.shape, np.float32), Positions.of(self._tables)
-        worth[row, column] = worths(self._where, self._sent, at, row, picks[row, column], keys)
+        chosen = row, picks[row, column], keys
+        worth[row, column] = judged(self._where, self._sent, at, *chosen, task="trials", of="worth")
         return worth
 
 
@@ -97,15 +98,9 @@ class Imitation:
 
     def get_state(self):
         """The state beside model, tables and random generators; most of it is the buffer of positions."""
-        return {
-            "done": self.done,
-            "curve": self.curve,
-            "kept": self._kept,
-            "losses": list(self._losses),
-            "seconds": self.seconds,
-            "rng": self._rng.bit_generator.state,
-            "optimizer": self._optimizer.state_dict(),
-        }
+        made = {name: getattr(self, name) for name in ("done", "curve", "seconds")}
+        made |= {"kept": self._kept, "losses": list(self._losses), "rng": self._rng.bit_generator.state}
+        return made | {"optimizer": self._optimizer.state_dict()}
 
     @property
     def figures(self):

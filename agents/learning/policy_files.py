@@ -85,14 +85,10 @@ def _described(about, layers):
     for key in about["env_options"]:
         choice("key of about.env_options", key, (*SHOT_OPTIONS, *TRAINING_OPTIONS))
     network = Layers(layers, choice("about.activation", about["activation"], ACTIVATIONS))
-    return Trained(
-        network,
-        about["trainer"],
-        "flat",
-        about["env_options"] | {"action": "discrete"},
-        integer("about.shots", about["shots"], 0, 10**18),
-        number("about.gamma", about["gamma"], 0, 1),
-        integer("about.seed", about["seed"], 0, 2**64),
-        imitated=None,
-        start=None,
-    )
+    numbers = {
+        "num_timesteps": integer("about.shots", about["shots"], 0, 10**18),
+        "gamma": number("about.gamma", about["gamma"], 0, 1),
+        "seed": integer("about.seed", about["seed"], 0, 2**64),
+    }
+    options = about["env_options"] | {"action": "discrete"}
+    return Trained(network, about["trainer"], "flat", options, **numbers, imitated=None, start=None)

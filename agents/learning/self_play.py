@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from snooker_env import Options
-from snooker_env.planning import Planner, Positions, StrokeSearch
+from snooker_env.planning import Planner, Positions, StrokeSearch, prospects_of
 from snooker_env.planning.learned.value_features import SIZE, value_features
 
 SLICE = 64
@@ -62,16 +62,10 @@ def strokes(shared, args, threads):
     after[goes_on] = features(out.afterstates[np.flatnonzero(goes_on)])
     played = np.where(args["explored"], m * fresh + every, fresh * every)
     left = out.afterstates[played]
-    return {
-        "seen": features(at).astype(np.float16),
-        "after": after.reshape(m, fresh, SIZE),
-        "points": out.points[: m * fresh].reshape(m, fresh),
-        "goes_on": goes_on.reshape(m, fresh),
-        "follows": out.goes_on[played],
-        "positions": left.positions,
-        "on_table": left.on_table,
-        "game": left.game,
-    }
+    made = {"seen": features(at).astype(np.float16), "after": after.reshape(m, fresh, SIZE)}
+    made |= {"points": out.points[: m * fresh].reshape(m, fresh), "goes_on": goes_on.reshape(m, fresh)}
+    made |= {"follows": out.goes_on[played], "positions": left.positions}
+    return made | {"on_table": left.on_table, "game": left.game}
 
 
 def choices(shared, args, threads):
@@ -86,6 +80,17 @@ def choices(shared, args, threads):
     return {"gains": gains}
 
 
+def trials(shared, args, threads):
+    """The task: what choices are worth by the search's rule of thumb, each simulated once, "worth" (k,).
+
+    ``shared``: "run" (an id), "options", "spread" and "ahead"; ``args``: as of ``choices``.
+    """
+    planner = once(("worths", shared["run"], threads), lambda: Planner(shared["options"], threads=threads))
+    points, goes_on, left, _ = planner.play(Positions(*args["at"]), args["rows"], args["picks"], args["keys"])
+    ahead = prospects_of(left, shared["spread"], threads=planner.threads)[0]
+    return {"worth": points + shared["ahead"] * goes_on * ahead}
+
+
 def in_slices(n):
     """Slices of n positions."""
     return [slice(k, min(n, k + SLICE)) for k in range(0, n, SLICE)]
@@ -93,24 +98,18 @@ def in_slices(n):
 
 def of_choices(at, rows, picks, keys):
     """The arguments of each slice of positions for choices in the sorted ``rows`` (k,)."""
-    cut = in_slices(len(at))
+    cut, made = in_slices(len(at)), []
     ends = np.searchsorted(rows, [0, *(one.stop for one in cut)]).tolist()
-    some = [slice(*pair) for pair in pairwise(ends)]
-    return [
-        {
-            "at": positions_given(at[one]),
-            "rows": rows[its] - one.start,
-            "picks": picks[its],
-            "keys": keys[its],
-        }
-        for one, its in zip(cut, some, strict=True)
-    ]
+    for one, (first, end) in zip(cut, pairwise(ends), strict=True):
+        its = {"picks": picks[first:end], "keys": keys[first:end]}
+        made.append({"at": positions_given(at[one]), "rows": rows[first:end] - one.start, **its})
+    return made
 
 
-def judged(where, shared, at, rows, picks, keys):
-    """``choices`` of all positions: float32 (k,)."""
-    slices = where.map(f"{__name__}:choices", shared, of_choices(at, rows, picks, keys))
-    return np.concatenate([one["gains"] for one in slices])
+def judged(where, shared, at, rows, picks, keys, task="choices", of="gains"):
+    """What a task says of all positions' choices (k,): ``choices`` their "gains", ``trials`` their "worth"."""
+    slices = where.map(f"{__name__}:{task}", shared, of_choices(at, rows, picks, keys))
+    return np.concatenate([one[of] for one in slices])
 
 
 def search_of(shared, threads):
@@ -156,6 +155,5 @@ def _network(recipe, env_options, view):
     from .hyperparameters import Recipe
 
     tables = SnookerVectorEnv(1, **env_options)
-    return Recipe.of(recipe, env_kwargs=env_options).new_network(
-        view_of(view).space, tables.single_action_space
-    )
+    made = Recipe.of(recipe, env_kwargs=env_options)
+    return made.new_network(view_of(view).space, tables.single_action_space)

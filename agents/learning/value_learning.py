@@ -100,13 +100,8 @@ class ValueLearning:
 
     def get_state(self):
         """Everything but the network."""
-        state = {
-            "rounds": self._rounds,
-            "age": self._age,
-            "fitted": self._fitted,
-            "losses": list(self.losses),
-        }
-        return state | {"optimizer": self._optimizer.state_dict()}
+        state = {"rounds": self._rounds, "age": self._age, "fitted": self._fitted}
+        return state | {"losses": list(self.losses), "optimizer": self._optimizer.state_dict()}
 
     def set_state(self, state):
         """Go on from a state of ``get_state``."""

@@ -43,12 +43,7 @@ class ValueNetwork(nn.Module):
 
 def value_of(network, spread, threads=1):
     """The ``LearnedValue`` with the present weights of a ``ValueNetwork``."""
-    layers = [
-        (weight.detach().numpy(), bias.detach().numpy())
-        for weight, bias in zip(network.weights, network.biases, strict=True)
-    ]
-    return LearnedValue(
-        [[(weight[k].T, bias[k, 0]) for weight, bias in layers] for k in range(network.members)],
-        spread,
-        threads,
-    )
+    pairs = zip(network.weights, network.biases, strict=True)
+    layers = [(weight.detach().numpy(), bias.detach().numpy()) for weight, bias in pairs]
+    members = [[(weight[k].T, bias[k, 0]) for weight, bias in layers] for k in range(network.members)]
+    return LearnedValue(members, spread, threads)

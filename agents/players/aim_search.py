@@ -11,18 +11,8 @@ import numpy as np
 from snooker_env.game import N_BALLS, SPOTS, BallOn
 from snooker_env.planning import Planner
 
-from ..features.indirect_pots import (
-    AIM_X,
-    AIM_Y,
-    BALL,
-    COLUMNS,
-    GHOST_X,
-    GHOST_Y,
-    REACH,
-    direct,
-    direct_pots,
-    indirect,
-)
+from ..features import indirect_pots as geometry
+from ..features.indirect_pots import AIM_X, AIM_Y, BALL, COLUMNS, GHOST_X, GHOST_Y, REACH
 
 SPEEDS = (1.8, 2.9, 4.4)
 """Cue speeds [m/s] at which the shots are tried."""
@@ -59,7 +49,7 @@ class Aimer:
     def __init__(self, options, speed):
         self._planner, self._speed = Planner(options, noise="none", threads=1), speed
         # compile now, so that decision times exclude it
-        indirect(np.array(SPOTS), np.ones(N_BALLS, np.bool_), BallOn.RED, *self._bed)
+        geometry.indirect(np.array(SPOTS), np.ones(N_BALLS, np.bool_), BallOn.RED, *self._bed)
 
     @property
     def _bed(self):
@@ -74,13 +64,13 @@ class Aimer:
         """
         n, ball_on = len(at), at.ball_on.copy()
         shots, counts = np.empty((n, 1, COLUMNS)), np.empty(n, np.int64)
-        direct_pots(at.positions, at.on_table, ball_on, shots, counts)
+        geometry.direct_pots(at.positions, at.on_table, ball_on, shots, counts)
         lines = self._solve(at, np.arange(n), shots[:, 0], (self._speed,))[:, 0]
         strokes = plain(np.full(n, self._speed), lines)
         for k in np.flatnonzero(~self.pots(at, np.arange(n), strokes)).tolist():
             one, (p, on) = at[k : k + 1], (at.positions[k], at.on_table[k])
-            best = self.widest(one, direct(p, on, ball_on[k]))
-            best = best or self.widest(one, indirect(p, on, ball_on[k], *self._bed))
+            best = self.widest(one, geometry.direct(p, on, ball_on[k]))
+            best = best or self.widest(one, geometry.indirect(p, on, ball_on[k], *self._bed))
             if best:
                 strokes[k] = best[0]
         return strokes

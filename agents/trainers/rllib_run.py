@@ -25,6 +25,7 @@ import time
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
+from typing import Any
 
 from commands.lifecycle import command, needs
 
@@ -100,14 +101,11 @@ FREE_ON_RESUME = ("steps", "runners", "eval_visits", "checkpoint_every")
 
 def parse(argv):
     """(parser, options given on the command line, the rest)."""
-    parser = argparse.ArgumentParser(
-        "python -m agents.train_rllib", description=(__doc__ or "").partition("\n")[0]
-    )
+    about = (__doc__ or "").partition("\n")[0]
+    parser = argparse.ArgumentParser("python -m agents.train_rllib", description=about)
     for f in fields(RunSettings):
-        name = "--" + f.name.replace("_", "-")
-        parser.add_argument(
-            name, type=type(f.default), default=argparse.SUPPRESS, help=f"{HELP[f.name]} [{f.default}]"
-        )
+        how: dict[str, Any] = {"type": type(f.default), "help": f"{HELP[f.name]} [{f.default}]"}
+        parser.add_argument("--" + f.name.replace("_", "-"), default=argparse.SUPPRESS, **how)
     parser.add_argument("--out", type=Path, help="the run's folder [runs/rllib-SEED]")
     what = "go on with the run in that folder; options left out keep their values"
     parser.add_argument("--resume", action="store_true", help=what)
@@ -207,10 +205,8 @@ def _train(out, settings, progress, algorithm, stop, shown):
             save(out, settings, progress, algorithm)
             why = f"no env runner gave a sample in {PATIENCE:.0f} s; saved at {progress.shots:,} shots"
             raise SystemExit(f"agents.train_rllib: {why}")
-        progress.shots, progress.updates = (
-            int(sampled["num_env_steps_sampled_lifetime"]),
-            progress.updates + 1,
-        )
+        progress.shots = int(sampled["num_env_steps_sampled_lifetime"])
+        progress.updates += 1
         progress.seconds = before + time.perf_counter() - began
         points = sampled.get("episode_return_mean", float("nan"))
         shown.at(progress.shots, f"update {progress.updates:,}, {points:.2f} points a visit")
@@ -229,13 +225,9 @@ def judge(out, settings, progress):
         name: summary(play_visits(player, settings.eval_visits, first_seed=seeds, noise=settings.noise))
         for name, player in players.items()
     }
-    results = {
-        "settings": asdict(settings),
-        **asdict(progress),
-        "shots_per_second": progress.shots / max(progress.seconds, 1e-9),
-        "versions": {"ray": ray.__version__, **software()},
-        "evaluation": figures,
-    }
+    rate = progress.shots / max(progress.seconds, 1e-9)
+    results = {"settings": asdict(settings), **asdict(progress), "shots_per_second": rate}
+    results |= {"versions": {"ray": ray.__version__, **software()}, "evaluation": figures}
     write_json(out / RESULTS, results)
     show(figures)
     print(f"Figures: {out / RESULTS}   by our protocol: python -m agents.evaluate --agent {out}")

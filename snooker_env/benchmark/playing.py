@@ -47,12 +47,10 @@ class PlayedEpisodes:
         One row for each episode, columns ``COLUMNS``.
     strokes : list of numpy.ndarray
         Those of each episode: float32 (strokes, size), actions that hold all of a stroke.
-    decisions : int
-        Number of decisions of the player.
+    decisions, simulated : int
+        Number of decisions of the player, and of shots that this process simulated for them.
     seconds : float
         Time of all decisions [s].
-    simulated : int
-        Number of shots that this process simulated for the decisions.
 
     Examples
     --------
@@ -69,11 +67,8 @@ class PlayedEpisodes:
 
     def add(self, more: "PlayedEpisodes") -> None:
         """Add episodes that were played after these."""
-        self.rows += more.rows
-        self.strokes += more.strokes
-        self.decisions += more.decisions
-        self.seconds += more.seconds
-        self.simulated += more.simulated
+        for name in ("rows", "strokes", "decisions", "seconds", "simulated"):
+            setattr(self, name, getattr(self, name) + getattr(more, name))
 
 
 class Decider:
@@ -156,10 +151,8 @@ def play_episodes(
 
     Parameters
     ----------
-    task : Task
-        The task.
-    player : Player or str
-        A player, or the name of one.
+    task, player : Task, and Player or str
+        The task, and a player or the name of one.
     seeds : list of int
         Seeds of the tables.
     run : int

@@ -47,18 +47,14 @@ class Strokes:
     ----------
     visits : int
         Number of visits.
-    visit : int64 (n,)
-        Index of the visit of each stroke.
-    number : int64 (n,)
-        Number of the stroke in its visit, from 0.
+    visit, number : int64 (n,)
+        Index of the visit of each stroke, and its number in the visit, from 0.
     points : float64 (n,)
         Points scored; 0 for a miss or a foul.
-    foul : bool (n,)
-        Whether the stroke was a foul.
+    foul, cleared : bool (n,)
+        Whether the stroke was a foul, and whether no object ball was left.
     ball_on : int64 (n,)
         The ball on, a ``BallOn``.
-    cleared : bool (n,)
-        Whether no object ball was left.
     cue : float64 (n, 2)
         Position of the cue ball after the stroke [m]; NaN if it was potted.
     tolerance : float64 (n,)
@@ -129,20 +125,15 @@ def play_visits(
 
     Parameters
     ----------
-    player : Player or str
-        A player, or the name of one.
-    visits : int
-        Number of visits.
-    layout : str
-        As in ``Options``.
-    noise : str, Noise or dict
+    player, visits : Player or str, int
+        A player, or the name of one, and the number of its visits.
+    layout, noise : str, and str, Noise or dict
         As in ``Options``.
     first_seed : int or sequence of int
         Seed of the first table, the others have the seeds after it; or the seed of each table.
-    seed : int
-        Of what the player draws. Its strokes on a table do not depend on the other tables.
-    rekey : int, optional
-        Seed of new execution errors after every decision: a control that nobody saw them beforehand.
+    seed, rekey : int, int or None
+        Of what the player draws, alike on each table beside any others. Of new execution errors after every
+        decision: a control that nobody saw them beforehand.
     threads : int, optional
         As in ``SnookerVectorEnv``.
     each : callable, optional
@@ -153,7 +144,6 @@ def play_visits(
     Returns
     -------
     Strokes
-        All strokes of the visits.
 
     Examples
     --------
@@ -166,7 +156,6 @@ def play_visits(
     decide, log, ball_on = Decider(player, tables, seeds, seed), [], np.empty(0, np.int64)
 
     def noted(asked: Bools, number: int) -> Any:
-        """Decide, with a look at what is on."""
         nonlocal ball_on
         ball_on = Positions.of(tables).ball_on[asked]
         return decide(asked, number)
@@ -221,8 +210,9 @@ def counts(s: Strokes) -> dict[str, Floats]:
         "clearances": s.made & s.cleared,  # a foul clears no table
     }
     sums = {name: s.a_visit(values) for name, values in entries.items()}
-    breaks = {"centuries": sums["points"] >= CENTURY, "maximums": sums["points"] >= MAXIMUM}
-    return sums | {"visits": np.ones(s.visits)} | {name: made.astype(float) for name, made in breaks.items()}
+    for name, least in (("centuries", CENTURY), ("maximums", MAXIMUM)):
+        sums[name] = (sums["points"] >= least).astype(float)
+    return sums | {"visits": np.ones(s.visits)}
 
 
 def summary(strokes: Strokes) -> dict[str, Any]:
