@@ -46,8 +46,7 @@ with needs("agents.evaluate"):
 
     from ..cluster.job import ClusterError, Here, ended, in_order
     from ..cluster.keep import Keep, digest_of
-    from ..cluster.ray_cluster import add_ray, checked_ray, place
-    from ..cluster.software import software
+    from ..cluster.ray_cluster import add_ray, checked_ray, place, software
     from .entrants import Entrant, add_models, entrants_of
     from .metrics import EntrantMetrics
     from .report import AXES, PICTURE, main_condition, markdown, parts
@@ -195,11 +194,6 @@ def evaluate(report, agents, seeds, shown, results):
             shown |= {label: one.strokes for label, one in metrics.items()}
 
 
-def spared(file):
-    """Where incomplete figures go: ``file``, or beside it if it is there already, for it may be whole."""
-    return file.with_name(f"{file.stem}.incomplete{file.suffix}") if file and file.exists() else file
-
-
 @command("agents.evaluate")
 def main(argv=None):
     """Check, play, report. Exit code 0; 130 if it was interrupted: what was complete is kept."""
@@ -262,7 +256,9 @@ def write(report, shown, args):
     """Write what was asked for and print the tables; files that cannot be written are named at the end."""
     files, failed = {name: getattr(args, name) for name in ("json", "markdown", "picture")}, []
     if "incomplete" in report:
-        files = {name: spared(file) for name, file in files.items()}
+        # beside a file that is there already, for that may be whole
+        beside = lambda file: file.with_name(f"{file.stem}.incomplete{file.suffix}")  # noqa: E731
+        files = {name: beside(file) if file and file.exists() else file for name, file in files.items()}
     if not shown:
         files["picture"] = None
 

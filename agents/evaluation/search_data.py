@@ -27,8 +27,7 @@ with needs("agents.search"):
 
     from ..cluster.job import ClusterError, ended, keys_of
     from ..cluster.keep import Store, digest_of
-    from ..cluster.ray_cluster import add_ray, checked_ray, place
-    from ..cluster.software import software
+    from ..cluster.ray_cluster import add_ray, checked_ray, place, software
     from ..evaluation.entrants import Entrant
     from .searched import ROUNDS, TABLES, parts_of
     from .travel import sent

@@ -35,11 +35,10 @@ with needs("agents.tournament"):
     from ..cluster.ray_cluster import add_ray, checked_ray, place
     from . import tournament_play
     from .entrants import add_models, entrants_of
-    from .tournament_figures import ANCHOR_ELO, schedule
+    from .tournament_figures import ANCHOR_ELO, PRIOR, schedule
     from .tournament_file import faults, kept, result_of, seeds_of
     from .tournament_play import CHUNK, TABLES, drawn
     from .tournament_report import markdown, parts
-    from .tournament_strengths import PRIOR
     from .travel import sent
 
 ANCHOR = "ghost_ball"
@@ -85,12 +84,6 @@ def parser():
     return p
 
 
-def game_of(args):
-    """The options of the frames, as they stand in the file."""
-    game = {"noise": args.noise, "physics": args.physics, "miss": args.miss, "max_strokes": args.max_strokes}
-    return game | ({} if args.rules == "snooker" else {"game": args.rules})
-
-
 def checked(args):
     """(entrants, protocol, game) of the command line. Raises ValueError before anything is played."""
     if len(args.players) < 2:
@@ -116,7 +109,8 @@ def checked(args):
     }
     if args.match % 2 == 0:
         raise refuse("match", args.match, "must be odd: the best of so many frames")
-    game = game_of(args)
+    game = {"noise": args.noise, "physics": args.physics, "miss": args.miss, "max_strokes": args.max_strokes}
+    game |= {} if args.rules == "snooker" else {"game": args.rules}
     for entrant in entrants:
         meeting: dict[str, Any] = {**game, "physics": physics_option(args.physics)}
         entrant.player(0).at(Options(task="frame", **FRAMES, **meeting))  # makes sure that they can meet

@@ -9,9 +9,8 @@ from itertools import groupby
 from snooker_env.benchmark import commit, faults_of_fields, machine, read_result, software
 from snooker_env.checks import refuse
 
-from .tournament_figures import ANCHOR_ELO, COLUMNS, figures_of, schedule
+from .tournament_figures import ANCHOR_ELO, COLUMNS, PRIOR, figures_of, schedule
 from .tournament_report import NAME
-from .tournament_strengths import PRIOR
 
 VERSION = 2
 NUMBER = (int, float)

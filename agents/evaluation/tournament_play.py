@@ -1,12 +1,11 @@
 """How do two players meet? Many frames side by side; each seed twice, opened once by each.
 
 In one of the two matches on a seed the first player is the environment's agent, in the other the second is:
-the two sides are not quite alike, since a cue ball in hand waits for a player without placement at its usual
+the sides are not quite alike, since a cue ball in hand waits for a player without placement at its usual
 place, or where "ghost_ball" would put it. On even seeds the agent opens, on odd ones the opponent. A table
-whose match has ended takes the next one; when more than half of the tables have nothing left to play, the
-others go on in a smaller environment. The frames of a match follow each other on one table, broken in turn;
-the best of N ends when one player has won more than N / 2, or after N frames. What a table draws depends on
-its seed only.
+whose match has ended takes the next one; when half of the tables have nothing left to play, the others go on
+in a smaller environment. The frames of a match follow each other on one table, broken in turn; the best of N
+ends when one player has won more than N / 2, or after N frames. A table's draws depend on its seed only.
 
 A visit is all strokes of a player in succession: also over the lot at a re-spotted black.
 """

@@ -2,7 +2,7 @@
 
 from commands.tables import TextTable, page, shown
 
-from .tournament_strengths import PRIOR
+from .tournament_figures import PRIOR
 
 NAME = "snooker_env.tournament"
 """Name of the schema of a tournament's file."""

@@ -91,9 +91,20 @@ def _width(k, dx, dy):
 
 
 @kernel
-def _keep(shots, count, what, aim, ghost, tolerance, reach):
-    """Put a shot, what = (kind, ball, other, pocket), among the ``count`` widest; returns how many there are."""
+def _keep(bed, shots, count, what, legs, aim, ghost, tolerance, reach):
+    """Put a shot, what = (kind, ball, other, pocket), among the ``count`` widest; returns their number.
+
+    legs: where the ball's first way ends, and where the last one, into the pocket, begins. Both must be clear.
+    """
     if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
+        return count
+    (positions, present), (_, ball, other, k), (end, start) = bed, what, legs
+    far, one = 2.0 * BALL_RADIUS, max(other, 0)
+    x, y, gap = positions[ball, 0], positions[ball, 1], far if other < 0 else far * (1.0 - 1e-9)
+    if not clear_segment(positions, present, x, y, end[0], end[1], ball, one, gap):
+        return count
+    x, y = POCKET_AIMS[k, POCKET_X], POCKET_AIMS[k, POCKET_Y]
+    if not clear_segment(positions, present, start[0], start[1], x, y, ball, one, far):
         return count
     at = min(count, shots.shape[0] - 1)
     while at > 0 and shots[at - 1, TOLERANCE] < tolerance:
@@ -137,13 +148,9 @@ def _banks(positions, present, ball, noses, shots, count):
             if gain <= 0.0:
                 continue
             tolerance = width / (2.0 * run) * gain
-            if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
-                continue
-            if not clear_segment(positions, present, bx, by, qx, qy, ball, 0, 2.0 * BALL_RADIUS):
-                continue
-            if not clear_segment(positions, present, qx, qy, kx, ky, ball, 0, 2.0 * BALL_RADIUS):
-                continue
-            count = _keep(shots, count, (BANK, ball, -1, k), (qx, qy), (gx, gy), tolerance, _BENT * gain)
+            what, aim, legs = (BANK, ball, -1, k), (qx, qy), ((qx, qy), (qx, qy))
+            bed = positions, present
+            count = _keep(bed, shots, count, what, legs, aim, (gx, gy), tolerance, _BENT * gain)
     return count
 
 
@@ -184,15 +191,10 @@ def _plants(positions, present, ball, other, shots, count):
         # no wider than the face of the ball: a half-ball hit to either side
         face = 0.5 * reach / hypot(gx - positions[0, 0], gy - positions[0, 1])
         tolerance = min(half * second * gain, face)
-        if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
-            continue
-        if not clear_segment(positions, present, ax, ay, mx, my, ball, other, reach * (1.0 - 1e-9)):
-            continue
-        if not clear_segment(positions, present, bx, by, kx, ky, other, ball, reach):
-            continue
         off = max(path, BALL_RADIUS)  # the aim is not solved for a point at no distance
         aim, reaches = (ax + off * px, ay + off * py), min(_THROW * second * gain, face)
-        count = _keep(shots, count, (PLANT, ball, other, k), aim, (gx, gy), tolerance, reaches)
+        bed, what, legs = (positions, present), (PLANT, ball, other, k), ((mx, my), (bx, by))
+        count = _keep(bed, shots, count, what, legs, aim, (gx, gy), tolerance, reaches)
     return count
 
 
@@ -261,14 +263,8 @@ def _cannons(positions, present, ball, other, e, shots, count):
             turn = abs(asin(reach * high / apart) - asin(reach * low / apart)) / abs(at_high - at_low)
             kx, ky = POCKET_AIMS[k, POCKET_X], POCKET_AIMS[k, POCKET_Y]
             tolerance = width / (2.0 * hypot(kx - qx, ky - qy)) * turn * gain
-            if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
-                continue
-            if not clear_segment(positions, present, ax, ay, qx, qy, ball, other, reach * (1.0 - 1e-9)):
-                continue
-            if not clear_segment(positions, present, qx, qy, kx, ky, ball, other, reach):
-                continue
-            reaches = _BENT * turn * gain
-            count = _keep(shots, count, (CANNON, ball, other, k), (qx, qy), (gx, gy), tolerance, reaches)
+            bed, what, legs = (positions, present), (CANNON, ball, other, k), ((qx, qy), (qx, qy))
+            count = _keep(bed, shots, count, what, legs, (qx, qy), (gx, gy), tolerance, _BENT * turn * gain)
     return count
 
 

@@ -1,11 +1,9 @@
 """How are choices, values and gradients of ``TablePolicy`` computed quickly? In blocks that stay in the cache.
 
-The plain network (``networks.TableReader`` and its heads) spends most of its time on moving intermediate
-results through memory, and on operations that PyTorch cannot join. Here the same functions are computed for
-``BLOCK`` tables at a time, in arrays that are made once. Kernels do all that lies between the layers, which
-PyTorch computes. Where the policy plays, the same network is a ``StrokePolicy``, whose scores of a table do
-not depend on the tables beside it. The gradient is written out by hand, layer by layer.
-tests/agents/learning/test_fused.py compares scores, values and gradients with PyTorch's own.
+PyTorch spends most of its time on moving intermediate results through memory. Here kernels do all that lies
+between the layers, ``BLOCK`` tables at a time, in arrays that are made once; the gradient is written out by
+hand. Where the policy plays, the same network is a ``StrokePolicy``, whose scores of a table do not depend on
+the tables beside it. tests/agents/learning/test_fused.py compares all with PyTorch's own.
 """
 
 from threading import Lock

@@ -2,14 +2,13 @@
 
 ``train.py`` does this for the recipes with ``imitation``, or with ``--imitate POSITIONS``.
 
-The expert: in positions of played visits some of the choices are simulated under execution noise, once each.
-The value of a choice is its points plus, if the visit goes on, the value of its afterstate by the search's
-rule of thumb (``prospects_of``).
+The expert: some choices in positions of played visits are simulated under execution noise, once each. A choice
+is worth its points plus, if the visit goes on, what it leaves by the search's rule of thumb (``prospects_of``).
 
 The learner: state value + TEMPERATURE * (log-probability - its mean) is fitted to these values by least
-squares, all trials of a position at once. The policy becomes the softmax of the values of its choices, and
-the critic their mean under it. The visits are played by the learner, so that it is trained on the states that
-it will meet (DAgger, Ross et al. 2011); half of the trials are its own best choices.
+squares. The policy becomes the softmax of the values of its choices, and the critic their mean under it. The
+visits are played by the learner, so that it is trained on the states that it will meet (DAgger, Ross et al.
+2011); half of the trials are its own best choices.
 """
 
 import time

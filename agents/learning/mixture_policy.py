@@ -75,7 +75,6 @@ class LineReader(TableReader):
         self._features_dim += POTS * LINE_ENTRIES
 
     def forward(self, seen):
-        """One pass."""
         return torch.cat([super().forward(seen), lines_of(seen).flatten(1)], 1)
 
 
@@ -98,7 +97,6 @@ class Throw(nn.Module):
         nn.init.zeros_(self.last.weight)
 
     def forward(self, lines, strokes):
-        """One pass."""
         # as the environment reads them: within the box, the tip on the disc of the miscue limit
         played = strokes.clamp(-1.0, 1.0)
         tip = played[:, :, 1:]

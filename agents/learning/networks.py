@@ -1,11 +1,10 @@
 """Which networks read a snooker table? Small ones shared by balls and by pots, sums, and a head for strokes.
 
-The order of balls or pots must not matter: each ball's row goes through one network and each pot's through
-another (deep sets, Zaheer et al. 2017). Masked sums of the balls' codes, of the pots' codes and the game's
-state make the context. The score of a stroke at a pot comes from that pot's code and the context, by the same
-weights for every pot. The table is nearly symmetric: it is read mirrored so that the cue ball is on the
-right, and the choice of side spin is mirrored back. (Yellow and green break the symmetry: an input gives the
-half that the cue ball was on.)
+The order of balls or pots must not matter: all balls go through one network and all pots through another
+(deep sets, Zaheer et al. 2017). Masked sums of their codes and the game's state make the context. The score
+of a stroke at a pot comes from that pot's code and the context, by the same weights for every pot. The table
+is read mirrored so that the cue ball is on the right, and the choice of side spin is mirrored back. (Yellow
+and green break the symmetry: an input gives the half that the cue ball was on.)
 """
 
 from itertools import pairwise
@@ -54,7 +53,6 @@ class TableReader(BaseFeaturesExtractor):
         self.register_buffer("flips", flips, persistent=False)
 
     def forward(self, seen):
-        """One pass."""
         n = len(seen)
         side = torch.where(seen[:, BALL_X : BALL_X + 1] < 0.0, -1.0, 1.0)
         seen = torch.where(self.flips, seen * side, seen)
@@ -84,7 +82,6 @@ class StrokeHead(nn.Module):
             self.score.bias.zero_()
 
     def forward(self, read):
-        """One pass."""
         n = len(read)
         scores, side = self.score(read[:, CONTEXT:-1].reshape(n, POTS, POT)), read[:, -1:]
         turned = scores.reshape(n, POTS * len(SPEEDS), len(SIDES), len(TOPS)).flip(2).reshape(n, -1)
@@ -103,7 +100,6 @@ class ForesightReader(TableReader):
         self.best = nn.Linear(OUTCOME, CONTEXT)
 
     def forward(self, seen):
-        """One pass."""
         n = len(seen)
         read = super().forward(seen[:, :SHOWN])
         context, pots, side = read[:, :CONTEXT], read[:, CONTEXT:-1].reshape(n, POTS, POT), read[:, -1:]
@@ -127,7 +123,6 @@ class OutcomeHead(nn.Module):
         self.register_buffer("picks", torch.as_tensor(PICKS), persistent=False)
 
     def forward(self, read):
-        """One pass."""
         scores = self.score(read[:, CONTEXT:].reshape(len(read), STROKES_SEEN, OUTCOME))[..., 0]
         return scores.new_zeros(len(read), POTS * STROKES).index_copy(1, self.picks, scores)
 
@@ -140,7 +135,6 @@ class ValueHead(nn.Module):
         self.value = nn.Sequential(nn.Linear(CONTEXT, width), nn.ReLU(), nn.Linear(width, 1))
 
     def forward(self, read):
-        """One pass."""
         return self.value(read[:, :CONTEXT])
 
 

@@ -1,8 +1,7 @@
 """How is a round of self-play simulated, here or by many workers? In slices, by the weights of the learner.
 
-The learner draws all random numbers and cuts the positions into slices; a slice is computed from these alone,
-and no position's results depend on those beside it (``dense_layers``). So a training does not depend on the
-number of workers, not even when one dies and its slice is computed again.
+The learner draws all random numbers, and no position's results depend on those beside it (``dense_layers``):
+a training does not depend on the number of workers, nor on one that dies and whose slice is computed again.
 """
 
 from copy import copy
@@ -73,7 +72,8 @@ def choices(shared, args, threads):
 
     ``args``: "at" (arrays of m positions), "rows", "picks" and "keys" (k,). Returns "gains", float32 (k,).
     """
-    planner = once(("planner", shared["run"], threads), lambda: planner_of(shared["options"], threads))
+    options = Options(action="discrete", **shared["options"])
+    planner = once(("planner", shared["run"], threads), lambda: Planner(options, threads=threads))
     played = planner.play(Positions(*args["at"]), args["rows"], args["picks"], args["keys"])
     gains, on = played.points.astype(np.float32), np.flatnonzero(played.goes_on)
     gains[on] += shared["value"](played.afterstates[on])
@@ -96,31 +96,21 @@ def in_slices(n):
     return [slice(k, min(n, k + SLICE)) for k in range(0, n, SLICE)]
 
 
-def of_choices(at, rows, picks, keys):
-    """The arguments of each slice of positions for choices in the sorted ``rows`` (k,)."""
-    cut, made = in_slices(len(at)), []
+def judged(where, shared, at, rows, picks, keys, task="choices", of="gains"):
+    """What a task says of choices in the sorted ``rows`` (k,): ``choices`` "gains", ``trials`` "worth"."""
+    many, cut = [], in_slices(len(at))
     ends = np.searchsorted(rows, [0, *(one.stop for one in cut)]).tolist()
     for one, (first, end) in zip(cut, pairwise(ends), strict=True):
         its = {"picks": picks[first:end], "keys": keys[first:end]}
-        made.append({"at": positions_given(at[one]), "rows": rows[first:end] - one.start, **its})
-    return made
-
-
-def judged(where, shared, at, rows, picks, keys, task="choices", of="gains"):
-    """What a task says of all positions' choices (k,): ``choices`` their "gains", ``trials`` their "worth"."""
-    slices = where.map(f"{__name__}:{task}", shared, of_choices(at, rows, picks, keys))
-    return np.concatenate([one[of] for one in slices])
+        many.append({"at": positions_given(at[one]), "rows": rows[first:end] - one.start, **its})
+    made = where.map(f"{__name__}:{task}", shared, many)
+    return np.concatenate([one[of] for one in made])
 
 
 def search_of(shared, threads):
     """The ``StrokeSearch`` of a training, made once in a process."""
     key = "search", shared["run"], threads
     return once(key, lambda: StrokeSearch(shared["options"], shared["budget"], threads=threads))
-
-
-def planner_of(options, threads):
-    """A ``Planner`` of discrete choices."""
-    return Planner(Options(action="discrete", **options), threads=threads)
 
 
 def once(key, make):

@@ -33,7 +33,6 @@ class ValueNetwork(nn.Module):
             self.weights[-1].mul_(0.1)
 
     def forward(self, seen):
-        """One pass."""
         x = seen
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
             x = torch.relu(x @ weight + bias)

@@ -3,7 +3,7 @@
 ``pyproject.toml`` names them as entry points, so that ``snooker_env.player`` finds them in a clone.
 """
 
-from .geometric import Geometric
+from .aim_search import Geometric
 
 
 def read_model(path):

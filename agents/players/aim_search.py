@@ -1,7 +1,7 @@
-"""Where must a pot found by geometry be aimed? Each shot is simulated without execution errors, at aims
-around its line and a few speeds. The widest interval of aims that pot gives the shot, and its middle the aim.
+"""How does the player ``geometric`` play? Direct pots, else banks, plants and cannons; aims are simulated.
 
-The player "geometric" uses it: python -m agents.evaluate --agent geometric
+Each shot is simulated without execution errors, at aims around its line and a few speeds. The widest interval
+of aims that pot gives the shot, and its middle the aim.
 """
 
 from math import atan2
@@ -9,7 +9,9 @@ from math import atan2
 import numpy as np
 
 from snooker_env.game import N_BALLS, SPOTS, BallOn
-from snooker_env.planning import Planner
+from snooker_env.planning import Planner, Positions
+from snooker_env.players import BoundPlayer, Strokes
+from snooker_env.players.simple import placed
 
 from ..features import indirect_pots as geometry
 from ..features.indirect_pots import AIM_X, AIM_Y, BALL, COLUMNS, GHOST_X, GHOST_Y, REACH
@@ -118,3 +120,29 @@ class Aimer:
     def pots(self, at, rows, strokes):
         """Which of these strokes score, each on a copy of its position: (m,) bool."""
         return self._planner.play(at, rows, strokes=strokes).points > 0.0
+
+
+class Geometric(BoundPlayer):
+    """Direct pots, else banks, plants and cannons (``indirect_pots``), aims without execution errors.
+
+    Parameters
+    ----------
+    speed : float
+        Cue speed [m/s] of its first attempt.
+    """
+
+    name, training_shots = "geometric", 0
+
+    def __init__(self, speed=2.3):
+        self._speed = speed
+
+    def _bind(self, options):
+        self._aimer = Aimer(options, self._speed)
+
+    def play(self, positions, seeds):
+        """See ``Player.play``."""
+        _ = self.options  # it must be bound
+        at = Positions.of(positions)
+        visits, places = placed(at, seeds)
+        parts = [self._aimer.strokes(visits[k : k + 1]) for k in range(len(at))]
+        return Strokes(np.concatenate([np.empty((0, 5)), *parts]), places)

@@ -78,24 +78,17 @@ class RunSettings:
         return {"noise": self.noise, "layout": self.layout}
 
 
-HELP = {
-    "steps": "total number of shots, rounded up to whole updates",
-    "runners": "env runners, each a process",
-    "envs": "tables of a runner",
-    "seed": "of weights, tables and exploration",
-    "noise": "execution noise: none, professional, amateur, club, robot or olympiad",
-    "layout": "of the training tables",
-    "eval_visits": "visits of the final evaluation on held-out tables",
-    "checkpoint_every": "shots between two checkpoints",
+OPTIONS = {
+    "steps": ("total number of shots, rounded up to whole updates", 1, 10**12),
+    "runners": ("env runners, each a process", 1, 1024),
+    "envs": ("tables of a runner", 1, BATCH),
+    "seed": ("of weights, tables and exploration", 0, 2**31),
+    "noise": ("execution noise: none, professional, amateur, club, robot or olympiad",),
+    "layout": ("of the training tables",),
+    "eval_visits": ("visits of the final evaluation on held-out tables", 2, HELD_OUT),
+    "checkpoint_every": ("shots between two checkpoints", 1, 10**12),
 }
-BOUNDS = {
-    "steps": (1, 10**12),
-    "runners": (1, 1024),
-    "envs": (1, BATCH),
-    "seed": (0, 2**31),
-    "eval_visits": (2, HELD_OUT),
-    "checkpoint_every": (1, 10**12),
-}
+"""What each is, and the least and largest of those that are numbers."""
 FREE_ON_RESUME = ("steps", "runners", "eval_visits", "checkpoint_every")
 
 
@@ -104,7 +97,7 @@ def parse(argv):
     about = (__doc__ or "").partition("\n")[0]
     parser = argparse.ArgumentParser("python -m agents.train_rllib", description=about)
     for f in fields(RunSettings):
-        how: dict[str, Any] = {"type": type(f.default), "help": f"{HELP[f.name]} [{f.default}]"}
+        how: dict[str, Any] = {"type": type(f.default), "help": f"{OPTIONS[f.name][0]} [{f.default}]"}
         parser.add_argument("--" + f.name.replace("_", "-"), default=argparse.SUPPRESS, **how)
     parser.add_argument("--out", type=Path, help="the run's folder [runs/rllib-SEED]")
     what = "go on with the run in that folder; options left out keep their values"
@@ -116,8 +109,9 @@ def parse(argv):
 
 def checked(settings):
     """The settings. Raises ValueError."""
-    for name, (low, high) in BOUNDS.items():
-        integer(name, getattr(settings, name), low, high)
+    for name, (_, *ends) in OPTIONS.items():
+        if ends:
+            integer(name, getattr(settings, name), *ends)
     if settings.layout == "held_out":
         why = "the held-out tables are kept for evaluation"
         raise refuse("layout", "held_out", f"must be another for training: {why}")
@@ -192,27 +186,23 @@ def _write(file, settings, progress, algorithm):
 
 def train(out, settings, progress, algorithm, stop):
     """Updates until all shots are played or a signal comes, with checkpoints."""
-    with Progress("RLlib", settings.steps, "shots", done=progress.shots, to=sys.stdout) as shown:
-        _train(out, settings, progress, algorithm, stop, shown)
-    save(out, settings, progress, algorithm)
-
-
-def _train(out, settings, progress, algorithm, stop, shown):
     saved, before, began = progress.shots, progress.seconds, time.perf_counter()
-    while progress.shots < settings.steps and stop.signal is None:
-        sampled = algorithm.train().get("env_runners")
-        if not sampled or "num_env_steps_sampled_lifetime" not in sampled:  # RLlib goes on without a sample
-            save(out, settings, progress, algorithm)
-            why = f"no env runner gave a sample in {PATIENCE:.0f} s; saved at {progress.shots:,} shots"
-            raise SystemExit(f"agents.train_rllib: {why}")
-        progress.shots = int(sampled["num_env_steps_sampled_lifetime"])
-        progress.updates += 1
-        progress.seconds = before + time.perf_counter() - began
-        points = sampled.get("episode_return_mean", float("nan"))
-        shown.at(progress.shots, f"update {progress.updates:,}, {points:.2f} points a visit")
-        if progress.shots - saved >= settings.checkpoint_every:
-            save(out, settings, progress, algorithm)
-            saved = progress.shots
+    with Progress("RLlib", settings.steps, "shots", done=progress.shots, to=sys.stdout) as shown:
+        while progress.shots < settings.steps and stop.signal is None:
+            sampled = algorithm.train().get("env_runners")
+            if not sampled or "num_env_steps_sampled_lifetime" not in sampled:  # RLlib goes on without one
+                save(out, settings, progress, algorithm)
+                why = f"no env runner gave a sample in {PATIENCE:.0f} s; saved at {progress.shots:,} shots"
+                raise SystemExit(f"agents.train_rllib: {why}")
+            progress.shots = int(sampled["num_env_steps_sampled_lifetime"])
+            progress.updates += 1
+            progress.seconds = before + time.perf_counter() - began
+            points = sampled.get("episode_return_mean", float("nan"))
+            shown.at(progress.shots, f"update {progress.updates:,}, {points:.2f} points a visit")
+            if progress.shots - saved >= settings.checkpoint_every:
+                save(out, settings, progress, algorithm)
+                saved = progress.shots
+    save(out, settings, progress, algorithm)
 
 
 def judge(out, settings, progress):

@@ -81,9 +81,8 @@ def _of_sources(agent: dict[str, Any]) -> list[str]:
     if len(set(sources)) < len(sources):
         return ["agent.sources: must be different: the same one twice makes nothing surer"]
     if is_reserved(agent["label"], sources):
-        return [
-            f"agent.label = {agent['label']!r}: must not be the name of another player than agent.sources"
-        ]
+        must = "must not be the name of another player than agent.sources"
+        return [f"agent.label = {agent['label']!r}: {must}"]
     return []
 
 

@@ -92,9 +92,9 @@ def profile(results: Iterable[dict[str, Any]], task: Task) -> Table:
 
 def _share(figure: dict[str, Any]) -> str:
     """A share [%]; where it was never or always seen, the exact bound of it."""
-    sign, name = (
-        ("", "value") if not figure["exact"] else (">= ", "low") if figure["value"] else ("<= ", "high")
-    )
+    sign, name = ">= ", "low"
+    if not figure["exact"] or figure["value"] == 0.0:
+        sign, name = ("<= ", "high") if figure["exact"] else ("", "value")
     return f"{sign}{100 * figure[name]:.1f}"
 
 
@@ -138,7 +138,6 @@ def page(results: Sequence[dict[str, Any]], awaited: Sequence[str] = ()) -> str:
     Returns
     -------
     str
-        The text of the page.
 
     Examples
     --------

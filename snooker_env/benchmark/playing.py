@@ -163,7 +163,6 @@ def play_episodes(
     Returns
     -------
     PlayedEpisodes
-        The rows and strokes, and the time and simulated shots of the decisions.
 
     Examples
     --------

@@ -121,15 +121,6 @@ def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] 
     }
 
 
-def of_decisions(program: bool, declared: int | None, shots: int, decisions: int) -> dict[str, Any]:
-    """Class and shots a decision: declared if they cannot be counted or the number is higher, else counted."""
-    mean: float | None = shots / max(1, decisions)
-    if by_word := program or (declared is not None and declared > mean):
-        mean = None if declared is None else float(declared)
-    name = "undeclared" if mean is None else "planning" if mean > 0 else "model_free"
-    return {"class": name, "simulated_shots": mean, "declared": by_word}
-
-
 def missing(result: dict[str, Any], task: Task) -> list[str]:
     """What a result lacks to be official, in a few words each."""
     agent, episodes = result["agent"], result["protocol"]["episodes"]
@@ -146,8 +137,13 @@ def completed(record: dict[str, Any], task: Task) -> dict[str, Any]:
     """The record with all that follows from its other fields, computed anew; ``check`` compares."""
     agent, rows, shots = record["agent"], record["rows"], record["timing"]["simulated_shots"]
     declared = agent["simulated_shots"] if agent["declared"] else None
-    program, decisions = agent["sources"][0].startswith(PROGRAM), sum(row[STROKES] for row in rows)
-    made = {"budget": budget_of(agent["training_shots"])} | of_decisions(program, declared, shots, decisions)
+    mean: float | None = shots / max(1, sum(row[STROKES] for row in rows))
+    # counted, unless it cannot be, or a higher number is declared
+    if by_word := agent["sources"][0].startswith(PROGRAM) or (declared is not None and declared > mean):
+        mean = None if declared is None else float(declared)
+    name = "undeclared" if mean is None else "planning" if mean > 0 else "model_free"
+    made = {"class": name, "simulated_shots": mean, "declared": by_word}
+    made["budget"] = budget_of(agent["training_shots"])
     record = record | {
         "schema": {"name": NAME, "version": VERSION},
         "protocol": record["protocol"] | {"version": PROTOCOL},

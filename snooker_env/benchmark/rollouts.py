@@ -23,12 +23,8 @@ EASY = POT_WINDOWS["easy"][0]
 HIGH = 6
 """Pink and black are colours of high value."""
 FIGURES = {
-    "points_a_visit": ("points", "visits"),
-    "pots_a_visit": ("pots", "visits"),
-    "fouls_a_visit": ("fouls", "visits"),
-    "centuries": ("centuries", "visits"),
-    "maximums": ("maximums", "visits"),
-    "clearances": ("clearances", "visits"),
+    **{f"{name}_a_visit": (name, "visits") for name in ("points", "pots", "fouls")},
+    **{name: (name, "visits") for name in ("centuries", "maximums", "clearances")},
     "pot_rate": ("pots", "strokes"),
     "next_pot_after_a_pot": ("followed", "goes_on"),
     "easy_pot_left_by_a_pot": ("easy", "goes_on"),

@@ -54,18 +54,9 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "strokes.data": (str, False, "every stroke that was played, see below"),
 }
 """Dotted name: type, whether it may be null, meaning."""
-_PROVED = (
-    "schema",
-    "protocol",
-    "task",
-    "agent.class",
-    "agent.budget",
-    "columns",
-    "rows",
-    "figures",
-    "strokes",
-)
-UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED) and name != "software.snooker_env")
+_PLAYED = "schema", "protocol", "task", "columns", "rows", "figures", "strokes"
+_PROVED = (*_PLAYED, "agent.class", "agent.budget", "software.snooker_env")
+UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED))
 """Fields that a replay cannot prove; class and budget follow from them."""
 
 LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,20}")

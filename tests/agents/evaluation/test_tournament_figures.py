@@ -8,12 +8,14 @@ from agents.evaluation.tournament_figures import (
     ANCHOR_ELO,
     COLUMNS,
     COUNTED,
+    ELO,
     KEYS,
+    chance,
     figures_of,
     pairs_of,
     schedule,
+    strengths,
 )
-from agents.evaluation.tournament_strengths import ELO, chance, strengths
 from snooker_env.benchmark import unseen
 
 SOUND = {

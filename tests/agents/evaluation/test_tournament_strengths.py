@@ -4,7 +4,7 @@ not decide?"""
 import numpy as np
 import pytest
 
-from agents.evaluation.tournament_strengths import ELO, bound, chance, compared, linked, strengths
+from agents.evaluation.tournament_figures import ELO, bound, chance, compared, linked, strengths
 
 
 def expected(t, matches):
