@@ -44,14 +44,10 @@ class EntrantMetrics:
 
     def figures(self):
         """All figures of this agent alone."""
-        samples, c = self._samples, self.counted
-        found = {
-            name: figure(_quotient(c[a].sum(), c[b].sum()), samples.ratios(c[a], c[b]))
-            for name, (a, b) in FIGURES.items()
-        }
-        for name in SCORES:
-            found[f"{name}_a_visit_iqm"] = figure(iqm(c[name]), samples.iqms(c[name]))
-        return found
+        samples, c, made = self._samples, self.counted, {}
+        for name, (a, b) in FIGURES.items():
+            made[name] = figure(_quotient(c[a].sum(), c[b].sum()), samples.ratios(c[a], c[b]))
+        return made | {f"{name}_a_visit_iqm": figure(iqm(c[name]), samples.iqms(c[name])) for name in SCORES}
 
     def ratios(self, other):
         """This agent's scores over another's on the same tables."""

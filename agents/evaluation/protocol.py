@@ -113,7 +113,6 @@ def about(report, shared):
 
 
 def parser():
-    """The command line."""
     p = parser_of("python -m agents.evaluate", __doc__)
     add = p.add_argument
     what = "NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... "

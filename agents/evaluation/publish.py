@@ -87,7 +87,6 @@ def publish(run, name, limits, replace=False):
 
 @command("agents.publish")
 def main(argv=None):
-    """Command line."""
     parser = parser_of("python -m agents.publish", __doc__)
     parser.add_argument("run", type=Path, help="a run's folder")
     parser.add_argument("--name", help="of the model [the agent's]")

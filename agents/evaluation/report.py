@@ -18,7 +18,7 @@ from commands.lifecycle import command, needs, parser_of
 with needs("agents.report"):
     from commands.files import read_json, write_atomic
     from commands.tables import TextTable, page, show, shown
-    from snooker_env.benchmark import CENTURY, MAXIMUM, most_points
+    from snooker_env.benchmark import CENTURY, FIGURES, MAXIMUM, most_points
     from snooker_env.checks import refuse
 
     from . import tournament_report
@@ -44,17 +44,8 @@ def _trials(row, below):
     return (known | row.get("counted", {})).get(below)
 
 
-SHARES = {
-    "centuries": "visits",
-    "maximums": "visits",
-    "clearances": "visits",
-    "fouls_a_visit": "visits",
-    "pot_rate": "strokes",
-    "next_pot_after_a_pot": "goes_on",
-    "easy_pot_left_by_a_pot": "goes_on",
-    "high_colours": "colours",
-    "high_colour_after_a_red": "reds",
-}
+_MEANS = "points_a_visit", "pots_a_visit", "colour_value"
+SHARES = {name: below for name, (_, below) in FIGURES.items() if name not in _MEANS}
 """Figures that are shares, and of what. A visit ends with its first foul: those a visit are a share, too."""
 
 
@@ -124,10 +115,8 @@ def agents_tables(report):
         long.append([label, str(_seeds(runs)), *numbers, _between(rates)])
     how = ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
     how_long = ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
-    return [
-        TextTable("The agents", how, trained, 1, 5),
-        TextTable("How long they were trained", how_long, long, 1, 1),
-    ]
+    long_table = TextTable("How long they were trained", how_long, long, 1, 1)
+    return [TextTable("The agents", how, trained, 1, 5), long_table]
 
 
 def _seeds(runs):

@@ -37,7 +37,6 @@ INDEX = "index.json"
 
 
 def parser():
-    """The command line."""
     p = parser_of("python -m agents.search", __doc__)
     what = "who searches: search_2000, planner_500, planner@MODEL [search_2000]"
     p.add_argument("--agent", default="search_2000", help=what)

@@ -48,7 +48,6 @@ SAVED = 60.0
 
 
 def parser():
-    """The command line."""
     p = parser_of("python -m agents.tournament", __doc__)
     what = f"NAME, MODEL, LABEL=PATH or MODULE:CLASS; NAME: {', '.join(snooker_env.players())}"
     p.add_argument("players", nargs="*", metavar="PLAYER", help=what)

@@ -38,13 +38,11 @@ class TimedPlayer:
         self.count = {"decisions": 0, "seconds": 0.0}  # shared by all that are bound
 
     def at(self, rules):
-        """See ``Player.at``."""
         bound = copy.copy(self)
         bound._player = self._player.at(rules)
         return bound
 
     def play(self, positions, seeds):
-        """See ``Player.play``."""
         began = time.perf_counter()
         strokes = self._player.play(positions, np.asarray(seeds) ^ (self.seed & 0xFFFFFFFF))
         self.count["seconds"] += time.perf_counter() - began

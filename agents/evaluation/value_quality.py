@@ -39,13 +39,11 @@ class Recording(BoundPlayer):
         self._planner, self.name, self.rows = planner, planner.name, []
 
     def at(self, rules):
-        """See ``Player.at``; the notes are the same."""
         bound = super().at(rules)
         bound._planner = self._planner.at(rules)
         return bound
 
     def play(self, positions, seeds):
-        """See ``Player.play``."""
         at, search = Positions.of(positions), self._planner.search
         rule = prospects_of(at, search.spread, SURE if search.noise.silent else RULE_OF_THUMB)[0]
         self.rows.append(np.column_stack([at.points, search.value(at), rule]))

@@ -57,7 +57,6 @@ def described(replay):
 
 
 def parser():
-    """The command line."""
     p = argparse.ArgumentParser(prog="python -m agents.watch", description=str(__doc__).split("\n\n")[0])
     add = p.add_argument
     what = "a player's name, a pre-trained model, a model's .zip or run folder"

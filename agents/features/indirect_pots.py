@@ -2,16 +2,14 @@
 
 * bank: the object ball goes off one cushion into a pocket. It is aimed at the pocket's mirror image in the
   line where a ball's centre meets that cushion: the nose less R.
-* plant: the object ball A drives another ball B into a pocket. Both must be on and may go down together: reds
-  with a red on.
+* plant: the object ball A drives another ball B into a pocket; both must be on together: reds with a red on.
 * cannon: the object ball A goes off another ball into a pocket. Rolling, it keeps after the impact 5/7 of the
   velocity that it then has and 2/7 of the one before.
 
 Every shot is a chain of straight legs, and no other ball may be nearer than 2 R to any of them. An error of
-the cue ball's aim becomes one of the object ball's direction, magnified by path / (2 R cos cut) as in
-``game.pots``, and again at the next impact. The half window of the pocket, divided by all of it, is the
-shot's geometric tolerance. Throw and the true rebound off a cushion, which change directions by several
-degrees, are left out: ``aim_search`` solves the aims in the simulator.
+the cue ball's aim is magnified by path / (2 R cos cut) as in ``game.pots``, and again at the next impact. The
+half window of the pocket, divided by all of it, is the shot's geometric tolerance. Throw and the true rebound
+off a cushion, several degrees, are left out: ``aim_search`` solves the aims in the simulator.
 """
 
 from math import asin, atan2, cos, hypot, sin, sqrt

@@ -1,10 +1,9 @@
 """How do value, policy and planner make each other stronger? Expert iteration (Anthony, Tian & Barber 2017).
 
-Visits are played by the planner, which judges strokes by the value and takes its proposals from the policy.
-From every position the value learns by a backup (``value_learning``), and the policy learns the values of
-choices, each simulated once under execution noise and judged by the value (``judged_choices``). So the
-planner grows stronger, and with it the value and the policy. The first rounds judge by the rule of thumb. The
-simulations of a round, two thirds of its time, are played in slices by ``where``: this process or a cluster.
+Visits are played by the planner, which judges strokes by the value and takes its proposals from the policy; at
+first by the rule of thumb. The value learns by a backup from every position (``value_learning``), and the
+policy the values of choices, each simulated once and judged by the value (``judged_choices``). Simulations,
+two thirds of the time, are played in slices by ``where``: this process or a cluster.
 
 PPO then improves the policy further, with the value as reward-to-go: ``judge_rewards``.
 """

@@ -78,18 +78,12 @@ class FastPPO(MaskablePPO):
     def _report(self, figures, clip):
         """The curves of SB3, from the figures of ``FusedTable.ppo_gradient`` of all minibatches."""
         policy_loss, value_loss, entropy, clipped, _ = figures.mean(axis=0).tolist()
-        last = figures[-1]
-        for name, value in {
-            "entropy_loss": -entropy,
-            "policy_gradient_loss": policy_loss,
-            "value_loss": value_loss,
-            "approx_kl": float(figures[-len(figures) // self.n_epochs :, 4].mean()),
-            "clip_fraction": clipped,
-            "loss": float(last[0] - self.ent_coef * last[2] + self.vf_coef * last[1]),
-            "explained_variance": explained_variance(
-                self.rollout_buffer.values.flatten(), self.rollout_buffer.returns.flatten()
-            ),
-            "clip_range": clip,
-        }.items():
+        last, seen = figures[-1], self.rollout_buffer
+        curves = {"entropy_loss": -entropy, "policy_gradient_loss": policy_loss, "value_loss": value_loss}
+        curves |= {"clip_fraction": clipped, "clip_range": clip}
+        curves["approx_kl"] = float(figures[-len(figures) // self.n_epochs :, 4].mean())
+        curves["loss"] = float(last[0] - self.ent_coef * last[2] + self.vf_coef * last[1])
+        curves["explained_variance"] = explained_variance(seen.values.flatten(), seen.returns.flatten())
+        for name, value in curves.items():
             self.logger.record(f"train/{name}", value)
         self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")

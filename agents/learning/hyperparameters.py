@@ -1,10 +1,9 @@
 """How is an agent defined? By its ``hyperparams/NAME.yml``, in RL Baselines3 Zoo's format, for SB3.
 
-Additional keys: ``algo`` (the algorithm; the file is named after the agent), ``view`` (the observation: pots
-or foresight), ``imitation`` (positions of pre-training by imitation), ``expert`` (true: expert iteration in
-its place) and ``first_aim_std`` (exploration of the aim at the start). They may stand under ``agent``
-instead: the Zoo itself then trains with the same file, if the policy is one of SB3's own.
-``learning_rate: lin_X`` falls linearly from X to nearly 0.
+Additional keys: ``algo`` (the algorithm), ``view`` (the observation: pots or foresight), ``imitation``
+(positions of pre-training), ``expert`` (true: expert iteration in its place) and ``first_aim_std`` (of the aim
+at the start). They may stand under ``agent`` instead: the Zoo itself then trains with the same file, if the
+policy is one of SB3's own. ``learning_rate: lin_X`` falls linearly from X to nearly 0.
 """
 
 import ast
@@ -127,9 +126,8 @@ class Recipe:
             settings["batch_size"] = min(settings["batch_size"], settings["n_steps"] * tables.num_envs)
         if self.algo == "ppo_mask":
             settings["rollout_buffer_class"] = BoolMasks
-        model = algorithm_class(self.algo)(
-            policy(self.policy), tables, seed=seed, device="cpu", stats_window_size=1000, **settings
-        )
+        settings |= {"seed": seed, "device": "cpu", "stats_window_size": 1000}
+        model = algorithm_class(self.algo)(policy(self.policy), tables, **settings)
         if self.first_aim_std is not None:
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
         # SB3 saves and restores additional attributes, too
@@ -181,10 +179,15 @@ def _options(options, more, usual, policy):
         value, wanted = (some.get(key, ACTION_OPTIONS[key]) for some in (options, usual))
         if value != wanted:
             raise refuse(key, value, f"must be {wanted!r} for this agent")
-    if options.get("layout") == "held_out":
-        why = "the held-out tables are kept for evaluation"
-        raise refuse("layout", "held_out", f"must be another for training: {why}")
+    not_held_out(options.get("layout"))
     return options
+
+
+def not_held_out(layout):
+    """Raise ValueError for the layout of the tables that are kept for evaluation."""
+    if layout == "held_out":
+        why = "the held-out tables are kept for evaluation"
+        raise refuse("layout", layout, f"must be another for training: {why}")
 
 
 def algorithm_class(name):

@@ -54,10 +54,8 @@ class JudgedChoices:
     def _batch(self, choices):
         """Positions of several rounds: seen, masks, picks, valid, worths."""
         size = min(self._n, BATCH // _PARTS)
-        parts = [
-            (self._rounds[k], self._rng.choice(self._n, size, replace=False))
-            for k in self._rng.integers(len(self._rounds), size=_PARTS)
-        ]
+        which = self._rng.integers(len(self._rounds), size=_PARTS)
+        parts = [(self._rounds[k], self._rng.choice(self._n, size, replace=False)) for k in which]
         columns = (np.concatenate([one[c][rows] for one, rows in parts]) for c in range(5))
         seen, masks, picks, valid, worths = columns
         masks = np.unpackbits(masks, axis=1, count=choices).astype(bool)

@@ -1,15 +1,13 @@
 """How can a policy learn an angle of the full circle? By a mixture of strokes, along the lines of direct pots.
 
-A plain Gaussian over ``action="box", aim="absolute"`` never learns: a random direction almost never pots.
-Here the geometry is in the policy and the environment sees plain numbers. The density of an action (speed,
-side, top, aim) is::
+A plain Gaussian over ``action="box", aim="absolute"`` never learns: a random direction almost never pots. The
+environment sees plain numbers; the density of an action (speed, side, top, aim) is::
 
     sum over pots k of  weight_k * N(speed, side, top; means_k, stds) * N(aim; line_k + turn_k(speed, side, top), std_k)
 
 The weights are a softmax of the pots' scores. line_k is the direction to the pot's ghost ball, and turn_k
-moves the ghost ball round the object ball by the angle that ``Throw`` has learned for this cut, path and
-stroke: the aim is drawn after the stroke that it belongs to. It is explored in units of each pot's own
-tolerance. A table without a direct pot has one component: a full hit on the nearest ball on.
+moves that round the object ball by the angle that ``Throw`` has learned for this cut, path and stroke. The aim
+is explored in units of each pot's tolerance. Without a direct pot the line is a full hit on the nearest ball on.
 
     python train.py --agent ppo_absolute
 """

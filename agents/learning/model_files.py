@@ -1,9 +1,9 @@
 """How is a trained agent stored in a file and read again? As JSON and weights; nothing is unpickled.
 
 ``train.py`` writes zips of Stable-Baselines3, which ``PPO.load`` reads by running the pickles in their
-``data``; ``agents.publish`` writes zips of ``model.json`` and ``policy.pth`` alone. From either this module
-reads the entries ``KEPT`` as plain JSON and the tensors of ``policy.pth`` (``torch.load`` with
-``weights_only``). The network is that of the current recipe of that name: a file cannot name other code.
+``data``; ``agents.publish`` writes ``model.json`` and ``policy.pth`` alone. From either this module reads the
+entries ``KEPT`` as plain JSON and the tensors of ``policy.pth``. The network is that of the current recipe of
+that name: a file cannot name other code.
 """
 
 import io

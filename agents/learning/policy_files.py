@@ -1,9 +1,8 @@
 """How is the policy of another trainer stored? As the weights of its layers, an ``.npz`` without any code.
 
-RLlib, TorchRL and a loop of one's own each save in a way of their own, most of them as pickles. Where the
-policy is a plain multilayer perceptron from the flat observation to the 540 choices, its weights are all
-there is to keep: ``weight_0`` (out, in) and ``bias_0`` (out,) of the first layer, ``weight_1`` and so on, and
-``about``, JSON with the keys ``ABOUT``. ``agents.evaluate`` plays such a file.
+RLlib, TorchRL and a loop of one's own save in ways of their own, most as pickles. A multilayer perceptron from
+the flat observation to the 540 choices is its weights: ``weight_0`` (out, in) and ``bias_0`` (out,) of the
+first layer, ``weight_1`` and so on, and ``about``, JSON with the keys ``ABOUT``. ``agents.evaluate`` plays it.
 """
 
 import io

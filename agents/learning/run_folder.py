@@ -112,9 +112,8 @@ def options_of(out, state):
 def load_model(out, state, algo, envs):
     """The agent of a checkpoint, its tables and random generators as they were. Raises ValueError."""
     try:
-        model = algorithm_class(algo).load(
-            io.BytesIO(state["model"]), env=envs, device="cpu", seed=None
-        )  # a seed here would reseed the tables
+        # a seed here would reseed the tables
+        model = algorithm_class(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu", seed=None)
         model.seed = state["settings"]["seed"]
         if state["replay"] is not None:
             model.replay_buffer = state["replay"]

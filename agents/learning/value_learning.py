@@ -1,10 +1,9 @@
 """How is the value of a position learned? By backups over noise samples, corrected by what really followed.
 
 The target of a position is the mean of points plus the value of the afterstate, over fresh noise samples of
-the best stroke. (The samples that chose the stroke would flatter it.) What really followed corrects it with
-weight ``LAMBDA``, not beyond an exploratory stroke (Watkins' Q(lambda)). Features of afterstates are kept, so
-that targets follow the network. The returns of single visits are no use as targets: a visit's luck drowns
-what a position is worth.
+the best stroke (those that chose it would flatter it). What really followed corrects it with weight
+``LAMBDA``, not beyond an exploratory stroke (Watkins' Q(lambda)): a visit's returns alone are luck. Features
+of afterstates are kept, so that targets follow the network.
 """
 
 from collections import deque

@@ -140,7 +140,6 @@ class Geometric(BoundPlayer):
         self._aimer = Aimer(options, self._speed)
 
     def play(self, positions, seeds):
-        """See ``Player.play``."""
         _ = self.options  # it must be bound
         at = Positions.of(positions)
         visits, places = placed(at, seeds)

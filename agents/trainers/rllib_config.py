@@ -1,9 +1,8 @@
 """How does RLlib train on this environment? PPO of the new API stack, with masks, on vector environments.
 
-An env runner is a process of Ray with one ``SnookerVectorEnv``. RLlib resets a table in the step after its
-end (NEXT_STEP, the default of that class) and leaves that step out of the sample by itself. The module is
-RLlib's own ``ActionMaskingTorchRLModule``: it reads ``observation="masked"``, adds the logarithm of the mask
-to the scores, and must not be used with another algorithm than PPO.
+An env runner is a process of Ray with one ``SnookerVectorEnv``, which RLlib resets in the step after an end
+(NEXT_STEP) and leaves that step out by itself. Its own ``ActionMaskingTorchRLModule`` reads
+``observation="masked"``, adds the logarithm of the mask to the scores, and is for PPO alone.
 """
 
 from typing import Any

@@ -48,6 +48,7 @@ with needs("agents.train_rllib"):
 
     from ..evaluation.training_summary import show
     from ..learning.callback import Stop
+    from ..learning.hyperparameters import not_held_out
     from ..learning.models import POLICY
     from ..learning.policy_files import read_policy, write_policy
     from ..players.trained import player_of_model
@@ -112,9 +113,7 @@ def checked(settings):
     for name, (_, *ends) in OPTIONS.items():
         if ends:
             integer(name, getattr(settings, name), *ends)
-    if settings.layout == "held_out":
-        why = "the held-out tables are kept for evaluation"
-        raise refuse("layout", "held_out", f"must be another for training: {why}")
+    not_held_out(settings.layout)
     Options(action="discrete", observation="masked", **settings.env_options)
     return settings
 
@@ -153,11 +152,11 @@ def claimed(out, resume):
     """The ``Lock`` on the run's folder. Raises ValueError if it is in use, or not new."""
     if out.exists() and not out.is_dir():
         raise refuse("out", str(out), "must be a folder, new or empty")
-    held = sorted(file.name for file in out.iterdir() if file.name != LOCK) if out.is_dir() else []
+    out.mkdir(parents=True, exist_ok=True)
+    held = sorted(file.name for file in out.iterdir() if file.name != LOCK)
     if held and not resume:
         others = f"is not empty (it holds {', '.join(held[:3])})"
         raise refuse("out", str(out), f"{others}: --resume continues it, --out names another folder")
-    out.mkdir(parents=True, exist_ok=True)
     return Lock(out)
 
 
