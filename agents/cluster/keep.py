@@ -20,7 +20,7 @@ KEPT = Path("runs/kept")
 
 
 class Store:
-    """Files in a folder or at a URL (s3://, gs://), each whole or not at all. ValueError, naming ``field``."""
+    """Files in a folder or at a URL (s3://, gs://), each whole or not at all. ValueError names ``field``."""
 
     def __init__(self, url, field="keep", only_read=False):
         from fsspec.core import url_to_fs
@@ -128,7 +128,7 @@ def digest_of(data):
 
 
 class Keep:
-    """Where the parts of a job are kept: at ``--keep``; with ``--ray`` alone in a folder until it is complete.
+    """Where the parts of a job are kept: at ``--keep``; with ``--ray`` alone in a folder until it is done.
 
     That folder belongs to one process at a time. ``store`` is None if nothing is kept. Raises ValueError.
     """

@@ -39,7 +39,7 @@ def formats():
 
 
 def first_reds(strokes):
-    """Where the cue ball lay after first strokes that potted a red, (n, 2) [m], and whether the next scored."""
+    """Where the cue ball lay after first strokes that potted a red, (n, 2) [m]; whether the next scored."""
     chosen = (strokes.number == 0) & strokes.made & (strokes.ball_on == BallOn.RED)
     return strokes.cue[chosen], strokes.made[strokes.following[chosen]]
 

@@ -68,7 +68,7 @@ def _picked(report, **condition):
 
 
 def main_condition(report):
-    """Where comparison and picture are taken: the usual of everything that was played, else its first value."""
+    """Where comparison and picture are taken: the usual of all that was played, else its first value."""
     p = report["protocol"]
     return {
         name: USUAL[name] if USUAL[name] in p[key] else next(iter(p[key]))

@@ -84,7 +84,7 @@ def read(url):
 
 @command("agents.search")
 def main(argv=None):
-    """Check, search, write. Exit code 0; 130: interrupted; 1: the cluster stopped. What was searched is kept."""
+    """Check, search, write. Exit code 0; 130: interrupted; 1: the cluster stopped; all of it is kept."""
     p = parser()
     args = p.parse_args(argv)
     try:

@@ -208,7 +208,7 @@ class Tournament:
 
 @command("agents.tournament")
 def main(argv=None):
-    """Check, play, report. Exit code 0; 1: a checked file is wrong; 2: wrong arguments; 130: interrupted, kept."""
+    """Check, play, report. Exit code 0; 1: a wrong file; 2: wrong arguments; 130: interrupted, kept."""
     p = parser()
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_intermixed_args(argv)

@@ -1,4 +1,4 @@
-"""What did a training run learn? Held-out visits of its agent and of simple players, as table and sentences."""
+"""What did a training run learn? Held-out visits of its agent and of simple players, in table and words."""
 
 from typing import Any
 
@@ -14,10 +14,10 @@ from ..players.trained import player_of_model
 
 
 def evaluate(recipe, model, visits, part_of):
-    """Figures of held-out visits of the agent, ``ghost_ball`` and ``random``, under the training's noise and physics.
+    """Figures of held-out visits of agent, ``ghost_ball`` and ``random``, under the training's noise and physics.
 
     The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also
-    those of the planner with it and of the search by the rule of thumb (``search``). These are the first tables
+    those of the planner with it and of the search by the rule of thumb (``search``). The tables are the first
     of ``agents.evaluate``; ValueError if there are too few. ``part_of(total)``: the ``Progress`` of visits.
     """
     trained = player_of_model(model)
@@ -47,9 +47,9 @@ def _better(a, b):
 
 
 def conclusion(agent, steps, imitated, figures, start=None):
-    """The result in a sentence; differences are claimed from two standard errors on. A second one on the planner.
+    """The result in a sentence, and one on the planner; differences are claimed from two standard errors on.
 
-    ``imitated``: positions of imitation; ``start``: the origin of its weights (``models.load_weights``) or None.
+    ``imitated``: positions of imitation; ``start``: origin of its weights (``models.load_weights``) or None.
     """
     return _of_the_agent(agent, steps, imitated, figures, start) + _of_the_planner(figures)
 

@@ -39,7 +39,7 @@ def play(shared, args, threads):
 
 
 def joined(results, total):
-    """The ``Strokes`` of all visits from their parts, in the order in which one machine plays them at once."""
+    """The ``Strokes`` of all visits from their parts, in the order in which one machine plays them."""
     columns = {name: np.concatenate([one[name] for one in results]) for name in COLUMNS}
     columns["visit"] = np.concatenate([one["visit"] + SIZE * n for n, one in enumerate(results)])
     order = np.lexsort((columns["visit"], columns["number"]))

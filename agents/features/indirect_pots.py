@@ -92,7 +92,7 @@ def _width(k, dx, dy):
 def _keep(bed, shots, count, what, legs, aim, ghost, tolerance, reach):
     """Put a shot, what = (kind, ball, other, pocket), among the ``count`` widest; returns their number.
 
-    legs: where the ball's first way ends, and where the last one, into the pocket, begins. Both must be clear.
+    legs: where the ball's first way ends, and where the last one, to the pocket, begins. Both must be clear.
     """
     if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
         return count

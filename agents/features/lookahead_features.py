@@ -67,7 +67,7 @@ class ForesightView:
         return np.concatenate([with_pots(observations), ahead.reshape(len(at), -1)], 1)
 
     def ahead(self, at, masks):
-        """The rows (n, STROKES_SEEN, ENTRIES) of ``Positions``; 0 where ``masks`` (n, STROKES_SEEN) is False."""
+        """The rows (n, STROKES_SEEN, ENTRIES) of ``Positions``; 0 where not ``masks`` (n, STROKES_SEEN)."""
         table, stroke = np.nonzero(masks)
         k, m = len(self._samples), len(table)
         # the samples of a stroke in succession: its aim is solved once for all of them

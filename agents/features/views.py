@@ -1,4 +1,4 @@
-"""How are tables shown to an agent? By a view: pots, or also simulated outcomes; for training as a ``VecEnv``."""
+"""How are tables shown to an agent? By a view: pots, or simulated outcomes too; to train as a ``VecEnv``."""
 
 import numpy as np
 
@@ -47,7 +47,7 @@ def training_tables(n, threads=None, view="pots", **options):
         """All tables at once. A terminal observation holds the pots only: nothing is learned from it."""
 
         judge = None
-        """Values [points] of ``Positions``, added to rewards of strokes after which the visit goes on; or None."""
+        """Values [points] of ``Positions``, added to rewards where the visit goes on; or None."""
 
         def reset(self):
             observations = self.venv.reset()
@@ -68,7 +68,7 @@ def training_tables(n, threads=None, view="pots", **options):
 
         @property
         def running(self):
-            """Returns and lengths so far of running visits, for ``episode`` in their last info; in no state."""
+            """Returns and lengths so far of running visits, for ``episode`` in the last info; in no state."""
             return base.episode_returns.copy(), base.episode_lengths.copy()
 
         @running.setter

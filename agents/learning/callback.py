@@ -17,7 +17,7 @@ LOSSES = {name.partition("_")[0]: name for name in _NAMES}
 
 
 class Stop:
-    """Notes SIGINT and SIGTERM: the run is saved and ends after the current update. A second one acts at once."""
+    """Notes SIGINT and SIGTERM: the run is saved after the current update. A second one acts at once."""
 
     def __init__(self):
         self.signal = None

@@ -162,6 +162,6 @@ class ExpertIteration:
 
 
 def judge_rewards(venv, policy, threads):
-    """Let the tables add the learned value of the afterstate to each reward: PPO's reward-to-go at gamma = 0."""
+    """Let the tables add the learned value of the afterstate to rewards: reward-to-go for gamma = 0."""
     rules = venv.unwrapped.tables.options.rules
     venv.judge = value_of(policy.position_value, spread_of(rules.noise, rules.physics), threads)

@@ -1,4 +1,4 @@
-"""How are choices, values and gradients of ``TablePolicy`` computed quickly? In blocks that stay in the cache.
+"""How are choices, values and gradients of ``TablePolicy`` computed quickly? In blocks that fit the cache.
 
 PyTorch spends most of its time on moving intermediate results through memory. Here kernels do all that lies
 between the layers, ``BLOCK`` tables at a time, in arrays that are made once; the gradient is written out by
@@ -48,7 +48,7 @@ class Loss(NamedTuple):
 
 
 class FusedTable:
-    """Passes through a ``TablePolicy`` with its present weights. Of several threads one at a time computes."""
+    """Passes through a ``TablePolicy`` with its present weights. One thread at a time computes."""
 
     def __init__(self, policy):
         reader, value = policy.features_extractor, policy.value_net.value
@@ -84,7 +84,7 @@ class FusedTable:
         return StrokePolicy(dict(zip(self._layers, pairs, strict=True)))
 
     def scores(self, seen, masks):
-        """The scores of all choices (n, CHOICES), ``NEVER`` for those not available. Arguments as in ``act``."""
+        """The scores of all choices (n, CHOICES), ``NEVER`` where not available. Arguments as in ``act``."""
         return self.policy.scores(seen, masks)
 
     def act(self, seen, masks, uniform):
@@ -230,7 +230,7 @@ def _relu(x):
 
 
 class _Block(SimpleNamespace):
-    """Arrays of a block of n tables: each layer's result by name, gradients with ``d_``, as NumPy with ``_``."""
+    """Arrays of n tables: each layer's result by name, gradients with ``d_``, as NumPy with ``_``."""
 
     def __init__(self, n: int, layers: dict[str, _Layer]):
         most = n * (N_BALLS - 1)

@@ -49,7 +49,7 @@ def part(d_joint, joint, d_shared):
 
 @entry
 def spread_to_pots(d_codes, codes, d_context, at):
-    """The gradient before the ReLU of ``sum_pots``, in place: of codes and their sums in d_context[:, at:]."""
+    """The gradient before the ReLU of ``sum_pots``, in place: of codes and sums in d_context[:, at:]."""
     width = codes.shape[1]
     for j in range(d_context.shape[0]):
         d_sums = d_context[j, at : at + width]

@@ -81,7 +81,7 @@ class Recipe:
 
     @classmethod
     def of(cls, name, changes=(), env_kwargs=None, **more):
-        """The recipe of that name with "key=value" changed, then environment options and other keys. ValueError.
+        """The recipe of that name with "key=value" changed, then environment options, other keys. ValueError.
 
         Algorithm, policy, network, view and action belong together: to change them takes another recipe.
         """

@@ -24,7 +24,7 @@ from ..cluster.job import Here
 from .self_play import judged
 
 TRIES = 48
-"""Trials in each position: half the learner's best choices, half random; of few choices each is tried twice."""
+"""Trials in each position: half the learner's best choices, half random; if they are few, each twice."""
 TEMPERATURE = 1.0
 """The difference in points that makes a choice e times as likely."""
 KEPT = 50_000
@@ -37,7 +37,7 @@ USED = ("action", "aim", "elevation", "placement", "noise", "physics", "table", 
 
 
 class Expert:
-    """Evaluates choices on a ``SnookerVectorEnv``; ``ahead``: with what they leave; ``where``: who simulates."""
+    """Evaluates choices on a ``SnookerVectorEnv``; ``ahead``: and what they leave; ``where``: who plays."""
 
     def __init__(self, tables, threads, rng, ahead=True, where=None):
         self._tables, self._rng, self._where = tables, rng, where or Here(threads)
@@ -68,9 +68,9 @@ def to_try(scores, masks, rng):
 
 
 class Imitation:
-    """Imitation in ``states`` positions of visits that ``model.policy`` plays; with gamma = 0 points alone count.
+    """Imitation in ``states`` positions of visits that ``model.policy`` plays; for gamma = 0 only points count.
 
-    ``before``: of ``get_state``, model and tables restored: the result equals an uninterrupted run, bit for bit.
+    ``before``: of ``get_state``, model and tables restored: the result is an uninterrupted run's, bit for bit.
     """
 
     def __init__(self, model, venv, states, seed, threads, before=None, where=None):

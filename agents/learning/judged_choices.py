@@ -1,4 +1,4 @@
-"""How does a policy learn the values of choices from a judge? As in ``imitation``, on the caller's positions."""
+"""How does a policy learn the values of choices from a judge? As in ``imitation``, on others' positions."""
 
 import uuid
 from collections import deque
@@ -32,7 +32,7 @@ class JudgedChoices:
         self.losses = deque(maxlen=100)
 
     def round(self, at, value, remaining):
-        """Try choices in n ``Positions``, judge what they leave by ``value``, learn; ``remaining``: share left."""
+        """Try choices in ``Positions``, judge what they leave by ``value``, learn; ``remaining``: share."""
         seen, masks = with_pots(at.observations()), action_masks(at)
         with torch.no_grad():
             scores = self._policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()

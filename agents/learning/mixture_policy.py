@@ -1,4 +1,4 @@
-"""How can a policy learn an angle of the full circle? By a mixture of strokes, along the lines of direct pots.
+"""How can a policy learn an angle of the full circle? By a mixture of strokes along lines of direct pots.
 
 A plain Gaussian over ``action="box", aim="absolute"`` never learns: a random direction almost never pots. The
 environment sees plain numbers; the density of an action (speed, side, top, aim) is::
@@ -127,7 +127,7 @@ class MixtureHead(nn.Module):
         self.throw.start()
 
     def forward(self, read):
-        """Logarithms of the weights (n, POTS), means (n, POTS, 3), lines, and a function for aims of strokes."""
+        """Logarithms of the weights (n, POTS), means (n, POTS, 3), lines, and a function for aims."""
         n = len(read)
         end = CONTEXT + POTS * POT
         codes, side = read[:, CONTEXT:end].reshape(n, POTS, POT), read[:, end, None]

@@ -81,7 +81,7 @@ class _MismatchError(Exception):
 
 
 def read(path, field):
-    """The ``Trained`` in a file; None if train.py did not make it. ValueError, naming ``field``; ImportError."""
+    """The ``Trained`` in a file; None if train.py did not make it. ValueError, ImportError."""
     try:
         found = entries(path)
         if not by_train(found):
@@ -132,7 +132,7 @@ def _network(path, described, seen):
 
 
 def _weights(path, most):
-    """The tensors of a file by name; nothing runs. ``_MismatchError`` if they take more than ``most`` bytes."""
+    """The tensors of a file by name; nothing runs. ``_MismatchError`` if above ``most`` bytes."""
     import torch
 
     try:

@@ -33,7 +33,7 @@ def file_of(path, field):
 
 
 def load_trained(path, field):
-    """The ``Trained`` of a .zip or a run's folder. ValueError, naming ``field``, if train.py did not make it."""
+    """The ``Trained`` of a .zip or a run. ValueError, naming ``field``, if train.py did not make it."""
     file = file_of(path, field)
     if file.suffix == ".npz":
         wanted = "must be a model that train.py saved, its .zip or a run's folder"

@@ -28,7 +28,7 @@ ABOUT = {"trainer": "RLlib", "activation": "tanh", "shots": 0, "seed": 0, "gamma
 
 
 def packed_policy(weights, **about):
-    """A policy as its file's bytes; ``weights``: as of ``dense_layers.Layers``; ``about``: all of ``ABOUT``."""
+    """A policy as its file's bytes; ``weights``: of ``dense_layers.Layers``; ``about``: as ``ABOUT``."""
     if set(about) != set(ABOUT):
         raise refuse("about", sorted(about), f"must have the keys {', '.join(ABOUT)}")
     arrays = {}

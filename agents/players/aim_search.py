@@ -103,7 +103,7 @@ class Aimer:
         return lines + steps * (starts + 0.5 * (lengths - 1) - 0.5 * (AIMS - 1)), steps * lengths
 
     def _solve(self, at, rows, shots, speeds):
-        """Directions of the cue ball (m, s) [rad] for shots (m, COLUMNS) at their aim points at each speed."""
+        """Directions of the cue ball (m, s) [rad] for shots (m, COLUMNS) at their aim points by speed."""
         m, s = len(shots), len(speeds)
         aims = np.empty((m, s))
         plain = shots[:, BALL] < 0.0

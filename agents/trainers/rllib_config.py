@@ -26,7 +26,7 @@ GAMMA = 0.95
 SETTINGS: dict[str, Any] = {"train_batch_size": BATCH, "minibatch_size": 2048, "num_epochs": 4, "lr": 1e-3}
 SETTINGS |= {"gamma": GAMMA, "lambda_": 0.5, "entropy_coeff": 0.003, "clip_param": 0.2, "use_kl_loss": False}
 SETTINGS |= {"vf_loss_coeff": 0.01, "vf_clip_param": 1e6, "grad_clip": 0.5, "grad_clip_by": "global_norm"}
-"""Of ``hyperparams/ppo_mask.yml``, as far as RLlib has them; its clipping of values and KL penalty are off."""
+"""Of ``hyperparams/ppo_mask.yml``, as RLlib has them; its clipping of values and KL penalty are off."""
 PATIENCE = 600.0
 """Seconds in which a runner must give its sample: RLlib's own minute is too short for a busy machine."""
 MEMORY = 2**28

@@ -1,4 +1,4 @@
-"""How is an agent trained with RLlib from the command line? Trains, saves, resumes, judges on held-out tables.
+"""How is an agent trained with RLlib from the command line? Train, save, resume, judge on held-out tables.
 
     python -m agents.train_rllib                             300,000 shots with one env runner: some minutes
     python -m agents.train_rllib --runners 2 --out runs/two  two env runners, each with its own tables

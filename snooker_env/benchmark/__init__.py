@@ -1,4 +1,4 @@
-"""The benchmark, ``python -m snooker_env.benchmark``: tasks with frozen options, and how agents are judged."""
+"""The benchmark, ``python -m snooker_env.benchmark``: tasks with frozen options, how agents are judged."""
 
 from ..play.program import AgentError, ProgramPlayer
 from .agents import Agent

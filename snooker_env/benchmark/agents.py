@@ -25,10 +25,9 @@ class Agent:
 
     Attributes
     ----------
-    label : str
-        Its name in tables: 1 to 20 letters, digits or . + - _.
-    sources : tuple of str or player
-        What ``sn.player`` makes a player of, one for each training seed.
+    label, sources : str, tuple of str or player
+        Its name in tables, 1 to 20 letters, digits or . + - _; and for each training seed what ``sn.player``
+        makes a player of.
     options, trust : dict, bool
         Options of ``FREE`` with which the actions of models of Stable-Baselines3 are read, and whether code
         in models may run.

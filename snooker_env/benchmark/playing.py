@@ -19,18 +19,8 @@ from .tasks import Task
 
 BATCH = 100
 """Episodes that are played side by side."""
-COLUMNS = (
-    "run",
-    "table",
-    "score",
-    "strokes",
-    "points",
-    "pots",
-    "fouls",
-    "cleared",
-    "opponent_points",
-    "ended",
-)
+SUMS = ("strokes", "points", "pots", "fouls")
+COLUMNS = ("run", "table", "score", *SUMS, "cleared", "opponent_points", "ended")
 """Columns of a row: index of the training seed, seed of the table, then integers (docs/benchmark.md)."""
 STROKES = COLUMNS.index("strokes")
 Kept = list[NDArray[np.float32]]
@@ -183,7 +173,7 @@ def rows_of(
 ) -> list[list[int]]:
     """The rows of the episodes with these seeds, as ``decide`` plays them."""
     n = len(seeds)
-    sums: dict[str, Floats] = {name: np.zeros(n) for name in ("strokes", "points", "pots", "fouls")}
+    sums: dict[str, Floats] = {name: np.zeros(n) for name in SUMS}
     cleared, ended, won, opponent = np.zeros((4, n))
     for asked, info, done, terminated in rounds(tables, seeds, decide):
         scored = asked & (info["points"] > 0)

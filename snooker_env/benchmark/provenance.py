@@ -62,7 +62,7 @@ def processor() -> str:
 
 
 def software() -> dict[str, str | None]:
-    """Name -> version of this package, of Python and of the libraries that decide results; None: not installed.
+    """Name -> version of the package, of Python and of libraries that decide results; None: not installed.
 
     Returns
     -------
@@ -113,7 +113,7 @@ def arithmetic() -> str:
 
 
 def machine() -> dict[str, Any]:
-    """Platform, processor, cores and load average of the last minute or None: "platform", "cpu", "cores", "load".
+    """Platform, processor, cores, load of the last minute or None: "platform", "cpu", "cores", "load".
 
     Returns
     -------

@@ -225,7 +225,6 @@ def read_result(path: str | Path) -> Any:
     Returns
     -------
     object
-        The JSON content, a dict for a result.
 
     Raises
     ------

@@ -55,10 +55,8 @@ class Strokes:
         Position of the cue ball after the stroke [m]; NaN if it was potted.
     tolerance : float64 (n,)
         Tolerance of the aim of the widest direct pot after the stroke [rad]; 0 if there was none.
-    decision_seconds : float
-        Time of all decisions of the player [s].
-    simulated : int
-        Number of shots that this process simulated for the decisions.
+    decision_seconds, simulated : float, int
+        Time of all decisions of the player [s], and the shots that this process simulated for them.
 
     Examples
     --------
@@ -170,7 +168,7 @@ def play_visits(
 
 
 def counts(s: Strokes) -> dict[str, Floats]:
-    """Count points, pots, strokes, fouls and more in each visit.
+    """Count in each visit points, pots, fouls and more: both terms of every ratio of ``FIGURES``.
 
     Parameters
     ----------
@@ -180,7 +178,6 @@ def counts(s: Strokes) -> dict[str, Floats]:
     Returns
     -------
     dict of str to float64 (visits,)
-        The numbers of each visit, among them both terms of every ratio of ``FIGURES``.
 
     Examples
     --------

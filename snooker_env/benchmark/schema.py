@@ -67,11 +67,8 @@ RANGES: dict[str, tuple[float, float]] = {
     for name, (kind, _, _) in FIELDS.items()
     if kind in (int, NUMBER)
 }
-RANGES |= {
-    "agent.simulated_shots": (0, MOST_WHOLE),
-    "protocol.episodes": (1, 2**20),
-    "machine.cores": (1, 2**20),
-}
+RANGES["agent.simulated_shots"] = 0, MOST_WHOLE
+RANGES["protocol.episodes"] = RANGES["machine.cores"] = 1, 2**20
 """Lowest and highest value of every field that is a number."""
 _CONTROL = r"\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff"
 _LINE = re.compile(f"[^{_CONTROL}]{{1,200}}"), "one line of at most 200 characters"
@@ -110,7 +107,6 @@ def faults_of_fields(
     Returns
     -------
     list of str
-        Empty if all fields are there and sound.
 
     Examples
     --------

@@ -112,8 +112,7 @@ def interval(samples: Any, level: float = 0.95) -> tuple[float, float]:
     Returns
     -------
     low, high : float
-        The interval. NaN if a sample is NaN, or all samples are equal: no century in 500 visits does not
-        prove that there are none.
+        NaN if a sample is NaN, or all are equal: no century in 500 visits does not prove that there are none.
 
     Examples
     --------

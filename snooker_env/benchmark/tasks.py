@@ -30,16 +30,13 @@ class Task:
     ----------
     id, title : str
         The Gymnasium id, with its version, and the aim of the task in a few words.
-    changes : mapping
-        Options that differ from those of ``Snooker-v0``.
-    judged_layout : str
-        The layout that agents are judged on; training uses that of ``changes``.
+    changes, judged_layout : mapping, str
+        Options that differ from those of ``Snooker-v0``, and the layout of the judging in place of theirs.
     score, measure : str
         The score of an episode, "points", "pots", "legal" or "won", and the name of its mean.
-    episodes : int
-        Number of episodes of an official result for each training seed.
-    thresholds : tuple of int
-        Scores of the performance profile, which is the share of episodes with at least each of these scores.
+    episodes, thresholds : int, tuple of int
+        Episodes of an official result for each training seed, and the scores of its performance profile: the
+        share of episodes with at least each of these.
     note : str
         What a reader of its table should know; empty: nothing.
 
@@ -62,14 +59,12 @@ class Task:
     note: str = ""
 
     def options(self, **free: Any) -> Options:
-        """The options of the task as it is trained: frozen ones and these of ``FREE``; ValueError for others."""
+        """The options of the task as it is trained: frozen ones and these of ``FREE``, no others."""
         frees = ", ".join(FREE)
         for name in (name for name in free if name not in FREE):
             if name == "options":
-                must = (
-                    f"must be left out: {self.id} makes its own; give the free options themselves ({frees})"
-                )
-                raise refuse_what("options", f"a {type(free[name]).__name__}", must)
+                why = f"{self.id} makes its own; give the free options themselves ({frees})"
+                raise refuse_what("options", f"a {type(free[name]).__name__}", f"must be left out: {why}")
             if name not in _USUAL:
                 what = f"got an unexpected keyword argument {name!r}"
                 raise TypeError(f"{what}; the free options of {self.id} are {frees}")
@@ -97,7 +92,7 @@ class Task:
         return self.changes.get("task") == "frame"
 
     def seeds(self, n: int) -> list[int]:
-        """The seeds of the first n judged tables (of frames: of the errors); ValueError if there are fewer."""
+        """The seeds of the first n judged tables (of frames: of the errors). ValueError for too many."""
         integer("episodes", n, 1, 2**20)
         first = HELD_OUT_SEED
         return list(range(first, first + n)) if self.frame else tables_of(self.judged_layout, n)
@@ -117,12 +112,8 @@ _FRAME = (
 )
 
 
-_MEASURES = {
-    "points": ("points a visit", 500),
-    "pots": ("share of balls potted", 1000),
-    "legal": ("share of escapes", 1000),
-    "won": ("share of frames won", 200),
-}
+_MEASURES = {"points": ("points a visit", 500), "pots": ("share of balls potted", 1000)}
+_MEASURES |= {"legal": ("share of escapes", 1000), "won": ("share of frames won", 200)}
 """Of each score: the name of its mean, and the number of episodes."""
 
 
