@@ -1,8 +1,6 @@
 """The command ``python -m agents.curves``; see ``agents/evaluation/learning_curves.py``."""
 
-import sys
-
 from .evaluation.learning_curves import main
 
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(main())

@@ -26,10 +26,8 @@ def arrays_of(policy):
         arrays |= {f"policy/{name}/weight": weight, f"policy/{name}/bias": bias}
     value = policy.position_value
     for k, (weight, bias) in enumerate(zip(value.weights, value.biases, strict=True)):
-        arrays |= {
-            f"value/{k}/weight": weight.detach().numpy().transpose(0, 2, 1),
-            f"value/{k}/bias": bias.detach().numpy()[:, 0],
-        }
+        arrays[f"value/{k}/weight"] = weight.detach().numpy().transpose(0, 2, 1)
+        arrays[f"value/{k}/bias"] = bias.detach().numpy()[:, 0]
     return {name: np.ascontiguousarray(array, np.float32) for name, array in arrays.items()}
 
 

@@ -1,8 +1,6 @@
 """The command ``python -m agents.search``; see ``agents/evaluation/search_data.py``."""
 
-import sys
-
 from .evaluation.search_data import main
 
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(main())

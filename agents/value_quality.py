@@ -1,8 +1,6 @@
 """The command ``python -m agents.value_quality``; see ``agents/evaluation/value_quality.py``."""
 
-import sys
-
 from .evaluation.value_quality import main
 
 if __name__ == "__main__":
-    sys.exit(main())
+    raise SystemExit(main())

@@ -101,20 +101,30 @@ def _wanted(shape):
     return f"({sizes},)" if len(shape) == 1 else f"({sizes})"
 
 
-def array(field: str, value: Any, shape: tuple[int, ...], most: float = np.inf, unit: str = "") -> Floats:
-    """A new finite C-ordered float64 array of this shape (-1: any length), all within ``most`` [unit]."""
-    bad = refuse(field, value, f"must be real numbers of shape {_wanted(shape)}")
-    try:
-        raw = np.asarray(value)
-    except (TypeError, ValueError):
-        raise bad from None
-    if raw.dtype.kind not in "iuf" or (isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value)):
-        raise bad
-    if raw.dtype.itemsize > 8:
-        with np.errstate(over="ignore"):  # a wider number may become infinite, which is refused below
-            raw = raw.astype(np.float64)
-    a = np.array(raw, dtype=np.float64, order="C")
-    if a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True)):
+_FLOAT = np.dtype(np.float64)
+
+
+def array(
+    field: str, value: Any, shape: tuple[int, ...], most: float | None = np.inf, unit: str = ""
+) -> Floats:
+    """A new finite C-ordered float64 array of this shape (-1: any length), all within ``most`` [unit].
+
+    ``most`` None: the numbers are checked elsewhere.
+    """
+    if type(value) is np.ndarray and value.dtype is _FLOAT:
+        a = value.copy()
+    else:
+        try:
+            raw = np.asarray(value)
+        except (TypeError, ValueError):
+            raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}") from None
+        if raw.dtype.kind not in "iuf" or (isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value)):
+            raise refuse(field, value, f"must be real numbers of shape {_wanted(shape)}")
+        with np.errstate(over="ignore"):  # a wider number may become infinite, which is refused
+            a = np.array(raw, dtype=np.float64, order="C")
+    if a.shape != shape and (
+        a.ndim != len(shape) or any(s not in (-1, n) for s, n in zip(shape, a.shape, strict=True))
+    ):
         raise refuse_what(field, f"array of shape {a.shape}", f"must have shape {_wanted(shape)}")
     if most is None:
         return a

@@ -1,2 +1,1 @@
-"""How is work of many independent parts played on one machine or on many? By the same code, to the same
-bits."""
+"""How is work of independent parts played on one machine or on many? By the same code, to the same bits."""

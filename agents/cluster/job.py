@@ -49,11 +49,7 @@ class Here:
 
 
 def ended(parts, shared, where, store=None):
-    """Yield the number and the result of each part: first of those that the store keeps, then of the others
-    as they end.
-
-    These are kept at once.
-    """
+    """Yield number and result of each part: those that the store keeps, then the others, kept as they end."""
     keys, left = keys_of(parts, shared), []
     kept = store.names("parts") if store else ()
     for k, key in enumerate(keys):

@@ -1,5 +1,4 @@
-"""Where is kept what a job has played? In a folder or at a URL of fsspec, without pickles: reading runs no
-code."""
+"""Where is kept what a job has played? In a folder or at a URL of fsspec, without pickles."""
 
 import errno
 import hashlib
@@ -21,8 +20,7 @@ KEPT = Path("runs/kept")
 
 
 class Store:
-    """Files in a folder or at a URL (s3://, gs://), each whole or not at all. Raises ValueError, naming
-    ``field``."""
+    """Files in a folder or at a URL (s3://, gs://), each whole or not at all. ValueError names ``field``."""
 
     def __init__(self, url, field="keep", only_read=False):
         from fsspec.core import url_to_fs
@@ -83,8 +81,7 @@ class Store:
             return None if data is None else unpacked(data)
 
     def join(self, job):
-        """Make this the store of a ``job``, a dict. Raises ValueError, naming what differs, if it is
-        another's."""
+        """Make this the store of a ``job``, a dict. ValueError that says what differs if it is another's."""
         before = self.read("job.json")
         if before is None:
             if self.names("parts"):
@@ -131,8 +128,7 @@ def digest_of(data):
 
 
 class Keep:
-    """Where the parts of the job ``about`` are kept: at ``--keep``; with ``--ray`` alone in its own folder
-    until it is complete.
+    """Where the parts of a job are kept: at ``--keep``; with ``--ray`` alone in a folder until it is done.
 
     That folder belongs to one process at a time. ``store`` is None if nothing is kept. Raises ValueError.
     """

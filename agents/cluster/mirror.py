@@ -1,5 +1,4 @@
-"""How does a training outlive its machine? Each checkpoint is copied to a folder or URL, from which any
-machine goes on.
+"""How does a training outlive its machine? Checkpoints are copied to where any machine can go on.
 
 One process writes there: whoever resumes takes over, and a run that still lives elsewhere stops at its next
 save.
@@ -27,8 +26,7 @@ _mirrors = {}
 
 
 class Mirror:
-    """The copy of a run's checkpoint in a folder or at an fsspec URL for this run alone. Raises
-    ValueError."""
+    """The copy of a run's checkpoint in a folder or at an fsspec URL for it alone. Raises ValueError."""
 
     def __init__(self, url):
         self.store, self._mine = Store(url, "mirror"), uuid.uuid4().hex

@@ -4,27 +4,52 @@ Each part is a task of one core. Ray itself queues them, keeps shared data on ea
 again whose worker or node died.
 """
 
+import hashlib
 import os
 import re
 import socket
 import subprocess
 import sys
 from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
 
 from commands.lifecycle import DISK, installs
+from snooker_env.benchmark import software as versions
 from snooker_env.checks import refuse
 from snooker_env.planning import processors
 
 from .job import ClusterError, Here
 from .keep import KEPT
-from .software import software
 
+ROOT = Path(__file__).parents[2]
 RETRIES = 5
 """How often a part is played again because its worker died."""
 ANSWER = 60.0
 """Seconds in which the head of a cluster has to answer."""
 LOCAL_STORE = 2**28
 """Bytes of the object store of a cluster on this machine alone: weights and results are small."""
+
+
+@cache
+def software():
+    """Name -> version of everything that has to be the same on all machines; None: not installed."""
+    digest = hashlib.sha256()
+    for folder in ("snooker_env", "agents", "commands"):
+        for file in sorted((ROOT / folder).rglob("*")):
+            if file.suffix in (".py", ".npz", ".yml", ".zip"):
+                content = file.read_bytes()
+                digest.update(f"{file.relative_to(ROOT).as_posix()} {len(content)}\n".encode() + content)
+    return versions() | {"source of snooker_env": digest.hexdigest()[:16]}
+
+
+def difference(wanted):
+    """What this machine holds in another version than ``wanted``, in words; "" if nothing."""
+    return ", ".join(
+        f"{name} is {software().get(name) or 'not installed'} there and {version or 'not installed'} here"
+        for name, version in wanted.items()
+        if software().get(name) != version
+    )
 
 
 def add_ray(p, keep=False):
@@ -136,8 +161,7 @@ class Cluster(Here):
             yield running.pop(one), self._result(one)
 
     def _result(self, one):
-        """The result of a part. Raises ClusterError for what befell its machine, else the part's own
-        error."""
+        """The result of a part. ClusterError for what befell its machine, else the part's own error."""
         exceptions = self._ray.exceptions
         try:
             result, processor = self._ray.get(one)
@@ -176,12 +200,11 @@ def fault_of(cause, node):
 
 
 def _task():
-    """What a worker does. Made inside another function, it is sent as code: the node may lack this
-    package."""
+    """What a worker does. As an inner function it is sent as code: the node may lack this package."""
 
     def play(task, shared, args, wanted):
         from agents.cluster.job import ClusterError, run
-        from agents.cluster.software import difference
+        from agents.cluster.ray_cluster import difference
         from snooker_env.benchmark import processor
 
         differs = difference(wanted)

@@ -1,2 +1,1 @@
-"""How well agents play: rollouts on held-out tables, metrics with intervals, reports, pictures, and the
-publishing of models."""
+"""How well do agents play? Held-out visits, tournaments, figures with intervals, reports, models."""

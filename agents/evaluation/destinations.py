@@ -1,5 +1,4 @@
-"""Where does the cue ball stop after a red, and what does that bring? A picture of agents side by side, on
-the same tables.
+"""Where does the cue ball stop after a red, and what does that bring? A picture of agents side by side.
 
     python -m agents.evaluate --agent ppo_foresight ghost_ball --layouts held_out --noise professional
     --picture
@@ -40,15 +39,13 @@ def formats():
 
 
 def first_reds(strokes):
-    """Where the cue ball lay after first strokes that potted a red, (n, 2) [m], and whether the next stroke
-    scored, (n,)."""
+    """Where the cue ball lay after first strokes that potted a red, (n, 2) [m]; whether the next scored."""
     chosen = (strokes.number == 0) & strokes.made & (strokes.ball_on == BallOn.RED)
     return strokes.cue[chosen], strokes.made[strokes.following[chosen]]
 
 
 def figures_of(report, strokes):
-    """What is drawn, JSON-able, of the first agents of a report; ``strokes``: label -> list of the
-    ``Strokes`` of each run."""
+    """What is drawn, JSON-able, of the first agents; ``strokes``: label -> ``Strokes`` of each run."""
     at = main_condition(report)
     rows = {r["agent"]: r for r in report["results"] if all(r[key] == value for key, value in at.items())}
     agents = {}
@@ -62,8 +59,7 @@ def figures_of(report, strokes):
 
 
 def draw(report, strokes, file):
-    """Draw the first agents of the report; ``strokes``: label -> list of the ``Strokes`` of each run in the
-    main condition."""
+    """Draw the first agents of the report; ``strokes``: as in ``figures_of``, in the main condition."""
     draw_figures(figures_of(report, strokes), file)
 
 

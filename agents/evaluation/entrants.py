@@ -168,16 +168,14 @@ def _model(path, trust, options):
 
 def _told(saved, options):
     """The training record of a model that train.py did not make."""
+    steps, gamma, seed = (saved.data.get(name) for name in ("num_timesteps", "gamma", "seed"))
     try:
-        seed = saved.data.get("seed")
-        known = {
-            "num_timesteps": integer("num_timesteps", saved.data.get("num_timesteps"), 0, 10**18),
-            "gamma": number("gamma", saved.data.get("gamma"), 0, 1),
-            "seed": seed if seed is None else integer("seed", seed, 0, 2**64),
-        }
+        steps, gamma = integer("num_timesteps", steps, 0, 10**18), number("gamma", gamma, 0, 1)
+        seed = seed if seed is None else integer("seed", seed, 0, 2**64)
     except ValueError as error:
         raise saved.refused(f"must be a model saved by Stable-Baselines3 ({error})") from None
-    return Trained(None, saved.algorithm[1], "plain", UNKNOWN | options, imitated=None, start=None, **known)
+    options = UNKNOWN | options
+    return Trained(None, saved.algorithm[1], "plain", options, steps, gamma, seed, imitated=None, start=None)
 
 
 def _number_in(file, name):

@@ -1,5 +1,4 @@
-"""How fast do agents learn? A chart of the points a visit in training, over the time they have trained and
-over their shots.
+"""How fast do agents learn? A chart of the points a visit over the time and the shots of training.
 
     python -m agents.curves "ppo_mask=runs/mask-?" "pots only=runs/gamma0-?" [--json FILE] [--out agents/pictures/curves.png]
     python -m agents.curves --from                    the chart again, from agents/pictures/curves.json
@@ -10,13 +9,13 @@ tables, a run at its end, without exploration, with two standard errors. A run t
 line where it begins to play; what a run with --start brought along is not counted. Shots are taken to be
 spread evenly over the time, and the machine was shared: minutes say a factor, not a percentage.
 
-The runs of version 0.1.0 were not kept. In their place agents/pictures/curves.json holds, for each agent, the
-range of its seeds' lines, read off the chart of that version, and the ends with 95 % intervals from
-agents/results.
+The runs of version 0.1.0 were not kept: agents/pictures/curves.json holds, for each agent, the range of its
+seeds' lines, read off the chart of that version, and the ends with 95 % intervals from agents/results.
 """
 
 from itertools import cycle
 from pathlib import Path
+from typing import Any
 
 from commands.lifecycle import command, needs, parser_of
 
@@ -51,11 +50,8 @@ def run_of(path):
         shots = np.array([at["steps"] for at in run["curve"]], float)
         points = np.array([at["points"] for at in run["curve"]], float)
         minutes = (imitating + (run["seconds"] - imitating) * shots / run["steps"]) / 60.0
-        ends = {name: run["evaluation"][name] for name in LEVELS}
-        levels = {
-            name: (float(end["points_a_visit"]), float(end["points_a_visit_se"]))
-            for name, end in ends.items()
-        }
+        ends = ((name, run["evaluation"][name]) for name in LEVELS)
+        levels = {name: (float(end["points_a_visit"]), float(end["points_a_visit_se"])) for name, end in ends}
         end = run["steps"], run["seconds"] / 60.0
         return {"shots": shots, "minutes": minutes, "points": points, "end": end, "levels": levels}
     except (ValueError, KeyError, TypeError, IndexError, AttributeError):
@@ -86,9 +82,8 @@ def draw(drawn, file):
     )
     with picture_style.drawing() as plt:
         foot = f"python -m agents.curves, snooker_env {drawn['version']}, professional execution errors"
-        figure, sides = picture_style.page(
-            plt, 5.4, "How fast the agents learn: points a visit", note, foot=foot, columns=2, sharey=True
-        )
+        title = "How fast the agents learn: points a visit"
+        figure, sides = picture_style.page(plt, 5.4, title, note, foot=foot, columns=2, sharey=True)
         for (label, of), colour in zip(drawn["agents"].items(), cycle(picture_style.SERIES), strict=False):
             for axes, (name, _) in zip(sides, PANELS, strict=True):
                 for line in of.get("lines", ()):
@@ -98,14 +93,8 @@ def draw(drawn, file):
                     axes.fill_between(band["x"], band["low"], band["high"], color=colour, alpha=0.55, lw=1.0)
                 for i, end in enumerate(of["ends"]):
                     reach = [[end["points"] - end["low"]], [end["high"] - end["points"]]]
-                    disc = {
-                        "fmt": "o",
-                        "ms": 6,
-                        "mec": "white",
-                        "mew": 0.8,
-                        "elinewidth": 1.4,
-                        "color": colour,
-                    }
+                    disc: dict[str, Any] = {"fmt": "o", "ms": 6, "mec": "white", "mew": 0.8}
+                    disc |= {"elinewidth": 1.4, "color": colour}
                     named = label if i == 0 else None
                     axes.errorbar(end[name], end["points"], reach, label=named, **disc)
         for axes, (_, name) in zip(sides, PANELS, strict=True):

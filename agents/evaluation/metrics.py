@@ -1,5 +1,4 @@
-"""How good is an agent under one condition? Its figures with intervals, and its scores relative to those of
-other agents."""
+"""How good is an agent under one condition? Its figures with intervals, and ratios to those of others."""
 
 import zlib
 from dataclasses import dataclass
@@ -21,8 +20,7 @@ def _quotient(above, below):
 
 
 def bounded(share, trials):
-    """A share with its interval; one that was never or always seen, which has none, with the exact bound of
-    so many trials."""
+    """A share with its interval; one never or always seen with the exact bound of so many trials."""
     if share["low"] is not None or share["value"] not in (0.0, 1.0) or not trials:
         return share
     most = unseen(trials)
@@ -46,14 +44,10 @@ class EntrantMetrics:
 
     def figures(self):
         """All figures of this agent alone."""
-        samples, c = self._samples, self.counted
-        found = {
-            name: figure(_quotient(c[a].sum(), c[b].sum()), samples.ratios(c[a], c[b]))
-            for name, (a, b) in FIGURES.items()
-        }
-        for name in SCORES:
-            found[f"{name}_a_visit_iqm"] = figure(iqm(c[name]), samples.iqms(c[name]))
-        return found
+        samples, c, made = self._samples, self.counted, {}
+        for name, (a, b) in FIGURES.items():
+            made[name] = figure(_quotient(c[a].sum(), c[b].sum()), samples.ratios(c[a], c[b]))
+        return made | {f"{name}_a_visit_iqm": figure(iqm(c[name]), samples.iqms(c[name])) for name in SCORES}
 
     def ratios(self, other):
         """This agent's scores over another's on the same tables."""

@@ -46,8 +46,7 @@ with needs("agents.evaluate"):
 
     from ..cluster.job import ClusterError, Here, ended, in_order
     from ..cluster.keep import Keep, digest_of
-    from ..cluster.ray_cluster import add_ray, checked_ray, place
-    from ..cluster.software import software
+    from ..cluster.ray_cluster import add_ray, checked_ray, place, software
     from .entrants import Entrant, add_models, entrants_of
     from .metrics import EntrantMetrics
     from .report import AXES, PICTURE, main_condition, markdown, parts
@@ -95,8 +94,7 @@ def _conditions(report, seeds):
 
 
 def all_parts(report, agents, seeds):
-    """The parts of everything that the report's protocol says, in the order in which ``evaluate`` takes their
-    results."""
+    """The parts of all that the report's protocol says, in the order in which ``evaluate`` takes them."""
     p = report["protocol"]
     return [
         part
@@ -115,60 +113,35 @@ def about(report, shared):
 
 
 def parser():
-    """The command line."""
     p = parser_of("python -m agents.evaluate", __doc__)
+    add = p.add_argument
     what = "NAME, MODEL (a .zip, an .npz of plain weights, or a run's folder), LABEL=PATH,PATH,... "
-    what += "or MODULE:CLASS; NAME: "
-    p.add_argument(
-        "--agent", nargs="+", required=True, metavar="AGENT", help=what + ", ".join(snooker_env.players())
-    )
+    what += f"or MODULE:CLASS; NAME: {', '.join(snooker_env.players())}"
+    add("--agent", nargs="+", required=True, metavar="AGENT", help=what)
     add_models(p)
-    p.add_argument(
-        "--against",
-        nargs="+",
-        default=[REFERENCE],
-        metavar="LABEL",
-        help=f"agents to compare the others with [{REFERENCE}]",
-    )
+    what = f"agents to compare the others with [{REFERENCE}]"
+    add("--against", nargs="+", default=[REFERENCE], metavar="LABEL", help=what)
     usual = [f"{name}={n}" for name, n in PROTOCOL.items()]
-    p.add_argument(
-        "--layouts", nargs="+", default=usual, metavar="LAYOUT", help=f"LAYOUT=VISITS [{' '.join(usual)}]"
-    )
-    p.add_argument("--visits", type=int, help="so many on every layout, for a quick trial or a slow player")
-    p.add_argument(
-        "--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]"
-    )
-    p.add_argument(
-        "--fidelity", nargs="+", default=["standard"], help="fast, standard, reference or euler:N [standard]"
-    )
-    p.add_argument(
-        "--physics",
-        nargs="+",
-        default=["paper"],
-        help="paper, match, or one with changes: paper,mu_bb=marlow [paper]",
-    )
-    p.add_argument(
-        "--rekey",
-        action="store_true",
-        help="new execution errors after every decision: a control that no agent has seen them beforehand",
-    )
+    add("--layouts", nargs="+", default=usual, metavar="LAYOUT", help=f"LAYOUT=VISITS [{' '.join(usual)}]")
+    add("--visits", type=int, help="so many on every layout, for a quick trial or a slow player")
+    add("--noise", nargs="+", default=list(NOISES), help=f"levels of execution noise [{' '.join(NOISES)}]")
+    what = "fast, standard, reference or euler:N [standard]"
+    add("--fidelity", nargs="+", default=["standard"], help=what)
+    what = "paper, match, or one with changes: paper,mu_bb=marlow [paper]"
+    add("--physics", nargs="+", default=["paper"], help=what)
+    what = "new execution errors after every decision: a control that no agent has seen them beforehand"
+    add("--rekey", action="store_true", help=what)
     add_ray(p, keep=True)
-    p.add_argument("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
-    p.add_argument("--json", type=Path, help="write every figure here")
-    p.add_argument("--markdown", type=Path, help="write the tables here")
-    p.add_argument(
-        "--picture",
-        type=Path,
-        nargs="?",
-        const=PICTURE,
-        help="draw where the cue ball goes, for the first three agents [agents/pictures/destinations.png]",
-    )
+    add("--resamples", type=int, default=RESAMPLES, help=f"bootstrap samples [{RESAMPLES}]")
+    add("--json", type=Path, help="write every figure here")
+    add("--markdown", type=Path, help="write the tables here")
+    what = "draw where the cue ball goes, for the first three agents [agents/pictures/destinations.png]"
+    add("--picture", type=Path, nargs="?", const=PICTURE, help=what)
     return p
 
 
 def checked(args):
-    """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError before
-    anything is played."""
+    """(agents, references, {layout: seeds of its tables}) of the command line. Raises ValueError."""
     agents = entrants_of(args.agent, args, "agent")
     labels = [agent.label for agent in agents]
     for label in args.against:
@@ -184,12 +157,10 @@ def checked(args):
         if isinstance(visits, str) and not visits.isdecimal():
             raise refuse("layouts", text, "must be LAYOUT or LAYOUT=VISITS")
         sizes[name] = integer("visits", int(visits), 2, 2**20)
-    for level in args.noise:
-        Noise.of(level)
-    for fidelity in args.fidelity:
-        parse_fidelity(fidelity)
-    for physics in args.physics:
-        physics_option(physics)
+    checks = ((Noise.of, args.noise), (parse_fidelity, args.fidelity), (physics_option, args.physics))
+    for check, values in checks:
+        for value in values:
+            check(value)
     integer("resamples", args.resamples, 100, 10**6)
     if args.picture and "held_out" not in sizes:
         raise refuse("layouts", " ".join(args.layouts), "must hold held_out for --picture")
@@ -201,7 +172,7 @@ def checked(args):
 
 
 def evaluate(report, agents, seeds, shown, results):
-    """Add the figures of everything that the report's protocol says to it, a whole condition at a time.
+    """Add the figures of all that the report's protocol says to it, a whole condition at a time.
 
     ``shown`` becomes the strokes of the main condition, by label; ``results``: those of ``all_parts``.
     """
@@ -222,11 +193,6 @@ def evaluate(report, agents, seeds, shown, results):
             shown |= {label: one.strokes for label, one in metrics.items()}
 
 
-def spared(file):
-    """Where incomplete figures go: ``file``, or beside it if it is there already, for it may be whole."""
-    return file.with_name(f"{file.stem}.incomplete{file.suffix}") if file and file.exists() else file
-
-
 @command("agents.evaluate")
 def main(argv=None):
     """Check, play, report. Exit code 0; 130 if it was interrupted: what was complete is kept."""
@@ -244,20 +210,11 @@ def main(argv=None):
     snooker_env.warmup()
     for agent in agents:  # compiled before the clock runs
         play_visits(agent.player(0), 2)
-    report = {
-        "command": "python -m agents.evaluate " + shlex.join(argv),
-        **provenance(),
-        "protocol": {
-            "layouts": {name: len(s) for name, s in seeds.items()},
-            "first_seed": HELD_OUT_SEED,
-            "against": references,
-            **{axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES},
-            "resamples": args.resamples,
-            "rekey": args.rekey,
-        },
-        "agents": [{"label": agent.label, "runs": agent.origins()} for agent in agents],
-        "results": [],
-    }
+    protocol = {"layouts": {name: len(s) for name, s in seeds.items()}, "first_seed": HELD_OUT_SEED}
+    protocol |= {"against": references} | {axis: list(dict.fromkeys(getattr(args, axis))) for axis in AXES}
+    report = {"command": f"python -m agents.evaluate {shlex.join(argv)}", **provenance()}
+    report |= {"protocol": protocol | {"resamples": args.resamples, "rekey": args.rekey}}
+    report |= {"agents": [{"label": agent.label, "runs": agent.origins()} for agent in agents], "results": []}
     shown, why, code = {}, "", 0
     job, shared = all_parts(report, agents, seeds), _shared(agents)
     try:
@@ -295,11 +252,12 @@ def main(argv=None):
 
 
 def write(report, shown, args):
-    """Write what was asked for and print the tables. A file that cannot be written is named at the end, and
-    the others are there."""
+    """Write what was asked for and print the tables; files that cannot be written are named at the end."""
     files, failed = {name: getattr(args, name) for name in ("json", "markdown", "picture")}, []
     if "incomplete" in report:
-        files = {name: spared(file) for name, file in files.items()}
+        # beside a file that is there already, for that may be whole
+        beside = lambda file: file.with_name(f"{file.stem}.incomplete{file.suffix}")  # noqa: E731
+        files = {name: beside(file) if file and file.exists() else file for name, file in files.items()}
     if not shown:
         files["picture"] = None
 

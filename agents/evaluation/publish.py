@@ -21,8 +21,7 @@ with needs("agents.publish"):
     from ..learning.models import PRETRAINED, load_trained, pretrained
 
 AS_IT_STANDS = {"layout": "", "noise": "", "fidelity": "", "physics": "", "start": "", "set": []}
-"""What these settings are in a run of its recipe as it stands. A fidelity that was given is also that of its
-final evaluation."""
+"""These settings in a run of its recipe as it stands. A given fidelity is also that of its evaluation."""
 
 
 def results_of(run):
@@ -71,8 +70,7 @@ def name_of(results, name):
 
 
 def publish(run, name, limits, replace=False):
-    """Write the model and its card; (path without ending, card). Raises ValueError before anything is
-    written."""
+    """Write the model and its card; (path without ending, card). Raises ValueError before it writes."""
     if not limits.strip():
         raise refuse("limits", limits, "must say what a user should know that it cannot do")
     results, trained = results_of(run)
@@ -89,7 +87,6 @@ def publish(run, name, limits, replace=False):
 
 @command("agents.publish")
 def main(argv=None):
-    """Command line."""
     parser = parser_of("python -m agents.publish", __doc__)
     parser.add_argument("run", type=Path, help="a run's folder")
     parser.add_argument("--name", help="of the model [the agent's]")

@@ -1,12 +1,9 @@
-"""How is an evaluation reported? Its tables and sentences, for a terminal and as Markdown; every word follows
-from the figures.
-
-``report`` is what agents/evaluation/protocol.py writes as JSON. The Markdown is made again from it, without
-playing, by
+"""How is an evaluation reported? Tables and sentences for a terminal and as Markdown, all from its figures.
 
     python -m agents.report agents/results/*.json
 
-which writes ``agents/results/*.md``; --show prints the tables instead.
+writes ``agents/results/*.md`` again from what agents/evaluation/protocol.py keeps as JSON, without playing;
+--show prints the tables instead.
 """
 
 import os
@@ -21,7 +18,7 @@ from commands.lifecycle import command, needs, parser_of
 with needs("agents.report"):
     from commands.files import read_json, write_atomic
     from commands.tables import TextTable, page, show, shown
-    from snooker_env.benchmark import CENTURY, MAXIMUM, most_points
+    from snooker_env.benchmark import CENTURY, FIGURES, MAXIMUM, most_points
     from snooker_env.checks import refuse
 
     from . import tournament_report
@@ -47,17 +44,8 @@ def _trials(row, below):
     return (known | row.get("counted", {})).get(below)
 
 
-SHARES = {
-    "centuries": "visits",
-    "maximums": "visits",
-    "clearances": "visits",
-    "fouls_a_visit": "visits",
-    "pot_rate": "strokes",
-    "next_pot_after_a_pot": "goes_on",
-    "easy_pot_left_by_a_pot": "goes_on",
-    "high_colours": "colours",
-    "high_colour_after_a_red": "reds",
-}
+_MEANS = "points_a_visit", "pots_a_visit", "colour_value"
+SHARES = {name: below for name, (_, below) in FIGURES.items() if name not in _MEANS}
 """Figures that are shares, and of what. A visit ends with its first foul: those a visit are a share, too."""
 
 
@@ -80,8 +68,7 @@ def _picked(report, **condition):
 
 
 def main_condition(report):
-    """Where the comparison in words, and the picture, are taken: the usual of everything that was played,
-    else its first value."""
+    """Where comparison and picture are taken: the usual of all that was played, else its first value."""
     p = report["protocol"]
     return {
         name: USUAL[name] if USUAL[name] in p[key] else next(iter(p[key]))
@@ -96,8 +83,7 @@ def _listed(words):
 
 
 def title(report):
-    """What is compared: an axis under whose values agents were trained and play, or agents and where they
-    play; or who met."""
+    """What is compared: an axis of training and of play, or agents and where they play; or who met."""
     if tournament_report.is_tournament(report):
         return tournament_report.title(report)
     p, layouts = report["protocol"], _listed(report["protocol"]["layouts"])
@@ -129,10 +115,8 @@ def agents_tables(report):
         long.append([label, str(_seeds(runs)), *numbers, _between(rates)])
     how = ["agent", "recipe", "trained: noise", "fidelity", "physics", "gamma"]
     how_long = ["agent", "seeds", "imitated", "shots", "seconds", "shots/s"]
-    return [
-        TextTable("The agents", how, trained, 1, 5),
-        TextTable("How long they were trained", how_long, long, 1, 1),
-    ]
+    long_table = TextTable("How long they were trained", how_long, long, 1, 1)
+    return [TextTable("The agents", how, trained, 1, 5), long_table]
 
 
 def _seeds(runs):
@@ -140,11 +124,8 @@ def _seeds(runs):
     return len({run["seed"] for run in runs})
 
 
-COSTS = (
-    ("imitated", "positions imitated", 0.0),
-    ("shots", "shots", 0.0),
-    ("seconds", "seconds of training", SAME),
-)
+_SECONDS = "seconds", "seconds of training", SAME
+COSTS = (("imitated", "positions imitated", 0.0), ("shots", "shots", 0.0), _SECONDS)
 """What a training costs: its key, its name, and by what share it may differ to be called equal."""
 
 
@@ -250,17 +231,11 @@ def _columns(against, most):
     def times(other):
         return lambda r: _pm(r["ratios"][other]["points_a_visit"]) if other in r["ratios"] else ""
 
-    breaks = {
-        "centuries %": ("centuries", CENTURY),
-        "147s %": ("maximums", MAXIMUM),
-        "clearances %": ("clearances", 0),
-    }
+    breaks = {"centuries %": ("centuries", CENTURY), "147s %": ("maximums", MAXIMUM)}
+    breaks["clearances %"] = ("clearances", 0)
+    points = {"points a visit": figure("points_a_visit"), "IQM": figure("points_a_visit_iqm")}
     return {
-        "points": {
-            "points a visit": figure("points_a_visit"),
-            "IQM": figure("points_a_visit_iqm"),
-            "best": lambda r: str(r["longest_break"]),
-        },
+        "points": points | {"best": lambda r: str(r["longest_break"])},
         "points against others": {f"times {other}": times(other) for other in against},
         "pots": {"pots a visit": figure("pots_a_visit"), "IQM": figure("pots_a_visit_iqm")},
         "breaks": {heading: share(name) for heading, (name, least) in breaks.items() if least <= most},

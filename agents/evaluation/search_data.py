@@ -27,8 +27,7 @@ with needs("agents.search"):
 
     from ..cluster.job import ClusterError, ended, keys_of
     from ..cluster.keep import Store, digest_of
-    from ..cluster.ray_cluster import add_ray, checked_ray, place
-    from ..cluster.software import software
+    from ..cluster.ray_cluster import add_ray, checked_ray, place, software
     from ..evaluation.entrants import Entrant
     from .searched import ROUNDS, TABLES, parts_of
     from .travel import sent
@@ -38,7 +37,6 @@ INDEX = "index.json"
 
 
 def parser():
-    """The command line."""
     p = parser_of("python -m agents.search", __doc__)
     what = "who searches: search_2000, planner_500, planner@MODEL [search_2000]"
     p.add_argument("--agent", default="search_2000", help=what)
@@ -74,8 +72,7 @@ def checked(args):
 
 
 def read(url):
-    """The data of a folder or URL: a dict of arrays as of ``agents.evaluation.searched.play``. Raises
-    ValueError if they are incomplete."""
+    """The data of a folder or URL: arrays as of ``searched.play``. ValueError if they are incomplete."""
     store = Store(url, "out", only_read=True)
     index = store.read(INDEX)
     keys = [] if index is None else json.loads(index)["parts"]
@@ -87,8 +84,7 @@ def read(url):
 
 @command("agents.search")
 def main(argv=None):
-    """Check, search, write. Exit code 0; 130 if it was interrupted, 1 if the cluster could not play on: what
-    was searched is kept."""
+    """Check, search, write. Exit code 0; 130: interrupted; 1: the cluster stopped; all of it is kept."""
     p = parser()
     args = p.parse_args(argv)
     try:

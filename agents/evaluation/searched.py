@@ -1,5 +1,4 @@
-"""What does a search do in positions of its own visits? A task: some tables are played for some rounds, each
-decision is written down."""
+"""What does a search do in positions of its own visits? A task: tables are played, each decision is noted."""
 
 from typing import Any
 
@@ -20,8 +19,7 @@ KEPT = 10
 
 
 def parts_of(positions, seed, condition):
-    """Parts with so many positions, rounded up to whole ones. ``condition``: layout, noise, fidelity and
-    physics."""
+    """Parts with so many positions, rounded up; ``condition``: layout, noise, fidelity and physics."""
     many = -(-positions // (TABLES * ROUNDS))
     same = {"condition": condition, "seed": seed}
     return [Part(f"{__name__}:play", "search", same | {"first": k * TABLES}) for k in range(many)]
@@ -31,8 +29,7 @@ def play(shared, args, threads):
     """The task.
 
     Returns of n positions "positions" float64 (n, 22, 2) [m], "on_table" bool (n, 22) and "game" int64, as of
-    ``Positions``; "strokes" float32 (n, KEPT, 5), as of ``Strokes.values``, and "scores" float32 (n, KEPT)
-    [points].
+    ``Positions``; "strokes" float32 (n, KEPT, 5), as ``Strokes.values``; "scores" float32 (n, KEPT) [points].
     """
     first: int = args["first"]
     options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}

@@ -35,11 +35,10 @@ with needs("agents.tournament"):
     from ..cluster.ray_cluster import add_ray, checked_ray, place
     from . import tournament_play
     from .entrants import add_models, entrants_of
-    from .tournament_figures import ANCHOR_ELO, schedule
+    from .tournament_figures import ANCHOR_ELO, PRIOR, schedule
     from .tournament_file import faults, kept, result_of, seeds_of
     from .tournament_play import CHUNK, TABLES, drawn
     from .tournament_report import markdown, parts
-    from .tournament_strengths import PRIOR
     from .travel import sent
 
 ANCHOR = "ghost_ball"
@@ -49,7 +48,6 @@ SAVED = 60.0
 
 
 def parser():
-    """The command line."""
     p = parser_of("python -m agents.tournament", __doc__)
     what = f"NAME, MODEL, LABEL=PATH or MODULE:CLASS; NAME: {', '.join(snooker_env.players())}"
     p.add_argument("players", nargs="*", metavar="PLAYER", help=what)
@@ -85,12 +83,6 @@ def parser():
     return p
 
 
-def game_of(args):
-    """The options of the frames, as they stand in the file."""
-    game = {"noise": args.noise, "physics": args.physics, "miss": args.miss, "max_strokes": args.max_strokes}
-    return game | ({} if args.rules == "snooker" else {"game": args.rules})
-
-
 def checked(args):
     """(entrants, protocol, game) of the command line. Raises ValueError before anything is played."""
     if len(args.players) < 2:
@@ -116,7 +108,8 @@ def checked(args):
     }
     if args.match % 2 == 0:
         raise refuse("match", args.match, "must be odd: the best of so many frames")
-    game = game_of(args)
+    game = {"noise": args.noise, "physics": args.physics, "miss": args.miss, "max_strokes": args.max_strokes}
+    game |= {} if args.rules == "snooker" else {"game": args.rules}
     for entrant in entrants:
         meeting: dict[str, Any] = {**game, "physics": physics_option(args.physics)}
         entrant.player(0).at(Options(task="frame", **FRAMES, **meeting))  # makes sure that they can meet
@@ -149,8 +142,7 @@ def _fewer(text, labels, most):
 
 
 class Tournament:
-    """The round robin as far as it was played; ``before``: the content of an incomplete file to go on
-    with."""
+    """The round robin as far as it was played; ``before``: content of an incomplete file to go on with."""
 
     def __init__(self, entrants, protocol, game, command, before=None):
         self.entrants, self.protocol, self.game, self.command = entrants, protocol, game, command
@@ -185,11 +177,8 @@ class Tournament:
         ``tick`` is called with the number of matches that have ended, ``saved`` after each part.
         """
         done = {tuple(row[:3]) for row in self.rows}
-        parts = [
-            part
-            for part in self.parts
-            if not all((*part.args["pair"], seed) in done for seed in part.args["seeds"])
-        ]
+        played = lambda part: all((*part.args["pair"], seed) in done for seed in part.args["seeds"])  # noqa: E731
+        parts = [part for part in self.parts if not played(part)]
         shared = {"players": {"players": [sent(entrant, 0) for entrant in self.entrants]}}
         here = self._here(parts, shared["players"], threads, tick)
         for k, result in here if where.here else ended(parts, shared, where):
@@ -209,13 +198,8 @@ class Tournament:
     def result(self, incomplete=None):
         """The content of the file; ``incomplete``: why frames are missing."""
         players = [
-            {
-                "label": entrant.label,
-                "source": entrant.runs[0],
-                "training": entrant.trained()[0],
-                "decisions": decisions,
-                "seconds": seconds,
-            }
+            {"label": entrant.label, "source": entrant.runs[0], "training": entrant.trained()[0]}
+            | {"decisions": decisions, "seconds": seconds}
             for entrant, (decisions, seconds) in zip(self.entrants, self.times, strict=True)
         ]
         about = {"command": self.command, "load": self.load, "incomplete": incomplete}
@@ -224,9 +208,7 @@ class Tournament:
 
 @command("agents.tournament")
 def main(argv=None):
-    """Check, play, report. Exit code 0; 1 if a checked file is wrong; 2 for wrong arguments; 130 if it was
-    interrupted: what was played is kept.
-    """
+    """Check, play, report. Exit code 0; 1: a wrong file; 2: wrong arguments; 130: interrupted, kept."""
     p = parser()
     argv = sys.argv[1:] if argv is None else argv
     args = p.parse_intermixed_args(argv)

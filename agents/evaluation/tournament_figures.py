@@ -1,10 +1,15 @@
-"""Which figures follow from the frames of a tournament? Shares of wins, breaks, fouls and strengths, each
-with its interval.
+"""Which figures follow from the frames of a tournament? Wins, breaks, fouls and strengths, with intervals.
 
 Everything is computed from the rows alone. What is resampled are the seeds: the two matches on one seed, one
 opened by each player, stay together, and all pairs with the same number of seeds have the same seeds in each
 bootstrap sample. Intervals are 95 % percentile intervals (``snooker_env.benchmark``). A share of 0 % or 100 %
 has the exact one-sided bound instead, by which each seed counts once.
+
+Strengths are those of Bradley and Terry [Biometrika 39 (1952) 324]: player i beats j with probability
+p_ij = 1 / (1 + exp(t_j - t_i)), a draw is half a win for each, and the t maximise the sum of w_ij log p_ij over
+all pairs, w_ij being the wins of i over j. With 0 % or 100 % wins there is no maximum: so each pair that met
+gets ``PRIOR`` drawn matches more. A strength counts 400 / ln 10 points of Elo: 400 more mean ten wins for one
+loss.
 """
 
 from dataclasses import dataclass
@@ -15,11 +20,19 @@ import numpy as np
 from snooker_env.benchmark import RESAMPLES, Resamples, figure
 
 from .metrics import bounded
-from .tournament_strengths import ELO, PRIOR, bound, compared, linked, strengths
 
+PRIOR = 1.0
+"""Drawn matches that are added to each pair that met."""
+ELO = 400.0 / np.log(10.0)
+"""Points of Elo for one unit of strength."""
+SMALLEST = 1e-10
+"""The fit ends when no player's expected wins differ by more from the real ones, in shares of all."""
+LONGEST = 2.0
+"""Longest step of Newton's method in a strength: further from the maximum it would overshoot."""
+ROUNDS = 200
 KEYS = ("first", "second", "seed", "opener", "frame", "winner")
-"""Of a row: indices of the two players; seed of the match; who of them (0 or 1) broke in its first frame; the
-frame's index in the match; who won it, -1 if it was stopped."""
+"""Of a row: indices of the players; seed; who of them broke in the match's first frame (0 or 1); the frame's
+index in the match; its winner, -1 if it was stopped."""
 COUNTED = ("points", "scored", "visits", "strokes", "fouls", "best")
 """What is counted of each player: points, those of its own pots, visits, strokes, fouls, its best visit."""
 COLUMNS = (*KEYS, *(f"{name}_{side}" for name in COUNTED for side in KEYS[:2]))
@@ -36,8 +49,7 @@ RATIOS = {
 
 @dataclass
 class PlayedPair:
-    """The frames of two players, summed for each seed; ``sums``: name -> float (2, seeds), one row for each
-    player."""
+    """The frames of two players, summed for each seed; ``sums``: name -> float (2, seeds), a row a player."""
 
     players: tuple
     sums: dict
@@ -108,12 +120,11 @@ def figures_of(labels, rows, anchor, resamples=RESAMPLES):
         mine = [(pair, pair.players.index(k)) for pair in pairs if k in pair.players]
         players[label] = _player(mine, resamples) | elo[k] if mine else None
     shares = [_pair(pair, labels, resamples) for pair in pairs]
-    return {
-        "players": players,
-        "pairs": shares,
-        "opener": _opener(pairs, resamples),
-        "stopped": sum(pair.stopped for pair in pairs),
-    }
+    many = sum(2 * pair.seeds for pair in pairs)
+    drawn = sum(pair.samples(pair.opened.sum(0), resamples) for pair in pairs) / many
+    opener = _share(sum(pair.opened.sum() for pair in pairs) / many, 1.0, drawn, many / 2)
+    stopped = sum(pair.stopped for pair in pairs)
+    return {"players": players, "pairs": shares, "opener": opener, "stopped": stopped}
 
 
 def _player(mine, resamples):
@@ -128,16 +139,13 @@ def _player(mine, resamples):
     figures["drawn"] = sum(pair.draws for pair, _ in mine)
     for name, won, many in (("win_rate", "won", "matches"), ("frame_rate", "frames_won", "frames")):
         shares = [pair.sums[won][side].sum() / pair.sums[many][side].sum() for pair, side in mine]
-        samples = [
-            pair.samples(pair.sums[won][side], resamples) / pair.samples(pair.sums[many][side], resamples)
-            for pair, side in mine
-        ]
+        drawn_of = lambda sums, pair, side: pair.samples(pair.sums[sums][side], resamples)  # noqa: E731
+        samples = [drawn_of(won, pair, side) / drawn_of(many, pair, side) for pair, side in mine]
         figures[name] = _share(np.mean(shares), 1.0, np.mean(samples, axis=0), seeds)
     for name, (above, below) in RATIOS.items():
-        known = (
-            (sums[above] / sums[below], drawn[above] / drawn[below]) if sums[below] else (np.nan, [np.nan])
-        )
-        figures[name] = figure(*known)
+        known = bool(sums[below])
+        drawn_ratio = drawn[above] / drawn[below] if known else [np.nan]
+        figures[name] = figure(sums[above] / sums[below] if known else np.nan, drawn_ratio)
     return figures | {"highest_break": max(pair.best[side] for pair, side in mine)}
 
 
@@ -145,22 +153,10 @@ def _pair(pair, labels, resamples):
     """The figures of two players against each other."""
     won, matches, n = pair.sums["won"], pair.sums["matches"][0].sum(), pair.seeds
     opening = [_share(wins.sum(), n, pair.samples(wins, resamples) / n, n) for wins in pair.opened]
-    return {
-        "first": labels[pair.players[0]],
-        "second": labels[pair.players[1]],
-        "matches": int(matches),
-        "won": float(won[0].sum()),
-        "drawn": pair.draws,
-        "win_rate": _share(won[0].sum(), matches, pair.samples(won[0], resamples) / matches, n),
-        "when_opening": opening,
-    }
-
-
-def _opener(pairs, resamples):
-    """The share of matches that were won by the player who opened them."""
-    matches = sum(2 * pair.seeds for pair in pairs)
-    drawn = sum(pair.samples(pair.opened.sum(0), resamples) for pair in pairs) / matches
-    return _share(sum(pair.opened.sum() for pair in pairs) / matches, 1.0, drawn, matches / 2)
+    first, second = (labels[k] for k in pair.players)
+    made = {"first": first, "second": second, "matches": int(matches), "won": float(won[0].sum())}
+    made |= {"drawn": pair.draws, "when_opening": opening}
+    return made | {"win_rate": _share(won[0].sum(), matches, pair.samples(won[0], resamples) / matches, n)}
 
 
 def _elo(pairs, k, anchor, resamples):
@@ -200,3 +196,64 @@ def _bounds(elo, j, sound, wins, seeds):
 def schedule(labels):
     """All pairs of players."""
     return list(combinations(range(len(labels)), 2))
+
+
+def strengths(wins, prior=PRIOR):
+    """The strengths (..., k) of k players, with mean 0, for one or many tables of wins.
+
+    ``wins[..., i, j]``: how often i beat j, draws as halves; pairs that met must link all players.
+    """
+    w = np.array(wins, np.float64)
+    k = w.shape[-1]
+    first = w.reshape(-1, k, k)[0]
+    w = w + 0.5 * prior * ((first + first.T) > 0)
+    n = w + np.swapaxes(w, -1, -2)
+    many, t = np.maximum(n.sum(-1), 1e-300), np.zeros(w.shape[:-1])
+    for _ in range(ROUNDS):
+        p = chance(t[..., :, None] - t[..., None, :])
+        slope = w.sum(-1) - (n * p).sum(-1)
+        if np.abs(slope / many).max(initial=0.0) < SMALLEST:
+            break
+        curve = n * p * (1.0 - p)
+        bend = -curve + 1.0 / k  # the mean stays 0
+        bend[..., range(k), range(k)] += curve.sum(-1)
+        step = np.linalg.solve(bend, slope[..., None])[..., 0]
+        longest = np.abs(step).max(-1, keepdims=True)
+        t += step * np.minimum(1.0, LONGEST / np.maximum(longest, LONGEST))
+    return t - t.mean(-1, keepdims=True)
+
+
+def chance(ahead):
+    """The chance to win of a player whose strength is ``ahead`` of the other's."""
+    return 0.5 * (1.0 + np.tanh(0.5 * np.asarray(ahead, np.float64)))
+
+
+def linked(edges, start):
+    """Which players (k,) can be reached from one, itself included, by steps that ``edges`` (k, k) allow."""
+    reached = np.zeros(len(edges), bool)
+    reached[start] = True
+    for _ in range(len(edges)):
+        reached |= edges[reached].any(0)
+    return reached
+
+
+def compared(wins, anchor):
+    """Who (k,) won and lost something against the anchor, perhaps by way of others: results compare them."""
+    won = np.asarray(wins) > 0
+    return linked(won, anchor) & linked(won.T, anchor)
+
+
+def bound(others, matches, level=0.95):
+    """The least strength of a player that won all its matches (m,) against players of strengths (m,).
+
+    There winning all has the probability 1 - level. For one that lost all: negate strengths and bound.
+    """
+    others, matches = np.asarray(others, np.float64), np.asarray(matches, np.float64)
+    if matches.sum() <= 0:
+        return -np.inf
+    low, high = others.min() - 50.0, others.max() + 50.0
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        likely = (matches * np.log(np.maximum(chance(middle - others), 1e-300))).sum() > np.log(1.0 - level)
+        low, high = (low, middle) if likely else (middle, high)
+    return 0.5 * (low + high)

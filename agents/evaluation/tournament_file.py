@@ -1,5 +1,4 @@
-"""What is the file of a tournament? Its fields with their meanings, one row for each frame, and whether it is
-what it says.
+"""What is the file of a tournament? Its fields, one row for each frame, and whether it is what it says.
 
 Software, machine, command, commit and date are those of a benchmark's result (``docs/benchmark.md``).
 """
@@ -10,9 +9,8 @@ from itertools import groupby
 from snooker_env.benchmark import commit, faults_of_fields, machine, read_result, software
 from snooker_env.checks import refuse
 
-from .tournament_figures import ANCHOR_ELO, COLUMNS, figures_of, schedule
+from .tournament_figures import ANCHOR_ELO, COLUMNS, PRIOR, figures_of, schedule
 from .tournament_report import NAME
-from .tournament_strengths import PRIOR
 
 VERSION = 2
 NUMBER = (int, float)
@@ -97,19 +95,16 @@ def result_of(protocol, game, players, rows, *, command, load, incomplete):
 
 
 def faults(content):
-    """Check the file of a tournament: a line for each fault of its fields, its players, which frames it
-    holds, and its figures."""
+    """Check a tournament's file: a line for each fault of fields, players, frames and figures."""
     wrong = faults_of_fields(content, FIELDS, RANGES, VERSION)
     if wrong:
         return wrong
     protocol = content["protocol"]
-    for name, value, want in (
-        ("schema.name", content["schema"]["name"], NAME),
-        ("schema.version", content["schema"]["version"], VERSION),
-        ("columns", content["columns"], list(COLUMNS)),
-        ("protocol.prior", protocol["prior"], PRIOR),
-        ("protocol.anchor_elo", protocol["anchor_elo"], ANCHOR_ELO),
-    ):
+    form = {"schema.name": NAME, "schema.version": VERSION, "columns": list(COLUMNS)}
+    form |= {"protocol.prior": PRIOR, "protocol.anchor_elo": ANCHOR_ELO}
+    for name, want in form.items():
+        room, _, field = name.rpartition(".")
+        value = (content[room] if room else content)[field]
         if value != want:
             wrong.append(f"{name} = {value!r}: must be {want!r} for this version of snooker_env")
     for k, player in enumerate(content["players"]):
@@ -185,18 +180,14 @@ def _differences(value, want, name):
 
 
 def kept(path, protocol, game, sources):
-    """The content of an incomplete file of the same tournament; ``sources``: label and source of each player.
-    Raises ValueError."""
+    """The content of an incomplete file of the same tournament. Raises ValueError."""
     content = read_result(path)
     wrong = faults(content)
     if wrong:
         raise refuse("out", str(path), f"must be the file of a tournament to go on with ({wrong[0]})")
     players = [(player["label"], player["source"]) for player in content["players"]]
-    for name, was, now in (
-        ("protocol", content["protocol"], protocol),
-        ("game", content["game"], game),
-        ("players", players, sources),
-    ):
-        if was != now:
+    now = {"protocol": protocol, "game": game, "players": sources}
+    for name, was in (content | {"players": players}).items():
+        if name in now and was != now[name]:
             raise refuse("out", str(path), f"must be a file with the same {name} to go on with: it has {was}")
     return content

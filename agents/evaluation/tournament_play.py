@@ -1,13 +1,11 @@
-"""How do two players meet? Many frames side by side, on the tables of one vector environment; each seed
-twice, opened once by each.
+"""How do two players meet? Many frames side by side; each seed twice, opened once by each.
 
 In one of the two matches on a seed the first player is the environment's agent, in the other the second is:
-the two sides are not quite alike, since a cue ball in hand waits for a player without placement at its usual
+the sides are not quite alike, since a cue ball in hand waits for a player without placement at its usual
 place, or where "ghost_ball" would put it. On even seeds the agent opens, on odd ones the opponent. A table
-whose match has ended takes the next one; when more than half of the tables have nothing left to play, the
-others go on in a smaller environment. The frames of a match follow each other on one table, broken in turn;
-the best of N ends when one player has won more than N / 2, or after N frames. What a table draws depends on
-its seed only.
+whose match has ended takes the next one; when half of the tables have nothing left to play, the others go on
+in a smaller environment. The frames of a match follow each other on one table, broken in turn; the best of N
+ends when one player has won more than N / 2, or after N frames. A table's draws depend on its seed only.
 
 A visit is all strokes of a player in succession: also over the lot at a re-spotted black.
 """
@@ -33,21 +31,18 @@ CHUNK = 100
 
 
 class TimedPlayer:
-    """A player whose ``decisions`` are counted and timed, ``seconds`` together; ``seed``: of what it
-    draws."""
+    """A player whose ``decisions`` are counted and timed, ``seconds`` together; ``seed``: of its draws."""
 
     def __init__(self, player, seed=0):
         self._player, self.seed = player, seed
         self.count = {"decisions": 0, "seconds": 0.0}  # shared by all that are bound
 
     def at(self, rules):
-        """See ``Player.at``."""
         bound = copy.copy(self)
         bound._player = self._player.at(rules)
         return bound
 
     def play(self, positions, seeds):
-        """See ``Player.play``."""
         began = time.perf_counter()
         strokes = self._player.play(positions, np.asarray(seeds) ^ (self.seed & 0xFFFFFFFF))
         self.count["seconds"] += time.perf_counter() - began
@@ -60,8 +55,7 @@ class Encounter:
     """Some matches of two players, and how far each table is. Side 0 is the agent, side 1 the opponent.
 
     ``pair``: indices of the players, ``exchanged`` if the second of them is the agent; ``queue``: seed and
-    opening side of the matches that no table has begun; ``rows``: one for each frame that has ended, columns
-    ``COLUMNS``.
+    opening side of matches that no table has begun; ``rows``: one for each ended frame, columns ``COLUMNS``.
     """
 
     pair: tuple
@@ -158,8 +152,7 @@ class Encounter:
 
 
 def play_pair(pair, players, game, seeds, best_of=1, threads=None, tick=None):
-    """Play two matches on each seed: a row for each frame, columns ``tournament_figures.COLUMNS``, by seeds,
-    openers and frames.
+    """Two matches on each seed: a row for each frame, columns ``COLUMNS``, by seeds, openers and frames.
 
     ``players``: those of the ``pair`` of indices; ``game``: options of the frames; ``threads`` change
     nothing; ``tick`` is called with the number of matches that have ended.
@@ -186,10 +179,8 @@ def play(shared, args, threads, tick=None):
     ``shared``: "players", of ``travel.sent``. ``args``: "pair" (indices), "seeds" of the matches, "draws"
     (each player's ``drawn``), "game" as it stands in the file, "best_of"; ``tick`` is that of ``play_pair``.
     """
-    players = [
-        TimedPlayer(arrived(shared["players"][k]), seed)
-        for k, seed in zip(args["pair"], args["draws"], strict=True)
-    ]
+    both = zip(args["pair"], args["draws"], strict=True)
+    players = [TimedPlayer(arrived(shared["players"][k]), seed) for k, seed in both]
     game = args["game"] | {"physics": physics_option(args["game"]["physics"])}
     rows = play_pair(tuple(args["pair"]), players, game, args["seeds"], args["best_of"], threads, tick)
     counted = {name: np.array([player.count[name] for player in players]) for name in players[0].count}
@@ -204,9 +195,8 @@ def _play(meeting, agent, opponent, game, threads, tick):
     tables = _tables(meeting, options, opponent, threads)
     _, info = tables.reset(seed=meeting.unit[:, 0].tolist(), options={"breaker": meeting.breakers})
     meeting.begun(meeting.going, info)
-    moved = np.zeros(
-        len(meeting.frame), bool
-    )  # since the reset: only then is a state sure to hold a stroke to play
+    # since the reset: only then is a state sure to hold a stroke to play
+    moved = np.zeros(len(meeting.frame), bool)
     over = info["winner"] >= 0  # won by the opponent in its first visit: the next step plays nothing
     while (going := meeting.going).any():
         to_play = going & ~over
@@ -242,8 +232,7 @@ def _tables(meeting, options, opponent, threads):
 def _renewed(tables, meeting, done, before):
     """Begin the next frames where frames have ended. Returns where the next frame is over at once.
 
-    A new match is dealt from its seed; in the next frame of a match the table's random numbers go on. Tables
-    without a match: dealt, too.
+    A new match is dealt from its seed; in a next frame, and on tables without a match, random numbers go on.
     """
     anew = (meeting.unit != before).any(1) & meeting.going
     seeds = [int(seed) if new else None for seed, new in zip(meeting.unit[:, 0], anew, strict=True)]

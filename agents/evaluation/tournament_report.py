@@ -1,9 +1,8 @@
-"""How is a tournament shown? The order of the players, the cross table and what they did, for a terminal and
-as Markdown."""
+"""How is a tournament shown? Who won, the cross table and how they play, for a terminal and as Markdown."""
 
 from commands.tables import TextTable, page, shown
 
-from .tournament_strengths import PRIOR
+from .tournament_figures import PRIOR
 
 NAME = "snooker_env.tournament"
 """Name of the schema of a tournament's file."""
@@ -38,23 +37,17 @@ def tables_of(content):
     more = ["frames won [%]"] if best_of > 1 else []
     wins = ["", "player", "Elo", f"{won} won [%]", *more, won, "draws"]
     does = ["points a frame", "average break", "highest", "fouls a frame", "strokes a frame", "ms a decision"]
-    cross = [[label, *(_cell(figures["pairs"], label, other) for other in order)] for label in order]
+    won_of = {}
+    for pair in figures["pairs"]:
+        first, second, share = pair["first"], pair["second"], 100 * pair["win_rate"]["value"]
+        won_of |= {(first, second): f"{share:.1f}", (second, first): f"{100 - share:.1f}"}
+    cross = [[label, *(won_of.get((label, other), "") for other in order)] for label in order]
     of_each = f"Share of the {won} that a player (row) won against another (column) [%]"
     return [
         TextTable("Who wins", wins, standing, 2, 2),
         TextTable("How they play", ["player", *does], play, 1, 1),
         TextTable(of_each, [_unit(content), *order], cross, 1, 1),
     ]
-
-
-def _cell(pairs, label, other):
-    """What a player won of another."""
-    for pair in pairs:
-        if (pair["first"], pair["second"]) == (label, other):
-            return f"{100 * pair['win_rate']['value']:.1f}"
-        if (pair["second"], pair["first"]) == (label, other):
-            return f"{100 - 100 * pair['win_rate']['value']:.1f}"
-    return ""
 
 
 def sentences(content):

@@ -1,5 +1,4 @@
-"""What did a training run learn? Held-out visits of its agent and of simple players, as a table and one or
-two sentences."""
+"""What did a training run learn? Held-out visits of its agent and of simple players, in table and words."""
 
 from typing import Any
 
@@ -15,21 +14,18 @@ from ..players.trained import player_of_model
 
 
 def evaluate(recipe, model, visits, part_of):
-    """Figures of held-out visits of the agent, ``ghost_ball`` and ``random``, on the same tables, under the
-    training's noise and physics.
+    """Figures of held-out visits of agent, ``ghost_ball`` and ``random``, under the training's noise and physics.
 
     The fidelity is the usual one, unless another was asked for. Of an agent with a value of positions, also
-    figures of the planner with it and of the search by the rule of thumb (``search``). These are the first
-    tables of ``agents.evaluate``. Raises ValueError if there are not so many tables. ``part_of(total)``: the
-    ``Progress`` of so many visits.
+    those of the planner with it and of the search by the rule of thumb (``search``). The tables are the first
+    of ``agents.evaluate``; ValueError if there are too few. ``part_of(total)``: the ``Progress`` of visits.
     """
     trained = player_of_model(model)
     players = {"trained": trained, "ghost_ball": player("ghost_ball"), "random": player("random")}
     if trained.learned is not None:
         players |= {"planner": SearchPlayer("planner", learned=trained.learned), "search": player("search")}
-    shared: dict[str, Any] = {"noise": "none"} | {
-        key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS
-    }
+    chosen = {key: value for key, value in recipe.env_kwargs.items() if key in SHOT_OPTIONS}
+    shared: dict[str, Any] = {"noise": "none"} | chosen
     # some learn on "fast" to save time, and are meant to play on the usual fidelity
     if not recipe.fidelity_given:
         shared.pop("fidelity", None)
@@ -46,17 +42,14 @@ def evaluate(recipe, model, visits, part_of):
 
 
 def _better(a, b):
-    return a["points_a_visit"] - b["points_a_visit"] > 2.0 * np.hypot(
-        a["points_a_visit_se"], b["points_a_visit_se"]
-    )
+    error = np.hypot(a["points_a_visit_se"], b["points_a_visit_se"])
+    return a["points_a_visit"] - b["points_a_visit"] > 2.0 * error
 
 
 def conclusion(agent, steps, imitated, figures, start=None):
-    """The result in one sentence, from the figures; a difference is claimed from two standard errors on. A
-    second one about the planner.
+    """The result in a sentence, and one on the planner; differences are claimed from two standard errors on.
 
-    ``imitated``: positions of imitation; ``start``: the origin of its initial weights, see
-    ``models.load_weights``, or None.
+    ``imitated``: positions of imitation; ``start``: origin of its weights (``models.load_weights``) or None.
     """
     return _of_the_agent(agent, steps, imitated, figures, start) + _of_the_planner(figures)
 

@@ -1,5 +1,4 @@
-"""How does a player travel to another machine? By name, with the bytes of its model; a player of one's own
-with a digest of its module."""
+"""How does a player travel to another machine? By name, with its model's bytes or its module's digest."""
 
 import atexit
 import hashlib
@@ -26,15 +25,9 @@ def sent(entrant, k):
         file, run = file_of(Path(path), "agent"), f"{kind}@"
     elif not is_name(run):
         file, run = file_of(Path(run), "agent"), ""
-    module = _module_digest(run) if ":" in run else ""
-    return {
-        "run": run,
-        "model": file and file.read_bytes(),
-        "suffix": file and file.suffix,
-        "trust": entrant.trust,
-        "options": [list(pair) for pair in entrant.options],
-        "module": module,
-    }
+    made = {"run": run, "model": file and file.read_bytes(), "suffix": file and file.suffix}
+    made |= {"trust": entrant.trust, "options": [list(pair) for pair in entrant.options]}
+    return made | {"module": _module_digest(run) if ":" in run else ""}
 
 
 def arrived(agent):

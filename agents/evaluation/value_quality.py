@@ -1,5 +1,4 @@
-"""How good is a learned value of positions? What it says before each stroke of a planner, beside the points
-that really followed.
+"""How good is a learned value of positions? What it says before a planner's strokes, beside what followed.
 
     python -m agents.value_quality --agent planner --visits 500 --noise professional club
     python -m agents.value_quality --agent planner@runs/ppo_value-0 --json quality.json --markdown quality.md
@@ -40,13 +39,11 @@ class Recording(BoundPlayer):
         self._planner, self.name, self.rows = planner, planner.name, []
 
     def at(self, rules):
-        """See ``Player.at``; the notes are the same."""
         bound = super().at(rules)
         bound._planner = self._planner.at(rules)
         return bound
 
     def play(self, positions, seeds):
-        """See ``Player.play``."""
         at, search = Positions.of(positions), self._planner.search
         rule = prospects_of(at, search.spread, SURE if search.noise.silent else RULE_OF_THUMB)[0]
         self.rows.append(np.column_stack([at.points, search.value(at), rule]))
@@ -68,11 +65,8 @@ def quality(player, visits, layout, noise):
         figures[name] = {"mean": float(of.mean()), "correlation": correlation}
     groups = np.array_split(np.argsort(value, kind="stable"), max(1, min(GROUPS, len(visit) // LEAST)))
     figures["groups"] = [
-        {
-            "value": float(value[rows].mean()),
-            "followed": float(followed[rows].mean()),
-            "se": _standard_error(followed[rows], visit[rows]),
-        }
+        {"value": float(value[rows].mean()), "followed": float(followed[rows].mean())}
+        | {"se": _standard_error(followed[rows], visit[rows])}
         for rows in groups
     ]
     return figures

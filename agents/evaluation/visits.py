@@ -1,7 +1,7 @@
 """How are the visits of an evaluation cut into parts, and put together again?
 
-A player's strokes depend on positions and seeds alone, and the seeds on the table and the decision: so the
-parts together are what one machine plays at once.
+A player's strokes depend on positions and seeds alone, the seeds on the table and the decision: so the parts
+together are what one machine plays at once.
 """
 
 import numpy as np
@@ -30,20 +30,16 @@ def play(shared, args, threads):
     """The task: the strokes of some visits, a dict of arrays."""
     k, seeds = args["k"], args["seeds"]
     options = args["condition"] | {"physics": physics_option(args["condition"]["physics"])}
-    rekey = k if args["rekey"] else None
-    strokes = play_visits(
-        arrived(shared), len(seeds), first_seed=seeds, seed=k, threads=threads, rekey=rekey, **options
-    )
+    one, rekey = arrived(shared), k if args["rekey"] else None
+    options |= {"first_seed": seeds, "seed": k, "threads": threads, "rekey": rekey}
+    strokes = play_visits(one, len(seeds), **options)
     columns = {name: getattr(strokes, name) for name in COLUMNS}
-    return columns | {
-        "seconds": np.float64(strokes.decision_seconds),
-        "simulated": np.int64(strokes.simulated),
-    }
+    more = {"seconds": np.float64(strokes.decision_seconds), "simulated": np.int64(strokes.simulated)}
+    return columns | more
 
 
 def joined(results, total):
-    """The ``Strokes`` of all visits from the results of their parts, in the order in which one machine plays
-    them at once."""
+    """The ``Strokes`` of all visits from their parts, in the order in which one machine plays them."""
     columns = {name: np.concatenate([one[name] for one in results]) for name in COLUMNS}
     columns["visit"] = np.concatenate([one["visit"] + SIZE * n for n, one in enumerate(results)])
     order = np.lexsort((columns["visit"], columns["number"]))

@@ -34,8 +34,7 @@ SUFFIXES = (".html", ".json", *FILMS)
 
 
 def visit(player, seed, **options):
-    """A ``SnookerEnv`` after one whole visit of the player, with its history; the same visit as
-    ``play_visits`` gives for that seed."""
+    """A ``SnookerEnv`` after a whole visit, with its history; the visit of ``play_visits`` for that seed."""
     env = sn.SnookerEnv(**VISITS, **options)
     bound, decision = player.at(env), 0
     env.keep_history = True
@@ -58,27 +57,22 @@ def described(replay):
 
 
 def parser():
-    """The command line."""
     p = argparse.ArgumentParser(prog="python -m agents.watch", description=str(__doc__).split("\n\n")[0])
-    p.add_argument(
-        "--agent",
-        default="ppo_foresight",
-        help="a player's name, a pre-trained model, a model's .zip or run folder",
-    )
-    p.add_argument(
-        "--out", type=Path, help="break.html, .json, .mp4 or .gif; left out: opened in the browser"
-    )
-    p.add_argument("--layout", default="held_out", help="of the tables, as for Snooker-v0")
-    p.add_argument("--noise", default="professional", help="execution noise")
-    p.add_argument("--seed", type=int, default=HELD_OUT_SEED, help="of the first table")
-    p.add_argument(
-        "--at-least", type=int, default=0, metavar="POINTS", help="show the first visit with so many points"
-    )
-    p.add_argument("--tries", type=int, default=200, help="most visits played to find it")
-    p.add_argument("--speed", type=float, default=1.0, help="of a film, over that of the play")
-    p.add_argument("--size", help="of a film, WIDTHxHEIGHT, both even")
-    p.add_argument("--fps", type=float, help="pictures a second of a film")
-    p.add_argument("--trust", action="store_true", help="let code in a model's file run")
+    add = p.add_argument
+    what = "a player's name, a pre-trained model, a model's .zip or run folder"
+    add("--agent", default="ppo_foresight", help=what)
+    what = "break.html, .json, .mp4 or .gif; left out: opened in the browser"
+    add("--out", type=Path, help=what)
+    add("--layout", default="held_out", help="of the tables, as for Snooker-v0")
+    add("--noise", default="professional", help="execution noise")
+    add("--seed", type=int, default=HELD_OUT_SEED, help="of the first table")
+    what = "show the first visit with so many points"
+    add("--at-least", type=int, default=0, metavar="POINTS", help=what)
+    add("--tries", type=int, default=200, help="most visits played to find it")
+    add("--speed", type=float, default=1.0, help="of a film, over that of the play")
+    add("--size", help="of a film, WIDTHxHEIGHT, both even")
+    add("--fps", type=float, help="pictures a second of a film")
+    add("--trust", action="store_true", help="let code in a model's file run")
     return p
 
 
@@ -87,10 +81,9 @@ def _film(args):
     suffix = args.out.suffix.lower() if args.out else ".html"
     choice("out", suffix, SUFFIXES)
     film: dict[str, Any] = {}
-    if args.speed != 1.0:
-        film["speed"] = number("speed", args.speed, 0.0, 100.0, open_low=True)
-    if args.fps is not None:
-        film["fps"] = number("fps", args.fps, 0.0, 240.0, open_low=True)
+    for name, usual, most in (("speed", 1.0, 100.0), ("fps", None, 240.0)):
+        if (value := getattr(args, name)) != usual:
+            film[name] = number(name, value, 0.0, most, open_low=True)
     if args.size is not None:
         width, _, height = args.size.partition("x")
         if not (width.isdigit() and height.isdigit()) or int(width) % 2 or int(height) % 2:
@@ -111,9 +104,8 @@ def sought(args):
         if env.points >= args.at_least:
             return env, seed, entrant.label
         longest = max(longest, env.points)
-    raise SystemExit(
-        f"agents.watch: no visit of {args.at_least} points in {args.tries} tries; the longest had {longest}"
-    )
+    why = f"no visit of {args.at_least} points in {args.tries} tries; the longest had {longest}"
+    raise SystemExit(f"agents.watch: {why}")
 
 
 @command("agents.watch")
@@ -129,20 +121,14 @@ def main(argv=None):
         env, seed, label = sought(args)
     except ValueError as error:
         p.error(str(error))
-    replay = sn.replay(
-        env, title=f"{label}: {env.points} points, {args.noise}'s errors, table {seed}", players=[label]
-    )
-    for line in described(replay):
-        print(line)
+    title = f"{label}: {env.points} points, {args.noise}'s errors, table {seed}"
+    replay = sn.replay(env, title=title, players=[label])
+    print(*described(replay), sep="\n")
     where = f"table {seed}, layout {args.layout}, noise {args.noise}"
     print(f"{label}: {env.points} points in {len(replay)} strokes ({where})")
-    if args.out:
-        replay.save(args.out, **film)
-        print(f"written: {args.out}")
-    else:
-        file = Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
-        replay.save(file)
-        print(f"written: {file}", flush=True)
-        if not webbrowser.open(file.as_uri()):
-            print("No browser was found: open this file in one, or choose its place with --out break.html")
+    file = args.out or Path(tempfile.mkdtemp(prefix="snooker-")) / "replay.html"
+    replay.save(file, **film)
+    print(f"written: {file}", flush=True)
+    if not args.out and not webbrowser.open(file.as_uri()):
+        print("No browser was found: open this file in one, or choose its place with --out break.html")
     return 0

@@ -1,2 +1,1 @@
-"""What do agents observe? The pots on the table, simulated afterstates, and the noise samples of the
-simulation."""
+"""What do agents observe? The pots on the table, simulated afterstates, and noise samples for these."""

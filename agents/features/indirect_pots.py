@@ -1,20 +1,15 @@
-"""Which indirect pots does a position offer, and where must the cue ball be sent for them? From geometry
-alone.
+"""Which indirect pots does a position offer, and where must the cue ball be sent? From geometry alone.
 
 * bank: the object ball goes off one cushion into a pocket. It is aimed at the pocket's mirror image in the
   line where a ball's centre meets that cushion: the nose less R.
-* plant: the object ball A drives another ball B into a pocket. Both must be on and may go down together: reds
-  with a red on.
+* plant: the object ball A drives another ball B into a pocket; both must be on together: reds with a red on.
 * cannon: the object ball A goes off another ball into a pocket. Rolling, it keeps after the impact 5/7 of the
   velocity that it then has and 2/7 of the one before.
 
 Every shot is a chain of straight legs, and no other ball may be nearer than 2 R to any of them. An error of
-the cue ball's aim becomes one of the object ball's direction, magnified by path / (2 R cos cut) as in
-``game.pots``, and again at the next impact. The half window of the pocket, divided by all of it, is the
-shot's geometric tolerance.
-
-The geometry leaves out throw and the true rebound off a cushion, which change directions by several degrees:
-``aim_search`` solves the aims in the simulator.
+the cue ball's aim is magnified by path / (2 R cos cut) as in ``game.pots``, and again at the next impact. The
+half window of the pocket, divided by all of it, is the shot's geometric tolerance. Throw and the true rebound
+off a cushion, several degrees, are left out: ``aim_search`` solves the aims in the simulator.
 """
 
 from math import asin, atan2, cos, hypot, sin, sqrt
@@ -46,22 +41,19 @@ from snooker_env.kernels import TOLERANCE as POT_TOLERANCE
 DIRECT, BANK, PLANT, CANNON = range(4)
 """Kinds of shots."""
 (KIND, BALL, OTHER, POCKET, AIM_X, AIM_Y, GHOST_X, GHOST_Y, TOLERANCE, REACH) = range(10)
-"""Columns of a shot: its kind, the ball to strike first, the other ball (-1 if there is none), the pocket,
-the point that the first ball is sent to, where the cue ball meets it, the geometric tolerance [rad], and how
-far off its line [rad] the right aim may lie."""
+"""Columns of a shot: its kind, the ball to strike first, the other ball (or -1), the pocket, the point that the
+first ball is sent to, where the cue ball meets it, the geometric tolerance and the aim's reach [rad]."""
 COLUMNS = 10
 
 _RED = int(BallOn.RED)
 _THROW = 0.09
 """How far [rad] friction may throw a ball off the line of centres, about."""
 _BENT = 0.2
-"""How far [rad] the path off a cushion or a ball may lie from the geometric one, as a turn of the ball's
-direction before it."""
+"""How far [rad] the path off a cushion or a ball may lie from the geometric one, as a turn before it."""
 _THINNEST = 0.05
 """Cosine of the thinnest cut, as ``game.pots`` has it."""
 _CLOSE = 2.5 * BALL_RADIUS
-"""Two balls whose centres are nearer than this [m] make a set plant, if the line through them leads into a
-pocket."""
+"""Balls whose centres are nearer than this [m] make a set plant, if their line leads into a pocket."""
 _FAR = 1.2
 """Longest path [m] of a ball to the one that it goes off."""
 _SAMPLES = 24
@@ -72,8 +64,7 @@ MOST = 3
 
 @kernel
 def _first_leg(positions, present, ball, dx, dy):
-    """The cue ball's way to send ``ball`` along d: (ghost x, ghost y, 2 R cos cut / path); the last is 0 if
-    there is none."""
+    """The way to send ``ball`` along d: (ghost x, ghost y, 2 R cos cut / path); the last is 0 without one."""
     cx, cy = positions[0, 0], positions[0, 1]
     reach = 2.0 * BALL_RADIUS
     gx, gy = positions[ball, 0] - reach * dx, positions[ball, 1] - reach * dy
@@ -91,10 +82,27 @@ def _first_leg(positions, present, ball, dx, dy):
 
 
 @kernel
-def _keep(shots, count, what, aim, ghost, tolerance, reach):
-    """Put a shot, what = (kind, ball, other, pocket), in its place among the ``count`` widest so far; returns
-    how many there are then."""
+def _width(k, dx, dy):
+    """Width [m] of pocket k for a ball that comes along d; 0 if none gets in."""
+    along = dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y]
+    return window(along, POCKET_AIMS[k, IS_MIDDLE] > 0.0)
+
+
+@kernel
+def _keep(bed, shots, count, what, legs, aim, ghost, tolerance, reach):
+    """Put a shot, what = (kind, ball, other, pocket), among the ``count`` widest; returns their number.
+
+    legs: where the ball's first way ends, and where the last one, to the pocket, begins. Both must be clear.
+    """
     if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
+        return count
+    (positions, present), (_, ball, other, k), (end, start) = bed, what, legs
+    far, one = 2.0 * BALL_RADIUS, max(other, 0)
+    x, y, gap = positions[ball, 0], positions[ball, 1], far if other < 0 else far * (1.0 - 1e-9)
+    if not clear_segment(positions, present, x, y, end[0], end[1], ball, one, gap):
+        return count
+    x, y = POCKET_AIMS[k, POCKET_X], POCKET_AIMS[k, POCKET_Y]
+    if not clear_segment(positions, present, start[0], start[1], x, y, ball, one, far):
         return count
     at = min(count, shots.shape[0] - 1)
     while at > 0 and shots[at - 1, TOLERANCE] < tolerance:
@@ -103,12 +111,9 @@ def _keep(shots, count, what, aim, ghost, tolerance, reach):
         at -= 1
     row = shots[at]
     row[KIND], row[BALL], row[OTHER], row[POCKET] = what
-    (row[AIM_X], row[AIM_Y]), (row[GHOST_X], row[GHOST_Y]), row[TOLERANCE], row[REACH] = (
-        aim,
-        ghost,
-        tolerance,
-        reach,
-    )
+    row[AIM_X], row[AIM_Y] = aim
+    row[GHOST_X], row[GHOST_Y] = ghost
+    row[TOLERANCE], row[REACH] = tolerance, reach
     return min(count + 1, shots.shape[0])
 
 
@@ -134,22 +139,16 @@ def _banks(positions, present, ball, noses, shots, count):
             if not noses[j, 3] <= (qy if across_x else qx) <= noses[j, 4]:
                 continue
             ex, ey = (-dx, dy) if across_x else (dx, -dy)
-            width = window(
-                ex * POCKET_AIMS[k, AXIS_X] + ey * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
-            )
+            width = _width(k, ex, ey)
             if width <= 0.0:
                 continue
             gx, gy, gain = _first_leg(positions, present, ball, dx, dy)
             if gain <= 0.0:
                 continue
             tolerance = width / (2.0 * run) * gain
-            if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
-                continue
-            if not clear_segment(positions, present, bx, by, qx, qy, ball, 0, 2.0 * BALL_RADIUS):
-                continue
-            if not clear_segment(positions, present, qx, qy, kx, ky, ball, 0, 2.0 * BALL_RADIUS):
-                continue
-            count = _keep(shots, count, (BANK, ball, -1, k), (qx, qy), (gx, gy), tolerance, _BENT * gain)
+            what, aim, legs = (BANK, ball, -1, k), (qx, qy), ((qx, qy), (qx, qy))
+            bed = positions, present
+            count = _keep(bed, shots, count, what, legs, aim, (gx, gy), tolerance, _BENT * gain)
     return count
 
 
@@ -168,9 +167,7 @@ def _plants(positions, present, ball, other, shots, count):
         if run < 1e-9:
             continue
         dx, dy = dx / run, dy / run
-        width = window(
-            dx * POCKET_AIMS[k, AXIS_X] + dy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
-        )
+        width = _width(k, dx, dy)
         if width <= 0.0 or ux * dx + uy * dy < _THINNEST:
             continue
         half = width / (2.0 * run)
@@ -192,15 +189,10 @@ def _plants(positions, present, ball, other, shots, count):
         # no wider than the face of the ball: a half-ball hit to either side
         face = 0.5 * reach / hypot(gx - positions[0, 0], gy - positions[0, 1])
         tolerance = min(half * second * gain, face)
-        if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
-            continue
-        if not clear_segment(positions, present, ax, ay, mx, my, ball, other, reach * (1.0 - 1e-9)):
-            continue
-        if not clear_segment(positions, present, bx, by, kx, ky, other, ball, reach):
-            continue
         off = max(path, BALL_RADIUS)  # the aim is not solved for a point at no distance
         aim, reaches = (ax + off * px, ay + off * py), min(_THROW * second * gain, face)
-        count = _keep(shots, count, (PLANT, ball, other, k), aim, (gx, gy), tolerance, reaches)
+        bed, what, legs = (positions, present), (PLANT, ball, other, k), ((mx, my), (bx, by))
+        count = _keep(bed, shots, count, what, legs, aim, (gx, gy), tolerance, reaches)
     return count
 
 
@@ -260,9 +252,7 @@ def _cannons(positions, present, ball, other, e, shots, count):
                 else:
                     b = middle
             qx, qy, ix, iy, ox, oy = _off(ax, ay, ux, uy, apart, a, e)
-            width = window(
-                ox * POCKET_AIMS[k, AXIS_X] + oy * POCKET_AIMS[k, AXIS_Y], POCKET_AIMS[k, IS_MIDDLE] > 0.0
-            )
+            width = _width(k, ox, oy)
             if width <= 0.0:
                 continue
             gx, gy, gain = _first_leg(positions, present, ball, ix, iy)
@@ -271,22 +261,14 @@ def _cannons(positions, present, ball, other, e, shots, count):
             turn = abs(asin(reach * high / apart) - asin(reach * low / apart)) / abs(at_high - at_low)
             kx, ky = POCKET_AIMS[k, POCKET_X], POCKET_AIMS[k, POCKET_Y]
             tolerance = width / (2.0 * hypot(kx - qx, ky - qy)) * turn * gain
-            if count == shots.shape[0] and tolerance <= shots[count - 1, TOLERANCE]:
-                continue
-            if not clear_segment(positions, present, ax, ay, qx, qy, ball, other, reach * (1.0 - 1e-9)):
-                continue
-            if not clear_segment(positions, present, qx, qy, kx, ky, ball, other, reach):
-                continue
-            count = _keep(
-                shots, count, (CANNON, ball, other, k), (qx, qy), (gx, gy), tolerance, _BENT * turn * gain
-            )
+            bed, what, legs = (positions, present), (CANNON, ball, other, k), ((qx, qy), (qx, qy))
+            count = _keep(bed, shots, count, what, legs, (qx, qy), (gx, gy), tolerance, _BENT * turn * gain)
     return count
 
 
 @kernel
 def _find(positions, on_table, ball_on, noses, e, present, shots):
-    """Fill ``shots`` (m, COLUMNS) with the indirect ones, widest first; returns how many there are.
-    ``present`` (22,): work space."""
+    """Fill ``shots`` (m, COLUMNS), widest first; returns their number. ``present`` (22,): work space."""
     count, on = 0, balls_on(ball_on, bits(on_table))
     for i in range(N_BALLS):
         present[i] = on_table[i] and i > 0  # the cue ball leaves its place
@@ -321,23 +303,13 @@ def direct_pots(positions, on_table, ball_on, shots, counts):
         for j in range(counts[t]):
             pocket, row = int(found[j, POT_POCKET]), shots[t, j]
             row[KIND], row[BALL], row[OTHER], row[POCKET] = DIRECT, found[j, POT_BALL], -1, pocket
-            row[AIM_X], row[AIM_Y], row[GHOST_X], row[GHOST_Y] = (
-                POCKET_AIMS[pocket, POCKET_X],
-                POCKET_AIMS[pocket, POCKET_Y],
-                found[j, POT_X],
-                found[j, POT_Y],
-            )
+            row[AIM_X], row[AIM_Y] = POCKET_AIMS[pocket, POCKET_X], POCKET_AIMS[pocket, POCKET_Y]
+            row[GHOST_X], row[GHOST_Y] = found[j, POT_X], found[j, POT_Y]
             row[TOLERANCE] = row[REACH] = found[j, POT_TOLERANCE]
         if counts[t] == 0:
             row, angle = shots[t, 0], line_of(p, on_table[t], on, space)
-            row[KIND], row[BALL], row[OTHER], row[POCKET], row[TOLERANCE], row[REACH] = (
-                DIRECT,
-                -1,
-                -1,
-                -1,
-                0.0,
-                0.0,
-            )
+            row[KIND], row[TOLERANCE], row[REACH] = DIRECT, 0.0, 0.0
+            row[BALL] = row[OTHER] = row[POCKET] = -1
             row[AIM_X] = row[GHOST_X] = p[0, 0] + cos(angle)
             row[AIM_Y] = row[GHOST_Y] = p[0, 1] + sin(angle)
 
@@ -350,7 +322,6 @@ def direct(positions, on_table, ball_on, most=MOST):
 
 
 def indirect(positions, on_table, ball_on, table, physics, most=MOST):
-    """The banks, plants and cannons (k, COLUMNS) on a ``Table`` that the geometry offers, widest first,
-    ``most`` at the most."""
+    """The banks, plants and cannons (k, COLUMNS) on a ``Table``, widest first, ``most`` at the most."""
     shots = np.empty((most, COLUMNS))
     return shots[: _indirect(positions, on_table, ball_on, table.noses, physics.e_b, shots)]

@@ -1,12 +1,10 @@
-"""What does an agent with a one-shot lookahead observe? The simulated outcomes of 12 strokes at each of the
-two widest pots.
+"""What does an agent with a one-shot lookahead observe? Simulated outcomes of strokes at the two widest pots.
 
-The observation is ``pot_view.with_pots`` followed by ``STROKES_SEEN`` rows, one for each stroke at each of
-these pots: means of its outcomes over the errors of ``EVEN_SAMPLES``, scaled by the execution noise of the
-tables (one sample if there is none). The agent may play only these strokes. A decision costs 120 simulated
-shots: slower than an agent that observes the table alone, far quicker than ``search``.
-
-Several noise samples a stroke are needed: one outcome does not show how execution errors affect the next pot.
+The observation is ``pot_view.with_pots`` followed by ``STROKES_SEEN`` rows, one for each of 12 strokes at
+each of these pots: means of its outcomes over the errors of ``EVEN_SAMPLES``, scaled by the execution noise
+of the tables (one sample if there is none): one outcome does not show how errors affect the next pot. The
+agent may play only these strokes. A decision costs 120 simulated shots: slower than an agent that observes
+the table alone, far quicker than ``search``.
 """
 
 from typing import Any
@@ -64,14 +62,12 @@ class ForesightView:
         return bound
 
     def __call__(self, at, observations):
-        """The view of n ``Positions`` with these flat observations: float32 (n, SHOWN + STROKES_SEEN *
-        ENTRIES)."""
+        """The view of n ``Positions`` with these flat observations, as ``SPACE``: float32."""
         ahead = self.ahead(at, action_masks(at)[:, PICKS])
         return np.concatenate([with_pots(observations), ahead.reshape(len(at), -1)], 1)
 
     def ahead(self, at, masks):
-        """The rows (n, STROKES_SEEN, ENTRIES) of ``Positions``; all 0 where ``masks`` (n, STROKES_SEEN) says
-        that there is no such pot."""
+        """The rows (n, STROKES_SEEN, ENTRIES) of ``Positions``; 0 where not ``masks`` (n, STROKES_SEEN)."""
         table, stroke = np.nonzero(masks)
         k, m = len(self._samples), len(table)
         # the samples of a stroke in succession: its aim is solved once for all of them
@@ -104,7 +100,6 @@ class ForesightView:
 
 
 def worth_by_rule(ahead):
-    """Expected points of the strokes of rows (n, STROKES_SEEN, ENTRIES), with the value of the afterstate;
-    -inf where there is no pot."""
+    """Expected points of the strokes of rows (n, STROKES_SEEN, ENTRIES), with what they leave; else -inf."""
     worth = 7.0 * ahead[..., POINTS] + RULE_OF_THUMB[0] * ahead[..., VALUE]
     return np.where(ahead[..., THERE] > 0, worth, -np.inf)

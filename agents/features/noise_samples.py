@@ -1,12 +1,10 @@
-"""Which noise samples does the lookahead use? Five representative ones; ``python -m agents.noise_samples``
-finds them again.
+"""Which noise samples does the lookahead use? Five representative ones; ``python -m agents.noise_samples``.
 
-The outcome of a shot under execution noise is an expectation over five errors (speed, side, top, aim,
-elevation). A mean over a few random draws is poor when they happen to lie on one side. ``EVEN_SAMPLES`` are
-keys of random streams (``game.philox``), selected so that the five errors of each kind are close to five
-equally likely values (-1.28, -0.52, 0, 0.52, 1.28 standard deviations) and that different kinds are nearly
-uncorrelated. All positions and strokes use the same samples (common random numbers), so strokes are compared
-under equal luck. Five errors scaled to variance 1 would lie further out and overstate the number of misses.
+The outcome of a shot is an expectation over five errors (speed, side, top, aim, elevation), for which a few
+random draws may lie on one side. ``EVEN_SAMPLES`` are keys of random streams (``game.philox``) whose errors of
+each kind are close to five equally likely values (-1.28, -0.52, 0, 0.52, 1.28 standard deviations; scaled to
+variance 1 they would overstate misses) and nearly uncorrelated. All positions and strokes use the same ones
+(common random numbers), so strokes are compared under equal luck.
 """
 
 from statistics import NormalDist
@@ -40,8 +38,8 @@ def unevenness(errors):
 
 
 def find(k, keys=5_000, starts=20, seed=0):
-    """(k of the first ``keys`` keys, their unevenness, the median unevenness of random sets): a search that
-    exchanges one key at a time, the best of ``starts`` random starts."""
+    """(k of the first ``keys`` keys, their unevenness, the median one of random sets): the best of so many
+    random ``starts`` of a search that exchanges one key at a time."""
     errors, rng = errors_of(first_of(np.arange(1, keys + 1))), np.random.default_rng(seed)
     best, least = np.zeros(k, np.int64), np.inf
     for _ in range(starts):

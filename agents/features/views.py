@@ -1,5 +1,4 @@
-"""How are tables shown to an agent? By a view: the pots, or the pots and simulated outcomes; for training, as
-an SB3 ``VecEnv``."""
+"""How are tables shown to an agent? By a view: pots, or simulated outcomes too; to train as a ``VecEnv``."""
 
 import numpy as np
 
@@ -45,12 +44,10 @@ def training_tables(n, threads=None, view="pots", **options):
     shown = view_of(view, threads).at(base.tables.options)
 
     class Viewed(VecEnvWrapper):
-        """All tables at once. A terminal observation holds the pots only: nothing is learned from the state
-        after it."""
+        """All tables at once. A terminal observation holds the pots only: nothing is learned from it."""
 
         judge = None
-        """Values [points] of n ``Positions``, added to the rewards of strokes after which the visit goes on;
-        None: points alone."""
+        """Values [points] of ``Positions``, added to rewards where the visit goes on; or None."""
 
         def reset(self):
             observations = self.venv.reset()
@@ -71,8 +68,7 @@ def training_tables(n, threads=None, view="pots", **options):
 
         @property
         def running(self):
-            """Returns and lengths so far of the running visits, for ``episode`` in their last info; not in
-            the state of a table."""
+            """Returns and lengths so far of running visits, for ``episode`` in the last info; in no state."""
             return base.episode_returns.copy(), base.episode_lengths.copy()
 
         @running.setter

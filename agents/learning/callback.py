@@ -1,5 +1,4 @@
-"""How is a running training saved and stopped? Checkpoints, the learning curve and an orderly stop, by a
-callback of SB3."""
+"""How is a running training saved and stopped? Checkpoints, curve and an orderly stop, by an SB3 callback."""
 
 import signal
 import time
@@ -12,18 +11,13 @@ from stable_baselines3.common.callbacks import BaseCallback
 from .run_folder import save_checkpoint
 
 POINTS_OF_THE_CURVE = 20
-LOSSES = {
-    "policy": "train/policy_gradient_loss",
-    "value": "train/value_loss",
-    "actor": "train/actor_loss",
-    "critic": "train/critic_loss",
-}
+_NAMES = "policy_gradient_loss", "value_loss", "actor_loss", "critic_loss"
+LOSSES = {name.partition("_")[0]: name for name in _NAMES}
 """The losses that are shown, by the names under which SB3 records them: of PPO, of SAC and TQC."""
 
 
 class Stop:
-    """A context that records SIGINT and SIGTERM: the run is saved and ends after the current update. A second
-    signal acts at once."""
+    """Notes SIGINT and SIGTERM: the run is saved after the current update. A second one acts at once."""
 
     def __init__(self):
         self.signal = None
@@ -91,7 +85,8 @@ class RunCallback(BaseCallback):
         rollout, losses = rollout_of(self.model), self.model.logger.name_to_value
         rounds = goal_of(self.model, self.settings.steps) // rollout
         words = [f"round {self.num_timesteps // rollout + 1:,} of {rounds:,}"]
-        words += [f"{name} loss {losses[key]:.3g}" for name, key in LOSSES.items() if key in losses]
+        known = ((name, losses.get(f"train/{key}")) for name, key in LOSSES.items())
+        words += [f"{name} loss {loss:.3g}" for name, loss in known if loss is not None]
         words += [f"{np.mean(recent):.2f} points a visit"] if recent else []
         self.figures = ", ".join(words)
         self.stopping = self.stop.signal is not None
@@ -116,12 +111,10 @@ class RunCallback(BaseCallback):
 
 
 LEAST, SHARE = 30.0, 0.01
-"""Seconds of pre-training that a kill may lose, and the largest share of its time for saving: slow saves come
-less often.
+"""Seconds of pre-training that a kill may lose, and the largest share of its time for saving.
 
 A checkpoint holds 3.3 kB for each imitated position (of agents with a lookahead): 35 MB for the 10,000 of
-``ppo_foresight``, written in half a second. One of expert iteration holds at most 41,000 positions with 2.3
-kB and 50,000 with 1.2 kB: 155 MB.
+``ppo_foresight``, written in half a second. One of expert iteration: 155 MB at most.
 """
 
 

@@ -1,13 +1,9 @@
-"""How do a value, a policy and a planner make each other stronger? By expert iteration (Anthony, Tian &
-Barber 2017).
+"""How do value, policy and planner make each other stronger? Expert iteration (Anthony, Tian & Barber 2017).
 
-Visits are played by the planner, which judges strokes by the value and takes its proposals from the policy.
-From every position the value learns by a backup (``value_learning``), and the policy learns the values of
-choices, each simulated once under execution noise and judged by the value (``judged_choices``). So the
-planner grows stronger, and with it the value and the policy. The first rounds judge by the rule of thumb.
-
-The simulations of a round, two thirds of its time, are played in slices by ``where``: this process or a
-cluster. The learner stays here.
+Visits are played by the planner, which judges strokes by the value and takes its proposals from the policy; at
+first by the rule of thumb. The value learns by a backup from every position (``value_learning``), and the
+policy the values of choices, each simulated once and judged by the value (``judged_choices``). Simulations,
+two thirds of the time, are played in slices by ``where``: this process or a cluster.
 
 PPO then improves the policy further, with the value as reward-to-go: ``judge_rewards``.
 """
@@ -39,8 +35,7 @@ STARTS = (("", 0.6), *((name, 0.06) for name in _EACH), ("colours", 0.1))
 POOL = 4096
 """Positions in which visits begin, of all layouts."""
 HAND, EVEN = 6_144, 30_720
-"""Positions judged by the rule of thumb, and positions with even proposals; at most an eighth and a fifth of
-all."""
+"""Positions judged by the rule of thumb, and with even proposals; at most an eighth and a fifth of all."""
 
 
 class Starts:
@@ -68,9 +63,8 @@ class Starts:
 class ExpertIteration:
     """Expert iteration in ``states`` positions; it has the interface of ``imitation.Imitation``.
 
-    ``before``: of ``get_state``, with the model restored: the result equals that of an uninterrupted run, bit
-    for bit. ``where``: who plays the slices, ``Here`` by default, or a ``Cluster``; the result does not
-    depend on it.
+    ``before``: of ``get_state``, with the model restored: the result equals that of an uninterrupted run, bit for
+    bit. ``where``: who plays the slices, ``Here`` or a ``Cluster``; the result does not depend on it.
     """
 
     def __init__(self, model, venv, states, seed, threads, before=None, where=None):
@@ -106,15 +100,9 @@ class ExpertIteration:
 
     def get_state(self):
         """The state, beside the model and the process's random generators; most of it are positions."""
-        return {
-            "done": self.done,
-            "curve": self.curve,
-            "seconds": self.seconds,
-            "rng": self._rng.bit_generator.state,
-            "at": positions_given(self._at),
-            "value": self._value.get_state(),
-            "choices": self._choices.get_state(),
-        }
+        made = {name: getattr(self, name) for name in ("done", "curve", "seconds")}
+        made |= {"rng": self._rng.bit_generator.state, "at": positions_given(self._at)}
+        return made | {"value": self._value.get_state(), "choices": self._choices.get_state()}
 
     def round(self):
         """Play a stroke from every position and learn; each twentieth of all is an entry of ``curve``."""
@@ -174,7 +162,6 @@ class ExpertIteration:
 
 
 def judge_rewards(venv, policy, threads):
-    """Let the training tables add the learned value of the afterstate to each reward: the reward-to-go of PPO
-    with gamma = 0."""
+    """Let the tables add the learned value of the afterstate to rewards: reward-to-go for gamma = 0."""
     rules = venv.unwrapped.tables.options.rules
     venv.judge = value_of(policy.position_value, spread_of(rules.noise, rules.physics), threads)

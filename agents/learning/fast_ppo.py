@@ -1,9 +1,8 @@
 """How does ``MaskablePPO`` learn quickly from many tables? By the fused passes of ``TablePolicy``.
 
-The algorithm, its rollouts, its hyperparameters, its files and what it reports are those of sb3-contrib, and
-``MaskablePPO.load`` reads its models. Three things differ: ``TablePolicy.forward`` draws the choices of a
-rollout, masks are kept as bool, and an update computes the gradient of a minibatch with
-``FusedTable.ppo_gradient``.
+The algorithm, its rollouts, hyperparameters, files and reports are those of sb3-contrib. Three things differ:
+``TablePolicy.forward`` draws the choices of a rollout, masks are kept as bool, and an update computes the
+gradient of a minibatch with ``FusedTable.ppo_gradient``.
 """
 
 from typing import Any
@@ -40,30 +39,23 @@ class FastPPO(MaskablePPO):
 
     def train(self):
         """Update the policy on the rollout in the buffer."""
-        policy, usual = (
-            self.policy,
-            self.clip_range_vf is None and self.target_kl is None and self.device.type == "cpu",
-        )
+        policy = self.policy
+        usual = self.clip_range_vf is None and self.target_kl is None and self.device.type == "cpu"
         if not usual or not isinstance(policy, TablePolicy) or not policy.has_fused:
             super().train()
             return
         self.policy.set_training_mode(True)
         self._update_learning_rate(self.policy.optimizer)
-        clip, fused, buffer = (
-            self.clip_range(self._current_progress_remaining),
-            policy.fused,
-            self.rollout_buffer,
-        )
+        clip, fused = self.clip_range(self._current_progress_remaining), policy.fused
+        buffer = self.rollout_buffer
         n = buffer.buffer_size * buffer.n_envs
         seen, masks = buffer.observations.reshape(n, -1), buffer.action_masks.reshape(n, -1)
         actions, before, advantages, returns = (
             a.reshape(n) for a in (buffer.actions, buffer.log_probs, buffer.advantages, buffer.returns)
         )
         scaled, figures = np.empty_like(advantages), []
-        rollout, loss = (
-            Rollout(seen, masks, actions, before, scaled, returns),
-            Loss(clip, self.ent_coef, self.vf_coef),
-        )
+        rollout = Rollout(seen, masks, actions, before, scaled, returns)
+        loss = Loss(clip, self.ent_coef, self.vf_coef)
         for _ in range(self.n_epochs):
             order = np.random.permutation(n)  # noqa: NPY002 - as SB3: a checkpoint holds its state
             for start in range(0, n, self.batch_size or n):
@@ -86,18 +78,12 @@ class FastPPO(MaskablePPO):
     def _report(self, figures, clip):
         """The curves of SB3, from the figures of ``FusedTable.ppo_gradient`` of all minibatches."""
         policy_loss, value_loss, entropy, clipped, _ = figures.mean(axis=0).tolist()
-        last = figures[-1]
-        for name, value in {
-            "entropy_loss": -entropy,
-            "policy_gradient_loss": policy_loss,
-            "value_loss": value_loss,
-            "approx_kl": float(figures[-len(figures) // self.n_epochs :, 4].mean()),
-            "clip_fraction": clipped,
-            "loss": float(last[0] - self.ent_coef * last[2] + self.vf_coef * last[1]),
-            "explained_variance": explained_variance(
-                self.rollout_buffer.values.flatten(), self.rollout_buffer.returns.flatten()
-            ),
-            "clip_range": clip,
-        }.items():
+        last, seen = figures[-1], self.rollout_buffer
+        curves = {"entropy_loss": -entropy, "policy_gradient_loss": policy_loss, "value_loss": value_loss}
+        curves |= {"clip_fraction": clipped, "clip_range": clip}
+        curves["approx_kl"] = float(figures[-len(figures) // self.n_epochs :, 4].mean())
+        curves["loss"] = float(last[0] - self.ent_coef * last[2] + self.vf_coef * last[1])
+        curves["explained_variance"] = explained_variance(seen.values.flatten(), seen.returns.flatten())
+        for name, value in curves.items():
             self.logger.record(f"train/{name}", value)
         self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")

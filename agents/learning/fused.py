@@ -1,12 +1,9 @@
-"""How are the choices, values and gradients of ``TablePolicy`` computed quickly? In blocks of tables that
-stay in the processor's cache.
+"""How are choices, values and gradients of ``TablePolicy`` computed quickly? In blocks that fit the cache.
 
-The plain network (``networks.TableReader`` and its heads) spends most of its time on moving intermediate
-results through memory, and on operations that PyTorch cannot join. Here the same functions are computed for
-``BLOCK`` tables at a time, in arrays that are made once. Kernels do all that lies between the layers, which
-PyTorch computes. Where the policy plays, the same network is a ``StrokePolicy``, whose scores of a table do
-not depend on the tables beside it. The gradient is written out by hand, layer by layer.
-tests/agents/learning/test_fused.py compares scores, values and gradients with PyTorch's own.
+PyTorch spends most of its time on moving intermediate results through memory. Here kernels do all that lies
+between the layers, ``BLOCK`` tables at a time, in arrays that are made once; the gradient is written out by
+hand. Where the policy plays, the same network is a ``StrokePolicy``, whose scores of a table do not depend on
+the tables beside it. tests/agents/learning/test_fused.py compares all with PyTorch's own.
 """
 
 from threading import Lock
@@ -51,8 +48,7 @@ class Loss(NamedTuple):
 
 
 class FusedTable:
-    """Passes through the network of a ``TablePolicy`` with its present weights. Several threads may call it;
-    one at a time computes."""
+    """Passes through a ``TablePolicy`` with its present weights. One thread at a time computes."""
 
     def __init__(self, policy):
         reader, value = policy.features_extractor, policy.value_net.value
@@ -88,13 +84,11 @@ class FusedTable:
         return StrokePolicy(dict(zip(self._layers, pairs, strict=True)))
 
     def scores(self, seen, masks):
-        """The scores of all choices (n, CHOICES) on n tables, ``NEVER`` for those not available. Arguments as
-        in ``act``."""
+        """The scores of all choices (n, CHOICES), ``NEVER`` where not available. Arguments as in ``act``."""
         return self.policy.scores(seen, masks)
 
     def act(self, seen, masks, uniform):
-        """Choices drawn for n tables (int64), the values and the logarithms of the choices' probabilities
-        (float32), each (n,).
+        """Draws for n tables: choices int64, values and logarithms of their probabilities float32, each (n,).
 
         seen float32 (n, SHOWN), masks bool (n, CHOICES), uniform (n,) in [0, 1): the random numbers.
         """
@@ -110,11 +104,10 @@ class FusedTable:
         return choices, values, logs
 
     def ppo_gradient(self, rows, rollout, loss):
-        """Add the gradient of PPO's loss on the minibatch ``rows`` (int64) of a rollout to the parameters'
-        ``grad``.
+        """Add the gradient of PPO's loss on the rows (int64) of a rollout to the parameters' ``grad``.
 
-        Returns the means, over the minibatch, of the policy's loss, the squared error of the values, the
-        entropy, the share of clipped ratios and the approximate KL divergence.
+        Returns means over these rows: the policy's loss, the squared error of the values, the entropy, the share
+        of clipped ratios and the approximate KL divergence.
         """
         seen, masks, *played = rollout
         sums, size = np.zeros(5), len(rows)
@@ -226,8 +219,7 @@ class _Layer:
         weight[:, : self.outputs], bias[: self.outputs] = self.weight.numpy().T, self._bias.numpy()
 
     def __call__(self, rows, out):
-        """Write the results for each row, on PyTorch's threads; returns them. The last bits depend on the
-        number of rows."""
+        """Write the results for each row; returns them. The last bits depend on the number of rows."""
         torch.addmm(self._bias_turned, torch.from_numpy(rows), self._turned, out=torch.from_numpy(out))
         return out
 
@@ -238,8 +230,7 @@ def _relu(x):
 
 
 class _Block(SimpleNamespace):
-    """The arrays of a block of n tables: the result of each layer under its name, its gradient with ``d_``,
-    as NumPy arrays with ``_``."""
+    """Arrays of n tables: each layer's result by name, gradients with ``d_``, as NumPy with ``_``."""
 
     def __init__(self, n: int, layers: dict[str, _Layer]):
         most = n * (N_BALLS - 1)

@@ -1,5 +1,4 @@
-"""What does a ``fused.FusedTable`` compute besides matrix products and what a playing policy does? Draws, the
-loss, gradients.
+"""What does a ``fused.FusedTable`` compute besides matrix products? Draws, the loss, gradients.
 
 Each kernel goes over n rows once; gradients are of the loss with respect to the name after ``d_``.
 """
@@ -35,8 +34,7 @@ def spread_to_balls(d_context, group, first, codes, width, d_codes):
 
 @entry
 def part(d_joint, joint, d_shared):
-    """The gradient before the ReLU of ``join``, in place, and its sums over each table's pots into d_shared
-    (n, width)."""
+    """The gradient before the ReLU of ``join``, in place; its sums over pots into d_shared (n, width)."""
     width = joint.shape[1]
     for j in range(d_shared.shape[0]):
         sums = d_shared[j]
@@ -51,8 +49,7 @@ def part(d_joint, joint, d_shared):
 
 @entry
 def spread_to_pots(d_codes, codes, d_context, at):
-    """The gradient before the ReLU of ``sum_pots``, in place: of the codes themselves and of their sums in
-    d_context[:, at:]."""
+    """The gradient before the ReLU of ``sum_pots``, in place: of codes and sums in d_context[:, at:]."""
     width = codes.shape[1]
     for j in range(d_context.shape[0]):
         d_sums = d_context[j, at : at + width]
@@ -73,8 +70,7 @@ def cut_off(d, activation, n):
 
 @entry
 def draw(likely, uniform, sides, choices):
-    """A choice for each row of probabilities (n, k), by inversion: ``uniform`` (n,) in [0, 1). None of
-    probability 0."""
+    """A choice for each row of probabilities (n, k) by inversion, none of 0; ``uniform`` (n,) in [0, 1)."""
     for j in range(likely.shape[0]):
         row = likely[j]
         left, pick = np.float64(uniform[j]), 0
@@ -89,8 +85,7 @@ def draw(likely, uniform, sides, choices):
 
 @kernel
 def scale_of(scores, likely, pick):
-    """Logarithm of the sum of exp(scores), from a choice's score and probability, or from the likeliest one's
-    if that is too small."""
+    """Logarithm of the sum of exp(scores), from a choice's score and probability, or the likeliest one's."""
     if likely[pick] < _LEAST:
         for c in range(likely.shape[0]):
             if likely[c] > likely[pick]:

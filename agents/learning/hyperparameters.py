@@ -1,11 +1,9 @@
-"""How is an agent defined? By its hyperparameters (``hyperparams/NAME.yml``, in the format of RL Baselines3
-Zoo), with Stable-Baselines3.
+"""How is an agent defined? By its ``hyperparams/NAME.yml``, in RL Baselines3 Zoo's format, for SB3.
 
-Additional keys: ``algo`` (the algorithm; the file is named after the agent), ``view`` (the observation: pots
-or foresight), ``imitation`` (positions of pre-training by imitation), ``expert`` (true: expert iteration in
-its place) and ``first_aim_std`` (exploration of the aim at the start). They may stand under ``agent``
-instead: the Zoo itself then trains with the same file, if the policy is one of SB3's own.
-``learning_rate: lin_X`` falls linearly from X to nearly 0.
+Additional keys: ``algo`` (the algorithm), ``view`` (the observation: pots or foresight), ``imitation``
+(positions of pre-training), ``expert`` (true: expert iteration in its place) and ``first_aim_std`` (of the aim
+at the start). They may stand under ``agent`` instead: the Zoo itself then trains with the same file, if the
+policy is one of SB3's own. ``learning_rate: lin_X`` falls linearly from X to nearly 0.
 """
 
 import ast
@@ -45,23 +43,15 @@ MOST = 10**9
 KINDS = {
     "n_timesteps": (integer, 1, 10**12),
     "n_envs": (integer, 1, 2**24),
-    "imitation": (integer, 0, MOST),
-    "n_steps": (integer, 2, MOST),
-    "batch_size": (integer, 2, MOST),
-    "n_epochs": (integer, 1, MOST),
-    "buffer_size": (integer, 1, MOST),
-    "learning_starts": (integer, 0, MOST),
-    "train_freq": (integer, 1, MOST),
-    "gradient_steps": (integer, 1, MOST),
-    "gamma": (number, 0, 1),
-    "gae_lambda": (number, 0, 1),
-    "ent_coef": (number, 0, 1),
+    **dict.fromkeys(("imitation", "learning_starts"), (integer, 0, MOST)),
+    **dict.fromkeys(("n_steps", "batch_size"), (integer, 2, MOST)),
+    **dict.fromkeys(("n_epochs", "buffer_size", "train_freq", "gradient_steps"), (integer, 1, MOST)),
+    **dict.fromkeys(("gamma", "gae_lambda", "ent_coef"), (number, 0, 1)),
     "vf_coef": (number, 0, 10),
     "learning_rate": (rate, 0, 1),
     "first_aim_std": (number, 1e-6, 10),
 }
-"""Kind, least and largest value of each hyperparameter. Advantages are normalised, so a batch has at least
-two shots."""
+"""Kind, least and largest value of each; advantages are normalised, so a batch has two shots or more."""
 
 
 def names():
@@ -71,11 +61,9 @@ def names():
 
 @dataclass
 class Recipe:
-    """The definition of an agent: the keys named here, and in ``settings`` the algorithm's own
-    hyperparameters.
+    """The definition of an agent: the keys named here, the algorithm's own hyperparameters in ``settings``.
 
-    ``fidelity_given``: whether the fidelity of ``env_kwargs`` was asked for; else it is the recipe's, which
-    saves time in training alone.
+    ``fidelity_given``: whether that of ``env_kwargs`` was asked for; else the recipe's saves training time.
     """
 
     name: str
@@ -93,11 +81,9 @@ class Recipe:
 
     @classmethod
     def of(cls, name, changes=(), env_kwargs=None, **more):
-        """The recipe of that name with some "key=value" changed, then options of the environment and other
-        keys. Raises ValueError.
+        """The recipe of that name with "key=value" changed, then environment options, other keys. ValueError.
 
-        Algorithm, policy, network, view and action belong together: a change of them needs a recipe of its
-        own.
+        Algorithm, policy, network, view and action belong together: to change them takes another recipe.
         """
         file = FOLDER / f"{choice('agent', name, names())}.yml"
         written = yaml.safe_load(file.read_text(encoding="utf-8"))
@@ -140,9 +126,8 @@ class Recipe:
             settings["batch_size"] = min(settings["batch_size"], settings["n_steps"] * tables.num_envs)
         if self.algo == "ppo_mask":
             settings["rollout_buffer_class"] = BoolMasks
-        model = algorithm_class(self.algo)(
-            policy(self.policy), tables, seed=seed, device="cpu", stats_window_size=1000, **settings
-        )
+        settings |= {"seed": seed, "device": "cpu", "stats_window_size": 1000}
+        model = algorithm_class(self.algo)(policy(self.policy), tables, **settings)
         if self.first_aim_std is not None:
             model.policy.log_std.data[3] = math.log(self.first_aim_std)
         # SB3 saves and restores additional attributes, too
@@ -183,8 +168,7 @@ def _changes(changes, keys):
 
 
 def _options(options, more, usual, policy):
-    """The environment's options with ``more`` of them; where ``policy`` needs it, actions must be read as
-    ``usual``. The environment checks the values."""
+    """Environment options with ``more``; if ``policy`` needs it, actions must be read as ``usual``."""
     known = (*ACTION_OPTIONS, *SHOT_OPTIONS, *TRAINING_OPTIONS)
     if not isinstance(options, dict):
         raise refuse("env_kwargs", options, f"must be a dict with keys of {', '.join(known)}")
@@ -195,10 +179,15 @@ def _options(options, more, usual, policy):
         value, wanted = (some.get(key, ACTION_OPTIONS[key]) for some in (options, usual))
         if value != wanted:
             raise refuse(key, value, f"must be {wanted!r} for this agent")
-    if options.get("layout") == "held_out":
-        why = "the held-out tables are kept for evaluation"
-        raise refuse("layout", "held_out", f"must be another for training: {why}")
+    not_held_out(options.get("layout"))
     return options
+
+
+def not_held_out(layout):
+    """Raise ValueError for the layout of the tables that are kept for evaluation."""
+    if layout == "held_out":
+        why = "the held-out tables are kept for evaluation"
+        raise refuse("layout", layout, f"must be another for training: {why}")
 
 
 def algorithm_class(name):

@@ -1,16 +1,14 @@
-"""How is a policy pre-trained by imitation? It is fitted to the one-shot values of the search; PPO continues
-from there.
+"""How is a policy pre-trained by imitation? It is fitted to the search's one-shot values; then PPO goes on.
 
 ``train.py`` does this for the recipes with ``imitation``, or with ``--imitate POSITIONS``.
 
-The expert: in positions of played visits some of the choices are simulated under execution noise, once each.
-The value of a choice is its points plus, if the visit goes on, the value of its afterstate by the search's
-rule of thumb (``prospects_of``).
+The expert: some choices in positions of played visits are simulated under execution noise, once each. A choice
+is worth its points plus, if the visit goes on, what it leaves by the search's rule of thumb (``prospects_of``).
 
 The learner: state value + TEMPERATURE * (log-probability - its mean) is fitted to these values by least
-squares, all trials of a position at once. The policy becomes the softmax of the values of its choices, and
-the critic their mean under it. The visits are played by the learner, so that it is trained on the states that
-it will meet (DAgger, Ross et al. 2011); half of the trials are its own best choices.
+squares. The policy becomes the softmax of the values of its choices, and the critic their mean under it. The
+visits are played by the learner, so that it is trained on the states that it will meet (DAgger, Ross et al.
+2011); half of the trials are its own best choices.
 """
 
 import time
@@ -23,11 +21,10 @@ import torch
 from snooker_env.planning import Positions, spread_of
 
 from ..cluster.job import Here
-from .worths import worths
+from .self_play import judged
 
 TRIES = 48
-"""Trials in each position: half of them the learner's best choices, half random. Where there are at most half
-as many choices, each is tried twice."""
+"""Trials in each position: half the learner's best choices, half random; if they are few, each twice."""
 TEMPERATURE = 1.0
 """The difference in points that makes a choice e times as likely."""
 KEPT = 50_000
@@ -40,8 +37,7 @@ USED = ("action", "aim", "elevation", "placement", "noise", "physics", "table", 
 
 
 class Expert:
-    """Evaluates choices on the tables of a ``SnookerVectorEnv``; ``ahead``: with the value of the afterstate;
-    ``where``: who simulates."""
+    """Evaluates choices on a ``SnookerVectorEnv``; ``ahead``: and what they leave; ``where``: who plays."""
 
     def __init__(self, tables, threads, rng, ahead=True, where=None):
         self._tables, self._rng, self._where = tables, rng, where or Here(threads)
@@ -54,7 +50,8 @@ class Expert:
         row, column = np.nonzero(valid)
         keys = self._rng.integers(0, 2**63, len(row), dtype=np.uint64)
         worth, at = np.zeros(picks.shape, np.float32), Positions.of(self._tables)
-        worth[row, column] = worths(self._where, self._sent, at, row, picks[row, column], keys)
+        chosen = row, picks[row, column], keys
+        worth[row, column] = judged(self._where, self._sent, at, *chosen, task="trials", of="worth")
         return worth
 
 
@@ -71,11 +68,9 @@ def to_try(scores, masks, rng):
 
 
 class Imitation:
-    """Imitation in ``states`` positions of visits that ``model.policy`` plays; with gamma = 0 the value is
-    the points alone.
+    """Imitation in ``states`` positions of visits that ``model.policy`` plays; for gamma = 0 only points count.
 
-    ``before``: of ``get_state``, with the model and its tables restored: the result equals that of an
-    uninterrupted run, bit for bit.
+    ``before``: of ``get_state``, model and tables restored: the result is an uninterrupted run's, bit for bit.
     """
 
     def __init__(self, model, venv, states, seed, threads, before=None, where=None):
@@ -102,15 +97,9 @@ class Imitation:
 
     def get_state(self):
         """The state beside model, tables and random generators; most of it is the buffer of positions."""
-        return {
-            "done": self.done,
-            "curve": self.curve,
-            "kept": self._kept,
-            "losses": list(self._losses),
-            "seconds": self.seconds,
-            "rng": self._rng.bit_generator.state,
-            "optimizer": self._optimizer.state_dict(),
-        }
+        made = {name: getattr(self, name) for name in ("done", "curve", "seconds")}
+        made |= {"kept": self._kept, "losses": list(self._losses), "rng": self._rng.bit_generator.state}
+        return made | {"optimizer": self._optimizer.state_dict()}
 
     @property
     def figures(self):

@@ -1,5 +1,4 @@
-"""How does a policy learn the values of choices from a judge? As in ``imitation``, on positions that the
-caller plays."""
+"""How does a policy learn the values of choices from a judge? As in ``imitation``, on others' positions."""
 
 import uuid
 from collections import deque
@@ -23,8 +22,7 @@ _PARTS = 4
 
 
 class JudgedChoices:
-    """Fits ``policy`` to the values of choices in rounds of n positions; ``where`` simulates each choice once
-    under execution noise."""
+    """Fits ``policy`` to values of choices in rounds of n positions; ``where`` simulates each choice once."""
 
     def __init__(self, policy, options, threads, n, rng, where=None):
         self._policy, self._rng, self._n, self._where = policy, rng, n, where or Here(threads)
@@ -34,8 +32,7 @@ class JudgedChoices:
         self.losses = deque(maxlen=100)
 
     def round(self, at, value, remaining):
-        """Try choices in n ``Positions``, judge what they leave by ``value``, and learn; ``remaining``: share
-        of the training left."""
+        """Try choices in ``Positions``, judge what they leave by ``value``, learn; ``remaining``: share."""
         seen, masks = with_pots(at.observations()), action_masks(at)
         with torch.no_grad():
             scores = self._policy.get_distribution(torch.as_tensor(seen), masks).distribution.logits.numpy()
@@ -57,10 +54,8 @@ class JudgedChoices:
     def _batch(self, choices):
         """Positions of several rounds: seen, masks, picks, valid, worths."""
         size = min(self._n, BATCH // _PARTS)
-        parts = [
-            (self._rounds[k], self._rng.choice(self._n, size, replace=False))
-            for k in self._rng.integers(len(self._rounds), size=_PARTS)
-        ]
+        which = self._rng.integers(len(self._rounds), size=_PARTS)
+        parts = [(self._rounds[k], self._rng.choice(self._n, size, replace=False)) for k in which]
         columns = (np.concatenate([one[c][rows] for one, rows in parts]) for c in range(5))
         seen, masks, picks, valid, worths = columns
         masks = np.unpackbits(masks, axis=1, count=choices).astype(bool)

@@ -1,16 +1,13 @@
-"""How can a policy learn an angle of the full circle? By a mixture of strokes, one along the line of each
-direct pot.
+"""How can a policy learn an angle of the full circle? By a mixture of strokes along lines of direct pots.
 
-A plain Gaussian over ``action="box", aim="absolute"`` never learns: a random direction almost never pots.
-Here the geometry is in the policy and the environment sees plain numbers. The density of an action (speed,
-side, top, aim) is::
+A plain Gaussian over ``action="box", aim="absolute"`` never learns: a random direction almost never pots. The
+environment sees plain numbers; the density of an action (speed, side, top, aim) is::
 
     sum over pots k of  weight_k * N(speed, side, top; means_k, stds) * N(aim; line_k + turn_k(speed, side, top), std_k)
 
 The weights are a softmax of the pots' scores. line_k is the direction to the pot's ghost ball, and turn_k
-moves the ghost ball round the object ball by the angle that ``Throw`` has learned for this cut, path and
-stroke: the aim is drawn after the stroke that it belongs to. It is explored in units of each pot's own
-tolerance. A table without a direct pot has one component: a full hit on the nearest ball on.
+moves that round the object ball by the angle that ``Throw`` has learned for this cut, path and stroke. The aim
+is explored in units of each pot's tolerance. Without a direct pot the line is a full hit on the nearest ball on.
 
     python train.py --agent ppo_absolute
 """
@@ -38,8 +35,8 @@ LINE_ENTRIES = 6
 LEAST_TOLERANCE = 5e-4
 """Least scale of the exploration [rad]: about a professional's error of aim (0.03 degrees)."""
 THROW_UNIT = 0.3
-"""Unit of the learned turn of the line of centres [rad]: a few times the largest throw. Adam's steps have one
-size whatever the unit, and the throw is learned from pots and misses alone."""
+"""Unit of the learned turn of the line of centres [rad], a few times the largest throw: Adam's steps have one
+size whatever the unit."""
 
 
 def lines_of(seen):
@@ -76,16 +73,13 @@ class LineReader(TableReader):
         self._features_dim += POTS * LINE_ENTRIES
 
     def forward(self, seen):
-        """One pass."""
         return torch.cat([super().forward(seen), lines_of(seen).flatten(1)], 1)
 
 
 class Throw(nn.Module):
-    """Lines (n, POTS, LINE_ENTRIES) and strokes (n, POTS, 3) -> the angle / pi by which to turn each line, at
-    first 0.
+    """Lines (n, POTS, LINE_ENTRIES) and strokes (n, POTS, 3) -> the angle / pi by which to turn each line.
 
-    Friction throws the object ball off the line of centres. The angle depends on cut, path and stroke alone,
-    not on the place on the table, and changes its sign in a mirror.
+    Friction throws the object ball off the line of centres, by an angle of cut, path and stroke alone.
     """
 
     def __init__(self, width=32):
@@ -101,7 +95,6 @@ class Throw(nn.Module):
         nn.init.zeros_(self.last.weight)
 
     def forward(self, lines, strokes):
-        """One pass."""
         # as the environment reads them: within the box, the tip on the disc of the miscue limit
         played = strokes.clamp(-1.0, 1.0)
         tip = played[:, :, 1:]
@@ -134,8 +127,7 @@ class MixtureHead(nn.Module):
         self.throw.start()
 
     def forward(self, read):
-        """One pass: logarithms of the weights (n, POTS), means (n, POTS, 3), lines, and a function that gives
-        the aims of strokes."""
+        """Logarithms of the weights (n, POTS), means (n, POTS, 3), lines, and a function for aims."""
         n = len(read)
         end = CONTEXT + POTS * POT
         codes, side = read[:, CONTEXT:end].reshape(n, POTS, POT), read[:, end, None]
@@ -152,8 +144,7 @@ class MixtureHead(nn.Module):
 
 
 class StrokeMixture(Distribution):
-    """The density of this module's docstring, of actions (n, 4). ``log_std`` (4,): of speed, side, top, and
-    of aim in tolerances."""
+    """The density of actions (n, 4). ``log_std`` (4,): of speed, side, top, and of aim in tolerances."""
 
     def proba_distribution_net(self, log_std_init=0.0):
         """The head and the deviations."""

@@ -1,11 +1,9 @@
-"""How is a trained agent stored in a file and read again? As JSON and weights; nothing in a file is
-unpickled.
+"""How is a trained agent stored in a file and read again? As JSON and weights; nothing is unpickled.
 
 ``train.py`` writes zips of Stable-Baselines3, which ``PPO.load`` reads by running the pickles in their
-``data``; ``agents.publish`` writes zips of ``model.json`` and ``policy.pth`` alone. From either this module
-reads the entries ``KEPT`` as plain JSON and the tensors of ``policy.pth`` (``torch.load`` with
-``weights_only``). The network is built from the current recipe of that name: a file cannot name any other
-code.
+``data``; ``agents.publish`` writes ``model.json`` and ``policy.pth`` alone. From either this module reads the
+entries ``KEPT`` as plain JSON and the tensors of ``policy.pth``. The network is that of the current recipe of
+that name: a file cannot name other code.
 """
 
 import io
@@ -26,8 +24,7 @@ WEIGHTS = "policy.pth"
 
 @dataclass
 class Trained:
-    """A trained agent as described in a file; the names are the attributes that train.py sets on SB3's own
-    models."""
+    """A trained agent as described in a file, by the attributes that train.py sets on SB3's own models."""
 
     policy: Any
     """Its network, an SB3 policy."""
@@ -84,8 +81,7 @@ class _MismatchError(Exception):
 
 
 def read(path, field):
-    """The ``Trained`` agent in a file; None if train.py did not make it. Raises ValueError, naming ``field``;
-    ImportError without torch."""
+    """The ``Trained`` in a file; None if train.py did not make it. ValueError, ImportError."""
     try:
         found = entries(path)
         if not by_train(found):
@@ -136,8 +132,7 @@ def _network(path, described, seen):
 
 
 def _weights(path, most):
-    """The tensors of a file, by name, without running anything; ``_MismatchError`` if they take more than
-    ``most`` bytes."""
+    """The tensors of a file by name; nothing runs. ``_MismatchError`` if above ``most`` bytes."""
     import torch
 
     try:
@@ -156,8 +151,7 @@ def _forms(weights):
 
 
 def packed(trained):
-    """A ``Trained`` agent as the bytes of a zip with ``model.json`` and ``policy.pth`` alone;
-    reproducible."""
+    """A ``Trained`` as the bytes of a zip with ``model.json`` and ``policy.pth`` alone; reproducible."""
     import torch
 
     described = {key: getattr(trained, key) for key in KEPT}

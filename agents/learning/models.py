@@ -1,5 +1,4 @@
-"""Where are trained models found? Pre-trained ones, the model of a run's folder, and weights to start
-from."""
+"""Where are trained models? Pre-trained ones, the model of a run's folder, and weights to start from."""
 
 import io
 from pathlib import Path
@@ -34,8 +33,7 @@ def file_of(path, field):
 
 
 def load_trained(path, field):
-    """The ``Trained`` of a model's .zip or a run's folder. Raises ValueError, naming ``field``, if train.py
-    did not make it."""
+    """The ``Trained`` of a .zip or a run. ValueError, naming ``field``, if train.py did not make it."""
     file = file_of(path, field)
     if file.suffix == ".npz":
         wanted = "must be a model that train.py saved, its .zip or a run's folder"
@@ -47,11 +45,9 @@ def load_trained(path, field):
 
 
 def load_weights(model, path):
-    """Load the weights of another model with the same network and actions into ``model``; ``model.start``
-    records its origin.
+    """Load the weights of another model with this network and actions; ``model.start`` says from where.
 
-    The other's network may have more: the one of ppo_value holds that of ppo_mask, and beside it the value of
-    positions. Raises ValueError.
+    The other's network may have more, as ppo_value's holds that of ppo_mask. Raises ValueError.
     """
     other = load_trained(path, "start")
     if not isinstance(other.policy, type(model.policy)):

@@ -1,12 +1,10 @@
-"""Which networks read a snooker table? Small networks shared by balls and by pots, sums over them, and a head
-that scores every stroke.
+"""Which networks read a snooker table? Small ones shared by balls and by pots, sums, and a head for strokes.
 
-The order of balls or pots must not matter: each ball's row goes through one network and each pot's through
-another (deep sets, Zaheer et al. 2017). Masked sums of the balls' codes, of the pots' codes and the game's
-state make the context. The score of a stroke at a pot comes from that pot's code and the context, by the same
-weights for every pot. The table is nearly symmetric: it is read mirrored so that the cue ball is on the
-right, and the choice of side spin is mirrored back. (Yellow and green break the symmetry: an input gives the
-half that the cue ball was on.)
+The order of balls or pots must not matter: all balls go through one network and all pots through another
+(deep sets, Zaheer et al. 2017). Masked sums of their codes and the game's state make the context. The score
+of a stroke at a pot comes from that pot's code and the context, by the same weights for every pot. The table
+is read mirrored so that the cue ball is on the right, and the choice of side spin is mirrored back. (Yellow
+and green break the symmetry: an input gives the half that the cue ball was on.)
 """
 
 from itertools import pairwise
@@ -38,8 +36,7 @@ def mlp(*sizes):
 
 
 class TableReader(BaseFeaturesExtractor):
-    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, and -1 where the table was
-    mirrored, else 1."""
+    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, -1 if mirrored, else 1."""
 
     def __init__(self, observation_space, width=32):
         super().__init__(observation_space, CONTEXT + POTS * POT + 1)
@@ -56,7 +53,6 @@ class TableReader(BaseFeaturesExtractor):
         self.register_buffer("flips", flips, persistent=False)
 
     def forward(self, seen):
-        """One pass."""
         n = len(seen)
         side = torch.where(seen[:, BALL_X : BALL_X + 1] < 0.0, -1.0, 1.0)
         seen = torch.where(self.flips, seen * side, seen)
@@ -86,7 +82,6 @@ class StrokeHead(nn.Module):
             self.score.bias.zero_()
 
     def forward(self, read):
-        """One pass."""
         n = len(read)
         scores, side = self.score(read[:, CONTEXT:-1].reshape(n, POTS, POT)), read[:, -1:]
         turned = scores.reshape(n, POTS * len(SPEEDS), len(SIDES), len(TOPS)).flip(2).reshape(n, -1)
@@ -94,8 +89,7 @@ class StrokeHead(nn.Module):
 
 
 class ForesightReader(TableReader):
-    """The view ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context and a code for each
-    outcome."""
+    """The view ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context, a code an outcome."""
 
     def __init__(self, observation_space):
         super().__init__(observation_space)
@@ -106,7 +100,6 @@ class ForesightReader(TableReader):
         self.best = nn.Linear(OUTCOME, CONTEXT)
 
     def forward(self, seen):
-        """One pass."""
         n = len(seen)
         read = super().forward(seen[:, :SHOWN])
         context, pots, side = read[:, :CONTEXT], read[:, CONTEXT:-1].reshape(n, POTS, POT), read[:, -1:]
@@ -121,8 +114,7 @@ class ForesightReader(TableReader):
 
 
 class OutcomeHead(nn.Module):
-    """The features of ``ForesightReader`` -> a score for each of all choices; only the simulated ones may be
-    played."""
+    """The features of ``ForesightReader`` -> a score for each choice; only simulated ones may be played."""
 
     def __init__(self):
         super().__init__()
@@ -131,7 +123,6 @@ class OutcomeHead(nn.Module):
         self.register_buffer("picks", torch.as_tensor(PICKS), persistent=False)
 
     def forward(self, read):
-        """One pass."""
         scores = self.score(read[:, CONTEXT:].reshape(len(read), STROKES_SEEN, OUTCOME))[..., 0]
         return scores.new_zeros(len(read), POTS * STROKES).index_copy(1, self.picks, scores)
 
@@ -144,7 +135,6 @@ class ValueHead(nn.Module):
         self.value = nn.Sequential(nn.Linear(CONTEXT, width), nn.ReLU(), nn.Linear(width, 1))
 
     def forward(self, read):
-        """One pass."""
         return self.value(read[:, :CONTEXT])
 
 
@@ -192,8 +182,7 @@ class TablePolicy(_Policy):
         return {name: part for name, part in self.__dict__.items() if name != "_fused"}
 
     def forward(self, obs, deterministic=False, action_masks=None):
-        """As in the base class. Drawing with masks, in a rollout, is quick: one random number a table from
-        PyTorch's generator."""
+        """As in the base class; to draw with masks is quick: one random number of PyTorch's a table."""
         if deterministic or not self._plays(obs, action_masks):
             return super().forward(obs, deterministic, action_masks)
         choices, values, logs = self.fused.act(*_arrays(obs, action_masks), torch.rand(len(obs)).numpy())
@@ -222,8 +211,7 @@ def _arrays(obs, action_masks):
 
 
 class JudgedPolicy(TablePolicy):
-    """``TablePolicy`` with the value of positions that judges it; saved together, learned apart
-    (``expert_iteration``)."""
+    """``TablePolicy`` with the value of positions that judges it; saved together, learned apart."""
 
     def _build(self, lr_schedule):
         super()._build(lr_schedule)

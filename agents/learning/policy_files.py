@@ -1,10 +1,8 @@
-"""How is the policy of another trainer stored in a file? As the weights of its layers, an ``.npz`` of NumPy
-without any code.
+"""How is the policy of another trainer stored? As the weights of its layers, an ``.npz`` without any code.
 
-RLlib, TorchRL and a loop of one's own each save in a way of their own, most of them as pickles. Where the
-policy is a plain multilayer perceptron from the flat observation to the 540 choices, its weights are all
-there is to keep: ``weight_0`` (out, in) and ``bias_0`` (out,) of the first layer, ``weight_1`` and so on, and
-``about``, JSON with the keys ``ABOUT``. ``agents.evaluate`` plays such a file.
+RLlib, TorchRL and a loop of one's own save in ways of their own, most as pickles. A multilayer perceptron from
+the flat observation to the 540 choices is its weights: ``weight_0`` (out, in) and ``bias_0`` (out,) of the
+first layer, ``weight_1`` and so on, and ``about``, JSON with the keys ``ABOUT``. ``agents.evaluate`` plays it.
 """
 
 import io
@@ -30,8 +28,7 @@ ABOUT = {"trainer": "RLlib", "activation": "tanh", "shots": 0, "seed": 0, "gamma
 
 
 def packed_policy(weights, **about):
-    """A policy as the bytes of its file. ``weights``: as in ``dense_layers.Layers``; ``about``: a value for
-    each key of ``ABOUT``."""
+    """A policy as its file's bytes; ``weights``: of ``dense_layers.Layers``; ``about``: as ``ABOUT``."""
     if set(about) != set(ABOUT):
         raise refuse("about", sorted(about), f"must have the keys {', '.join(ABOUT)}")
     arrays = {}
@@ -48,8 +45,7 @@ def write_policy(path, weights, **about):
 
 
 def read_policy(path, field):
-    """The ``Trained`` policy in a file, its network ``dense_layers.Layers``. Raises ValueError, naming
-    ``field``; nothing is unpickled."""
+    """The ``Trained`` policy in a file, its network ``Layers``. ValueError, naming ``field``; no pickles."""
     try:
         with zipfile.ZipFile(path) as parts:
             if sum(part.file_size for part in parts.infolist()) > MOST:
@@ -88,14 +84,10 @@ def _described(about, layers):
     for key in about["env_options"]:
         choice("key of about.env_options", key, (*SHOT_OPTIONS, *TRAINING_OPTIONS))
     network = Layers(layers, choice("about.activation", about["activation"], ACTIVATIONS))
-    return Trained(
-        network,
-        about["trainer"],
-        "flat",
-        about["env_options"] | {"action": "discrete"},
-        integer("about.shots", about["shots"], 0, 10**18),
-        number("about.gamma", about["gamma"], 0, 1),
-        integer("about.seed", about["seed"], 0, 2**64),
-        imitated=None,
-        start=None,
-    )
+    numbers = {
+        "num_timesteps": integer("about.shots", about["shots"], 0, 10**18),
+        "gamma": number("about.gamma", about["gamma"], 0, 1),
+        "seed": integer("about.seed", about["seed"], 0, 2**64),
+    }
+    options = about["env_options"] | {"action": "discrete"}
+    return Trained(network, about["trainer"], "flat", options, **numbers, imitated=None, start=None)

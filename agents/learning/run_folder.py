@@ -20,8 +20,7 @@ from .models import CHECKPOINT, zipped
 
 
 def claimed(out, resume):
-    """The ``Lock`` on the folder of a new run (made here) or of one to resume. Raises ValueError if the
-    folder is unfit or in use."""
+    """The ``Lock`` on the folder of a new run (made here) or of one to resume. ValueError if it is unfit."""
     if not (out / LOCK).exists():
         _check(out, resume)
     out.mkdir(parents=True, exist_ok=True)
@@ -68,18 +67,13 @@ def save_checkpoint(out, settings, model, seconds, curve, imitation, imitating=N
 
     ``imitating``: of ``Imitation.get_state`` while the agent imitates the search, else None.
     """
-    state = {
-        "settings": asdict(settings),
-        "seconds": seconds,
-        "curve": curve,
-        "imitation": imitation,
-        "imitating": imitating,
-        "model": zipped(model),
-        "replay": getattr(model, "replay_buffer", None),
-        "tables": model.get_env().env_method("get_state"),
-        "running": model.get_env().running,
-        "random": (np.random.get_state(), torch.get_rng_state(), model.action_space),  # noqa: NPY002 - SB3 draws from the global one
-    }
+    tables = model.get_env()
+    state = {"settings": asdict(settings), "seconds": seconds, "curve": curve}
+    state |= {"imitation": imitation, "imitating": imitating}
+    state |= {"model": zipped(model), "replay": getattr(model, "replay_buffer", None)}
+    state |= {"tables": tables.env_method("get_state"), "running": tables.running}
+    # SB3 draws from the global generator
+    state["random"] = np.random.get_state(), torch.get_rng_state(), model.action_space  # noqa: NPY002
     data = pickle.dumps(state, protocol=pickle.HIGHEST_PROTOCOL)
     write_atomic(out / CHECKPOINT, data)
     copied(out, data)
@@ -98,9 +92,8 @@ def read_checkpoint(out, settings):
         state = pickle.loads((out / CHECKPOINT).read_bytes())
         state.setdefault("imitating", state.get("teaching"))  # its name before 0.3, and later than the rest
         was = settings(**state["settings"])
-        if not state.keys() >= set(
-            ["model", "tables", "random", "replay", "running", "imitation", "curve", "seconds"]
-        ):
+        wanted = {"model", "tables", "random", "replay", "running", "imitation", "curve", "seconds"}
+        if not state.keys() >= wanted:
             raise KeyError
     except Exception:  # any error of pickle on a file of another kind
         raise stale(out) from None
@@ -119,9 +112,8 @@ def options_of(out, state):
 def load_model(out, state, algo, envs):
     """The agent of a checkpoint, its tables and random generators as they were. Raises ValueError."""
     try:
-        model = algorithm_class(algo).load(
-            io.BytesIO(state["model"]), env=envs, device="cpu", seed=None
-        )  # a seed here would reseed the tables
+        # a seed here would reseed the tables
+        model = algorithm_class(algo).load(io.BytesIO(state["model"]), env=envs, device="cpu", seed=None)
         model.seed = state["settings"]["seed"]
         if state["replay"] is not None:
             model.replay_buffer = state["replay"]

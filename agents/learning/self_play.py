@@ -1,9 +1,7 @@
-"""How is a round of self-play simulated, here or by many workers? In slices of ``SLICE`` positions, by the
-weights of the learner.
+"""How is a round of self-play simulated, here or by many workers? In slices, by the weights of the learner.
 
-The learner draws all random numbers and cuts the positions into slices; a slice is computed from these alone,
-and no position's results depend on those beside it (``dense_layers``). So a training does not depend on the
-number of workers, not even when one dies and its slice is computed again.
+The learner draws all random numbers, and no position's results depend on those beside it (``dense_layers``):
+a training does not depend on the number of workers, nor on one that dies and whose slice is computed again.
 """
 
 from copy import copy
@@ -12,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from snooker_env import Options
-from snooker_env.planning import Planner, Positions, StrokeSearch
+from snooker_env.planning import Planner, Positions, StrokeSearch, prospects_of
 from snooker_env.planning.learned.value_features import SIZE, value_features
 
 SLICE = 64
@@ -63,16 +61,10 @@ def strokes(shared, args, threads):
     after[goes_on] = features(out.afterstates[np.flatnonzero(goes_on)])
     played = np.where(args["explored"], m * fresh + every, fresh * every)
     left = out.afterstates[played]
-    return {
-        "seen": features(at).astype(np.float16),
-        "after": after.reshape(m, fresh, SIZE),
-        "points": out.points[: m * fresh].reshape(m, fresh),
-        "goes_on": goes_on.reshape(m, fresh),
-        "follows": out.goes_on[played],
-        "positions": left.positions,
-        "on_table": left.on_table,
-        "game": left.game,
-    }
+    made = {"seen": features(at).astype(np.float16), "after": after.reshape(m, fresh, SIZE)}
+    made |= {"points": out.points[: m * fresh].reshape(m, fresh), "goes_on": goes_on.reshape(m, fresh)}
+    made |= {"follows": out.goes_on[played], "positions": left.positions}
+    return made | {"on_table": left.on_table, "game": left.game}
 
 
 def choices(shared, args, threads):
@@ -80,11 +72,23 @@ def choices(shared, args, threads):
 
     ``args``: "at" (arrays of m positions), "rows", "picks" and "keys" (k,). Returns "gains", float32 (k,).
     """
-    planner = once(("planner", shared["run"], threads), lambda: planner_of(shared["options"], threads))
+    options = Options(action="discrete", **shared["options"])
+    planner = once(("planner", shared["run"], threads), lambda: Planner(options, threads=threads))
     played = planner.play(Positions(*args["at"]), args["rows"], args["picks"], args["keys"])
     gains, on = played.points.astype(np.float32), np.flatnonzero(played.goes_on)
     gains[on] += shared["value"](played.afterstates[on])
     return {"gains": gains}
+
+
+def trials(shared, args, threads):
+    """The task: what choices are worth by the search's rule of thumb, each simulated once, "worth" (k,).
+
+    ``shared``: "run" (an id), "options", "spread" and "ahead"; ``args``: as of ``choices``.
+    """
+    planner = once(("worths", shared["run"], threads), lambda: Planner(shared["options"], threads=threads))
+    points, goes_on, left, _ = planner.play(Positions(*args["at"]), args["rows"], args["picks"], args["keys"])
+    ahead = prospects_of(left, shared["spread"], threads=planner.threads)[0]
+    return {"worth": points + shared["ahead"] * goes_on * ahead}
 
 
 def in_slices(n):
@@ -92,37 +96,21 @@ def in_slices(n):
     return [slice(k, min(n, k + SLICE)) for k in range(0, n, SLICE)]
 
 
-def of_choices(at, rows, picks, keys):
-    """The arguments of each slice of positions for choices in the sorted ``rows`` (k,)."""
-    cut = in_slices(len(at))
+def judged(where, shared, at, rows, picks, keys, task="choices", of="gains"):
+    """What a task says of choices in the sorted ``rows`` (k,): ``choices`` "gains", ``trials`` "worth"."""
+    many, cut = [], in_slices(len(at))
     ends = np.searchsorted(rows, [0, *(one.stop for one in cut)]).tolist()
-    some = [slice(*pair) for pair in pairwise(ends)]
-    return [
-        {
-            "at": positions_given(at[one]),
-            "rows": rows[its] - one.start,
-            "picks": picks[its],
-            "keys": keys[its],
-        }
-        for one, its in zip(cut, some, strict=True)
-    ]
-
-
-def judged(where, shared, at, rows, picks, keys):
-    """``choices`` of all positions: float32 (k,)."""
-    slices = where.map(f"{__name__}:choices", shared, of_choices(at, rows, picks, keys))
-    return np.concatenate([one["gains"] for one in slices])
+    for one, (first, end) in zip(cut, pairwise(ends), strict=True):
+        its = {"picks": picks[first:end], "keys": keys[first:end]}
+        many.append({"at": positions_given(at[one]), "rows": rows[first:end] - one.start, **its})
+    made = where.map(f"{__name__}:{task}", shared, many)
+    return np.concatenate([one[of] for one in made])
 
 
 def search_of(shared, threads):
     """The ``StrokeSearch`` of a training, made once in a process."""
     key = "search", shared["run"], threads
     return once(key, lambda: StrokeSearch(shared["options"], shared["budget"], threads=threads))
-
-
-def planner_of(options, threads):
-    """A ``Planner`` of discrete choices."""
-    return Planner(Options(action="discrete", **options), threads=threads)
 
 
 def once(key, make):
@@ -157,6 +145,5 @@ def _network(recipe, env_options, view):
     from .hyperparameters import Recipe
 
     tables = SnookerVectorEnv(1, **env_options)
-    return Recipe.of(recipe, env_kwargs=env_options).new_network(
-        view_of(view).space, tables.single_action_space
-    )
+    made = Recipe.of(recipe, env_kwargs=env_options)
+    return made.new_network(view_of(view).space, tables.single_action_space)

@@ -1,10 +1,9 @@
 """How is the value of a position learned? By backups over noise samples, corrected by what really followed.
 
 The target of a position is the mean of points plus the value of the afterstate, over fresh noise samples of
-the best stroke. (The samples that chose the stroke would flatter it.) What really followed corrects it with
-weight ``LAMBDA``, not beyond an exploratory stroke (Watkins' Q(lambda)). Features of afterstates are kept, so
-that targets follow the network. The returns of single visits are no use as targets: a visit's luck drowns
-what a position is worth.
+the best stroke (those that chose it would flatter it). What really followed corrects it with weight
+``LAMBDA``, not beyond an exploratory stroke (Watkins' Q(lambda)): a visit's returns alone are luck. Features
+of afterstates are kept, so that targets follow the network.
 """
 
 from collections import deque
@@ -40,9 +39,8 @@ class ValueLearning:
         self.losses = deque(maxlen=100)
 
     def add(self, seen, after, points, goes_on, follows):
-        """Keep a round: features (n, SIZE) of the positions and (n, s, SIZE) of what s samples left, their
-        points and whether the visit went on (n, s), and whether the first sample was really played on
-        (n,)."""
+        """Keep a round: features (n, SIZE) of positions and (n, s, SIZE) of what s samples left, points and
+        whether visits went on (n, s), and whether the first sample was really played on (n,)."""
         self._rounds.append((seen.astype(np.float16), after, points.astype(np.float32), goes_on, follows))
         del self._rounds[: -max(1, KEPT // self._n)]
 
@@ -101,13 +99,8 @@ class ValueLearning:
 
     def get_state(self):
         """Everything but the network."""
-        state = {
-            "rounds": self._rounds,
-            "age": self._age,
-            "fitted": self._fitted,
-            "losses": list(self.losses),
-        }
-        return state | {"optimizer": self._optimizer.state_dict()}
+        state = {"rounds": self._rounds, "age": self._age, "fitted": self._fitted}
+        return state | {"losses": list(self.losses), "optimizer": self._optimizer.state_dict()}
 
     def set_state(self, state):
         """Go on from a state of ``get_state``."""

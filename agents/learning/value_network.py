@@ -1,5 +1,4 @@
-"""How is the value of a position computed? V = P x U: the chance that the next stroke scores, times what the
-visit then brings.
+"""How is the value of a position computed? V = P x U: the chance to score, times what the visit then brings.
 
 One small network with two outputs (``ValueNetwork``). P starts from the likeliest pot's chance by its width;
 U is positive. It is trained with torch; ``snooker_env.planning.learned.LearnedValue`` plays the same weights.
@@ -15,8 +14,7 @@ from snooker_env.planning.learned.value_features import LOGIT, SIZE
 
 WIDTHS = (160, 96)
 MEMBERS = 4
-"""Number of networks whose mean is the value: each starts and learns apart, and errors that they do not share
-cancel."""
+"""Networks whose mean is the value: each learns apart, and errors that they do not share cancel."""
 
 
 class ValueNetwork(nn.Module):
@@ -35,7 +33,6 @@ class ValueNetwork(nn.Module):
             self.weights[-1].mul_(0.1)
 
     def forward(self, seen):
-        """One pass."""
         x = seen
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
             x = torch.relu(x @ weight + bias)
@@ -45,12 +42,7 @@ class ValueNetwork(nn.Module):
 
 def value_of(network, spread, threads=1):
     """The ``LearnedValue`` with the present weights of a ``ValueNetwork``."""
-    layers = [
-        (weight.detach().numpy(), bias.detach().numpy())
-        for weight, bias in zip(network.weights, network.biases, strict=True)
-    ]
-    return LearnedValue(
-        [[(weight[k].T, bias[k, 0]) for weight, bias in layers] for k in range(network.members)],
-        spread,
-        threads,
-    )
+    pairs = zip(network.weights, network.biases, strict=True)
+    layers = [(weight.detach().numpy(), bias.detach().numpy()) for weight, bias in pairs]
+    members = [[(weight[k].T, bias[k, 0]) for weight, bias in layers] for k in range(network.members)]
+    return LearnedValue(members, spread, threads)

@@ -1,23 +1,20 @@
-"""Which players does the repository add to the package's? Geometry with solved aims, a rule that looks one
-shot ahead, trained models.
+"""Which players does the repository add? Geometry with solved aims, a rule with foresight, trained models.
 
 ``pyproject.toml`` names them as entry points, so that ``snooker_env.player`` finds them in a clone.
 """
 
-from .geometric import Geometric
+from .aim_search import Geometric
 
 
 def read_model(path):
-    """The player of a model or run of ``train.py``; None for another file. An entry point of
-    ``snooker_env.models``."""
+    """The player of a model or run of ``train.py``, else None. An entry point of ``snooker_env.models``."""
     from .trained import read_model
 
     return read_model(path)
 
 
 def __getattr__(name):
-    """What needs other libraries when it is asked for: the rule with foresight, and a maker of each
-    pre-trained model."""
+    """What needs other libraries: the rule with foresight, and a maker of each pre-trained model."""
     if name == "ForesightRule":
         from .foresight import ForesightRule
 

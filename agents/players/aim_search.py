@@ -1,7 +1,7 @@
-"""Where must a pot found by geometry be aimed? Each shot is simulated without execution errors, at aims
-around its line and a few speeds. The widest interval of aims that pot gives the shot, and its middle the aim.
+"""How does the player ``geometric`` play? Direct pots, else banks, plants and cannons; aims are simulated.
 
-The player "geometric" uses it: python -m agents.evaluate --agent geometric
+Each shot is simulated without execution errors, at aims around its line and a few speeds. The widest interval
+of aims that pot gives the shot, and its middle the aim.
 """
 
 from math import atan2
@@ -9,20 +9,12 @@ from math import atan2
 import numpy as np
 
 from snooker_env.game import N_BALLS, SPOTS, BallOn
-from snooker_env.planning import Planner
+from snooker_env.planning import Planner, Positions
+from snooker_env.players import BoundPlayer, Strokes
+from snooker_env.players.player import placed
 
-from ..features.indirect_pots import (
-    AIM_X,
-    AIM_Y,
-    BALL,
-    COLUMNS,
-    GHOST_X,
-    GHOST_Y,
-    REACH,
-    direct,
-    direct_pots,
-    indirect,
-)
+from ..features import indirect_pots as geometry
+from ..features.indirect_pots import AIM_X, AIM_Y, BALL, COLUMNS, GHOST_X, GHOST_Y, REACH
 
 SPEEDS = (1.8, 2.9, 4.4)
 """Cue speeds [m/s] at which the shots are tried."""
@@ -31,8 +23,7 @@ AIMS = 40
 
 
 def widest_run(good):
-    """Start and length of the longest run of True in each row of ``good`` (m, n); of equal ones that nearest
-    to the middle."""
+    """Start and length of the longest run of True in each row of ``good`` (m, n), that nearest the middle."""
     m, n = good.shape
     lengths, run = np.zeros((m, n), np.int64), np.zeros(m, np.int64)
     for i in range(n):
@@ -60,7 +51,7 @@ class Aimer:
     def __init__(self, options, speed):
         self._planner, self._speed = Planner(options, noise="none", threads=1), speed
         # compile now, so that decision times exclude it
-        indirect(np.array(SPOTS), np.ones(N_BALLS, np.bool_), BallOn.RED, *self._bed)
+        geometry.indirect(np.array(SPOTS), np.ones(N_BALLS, np.bool_), BallOn.RED, *self._bed)
 
     @property
     def _bed(self):
@@ -75,20 +66,20 @@ class Aimer:
         """
         n, ball_on = len(at), at.ball_on.copy()
         shots, counts = np.empty((n, 1, COLUMNS)), np.empty(n, np.int64)
-        direct_pots(at.positions, at.on_table, ball_on, shots, counts)
+        geometry.direct_pots(at.positions, at.on_table, ball_on, shots, counts)
         lines = self._solve(at, np.arange(n), shots[:, 0], (self._speed,))[:, 0]
         strokes = plain(np.full(n, self._speed), lines)
         for k in np.flatnonzero(~self.pots(at, np.arange(n), strokes)).tolist():
             one, (p, on) = at[k : k + 1], (at.positions[k], at.on_table[k])
-            best = self.widest(one, direct(p, on, ball_on[k]))
-            best = best or self.widest(one, indirect(p, on, ball_on[k], *self._bed))
+            best = self.widest(one, geometry.direct(p, on, ball_on[k]))
+            best = best or self.widest(one, geometry.indirect(p, on, ball_on[k], *self._bed))
             if best:
                 strokes[k] = best[0]
         return strokes
 
     def widest(self, one, shots):
-        """The shot with the widest interval of aims that pot, simulated on the only position of ``one``: (its
-        stroke, half the width [rad], index of the shot, index of the speed); None if none pots."""
+        """The shot with the widest potting interval of aims in the only position of ``one``: (its stroke, half
+        the width [rad], index of the shot, index of the speed); None if none pots."""
         if len(shots) == 0:
             return None
         lines = self._solve(one, np.zeros(len(shots), np.int64), shots, SPEEDS).ravel()
@@ -104,8 +95,7 @@ class Aimer:
         return plain(speeds[best : best + 1], [middle])[0], 0.5 * width, *divmod(best, len(SPEEDS))
 
     def _scan(self, one, speeds, lines, reaches):
-        """Middle and width [rad] of the widest interval of aims that pot, within ``reaches`` of ``lines``:
-        (m,) each, 0 if none does."""
+        """Middle and width [rad] of the widest potting interval near ``lines``: (m,) each, 0 without one."""
         steps = 2.0 * reaches / AIMS
         aims = lines[:, None] + steps[:, None] * (np.arange(AIMS) - 0.5 * (AIMS - 1))
         tries = plain(np.repeat(speeds, AIMS), aims.ravel())
@@ -113,8 +103,7 @@ class Aimer:
         return lines + steps * (starts + 0.5 * (lengths - 1) - 0.5 * (AIMS - 1)), steps * lengths
 
     def _solve(self, at, rows, shots, speeds):
-        """Directions of the cue ball (m, s) [rad] that send the first ball of each shot (m, COLUMNS) to its
-        aim point at each speed."""
+        """Directions of the cue ball (m, s) [rad] for shots (m, COLUMNS) at their aim points by speed."""
         m, s = len(shots), len(speeds)
         aims = np.empty((m, s))
         plain = shots[:, BALL] < 0.0
@@ -131,3 +120,28 @@ class Aimer:
     def pots(self, at, rows, strokes):
         """Which of these strokes score, each on a copy of its position: (m,) bool."""
         return self._planner.play(at, rows, strokes=strokes).points > 0.0
+
+
+class Geometric(BoundPlayer):
+    """Direct pots, else banks, plants and cannons (``indirect_pots``), aims without execution errors.
+
+    Parameters
+    ----------
+    speed : float
+        Cue speed [m/s] of its first attempt.
+    """
+
+    name, training_shots = "geometric", 0
+
+    def __init__(self, speed=2.3):
+        self._speed = speed
+
+    def _bind(self, options):
+        self._aimer = Aimer(options, self._speed)
+
+    def play(self, positions, seeds):
+        _ = self.options  # it must be bound
+        at = Positions.of(positions)
+        visits, places = placed(at, seeds)
+        parts = [self._aimer.strokes(visits[k : k + 1]) for k in range(len(at))]
+        return Strokes(np.concatenate([np.empty((0, 5)), *parts]), places)

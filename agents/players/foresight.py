@@ -1,5 +1,4 @@
-"""How do players choose among simulated strokes? By a rule, or by the network ``ppo_foresight``, from the
-view ``foresight``."""
+"""How does the player ``foresight_rule`` choose? By a rule, from the view ``foresight``."""
 
 import numpy as np
 
@@ -10,8 +9,7 @@ from ..features.lookahead_features import PICKS, ForesightView, worth_by_rule
 
 
 class ForesightRule(ChoicePlayer):
-    """The observation of ``ppo_foresight``, scored by a rule instead of a network: mean points plus the mean
-    value of the afterstates."""
+    """The observation of ``ppo_foresight``, scored by a rule: mean points plus the value of what is left."""
 
     name, training_shots = "foresight_rule", 0
 

@@ -1,5 +1,4 @@
-"""How does a trained model of this repository play? Its greedy choices or actions, from the view of the table
-it has learned with."""
+"""How does a trained model of this repository play? Its greedy choices or actions, from the view it knows."""
 
 from pathlib import Path
 
@@ -54,8 +53,7 @@ class PolicyPlayer(ChoicePlayer):
 
 
 def _logits(policy, seen, masks):
-    """The logits of a policy of PyTorch, a table at a time: the products of a batch round otherwise than
-    those of one row."""
+    """The logits of a policy of PyTorch, a table at a time: a batch rounds otherwise than one row."""
     import torch
 
     logits = np.empty(masks.shape)
@@ -68,8 +66,7 @@ def _logits(policy, seen, masks):
 
 
 class BoxModel:
-    """A model with box actions as a ``Seen``: its deterministic actions, from flat observations with pots, a
-    table at a time."""
+    """A model with box actions as a ``Seen``: its deterministic actions, a table at a time."""
 
     def __init__(self, model):
         self.model, self._view = model, view_of(model.view)
@@ -100,8 +97,7 @@ def player_of_model(trained):
 
 
 def load_player(path, field="agent"):
-    """The player of a model's .zip or .npz or a run's folder. ValueError, naming ``field``, if train.py did
-    not make it."""
+    """The player of a .zip, an .npz or a run. ValueError, naming ``field``, if train.py did not make it."""
     file = file_of(Path(path), field)
     return player_of_model(read_policy(file, field) if file.suffix == ".npz" else load_trained(file, field))
 

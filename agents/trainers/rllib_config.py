@@ -1,11 +1,11 @@
-"""How does RLlib train on this environment? PPO of the new API stack with action masks, on native vector
-environments.
+"""How does RLlib train on this environment? PPO of the new API stack, with masks, on vector environments.
 
-An env runner is a process of Ray with one ``SnookerVectorEnv``. RLlib resets a table in the step after its
-end (NEXT_STEP, the default of that class) and leaves that step out of the sample by itself. The module is
-RLlib's own ``ActionMaskingTorchRLModule``: it reads ``observation="masked"``, adds the logarithm of the mask
-to the scores, and must not be used with another algorithm than PPO.
+An env runner is a process of Ray with one ``SnookerVectorEnv``, which RLlib resets in the step after an end
+(NEXT_STEP) and leaves that step out by itself. Its own ``ActionMaskingTorchRLModule`` reads
+``observation="masked"``, adds the logarithm of the mask to the scores, and is for PPO alone.
 """
+
+from typing import Any
 
 import numpy as np
 import ray
@@ -23,23 +23,10 @@ HIDDEN, ACTIVATION = (256, 256), "tanh"
 BATCH = 8192
 """Shots between two updates, of all runners together."""
 GAMMA = 0.95
-SETTINGS = {
-    "train_batch_size": BATCH,
-    "minibatch_size": 2048,
-    "num_epochs": 4,
-    "lr": 1e-3,
-    "gamma": GAMMA,
-    "lambda_": 0.5,
-    "entropy_coeff": 0.003,
-    "vf_loss_coeff": 0.01,
-    "vf_clip_param": 1e6,
-    "clip_param": 0.2,
-    "use_kl_loss": False,
-    "grad_clip": 0.5,
-    "grad_clip_by": "global_norm",
-}
-"""Those of ``hyperparams/ppo_mask.yml``, as far as RLlib has them; RLlib's own clipping of the value's loss
-and its KL penalty are off."""
+SETTINGS: dict[str, Any] = {"train_batch_size": BATCH, "minibatch_size": 2048, "num_epochs": 4, "lr": 1e-3}
+SETTINGS |= {"gamma": GAMMA, "lambda_": 0.5, "entropy_coeff": 0.003, "clip_param": 0.2, "use_kl_loss": False}
+SETTINGS |= {"vf_loss_coeff": 0.01, "vf_clip_param": 1e6, "grad_clip": 0.5, "grad_clip_by": "global_norm"}
+"""Of ``hyperparams/ppo_mask.yml``, as RLlib has them; its clipping of values and KL penalty are off."""
 PATIENCE = 600.0
 """Seconds in which a runner must give its sample: RLlib's own minute is too short for a busy machine."""
 MEMORY = 2**28
@@ -47,11 +34,8 @@ MEMORY = 2**28
 
 
 class RunnerTables(SnookerVectorEnv):
-    """The tables of one runner, which begin with ``seeds_of_runner``.
-
-    RLlib gives runner w the seed + w, so that all but one of its tables would begin as those of the runner
-    before.
-    """
+    """The tables of one runner. RLlib gives runner w the seed + w, and so nearly the tables of the one before:
+    these begin with ``seeds_of_runner``."""
 
     own_seeds: list[int | None] | None = None
 
@@ -61,8 +45,7 @@ class RunnerTables(SnookerVectorEnv):
 
 
 def seeds_of_runner(seed, runner, n):
-    """Seeds of its n tables, 64 bits each. Those of other runners and of runs with other seeds have nothing
-    in common with them."""
+    """Seeds of its n tables, 64 bits each: nothing in common with other runners and runs."""
     return np.random.SeedSequence(seed, spawn_key=(runner,)).generate_state(n, np.uint64).tolist()
 
 
@@ -71,8 +54,7 @@ def _tables(context):
 
 
 def _own_seeds(*, env, env_context, env_runner, **more):
-    """RLlib calls it in each runner that has made its tables; ``worker_index`` begins with 1, of the main
-    process with 0."""
+    """RLlib calls it in each runner that has its tables; ``worker_index`` 0 is the main process."""
     if env_runner.config.seed is not None:
         env.own_seeds = seeds_of_runner(env_runner.config.seed, env_context.worker_index, env.num_envs)
 
@@ -86,8 +68,7 @@ def started(runners, paths):
 
 
 def algorithm_of(settings, seed):
-    """A new PPO algorithm of RLlib; ``settings``: ``rllib_run.RunSettings``. ``seed``: of weights, tables and
-    exploration."""
+    """A new PPO of RLlib, by ``rllib_run.RunSettings``; ``seed``: of weights, tables and exploration."""
     tune.register_env(ENV, _tables)
     network = DefaultModelConfig(fcnet_hiddens=list(HIDDEN), fcnet_activation=ACTIVATION)
     options = {"action": "discrete", "observation": "masked", "threads": 1, **settings.env_options}
@@ -111,8 +92,7 @@ def algorithm_of(settings, seed):
 
 
 def restore(algorithm, folder):
-    """Go on from a checkpoint. Its weights go to the runners at once: RLlib would let them play the first
-    rollout with new ones."""
+    """Go on from a checkpoint, its weights sent at once: RLlib's runners would begin with new ones."""
     algorithm.restore_from_path(str(folder))
     learner = algorithm.learner_group
     algorithm.env_runner_group.sync_weights(

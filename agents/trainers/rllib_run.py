@@ -1,5 +1,4 @@
-"""How is an agent trained with RLlib from the command line? Trains, saves, resumes, and judges the policy on
-held-out tables.
+"""How is an agent trained with RLlib from the command line? Train, save, resume, judge on held-out tables.
 
     python -m agents.train_rllib                             300,000 shots with one env runner: some minutes
     python -m agents.train_rllib --runners 2 --out runs/two  two env runners, each with its own tables
@@ -8,8 +7,7 @@ held-out tables.
 
 Files of a run folder: ``policy.npz``, the policy as plain weights; ``untrained.npz``, the same before the
 first update; ``results.json``, every figure; ``state.json`` and a folder ``checkpoint-N`` of RLlib's own,
-from which a run goes on. That folder holds pickles, and loading a pickle runs code: --resume only your own
-runs.
+from which a run goes on. It holds pickles, whose loading runs code: --resume only your own runs.
 
 A resumed run has the weights, the optimiser and the counters of the checkpoint. It is not bit for bit the
 uninterrupted one: RLlib saves neither the tables nor the random generators of its runners. They begin anew,
@@ -27,6 +25,7 @@ import time
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
+from typing import Any
 
 from commands.lifecycle import command, needs
 
@@ -49,6 +48,7 @@ with needs("agents.train_rllib"):
 
     from ..evaluation.training_summary import show
     from ..learning.callback import Stop
+    from ..learning.hyperparameters import not_held_out
     from ..learning.models import POLICY
     from ..learning.policy_files import read_policy, write_policy
     from ..players.trained import player_of_model
@@ -79,37 +79,27 @@ class RunSettings:
         return {"noise": self.noise, "layout": self.layout}
 
 
-HELP = {
-    "steps": "total number of shots, rounded up to whole updates",
-    "runners": "env runners, each a process",
-    "envs": "tables of a runner",
-    "seed": "of weights, tables and exploration",
-    "noise": "execution noise: none, professional, amateur, club, robot or olympiad",
-    "layout": "of the training tables",
-    "eval_visits": "visits of the final evaluation on held-out tables",
-    "checkpoint_every": "shots between two checkpoints",
+OPTIONS = {
+    "steps": ("total number of shots, rounded up to whole updates", 1, 10**12),
+    "runners": ("env runners, each a process", 1, 1024),
+    "envs": ("tables of a runner", 1, BATCH),
+    "seed": ("of weights, tables and exploration", 0, 2**31),
+    "noise": ("execution noise: none, professional, amateur, club, robot or olympiad",),
+    "layout": ("of the training tables",),
+    "eval_visits": ("visits of the final evaluation on held-out tables", 2, HELD_OUT),
+    "checkpoint_every": ("shots between two checkpoints", 1, 10**12),
 }
-BOUNDS = {
-    "steps": (1, 10**12),
-    "runners": (1, 1024),
-    "envs": (1, BATCH),
-    "seed": (0, 2**31),
-    "eval_visits": (2, HELD_OUT),
-    "checkpoint_every": (1, 10**12),
-}
+"""What each is, and the least and largest of those that are numbers."""
 FREE_ON_RESUME = ("steps", "runners", "eval_visits", "checkpoint_every")
 
 
 def parse(argv):
     """(parser, options given on the command line, the rest)."""
-    parser = argparse.ArgumentParser(
-        "python -m agents.train_rllib", description=(__doc__ or "").partition("\n")[0]
-    )
+    about = (__doc__ or "").partition("\n")[0]
+    parser = argparse.ArgumentParser("python -m agents.train_rllib", description=about)
     for f in fields(RunSettings):
-        name = "--" + f.name.replace("_", "-")
-        parser.add_argument(
-            name, type=type(f.default), default=argparse.SUPPRESS, help=f"{HELP[f.name]} [{f.default}]"
-        )
+        how: dict[str, Any] = {"type": type(f.default), "help": f"{OPTIONS[f.name][0]} [{f.default}]"}
+        parser.add_argument("--" + f.name.replace("_", "-"), default=argparse.SUPPRESS, **how)
     parser.add_argument("--out", type=Path, help="the run's folder [runs/rllib-SEED]")
     what = "go on with the run in that folder; options left out keep their values"
     parser.add_argument("--resume", action="store_true", help=what)
@@ -120,11 +110,10 @@ def parse(argv):
 
 def checked(settings):
     """The settings. Raises ValueError."""
-    for name, (low, high) in BOUNDS.items():
-        integer(name, getattr(settings, name), low, high)
-    if settings.layout == "held_out":
-        why = "the held-out tables are kept for evaluation"
-        raise refuse("layout", "held_out", f"must be another for training: {why}")
+    for name, (_, *ends) in OPTIONS.items():
+        if ends:
+            integer(name, getattr(settings, name), *ends)
+    not_held_out(settings.layout)
     Options(action="discrete", observation="masked", **settings.env_options)
     return settings
 
@@ -163,17 +152,16 @@ def claimed(out, resume):
     """The ``Lock`` on the run's folder. Raises ValueError if it is in use, or not new."""
     if out.exists() and not out.is_dir():
         raise refuse("out", str(out), "must be a folder, new or empty")
-    held = sorted(file.name for file in out.iterdir() if file.name != LOCK) if out.is_dir() else []
+    out.mkdir(parents=True, exist_ok=True)
+    held = sorted(file.name for file in out.iterdir() if file.name != LOCK)
     if held and not resume:
         others = f"is not empty (it holds {', '.join(held[:3])})"
         raise refuse("out", str(out), f"{others}: --resume continues it, --out names another folder")
-    out.mkdir(parents=True, exist_ok=True)
     return Lock(out)
 
 
 def save(out, settings, progress, algorithm):
-    """A checkpoint: RLlib's folder first, then the file that names it, so that a kill at any time leaves a
-    whole one."""
+    """A checkpoint: RLlib's folder first, then the file that names it: a kill leaves a whole one."""
     name = f"checkpoint-{progress.updates:06d}"
     if progress.checkpoint != name:
         half = (out / f"{name}.tmp").absolute()
@@ -197,34 +185,27 @@ def _write(file, settings, progress, algorithm):
 
 def train(out, settings, progress, algorithm, stop):
     """Updates until all shots are played or a signal comes, with checkpoints."""
+    saved, before, began = progress.shots, progress.seconds, time.perf_counter()
     with Progress("RLlib", settings.steps, "shots", done=progress.shots, to=sys.stdout) as shown:
-        _train(out, settings, progress, algorithm, stop, shown)
+        while progress.shots < settings.steps and stop.signal is None:
+            sampled = algorithm.train().get("env_runners")
+            if not sampled or "num_env_steps_sampled_lifetime" not in sampled:  # RLlib goes on without one
+                save(out, settings, progress, algorithm)
+                why = f"no env runner gave a sample in {PATIENCE:.0f} s; saved at {progress.shots:,} shots"
+                raise SystemExit(f"agents.train_rllib: {why}")
+            progress.shots = int(sampled["num_env_steps_sampled_lifetime"])
+            progress.updates += 1
+            progress.seconds = before + time.perf_counter() - began
+            points = sampled.get("episode_return_mean", float("nan"))
+            shown.at(progress.shots, f"update {progress.updates:,}, {points:.2f} points a visit")
+            if progress.shots - saved >= settings.checkpoint_every:
+                save(out, settings, progress, algorithm)
+                saved = progress.shots
     save(out, settings, progress, algorithm)
 
 
-def _train(out, settings, progress, algorithm, stop, shown):
-    saved, before, began = progress.shots, progress.seconds, time.perf_counter()
-    while progress.shots < settings.steps and stop.signal is None:
-        sampled = algorithm.train().get("env_runners")
-        if not sampled or "num_env_steps_sampled_lifetime" not in sampled:  # RLlib goes on without a sample
-            save(out, settings, progress, algorithm)
-            why = f"no env runner gave a sample in {PATIENCE:.0f} s; saved at {progress.shots:,} shots"
-            raise SystemExit(f"agents.train_rllib: {why}")
-        progress.shots, progress.updates = (
-            int(sampled["num_env_steps_sampled_lifetime"]),
-            progress.updates + 1,
-        )
-        progress.seconds = before + time.perf_counter() - began
-        points = sampled.get("episode_return_mean", float("nan"))
-        shown.at(progress.shots, f"update {progress.updates:,}, {points:.2f} points a visit")
-        if progress.shots - saved >= settings.checkpoint_every:
-            save(out, settings, progress, algorithm)
-            saved = progress.shots
-
-
 def judge(out, settings, progress):
-    """Held-out visits of the policy, of itself before the training, and of simple players, in
-    ``results.json`` and as a table."""
+    """Held-out visits of the policy, trained and not, and of simple players: ``results.json`` and a table."""
     files = {"trained": POLICY, "untrained": UNTRAINED}
     players = {name: player_of_model(read_policy(out / file, "out")) for name, file in files.items()}
     players |= {name: snooker_env.player(name) for name in ("ghost_ball", "random")}
@@ -233,13 +214,9 @@ def judge(out, settings, progress):
         name: summary(play_visits(player, settings.eval_visits, first_seed=seeds, noise=settings.noise))
         for name, player in players.items()
     }
-    results = {
-        "settings": asdict(settings),
-        **asdict(progress),
-        "shots_per_second": progress.shots / max(progress.seconds, 1e-9),
-        "versions": {"ray": ray.__version__, **software()},
-        "evaluation": figures,
-    }
+    rate = progress.shots / max(progress.seconds, 1e-9)
+    results = {"settings": asdict(settings), **asdict(progress), "shots_per_second": rate}
+    results |= {"versions": {"ray": ray.__version__, **software()}, "evaluation": figures}
     write_json(out / RESULTS, results)
     show(figures)
     print(f"Figures: {out / RESULTS}   by our protocol: python -m agents.evaluate --agent {out}")

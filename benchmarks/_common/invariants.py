@@ -18,8 +18,8 @@ import numpy as np
 from snooker_env.physics import cloth
 from snooker_env.physics.arrays import Boundaries, Ends
 from snooker_env.physics.cloth import AX, AY, COLUMNS, FALLING, GONE, REST, T0, T_END, VX, VY, X, Y
+from snooker_env.physics.columns import P_G, P_MU_BB_EXTRA, P_MU_BB_LEAST, P_MU_S, P_R, P_SPIN
 from snooker_env.physics.engine import EventKind, Status
-from snooker_env.physics.parameters import P_G, P_MU_BB_EXTRA, P_MU_BB_LEAST, P_MU_S, P_R, P_SPIN
 from snooker_env.simulation import MAX_EVENTS, _run, log_space
 
 FINITE, CLOCK, JUMP, ENERGY, PHASE, ALL, MOMENTUM, PARTING, OVERLAP, CUSHION, OUTSIDE, REST_TIME, ACCOUNT = (

@@ -24,9 +24,9 @@ import snooker_env as sn
 from snooker_env._jit import entry
 from snooker_env.physics import engine
 from snooker_env.physics.arrays import Law
+from snooker_env.physics.columns import P_E_B
 from snooker_env.physics.impact import contact
 from snooker_env.physics.impact.polynomial import WORK
-from snooker_env.physics.parameters import P_E_B
 from snooker_env.simulation import MAX_EVENTS, _run
 
 HAS_COUNTER = platform.machine().lower() in ("x86_64", "amd64")

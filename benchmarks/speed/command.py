@@ -34,10 +34,10 @@ from commands.tables import text_table
 from snooker_env._jit import entry
 from snooker_env.game.balls import SPOTS
 from snooker_env.physics.arrays import Law
+from snooker_env.physics.columns import P_E_B
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
 from snooker_env.physics.impact.polynomial import WORK
-from snooker_env.physics.parameters import P_E_B
 from snooker_env.physics.table import Table
 from snooker_env.simulation import _run
 

@@ -1,14 +1,12 @@
-"""The benchmark: named tasks with frozen options, and how agents are judged on them.
-``python -m snooker_env.benchmark`` runs it."""
+"""The benchmark, ``python -m snooker_env.benchmark``: tasks with frozen options, how agents are judged."""
 
 from ..play.program import AgentError, ProgramPlayer
 from .agents import Agent
 from .checking import afresh, faults, replayed
-from .figures import figures_of
 from .leaderboard import page
 from .playing import COLUMNS, PlayedEpisodes, play_episodes
 from .provenance import arithmetic, commit, machine, processor, software
-from .results import budget_of, read_result, write_result
+from .results import budget_of, figures_of, read_result, write_result
 from .rollouts import CENTURY, FIGURES, MAXIMUM, Strokes, counts, play_visits, summary
 from .run import judge
 from .schema import faults_of_fields

@@ -29,9 +29,8 @@ NAME = "python -m snooker_env.benchmark"
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    p = argparse.ArgumentParser(
-        NAME, description="Judge agents on named tasks by the rules of docs/benchmark.md."
-    )
+    what = "Judge agents on named tasks by the rules of docs/benchmark.md."
+    p = argparse.ArgumentParser(NAME, description=what)
     commands = p.add_subparsers(dest="command", required=True)
     commands.add_parser("tasks", help="list the tasks")
     run = commands.add_parser("run", help="play a task and write its result file")
@@ -41,20 +40,17 @@ def parser() -> argparse.ArgumentParser:
     add("--label", help="name in the tables (default: from the agent)")
     add("--episodes", type=int, help="fewer episodes, for a first try; such a result is not official")
     add("--training-shots", type=int, metavar="N", help="all simulated shots of its training; 0: not trained")
-    add(
-        "--simulated-shots", type=int, metavar="N", help="declare simulated shots a decision not counted here"
-    )
+    help_ = "declare simulated shots a decision not counted here"
+    add("--simulated-shots", type=int, metavar="N", help=help_)
     add("--out", metavar="PATH", help="result file, or folder for several tasks (default: TASK.LABEL.json)")
     add("--resume", action="store_true", help="go on with an incomplete result file, keep a complete one")
     add("--force", action="store_true", help="replace result files that are there")
     check = commands.add_parser("check", help="verify result files; exit code 1 if one is wrong")
     check.add_argument("files", nargs="+", metavar="FILE")
-    check.add_argument(
-        "--replay", type=int, metavar="N", help="have --agent play N episodes again: the same strokes?"
-    )
-    check.add_argument(
-        "--fresh", type=int, metavar="N", help="have --agent play N episodes on fresh seeds: the same mean?"
-    )
+    help_ = "have --agent play N episodes again: the same strokes?"
+    check.add_argument("--replay", type=int, metavar="N", help=help_)
+    help_ = "have --agent play N episodes on fresh seeds: the same mean?"
+    check.add_argument("--fresh", type=int, metavar="N", help=help_)
     _agent(check, required=False)
     table = commands.add_parser("table", help="print the leaderboard of result files")
     table.add_argument("files", nargs="*", metavar="FILE")
@@ -73,9 +69,8 @@ def _agent(p: argparse.ArgumentParser, required: bool) -> None:
     how = "how a model's actions are read, as aim=target"
     p.add_argument("--options", nargs="+", default=[], metavar="KEY=VALUE", help=how)
     p.add_argument("--trust", action="store_true", help="run the pickled code in a model's file")
-    p.add_argument(
-        "--timeout", type=float, default=60.0, help="seconds that a program has for a stroke (default: 60)"
-    )
+    how = "seconds that a program has for a stroke (default: 60)"
+    p.add_argument("--timeout", type=float, default=60.0, help=how)
     p.add_argument("--threads", type=int, help="threads that play the tables (default: one for each core)")
 
 
@@ -103,9 +98,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _tasks(args: Any) -> int:
     """List the tasks."""
-    every = TASKS.values()
     rows = [
-        [one.id, one.title, one.judged_layout, str(one.frozen["noise"]), f"{one.episodes:,}"] for one in every
+        [one.id, one.title, one.judged_layout, str(one.frozen["noise"]), f"{one.episodes:,}"]
+        for one in TASKS.values()
     ]
     print("\n".join(text_table(["task", "what", "judged on", "noise", "episodes"], rows, 4)))
     print(f"\nFree options: {', '.join(FREE)}. All others are frozen.")
@@ -114,16 +109,15 @@ def _tasks(args: Any) -> int:
 
 def _agent_of(args: Any, **more: Any) -> Agent:
     """The agent that the arguments name."""
-    options = options_of_words(args.options)
-    return Agent.of(args.agent, options=options, trust=args.trust, timeout=args.timeout, **more)
+    more |= {"options": options_of_words(args.options), "trust": args.trust, "timeout": args.timeout}
+    return Agent.of(args.agent, **more)
 
 
 def _run(args: Any) -> int:
     """Play tasks; whatever is wrong is said before the first one is played."""
     tasks = list(TASKS.values()) if args.tasks == ["all"] else [task_of(name) for name in args.tasks]
-    agent = _agent_of(
-        args, label=args.label, training_shots=args.training_shots, shots_declared=args.simulated_shots
-    )
+    shots = {"training_shots": args.training_shots, "shots_declared": args.simulated_shots}
+    agent = _agent_of(args, label=args.label, **shots)
     out = Path(args.out or ".")
     if len(tasks) > 1 and out.suffix == ".json":
         raise refuse("out", args.out, "must be a folder for several tasks")
@@ -144,9 +138,8 @@ def _run(args: Any) -> int:
     warmup()
     worst = 0
     for task, file in zip(tasks, files, strict=True):
-        worst = max(worst, _told(_judged(task, agent, file, args), task, file))
-        if worst == 130:
-            break
+        if worst < 130:
+            worst = max(worst, _told(_judged(task, agent, file, args), task, file))
     return worst
 
 
@@ -161,7 +154,7 @@ def _judged(task: Task, agent: Agent, file: Path, args: Any) -> dict[str, Any]:
                 shown_by.append(ending.enter_context(Progress(task.id, total, "episodes", done=played)))
             shown_by[0].at(played)
 
-        more: Any = {"episodes": args.episodes, "resume": args.resume, "threads": args.threads}
+        more: Any = {name: getattr(args, name) for name in ("episodes", "resume", "threads")}
         return judge(task, agent, out=file, command=args.line, tick=tick, **more)
 
 

@@ -14,6 +14,7 @@ from ..players import player as player_named
 from ..players.resolver import PROGRAM, RENAMED, is_name
 from ..players.saved import saved_player
 from ..players.weights import levels
+from .playing import BATCH
 from .schema import LABEL
 from .tasks import FREE, Task
 
@@ -24,20 +25,17 @@ class Agent:
 
     Attributes
     ----------
-    label : str
-        Its name in tables: 1 to 20 letters, digits or . + - _.
-    sources : tuple of str or player
-        What ``sn.player`` makes a player of, one for each training seed.
-    options : dict
-        Options of ``FREE`` with which the actions of models of Stable-Baselines3 are read.
-    trust : bool
-        Whether code in models may run.
+    label, sources : str, tuple of str or player
+        Its name in tables, 1 to 20 letters, digits or . + - _; and for each training seed what ``sn.player``
+        makes a player of.
+    options, trust : dict, bool
+        Options of ``FREE`` with which the actions of models of Stable-Baselines3 are read, and whether code
+        in models may run.
     timeout : float
         The longest time of a program for one stroke [s].
-    training_shots : int, optional
-        Number of simulated shots of its training; None: unknown.
-    shots_declared : int, optional
-        Simulated shots per decision that this process cannot count; None: nothing is declared.
+    training_shots, shots_declared : int, optional
+        Simulated shots of its training, None: unknown; and of a decision, where this process cannot count
+        them, None: nothing is declared.
 
     Examples
     --------
@@ -105,6 +103,11 @@ class Agent:
         return self.texts[0].startswith(PROGRAM)
 
     @property
+    def batch(self) -> int:
+        """Episodes that it plays side by side."""
+        return 1 if self.program else BATCH
+
+    @property
     def known(self) -> bool:
         """Whether every source is a player of the package, or of one that is installed, by name."""
         return all(map(is_known, self.texts))
@@ -114,11 +117,8 @@ class Agent:
         source = self.sources[run]
         if self.program and isinstance(source, str):
             return ProgramPlayer(source.removeprefix(PROGRAM), timeout=self.timeout)
-        made = (
-            saved_player(Path(source), self.options, self.trust)
-            if self.options
-            else player_named(source, trust=self.trust)
-        )
+        made = saved_player(Path(source), self.options, self.trust) if self.options else None
+        made = made or player_named(source, trust=self.trust)
         if getattr(made, "frames", False) and not task.frame:
             raise refuse("player", source, "must see visits to play them: it sees frames")
         made.at(task.judged())
@@ -138,14 +138,10 @@ def seated(agent: Agent, task: Task, run: int) -> Iterator[Player]:
 
 def text_of(source: Any) -> str:
     """A source as a file names it: an object by its class."""
-    if isinstance(source, str):
-        return source
-    name = getattr(source, "name", None)
-    return (
-        name
-        if isinstance(name, str) and name.startswith(PROGRAM)
-        else f"{type(source).__module__}:{type(source).__qualname__}"
-    )
+    text: Any = source if isinstance(source, str) else getattr(source, "name", None)
+    if text is source or (isinstance(text, str) and text.startswith(PROGRAM)):
+        return text
+    return f"{type(source).__module__}:{type(source).__qualname__}"
 
 
 def is_known(text: str) -> bool:

@@ -7,23 +7,12 @@ import numpy as np
 from .._check import refuse
 from ..simulation import SimulationError
 from ..tasks.options import MAX_STROKES
-from . import schema
+from . import playing, schema
 from .agents import Agent, is_known, is_reserved, seated
-from .playing import (
-    BATCH,
-    COLUMNS,
-    STROKES,
-    Decider,
-    Kept,
-    PlayedEpisodes,
-    Repeater,
-    play_episodes,
-    rows_of,
-    tables_for,
-)
+from .playing import BATCH, COLUMNS, STROKES, Decider, Kept, PlayedEpisodes
 from .provenance import arithmetic
 from .results import completed, strokes_of
-from .schema import LONG_LINE, MOST_WHOLE, faults_of_fields, shortened
+from .schema import fault, faults_of_fields, shortened
 from .tasks import TASKS, Task
 
 MOST = 12
@@ -55,12 +44,10 @@ def faults(record: Any, threads: int | None = None) -> list[str]:
     >>> len(faults({})) > 0
     True
     """
-    wrong = faults_of_fields(record) or _of_names(record)
-    if wrong:
+    if wrong := faults_of_fields(record) or _of_names(record):
         return wrong
     task = TASKS[record["task"]]
-    wrong = _of_sources(record["agent"]) + _of_rows(record, task)
-    if wrong:
+    if wrong := _of_sources(record["agent"]) + _of_rows(record, task):
         return wrong
     try:
         strokes = strokes_of(record)
@@ -79,7 +66,7 @@ def _of_names(record: dict[str, Any]) -> list[str]:
         ("software.snooker_env", record["software"]["snooker_env"], schema.PACKAGES),
     )
     return [
-        f"{name} = {shortened(value)}: must be {'one of ' * (len(allowed) > 1)}{', '.join(map(str, allowed))}"
+        fault(name, value, "one of " * (len(allowed) > 1) + ", ".join(map(str, allowed)))
         for name, value, allowed in here
         if value not in allowed
     ]
@@ -87,44 +74,37 @@ def _of_names(record: dict[str, Any]) -> list[str]:
 
 def _of_sources(agent: dict[str, Any]) -> list[str]:
     """Are the sources different texts, and does the label not claim another player?"""
-    sources = agent["sources"]
-    texts = all(isinstance(one, str) and one and LONG_LINE[0].fullmatch(one) for one in sources)
+    sources, form = agent["sources"], schema.LONG_LINE[0]
+    texts = all(isinstance(one, str) and one and form.fullmatch(one) for one in sources)
     if not 0 < len(sources) <= schema.MOST_SOURCES or not texts:
         return ["agent.sources: must be texts, one for each training seed"]
     if len(set(sources)) < len(sources):
         return ["agent.sources: must be different: the same one twice makes nothing surer"]
     if is_reserved(agent["label"], sources):
-        return [
-            f"agent.label = {agent['label']!r}: must not be the name of another player than agent.sources"
-        ]
+        must = "must not be the name of another player than agent.sources"
+        return [f"agent.label = {agent['label']!r}: {must}"]
     return []
-
-
-def _is_row(row: Any) -> bool:
-    """Whether that is a row of whole numbers."""
-    numbers = isinstance(row, list) and len(row) == len(COLUMNS)
-    return numbers and all(type(x) is int and abs(x) <= MOST_WHOLE for x in row)
 
 
 def _of_rows(result: dict[str, Any], task: Task) -> list[str]:
     """Are the rows those of the protocol's episodes, run by run, or the first of them if it was stopped?"""
     rows, many, runs = result["rows"], result["protocol"]["episodes"], len(result["agent"]["sources"])
     if many > task.episodes:
-        return [f"protocol.episodes = {many}: must be at most {task.episodes} on {task.id}"]
+        return [fault("protocol.episodes", many, f"at most {task.episodes} on {task.id}")]
     for k, row in enumerate(rows):
-        if not _is_row(row):
-            return [f"rows[{k}] = {shortened(row)}: must be {len(COLUMNS)} whole numbers"]
+        numbers = isinstance(row, list) and len(row) == len(COLUMNS)
+        if not numbers or not all(type(x) is int and abs(x) <= schema.MOST_WHOLE for x in row):
+            return [fault(f"rows[{k}]", row, f"{len(COLUMNS)} whole numbers")]
         if not 0 <= row[STROKES] <= MAX_STROKES:
-            return [f"rows[{k}].strokes = {row[STROKES]}: must be between 0 and {MAX_STROKES}"]
+            return [fault(f"rows[{k}].strokes", row[STROKES], f"between 0 and {MAX_STROKES}")]
     want = [[run, seed] for run in range(runs) for seed in task.seeds(many)]
     if len(rows) > len(want) or (len(rows) < len(want) and result["incomplete"] is None):
         each = f"{len(want)} episodes, {many} for each training seed"
         return [f"rows: must be {each}, not {len(rows)}; or incomplete must say why"]
     for k, (row, (run, seed)) in enumerate(zip(rows, want, strict=False)):
         if row[:2] != [run, seed]:
-            return [
-                f"rows[{k}]: run {row[0]}, table {row[1]}: must be run {run}, table {seed}, as the protocol says"
-            ]
+            must = f"must be run {run}, table {seed}, as the protocol says"
+            return [f"rows[{k}]: run {row[0]}, table {row[1]}: {must}"]
     return []
 
 
@@ -134,9 +114,8 @@ def _of_runs(result: dict[str, Any], strokes: Kept) -> list[str]:
     for run in range(len(strokes) // many if many >= 100 else 0):
         whole = b"".join(one.tobytes() for one in strokes[run * many : (run + 1) * many])
         if known.setdefault(whole, run) != run:
-            return [
-                f"agent.sources: {known[whole]} and {run} must be different training seeds: their strokes are equal"
-            ]
+            both = f"{known[whole]} and {run}"
+            return [f"agent.sources: {both} must be different training seeds: their strokes are equal"]
     return []
 
 
@@ -145,18 +124,16 @@ def _of_play(result: dict[str, Any], task: Task, strokes: Kept, threads: int | N
     wrong, rows = [], result["rows"]
     for first in range(0, len(rows), BATCH):
         some = rows[first : first + BATCH]
-        tables = tables_for(task, len(some), threads)
-        decide = Repeater(strokes[first : first + BATCH], tables.options.rules.actions.size)
-        played = rows_of(task, tables, [row[1] for row in some], decide)
+        tables = playing.tables_for(task, len(some), threads)
+        decide = playing.Repeater(strokes[first : first + BATCH], tables.options.rules.actions.size)
+        played = playing.rows_of(task, tables, [row[1] for row in some], decide)
         for k, (row, want) in enumerate(zip(some, played, strict=True)):
             name = f"rows[{first + k}]"
             if decide.short[k]:
-                wrong.append(f"{name}.strokes = {row[STROKES]}: must be more: the episode goes on after them")
+                wrong.append(fault(f"{name}.strokes", row[STROKES], "more: the episode goes on after them"))
                 continue
             other = [c for c in range(2, len(COLUMNS)) if row[c] != want[c]]
-            wrong += [
-                f"{name}.{COLUMNS[c]} = {row[c]}: must be {want[c]}, as its strokes play" for c in other
-            ]
+            wrong += [fault(f"{name}.{COLUMNS[c]}", row[c], f"{want[c]}, as its strokes play") for c in other]
     more = [f"rows: {len(wrong) - MOST} more faults"] if len(wrong) > MOST else []
     return _elsewhere(result, wrong[:MOST] + more)
 
@@ -166,8 +143,8 @@ def _elsewhere(result: dict[str, Any], wrong: list[str]) -> list[str]:
     made, here = result["machine"]["arithmetic"], arithmetic()
     if not wrong or made == here:
         return wrong
-    where = "where strokes end otherwise in the last bits"
-    return [f"machine.arithmetic = {made!r}: must be {here!r} to check it here, {where}", *wrong]
+    must = f"{here!r} to check it here, where strokes end otherwise in the last bits"
+    return [fault("machine.arithmetic", made, must), *wrong]
 
 
 def _differences(value: Any, want: Any, name: str = "") -> list[str]:
@@ -182,45 +159,36 @@ def _differences(value: Any, want: Any, name: str = "") -> list[str]:
     if type(value) is type(want) and value == want and str(value) == str(want):  # as texts: 0.0 is not -0.0
         return []
     right = f"{want!r} by" if isinstance(want, str | int | float | None) else "what follows from"
-    return [f"{name} = {shortened(value)}: must be {right} the other fields"]
+    return [fault(name, value, f"{right} the other fields")]
 
 
 def _of_decisions(result: dict[str, Any], task: Task, strokes: Kept, threads: int | None) -> list[str]:
     """Do known players begin as in the file, and do class, shots and training fit them?"""
     agent, many, wrong = result["agent"], result["protocol"]["episodes"], []
-    shots, simulated = result["timing"]["simulated_shots"], 0
+    shots, simulated, training = result["timing"]["simulated_shots"], 0, agent["training_shots"]
     for run, source in enumerate(agent["sources"]):
         first = min(BATCH, len(strokes) - run * many, many)
         if first <= 0 or not is_known(source):
             continue
-        kept = strokes[run * many : run * many + first]
-        tables = tables_for(task, first, threads)
-        seeds: Any = task.seeds(first)
-        tables.reset(seed=seeds)
+        kept, seeds = strokes[run * many : run * many + first], task.seeds(first)
+        tables = playing.tables_for(task, first, threads)
+        tables.reset(seed=list(seeds))
         decide = Decider(source, tables, seeds, run)
         actions = decide(np.array([len(one) > 0 for one in kept]), 0)
         tables.close()
-        for k, one in enumerate(kept):
-            if len(one) and one[0].tobytes() != actions[k].tobytes():
-                wrong.append(
-                    f"strokes: run {run}, table {seeds[k]}: {source} begins with another stroke than the file"
-                )
-                break
-        wrong += _of_class(result, shortened(source), decide) + _of_training(agent, source, decide)
+        other = [k for k, one in enumerate(kept) if len(one) and one[0].tobytes() != actions[k].tobytes()]
+        begins = f"{source} begins with another stroke than the file"
+        wrong += [f"strokes: run {run}, table {seeds[k]}: {begins}" for k in other[:1]]
+        wrong += _of_class(result, shortened(source), decide)
+        its = getattr(decide.player, "training_shots", None)
+        if training != its and (its is not None or training == 0):
+            must = "more than 0: something was learned" if its is None else f"{its}, as {source} says"
+            wrong.append(fault("agent.training_shots", training, must))
         simulated += decide.simulated
     if shots < simulated:
-        least = f"must be at least {simulated}, which the first strokes alone take"
-        wrong.append(f"timing.simulated_shots = {shots}: {least}")
+        least = f"at least {simulated}, which the first strokes alone take"
+        wrong.append(fault("timing.simulated_shots", shots, least))
     return _elsewhere(result, wrong)
-
-
-def _of_training(agent: dict[str, Any], source: str, decide: Decider) -> list[str]:
-    """Are the shots of training those that the player itself says, and not 0 if it does not say so?"""
-    shots, its = agent["training_shots"], getattr(decide.player, "training_shots", None)
-    if shots == its or (its is None and shots != 0):
-        return []
-    must = "more than 0: something was learned" if its is None else f"{its}, as {source} says"
-    return [f"agent.training_shots = {shots}: must be {must}"]
 
 
 def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int | None = None) -> list[str]:
@@ -228,10 +196,8 @@ def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int |
 
     Parameters
     ----------
-    record : dict
-        A result without faults.
-    agent : Agent
-        The agent of the result.
+    record, agent : dict, Agent
+        A result without faults, and its agent.
     episodes : int
         Episodes of each training seed.
     threads : int, optional
@@ -250,21 +216,16 @@ def replayed(record: dict[str, Any], agent: Agent, episodes: int, threads: int |
     []
     """
     seeds = TASKS[record["task"]].seeds(record["protocol"]["episodes"])[:episodes]
-    again, wrong = _by(agent, record, seeds, threads), []
-    kept = {
-        tuple(row[:2]): (row, one.tobytes())
-        for row, one in zip(record["rows"], strokes_of(record), strict=True)
-    }
+    again, wrong, rows = _by(agent, record, seeds, threads), [], record["rows"]
+    kept = {tuple(row[:2]): (row, one.tobytes()) for row, one in zip(rows, strokes_of(record), strict=True)}
     for row, one in zip(again.rows, again.strokes, strict=True):
         old = kept.get((row[0], row[1]))
         if old is not None and old != (row, one.tobytes()):
             what = "other strokes" if old[0] == row else str(dict(zip(COLUMNS[2:], row[2:], strict=True)))
             wrong.append(f"run {row[0]}, table {row[1]}: played again {what}, the file has {old[0][2:]}")
     shots = record["timing"]["simulated_shots"]
-    if not wrong and len(again.rows) == len(record["rows"]) and again.simulated != shots:
-        wrong.append(
-            f"timing.simulated_shots = {shots}: must be {again.simulated}, as the agent played again"
-        )
+    if not wrong and len(again.rows) == len(rows) and again.simulated != shots:
+        wrong = [fault("timing.simulated_shots", shots, f"{again.simulated}, as the agent played again")]
     return wrong
 
 
@@ -275,14 +236,10 @@ def afresh(
 
     Parameters
     ----------
-    record : dict
-        A complete result without faults.
-    agent : Agent
-        The agent of the result.
-    episodes : int
-        Fresh episodes of each training seed, at least 2.
-    seed : int
-        The first of their seeds, drawn now: none that is public.
+    record, agent : dict, Agent
+        A complete result without faults, and its agent.
+    episodes, seed : int
+        Fresh episodes of each training seed, at least 2, and the first of their seeds: none that is public.
     threads : int, optional
         As in ``SnookerVectorEnv``.
 
@@ -308,13 +265,11 @@ def afresh(
         np.reshape([row[column] for row in rows], (runs, -1)).mean(0)
         for rows in (record["rows"], played.rows)
     )
-    old, mean = of_file.mean(), fresh.mean()
+    old, mean = of_file.mean(), float(fresh.mean())
     error = float(np.sqrt(of_file.var(ddof=1) / len(of_file) + fresh.var(ddof=1) / len(fresh)))
-    wrong = []
-    if abs(mean - old) > SURE * error:
-        near = f"must be within {SURE * error:.2g} of {mean:g}, as on fresh seeds"
-        wrong.append(f"figures.score.value = {old:g}: {near}")
-    return float(mean), error, wrong + _of_class(record, "it", played)
+    near = f"must be within {SURE * error:.2g} of {mean:g}, as on fresh seeds"
+    wrong = [f"figures.score.value = {old:g}: {near}"] if abs(mean - old) > SURE * error else []
+    return mean, error, wrong + _of_class(record, "it", played)
 
 
 def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes | Decider) -> list[str]:
@@ -327,12 +282,13 @@ def _of_class(record: dict[str, Any], who: str, played: PlayedEpisodes | Decider
 
 def _by(agent: Agent, result: dict[str, Any], seeds: Any, threads: int | None) -> PlayedEpisodes:
     """What the agent of a result plays on these tables, with every training seed."""
-    task, runs, batch = TASKS[result["task"]], len(result["agent"]["sources"]), 1 if agent.program else BATCH
+    task, runs = TASKS[result["task"]], len(result["agent"]["sources"])
     if len(agent.sources) != runs:
         raise refuse("agent", ",".join(agent.texts), f"must have the {runs} training seeds of the file")
     played = PlayedEpisodes([])
     for run in range(runs):
         with seated(agent, task, run) as player:
-            for first in range(0, len(seeds), batch):
-                played.add(play_episodes(task, player, list(seeds[first : first + batch]), run, threads))
+            for first in range(0, len(seeds), agent.batch):
+                some = list(seeds[first : first + agent.batch])
+                played.add(playing.play_episodes(task, player, some, run, threads))
     return played

@@ -33,11 +33,8 @@ class TaskVectorEnv(SnookerVectorEnv):
 def _classes(name: str) -> tuple[type[TaskEnv], type[TaskVectorEnv]]:
     """The two classes of a task."""
     task = TASKS[f"Snooker{name}-v0"]
-    what = {
-        "TASK": task.id,
-        "__module__": __name__,
-        "__doc__": f"``{task.id}``: {task.title}. Free: {', '.join(FREE)}.",
-    }
+    about = f"``{task.id}``: {task.title}. Free: {', '.join(FREE)}."
+    what = {"TASK": task.id, "__module__": __name__, "__doc__": about}
     return type(f"{name}Env", (TaskEnv,), what), type(f"{name}VectorEnv", (TaskVectorEnv,), what)
 
 

@@ -92,9 +92,10 @@ def profile(results: Iterable[dict[str, Any]], task: Task) -> Table:
 
 def _share(figure: dict[str, Any]) -> str:
     """A share [%]; where it was never or always seen, the exact bound of it."""
-    if not figure["exact"]:
-        return f"{100 * figure['value']:.1f}"
-    return f"<= {100 * figure['high']:.1f}" if figure["value"] == 0.0 else f">= {100 * figure['low']:.1f}"
+    sign, name = ">= ", "low"
+    if not figure["exact"] or figure["value"] == 0.0:
+        sign, name = ("<= ", "high") if figure["exact"] else ("", "value")
+    return f"{sign}{100 * figure[name]:.1f}"
 
 
 def lines(results: Sequence[Any], *, markdown: bool = False, awaited: Sequence[str] = ()) -> list[str]:
@@ -119,12 +120,8 @@ def lines(results: Sequence[Any], *, markdown: bool = False, awaited: Sequence[s
         made += [*table(head, rows, 1, 2), ""] if rows else []
         made += [*wrap(f"Missing: {', '.join(lacking)}.", WIDTH), ""] if lacking else []
         if task.counts and rows:
-            made += [
-                "Share of visits [%] with at least so many points:",
-                "",
-                *table(*profile(results, task), 0),
-                "",
-            ]
+            title = "Share of visits [%] with at least so many points:"
+            made += [title, "", *table(*profile(results, task), 0), ""]
     return [*made, *wrap(LEGEND, WIDTH)]
 
 
@@ -141,7 +138,6 @@ def page(results: Sequence[dict[str, Any]], awaited: Sequence[str] = ()) -> str:
     Returns
     -------
     str
-        The text of the page.
 
     Examples
     --------

@@ -19,18 +19,8 @@ from .tasks import Task
 
 BATCH = 100
 """Episodes that are played side by side."""
-COLUMNS = (
-    "run",
-    "table",
-    "score",
-    "strokes",
-    "points",
-    "pots",
-    "fouls",
-    "cleared",
-    "opponent_points",
-    "ended",
-)
+SUMS = ("strokes", "points", "pots", "fouls")
+COLUMNS = ("run", "table", "score", *SUMS, "cleared", "opponent_points", "ended")
 """Columns of a row: index of the training seed, seed of the table, then integers (docs/benchmark.md)."""
 STROKES = COLUMNS.index("strokes")
 Kept = list[NDArray[np.float32]]
@@ -47,12 +37,10 @@ class PlayedEpisodes:
         One row for each episode, columns ``COLUMNS``.
     strokes : list of numpy.ndarray
         Those of each episode: float32 (strokes, size), actions that hold all of a stroke.
-    decisions : int
-        Number of decisions of the player.
+    decisions, simulated : int
+        Number of decisions of the player, and of shots that this process simulated for them.
     seconds : float
         Time of all decisions [s].
-    simulated : int
-        Number of shots that this process simulated for the decisions.
 
     Examples
     --------
@@ -69,11 +57,8 @@ class PlayedEpisodes:
 
     def add(self, more: "PlayedEpisodes") -> None:
         """Add episodes that were played after these."""
-        self.rows += more.rows
-        self.strokes += more.strokes
-        self.decisions += more.decisions
-        self.seconds += more.seconds
-        self.simulated += more.simulated
+        for name in ("rows", "strokes", "decisions", "seconds", "simulated"):
+            setattr(self, name, getattr(self, name) + getattr(more, name))
 
 
 class Decider:
@@ -156,10 +141,8 @@ def play_episodes(
 
     Parameters
     ----------
-    task : Task
-        The task.
-    player : Player or str
-        A player, or the name of one.
+    task, player : Task, and Player or str
+        The task, and a player or the name of one.
     seeds : list of int
         Seeds of the tables.
     run : int
@@ -170,7 +153,6 @@ def play_episodes(
     Returns
     -------
     PlayedEpisodes
-        The rows and strokes, and the time and simulated shots of the decisions.
 
     Examples
     --------
@@ -191,7 +173,7 @@ def rows_of(
 ) -> list[list[int]]:
     """The rows of the episodes with these seeds, as ``decide`` plays them."""
     n = len(seeds)
-    sums: dict[str, Floats] = {name: np.zeros(n) for name in ("strokes", "points", "pots", "fouls")}
+    sums: dict[str, Floats] = {name: np.zeros(n) for name in SUMS}
     cleared, ended, won, opponent = np.zeros((4, n))
     for asked, info, done, terminated in rounds(tables, seeds, decide):
         scored = asked & (info["points"] > 0)

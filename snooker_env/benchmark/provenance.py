@@ -43,12 +43,11 @@ def commit() -> str | None:
 
 
 def processor() -> str:
-    """The name of the processor, as the operating system reports it.
+    """The name of the processor, as the operating system reports it, or "unknown".
 
     Returns
     -------
     str
-        The name, or "unknown".
 
     Examples
     --------
@@ -63,12 +62,11 @@ def processor() -> str:
 
 
 def software() -> dict[str, str | None]:
-    """Versions of this package, of Python and of the libraries that decide results; None: not installed.
+    """Name -> version of the package, of Python and of libraries that decide results; None: not installed.
 
     Returns
     -------
     dict
-        Name -> version.
 
     Examples
     --------
@@ -115,12 +113,11 @@ def arithmetic() -> str:
 
 
 def machine() -> dict[str, Any]:
-    """Platform, processor, cores, and the load average of the last minute (None where the system gives none).
+    """Platform, processor, cores, load of the last minute or None: "platform", "cpu", "cores", "load".
 
     Returns
     -------
     dict
-        "platform", "cpu", "cores" and "load".
 
     Examples
     --------

@@ -1,4 +1,7 @@
-"""What stands in a result file, and how is it written and read? ``schema`` documents every field."""
+"""What stands in a result file, and how is it written and read? ``schema`` documents every field.
+
+Figures follow from rows and label alone: the same label draws the same bootstrap samples. ``check`` compares.
+"""
 
 import base64
 import hashlib
@@ -12,13 +15,14 @@ import numpy as np
 
 from .._check import refuse, refuse_what
 from .._files import write_atomic
+from .._types import Floats
 from ..players import FRAMES, VISITS
 from ..players.resolver import PROGRAM
 from .agents import Agent
-from .figures import figures_of
 from .playing import COLUMNS, STROKES, Kept, PlayedEpisodes
 from .provenance import arithmetic, commit, machine, software
 from .schema import DATE, NAME, PROTOCOL, VERSION, line
+from .statistics import RESAMPLES, Resamples, figure, iqm, unseen
 from .tasks import TASKS, Task
 
 BUDGETS = {"50k": 50_000, "1M": 1_000_000, "5M": 5_000_000}
@@ -51,13 +55,70 @@ def budget_of(shots: int | None) -> str:
     return next((name for name, most in BUDGETS.items() if shots <= SLACK * most), "open")
 
 
-def of_decisions(program: bool, declared: int | None, shots: int, decisions: int) -> dict[str, Any]:
-    """Class and shots a decision: declared if they cannot be counted or the number is higher, else counted."""
-    counted = shots / max(1, decisions)
-    by_word = program or (declared is not None and declared > counted)
-    mean = counted if not by_word else None if declared is None else float(declared)
-    name = "undeclared" if mean is None else "planning" if mean > 0 else "model_free"
-    return {"class": name, "simulated_shots": mean, "declared": by_word}
+def matrix(rows: list[list[int]]) -> dict[str, Floats] | None:
+    """The columns, (runs, episodes); None unless every run has played the same tables in order."""
+    table = np.array(rows, np.float64).reshape(-1, len(COLUMNS))
+    runs = [table[table[:, 0] == run] for run in np.unique(table[:, 0])]
+    if not runs or any(not np.array_equal(one[:, 1], runs[0][:, 1]) for one in runs):
+        return None
+    return dict(zip(COLUMNS, np.moveaxis(np.stack(runs), 2, 0), strict=True))
+
+
+def figures_of(task: Task, label: str, rows: list[list[int]]) -> dict[str, Any] | None:
+    """All figures of an agent's rows.
+
+    Parameters
+    ----------
+    task, label : Task, str
+        The task, and the agent's label, on which the bootstrap samples of its runs depend.
+    rows : list of list of int
+        One row for each episode, columns ``COLUMNS``.
+
+    Returns
+    -------
+    dict or None
+        "score", "iqm" (for points only), "profile" (a list of {"at_least", and a figure}), "by_run", "best",
+        "points", "pots", "strokes", "fouls" and "cleared". A figure is {"value", "low", "high", "exact"}.
+        None if the runs are not complete.
+
+    Examples
+    --------
+    >>> from snooker_env.benchmark import TASKS, figures_of
+    >>> rows = [[0, 1000000, 1, 1, 1, 1, 0, 1, 0, 1], [0, 1000001, 0, 1, 0, 0, 0, 0, 0, 1]]
+    >>> figures_of(TASKS["SnookerPotHard-v0"], "mine", rows)["score"]["value"]
+    0.5
+    """
+    columns = matrix(rows)
+    if columns is None:
+        return None
+    score, counted = columns["score"], task.counts
+    samples = Resamples(len(score), score.shape[1], RESAMPLES, zlib.crc32(label.encode()))
+    count = samples.sums(np.ones(score.shape))
+
+    def of(value: float, drawn: Floats, trials: int = 0) -> dict[str, Any]:
+        """A figure; of a share never or always seen in so many ``trials`` with the exact one-sided bound."""
+        made = figure(value, drawn) | {"exact": False}
+        if made["low"] is None and trials and value in (0.0, 1.0):
+            most = unseen(trials)
+            low, high = (0.0, most) if value == 0.0 else (1.0 - most, 1.0)
+            made |= {"low": low, "high": high, "exact": True}
+        return made
+
+    def mean(values: Floats, *, share: bool = False) -> dict[str, Any]:
+        """The figure of a mean."""
+        return of(float(values.mean()), samples.sums(values) / count, score.shape[1] if share else 0)
+
+    profile = [t for t in task.thresholds if t <= task.most]
+    return {
+        "score": mean(score, share=not counted),
+        "iqm": of(iqm(score), samples.iqms(score)) if counted else None,
+        "profile": [{"at_least": t} | mean((score >= t).astype(float), share=True) for t in profile],
+        "by_run": score.mean(axis=1).tolist(),
+        "best": int(score.max()),
+        **{name: mean(columns[name]) for name in ("points", "pots", "strokes")},
+        "fouls": mean(columns["fouls"], share=not task.frame),
+        "cleared": mean(columns["cleared"], share=True),
+    }
 
 
 def missing(result: dict[str, Any], task: Task) -> list[str]:
@@ -74,16 +135,19 @@ def missing(result: dict[str, Any], task: Task) -> list[str]:
 
 def completed(record: dict[str, Any], task: Task) -> dict[str, Any]:
     """The record with all that follows from its other fields, computed anew; ``check`` compares."""
-    agent, rows = record["agent"], record["rows"]
-    decisions = sum(row[STROKES] for row in rows)
+    agent, rows, shots = record["agent"], record["rows"], record["timing"]["simulated_shots"]
     declared = agent["simulated_shots"] if agent["declared"] else None
-    program, shots = agent["sources"][0].startswith(PROGRAM), record["timing"]["simulated_shots"]
+    mean: float | None = shots / max(1, sum(row[STROKES] for row in rows))
+    # counted, unless it cannot be, or a higher number is declared
+    if by_word := agent["sources"][0].startswith(PROGRAM) or (declared is not None and declared > mean):
+        mean = None if declared is None else float(declared)
+    name = "undeclared" if mean is None else "planning" if mean > 0 else "model_free"
+    made = {"class": name, "simulated_shots": mean, "declared": by_word}
+    made["budget"] = budget_of(agent["training_shots"])
     record = record | {
         "schema": {"name": NAME, "version": VERSION},
         "protocol": record["protocol"] | {"version": PROTOCOL},
-        "agent": agent
-        | {"budget": budget_of(agent["training_shots"])}
-        | of_decisions(program, declared, shots, decisions),
+        "agent": agent | made,
         "columns": list(COLUMNS),
         "figures": figures_of(task, agent["label"], rows) if rows else None,
     }
@@ -97,30 +161,25 @@ def result_of(
     episodes: int,
     played: PlayedEpisodes,
     alone: PlayedEpisodes,
-    why: str | None,
-    about: Any,
+    about: dict[str, Any],
 ) -> dict[str, Any]:
-    """The record of a run. ``alone``: played on one table; ``about``: "command", and "load" before it began."""
+    """The record of a run. ``alone``: played on one table; ``about``: "command", "load", "incomplete"."""
+    shots, why = agent.shots_declared, about["incomplete"]
+    who = {
+        "label": agent.label,
+        "sources": agent.texts,
+        "budget": None,
+        "training_shots": agent.training_shots,
+    }
+    one_table = 1e3 * alone.seconds / alone.decisions if alone.decisions else None
     record = {
         "schema": {},
         "protocol": {"version": PROTOCOL, "episodes": episodes, "official": False},
         "task": task.id,
-        "agent": {
-            "label": agent.label,
-            "sources": agent.texts,
-            "budget": None,
-            "training_shots": agent.training_shots,
-            "class": None,
-            "simulated_shots": agent.shots_declared,
-            "declared": agent.shots_declared is not None,
-        },
+        "agent": who | {"class": None, "simulated_shots": shots, "declared": shots is not None},
         "software": software(),
         "machine": about["load"] | {"load_at_end": machine()["load"], "arithmetic": arithmetic()},
-        "timing": {
-            "seconds": played.seconds,
-            "simulated_shots": played.simulated,
-            "one_table_ms": 1e3 * alone.seconds / alone.decisions if alone.decisions else None,
-        },
+        "timing": {"seconds": played.seconds, "simulated_shots": played.simulated, "one_table_ms": one_table},
         "command": line(about["command"]),
         "commit": commit(),
         "date": datetime.now(timezone.utc).strftime(DATE),
@@ -138,10 +197,8 @@ def write_result(path: str | Path, result: dict[str, Any]) -> None:
 
     Parameters
     ----------
-    path : str or Path
-        The file; after a crash it holds the old result or the new one.
-    result : dict
-        The result, as ``judge`` returns it.
+    path, result : str or Path, dict
+        The file, which after a crash holds the old content or the new one; and what ``judge`` returns.
 
     Examples
     --------
@@ -168,7 +225,6 @@ def read_result(path: str | Path) -> Any:
     Returns
     -------
     object
-        The JSON content, a dict for a result.
 
     Raises
     ------
@@ -208,33 +264,27 @@ def packed(strokes: Kept) -> dict[str, str]:
     """The field ``strokes`` of a file: little-endian float32, by zlib, in base64, with a digest."""
     rows = [np.ascontiguousarray(one, "<f4") for one in strokes if len(one)]
     raw = np.concatenate(rows).view(np.uint8).T.tobytes() if rows else b""
-    return {
-        "sha256": hashlib.sha256(raw).hexdigest(),
-        "data": base64.b64encode(zlib.compress(raw, 9)).decode(),
-    }
+    data = base64.b64encode(zlib.compress(raw, 9)).decode()
+    return {"sha256": hashlib.sha256(raw).hexdigest(), "data": data}
 
 
 def unpacked(field: dict[str, str], lengths: list[int], size: int) -> Kept:
     """Actions (n, ``size``) of each episode; ValueError if they are damaged or no actions."""
-    n, width = sum(lengths), 4 * size
+    n, width, much = sum(lengths), 4 * size, f"{len(field['data']):,} characters"
     try:
         packing = zlib.decompressobj()
         raw = packing.decompress(base64.b64decode(field["data"], validate=True), n * width + 1)
     except (zlib.error, ValueError) as error:
-        much = f"{len(field['data']):,} characters"
         raise refuse_what("strokes.data", much, f"must be zlib in base64 ({error})") from None
     if len(raw) != n * width or not packing.eof or packing.unused_data:
         much = f"{len(raw):,} bytes" if packing.eof else f"more than {len(raw) - 1:,} bytes, or cut off"
-        raise refuse_what(
-            "strokes.data", much, f"must be {n * width:,} bytes, {width} for each of {n:,} strokes"
-        )
+        must = f"must be {n * width:,} bytes, {width} for each of {n:,} strokes"
+        raise refuse_what("strokes.data", much, must)
     digest = hashlib.sha256(raw).hexdigest()
     if digest != field["sha256"]:
         raise refuse("strokes.sha256", field["sha256"], f"must be {digest}, the digest of the strokes")
     actions = np.frombuffer(raw, np.uint8).reshape(width, n).T.copy().view("<f4").reshape(n, size)
-    sound = np.abs(actions) <= 1.0  # False for NaN
-    if not sound.all():
-        k, c = np.argwhere(~sound)[0].tolist()
+    for k, c in np.argwhere(~(np.abs(actions) <= 1.0))[:1].tolist():  # not for NaN either
         raise refuse(f"strokes.data[{k}, {c}]", float(actions[k, c]), "must be finite and within [-1, 1]")
     return np.split(actions, np.cumsum(lengths)[:-1]) if lengths else []
 

@@ -23,12 +23,8 @@ EASY = POT_WINDOWS["easy"][0]
 HIGH = 6
 """Pink and black are colours of high value."""
 FIGURES = {
-    "points_a_visit": ("points", "visits"),
-    "pots_a_visit": ("pots", "visits"),
-    "fouls_a_visit": ("fouls", "visits"),
-    "centuries": ("centuries", "visits"),
-    "maximums": ("maximums", "visits"),
-    "clearances": ("clearances", "visits"),
+    **{f"{name}_a_visit": (name, "visits") for name in ("points", "pots", "fouls")},
+    **{name: (name, "visits") for name in ("centuries", "maximums", "clearances")},
     "pot_rate": ("pots", "strokes"),
     "next_pot_after_a_pot": ("followed", "goes_on"),
     "easy_pot_left_by_a_pot": ("easy", "goes_on"),
@@ -47,26 +43,20 @@ class Strokes:
     ----------
     visits : int
         Number of visits.
-    visit : int64 (n,)
-        Index of the visit of each stroke.
-    number : int64 (n,)
-        Number of the stroke in its visit, from 0.
+    visit, number : int64 (n,)
+        Index of the visit of each stroke, and its number in the visit, from 0.
     points : float64 (n,)
         Points scored; 0 for a miss or a foul.
-    foul : bool (n,)
-        Whether the stroke was a foul.
+    foul, cleared : bool (n,)
+        Whether the stroke was a foul, and whether no object ball was left.
     ball_on : int64 (n,)
         The ball on, a ``BallOn``.
-    cleared : bool (n,)
-        Whether no object ball was left.
     cue : float64 (n, 2)
         Position of the cue ball after the stroke [m]; NaN if it was potted.
     tolerance : float64 (n,)
         Tolerance of the aim of the widest direct pot after the stroke [rad]; 0 if there was none.
-    decision_seconds : float
-        Time of all decisions of the player [s].
-    simulated : int
-        Number of shots that this process simulated for the decisions.
+    decision_seconds, simulated : float, int
+        Time of all decisions of the player [s], and the shots that this process simulated for them.
 
     Examples
     --------
@@ -129,20 +119,15 @@ def play_visits(
 
     Parameters
     ----------
-    player : Player or str
-        A player, or the name of one.
-    visits : int
-        Number of visits.
-    layout : str
-        As in ``Options``.
-    noise : str, Noise or dict
+    player, visits : Player or str, int
+        A player, or the name of one, and the number of its visits.
+    layout, noise : str, and str, Noise or dict
         As in ``Options``.
     first_seed : int or sequence of int
         Seed of the first table, the others have the seeds after it; or the seed of each table.
-    seed : int
-        Of what the player draws. Its strokes on a table do not depend on the other tables.
-    rekey : int, optional
-        Seed of new execution errors after every decision: a control that nobody saw them beforehand.
+    seed, rekey : int, int or None
+        Of what the player draws, alike on each table beside any others. Of new execution errors after every
+        decision: a control that nobody saw them beforehand.
     threads : int, optional
         As in ``SnookerVectorEnv``.
     each : callable, optional
@@ -153,7 +138,6 @@ def play_visits(
     Returns
     -------
     Strokes
-        All strokes of the visits.
 
     Examples
     --------
@@ -166,7 +150,6 @@ def play_visits(
     decide, log, ball_on = Decider(player, tables, seeds, seed), [], np.empty(0, np.int64)
 
     def noted(asked: Bools, number: int) -> Any:
-        """Decide, with a look at what is on."""
         nonlocal ball_on
         ball_on = Positions.of(tables).ball_on[asked]
         return decide(asked, number)
@@ -185,7 +168,7 @@ def play_visits(
 
 
 def counts(s: Strokes) -> dict[str, Floats]:
-    """Count points, pots, strokes, fouls and more in each visit.
+    """Count in each visit points, pots, fouls and more: both terms of every ratio of ``FIGURES``.
 
     Parameters
     ----------
@@ -195,7 +178,6 @@ def counts(s: Strokes) -> dict[str, Floats]:
     Returns
     -------
     dict of str to float64 (visits,)
-        The numbers of each visit, among them both terms of every ratio of ``FIGURES``.
 
     Examples
     --------
@@ -221,8 +203,9 @@ def counts(s: Strokes) -> dict[str, Floats]:
         "clearances": s.made & s.cleared,  # a foul clears no table
     }
     sums = {name: s.a_visit(values) for name, values in entries.items()}
-    breaks = {"centuries": sums["points"] >= CENTURY, "maximums": sums["points"] >= MAXIMUM}
-    return sums | {"visits": np.ones(s.visits)} | {name: made.astype(float) for name, made in breaks.items()}
+    for name, least in (("centuries", CENTURY), ("maximums", MAXIMUM)):
+        sums[name] = (sums["points"] >= least).astype(float)
+    return sums | {"visits": np.ones(s.visits)}
 
 
 def summary(strokes: Strokes) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from .._check import refuse
 from ..play.program import AgentError
 from .agents import Agent, seated
 from .checking import faults
-from .playing import BATCH, PlayedEpisodes, play_episodes
+from .playing import PlayedEpisodes, play_episodes
 from .provenance import machine
 from .results import read_result, result_of, strokes_of, write_result
 from .tasks import Task
@@ -35,16 +35,13 @@ def judge(
 
     Parameters
     ----------
-    task : Task
-        The task.
-    agent : Agent
-        The agent.
+    task, agent : Task, Agent
+        What is played, and who plays.
     episodes : int, optional
         Number of episodes for each training seed; None: the number of the protocol.
-    out : str or Path, optional
-        File for the result, also written once a minute; None: no file.
-    resume : bool
-        Whether to continue an incomplete result in ``out``; a complete one is left as it is.
+    out, resume : str or Path, bool
+        File for the result, also written once a minute, or None; whether to continue an incomplete result in
+        it. A complete one is left as it is.
     command : str
         The command line, which is stored in the result.
     threads : int, optional
@@ -75,7 +72,7 @@ def judge(
     """
     seeds = task.seeds(task.episodes if episodes is None else episodes)
     many, played, alone, why = len(seeds), PlayedEpisodes([]), PlayedEpisodes([]), None
-    total, batch = many * len(agent.sources), 1 if agent.program else BATCH
+    total = many * len(agent.sources)
     if resume and out is not None and Path(out).exists():
         kept, played = _kept(Path(out), task, agent, many)
         if kept["incomplete"] is None:
@@ -84,7 +81,7 @@ def judge(
 
     def kept_as(why: str | None) -> dict[str, Any]:
         """The result so far, written to its file."""
-        result = result_of(task, agent, many, played, alone, why, about)
+        result = result_of(task, agent, many, played, alone, about | {"incomplete": why})
         if out is not None and (played.rows or why is None):
             write_result(out, result)
         return result
@@ -95,7 +92,7 @@ def judge(
             with seated(agent, task, run) as player:
                 while len(played.rows) < (run + 1) * many:
                     first = len(played.rows) - run * many
-                    played.add(play_episodes(task, player, seeds[first : first + batch], run, threads))
+                    played.add(play_episodes(task, player, seeds[first : first + agent.batch], run, threads))
                     tick(len(played.rows), total)
                     if time.monotonic() - saved > SAVED:
                         kept_as("it was still running")
@@ -107,10 +104,7 @@ def judge(
         why = f"interrupted after {len(played.rows)} of {total} episodes"
     except AgentError as error:
         why = f"{error} (after {len(played.rows)} of {total} episodes)"
-    except (
-        Exception,
-        SystemExit,
-    ) as error:  # of the agent's own code: its traceback is for its author, what was played is kept
+    except (Exception, SystemExit) as error:  # of the agent's own code: what was played is kept
         kept_as(f"{type(error).__name__}: {error} (after {len(played.rows)} of {total} episodes)")
         if isinstance(error, SystemExit):
             raise RuntimeError(f"the agent ended the program: SystemExit({error})") from error
@@ -123,13 +117,8 @@ def _kept(path: Path, task: Task, agent: Agent, episodes: int) -> tuple[dict[str
     result = read_result(path)
     if wrong := faults(result):
         raise refuse("out", str(path), f"must be a sound result to go on with ({wrong[0]})")
-    same = (
-        result["task"],
-        result["agent"]["label"],
-        result["agent"]["sources"],
-        result["protocol"]["episodes"],
-    )
-    if same != (task.id, agent.label, agent.texts, episodes):
+    same = result["task"], *(result["agent"][name] for name in ("label", "sources"))
+    if (*same, result["protocol"]["episodes"]) != (task.id, agent.label, agent.texts, episodes):
         what = f"{agent.label} on {task.id} with {episodes} episodes"
         raise refuse("out", str(path), f"must be a result of {what} to go on with")
     strokes, timing = strokes_of(result), result["timing"]

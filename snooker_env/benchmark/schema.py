@@ -54,33 +54,21 @@ FIELDS: dict[str, tuple[Any, bool, str]] = {
     "strokes.data": (str, False, "every stroke that was played, see below"),
 }
 """Dotted name: type, whether it may be null, meaning."""
-_PROVED = (
-    "schema",
-    "protocol",
-    "task",
-    "agent.class",
-    "agent.budget",
-    "columns",
-    "rows",
-    "figures",
-    "strokes",
-)
-UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED) and name != "software.snooker_env")
+_PLAYED = "schema", "protocol", "task", "columns", "rows", "figures", "strokes"
+_PROVED = (*_PLAYED, "agent.class", "agent.budget", "software.snooker_env")
+UNPROVED = tuple(name for name in FIELDS if not name.startswith(_PROVED))
 """Fields that a replay cannot prove; class and budget follow from them."""
 
 LABEL = re.compile(r"[A-Za-z0-9_.+-]{1,20}")
 MOST_WHOLE = 2**53
 """Whole numbers up to here are exact in every reader of JSON."""
 RANGES: dict[str, tuple[float, float]] = {
-    **{
-        name: (0.0, 1e12) if kind is NUMBER else (0, MOST_WHOLE)
-        for name, (kind, _, _) in FIELDS.items()
-        if kind in (int, NUMBER)
-    },
-    "agent.simulated_shots": (0, MOST_WHOLE),
-    "protocol.episodes": (1, 2**20),
-    "machine.cores": (1, 2**20),
+    name: (0.0, 1e12) if kind is NUMBER else (0, MOST_WHOLE)
+    for name, (kind, _, _) in FIELDS.items()
+    if kind in (int, NUMBER)
 }
+RANGES["agent.simulated_shots"] = 0, MOST_WHOLE
+RANGES["protocol.episodes"] = RANGES["machine.cores"] = 1, 2**20
 """Lowest and highest value of every field that is a number."""
 _CONTROL = r"\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff"
 _LINE = re.compile(f"[^{_CONTROL}]{{1,200}}"), "one line of at most 200 characters"
@@ -90,10 +78,8 @@ MOST_SOURCES = 100
 PATTERNS: dict[str, tuple[re.Pattern[str], str]] = {
     "agent.label": (LABEL, "1 to 20 letters, digits or . + - _"),
     **{name: (re.compile(r"[\w.+!-]{1,60}"), "a version") for name in FIELDS if name.startswith("software.")},
-    "machine.platform": _LINE,
-    "machine.cpu": _LINE,
-    "command": LONG_LINE,
-    "incomplete": LONG_LINE,
+    **dict.fromkeys(("machine.platform", "machine.cpu"), _LINE),
+    **dict.fromkeys(("command", "incomplete"), LONG_LINE),
     "machine.arithmetic": (re.compile("[0-9a-f]{16}"), "16 hexadecimal digits"),
     "commit": (re.compile(r"[0-9a-f]{7,64}(-dirty)?"), "a commit's hash, with -dirty if files were changed"),
 }
@@ -112,17 +98,15 @@ def faults_of_fields(
     ----------
     record : object
         As ``json`` reads it.
-    fields : dict, optional
-        Dotted name -> type, whether it may be null, meaning; default: those of a result of this benchmark.
-    ranges : dict, optional
-        Lowest and highest value of fields that are numbers, besides those of this benchmark.
+    fields, ranges : dict, optional
+        Dotted name -> type, whether it may be null, meaning; and -> lowest and highest number. Default: those
+        of a result of this benchmark, whose ranges hold for other fields too.
     version : int
         Of the fields, for the messages.
 
     Returns
     -------
     list of str
-        Empty if all fields are there and sound.
 
     Examples
     --------
@@ -140,27 +124,23 @@ def faults_of_fields(
             value = value.get(part, _MISSING) if isinstance(value, dict) else _MISSING
         if value is _MISSING:
             wrong.append(f"{name}: is missing")
-        elif not (value is None and empty) and not _fits(value, kind):
-            wrong.append(
-                f"{name} = {shortened(value)}: must be {_WORDS.get(kind, 'a number')}{' or null' if empty else ''}"
-            )
+        elif not (value is None and empty) and (
+            not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool)  # True is no number
+        ):
+            wrong.append(fault(name, value, _WORDS.get(kind, "a number") + " or null" * empty))
         elif value is not None and (allowed := _allowed(name, value, ranges)):
-            wrong.append(f"{name} = {shortened(value)}: must be {allowed}")
-    for name, value in record.items():
-        inner = (
-            [f"{name}.{key}" for key in value] if isinstance(value, dict) and name not in fields else [name]
-        )
-        wrong += [f"{other}: is no field of version {version}" for other in inner if other not in fields]
-    return wrong
+            wrong.append(fault(name, value, allowed))
+    names = (
+        [f"{name}.{key}" for key in value] if isinstance(value, dict) and name not in fields else [name]
+        for name, value in record.items()
+    )
+    return wrong + [
+        f"{one}: is no field of version {version}" for some in names for one in some if one not in fields
+    ]
 
 
 _MISSING = object()
 _WORDS = {str: "a text", int: "a whole number", bool: "true or false", list: "a list", dict: "an object"}
-
-
-def _fits(value: Any, kind: Any) -> bool:
-    """Whether a value has a type; True is no number."""
-    return isinstance(value, kind) and (not isinstance(value, bool) or kind is bool)
 
 
 def _allowed(name: str, value: Any, ranges: Mapping[str, tuple[float, float]]) -> str | None:
@@ -171,18 +151,14 @@ def _allowed(name: str, value: Any, ranges: Mapping[str, tuple[float, float]]) -
         return PATTERNS[name][1]
     if name != "date":
         return None
-    if not _is_date(value):
+    try:
+        sound = datetime.strptime(value, DATE).strftime(DATE) == value
+    except ValueError:
+        sound = False
+    if not sound:
         return "a time in UTC, as 2026-11-22T19:00:00Z"
     latest = (datetime.now(timezone.utc) + timedelta(hours=1)).strftime(DATE)
     return None if BEGUN <= value <= latest else f"between {BEGUN} and now"
-
-
-def _is_date(text: str) -> bool:
-    """Whether a text is a date in the one form."""
-    try:
-        return datetime.strptime(text, DATE).strftime(DATE) == text
-    except ValueError:
-        return False
 
 
 def line(text: str) -> str:
@@ -197,3 +173,8 @@ def shortened(value: Any) -> str:
     except ValueError:  # a whole number of thousands of digits
         text = "a number too long to print"
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def fault(name: str, value: Any, must: str) -> str:
+    """The line for a value that must be something else."""
+    return f"{name} = {shortened(value)}: must be {must}"

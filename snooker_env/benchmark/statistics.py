@@ -30,7 +30,6 @@ def iqm(values: Any) -> float:
     Returns
     -------
     float
-        Their inter-quartile mean.
 
     Examples
     --------
@@ -66,10 +65,8 @@ class Resamples:
     ----------
     runs, visits : int
         Shape of the matrices.
-    n : int
-        Number of samples.
-    seed : int
-        Seed with which the runs are drawn.
+    n, seed : int
+        Number of samples, and the seed with which the runs are drawn.
 
     Examples
     --------
@@ -109,16 +106,13 @@ def interval(samples: Any, level: float = 0.95) -> tuple[float, float]:
 
     Parameters
     ----------
-    samples : array_like, float (n,)
-        The samples.
-    level : float
-        Coverage of the interval, in (0, 1).
+    samples, level : array_like, float (n,); float
+        The samples, and the coverage of the interval, in (0, 1).
 
     Returns
     -------
     low, high : float
-        The interval. NaN if a sample is NaN, or all samples are equal: no century in 500 visits does not
-        prove that there are none.
+        NaN if a sample is NaN, or all are equal: no century in 500 visits does not prove that there are none.
 
     Examples
     --------
@@ -139,15 +133,12 @@ def unseen(n: float, level: float = 0.95) -> float:
 
     Parameters
     ----------
-    n : float
-        Number of trials.
-    level : float
-        Confidence level, in (0, 1).
+    n, level : float
+        Number of trials, and the confidence level, in (0, 1).
 
     Returns
     -------
     float
-        The bound.
 
     Examples
     --------
@@ -163,10 +154,8 @@ def figure(value: float, samples: Any) -> dict[str, float | None]:
 
     Parameters
     ----------
-    value : float
-        The figure.
-    samples : array_like, float (n,)
-        Bootstrap samples of it.
+    value, samples : float; array_like, float (n,)
+        The figure, and bootstrap samples of it.
 
     Returns
     -------

@@ -28,22 +28,15 @@ class Task:
 
     Attributes
     ----------
-    id : str
-        The Gymnasium id, with its version.
-    title : str
-        The aim of the task, in a few words.
-    changes : mapping
-        Options that differ from those of ``Snooker-v0``.
-    judged_layout : str
-        The layout that agents are judged on; training uses that of ``changes``.
-    score : {"points", "pots", "legal", "won"}
-        The score of an episode, by which the task is judged.
-    measure : str
-        Name of the mean score.
-    episodes : int
-        Number of episodes of an official result for each training seed.
-    thresholds : tuple of int
-        Scores of the performance profile, which is the share of episodes with at least each of these scores.
+    id, title : str
+        The Gymnasium id, with its version, and the aim of the task in a few words.
+    changes, judged_layout : mapping, str
+        Options that differ from those of ``Snooker-v0``, and the layout of the judging in place of theirs.
+    score, measure : str
+        The score of an episode, "points", "pots", "legal" or "won", and the name of its mean.
+    episodes, thresholds : int, tuple of int
+        Episodes of an official result for each training seed, and the scores of its performance profile: the
+        share of episodes with at least each of these.
     note : str
         What a reader of its table should know; empty: nothing.
 
@@ -66,21 +59,15 @@ class Task:
     note: str = ""
 
     def options(self, **free: Any) -> Options:
-        """The options of the task as it is trained: frozen ones and these of ``FREE``.
-
-        ValueError for a frozen option or a wrong value, TypeError for a keyword that is no option.
-        """
+        """The options of the task as it is trained: frozen ones and these of ``FREE``, no others."""
         frees = ", ".join(FREE)
         for name in (name for name in free if name not in FREE):
             if name == "options":
-                allowed = (
-                    f"must be left out: {self.id} makes its own; give the free options themselves ({frees})"
-                )
-                raise refuse_what("options", f"a {type(free[name]).__name__}", allowed)
+                why = f"{self.id} makes its own; give the free options themselves ({frees})"
+                raise refuse_what("options", f"a {type(free[name]).__name__}", f"must be left out: {why}")
             if name not in _USUAL:
-                raise TypeError(
-                    f"got an unexpected keyword argument {name!r}; the free options of {self.id} are {frees}"
-                )
+                what = f"got an unexpected keyword argument {name!r}"
+                raise TypeError(f"{what}; the free options of {self.id} are {frees}")
             why = f"{self.id} freezes it at {self.frozen[name]!r}; only Snooker-v0 lets you choose it"
             raise refuse(name, free[name], f"must be left out: {why}")
         return Options(**{**self.changes, **free})
@@ -105,14 +92,10 @@ class Task:
         return self.changes.get("task") == "frame"
 
     def seeds(self, n: int) -> list[int]:
-        """The seeds of the first n judged tables; of frames, which share their rack, those of the errors.
-
-        ValueError if n is not in [1, 2**20], or the layout has fewer tables.
-        """
+        """The seeds of the first n judged tables (of frames: of the errors). ValueError for too many."""
         integer("episodes", n, 1, 2**20)
-        return (
-            list(range(HELD_OUT_SEED, HELD_OUT_SEED + n)) if self.frame else tables_of(self.judged_layout, n)
-        )
+        first = HELD_OUT_SEED
+        return list(range(first, first + n)) if self.frame else tables_of(self.judged_layout, n)
 
     @property
     def most(self) -> int:
@@ -129,12 +112,8 @@ _FRAME = (
 )
 
 
-_MEASURES = {
-    "points": ("points a visit", 500),
-    "pots": ("share of balls potted", 1000),
-    "legal": ("share of escapes", 1000),
-    "won": ("share of frames won", 200),
-}
+_MEASURES = {"points": ("points a visit", 500), "pots": ("share of balls potted", 1000)}
+_MEASURES |= {"legal": ("share of escapes", 1000), "won": ("share of frames won", 200)}
 """Of each score: the name of its mean, and the number of episodes."""
 
 
@@ -150,20 +129,14 @@ _LEGAL = {"reward": "legal", "one_stroke": True}
 _WIN = {"task": "frame", "opponent": "ghost_ball", "reward": "win"}
 _CLUB = {"changes": {"noise": "club"}, "thresholds": _BREAK}
 _COLOURS = (2, 5, 9, 14, 20, 27)
+_SNOOKER = {"changes": _LEGAL, "note": _ESCAPE}
 _ALL = (
     _task("Break", "build a break on an opened table", "opened", "points", "held_out", thresholds=_BREAK),
     _task("BreakClub", "the same with a club player's errors", "opened", "points", "held_out", **_CLUB),
     _task("LineUp", "clear the line-up", "line_up", "points", thresholds=_BREAK),
     _task("Colours", "clear the six colours", "colours", "points", thresholds=_COLOURS),
     _task("PotHard", "pot one hard ball", "pots:hard", "pots", changes={"reward": "pots"}),
-    _task(
-        "Escape",
-        "one stroke out of a snooker, without a foul",
-        "snookered",
-        "legal",
-        changes=_LEGAL,
-        note=_ESCAPE,
-    ),
+    _task("Escape", "one stroke out of a snooker, without a foul", "snookered", "legal", **_SNOOKER),
     _task("Frame", "win a frame against ghost_ball", "break_off", "won", changes=_WIN, note=_FRAME),
 )
 TASKS: dict[str, Task] = {task.id: task for task in _ALL}
@@ -181,7 +154,6 @@ def task_of(name: Any) -> Task:
     Returns
     -------
     Task
-        The task.
 
     Examples
     --------
@@ -211,15 +183,12 @@ def tables_of(layout: str, visits: int) -> list[int]:
 
     Parameters
     ----------
-    layout : str
-        Name of the layout.
-    visits : int
-        Number of tables.
+    layout, visits : str, int
+        Name of the layout, and number of tables.
 
     Returns
     -------
     list of int
-        The seeds.
 
     Examples
     --------
@@ -241,7 +210,6 @@ def most_points(layout: str) -> int:
     Returns
     -------
     int
-        The points.
 
     Examples
     --------

@@ -16,7 +16,7 @@ ball over a pocket (``FALLING``) moves at constant velocity (``pocket.py``).
 from math import copysign, exp, expm1, inf, log1p, sqrt
 
 from .._jit import kernel
-from .parameters import P_G, P_MU_R, P_MU_S, P_NAP, P_R, P_SPIN
+from .columns import P_G, P_MU_R, P_MU_S, P_NAP, P_R, P_SPIN
 
 GONE, REST, ROLL, SLIDE, FALLING, BEND = range(6)
 # ROLL: straight, to rest; BEND: a piece of a path that the nap bends; FALLING: over a pocket

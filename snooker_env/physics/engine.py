@@ -13,14 +13,14 @@ from .._lanes import LANES, lane, lanes, lanes_at, lesser, no_more
 from . import cloth, events, pocket
 from .arrays import Balls, Boundaries, Forecast, Law, Log, Motions, Setup
 from .cloth import FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, WZ, X, Y
-from .columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_SIDE
+from .columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_SIDE, P_R, P_SIN, P_SPIN
 from .detection import HELD, TOUCH, boundary_event, clear_box, pair_time
 from .events import EventKind as EventKind  # for the layers above
 from .events import Status as Status
 from .impact.contact import collide_balls, collide_cushion
 from .impact.polynomial import WORK
 from .meetings import meet, rebound
-from .parameters import FARTHEST, FASTEST, MOST_SPIN, P_R, P_SIN, P_SPIN
+from .parameters import FARTHEST, FASTEST, MOST_SPIN
 from .placement import SOUND, layout_fault, place_fault
 
 _LATEST = 1.7e308

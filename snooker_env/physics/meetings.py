@@ -9,8 +9,8 @@ then a series of hops of about a micrometre and a millisecond. Energy never rise
 from math import sqrt
 
 from .._jit import inlined, kernel
+from .columns import P_E_B, P_E_J, P_R
 from .impact.contact import collide_balls, collide_cushion, cushion_restitution
-from .parameters import P_E_B, P_E_J, P_R
 
 PART = 2e-3  # m/s; too slow to matter in a shot: a ball at this speed rolls 16 micrometres
 

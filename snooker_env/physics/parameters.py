@@ -14,6 +14,7 @@ import numpy as np
 from .._check import choice, number, refuse, truth
 from .._types import Floats, PhysicsName
 from ..geometry import BALL_RADIUS
+from .columns import P_BALLS, P_JAW, P_RAIL
 from .impact.tables import SIZE, Rolling, table_of
 
 MARLOW = (9.951e-3, 0.108, 1.088)
@@ -34,31 +35,6 @@ _LEAST_DECELERATION, _MOST_DECELERATION = 1e-6, 1e6
 _LEAST_KNEE, _MOST_POWER = 1e-3, 0.8
 """Bounds of ``e_c_knee`` and ``e_c_power``. The rebound varies with at most the power 1.25 of e
 (tests/physics/test_cushion_law.py): with a power up to 0.8 it never falls with the speed."""
-
-# Places in the packed vector. They are indices, not tunable constants: freezing them into a kernel is safe.
-(
-    P_R,
-    P_M,
-    P_G,
-    P_MU_S,
-    P_MU_R,
-    P_SPIN,
-    P_E_B,
-    P_MU_BB_LEAST,
-    P_MU_BB_EXTRA,
-    P_MU_BB_FADE,
-    P_E_C,
-    P_E_KNEE,
-    P_E_POWER,
-    P_MU_C,
-    P_SIN,
-    P_E_J,
-    P_NAP,
-    P_RAIL,
-    P_JAW,
-    P_BALLS,
-) = range(20)
-"""P_RAIL, P_JAW, P_BALLS: where the tables of rolling impacts begin behind these (``tables.py``); 0: none."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -26,8 +26,22 @@ from math import inf, sqrt
 from .._jit import kernel
 from . import events
 from .cloth import AX, AY, FALLING, HI_X, HI_Y, LO_X, LO_Y, T0, T_END, VX, VY, WX, WY, WZ, X, Y
-from .columns import FALL_RADIUS, FALL_X, FALL_Y, JAW_COS, JAW_RADIUS, JAW_UX, JAW_UY, JAW_X, JAW_Y
-from .parameters import P_E_J, P_G, P_MU_C, P_R, P_SIN
+from .columns import (
+    FALL_RADIUS,
+    FALL_X,
+    FALL_Y,
+    JAW_COS,
+    JAW_RADIUS,
+    JAW_UX,
+    JAW_UY,
+    JAW_X,
+    JAW_Y,
+    P_E_J,
+    P_G,
+    P_MU_C,
+    P_R,
+    P_SIN,
+)
 
 JAW, LOST, BACK = range(3)
 """How a leg of the flight ends."""

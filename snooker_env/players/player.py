@@ -18,7 +18,8 @@ from ..game.balls import YELLOW
 from ..game.frame_columns import BALL_ON, PLACE_ANYWHERE, PLAY, PLAY_AGAIN, REPLACE
 from ..game.ruling import AUTO
 from ..geometry import BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
-from ..planning.positions import Positions, PositionsLike
+from ..planning.planner import options_in
+from ..planning.positions import Positions, PositionsLike, seeds_of
 from ..planning.strokes import AIM, ELEVATION, NAMES, SIDE, SPEED, TOP
 from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, Actions
 from ..tasks.declarations import CLAIMS, COLOURS, CONCEDES, OTHER_BEGINS, SAYS_NOTHING

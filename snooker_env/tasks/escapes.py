@@ -19,10 +19,9 @@ from ..game.lines import met
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics import cloth, cue, events
 from ..physics.arrays import Boundaries, Law
-from ..physics.columns import AXIS_X, AXIS_Y
+from ..physics.columns import AXIS_X, AXIS_Y, P_R
 from ..physics.detection import boundary_event, pair_time
 from ..physics.impact.contact import FAST, collide_cushion, cushion_restitution
-from ..physics.parameters import P_R
 from .windows import turned
 
 ROLL = 0.25  # twice a rolling ball's deceleration [m/s^2]

@@ -7,9 +7,9 @@ from math import atan2, hypot, pi
 from .._jit import kernel
 from ..physics import cloth, cue
 from ..physics.arrays import Law
+from ..physics.columns import P_E_B, P_R
 from ..physics.detection import pair_time
 from ..physics.impact.contact import collide_balls
-from ..physics.parameters import P_E_B, P_R
 
 _ENOUGH = 1e-6  # rad that the object ball may pass the aim point by, a hundredth of the best player's error
 _TRIALS = 12

@@ -209,11 +209,11 @@ def test_what_was_played_before_a_failure_is_kept(maker, tmp_path):
 
 def test_decisions_do_not_depend_on_batches(monkeypatch):
     """And each training seed draws its own."""
-    from snooker_env.benchmark import run
+    from snooker_env.benchmark import agents
 
     agent = Agent(label="two", sources=(Softly(), Softly()), training_shots=0)
     whole = judge(HARD, agent, episodes=10)
-    monkeypatch.setattr(run, "BATCH", 4)
+    monkeypatch.setattr(agents, "BATCH", 4)
     parts = judge(HARD, agent, episodes=10)
     assert whole["rows"] == parts["rows"] and whole["strokes"] == parts["strokes"]
     strokes = strokes_of(whole)

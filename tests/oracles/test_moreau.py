@@ -101,7 +101,9 @@ def test_cushions_of_any_constants(k):
         assert np.abs(reference[1:3]).max() < 1e-11 * speed
         return
     assert np.abs(parts(sn.collide_cushion(v, w, Y, physics)) - reference).max() < 1e-5 * speed
-    if np.abs(reference - truth).max() > 1e-8 * speed:  # a state changed near its limit, where steps converge slowly
+    if (
+        np.abs(reference - truth).max() > 1e-8 * speed
+    ):  # a state changed near its limit, where steps converge slowly
         exact = parts(ball_cushion(v, w, Y, R=R, M=0.1406, mu_w=float(mu_w), **law))
         assert np.abs(reference - exact).max() < 1e-9 * speed
 

@@ -103,13 +103,10 @@ def test_a_path_that_grew_is_as_if_it_was_drawn_at_once():
     points = np.stack([0.5 * np.sin(2 * turn), turn - 1.5 + 0.2 * np.sin(9 * turn)], axis=1)
     drawn = lambda points: rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points}))  # noqa: E731
     for length in range(2, 300, 7):
-        grown = rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points[:length]}))
+        grown = drawn(points[:length])
     pygame_balls._piece.cache_clear()
-    assert np.array_equal(grown, rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: points[:length]})))
-    still = np.tile((0.1, 0.1), (5, 1))
-    assert np.array_equal(
-        rgb_array(scene("match", SPOTS, NOBODY, paths={CUE: still})), rgb_array(scene("match", SPOTS, NOBODY))
-    )
+    assert np.array_equal(grown, drawn(points[:length]))
+    assert np.array_equal(drawn(np.tile((0.1, 0.1), (5, 1))), rgb_array(scene("match", SPOTS, NOBODY)))
 
 
 def test_ghosts_are_faded_balls(empty):

@@ -13,8 +13,7 @@ import pytest
 import snooker_env as sn
 from snooker_env.game.balls import BallOn
 from snooker_env.game.ruling import Foul
-from snooker_env.replays.words import bars, standing_bar
-from snooker_env.replays.words import FOUL_WORDS, foul_words
+from snooker_env.replays.words import FOUL_WORDS, bars, foul_words, standing_bar
 from tests.refusals import refused
 from tests.tables import begun
 

@@ -1,17 +1,12 @@
 """Do the rooms that name the cache's folder hold all kernels, and are inner kernels only linked?"""
 
 import ast
-import json
-import operator
-import re
 from pathlib import Path
 
 import pytest
-from numba.core.types.functions import BaseFunction
 
 import snooker_env
-from snooker_env import _cache, _inner
-from tests.processes import copy_of_package, python, replace
+from snooker_env import _cache
 
 PACKAGE = Path(snooker_env.__file__).resolve().parent
 INSIDE = [p for p in sorted(PACKAGE.rglob("*.py")) if p.relative_to(PACKAGE).parts[0] in _cache.KERNEL_ROOMS]

@@ -8,7 +8,7 @@ from math import hypot, sqrt
 from ..._check import refuse
 from ..._jit import inlined, kernel
 from ..._types import Fidelity, Solver
-from ..parameters import (
+from ..columns import (
     P_BALLS,
     P_E_B,
     P_E_C,

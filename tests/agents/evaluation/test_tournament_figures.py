@@ -4,8 +4,19 @@ import numpy as np
 import pytest
 
 from agents.evaluation import tournament_figures
-from agents.evaluation.tournament_figures import ANCHOR_ELO, COLUMNS, COUNTED, figures_of, schedule
-from agents.evaluation.tournament_strengths import ELO, bound, chance, compared, linked, strengths
+from agents.evaluation.tournament_figures import (
+    ANCHOR_ELO,
+    COLUMNS,
+    COUNTED,
+    ELO,
+    bound,
+    chance,
+    compared,
+    figures_of,
+    linked,
+    schedule,
+    strengths,
+)
 from snooker_env.benchmark import unseen
 
 SOUND = {"points": (60, 30), "scored": (50, 30), "visits": (10, 10), "strokes": (30, 20)}
