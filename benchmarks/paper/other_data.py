@@ -7,6 +7,8 @@ published table, itself computed), ``throw_domenech2023.csv`` and ``cushion_rebo
 published figures).
 """
 
+from typing import Any
+
 import numpy as np
 from scipy.optimize import minimize_scalar
 
@@ -19,7 +21,7 @@ from .paper_shots import rolling
 FOLDER = REBOUNDS.parent
 POOL_R = 0.028575
 """Radius [m] of a pool ball, 2.25 in across."""
-DOMENECH = {"R": 0.0305, "e_b": 0.968}
+DOMENECH: dict[str, Any] = {"R": 0.0305, "e_b": 0.968}
 DOMENECH_SPEED = 0.80
 """Doménech-Carbó (2023): 61 mm balls, restitution 0.968, the cue ball rolling at 0.80 m/s."""
 FAST_REBOUND = 2.5

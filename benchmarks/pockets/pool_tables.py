@@ -10,6 +10,7 @@ R_h of the hole, b the shelf from the mouth to the hole; lengths in inches, angl
 
 from dataclasses import dataclass
 from math import cos, pi, radians, sin, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from .windows import LonePocket, Paths, windows
 INCH = 0.0254
 PHYSICS = {"R": 1.125 * INCH, "sin_theta": 0.27}
 """Pool's ball, and its nose at 63.5 % of the ball's diameter (WPA equipment specifications)."""
-MIRROR = {"R": 1.125 * INCH, "e_c": 1.0, "mu_c": 0.0, "mu_s": 1e-9, "mu_r": 1e-9}
+MIRROR: dict[str, Any] = {"R": 1.125 * INCH, "e_c": 1.0, "mu_c": 0.0, "mu_s": 1e-9, "mu_r": 1e-9}
 """Alciatore's assumptions."""
 DISTANCE = 0.4
 """The ball starts so far [m] before the middle of the mouth: at 0.5 m/s it arrives with 0.39."""

@@ -16,8 +16,8 @@ The tables of the presets come with the package. Those of other constants are ma
 """
 
 from functools import cache, lru_cache
-from importlib import resources
 from math import pi, sqrt
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -62,7 +62,7 @@ class Rolling(NamedTuple):
 
 PRESETS = (Rolling(0.4, 0.14, 0.21, 0.98), Rolling(-1.0, 0.05, 0.21, 0.89))
 """Whose tables are in the file ``KEPT``: all cushions and jaws, and the balls of "paper"."""
-KEPT = "rolling.npy"
+KEPT = Path(__file__).with_name("rolling.npy")
 
 
 @kernel
@@ -121,8 +121,7 @@ def _solved(x, rolling):
 @cache
 def _kept() -> dict[Rolling, Floats]:
     """The tables that come with the package: of the presets."""
-    with resources.files(__package__).joinpath(KEPT).open("rb") as file:
-        return dict(zip(PRESETS, np.load(file), strict=True))
+    return dict(zip(PRESETS, np.load(KEPT), strict=True))
 
 
 @lru_cache(maxsize=64)
