@@ -89,8 +89,8 @@ class Physics:
         Tip offset over R beyond which the tip slips (miscue), in (0, 0.999] [TP A.30].
     tables : bool
         Whether impacts of rolling balls come from tables, but for "reference" and "euler:N": faster and more
-        accurate. Those of the presets are stored; other constants make theirs at their first use, about 30 ms
-        (and 10 s, once, to compile what makes them). False: no tables; for constants that are used for few shots.
+        accurate. Those of the presets are stored; other constants make theirs at their first use, in 5 to 200
+        ms (and 10 s, once, to compile what makes them). False: no tables; for constants that are used for few shots.
 
     Raises
     ------
@@ -247,9 +247,10 @@ class Physics:
             rolling[P_JAW] = rolling[P_RAIL]._replace(e=e_j)
             if law[1] == 0.0:
                 rolling[P_BALLS] = Rolling(-1.0, law[0], self.mu_s, self.e_b)
-            distinct = list(dict.fromkeys(rolling.values()))
-            made = [table_of(r) for r in distinct]
-            places = {place: P_BALLS + 1 + SIZE * distinct.index(r) for place, r in rolling.items()}
+            tables = {r: table_of(r) for r in rolling.values()}
+            distinct = [r for r, table in tables.items() if table is not None]
+            made = [tables[r] for r in distinct]
+            places = {p: P_BALLS + 1 + SIZE * distinct.index(r) for p, r in rolling.items() if r in distinct}
         constants = [
             self.R,
             self.M,

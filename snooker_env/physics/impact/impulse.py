@@ -142,7 +142,7 @@ class Outlook(NamedTuple):
 
 
 @inlined
-def _outlook(problem):
+def outlook_of(problem):
     """The ``Outlook`` of an impact, from its constants."""
     contact = problem.contact
     mu = friction_coefficient(0.0, problem.friction)
@@ -254,7 +254,7 @@ def solve(problem, accuracy, series):
     """Integrate one impact, its closing speed 1: the impulses at its end, and OK or TOO_MANY_STEPS."""
     order = accuracy.order
     limits = Tolerances(accuracy.tol, accuracy.delta, _NEAR * accuracy.delta, accuracy.creep)
-    outlook = _outlook(problem)
+    outlook = outlook_of(problem)
     slip = problem.start
     s = sqrt(slip.a1 * slip.a1 + slip.a2 * slip.a2)
     mode, cloth, per, h = _first_state(s, outlook, limits, problem)

@@ -12,7 +12,8 @@ nodes against ``reference`` when it is made; where it errs by more than ``WORST`
 (a slip that ends within the impact is a kink), it is empty: the impact is solved as any other. Its error in play is
 below 1e-10 (``tests/physics/test_tables.py``), where "standard" promises 1e-6.
 
-The tables of the presets come with the package. Those of other constants are made at the first need, in about 30 ms.
+The tables of the presets come with the package. Those of other constants are made at the first need, in 5 to 200 ms. There
+is none where the cloth's friction may hold the ball (frictions above about 0.25).
 """
 
 from functools import cache, lru_cache
@@ -27,7 +28,7 @@ from ..._lanes import lane, lanes, lanes_at
 from ..._types import Floats
 from . import inertia
 from .coulomb import Friction, Problem
-from .impulse import NO_IMPULSE, OK, REFERENCE, solve
+from .impulse import NO_IMPULSE, OK, REFERENCE, outlook_of, solve
 from .inertia import Impulses, Slips
 from .polynomial import WORK
 
@@ -96,7 +97,10 @@ def look_up(phys, at, x):
 
 @entry(what="the tables of rolling impacts", seconds=4, uses=(solve,))
 def _solutions(x, rolling, out):
-    """The impulses of each x = a1 / closing at ``reference`` -> out (m, 5); NaN where the ball lifts."""
+    """The impulses of each x = a1 / closing at ``reference`` -> out (m, 5); NaN where the ball lifts.
+
+    False where the cloth may hold the ball: such an impact takes thousands of steps, and kinks are everywhere.
+    """
     balls = rolling.sin_t < 0.0
     sin_t = max(0.0, rolling.sin_t)
     cos_t = sqrt(1.0 - sin_t * sin_t)
@@ -104,18 +108,20 @@ def _solutions(x, rolling, out):
     a2 = -1.0 if balls else -(1.0 + sin_t) / cos_t
     friction, series = Friction(rolling.mu, 0.0, 0.0), np.empty(WORK)
     for k in range(x.shape[0]):
-        start = Slips(x[k], a2, 0.0, 0.0, 1.0)
-        made, status = solve(Problem(contact, start, friction, rolling.mu_s, rolling.e), REFERENCE, series)
+        problem = Problem(contact, Slips(x[k], a2, 0.0, 0.0, 1.0), friction, rolling.mu_s, rolling.e)
+        if not outlook_of(problem).analytic:
+            return False
+        made, status = solve(problem, REFERENCE, series)
         good = status == OK and made.Z == 0.0
         out[k, 0], out[k, 1], out[k, 2], out[k, 3] = made.F1, made.F2, made.G1, made.G2
         out[k, 4] = made.p if good else np.nan
+    return True
 
 
 def _solved(x, rolling):
-    """``_solutions`` of an array of any shape: (..., 5)."""
+    """``_solutions`` of an array of any shape: (..., 5); None where there is to be no table."""
     out = np.empty((x.size, IMPULSES))
-    _solutions(x.ravel(), rolling, out)
-    return out.reshape(*x.shape, IMPULSES)
+    return out.reshape(*x.shape, IMPULSES) if _solutions(x.ravel(), rolling, out) else None
 
 
 @cache
@@ -125,13 +131,17 @@ def _kept() -> dict[Rolling, Floats]:
 
 
 @lru_cache(maxsize=64)
-def table_of(rolling: Rolling) -> Floats:
-    """The table of these constants (SIZE,): kept with the package, or made now."""
+def table_of(rolling: Rolling) -> Floats | None:
+    """The table of these constants (SIZE,), kept with the package or made now; None where the cloth may hold the ball."""
     return _kept()[rolling] if rolling in PRESETS else make(rolling)
 
 
-def make(rolling: Rolling) -> Floats:
-    """Make a table (SIZE,), from 13 solutions a cell."""
+def make(rolling: Rolling) -> Floats | None:
+    """Make a table (SIZE,), from 13 solutions a cell; None where the cloth may hold the ball."""
+    least = 2.0**LEAST_OCTAVE
+    at_least = _solved(np.array([least]), rolling)
+    if at_least is None:
+        return None
     nodes = np.cos((2 * np.arange(DEGREE + 1) + 1) * pi / (2 * DEGREE + 2))
     tests = np.cos(np.arange(DEGREE + 2) * pi / (DEGREE + 1))  # there the error of the polynomial is largest
     powers = np.arange(DEGREE + 1)
@@ -145,11 +155,9 @@ def make(rolling: Rolling) -> Floats:
     table = np.empty((NEAR + 1, DEGREE + 1, IMPULSES))
     table[:NEAR] = np.linalg.inv(nodes[:, None] ** powers) @ at_nodes
     # below all cells: F1 and G1 in proportion to |x|, F2, G2 and p as for none
-    least = 2.0**LEAST_OCTAVE
-    at_least = _solved(np.array([least]), rolling)[0]
     table[NEAR] = 0.0
-    table[NEAR, 0, [1, 3, 4]] = at_least[[1, 3, 4]]
-    table[NEAR, 1, [0, 2]] = at_least[[0, 2]] / least
+    table[NEAR, 0, [1, 3, 4]] = at_least[0, [1, 3, 4]]
+    table[NEAR, 1, [0, 2]] = at_least[0, [0, 2]] / least
     small = least * np.array([0.0, 1e-6, 1e-3, 0.1, 0.5, 0.9])
     errors = np.abs((tests[:, None] ** powers) @ table[:NEAR] - at_tests).max((1, 2))
     error_near = np.abs((small[:, None] ** powers) @ table[NEAR] - _solved(small, rolling)).max()
