@@ -306,7 +306,15 @@ def _run(state, physics, table, fidelity, max_events, log=None, threads=1, doubt
     log = log or log_space(b, 0, 0)
     ends = Ends(np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b))
     out = _Run(np.zeros((b, n), np.int64), *ends, *log)
-    setup = physics.pack(), table.noses, table.jaws, table.falls, table._reach(physics.R), *fidelity, doubt
+    setup = (
+        physics.pack(fidelity),
+        table.noses,
+        table.jaws,
+        table.falls,
+        table._reach(physics.R),
+        *fidelity,
+        doubt,
+    )
     arguments = (*state, out.potted), setup, max_events, tuple(log), tuple(ends)
 
     def run(first, last):

@@ -12,10 +12,10 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from .._check import choice, number, refuse, truth
-from .._types import Floats, PhysicsName
+from .._types import Floats, PhysicsName, Solver
 from ..geometry import BALL_RADIUS
-from .columns import P_BALLS, P_JAW, P_RAIL
-from .impact.tables import SIZE, Rolling, table_of
+from .columns import P_BALLS, P_E_J, P_JAW, P_RAIL
+from .impact.tables import SIZE, TABLED, UNTABLED, Rolling, table_of
 
 MARLOW = (9.951e-3, 0.108, 1.088)
 """Marlow's law of ball-ball friction, mu(s) = a + b exp(-c s), s the slip speed in m/s."""
@@ -230,46 +230,52 @@ class Physics:
             return MARLOW
         return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
 
-    def pack(self) -> Floats:
+    def pack(self, solver: Solver = UNTABLED) -> Floats:
         """The constants for the kernels, which only read them: one array, the same at each call.
 
-        float64 (20 + m,): the constants at the places ``P_*`` of this module, SI units, then the tables of rolling
-        impacts, which are made now if they are not a preset's.
+        float64 (20 + m,): the constants at the places ``P_*`` of ``columns.py``, SI units; then, for a ``solver`` (as
+        of ``parse_fidelity``) that asks them, the tables of rolling impacts, which are made now if they are not a
+        preset's.
         """
-        return self._packed
+        return self._with_tables if self.tables and solver[0] in TABLED else self._constants
 
     @cached_property
-    def _packed(self) -> Floats:
-        law, e_j = self.friction_law, self.e_c if self.e_j is None else self.e_j
-        places, made = {}, []
-        if self.tables:
-            rolling = {P_RAIL: Rolling(self.sin_theta, self.mu_c, self.mu_s, self.e_c)}
-            rolling[P_JAW] = rolling[P_RAIL]._replace(e=e_j)
-            if law[1] == 0.0:
-                rolling[P_BALLS] = Rolling(-1.0, law[0], self.mu_s, self.e_b)
-            tables = {r: table_of(r) for r in rolling.values()}
-            distinct = [r for r, table in tables.items() if table is not None]
-            made = [tables[r] for r in distinct]
-            places = {p: P_BALLS + 1 + SIZE * distinct.index(r) for p, r in rolling.items() if r in distinct}
-        constants = [
-            self.R,
-            self.M,
-            self.g,
-            self.mu_s,
-            self.mu_r,
-            self.spin_decel,
-            self.e_b,
-            *law,
-            self.e_c,
-            self.e_c_knee,
-            self.e_c_power,
-            self.mu_c,
-            self.sin_theta,
-            e_j,
-            self.nap,
-            *(places.get(place, 0) for place in (P_RAIL, P_JAW, P_BALLS)),
-        ]
-        return np.concatenate([constants, *made])
+    def _constants(self) -> Floats:
+        return np.array(
+            [
+                self.R,
+                self.M,
+                self.g,
+                self.mu_s,
+                self.mu_r,
+                self.spin_decel,
+                self.e_b,
+                *self.friction_law,
+                self.e_c,
+                self.e_c_knee,
+                self.e_c_power,
+                self.mu_c,
+                self.sin_theta,
+                self.e_c if self.e_j is None else self.e_j,
+                self.nap,
+                *(0.0, 0.0, 0.0),
+            ]
+        )
+
+    @cached_property
+    def _with_tables(self) -> Floats:
+        packed = self._constants.copy()
+        rail = Rolling(self.sin_theta, self.mu_c, self.mu_s, self.e_c)
+        wanted = {P_RAIL: rail, P_JAW: rail._replace(e=float(packed[P_E_J]))}
+        if self.friction_law[1] == 0.0:
+            wanted[P_BALLS] = Rolling(-1.0, self.friction_law[0], self.mu_s, self.e_b)
+        made: dict[Rolling, Floats] = {}
+        for place, rolling in wanted.items():
+            table = made.get(rolling, table_of(rolling))
+            if table is not None:
+                made[rolling] = table
+                packed[place] = len(packed) + SIZE * list(made).index(rolling)
+        return np.concatenate([packed, *made.values()])
 
 
 PhysicsLike: TypeAlias = Physics | dict[str, Any] | PhysicsName | None

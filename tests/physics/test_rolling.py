@@ -132,22 +132,22 @@ def test_cells_with_a_kink_are_empty_and_their_impacts_solved():
 
 def test_no_table_where_the_cloth_may_hold_the_ball():
     assert make(Rolling(0.4, 0.3, 0.3, 0.9)) is None
-    assert len(sn.Physics(mu_c=0.3, mu_s=0.3).pack()) == 20 + tables.SIZE  # of the balls
-    assert len(sn.Physics(mu_c=0.3, mu_s=0.4, mu_bb=0.9).pack()) == 20
+    assert len(sn.Physics(mu_c=0.3, mu_s=0.3).pack((1, 0))) == 20 + tables.SIZE  # of the balls
+    assert len(sn.Physics(mu_c=0.3, mu_s=0.4, mu_bb=0.9).pack((1, 0))) == 20
 
 
 def test_a_physics_is_sent_without_its_tables():
     physics = sn.Physics(e_b=0.9)
-    physics.pack()
+    physics.pack((1, 0))
     assert len(pickle.dumps(physics)) < 2000
     assert pickle.loads(pickle.dumps(physics)) == physics
-    assert physics.pack() is physics.pack()
+    assert physics.pack((1, 0)) is physics.pack((1, 0))
 
 
 def test_no_tables_where_none_are_wanted():
-    assert len(SOLVED.pack()) == 20
-    assert len(PAPER.pack()) == 20 + 2 * tables.SIZE  # rails and jaws have the same
-    assert len(sn.Physics(e_j=0.5).pack()) == 20 + 3 * tables.SIZE
-    assert len(sn.Physics.preset("match").pack()) == 20 + tables.SIZE  # friction between balls varies
+    assert len(SOLVED.pack((1, 0))) == len(PAPER.pack()) == len(PAPER.pack((2, 0))) == 20
+    assert len(PAPER.pack((1, 0))) == 20 + 2 * tables.SIZE  # rails and jaws have the same
+    assert len(sn.Physics(e_j=0.5).pack((1, 0))) == 20 + 3 * tables.SIZE
+    assert len(sn.Physics.preset("match").pack((1, 0))) == 20 + tables.SIZE  # friction between balls varies
     with pytest.raises(ValueError, match=r"physics\.tables = 1: must be True or False"):
         sn.Physics(tables=1)

@@ -32,6 +32,8 @@ from .impulse import NO_IMPULSE, OK, REFERENCE, outlook_of, solve
 from .inertia import Impulses, Slips
 from .polynomial import WORK
 
+TABLED, UNTABLED = (0, 1), (2, 0)
+"""The codes of the fidelities that ask tables ("fast", "standard"), and the solver "reference", which does not."""
 LEAST_OCTAVE, OCTAVES, CELLS, DEGREE = -20, 30, 16, 5
 """|x| from 2^-20 to 2^10 (at which less than 0.1 % of the speed is into the cushion); in each octave 16 cells."""
 IMPULSES = 5
@@ -119,9 +121,10 @@ def _solutions(x, rolling, out):
 
 
 def _solved(x, rolling):
-    """``_solutions`` of an array of any shape: (..., 5); None where there is to be no table."""
+    """``_solutions`` of an array of any shape: (..., 5)."""
     out = np.empty((x.size, IMPULSES))
-    return out.reshape(*x.shape, IMPULSES) if _solutions(x.ravel(), rolling, out) else None
+    _solutions(x.ravel(), rolling, out)
+    return out.reshape(*x.shape, IMPULSES)
 
 
 @cache
@@ -139,8 +142,8 @@ def table_of(rolling: Rolling) -> Floats | None:
 def make(rolling: Rolling) -> Floats | None:
     """Make a table (SIZE,), from 13 solutions a cell; None where the cloth may hold the ball."""
     least = 2.0**LEAST_OCTAVE
-    at_least = _solved(np.array([least]), rolling)
-    if at_least is None:
+    at_least = np.empty((1, IMPULSES))
+    if not _solutions(np.array([least]), rolling, at_least):
         return None
     nodes = np.cos((2 * np.arange(DEGREE + 1) + 1) * pi / (2 * DEGREE + 2))
     tests = np.cos(np.arange(DEGREE + 2) * pi / (DEGREE + 1))  # there the error of the polynomial is largest
