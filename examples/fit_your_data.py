@@ -258,15 +258,15 @@ def fit(kind, columns, preset="match", fixed=None, law="constant", bootstrap=0, 
     if kind == "cushion" and "e_c_power" not in names and "e_c_power" not in fixed:
         fixed["e_c_power"] = 0.0
 
-    def physics(x):
+    def physics(x, **others):
         fields = fixed | dict(zip(names, (float(value) for value in x), strict=True))
         if "a" in fields:
             fields["mu_bb"] = tuple(fields.pop(name) for name in "abc")
-        return sn.Physics.preset(preset, **fields)
+        return sn.Physics.preset(preset, **fields, **others)
 
     def residuals(x, rows=slice(None)):
         picked = {name: values[rows] for name, values in columns.items()}
-        model = what.predict(picked, physics(x))
+        model = what.predict(picked, physics(x, tables=False))  # of constants that are used once
         return np.concatenate([(model[name] - picked[name]) / what.measured[name].error for name in measured])
 
     low, high = (np.array([getattr(what.constants[name], end) for name in names]) for end in ("low", "high"))

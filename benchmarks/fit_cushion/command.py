@@ -65,7 +65,7 @@ class Ratios(NamedTuple):
     @classmethod
     def measured(cls):
         """By the package's impact."""
-        constants = [sn.Physics.preset("match", e_c=float(e), e_c_power=0.0) for e in SHARES]
+        constants = [sn.Physics.preset("match", e_c=float(e), e_c_power=0.0, tables=False) for e in SHARES]
         return cls(
             *(np.array([impact(1.0, physics, rolling) for physics in constants]) for rolling in (True, False))
         )

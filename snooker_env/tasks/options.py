@@ -333,9 +333,17 @@ class Options:
 
 _FIELDS = tuple(f for f in fields(Options) if f.init)
 NAMES = (*(f.name for f in _FIELDS), *SAYS)
+
+
+def _has(name):
+    def has(self) -> bool:
+        return name in self.says
+
+    return property(has, doc=f'Whether ``says`` has "{name}", a bool.')
+
+
 for _name in SAYS:
-    _says: Any = lambda self, name=_name: name in self.says  # noqa: E731
-    setattr(Options, _name, property(_says, doc=f'Whether ``says`` has "{_name}", a bool.'))
+    setattr(Options, _name, _has(_name))
 
 
 def options_table() -> str:

@@ -153,10 +153,10 @@ def test_a_change_in_another_file_is_never_answered_from_the_cache(tmp_path):
     runs = [python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() for _ in range(2)]
     assert [run[:2] for run in runs] == [["1.4605", "0"], ["1.4605", "1"]]  # compiled once, then loaded
     assert runs[0][2].startswith(cache)
-    replace(at / "snooker_env/geometry.py", "(0.0, 1.4605)", "(0.0, 1.4005)")
+    replace(at / "snooker_env/geometry.py", "HALF_LENGTH / 2, 1.4605)", "HALF_LENGTH / 2, 1.4005)")
     run = python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split()
     assert run[:2] == ["1.4005", "0"] and run[2] != runs[0][2]
-    replace(at / "snooker_env/geometry.py", "(0.0, 1.4005)", "(0.0, 1.4605)")
+    replace(at / "snooker_env/geometry.py", "HALF_LENGTH / 2, 1.4005)", "HALF_LENGTH / 2, 1.4605)")
     # and the old code's cache is good again
     assert python(SPOT, at=at, NUMBA_CACHE_DIR=cache)[0].split() == runs[1]
 
