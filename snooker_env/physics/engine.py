@@ -385,7 +385,8 @@ def run_batch(balls, setup, max_events, log, ends, start, stop):
     status, n_events, n_segments, duration = ends
     phys, noses, jaws, falls, reach, fidelity, n_steps, doubt = setup
     boundaries = Boundaries(noses, jaws, falls, phys[P_R])
-    same = Setup(Law(phys, fidelity, n_steps), boundaries, reach, clear_box(boundaries))
+    clear = clear_box(boundaries)
+    same = Setup(Law(phys, fidelity, n_steps), boundaries, reach, clear)
     n = positions.shape[1]
     m = (n + LANES - 1) // LANES * LANES
     paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, pocket.FLIGHT)))
