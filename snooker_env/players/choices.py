@@ -4,10 +4,11 @@ from typing import Any
 
 import numpy as np
 
+from .._check import refuse_what
 from .._types import Floats, Ints
 from ..planning import Planner, Positions, action_masks, pots
 from ..planning.positions import seeds_of
-from ..tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS, choice_of
+from ..tasks.discrete_actions import SIDES, SIZE, SPEEDS, STROKES, TOPS, choice_of
 from ..tasks.ghost_ball import geometric_strokes
 from ..tasks.options import Options
 from .player import BoundPlayer, Ranked, Strokes, placed, streams_of
@@ -38,7 +39,7 @@ class ChoicePlayer(BoundPlayer):
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:
         """Score all choices in n positions of visits: float (n, 540), -inf for unavailable ones."""
-        raise NotImplementedError
+        raise NotImplementedError(f"{type(self).__qualname__} must have scores(at, seeds): float (n, {SIZE})")
 
     def figures(self, scores: Floats) -> Floats | None:
         """What a ranking shows of one position's scores (m,), highest first: float64 (m,), or None."""
@@ -67,7 +68,15 @@ class ChoicePlayer(BoundPlayer):
         at = Positions.of(positions)
         keys = seeds_of(seeds, len(at))
         visits, places = placed(at, keys)
-        return visits, places, self.scores(visits, keys)
+        scores = self.scores(visits, keys)
+        if np.shape(scores) != (len(at), SIZE):
+            what, wanted = f"array of shape {np.shape(scores)}", f"must have shape ({len(at)}, {SIZE})"
+            raise refuse_what(
+                f"{type(self).__qualname__}.scores",
+                what,
+                f"{wanted}: a score for each choice of each position",
+            )
+        return visits, places, scores
 
 
 def shares(scores: Floats) -> Floats:

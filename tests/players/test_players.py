@@ -8,7 +8,7 @@ import pytest
 
 import snooker_env as sn
 from snooker_env.planning import Planner, Position, Positions
-from snooker_env.players import FRAMES, VISITS, SeenPlayer, Strokes, decided, decision_seeds
+from snooker_env.players import FRAMES, VISITS, ChoicePlayer, SeenPlayer, Strokes, decided, decision_seeds
 from snooker_env.players.resolver import BUILT_IN
 from tests.positions import tables
 from tests.processes import copy_of_package, python
@@ -246,3 +246,20 @@ def test_the_planner_plays_in_the_package_alone(tmp_path):
     out = python(code, at=tmp_path)[0].strip().splitlines()
     assert out[0] == "['random', 'ghost_ball', 'best_pot', 'search', 'planner']" and "m/s" in "".join(out)
     assert out[-1] == "True True"
+
+
+def test_a_player_of_choices_says_what_its_scores_lack():
+    class Short(ChoicePlayer):
+        def scores(self, at, seeds):
+            return np.zeros((len(at), 5))
+
+    class Missing(ChoicePlayer):
+        pass
+
+    at = sn.Position(cue=(0.0, 0.9), black=(0.4, 1.3))
+    with pytest.raises(
+        ValueError, match=r"Short\.scores = array of shape \(1, 5\): must have shape \(1, 540\)"
+    ):
+        Short().at({}).play(at, [1])
+    with pytest.raises(NotImplementedError, match=r"Missing must have scores\(at, seeds\)"):
+        Missing().at({}).rank(at, [1])
