@@ -36,7 +36,10 @@ extensions = [
     "_extensions.repository_files",
 ]
 exclude_patterns = ["_build", "_extensions", "films/README.md", "pictures/README.md", "**/.ipynb_checkpoints"]
-suppress_warnings = ["myst-nb.lexer"]  # of notebooks, where they are not run
+suppress_warnings = [
+    "myst-nb.lexer",  # of notebooks, where they are not run
+    "ref.python",  # one name of a field, as "strokes", in several classes
+]
 
 # pages
 myst_enable_extensions = [
