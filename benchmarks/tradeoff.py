@@ -67,7 +67,7 @@ def impact_errors(found, truth):
 def play_impacts(n, seed):
     """Figures of every fidelity on the set of impacts."""
     x, normals = impacts(n, seed)
-    phys, truth, rows = sn.Physics.preset("paper").pack((1, 0)), results(x, normals, "reference"), {}
+    phys, truth, rows = sn.Physics.preset("paper").packed_for((1, 0)), results(x, normals, "reference"), {}
     for fidelity in IMPACTS:
         code, steps = contact.parse_fidelity(fidelity)
         guess = median_impact(x[:50], normals[:50], phys, code, steps, 2)

@@ -94,7 +94,7 @@ def collide_balls(
     physics, solver = Physics.of(physics), contact.parse_fidelity(fidelity)
     args = _velocity("v1", v1), _spin("w1", w1), _velocity("v2", v2), _spin("w2", w2)
     v1_after, w1_after, v2_after, w2_after, solved = _collide_balls(
-        *args, _unit_normal(normal), physics.pack(solver), *solver
+        *args, _unit_normal(normal), physics.packed_for(solver), *solver
     )
     if not solved:
         raise SimulationError(
@@ -141,7 +141,9 @@ def collide_cushion(
     """
     physics, solver = Physics.of(physics), contact.parse_fidelity(fidelity)
     args = _velocity("v", v), _spin("w", w)
-    v_after, w_after, solved = _collide_cushion(*args, _unit_normal(normal), physics.pack(solver), *solver)
+    v_after, w_after, solved = _collide_cushion(
+        *args, _unit_normal(normal), physics.packed_for(solver), *solver
+    )
     if not solved:
         raise SimulationError(
             f"the cushion impact of v, w = {args} did not end at fidelity {fidelity!r}; try another fidelity"

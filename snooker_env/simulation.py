@@ -307,7 +307,7 @@ def _run(state, physics, table, fidelity, max_events, log=None, threads=1, doubt
     ends = Ends(np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b))
     out = _Run(np.zeros((b, n), np.int64), *ends, *log)
     setup = (
-        physics.pack(fidelity),
+        physics.packed_for(fidelity),
         table.noses,
         table.jaws,
         table.falls,

@@ -187,7 +187,7 @@ def print_goals(name, us):
 
 def measure_impacts(n, repeats, seed=0):
     """Table of impacts."""
-    phys = sn.Physics.preset("paper").pack((1, 0))
+    phys = sn.Physics.preset("paper").packed_for((1, 0))
     x, normals = impacts(n, seed)
     truth, found = results(x, normals, "reference"), {}
     print(

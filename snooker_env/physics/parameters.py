@@ -15,7 +15,7 @@ from .._check import choice, number, refuse, truth
 from .._types import Floats, PhysicsName, Solver
 from ..geometry import BALL_RADIUS
 from .columns import P_BALLS, P_E_J, P_JAW, P_RAIL
-from .impact.tables import SIZE, TABLED, UNTABLED, Rolling, table_of
+from .impact.tables import SIZE, TABLED, Rolling, table_of
 
 MARLOW = (9.951e-3, 0.108, 1.088)
 """Marlow's law of ball-ball friction, mu(s) = a + b exp(-c s), s the slip speed in m/s."""
@@ -167,8 +167,8 @@ class Physics:
             )
 
     def __getstate__(self) -> dict[str, Any]:
-        """The fields alone: the tables are 230 KB."""
-        return {f.name: getattr(self, f.name) for f in dataclasses.fields(self)}
+        """Without the packed arrays: the tables are 230 KB."""
+        return {k: v for k, v in self.__dict__.items() if k not in ("_constants", "_with_tables")}
 
     @classmethod
     def preset(cls, name: PhysicsName = "paper", **fields: Any) -> "Physics":
@@ -230,12 +230,15 @@ class Physics:
             return MARLOW
         return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
 
-    def pack(self, solver: Solver = UNTABLED) -> Floats:
-        """The constants for the kernels, which only read them: one array, the same at each call.
+    def pack(self) -> Floats:
+        """The constants for the kernels: float64 (20,), at the places ``P_*`` of ``columns.py``, SI units."""
+        return self._constants.copy()
 
-        float64 (20 + m,): the constants at the places ``P_*`` of ``columns.py``, SI units; then, for a ``solver`` (as
-        of ``parse_fidelity``) that asks them, the tables of rolling impacts, which are made now if they are not a
-        preset's.
+    def packed_for(self, solver: Solver) -> Floats:
+        """The array that the kernels read, always the same one: nobody may write to it.
+
+        For a ``solver`` (as of ``parse_fidelity``) that asks tables of rolling impacts, they stand behind the constants;
+        those that are not a preset's are made now.
         """
         return self._with_tables if self.tables and solver[0] in TABLED else self._constants
 

@@ -153,7 +153,7 @@ Dynamics = tuple[Physics, tuple[int, int]]
 def law_of(dynamics: Dynamics) -> tuple[Floats, float, int, int]:
     """The fields of a ``CueLaw``."""
     physics, fidelity = dynamics
-    return physics.pack(fidelity), physics.end_mass_ratio, *fidelity
+    return physics.packed_for(fidelity), physics.end_mass_ratio, *fidelity
 
 
 def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:

@@ -78,7 +78,7 @@ class Rules:
 
     def packed(self) -> tuple[Floats, Floats, Floats]:
         """For the kernels: options of the action, deviations of the noise, physical parameters."""
-        return self.actions.pack(), self.noise.pack(BALL_RADIUS), self.physics.pack(self.fidelity)
+        return self.actions.pack(), self.noise.pack(BALL_RADIUS), self.physics.packed_for(self.fidelity)
 
 
 _ABOUT: dict[str, tuple[str, str | None, str]] = {

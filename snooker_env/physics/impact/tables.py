@@ -9,15 +9,15 @@ the closing speed are functions of x = a1 / closing alone, F1 and G1 odd, F2, G2
 A table has 16 cells in each octave of |x| from 2^-20 to 2^10, in each a polynomial of degree 5 through the solution at
 ``reference`` in its Chebyshev nodes. Below, F1 and G1 are linear and the others constant. A cell is tested between its
 nodes against ``reference`` when it is made; where it errs by more than ``WORST``, or the ball lifts off the cloth
-(a slip that ends within the impact is a kink), it is empty: the impact is solved as any other. Its error in play is
-below 1e-10 (``tests/physics/test_tables.py``), where "standard" promises 1e-6.
+(a slip that ends within the impact is a kink), it is empty: the impact is solved as any other. Errors of the
+presets' are below 1e-10 (``tests/physics/test_rolling.py``), where "standard" promises 1e-6.
 
 The tables of the presets come with the package. Those of other constants are made at the first need, in 5 to 200 ms. There
 is none where the cloth's friction may hold the ball (frictions above about 0.25).
 """
 
 from functools import cache, lru_cache
-from math import pi, sqrt
+from math import cos, pi, sqrt
 from pathlib import Path
 from typing import NamedTuple
 
@@ -32,8 +32,8 @@ from .impulse import NO_IMPULSE, OK, REFERENCE, outlook_of, solve
 from .inertia import Impulses, Slips
 from .polynomial import WORK
 
-TABLED, UNTABLED = (0, 1), (2, 0)
-"""The codes of the fidelities that ask tables ("fast", "standard"), and the solver "reference", which does not."""
+TABLED = (0, 1)
+"""The codes of the fidelities that ask tables: "fast" and "standard"."""
 LEAST_OCTAVE, OCTAVES, CELLS, DEGREE = -20, 30, 16, 5
 """|x| from 2^-20 to 2^10 (at which less than 0.1 % of the speed is into the cushion); in each octave 16 cells."""
 IMPULSES = 5
@@ -79,9 +79,8 @@ def look_up(phys, at, x):
     if cell < 0:
         cell, u = NEAR, size
     else:
-        u = (
-            2.0 * np.int64(((bits & _BELOW) << 4) | _ONE).view(np.float64) - 3.0
-        )  # the place in the cell, -1 to 1
+        # the place in the cell, -1 to 1
+        u = 2.0 * np.int64(((bits & _BELOW) << 4) | _ONE).view(np.float64) - 3.0
     i = at + cell * CELL
     k = i + DEGREE * IMPULSES
     if phys[i] != phys[i]:
@@ -127,6 +126,28 @@ def _solved(x, rolling):
     return out.reshape(*x.shape, IMPULSES)
 
 
+def _lagrange(nodes):
+    """The coefficients (m, m) of the polynomials that are 1 in one node and 0 in the others: column k of node k."""
+    columns = []
+    for k, node in enumerate(nodes):
+        column = [1.0]
+        for other in nodes[:k] + nodes[k + 1 :]:  # times (u - other) / (node - other)
+            higher, lower = [0.0, *column], [*column, 0.0]
+            column = [(h - other * c) / (node - other) for h, c in zip(higher, lower, strict=True)]
+        columns.append(column)
+    return np.array(columns).T
+
+
+def _combined(weights, values):
+    """``weights @ values`` in this order of sums: a matrix product has another on each kind of processor."""
+    return sum(weights[:, j, None] * values[..., j, None, :] for j in range(weights.shape[1]))
+
+
+def _values(u, coefficients):
+    """The polynomials at the places u (m,): (..., m, 5)."""
+    return _combined(np.vander(u, DEGREE + 1, increasing=True), coefficients)
+
+
 @cache
 def _kept() -> dict[Rolling, Floats]:
     """The tables that come with the package: of the presets."""
@@ -145,24 +166,23 @@ def make(rolling: Rolling) -> Floats | None:
     at_least = np.empty((1, IMPULSES))
     if not _solutions(np.array([least]), rolling, at_least):
         return None
-    nodes = np.cos((2 * np.arange(DEGREE + 1) + 1) * pi / (2 * DEGREE + 2))
-    tests = np.cos(np.arange(DEGREE + 2) * pi / (DEGREE + 1))  # there the error of the polynomial is largest
-    powers = np.arange(DEGREE + 1)
-    low = (
-        2.0 ** np.arange(LEAST_OCTAVE, LEAST_OCTAVE + OCTAVES)[:, None] * (1 + np.arange(CELLS) / CELLS)
-    ).ravel()
-    width = np.repeat(2.0 ** np.arange(LEAST_OCTAVE, LEAST_OCTAVE + OCTAVES) / CELLS, CELLS)
+    nodes = np.array([cos((2 * k + 1) * pi / (2 * DEGREE + 2)) for k in range(DEGREE + 1)])
+    tests = np.array(
+        [cos(k * pi / (DEGREE + 1)) for k in range(DEGREE + 2)]
+    )  # the polynomial errs most there
+    octaves = np.ldexp(1.0, np.arange(LEAST_OCTAVE, LEAST_OCTAVE + OCTAVES))
+    low, width = np.outer(octaves, 1.0 + np.arange(CELLS) / CELLS).ravel(), np.repeat(octaves / CELLS, CELLS)
     at_nodes, at_tests = (
         _solved(low[:, None] + width[:, None] * (u + 1) / 2, rolling) for u in (nodes, tests)
     )
     table = np.empty((NEAR + 1, DEGREE + 1, IMPULSES))
-    table[:NEAR] = np.linalg.inv(nodes[:, None] ** powers) @ at_nodes
+    table[:NEAR] = _combined(_lagrange(nodes.tolist()), at_nodes)
     # below all cells: F1 and G1 in proportion to |x|, F2, G2 and p as for none
     table[NEAR] = 0.0
     table[NEAR, 0, [1, 3, 4]] = at_least[0, [1, 3, 4]]
     table[NEAR, 1, [0, 2]] = at_least[0, [0, 2]] / least
     small = least * np.array([0.0, 1e-6, 1e-3, 0.1, 0.5, 0.9])
-    errors = np.abs((tests[:, None] ** powers) @ table[:NEAR] - at_tests).max((1, 2))
-    error_near = np.abs((small[:, None] ** powers) @ table[NEAR] - _solved(small, rolling)).max()
+    errors = np.abs(_values(tests, table[:NEAR]) - at_tests).max((1, 2))
+    error_near = np.abs(_values(small, table[NEAR]) - _solved(small, rolling)).max()
     table[~(np.append(errors, error_near) <= WORST)] = np.nan
     return table.ravel()
