@@ -27,10 +27,8 @@ _FIRST_LOG = 512
 
 def _balls(positions, velocities, spins, on_table, batch, checked=False):
     """The four arrays of a shot, new; ``checked`` too: within the limits, else the engine says so."""
-    lead, (farthest, fastest, most_spin) = (
-        (-1,) if batch else (),
-        (FARTHEST, FASTEST, MOST_SPIN) if checked else _UNCHECKED,
-    )
+    lead = (-1,) if batch else ()
+    farthest, fastest, most_spin = (FARTHEST, FASTEST, MOST_SPIN) if checked else (None, None, None)
     r = array("positions", positions, (*lead, -1, 2), farthest, "m")
     shape = r.shape[:-1]
     v = array("velocities", velocities, (*shape, 2), fastest, "m/s")
@@ -41,9 +39,6 @@ def _balls(positions, velocities, spins, on_table, batch, checked=False):
         )
     here = np.ones(shape, bool) if on_table is None else flags("on_table", on_table, shape)
     return r, v, w, here
-
-
-_UNCHECKED = None, None, None
 
 
 def _refuse(balls, physics, table):

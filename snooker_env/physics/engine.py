@@ -54,21 +54,15 @@ def _earliest(times, start):
     for k in range(start + LANES, start + size, LANES):
         least = lesser(lanes_at(times, k), least)
     t = min(min(lane(least, 0), lane(least, 1)), min(lane(least, 2), lane(least, 3)))
-    return t, _first(times, start, t, 0)
-
-
-@kernel
-def _first(times, start, t, k):
-    """The first index from k, a multiple of ``LANES``, whose time is not after t, the row's least or more."""
-    latest = lanes(t, t, t, t)
-    while True:
-        which = no_more(lanes_at(times, start + k), latest)
-        if which:
-            while not which & 1:
-                which >>= 1
-                k += 1
-            return k
+    latest, k = lanes(t, t, t, t), 0
+    which = no_more(lanes_at(times, start), latest)
+    while which == 0:
         k += LANES
+        which = no_more(lanes_at(times, start + k), latest)
+    while which & 1 == 0:
+        which >>= 1
+        k += 1
+    return t, k
 
 
 @kernel

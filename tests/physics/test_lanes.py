@@ -5,7 +5,7 @@ import numba
 import numpy as np
 import pytest
 
-from snooker_env._lanes import lane, lanes, lanes_at, put_lanes
+from snooker_env._lanes import lane, lanes, lanes_at, lesser, no_more, put_lanes
 
 
 @numba.njit(error_model="numpy")
@@ -35,3 +35,18 @@ def test_infinite_and_missing_numbers_stay_in_their_lane():
     sums(array, out)
     # inf * 0 + inf, nan, -0.0 + -0.0, 2 + 2
     assert np.isnan(out[2]) and np.isnan(out[3]) and out[4] == 0.0 and out[5] == 4.0
+
+
+@numba.njit(error_model="numpy")
+def compared(rows, out):
+    """``rows`` (2, 4), read by one index; the flags of row 0 <= row 1, and the lesser of each lane."""
+    x, y = lanes_at(rows, 0), lanes_at(rows, 4)
+    put_lanes(out, 0, lesser(x, y))
+    return no_more(x, y)
+
+
+def test_lanes_are_compared_one_by_one():
+    rows, out = np.array([[1.0, np.inf, 2.0, np.nan], [1.0, 3.0, np.inf, 0.0]]), np.zeros(4)
+    assert compared(rows, out) == 0b0101
+    assert out[:3].tolist() == [1.0, 3.0, 2.0]
+    assert compared(rows[::-1].copy(), out) == 0b0011
