@@ -79,7 +79,9 @@ def test_stable_baselines_checks_it(name, observation, longer, render_mode):
         warnings.simplefilter("always")
         arguments = {**viewed(observation), "render_mode": render_mode, **free(name, longer)}
         checker.check_env(gymnasium.make(name, **arguments), warn=True)
-    assert {str(w.message).partition(" (")[0] for w in caught} == ALLOWED[observation]
+    # (the garbage collector may close files of earlier tests meanwhile, and say so)
+    checked = [w for w in caught if not issubclass(w.category, ResourceWarning)]
+    assert {str(w.message).partition(" (")[0] for w in checked} == ALLOWED[observation]
 
 
 SPECS = [
