@@ -22,7 +22,8 @@ from snooker_env.physics.impact import contact
 
 from ._common import shot_sets
 from ._common.command import Command, at_least, run, save_json
-from .speed.command import impacts, median_impact, one_by_one, results
+from .speed.clock import Way, time_ways
+from .speed.command import impacts, median_impact, results
 
 OWN = ("fast", "standard", "reference")
 IMPACTS = (*OWN, *(f"euler:{n}" for n in (10, 30, 100, 200, 300, 1000, 3000, 10000)))
@@ -102,6 +103,8 @@ def play_shots(make, n, repeats, physics, seed):
     truth = play((v, w), "reference", events=True)
     assert truth.events is not None
     hits = np.array([(log["kind"] == EventKind.BALL_BALL).sum() for log in truth.events])
+    ways = {name: Way(physics, contact.parse_fidelity(name)) for name in SHOTS}
+    times = time_ways(ways, (shots.positions, v, w), repeats)
     rows = {}
     for name in (*SHOTS, ERRORS):
         errors = name == ERRORS
@@ -109,7 +112,7 @@ def play_shots(make, n, repeats, physics, seed):
         cue, ball, changed = compare(end, truth, shots.ball)
         groups = [(c, (hits >= c[0]) & (hits <= c[1]) & ~np.isnan(cue)) for c in CONTACTS]
         rows[name] = {
-            "us": None if errors else float(one_by_one(shots.positions, v, w, name, repeats, physics).mean()),
+            "us": None if errors else float(times[name].min(0).mean()),
             "cue_mm": spread(cue[~np.isnan(cue)]),
             "ball_mm": spread(ball[~np.isnan(ball)]),
             "changed": float(changed.mean()),

@@ -133,23 +133,35 @@ def _beyond(r, noses, falls):
 
 
 @numba.njit(nogil=True, error_model="numpy")
-def _in_boundary(r, noses, jaws, R):
-    """How deep a centre is in a nose or jaw; how far it is from the next jaw.
+def _in_jaw(jaw, x, y, R):
+    """How deep a centre is in a jaw (-inf: it does not face it), and how far from where it would be in it.
 
     A jaw is no deeper than a ball: behind a straight facing, far away, lies another part of the table. (No
     path gets there unseen: it is followed by steps much shorter.)
     """
+    dx, dy = x - jaw[0], y - jaw[1]
+    far, level, inner = hypot(dx, dy), jaw[2] + R, jaw[2] - R
+    ahead, cos_half = dx * jaw[3] + dy * jaw[4], jaw[5]
+    if ahead >= cos_half * far:
+        if inner < far:
+            return level - far, max(far - level, 0.0)
+        return -inf, inner - far
+    beside, sin_half = abs(dx * jaw[4] - dy * jaw[3]), sqrt(1.0 - cos_half * cos_half)
+    nearest = min(max(ahead * cos_half + beside * sin_half, inner), level)  # on the end of the arc's band
+    return -inf, hypot(ahead - nearest * cos_half, beside - nearest * sin_half)
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _in_boundary(r, noses, jaws, R):
+    """How deep a centre is in a nose or jaw; how far it is from the next jaw."""
     deepest, clear = -inf, inf
     for k in range(len(noses)):
         across, along = (r[0], r[1]) if noses[k, 0] == 0.0 else (r[1], r[0])
         if noses[k, 3] <= along <= noses[k, 4]:
             deepest = max(deepest, noses[k, 1] * across - (noses[k, 2] - R))
     for k in range(len(jaws)):
-        dx, dy = r[0] - jaws[k, 0], r[1] - jaws[k, 1]
-        far = hypot(dx, dy)
-        if dx * jaws[k, 3] + dy * jaws[k, 4] >= jaws[k, 5] * far and jaws[k, 2] - R < far:
-            deepest = max(deepest, jaws[k, 2] + R - far)
-        clear = min(clear, far - jaws[k, 2] - R)
+        deep, far = _in_jaw(jaws[k], r[0], r[1], R)
+        deepest, clear = max(deepest, deep), min(clear, far)
     return deepest, clear
 
 
@@ -173,7 +185,7 @@ def _along_boundary(rows, state, i, stop, noses, jaws, R, phys):
         deepest = max(deepest, deep)
         if not t < stop:
             return deepest
-        step = _step(min(max(clear, 0.0), 0.02), hypot(v[0], v[1]), accel, stop - t)
+        step = _step(min(clear, 0.02), hypot(v[0], v[1]), accel, stop - t)
         t = stop if not t + step < stop else t + step
 
 

@@ -16,6 +16,9 @@ pocket."""
 _FLIES = "if kind == events.POT and state[i] != FALLING"
 """Where the engine tests whether a ball at the edge of a pocket can meet a jaw behind it."""
 
+_TABLED = "TABLED = (0, 1)"
+"""The fidelities that ask tables of rolling impacts."""
+
 _ADDED = '''
 
 # Added by benchmarks/_common/variants.py.
@@ -71,5 +74,11 @@ def load():
         raise RuntimeError(f"engine.py has changed: {_FLIES!r} is not in it once")
     texts["physics/engine.py"] = texts["physics/engine.py"].replace(
         _FLIES, f"{_FLIES} and law.fidelity != {AT_ONCE}"
+    )
+    tables = texts["physics/impact/tables.py"]
+    if tables.count(_TABLED) != 1:
+        raise RuntimeError(f"tables.py has changed: {_TABLED!r} is not in it once")
+    texts["physics/impact/tables.py"] = tables.replace(
+        _TABLED, f"TABLED = (0, 1, *range({FREE_BALLS}, {AT_ONCE + 1}))"
     )
     return package_copies.load("snooker_env_variants", texts, ["simulation"])[0]

@@ -5,12 +5,13 @@ drop, the cost.
     [--json FILE]
         [--out FOLDER]
 
-The same strokes are played at ``standard`` with every model and without one; times are taken in turn, each
-shot's best of the repeats. A shot ends otherwise if other balls drop, or if the ball aimed at is hit in one
-case only. The cost is that of the whole shot: a ball that goes another way meets other things, which counts
-too; a model's own cost shows best where it does nothing. The first run compiles a copy of the package
-(``_common/variants.py``). Two rows give the scale: a professional's execution errors (the stroke again with
-others) and the aim turned by 1e-9 rad, which shows how much of an effect is chaos.
+The same strokes are played at ``standard`` with every model and without one; each shot's time is the least of
+the repeats, in which the ways take turns (``speed/clock.py``). A shot ends otherwise if other balls drop, or
+if the ball aimed at is hit in one case only. The cost is that of the whole shot: a ball that goes another way
+meets other things, which counts too; a model's own cost shows best where it does nothing. The first run
+compiles a copy of the package (``_common/variants.py``). Two rows give the scale: a professional's execution
+errors (the stroke again with others) and the aim turned by 1e-9 rad, which shows how much of an effect is
+chaos.
 
 The hop is not modelled, so its effect is computed. Friction at an impact throws the upper ball up at v_z. In
 the air nothing slows it; where it lands the cloth stops v_z, and friction comes all at once. However often it
@@ -25,7 +26,6 @@ import os
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +38,7 @@ from snooker_env.physics.meetings import PART
 
 from .._common import variants
 from .._common.command import Command, at_least, save_json
+from ..speed.clock import Way, time_ways
 from .models import MODELS, SCENES, STANDARD, head_on_stun
 from .picture import draw
 from .verdicts import CHAOS, ERRORS, FULL, HOP, reasons, verdict
@@ -45,43 +46,13 @@ from .verdicts import CHAOS, ERRORS, FULL, HOP, reasons, verdict
 FILE = "scene.png"
 
 
-def played(run, start, constants, table_, code):
+def played(way, start):
     """The batch played to the end: positions, potted, on table."""
     state = [a.copy() for a in start]
-    out = run(state, constants, table_, (code, 0), 100_000)
+    out = way.simulation._run(state, way.physics, way.table, way.solver, 100_000)
     if out.status.any():
         raise RuntimeError(f"shots {np.flatnonzero(out.status)} did not come to rest")
     return state[0], out.potted, state[3]
-
-
-def turned(items, k):
-    """The same in another order: who comes first finds the cache cold."""
-    k %= len(items)
-    return items[k:] + items[:k]
-
-
-def times(ways, start, repeats):
-    """Mean over shots of each one's best time [us], by way, less the best of calls that do nothing.
-
-    The ways and those calls take turns, so that all see the same machine.
-    """
-    nothing = next(iter(ways.values()))
-    best = {name: np.full(len(start[0]), np.inf) for name in ways}
-
-    def one(k, run, constants, table_, code, here=True):
-        state = [a[k : k + 1].copy() for a in start]
-        state[3] &= here
-        t = time.perf_counter()
-        run(state, constants, table_, (code, 0), 100_000)
-        return time.perf_counter() - t
-
-    call = min(one(0, *nothing, here=False) for _ in range(200))
-    for _ in range(repeats):
-        for k in range(len(start[0])):
-            call = min(call, one(k, *nothing, here=False))
-            for name, way in turned(list(ways.items()), k):
-                best[name][k] = min(best[name][k], one(k, *way))
-    return {name: float(b.mean() - call) * 1e6 for name, b in best.items()}
 
 
 def effect(end, truth, start, ball):
@@ -151,7 +122,7 @@ def study(make, n, repeats, physics, chosen, seed):
     """Everything about one scene, and its strokes."""
     constants, match = sn.Physics.preset(physics), sn.Table.preset("match")
     shots = make(n, constants, seed)
-    run = variants.load()._run if any(MODELS[m].code != STANDARD for m in chosen) else simulation._run
+    its = variants.load() if any(MODELS[m].code != STANDARD for m in chosen) else simulation
     here = np.ones(shots.positions.shape[:2], bool)
 
     def started(**how):
@@ -161,21 +132,19 @@ def study(make, n, repeats, physics, chosen, seed):
     # with a professional's errors no shot is exactly head-on
     errors = {} if make is head_on_stun else {"seed": seed + 1}
     start = started(**errors)
-    ways = {FULL: (run, constants, match, STANDARD)}
+    full = Way(constants, (STANDARD, 0), match, its)
+    ways = {FULL: full}
     for name in chosen:
         m = MODELS[name]
-        ways[name] = (
-            run,
-            sn.Physics.preset(physics, **m.physics) if m.physics else constants,
-            m.table or match,
-            m.code,
-        )
-    ends = {name: played(way[0], start, *way[1:]) for name, way in ways.items()}
+        changed = sn.Physics.preset(physics, **m.physics) if m.physics else constants
+        ways[name] = Way(changed, (m.code, 0), m.table or match, its)
+    ends = {name: played(way, start) for name, way in ways.items()}
     truth = ends.pop(FULL)
     rows = {name: effect(end, truth, start, shots.ball) for name, end in ends.items()}
     for name, how in ((ERRORS, {"seed": seed + 2}), (CHAOS, {**errors, "aim": 1e-9})):
-        rows[name] = effect(played(run, started(**how), constants, match, STANDARD), truth, start, shots.ball)
-    took = times(ways, start, repeats)
+        rows[name] = effect(played(full, started(**how)), truth, start, shots.ball)
+    times = time_ways(ways, start[:3], repeats)
+    took = {name: float(of.min(0).mean()) for name, of in times.items()}
     for name in chosen:
         rows[name]["cost"] = took[FULL] / took[name]
     rows[HOP] = hops(shots, start[1], start[2], constants)

@@ -24,9 +24,10 @@ began = time.process_time()
 import snooker_env as sn
 sn.simulate([(0.0, 0.0), (0.5, 0.01)], [(2.0, 0.0), (0.0, 0.0)], [(0.0, 0.0, 0.0)] * 2)
 found = {"first shot, cold cache [s of processor]": time.process_time() - began}
-from benchmarks.speed.command import KINDS, kernel_times, shots as shots_of
+from benchmarks.speed.clock import time_shots
+from benchmarks.speed.command import KINDS, shots as shots_of
 for kind in KINDS:
-    found[f"{kind} [us]"] = float(np.median(np.min(kernel_times(*shots_of(kind, shots, seed), "standard", repeats), axis=0)))
+    found[f"{kind} [us]"] = float(np.median(np.min(time_shots(*shots_of(kind, shots, seed), "standard", repeats), axis=0)))
 p, v, w = shots_of(KINDS[0], shots, seed)
 best = np.full(shots, np.inf)
 for _ in range(repeats):
@@ -35,6 +36,10 @@ for _ in range(repeats):
         sn.simulate(p[k], v[k], w[k])
         best[k] = min(best[k], time.perf_counter() - t)
 found[f"sn.simulate, {KINDS[0]} [us]"] = float(np.median(best)) * 1e6
+from benchmarks.vector import FRAME, native, rate, stepper
+for name, options in ("visits", {}), ("frames", FRAME):
+    step = stepper(native(1024, 1, **options), seed)
+    found[f"a step of 1,024 tables, {name} [us]"] = min(1e6 / rate(step, 1024, 1.0) for _ in range(repeats))
 print(json.dumps(found))
 """
 

@@ -5,13 +5,13 @@ A kernel plays shot after shot, each once, and notes the counter's ticks of each
 is in the figures and caches and branch predictors are as cold as the other shots leave them. What reading the
 counter costs, and making the work space (measured with an empty range of shots), is taken off. Ticks become
 nanoseconds by comparison with ``time.perf_counter`` over the first 50 ms. The counter is x86's (RDTSC,
-constant rate since about 2008); ``HAS_COUNTER`` is False on other machines.
+constant rate since about 2008); on other machines, ``HAS_COUNTER`` False, each shot is one call from Python.
 """
 
 import platform
 import time
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 from unittest import mock
 
 import numba
@@ -21,14 +21,15 @@ from numba.core import types
 from numba.extending import intrinsic
 
 import snooker_env as sn
+from snooker_env import simulation
 from snooker_env._jit import entry
-from snooker_env.physics import engine
 from snooker_env.physics.arrays import Law
 from snooker_env.physics.columns import P_E_B
 from snooker_env.physics.impact import contact
 from snooker_env.physics.impact.polynomial import WORK
-from snooker_env.simulation import MAX_EVENTS, _run
+from snooker_env.simulation import MAX_EVENTS
 
+STANDARD = contact.parse_fidelity("standard")
 HAS_COUNTER = platform.machine().lower() in ("x86_64", "amd64")
 
 
@@ -55,6 +56,8 @@ def _now():
 @cache
 def ns_per_tick():
     """Length of a tick [ns]."""
+    if not HAS_COUNTER:
+        return 1.0
     _now()
     t, c = time.perf_counter_ns(), _now()
     while time.perf_counter_ns() - t < 50_000_000:
@@ -62,16 +65,21 @@ def ns_per_tick():
     return (time.perf_counter_ns() - t) / (_now() - c)
 
 
-@entry
-def _each_shot(cost, idle, arguments):
-    n = len(cost)
-    for k in range(n):
-        before = ticks()
-        engine.run_batch(*arguments, k, k)  # pyright: ignore[reportCallIssue]
-        between = ticks()
-        engine.run_batch(*arguments, k, k + 1)  # pyright: ignore[reportCallIssue]
-        after = ticks()
-        idle[k], cost[k] = between - before, after - between
+@cache
+def _each_shot(run_batch):
+    """A kernel that plays shot after shot with this engine's ``run_batch`` and notes the ticks of each."""
+
+    @numba.njit(nogil=True, error_model="numpy")
+    def each(cost, idle, arguments):
+        for k in range(len(cost)):
+            before = ticks()
+            run_batch(*arguments, k, k)
+            between = ticks()
+            run_batch(*arguments, k, k + 1)
+            after = ticks()
+            idle[k], cost[k] = between - before, after - between
+
+    return each
 
 
 @entry(what="the benchmark of impacts", uses=(contact.collide_balls,))
@@ -95,40 +103,75 @@ def _each_impact(cost, idle, x, normals, phys, code, n_steps):
     return total
 
 
-def kernel_arguments(p, v, w, physics, fidelity, module=engine, run=_run):
-    """What ``simulation._run`` hands to the kernel ``run_batch`` for fresh copies of these shots, but for the
-    range at the end."""
+class Way(NamedTuple):
+    """How shots are played: constants, table, ``(code, steps)`` of the fidelity, and whose engine."""
+
+    physics: sn.Physics
+    solver: tuple[int, int] = STANDARD
+    table: sn.Table = sn.Table.preset("match")
+    simulation: Any = simulation
+
+
+def kernel_arguments(start, way):
+    """What ``simulation._run`` hands to the kernel ``run_batch`` for fresh copies of these shots (positions,
+    velocities, spins), but for the range at the end."""
     caught = []
-    state = [np.array(a) for a in (p, v, w, np.ones(p.shape[:2], bool))]
-    with mock.patch.object(module, "run_batch", lambda *arguments: caught.append(arguments[:-2])):
-        run(state, physics, sn.Table.preset("match"), contact.parse_fidelity(fidelity), MAX_EVENTS)
+    state = [np.array(a) for a in (*start, np.ones(start[0].shape[:2], bool))]
+    engine = way.simulation.engine
+    with mock.patch.object(engine, "run_batch", lambda *arguments: caught.append(arguments[:-2])):
+        way.simulation._run(state, way.physics, way.table, way.solver, MAX_EVENTS)
     return caught[0]
 
 
-def _passes(work, n, passes):
-    """(passes, n) microseconds: ``work(cost, idle)`` once unseen, then ``passes`` times."""
-    cost, idle, found = np.zeros(n, np.int64), np.zeros(n, np.int64), []
-    for _ in range(passes + 1):
-        work(cost, idle)
-        found.append((cost - np.median(idle)) * ns_per_tick() / 1e3)
-    return np.array(found[1:])
+def _play(run_batch, cost, idle, arguments):
+    """One pass over the shots: the ticks of each, and those of a call that plays none."""
+    if HAS_COUNTER:
+        _each_shot(run_batch)(cost, idle, arguments)
+        return
+    for k in range(len(cost)):
+        before = time.perf_counter_ns()
+        run_batch(*arguments, k, k)
+        between = time.perf_counter_ns()
+        run_batch(*arguments, k, k + 1)
+        idle[k], cost[k] = between - before, time.perf_counter_ns() - between
+
+
+def _less_idle(cost, idle):
+    return (cost - np.median(idle)) * ns_per_tick() / 1e3
+
+
+def time_ways(ways, start, passes=1):
+    """Kernel time of every shot [us], {name: (passes, shots)}, for each name of ``ways`` (name: ``Way``).
+
+    In a pass each shot is played once, one after the other; the ways take turns, and who comes first changes
+    from pass to pass, so that all see the same machine. A first pass is not counted.
+    """
+    cost, idle = np.zeros((2, len(start[0])), np.int64)
+    names, times = list(ways), {name: [] for name in ways}
+    for number in range(passes + 1):
+        first = number % len(names)
+        for name in names[first:] + names[:first]:
+            way = ways[name]
+            _play(way.simulation.engine.run_batch, cost, idle, kernel_arguments(start, way))
+            if number > 0:
+                times[name].append(_less_idle(cost, idle))
+    return {name: np.array(of) for name, of in times.items()}
 
 
 def time_shots(p, v, w, fidelity="standard", passes=1, physics=None):
-    """Kernel time of every shot [us], (passes, shots): in a pass each shot is played once, one after the
-    other."""
-    physics = sn.Physics.of(physics)
-    return _passes(
-        lambda cost, idle: _each_shot(cost, idle, kernel_arguments(p, v, w, physics, fidelity)),
-        len(p),
-        passes,
-    )
+    """Kernel time of every shot [us], (passes, shots), played in one way."""
+    way = Way(sn.Physics.of(physics), contact.parse_fidelity(fidelity))
+    return time_ways({fidelity: way}, (p, v, w), passes)[fidelity]
 
 
 def time_impacts(x, normals, phys, fidelity, passes=1):
     """Kernel time of every impact [us], (passes, impacts)."""
     code, steps = contact.parse_fidelity(fidelity)
-    return _passes(lambda cost, idle: _each_impact(cost, idle, x, normals, phys, code, steps), len(x), passes)
+    cost, idle, times = np.zeros(len(x), np.int64), np.zeros(len(x), np.int64), []
+    for _ in range(passes + 1):
+        _each_impact(cost, idle, x, normals, phys, code, steps)
+        times.append(_less_idle(cost, idle))
+    return np.array(times[1:])
 
 
 def time_impact_set(x, normals, phys, fidelity, repeats=1):

@@ -38,11 +38,10 @@ from snooker_env.physics.columns import P_E_B
 from snooker_env.physics.engine import EventKind
 from snooker_env.physics.impact import contact
 from snooker_env.physics.impact.polynomial import WORK
-from snooker_env.physics.table import Table
-from snooker_env.simulation import _run
 
 from .._common.command import Command, at_least, save_json
 from . import against_commit, against_pooltool, breakdown, clock, first_shot, growth
+from .clock import time_shots
 
 R = 0.02625
 IMPACT_FIDELITIES = ("fast", "standard", "reference", "euler:200", "euler:1000", "euler:10000")
@@ -138,38 +137,6 @@ def shots(kind, n, seed=0):
     return p, v, w
 
 
-def one_by_one(p, v, w, fidelity, repeats, physics=None):
-    """Each shot's own best time [us]: the batch kernel on a slice of one, less the best of calls that do
-    nothing, made in turn with it."""
-    code = contact.parse_fidelity(fidelity)
-    physics, table = sn.Physics.of(physics), Table.preset("match")
-    here = np.ones(p.shape[:2], bool)
-    best = np.full(len(p), np.inf)
-    empty = [np.zeros((1, 1, 2)), np.zeros((1, 1, 2)), np.zeros((1, 1, 3)), np.ones((1, 1), bool)]
-    call = min(_call(empty, physics, table, code) for _ in range(200))
-    for _ in range(repeats):
-        for k in range(len(p)):
-            call = min(call, _call(empty, physics, table, code))
-            state = [a[k : k + 1].copy() for a in (p, v, w, here)]
-            t = time.perf_counter()
-            _run(state, physics, table, code, 100_000)
-            best[k] = min(best[k], time.perf_counter() - t)
-    return (best - call) * 1e6
-
-
-def _call(state, physics, table, code):
-    t = time.perf_counter()
-    _run([a.copy() for a in state], physics, table, code, 100_000)
-    return time.perf_counter() - t
-
-
-def kernel_times(p, v, w, fidelity="standard", repeats=1):
-    """Each shot's kernel time [us], (passes, shots)."""
-    if clock.HAS_COUNTER:
-        return clock.time_shots(p, v, w, fidelity, repeats)
-    return one_by_one(p, v, w, fidelity, repeats)[None]
-
-
 def summary(times):
     """Figures of a set; times (passes, items). An item's time is its median over the passes, so that no
     interruption enters a mean."""
@@ -232,7 +199,7 @@ def measure_shots(n, repeats, seed=0):
     for kind in KINDS:
         shots_ = shots(kind, n, seed)
         for fidelity in SHOT_FIDELITIES:
-            row = summary(kernel_times(*shots_, fidelity, repeats))
+            row = summary(time_shots(*shots_, fidelity, repeats))
             batch = sn.simulate_batch(*shots_, fidelity=fidelity, threads=1, events=True)
             assert batch.events is not None
             row["events"] = float(np.mean(batch.event_count))
@@ -259,7 +226,7 @@ def measure_breakdown(n, repeats, detailed, seed=0):
     """Where the time of a mean shot goes."""
     found: dict[str, dict] = {}
     print(
-        f"\nWhere the time goes, `standard`, means over {n} shots, the quickest of {repeats} passes"
+        f"\nWhere the time goes, `standard`, means over {n} shots, medians of {repeats} passes"
         + ("" if detailed else " (--profile: each function)")
     )
     for kind in KINDS:
@@ -318,7 +285,7 @@ def measure_against(n, repeats, seed=0):
             "pooltool": float(np.median(peer["us"])),
             "pooltool_events": float(np.median(peer["events"])),
             "failed": peer["failed"],
-            "kernel": summary(kernel_times(p, v, w, "standard", repeats))["median"],
+            "kernel": summary(time_shots(p, v, w, "standard", repeats))["median"],
             "simulate": float(np.median([_simulate_seconds(*shot) for shot in zip(p, v, w, strict=True)]))
             * 1e6,
             "events": float(np.median(sn.simulate_batch(p, v, w, threads=1).event_count)),
@@ -389,7 +356,7 @@ def main():
     if "growth" in parts:
 
         def middle(p, v, w):
-            return np.median(kernel_times(p, v, w, "standard", options.repeats), axis=0)
+            return np.median(time_shots(p, v, w, "standard", options.repeats), axis=0)
 
         found = growth.growth(
             partial(shots, seed=options.seed),

@@ -48,11 +48,11 @@ def per_shot(call, shots, *options, repeats, batch=None):
     return float(min(found)) / n * 1e6
 
 
-def growth(make, kernel_times, n, largest, repeats):
-    """Figures. make(kind, n): sets of shots; kernel_times(p, v, w): each shot's own us; ``largest``: no batch
+def growth(make, time_shots, n, largest, repeats):
+    """Figures. make(kind, n): sets of shots; time_shots(p, v, w): each shot's own us; ``largest``: no batch
     above it."""
     sets = {b: make(f"random {b} balls", n) for b in BALLS}
-    times = {b: kernel_times(*shots) for b, shots in sets.items()}
+    times = {b: time_shots(*shots) for b, shots in sets.items()}
     counts = {b: sn.simulate_batch(*shots, threads=1).event_count for b, shots in sets.items()}
     rack, table = make("break-off", n), sets[22]
     batches = [b for b in BATCHES if b <= largest]
@@ -66,7 +66,7 @@ def growth(make, kernel_times, n, largest, repeats):
             "random 22 balls": {"events": counts[22].tolist(), "us": times[22].tolist()},
             "break-off": {
                 "events": sn.simulate_batch(*rack, threads=1).event_count.tolist(),
-                "us": kernel_times(*rack).tolist(),
+                "us": time_shots(*rack).tolist(),
             },
         },
         "batch": [{"shots": b, "kernel us": kernel[b], "simulate_batch us": public[b]} for b in batches],
