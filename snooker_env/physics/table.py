@@ -191,9 +191,13 @@ class Table:
         return _again, (self.name, self.noses, self.jaws, self.falls, self.ball_radius, self.pockets)
 
     def _reach(self, R):
-        """The bounds (2, 2), widened by how far a ball can lie past them in a pocket's mouth; kept per R."""
+        """The bounds (2, 2), widened by how far a ball can lie past them in a pocket's mouth; kept per R.
+
+        Without pockets that is nowhere: beyond a corner's two noses a ball would be off the table.
+        """
         if R not in self._reaches:
-            past = max(MOUTH, deepest(self.jaws, self.falls, self.bounds, R))
+            has_mouths = len(self.jaws) + len(self.falls) > 0
+            past = max(MOUTH, deepest(self.jaws, self.falls, self.bounds, R)) if has_mouths else 0.0
             self._reaches[R] = self.bounds + np.array([-past, past])
         return self._reaches[R]
 

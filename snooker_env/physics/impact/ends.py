@@ -7,7 +7,7 @@ with work W_c, the impact at W = (1 - e^2) W_c: energetic restitution [Stronge 1
 from math import sqrt
 from typing import NamedTuple
 
-from ..._jit import kernel
+from ..._jit import inlined, kernel
 from . import dormand_prince
 from .coulomb import held
 from .inertia import slips_after
@@ -17,6 +17,14 @@ from .taylor import turned
 _CLOSE = 0.01
 """Exactness of the ends over tol and the step. Doubled or halved: no change above rounding, as Halley's next
 step is more exact than either."""
+_NEAR_AN_END = 0.02
+"""So near the ends of a step, as part of it, its polynomial errs by a hundredth of what it does in the middle."""
+_DIP_HALVINGS = 20
+"""A minimum is flat: a millionth of a step beside it the speed errs by a millionth squared."""
+NEVER = -1.0
+"""No time."""
+WHOLE = 1.0
+"""The step is not split."""
 _TURN_HALVINGS, _LOOSE_HALVINGS = 50, 40
 """Bisections to rounding; and to 1e-12 of a step, where a beginning slip is still zero. Doubled or halved: no
 change above 1e-15 in impacts of play."""
@@ -57,20 +65,54 @@ def ends_inside(end, closing, target):
     return closing <= 0.0 if target.compressing else target.work >= end.W
 
 
+@inlined
+def may_dip(before, rate, span, after):
+    """Whether the closing speed, from ``before`` at this rate to ``after``, may have a minimum inside the step:
+    a parabola's, or one as flat."""
+    return rate < 0.0 and after > 0.0 and after > before + 0.5 * rate * span
+
+
+@kernel
+def dips_at(series, degree, span):
+    """When the closing speed is at its minimum below zero inside a step whose ends are above; ``NEVER``: it is not.
+
+    Friction can speed a ball up across the nose and then into it, so that an impact all but ends and goes on.
+    """
+    low, high = 0.0, span
+    for _ in range(_DIP_HALVINGS):
+        t = 0.5 * (low + high)
+        low, high = (t, high) if value_at(series, degree, CLOSING, t)[1] < 0.0 else (low, t)
+    return high if value_at(series, degree, CLOSING, high)[0] < 0.0 else NEVER
+
+
 @kernel
 def locate_end(series, degree, span, end, closing, target, e, tol):
-    """For such a step: whether the impact ends, when (or when compression does), and the new target."""
+    """For such a step: whether the impact ends, when compression or (if that is over) the impact ends, when the
+    last of the two does, and the new target."""
     over, t, near = False, 0.0, _CLOSE * tol * span
     if target.compressing:
         # the work is stationary there: it errs by the time's error squared, _CLOSE tol; the speed by that / e
         t = _end_of_compression(series, degree, span, closing, near if e < _CLOSE else sqrt(near * span))
         top = value_at(series, degree, WORK_DONE, t)[0]
         target = Target(False, top, (1.0 - e * e) * top)
+    first = t
     if target.work >= end.W:
         over = True
         if e > 0.0:
             t = _end_of_restitution(series, degree, t, span, end.W, target, near)
-    return over, t, target
+        first = first if first > 0.0 else t
+    return over, first, t, target
+
+
+@kernel
+def split_at(first, last):
+    """The fraction of a Runge-Kutta step up to which it is taken again, so that it ends where compression or the
+    impact does: its polynomial, of a lower order, is exact at its ends only. ``WHOLE``: it is near enough."""
+    if _NEAR_AN_END < first < 1.0 - _NEAR_AN_END:
+        return first
+    if _NEAR_AN_END < last < 1.0 - _NEAR_AN_END:
+        return last
+    return WHOLE
 
 
 @kernel

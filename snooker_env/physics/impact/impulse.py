@@ -42,9 +42,9 @@ from .coulomb import (
     stopped,
     wedged,
 )
-from .ends import Target, ends_inside, locate_end, turns_at
+from .ends import NEVER, WHOLE, Target, dips_at, ends_inside, locate_end, may_dip, split_at, turns_at
 from .inertia import K_CLOTH, Impulses, slips_after
-from .polynomial import state_at
+from .polynomial import CLOSING, ROW, state_at
 from .transitions import STANDS, Moment, Step, Tolerances, cloth_after, mode_after
 
 OK, TOO_MANY_STEPS = 0, 1
@@ -68,6 +68,8 @@ motion across the nose has no end. With a third of the steps a harsh cushion imp
 _NEAR = 10.0
 """A cloth slip below this many delta is zero: more than the shortest step covers, so that a stop is detected.
 Halved: 5 % more steps at ``fast`` in harsh cushion impacts."""
+_ROUNDING = 1e-15
+"""What slips err by when they have fallen to zero, over those at first: such a slip is zero too."""
 _SERIES = 40.0
 """Limit of a series' last terms, over tol; their sum is far above the step's error. Doubled: 3 % fewer steps,
 twice the error (8e-7 for two balls at ``standard``). Halved: the reverse."""
@@ -200,11 +202,23 @@ def _series_step(series, x, slip, starts, left, problem, tol, order):
     o1, o2 = (slip.b1, slip.b2) if starts else (0.0, 0.0)
     end = state_at(series, degree, span)
     slip_end = slips_after(end, problem.start, problem.contact)
+    if may_dip(slip.closing, series[ROW + CLOSING], span, slip_end.closing):
+        t = dips_at(series, degree, span)
+        if t != NEVER:
+            span = t
+            end = state_at(series, degree, span)
+            slip_end = slips_after(end, problem.start, problem.contact)
     if taylor.turned(series, slip_end.b1 - o1, slip_end.b2 - o2):
         span = turns_at(series, degree, span, o1, o2, problem)
         end = state_at(series, degree, span)
         slip_end = slips_after(end, problem.start, problem.contact)
     return end, slip_end, degree, span
+
+
+@inlined
+def _closing_rate(per, contact):
+    """The rate of the closing speed while the impulses grow at the rates ``per``."""
+    return contact.d_n * per.p - contact.d_a * per.F2 - contact.d_b * per.G2 + contact.l_n * per.Z
 
 
 @inlined
@@ -225,6 +239,10 @@ def _runge_kutta_step(series, start, h, mode, cloth, outlook, limits, problem):
             shrink = _TURNED_FACTOR  # the cloth's slip reversed inside the step, perhaps between two stages
         elif -_BELOW * limits.tol > end.Z and x.Z > 0.0 and h > _SHORTEST:
             shrink = _LANDED_FACTOR  # the ball came down inside the step: find where
+        elif may_dip(slip.closing, _closing_rate(per, contact), h, slip_end.closing):
+            dormand_prince.leave_polynomial(series, x, end, h, contact)
+            t = dips_at(series, dormand_prince.DEGREE, 1.0)
+            shrink = t if t != NEVER else STANDS
     return Moment(end, slip_end, per_end), error, shrink
 
 
@@ -253,10 +271,11 @@ def _bounded(h, start, s, mode, cloth, outlook, limits, contact):
 def solve(problem, accuracy, series):
     """Integrate one impact, its closing speed 1: the impulses at its end, and OK or TOO_MANY_STEPS."""
     order = accuracy.order
-    limits = Tolerances(accuracy.tol, accuracy.delta, _NEAR * accuracy.delta, accuracy.creep)
     outlook = outlook_of(problem)
     slip = problem.start
     s = sqrt(slip.a1 * slip.a1 + slip.a2 * slip.a2)
+    delta = max(accuracy.delta, _ROUNDING * (s + abs(slip.b1) + abs(slip.b2)))
+    limits = Tolerances(accuracy.tol, delta, _NEAR * delta, accuracy.creep)
     mode, cloth, per, h = _first_state(s, outlook, limits, problem)
     now, target, located = Moment(NO_IMPULSE, slip, per), Target(True, 0.0, 0.0), False
     for n in range(_MAX_STEPS):
@@ -299,7 +318,15 @@ def solve(problem, accuracy, series):
         if ends_inside(x, slip.closing, target):
             if not by_series:
                 dormand_prince.leave_polynomial(series, now.x, x, h, problem.contact)
-            over, t, target = locate_end(series, degree, span, x, slip.closing, target, problem.e, limits.tol)
+            over, first, t, ends_at = locate_end(
+                series, degree, span, x, slip.closing, target, problem.e, limits.tol
+            )
+            if not by_series and h > _SHORTEST:
+                part = split_at(first, t)
+                if part != WHOLE:
+                    h *= part
+                    continue
+            target = ends_at
             if over:
                 return state_at(series, degree, t), OK
 
