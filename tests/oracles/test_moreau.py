@@ -119,3 +119,44 @@ def test_impacts_of_many_steps(mu_w, mu_s, sin_theta, e, v, w):
         20_000,
     )
     assert np.abs(parts(sn.collide_cushion(v, w, Y, physics, "reference")) - truth).max() < 1e-6
+
+
+HARSH = [  # mu_c, mu_s, sin_theta, e, v [m/s], w [rad/s]; what was wrong
+    # the closing speed touches zero inside a step and rises again: the impact went on
+    (0.75235, 0.55663, 0.95, 0.0, (-0.56077, 0.10736, 0.0), (211.734, 134.83, 297.13)),
+    # spin drives the ball a thousand times as hard into the nose: no end
+    (0.0, 0.8568625, 0.9, 0.0, (0.04113075, 0.00064485, 0.0), (-286.87665, 400.366713, 168.870631)),
+    (1.0, 0.4824037, 0.9, 0.0, (-0.0422333, 1.62064879e-6, 0.0), (2.01108713, 2.40548072, 2.25638657)),
+    (0.14, 0.8, 0.9, 0.5, (-0.01399648, 0.00072859, 0.0), (-357.999087, -93.065672, 182.55198)),
+]
+
+
+@pytest.mark.parametrize(("mu_w", "mu_s", "sin_theta", "e", "v", "w"), HARSH)
+def test_impacts_that_spin_drives(mu_w, mu_s, sin_theta, e, v, w):
+    """By Moreau's steps if those are few enough; else by the other fidelity."""
+    physics = sn.Physics(mu_c=mu_w, mu_s=mu_s, sin_theta=sin_theta, e_c=e, tables=False)
+    speed = max(np.linalg.norm(v), R * np.linalg.norm(w))
+    standard, reference = (
+        parts(sn.collide_cushion(v, w, Y, physics, fidelity)) for fidelity in ("standard", "reference")
+    )
+    assert np.abs(standard - reference).max() < 2e-6 * speed
+    truth, coarse = extrapolated(
+        lambda steps: moreau_cushion(
+            v, w, Y, R=R, e=e, mu_w=mu_w, mu_s=mu_s, sin_theta=sin_theta, steps=steps
+        ),
+        2000,
+    )
+    assert np.isnan(coarse) or np.abs(reference - truth).max() < 0.2 * coarse + 1e-6 * speed
+
+
+@pytest.mark.parametrize("fidelity", ["standard", "reference"])
+@pytest.mark.parametrize("e", [0.0, 0.3, 1.0])
+def test_a_smooth_nose_and_a_cloth_that_holds_return_a_rolling_ball_rolling(fidelity, e):
+    """In closed form: the closing speed and its roll change sign, times e; nothing else changes. The impact is one
+    step of many slips at the nose, whose middle is not its end."""
+    physics = sn.Physics(mu_c=0.0, mu_s=0.8, sin_theta=0.9, e_c=e)
+    v, w = np.array([-0.13392, 0.64267, 0.0]), np.array([-0.64267 / R, -0.13392 / R, 73.1])
+    v2, w2 = sn.collide_cushion(v, w, Y, physics, fidelity)
+    speed = R * np.linalg.norm(w)
+    assert np.abs(np.array(v2) - (v[0], -e * v[1], 0.0)).max() < 1e-7 * speed
+    assert R * np.abs(np.array(w2) - (-e * w[0], w[1], w[2])).max() < 1e-7 * speed

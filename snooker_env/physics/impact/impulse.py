@@ -69,14 +69,15 @@ _NEAR = 10.0
 """A cloth slip below this many delta is zero: more than the shortest step covers, so that a stop is detected.
 Halved: 5 % more steps at ``fast`` in harsh cushion impacts."""
 _ROUNDING = 1e-15
-"""What slips err by when they have fallen to zero, over those at first: such a slip is zero too."""
+"""What impulses and slips err by at the least, over the slips at first."""
 _SERIES = 40.0
 """Limit of a series' last terms, over tol; their sum is far above the step's error. Doubled: 3 % fewer steps,
 twice the error (8e-7 for two balls at ``standard``). Halved: the reverse."""
 _OVERSHOOT = 1.05
 """The estimated normal impulse over one without friction. Halved: 2 to 5 times the steps to the end."""
 _LEAST_LEFT = 0.1
-"""The remaining impulse is taken to be at least this part of that estimate."""
+"""The remaining impulse is taken to be at least this part of that estimate, or of what exceeds it: spin can drive
+a ball into a cushion a thousand times as hard as it came."""
 _FIRST = 0.4
 """The first Runge-Kutta step of a slip over the longest stable one; the error control corrects it."""
 _NO_FRICTION = 1e-9
@@ -191,7 +192,7 @@ def _first_state(s, outlook, limits, problem):
 @inlined
 def _left(x, outlook):
     """Estimate of the remaining normal impulse."""
-    return max(outlook.p_full - x.p, _LEAST_LEFT * outlook.p_full)
+    return max(outlook.p_full - x.p, _LEAST_LEFT * max(outlook.p_full, x.p - outlook.p_full))
 
 
 @inlined
@@ -274,8 +275,9 @@ def solve(problem, accuracy, series):
     outlook = outlook_of(problem)
     slip = problem.start
     s = sqrt(slip.a1 * slip.a1 + slip.a2 * slip.a2)
-    delta = max(accuracy.delta, _ROUNDING * (s + abs(slip.b1) + abs(slip.b2)))
-    limits = Tolerances(accuracy.tol, delta, _NEAR * delta, accuracy.creep)
+    least = _ROUNDING * (s + abs(slip.b1) + abs(slip.b2))
+    tol, delta = max(accuracy.tol, least), max(accuracy.delta, least)
+    limits = Tolerances(tol, delta, _NEAR * delta, accuracy.creep)
     mode, cloth, per, h = _first_state(s, outlook, limits, problem)
     now, target, located = Moment(NO_IMPULSE, slip, per), Target(True, 0.0, 0.0), False
     for n in range(_MAX_STEPS):
@@ -332,7 +334,6 @@ def solve(problem, accuracy, series):
 
         # Go on: the next states, rates and step.
         if not by_series:
-            tol = limits.tol
             h *= (
                 _MOST_FACTOR
                 if error < _EXACT * tol
