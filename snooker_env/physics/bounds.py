@@ -1,6 +1,6 @@
 """How far can a ball go on a table, and how narrow is it? From the arrays of a ``table.Table``."""
 
-from math import hypot, inf, sqrt
+from math import acos, cos, hypot, inf, pi, sqrt
 
 import numpy as np
 
@@ -18,13 +18,17 @@ def bounds_of(noses: Floats) -> Floats:
     return bounds
 
 
+_PAST_THE_END = 1e-3
+"""So much of a jaw's circle beyond its arc's end counts [m]: an arc may end a little before the fall's edge."""
+
+
 def deepest(jaws: Floats, falls: Floats, bounds: Floats, R: float) -> float:
     """How far past the noses a ball of radius R can lie between a jaw and the fall, plus 0.5 mm [m]."""
     deepest = 0.0
     for x, y, edge in falls:
         for jx, jy, radius, ux, uy, cos_half in jaws:
             # the ball's centre on the fall's edge and the ball at the jaw: the crossing of two circles
-            dx, dy, reach = jx - x, jy - y, radius + R
+            dx, dy, reach, half = jx - x, jy - y, radius + R, acos(min(max(cos_half, -1.0), 1.0))
             far = hypot(dx, dy)
             if not abs(reach - edge) < far < reach + edge:
                 continue
@@ -32,7 +36,7 @@ def deepest(jaws: Floats, falls: Floats, bounds: Floats, R: float) -> float:
             off = sqrt(edge * edge - along * along)
             for side in (-1.0, 1.0):
                 px, py = x + (along * dx - side * off * dy) / far, y + (along * dy + side * off * dx) / far
-                on_arc = (px - jx) * ux + (py - jy) * uy >= cos_half * reach
+                on_arc = (px - jx) * ux + (py - jy) * uy >= reach * cos(min(half + _PAST_THE_END / reach, pi))
                 if on_arc and not _in_a_jaw(px, py, jaws, R):
                     past = max(bounds[0, 0] - px, px - bounds[0, 1], bounds[1, 0] - py, py - bounds[1, 1])
                     deepest = max(deepest, past + 5e-4)

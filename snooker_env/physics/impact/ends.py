@@ -82,7 +82,8 @@ def dips_at(series, degree, span):
     for _ in range(_DIP_HALVINGS):
         t = 0.5 * (low + high)
         low, high = (t, high) if value_at(series, degree, CLOSING, t)[1] < 0.0 else (low, t)
-    return high if value_at(series, degree, CLOSING, high)[0] < 0.0 else NEVER
+    # at the step's end it is none of its inside: rounding, where the closing speed all but vanishes
+    return high if high < span and value_at(series, degree, CLOSING, high)[0] < 0.0 else NEVER
 
 
 @kernel

@@ -240,7 +240,7 @@ def _runge_kutta_step(series, start, h, mode, cloth, outlook, limits, problem):
             shrink = _TURNED_FACTOR  # the cloth's slip reversed inside the step, perhaps between two stages
         elif -_BELOW * limits.tol > end.Z and x.Z > 0.0 and h > _SHORTEST:
             shrink = _LANDED_FACTOR  # the ball came down inside the step: find where
-        elif may_dip(slip.closing, _closing_rate(per, contact), h, slip_end.closing):
+        elif h > _SHORTEST and may_dip(slip.closing, _closing_rate(per, contact), h, slip_end.closing):
             dormand_prince.leave_polynomial(series, x, end, h, contact)
             t = dips_at(series, dormand_prince.DEGREE, 1.0)
             shrink = t if t != NEVER else STANDS
