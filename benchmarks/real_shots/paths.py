@@ -13,8 +13,8 @@ from snooker_env.physics.table import Table
 
 SPEED, AIM, SIDE, TOP, ELEVATION, START = range(6)
 """A strike: speed [m/s], direction [rad], offsets over R, elevation [rad], and its time on the track's clock [s]."""
-_LOG = 48
-_ROOM = 80
+_LOG = 100
+_ROOM = 110
 _CHUNK = 400
 _BALL_BALL, _CUSHION = int(EventKind.BALL_BALL), int(EventKind.CUSHION)
 
@@ -29,8 +29,8 @@ def _strikes(strikes, phys, ratio, velocities, spins):
 
 
 @numba.njit(nogil=True, error_model="numpy")
-def _distances(segments, n_segments, starts, times, offsets, xy, horizon, phys, out):
-    """``out`` (b, samples): squared distance of each simulated ball from each sample up to the horizon [s]."""
+def _differences(segments, n_segments, starts, times, offsets, xy, horizon, phys, out):
+    """``out`` (b, samples, 2): from each sample up to the horizon [s] to the simulated ball."""
     n_balls = len(offsets) - 1
     for c in range(len(segments)):
         rows, n = segments[c], n_segments[c]
@@ -48,8 +48,25 @@ def _distances(segments, n_segments, starts, times, offsets, xy, horizon, phys, 
                         here = s
                     s += 1
                 r, _, _ = cloth.evaluate(rows, state, here, t, phys)
-                dx, dy = r[0] - xy[m, 0], r[1] - xy[m, 1]
-                out[c, m] = dx * dx + dy * dy
+                out[c, m, 0], out[c, m, 1] = r[0] - xy[m, 0], r[1] - xy[m, 1]
+
+
+@numba.njit(nogil=True, error_model="numpy")
+def _places(rows, n, start, times, phys, out):
+    """``out`` (times, balls, 2): where the balls of one shot are."""
+    state = np.empty(n, np.int64)
+    for s in range(n):
+        state[s] = int(rows[s, cloth.SEGMENT_STATE])
+    for b in range(out.shape[1]):
+        s, here = 0, -1
+        for m in range(len(times)):
+            t = max(times[m] - start, 0.0)
+            while s < n and rows[s, cloth.T0] <= t:
+                if int(rows[s, cloth.SEGMENT_BALL]) == b:
+                    here = s
+                s += 1
+            r, _, _ = cloth.evaluate(rows, state, here, t, phys)
+            out[m, b, 0], out[m, b, 1] = r
 
 
 class Judge:
@@ -85,14 +102,19 @@ class Judge:
             simulation.log_space(b, _LOG, _ROOM),
         )
 
-    def squares(self, strikes, horizon=np.inf, max_events=100_000):
+    def squares(self, strikes, horizon=np.inf):
         """Squared distances (b, samples) [m^2] of strikes (b, 6); beyond the horizon 0."""
+        found = self.differences(strikes, horizon)
+        return found[..., 0] ** 2 + found[..., 1] ** 2
+
+    def differences(self, strikes, horizon=np.inf, max_events=100_000):
+        """From each sample to the simulated ball (b, samples, 2) [m]; beyond the horizon 0."""
         strikes = np.ascontiguousarray(strikes)
-        out = np.zeros((len(strikes), len(self.times)))
+        out = np.zeros((len(strikes), len(self.times), 2))
         for a in range(0, len(strikes), _CHUNK):
             part = strikes[a : a + _CHUNK]
             ran = self.run(part, max_events)
-            _distances(
+            _differences(
                 ran.segments,
                 np.minimum(ran.n_segments, _ROOM),
                 part[:, START],
@@ -104,3 +126,10 @@ class Judge:
                 out[a : a + _CHUNK],
             )
         return out
+
+    def places(self, strike, times):
+        """Where the balls are at times of the track's clock: (times, balls, 2)."""
+        ran = self.run(strike[None])
+        found = np.empty((len(times), len(self.shot.balls), 2))
+        _places(ran.segments[0], int(ran.n_segments[0]), strike[START], times, self.packed, found)
+        return found

@@ -13,7 +13,7 @@ from .paths import AIM, ELEVATION, SIDE, SPEED, START, TOP, Judge
 OTHERS = 0.1
 """Weight of the other balls' mean squared error against the cue ball's."""
 MOST_ELEVATION = 0.6
-_SCALE = np.array([0.02, 0.004, 0.03, 0.03, 0.02, 0.002])
+SCALE = np.array([0.02, 0.004, 0.03, 0.03, 0.02, 0.002])
 """Steps of a strike that shift its path by some centimetres; that of the speed is a share of it."""
 
 
@@ -35,29 +35,31 @@ def costs(judge, strikes, horizon=np.inf, cap=1.0, others=OTHERS):
     return found
 
 
-def bounds(shot, physics):
-    """Lowest and highest strikes (6,) that are searched, from the first samples; side and top lie in a disc besides."""
+def bounds(shot, physics, level=False):
+    """Lowest and highest strikes (6,) that are searched, from the first samples; side and top lie in a disc
+    besides. ``level``: the cue is not raised."""
     cue = shot.balls[0]
     first = shot.contacts[0][0] if shot.contacts else cue.t[-1]
-    seen = (cue.t >= shot.moved) & (cue.t <= max(min(first - 0.005, shot.moved + 0.25), shot.moved + 0.021))
-    t, xy = cue.t[seen], cue.xy[seen]
-    if len(t) < 2:
-        t, xy = cue.t[cue.t >= shot.moved][:2], cue.xy[cue.t >= shot.moved][:2]
-    n = min(len(t), 6)
-    speed = np.hypot(*(xy[n - 1] - xy[0])) / (t[n - 1] - t[0])
-    gone = xy[n - 1] - shot.places[0]
+    moving = cue.t >= shot.moved
+    before = moving & (cue.t <= min(first - 0.005, shot.moved + 0.25))
+    n = min(int(before.sum()), 6)
+    t, xy = cue.t[moving][: max(n, 4)], cue.xy[moving][: max(n, 4)]
+    if n >= 4:
+        speed = np.hypot(*(xy[n - 1] - xy[0])) / (t[n - 1] - t[0])
+        slowest, fastest, turn = 0.88 * speed, 1.12 * speed + 0.1, 0.03
+    else:  # another ball or a cushion is hit at once: the samples after it bound the speed
+        steps = np.hypot(*np.diff(xy, axis=0).T) / np.diff(t) if len(t) > 1 else np.array([1.0])
+        slowest, fastest, turn = 0.6 * steps.max(), 2.2 * steps.max() + 0.3, 0.15
+    gone = xy[max(n, 1) - 1] - shot.places[0]
     aim = np.arctan2(gone[1], gone[0])
-    far = np.hypot(*gone)
-    share, turn = (0.12, 0.03) if n >= 4 else (0.4, 0.1)
-    turn += 0.004 / max(far, 0.03)
-    low = np.array([speed * (1 - share), aim - turn, -0.5, -0.5, 0.0, max(shot.still, shot.moved - 0.06)])
-    high = np.array([speed * (1 + share) + 0.1, aim + turn, 0.5, 0.5, MOST_ELEVATION, shot.moved])
-    low[[SIDE, TOP]], high[[SIDE, TOP]] = -physics.max_offset, physics.max_offset
-    return low, high
+    turn += 0.004 / max(np.hypot(*gone), 0.03)
+    most = physics.max_offset
+    low = np.array([slowest, aim - turn, -most, -most, 0.0, max(shot.still, shot.moved - 0.06)])
+    return low, np.array([fastest, aim + turn, most, most, 0.0 if level else MOST_ELEVATION, shot.moved])
 
 
-def _clip(strikes, low, high):
-    """Strikes moved into the bounds, tips on to the disc."""
+def clipped(strikes, low, high):
+    """Strikes (b, 6) moved into the bounds, tips on to the disc."""
     found = np.clip(strikes, low, high)
     offset = np.hypot(found[:, SIDE], found[:, TOP])
     most = high[SIDE]
@@ -106,9 +108,9 @@ def evolve(judge, rng, low, high, population=96, generations=14, first=6):
             a, b = pool[rng.integers(0, n, n)], pool[rng.integers(0, n, n)]
             f = rng.normal(0.6, 0.2, (n, 1))
             trial = pool + f * (leader - pool) + f * (a - b)
-            trial += rng.normal(0, 0.02, (n, 6)) * _SCALE
+            trial += rng.normal(0, 0.02, (n, 6)) * SCALE
             keep = rng.uniform(size=(n, 6)) > 0.9
-            trial = _clip(np.where(keep, pool, trial), low, high)
+            trial = clipped(np.where(keep, pool, trial), low, high)
             found = costs(judge, trial, horizon, cap_now)
             better = found < cost
             pool[better], cost[better] = trial[better], found[better]
@@ -117,12 +119,12 @@ def evolve(judge, rng, low, high, population=96, generations=14, first=6):
 
 def refine(judge, rng, start, low, high, sigma=0.5, generations=40, population=16, cap=1.0, others=OTHERS):
     """CMA-ES from one strike: the best found (6,) and its cost."""
-    scale = _SCALE.copy()
+    scale = SCALE.copy()
     scale[SPEED] *= start[SPEED]
     best, best_cost = start.copy(), float(costs(judge, start[None], np.inf, cap, others)[0])
     search = Cma(rng, start, scale, sigma, population)
     for _ in range(generations):
-        x = _clip(search.ask(), low, high)
+        x = clipped(search.ask(), low, high)
         cost = costs(judge, x, np.inf, cap, others)
         k = int(np.argmin(cost))
         if cost[k] < best_cost:
@@ -133,20 +135,24 @@ def refine(judge, rng, start, low, high, sigma=0.5, generations=40, population=1
     return best, best_cost
 
 
-def fit(judge: Judge, seed=0, runs=2, refined=3):
-    """The strike of a shot, from nothing but its samples: (6,), and its cost [m^2]."""
+def fit(judge: Judge, seed=0, runs=4, enough=0.03, level=False):
+    """The strike of a shot, from nothing but its samples: (6,), and its cost [m^2].
+
+    Searched anew up to ``runs`` times, until the cost is below ``enough`` squared or the best was found twice.
+    """
     rng = np.random.default_rng([seed, judge.shot.id])
-    low, high = bounds(judge.shot, judge.physics)
-    starts = []
+    low, high = bounds(judge.shot, judge.physics, level)
+    found = []
     for _ in range(runs):
-        pool, _ = evolve(judge, rng, low, high)
+        pool, cost = evolve(judge, rng, low, high)
         cost = costs(judge, pool)
-        for k in np.argsort(cost)[:1].tolist() + rng.choice(len(pool), refined - 1, replace=False).tolist():
-            starts.append(pool[k])
-    found = [refine(judge, rng, s, low, high) for s in starts]
-    best, _ = min(found, key=lambda f: f[1])
-    again = [refine(judge, rng, best, low, high, sigma=s) for s in (0.1, 1.5)]
-    return min([*found, *again], key=lambda f: f[1])
+        starts = [pool[np.argmin(cost)], pool[rng.integers(len(pool))]]
+        best, least = min((refine(judge, rng, s, low, high) for s in starts), key=lambda f: f[1])
+        found.append(min((refine(judge, rng, best, low, high, sigma=s) for s in (0.1, 1.5)), key=lambda f: f[1]))
+        least = sorted(cost for _, cost in found)
+        if least[0] < enough**2 or (len(least) > 1 and least[1] < 1.05 * least[0]):
+            break
+    return min(found, key=lambda f: f[1])
 
 
 def refit(judge, strike, seed=0, sigma=0.3, generations=25, population=12):
@@ -154,3 +160,12 @@ def refit(judge, strike, seed=0, sigma=0.3, generations=25, population=12):
     rng = np.random.default_rng([seed, judge.shot.id])
     low, high = bounds(judge.shot, judge.physics)
     return refine(judge, rng, strike, low, high, sigma, generations, population)
+
+
+def refine_from(judge, strike, seed=0, level=False):
+    """The same from a strike that may lie farther off: near it, and in a wide search around it."""
+    rng = np.random.default_rng([seed, judge.shot.id])
+    low, high = bounds(judge.shot, judge.physics, level)
+    start = clipped(strike[None], low, high)[0]
+    near, _ = refine(judge, rng, start, low, high, 0.5, 40, 16)
+    return refine(judge, rng, near, low, high, 1.5, 40, 16)

@@ -16,7 +16,7 @@ HALF = (0.71, 1.42)
 MOVED = 0.005  # m from its first sample: the ball moves (noise 0.001)
 _OVERLAP = 5e-7  # m; the engine takes balls that overlap by 1e-6
 _CUSHIONS = ("right", "left", "far", "near")
-"""Names of the cushions, x +, x -, y +, y -, in the order of the engine's noses."""
+"""Names of the cushions at x +, x -, y +, y -."""
 
 
 @dataclass
@@ -165,36 +165,41 @@ def contacts(shot):
     return sorted(found)
 
 
-def _cushions(track, near=0.03, least=0.008):
-    """Contacts with cushions: the track comes within ``near`` of the place where a ball touches the nose, and leaves by
-    ``least`` on either side; the time is that of the nearest sample."""
+def _cushions(track):
+    """Contacts with cushions: the track turns near a nose, and the straight lines before and after meet at it."""
     found = []
     for axis in range(2):
         edge = HALF[axis] - R
         for sign, name in ((1, _CUSHIONS[2 * axis]), (-1, _CUSHIONS[2 * axis + 1])):
             gap = edge - sign * track.xy[:, axis]
-            k, n = 0, len(gap)
-            while k < n:
-                if gap[k] > near:
-                    k += 1
-                    continue
-                last = k
-                while last + 1 < n and gap[last + 1] <= near:
-                    last += 1
-                deepest = k + int(np.argmin(gap[k : last + 1]))
-                lo, hi = max(k - 1, 0), min(last + 1, n - 1)
-                came = gap[lo : deepest + 1].max() - gap[deepest]
-                left = gap[deepest : hi + 1].max() - gap[deepest]
-                if came > least and left > least:
-                    time = _crossing(track.t, gap, deepest)
-                    if gap[deepest] < 0.012 or time[1] < 0.012:
-                        found.append((time[0], name))
-                k = last + 1
+            found += [(time, name) for time in _turns(track.t, gap)]
+    return found
+
+
+def _turns(t, gap, near=0.25, touch=0.012, least=0.006):
+    """Times at which the distance from a cushion turns at 0: it came from ``least`` farther off, and goes there again."""
+    found, k, n = [], 0, len(gap)
+    high = gap[0]  # the farthest since the last turn
+    while k < n - 1:
+        high = max(high, gap[k])
+        if not (gap[k + 1] > gap[k] and gap[k] < near):
+            k += 1
+            continue
+        last = k
+        while last + 1 < n and gap[last + 1] >= gap[last]:
+            last += 1
+        away = gap[k:].max() if gap[k] < touch else gap[last]
+        if high - gap[k] > least and away - gap[k] > least:
+            time, reached = _crossing(t, gap, k)
+            if min(gap[k], reached) < touch:
+                found.append(time)
+                high = gap[k]
+        k = last
     return found
 
 
 def _crossing(t, gap, k):
-    """Time and gap where the lines through the two samples before and after sample k cross."""
+    """Time and gap where the lines through the two samples before and the two after the turn meet; k: the deepest."""
     best = (float(t[k]), float(gap[k]))
     for a in (k, k - 1):  # the turn lies after sample a
         if a < 1 or a + 2 >= len(t):
