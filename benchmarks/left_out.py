@@ -22,6 +22,8 @@ LENGTH = 2 * (1.7845 - R)
 AIR, VISCOSITY, DRAG = 1.2, 1.5e-5, 0.45
 """Density [kg/m^3], kinematic viscosity [m^2/s]; drag coefficient of a sphere at Reynolds numbers of 1e3 to
 1e5: 0.4 to 0.5."""
+CAROM = 0.0151
+"""Growth of the rolling resistance measured on heated carom cloth [1/m] (docs/physics/limits.md)."""
 BOUNCE = 0.5
 """Restitution of a ball that falls on cloth over slate: an assumption."""
 TIP_TIME = 1.5e-3
@@ -34,12 +36,25 @@ def air():
     per_metre = 0.5 * AIR * DRAG * pi * R * R / M
     metre, length = (f"{100 * per_metre * way:.2g} %" for way in (1.0, LENGTH))
     print(f"AIR: a drag coefficient of {DRAG} takes {metre} of the speed a metre, {length} a table length")
-    print("rolling at m/s  Reynolds  drag/rolling resistance  way to rest, shorter by")
+    shorter = lambda ratio: 1 - log(1 + ratio) / ratio  # noqa: E731
+    print("rolling at m/s  Reynolds  drag/rolling resistance  way to rest, shorter by", end="")
+    print(f"  with roll_drag {CAROM} by")
     found = {}
     for v in (0.5, 1, 2, 4, 6):
-        ratio = per_metre * v * v / SLOWS
-        found[v] = {"drag over rolling resistance": ratio, "shorter by": 1 - log(1 + ratio) / ratio}
-        print(f"{v:14g}{2 * R * v / VISCOSITY:10.0f}{ratio:25.3f}{100 * found[v]['shorter by']:23.1f} %")
+        ratio, carom = (per_metre * v * v / SLOWS, CAROM * v * v / SLOWS)
+        found[v] = {
+            "drag over rolling resistance": ratio,
+            "shorter by": shorter(ratio),
+            "with roll_drag": shorter(carom),
+        }
+        row = f"{v:14g}{2 * R * v / VISCOSITY:10.0f}{ratio:25.3f}{100 * shorter(ratio):23.1f} %"
+        print(f"{row}{100 * shorter(carom):25.1f} %")
+    stun = 5.0
+    of_friction = per_metre * stun * stun / (PAPER.mu_s * G)
+    slides = stun * stun * (1 - 25 / 49) / (2 * PAPER.mu_s * G)
+    found["sliding"] = {"drag over friction": of_friction, "of the speed": per_metre * slides}
+    print(f"Sliding at {stun:g} m/s: drag is {100 * of_friction:.1f} % of the friction;", end=" ")
+    print(f"a stun shot at that speed would lose {100 * per_metre * slides:.1f} % of it until it rolls")
     return found
 
 

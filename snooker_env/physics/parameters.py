@@ -62,6 +62,11 @@ class Physics:
         Acceleration of a rolling ball along +y by the nap, which runs from baulk to the black end [m/s^2]. 0:
         none; else below mu_r g in size, so that a ball at rest stays. Not measured; 0.001 is the most that
         the range of mu_r allows (``python -m benchmarks.nap``).
+    roll_drag : float
+        Growth of the rolling resistance with speed [1/m], in [0, 1]: at v m/s a rolling ball decelerates by
+        mu_r g + roll_drag v^2. 0: none; must be 0 where nap is not. On heated carom cloth it was measured as
+        0.0151, beside 0.0417 m/s^2, up to 1.5 m/s (docs/physics/limits.md); on snooker's, not. Drag in free
+        air would be 0.0042.
     e_b : float
         Energetic restitution between balls, in [0, 1] [MJP14 2.4.2].
     mu_bb : float, "marlow" or (float, float, float)
@@ -111,6 +116,7 @@ class Physics:
     mu_r: float = 0.0127
     spin_decel: float = 22.0
     nap: float = 0.0
+    roll_drag: float = 0.0
     e_b: float = 0.89
     mu_bb: float | Literal["marlow"] | tuple[float, float, float] = 0.05
     e_c: float = 0.98
@@ -132,6 +138,7 @@ class Physics:
             "mu_r": (0, 1),
             "spin_decel": (0, np.inf),
             "nap": (-np.inf, np.inf),
+            "roll_drag": (0, 1),
             "e_b": (0, 1),
             "e_c": (0, 1),
             "e_c_knee": (0, np.inf),
@@ -165,6 +172,9 @@ class Physics:
             raise refuse(
                 "physics.nap", self.nap, f"must be 0 or below mu_r g = {self.mu_r * self.g:g} m/s^2 in size"
             )
+        if self.nap != 0 and self.roll_drag != 0:
+            allowed = f"must be 0 with physics.nap = {self.nap!r}: no path is known with both"
+            raise refuse("physics.roll_drag", self.roll_drag, allowed)
 
     def __getstate__(self) -> dict[str, Any]:
         """Without the packed arrays: the tables are 230 KB."""
@@ -231,7 +241,7 @@ class Physics:
         return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
 
     def pack(self) -> Floats:
-        """The constants for the kernels: float64 (20,), at the places ``P_*`` of ``columns.py``, SI units."""
+        """The constants for the kernels: float64 (21,), at the places ``P_*`` of ``columns.py``, SI units."""
         return self._constants.copy()
 
     def packed_for(self, solver: Solver) -> Floats:
@@ -261,6 +271,7 @@ class Physics:
                 self.sin_theta,
                 self.e_c if self.e_j is None else self.e_j,
                 self.nap,
+                self.roll_drag,
                 *(0.0, 0.0, 0.0),
             ]
         )

@@ -66,7 +66,11 @@ def pieces(shot: Shot, ball: int) -> list[Piece]:
 
 def _steps(row, duration):
     """How many chords replace a segment: a parabola is at most a dt^2 / 8 away from one."""
-    if row[SEGMENT_STATE] in (ROLL, FALLING):  # straight, without a turning point
+    (vx, vy), (ax, ay) = row[[VX, VY]], row[[AX, AY]]
+    drags = row[SEGMENT_STATE] == BEND and abs(vx * ay - vy * ax) <= 1e-12 * np.hypot(vx, vy) * np.hypot(
+        ax, ay
+    )
+    if drags or row[SEGMENT_STATE] in (ROLL, FALLING):  # straight, without a turning point
         return 1
     return int(np.clip(np.ceil(duration * np.sqrt(np.hypot(row[AX], row[AY]) / (8 * STRAY))), 1, 256))
 

@@ -7,7 +7,7 @@ from math import atan2, hypot, pi
 from .._jit import kernel
 from ..physics import cloth, cue
 from ..physics.arrays import Law
-from ..physics.columns import P_E_B, P_R
+from ..physics.columns import P_E_B, P_NAP, P_R
 from ..physics.detection import pair_time
 from ..physics.impact.contact import collide_balls
 
@@ -52,7 +52,7 @@ def _passes(aim, stroke, c, b, p, law, work):
     away = hypot(qx, qy)
     T = 0.0
     # by the nap: the chord of the piece that ends past the pocket is accurate enough
-    while state[1] == cloth.BEND:
+    while state[1] == cloth.BEND and phys[P_NAP] != 0.0:
         T = motion[1, cloth.T_END] - motion[1, cloth.T0]
         (x, y), _v, _w = cloth.evaluate(motion, state, 1, motion[1, cloth.T_END], phys)
         if (x - bx) * qx + (y - by) * qy >= away * away:
