@@ -143,8 +143,9 @@ def raised():
     """A raised cue presses the ball into the bed; what the cloth's friction then does is in the model."""
     speed, gap = 3.0, 0.8
     print(
-        f"\nRAISED CUE: where the cue ball of a full contact rests [mm behind (-) or beyond the place of contact], struck at {speed:g} m/s at {gap:g} m from the ball's centre; with the bed's friction during the strike, and without it"
+        f"\nRAISED CUE: where the cue ball rests [mm behind (-) or beyond the place of a full contact], struck at {speed:g} m/s,"
     )
+    print(f"{gap:g} m from the ball's centre; with the bed's friction during the strike, and without it")
     strokes = {"draw, 0.4 R below the middle": -0.4, "stun": 0.0}
     print("preset  elevation" + "".join(f"{name:>36}" for name in strokes))
     found = {}
