@@ -188,7 +188,8 @@ class Physics:
         cushion whose restitution falls as v^-0.31 above 2.17 m/s, fitted to Fig. 7a of [MJP10]: 19 speeds
         from 0.26 to 3.40 m/s (``python -m benchmarks.fit_cushion``; 95 % interval of the power 0.21 to 0.46).
         Beyond it is extrapolated: e is 0.70 to 0.80 at 5 m/s, 0.60 to 0.75 at 7 and 0.51 to 0.69 at 10 (95 %,
-        if the law holds there).
+        if the law holds there). "carom": a heated three-cushion table and its balls (``Table.preset("carom")``), fitted
+        to the paths of 61 tracked shots of one match, the cue ball up to 6 m/s (``python -m benchmarks.real_shots``).
         """
         choice("physics", name, PRESETS)
         return cls._replaced(PRESETS[name], fields) if fields else cls._whole(name)
@@ -315,4 +316,19 @@ def _mu_bb(value: Any) -> float | Literal["marlow"] | tuple[float, float, float]
 PRESETS: dict[str, dict[str, Any]] = {
     "paper": {},
     "match": {"e_b": 0.94, "mu_bb": "marlow", "e_c": 0.98, "e_c_knee": 2.17, "e_c_power": 0.31},
+    "carom": {
+        "R": 0.03075,
+        "M": 0.2125,
+        "mu_s": 0.146,
+        "mu_r": 0.00431,
+        "roll_drag": 0.0136,
+        "spin_decel": 3.77,
+        "e_b": 0.917,
+        "mu_bb": 0.0803,
+        "e_c": 0.911,
+        "e_c_knee": 0.695,
+        "e_c_power": 0.0455,
+        "mu_c": 0.238,
+        "sin_theta": 0.201,
+    },
 }
