@@ -245,8 +245,10 @@ def physics_of(rng, name, R):
     if name in ("paper", "match"):
         return sn.Physics.preset(name, R=R)
     if name == "random":
+        apart = rng.spawn(1)[0]  # so what else is drawn stays
         return sn.Physics(
             R=R,
+            roll_drag=apart.uniform(0, 0.03) if apart.random() < 0.5 else 0.0,
             mu_s=rng.uniform(0.02, 0.5),
             mu_r=10 ** rng.uniform(-2.5, -1),
             spin_decel=rng.uniform(1, 60),

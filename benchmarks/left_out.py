@@ -22,6 +22,8 @@ LENGTH = 2 * (1.7845 - R)
 AIR, VISCOSITY, DRAG = 1.2, 1.5e-5, 0.45
 """Density [kg/m^3], kinematic viscosity [m^2/s]; drag coefficient of a sphere at Reynolds numbers of 1e3 to
 1e5: 0.4 to 0.5."""
+CAROM = 0.0151
+"""Growth of the rolling resistance measured on heated carom cloth [1/m] (docs/physics/limits.md)."""
 BOUNCE = 0.5
 """Restitution of a ball that falls on cloth over slate: an assumption."""
 TIP_TIME = 1.5e-3
@@ -34,12 +36,25 @@ def air():
     per_metre = 0.5 * AIR * DRAG * pi * R * R / M
     metre, length = (f"{100 * per_metre * way:.2g} %" for way in (1.0, LENGTH))
     print(f"AIR: a drag coefficient of {DRAG} takes {metre} of the speed a metre, {length} a table length")
-    print("rolling at m/s  Reynolds  drag/rolling resistance  way to rest, shorter by")
+    shorter = lambda ratio: 1 - log(1 + ratio) / ratio  # noqa: E731
+    print("rolling at m/s  Reynolds  drag/rolling resistance  way to rest, shorter by", end="")
+    print(f"  with roll_drag {CAROM} by")
     found = {}
     for v in (0.5, 1, 2, 4, 6):
-        ratio = per_metre * v * v / SLOWS
-        found[v] = {"drag over rolling resistance": ratio, "shorter by": 1 - log(1 + ratio) / ratio}
-        print(f"{v:14g}{2 * R * v / VISCOSITY:10.0f}{ratio:25.3f}{100 * found[v]['shorter by']:23.1f} %")
+        ratio, carom = (per_metre * v * v / SLOWS, CAROM * v * v / SLOWS)
+        found[v] = {
+            "drag over rolling resistance": ratio,
+            "shorter by": shorter(ratio),
+            "with roll_drag": shorter(carom),
+        }
+        row = f"{v:14g}{2 * R * v / VISCOSITY:10.0f}{ratio:25.3f}{100 * shorter(ratio):23.1f} %"
+        print(f"{row}{100 * shorter(carom):25.1f} %")
+    stun = 5.0
+    of_friction = per_metre * stun * stun / (PAPER.mu_s * G)
+    slides = stun * stun * (1 - 25 / 49) / (2 * PAPER.mu_s * G)
+    found["sliding"] = {"drag over friction": of_friction, "of the speed": per_metre * slides}
+    print(f"Sliding at {stun:g} m/s: drag is {100 * of_friction:.1f} % of the friction;", end=" ")
+    print(f"a stun shot at that speed would lose {100 * per_metre * slides:.1f} % of it until it rolls")
     return found
 
 
@@ -139,6 +154,36 @@ def airborne():
     return {"hops": hops, "thrown up at most": most, "speed to clear a ball": up}
 
 
+def raised():
+    """A raised cue presses the ball into the bed; what the cloth's friction then does is in the model."""
+    speed, gap = 3.0, 0.8
+    print(
+        f"\nRAISED CUE: where the cue ball rests [mm behind (-) or beyond the place of a full contact], struck at {speed:g} m/s,"
+    )
+    print(f"{gap:g} m from the ball's centre; with the bed's friction during the strike, and without it")
+    strokes = {"draw, 0.4 R below the middle": -0.4, "stun": 0.0}
+    print("preset  elevation" + "".join(f"{name:>36}" for name in strokes))
+    found = {}
+    for physics in ("paper", "match"):
+        found[physics] = {}
+        for elevation in (0, 1, 2, 4, 7, 10):
+            ends, e = {}, radians(elevation)
+            for name, top in strokes.items():
+                v, w = sn.strike(speed, 0, 0, top, e, physics)
+                bare = (speed * cos(e), 0), (0, 2.5 * speed * top / R, 0)
+                ends[name] = [1e3 * _rest(gap, *one, physics) for one in ((v[:2], w), bare)]
+            found[physics][elevation] = ends
+            print(f"{physics:8}{elevation:5d} deg" + "".join(f"{a:26.0f}{b:10.0f}" for a, b in ends.values()))
+    return found
+
+
+def _rest(gap, v, w, physics):
+    """Where the cue ball rests, from the place of contact [m]."""
+    still = (0, 0), (0, 0, 0)
+    shot = sn.simulate([(0, 0), (gap, 0)], [v, still[0]], [w, still[1]], table=None, physics=physics)
+    return float(shot.positions[0, 0]) - (gap - 2 * R)
+
+
 def double_hits():
     """A cue of 0.5 kg follows its ball into a ball just ahead."""
     cue, tip = 0.5, 0.73
@@ -166,9 +211,8 @@ def double_hits():
 def main():
     """Command line: print the sizes."""
     options = Command("left_out", __doc__).options()
-    save_json(
-        options.json, {part.__name__: part() for part in (air, level, unequal, kicks, airborne, double_hits)}
-    )
+    parts = air, level, unequal, kicks, airborne, raised, double_hits
+    save_json(options.json, {part.__name__: part() for part in parts})
 
 
 if __name__ == "__main__":

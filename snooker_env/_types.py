@@ -34,7 +34,7 @@ Fidelity: TypeAlias = Literal["fast", "standard", "reference"] | str
 """How impacts are solved. Any str is allowed: ``"euler:N"`` is the paper's own scheme with N steps."""
 Solver: TypeAlias = tuple[int, int]
 """A fidelity as the kernels read it: a code, and the N of ``"euler:N"`` or 0."""
-PhysicsName: TypeAlias = Literal["paper", "match"]
+PhysicsName: TypeAlias = Literal["paper", "match", "carom"]
 TableName: TypeAlias = Literal["match", "tight", "uk8", "pool9", "carom"]
 NoiseName: TypeAlias = Literal["none", "professional", "amateur", "club", "robot", "olympiad"]
 ObservationKind: TypeAlias = Literal["flat", "balls", "masked"]

@@ -9,7 +9,7 @@ class Law(NamedTuple):
     """What decides an impact: the constants, and how it is solved."""
 
     phys: np.ndarray
-    """(20 + m,) ``Physics.pack``."""
+    """(21 + m,) ``Physics.pack``."""
     fidelity: int
     """As ``contact.parse_fidelity`` returns it, together with n_steps."""
     n_steps: int

@@ -26,8 +26,9 @@ FALL_X, FALL_Y, FALL_RADIUS = range(3)
     P_SIN,
     P_E_J,
     P_NAP,
+    P_ROLL_DRAG,
     P_RAIL,
     P_JAW,
     P_BALLS,
-) = range(20)
+) = range(21)
 """Places in ``Physics.pack()``. P_RAIL, P_JAW, P_BALLS: where the tables of rolling impacts begin behind these (``tables.py``); 0: none."""

@@ -17,7 +17,7 @@ class EventKind(IntEnum):
     STOP      5      Ball i stopped; it may still spin on the spot.
     DROP      6      Ball i flies over the edge of pocket j towards a jaw: a POT or RETURN follows.
     RETURN    7      Ball i came back on to the bed, over the edge of pocket j.
-    BEND      8      The nap turned rolling ball i: its next piece begins. Only with ``Physics.nap``.
+    BEND      8      Ball i rolls on: its path's next piece. Only with ``Physics.nap`` or ``roll_drag``.
     ========= ====== ================================================================================
 
     Examples

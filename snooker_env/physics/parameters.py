@@ -62,6 +62,11 @@ class Physics:
         Acceleration of a rolling ball along +y by the nap, which runs from baulk to the black end [m/s^2]. 0:
         none; else below mu_r g in size, so that a ball at rest stays. Not measured; 0.001 is the most that
         the range of mu_r allows (``python -m benchmarks.nap``).
+    roll_drag : float
+        Growth of the rolling resistance with speed [1/m], in [0, 1]: at v m/s a rolling ball decelerates by
+        mu_r g + roll_drag v^2. 0: none; must be 0 where nap is not. On heated carom cloth it was measured as
+        0.0151, beside 0.0417 m/s^2, up to 1.5 m/s (docs/physics/limits.md); on snooker's, not. Drag in free
+        air would be 0.0042.
     e_b : float
         Energetic restitution between balls, in [0, 1] [MJP14 2.4.2].
     mu_bb : float, "marlow" or (float, float, float)
@@ -111,6 +116,7 @@ class Physics:
     mu_r: float = 0.0127
     spin_decel: float = 22.0
     nap: float = 0.0
+    roll_drag: float = 0.0
     e_b: float = 0.89
     mu_bb: float | Literal["marlow"] | tuple[float, float, float] = 0.05
     e_c: float = 0.98
@@ -132,6 +138,7 @@ class Physics:
             "mu_r": (0, 1),
             "spin_decel": (0, np.inf),
             "nap": (-np.inf, np.inf),
+            "roll_drag": (0, 1),
             "e_b": (0, 1),
             "e_c": (0, 1),
             "e_c_knee": (0, np.inf),
@@ -165,6 +172,9 @@ class Physics:
             raise refuse(
                 "physics.nap", self.nap, f"must be 0 or below mu_r g = {self.mu_r * self.g:g} m/s^2 in size"
             )
+        if self.nap != 0 and self.roll_drag != 0:
+            allowed = f"must be 0 with physics.nap = {self.nap!r}: no path is known with both"
+            raise refuse("physics.roll_drag", self.roll_drag, allowed)
 
     def __getstate__(self) -> dict[str, Any]:
         """Without the packed arrays: the tables are 230 KB."""
@@ -178,7 +188,8 @@ class Physics:
         cushion whose restitution falls as v^-0.31 above 2.17 m/s, fitted to Fig. 7a of [MJP10]: 19 speeds
         from 0.26 to 3.40 m/s (``python -m benchmarks.fit_cushion``; 95 % interval of the power 0.21 to 0.46).
         Beyond it is extrapolated: e is 0.70 to 0.80 at 5 m/s, 0.60 to 0.75 at 7 and 0.51 to 0.69 at 10 (95 %,
-        if the law holds there).
+        if the law holds there). "carom": a heated three-cushion table and its balls (``Table.preset("carom")``), fitted
+        to the paths of 61 tracked shots of one match, the cue ball up to 6 m/s (``python -m benchmarks.real_shots``).
         """
         choice("physics", name, PRESETS)
         return cls._replaced(PRESETS[name], fields) if fields else cls._whole(name)
@@ -231,7 +242,7 @@ class Physics:
         return self.mu_bb if isinstance(self.mu_bb, tuple) else (self.mu_bb, 0.0, 0.0)
 
     def pack(self) -> Floats:
-        """The constants for the kernels: float64 (20,), at the places ``P_*`` of ``columns.py``, SI units."""
+        """The constants for the kernels: float64 (21,), at the places ``P_*`` of ``columns.py``, SI units."""
         return self._constants.copy()
 
     def packed_for(self, solver: Solver) -> Floats:
@@ -261,6 +272,7 @@ class Physics:
                 self.sin_theta,
                 self.e_c if self.e_j is None else self.e_j,
                 self.nap,
+                self.roll_drag,
                 *(0.0, 0.0, 0.0),
             ]
         )
@@ -304,4 +316,19 @@ def _mu_bb(value: Any) -> float | Literal["marlow"] | tuple[float, float, float]
 PRESETS: dict[str, dict[str, Any]] = {
     "paper": {},
     "match": {"e_b": 0.94, "mu_bb": "marlow", "e_c": 0.98, "e_c_knee": 2.17, "e_c_power": 0.31},
+    "carom": {
+        "R": 0.03075,
+        "M": 0.2125,
+        "mu_s": 0.146,
+        "mu_r": 0.00431,
+        "roll_drag": 0.0136,
+        "spin_decel": 3.77,
+        "e_b": 0.917,
+        "mu_bb": 0.0803,
+        "e_c": 0.911,
+        "e_c_knee": 0.695,
+        "e_c_power": 0.0455,
+        "mu_c": 0.238,
+        "sin_theta": 0.201,
+    },
 }

@@ -66,7 +66,11 @@ def pieces(shot: Shot, ball: int) -> list[Piece]:
 
 def _steps(row, duration):
     """How many chords replace a segment: a parabola is at most a dt^2 / 8 away from one."""
-    if row[SEGMENT_STATE] in (ROLL, FALLING):  # straight, without a turning point
+    (vx, vy), (ax, ay) = row[[VX, VY]], row[[AX, AY]]
+    drags = row[SEGMENT_STATE] == BEND and abs(vx * ay - vy * ax) <= 1e-12 * np.hypot(vx, vy) * np.hypot(
+        ax, ay
+    )
+    if drags or row[SEGMENT_STATE] in (ROLL, FALLING):  # straight, without a turning point
         return 1
     return int(np.clip(np.ceil(duration * np.sqrt(np.hypot(row[AX], row[AY]) / (8 * STRAY))), 1, 256))
 
@@ -139,7 +143,24 @@ class Tip(NamedTuple):
 
 
 def tip_of(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
-    """The strike of a level cue that gives this velocity and spin: ``physics.cue.struck`` solved."""
+    """The strike that gives this velocity and spin: ``physics.cue.struck`` solved. Level, if no side or no slip
+    is left to tell how far the cue was raised."""
+    v, w = np.asarray(velocity, np.float64), np.asarray(spin, np.float64)
+    slip = v + physics.R * np.array([-w[1], w[0]])
+    size = float(np.hypot(*slip))
+    if size > 1e-9 and w[2]:
+        u = (
+            slip / size
+        )  # as before the friction j = mu_s V sin(elevation), whose spin about the path is linear in j
+        turned = float(w[:2] @ u) + 2.5 / physics.R * float(u[1] * v[0] - u[0] * v[1])
+        j = physics.mu_s * float(w[:2] @ v) / (float(w[2]) - physics.mu_s * turned)
+        if j > 0.0:
+            v, w = v + j * u, w + 2.5 * j / physics.R * np.array([u[1], -u[0], 0.0])
+    return _level_tip(v, w, physics)
+
+
+def _level_tip(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
+    """The strike that gives this velocity and spin before the cloth rubs."""
     v = float(np.hypot(*velocity))
     c, s = velocity / v
     about_path, about_up = float(spin[0] * c + spin[1] * s), float(spin[2])

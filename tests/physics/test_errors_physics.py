@@ -14,6 +14,7 @@ RANGES = {
     "mu_s": ("[0, 1]", -0.1, 1.1),
     "mu_r": ("[0, 1]", -0.01, 1.01),
     "spin_decel": ("[0, inf)", -1),
+    "roll_drag": ("[0, 1]", -1e-9, 1.01),
     "e_b": ("[0, 1]", -0.1, 1.01),
     "e_c": ("[0, 1]", -0.1, 1.01),
     "e_c_knee": ("[0, inf)", -1),
@@ -59,6 +60,13 @@ PHYSICS = [
             ([0.1] * 4, MU_BB),
         ]
     ],
+    case(
+        lambda: sn.Physics(nap=0.001, roll_drag=0.01),
+        "physics.roll_drag",
+        "0.01",
+        "must be 0 with physics.nap = 0.001",
+        "nap and drag",
+    ),
     case(lambda: sn.Physics(e_c_power=0.25), "physics.e_c_knee", "0.0", KNEE, "power without a knee"),
     case(
         lambda: sn.Physics(e_c_power=1e-9, e_c_knee=9e-4), "physics.e_c_knee", "0.0009", KNEE, "knee too low"

@@ -18,7 +18,7 @@ GAMES = {  # table, physics, balls
     "nap": ("match", sn.Physics.preset("match", nap=0.02), 22),
     "pool": ("pool9", sn.Physics.preset("match", R=sn.Table.preset("pool9").ball_radius), 10),
     "carom": ("carom", sn.Physics.preset("match", R=sn.Table.preset("carom").ball_radius), 3),
-    "open cloth": (None, sn.Physics.preset("match", spin_decel=0.0), 4),
+    "open cloth": (None, sn.Physics.preset("match", spin_decel=0.0, roll_drag=0.03), 4),
 }
 
 

@@ -1,0 +1,1 @@
+"""How near does the engine come to the paths of real balls? ``python -m benchmarks.real_shots FILE``."""

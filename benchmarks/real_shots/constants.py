@@ -1,0 +1,186 @@
+"""Which constants suit a table best? Those shared by all of its shots, fitted while each shot keeps its own strike.
+
+Gauss and Newton's step for the constants and all strikes at once: each shot's strike is eliminated from the normal
+equations, so a step takes some tens of simulations a shot. Between the steps every strike is refined alone, and now
+and then searched anew, because a shot whose contacts are the wrong ones says nothing of the constants.
+"""
+
+import dataclasses
+import time
+
+import numpy as np
+
+from .paths import Judge
+from .strikes import OTHERS, SCALE, bounds, clipped, costs, fit, refit
+
+SEARCHED = {
+    "mu_s": (0.06, 0.40),
+    "mu_r": (0.0036, 0.0060),
+    "roll_drag": (0.0, 0.03),
+    "spin_decel": (0.5, 40.0),
+    "e_b": (0.85, 1.0),
+    "mu_bb": (0.0, 0.20),
+    "e_c": (0.70, 1.0),
+    "e_c_knee": (0.2, 3.0),
+    "e_c_power": (0.0, 0.5),
+    "mu_c": (0.03, 0.45),
+    "sin_theta": (0.05, 0.45),
+}
+"""The fields that are fitted, and the range of each."""
+MIDDLING = 0.15
+"""An error that counts half [m]: one shot that goes another way should not decide."""
+_LEAST = 0.01
+"""Errors below count alike [m]."""
+_STEP = 2e-4
+"""Of the difference quotients: a share of a range, and of a strike's scale 100 times that."""
+
+
+def rms(judge, strike):
+    """Root mean square distance of the cue ball from its samples [m]."""
+    return float(np.sqrt(judge.squares(strike[None])[0, : judge.offsets[1]].mean()))
+
+
+def loss(errors):
+    """What is minimised over the constants: the mean over shots of e / (1 + e / MIDDLING)."""
+    errors = np.asarray(errors)
+    return float((errors / (1 + errors / MIDDLING)).mean())
+
+
+def _weights(judge):
+    """Of each sample, so that the sum of weighted squares is the cost of ``strikes.costs``."""
+    a = judge.offsets
+    w = np.full(len(judge.times), OTHERS / max(a[-1] - a[1], 1))
+    w[: a[1]] = 1.0 / a[1]
+    return w
+
+
+def _slopes(judge, strike, physics, names, low, high):
+    """Differences from the samples (2 m,), and their derivatives by the scaled strike (2 m, 6) and constants (2 m, p)."""
+    h = 100 * _STEP
+    around = np.concatenate([strike + h * np.diag(SCALE), strike - h * np.diag(SCALE), strike[None]])
+    found = judge.differences(around).reshape(len(around), -1)
+    by_strike = (found[:6] - found[6:12]).T / (2 * h)
+    by_constant = []
+    for k, name in enumerate(names):
+        sides = []
+        for sign in (1, -1):
+            value = np.clip(getattr(physics, name) + sign * _STEP * (high[k] - low[k]), low[k], high[k])
+            judge.use(dataclasses.replace(physics, **{name: float(value)}))
+            sides.append((judge.differences(strike[None]).ravel(), value))
+        by_constant.append((sides[0][0] - sides[1][0]) / (sides[0][1] - sides[1][1]) * (high[k] - low[k]))
+    judge.use(physics)
+    return found[12], by_strike, np.array(by_constant).T
+
+
+def step(judges, strikes, physics, names, damping):
+    """The change of constants (p,), as a share of their ranges, and of each strike, in its scale; and the constants' curvature."""
+    low, high = (np.array([SEARCHED[name][k] for name in names]) for k in (0, 1))
+    p = len(names)
+    S, g, kept = np.zeros((p, p)), np.zeros(p), []
+    for judge, strike in zip(judges, strikes, strict=True):
+        r, by_strike, by_constant = _slopes(judge, strike, physics, names, low, high)
+        squares = (r.reshape(-1, 2) ** 2).sum(1)
+        weight = _weights(judge) / (1 + squares / 0.3**2) ** 2
+        e = max(np.sqrt(squares[: judge.offsets[1]].mean()), _LEAST)
+        weight = np.repeat(weight / (e * (1 + e / MIDDLING) ** 2), 2)
+        # a slope of metres a step is chaos: it is told nothing
+        weight = weight / (1 + (np.abs(by_constant).max(1) / 30.0) ** 2)
+        Js, Jc = by_strike * weight[:, None], by_constant * weight[:, None]
+        Ass = by_strike.T @ Js
+        Ass[np.diag_indices(6)] += damping * np.diag(Ass) + 1e-9
+        Asc, gs = Js.T @ by_constant, Js.T @ r
+        solved = np.linalg.solve(Ass, np.column_stack([Asc, gs]))
+        S += by_constant.T @ Jc - Asc.T @ solved[:, :p]
+        g += Jc.T @ r - Asc.T @ solved[:, p]
+        kept.append(solved)
+    curvature = S.copy()
+    S[np.diag_indices(p)] += damping * np.diag(S) + 1e-9
+    change = -np.linalg.solve(S, g)
+    return change, [-(s[:, p] + s[:, :p] @ change) for s in kept], curvature
+
+
+def settled(judge, strike, steps=4):
+    """A strike after some of Gauss and Newton's own steps, each taken only if it lowers the cost; and the cost."""
+    low, high = bounds(judge.shot, judge.physics)
+    weight = np.repeat(_weights(judge), 2)
+    best, cost = strike, float(costs(judge, strike[None])[0])
+    h = 100 * _STEP
+    for _ in range(steps):
+        around = np.concatenate([best + h * np.diag(SCALE), best - h * np.diag(SCALE), best[None]])
+        found = judge.differences(around).reshape(len(around), -1)
+        J, r = (found[:6] - found[6:12]).T / (2 * h), found[12]
+        A, g = J.T @ (J * weight[:, None]), J.T @ (r * weight)
+        tried = []
+        for damping in (1e-3, 1e-1, 1.0, 10.0):
+            B = A.copy()
+            B[np.diag_indices(6)] += damping * np.diag(A) + 1e-12
+            tried.append(best - np.linalg.solve(B, g) * SCALE)
+        tried = clipped(np.array(tried), low, high)
+        found = costs(judge, tried)
+        k = int(np.argmin(found))
+        if found[k] > 0.999 * cost:
+            break
+        best, cost = tried[k], float(found[k])
+    return best, cost
+
+
+def _tried(judges, strikes, physics):
+    """Strikes settled with these constants, and their errors [m]."""
+    found = []
+    for judge, strike in zip(judges, strikes, strict=True):
+        judge.use(physics)
+        found.append(settled(judge, strike)[0])
+    return found, [rms(judge, strike) for judge, strike in zip(judges, found, strict=True)]
+
+
+def fitted(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=print, strikes=None):
+    """The constants that suit ``shots`` best, and the strikes; in so many minutes, from ``physics`` on."""
+    began = time.monotonic()
+    low, high = (np.array([SEARCHED[name][k] for name in names]) for k in (0, 1))
+    judges = [Judge(shot, physics) for shot in shots]
+    strikes = [fit(judge, seed, runs=2)[0] for judge in judges] if strikes is None else strikes
+    strikes, errors = _tried(judges, strikes, physics)
+    best = loss(errors)
+    say(f"start: {100 * best:.3f} median {100 * np.median(errors):.2f} cm")
+    damping, rounds = 0.1, 0
+    while time.monotonic() - began < 60 * minutes:
+        rounds += 1
+        change, moves, _ = step(judges, strikes, physics, names, damping)
+        better = False
+        for share in (1.0, 0.4, 0.15):
+            values = np.array([getattr(physics, name) for name in names]) + share * change * (high - low)
+            values = np.clip(values, low, high)
+            other = dataclasses.replace(physics, **dict(zip(names, values.tolist(), strict=True)))
+            moved = []
+            for judge, strike, move in zip(judges, strikes, moves, strict=True):
+                lo, hi = bounds(judge.shot, other)
+                moved.append(clipped((strike + share * move * SCALE)[None], lo, hi)[0])
+            # of each shot the better of both: the strike that was, and the one that was moved
+            for judge in judges:
+                judge.use(other)
+            moved = [
+                min((s, m), key=lambda x, j=judge: float(costs(j, x[None])[0]))
+                for judge, s, m in zip(judges, strikes, moved, strict=True)
+            ]
+            found, errors = _tried(judges, moved, other)
+            if loss(errors) < best:
+                physics, strikes, best, better = other, found, loss(errors), True
+                break
+        damping = damping * 0.5 if better else min(damping * 3, 100.0)
+        words = ", ".join(f"{name} {getattr(physics, name):.4g}" for name in names)
+        say(f"{rounds}: {100 * best:.3f} median {100 * np.median([rms(j, s) for j, s in zip(_use(judges, physics), strikes, strict=True)]):.2f} cm, damping {damping:.2g}; {words}")
+        if rounds % 8 == 0 or damping >= 30:
+            for k, judge in enumerate(_use(judges, physics)):
+                tried = [strikes[k], refit(judge, strikes[k], seed + rounds)[0]]
+                if rounds % 16 == 0:
+                    tried.append(fit(judge, seed + rounds, runs=1)[0])
+                strikes[k] = min(tried, key=lambda s, j=judge: float(costs(j, s[None])[0]))
+            best, damping = loss([rms(j, s) for j, s in zip(judges, strikes, strict=True)]), min(damping, 1.0)
+            say(f"strikes anew: {100 * best:.3f}")
+    return physics, strikes
+
+
+def _use(judges, physics):
+    for judge in judges:
+        judge.use(physics)
+    return judges

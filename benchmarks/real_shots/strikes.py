@@ -1,0 +1,171 @@
+"""Which strike makes a simulated shot follow a measured one? A search from the first contact on to the whole shot.
+
+The landscape is rough: a ball that is just missed changes all that follows. So a population of strikes (differential
+evolution) is fitted to the path up to the second contact, then up to the third, and so on to the end; the best of it,
+and others that differ, are refined (CMA-ES). Both are cheap: a strike takes 20 to 50 us.
+"""
+
+import numpy as np
+
+from .cma import Cma
+from .paths import AIM, ELEVATION, SIDE, SPEED, START, TOP, Judge
+
+OTHERS = 0.1
+"""Weight of the other balls' mean squared error against the cue ball's."""
+MOST_ELEVATION = 0.6
+SCALE = np.array([0.02, 0.004, 0.03, 0.03, 0.02, 0.002])
+"""Steps of a strike that shift its path by some centimetres; that of the speed is a share of it."""
+
+
+def _robust(squares, cap):
+    return squares / (1.0 + squares / cap**2)
+
+
+def costs(judge, strikes, horizon=np.inf, cap=1.0, others=OTHERS):
+    """The cost of strikes (b, 6): mean over the cue ball's samples of the squared distance d^2 / (1 + d^2/cap^2), and
+    ``others`` times the same of the other balls."""
+    squares = _robust(judge.squares(strikes, horizon), cap)
+    a = judge.offsets
+    counted = judge.times <= horizon
+    found = np.zeros(len(strikes))
+    first = counted[: a[1]]
+    found += squares[:, : a[1]] @ first / max(first.sum(), 1)
+    rest = counted[a[1] :]
+    found += others * (squares[:, a[1] :] @ rest) / max(rest.sum(), 1)
+    return found
+
+
+def bounds(shot, physics, level=False):
+    """Lowest and highest strikes (6,) that are searched, from the first samples; side and top lie in a disc
+    besides. ``level``: the cue is not raised."""
+    cue = shot.balls[0]
+    first = shot.contacts[0][0] if shot.contacts else cue.t[-1]
+    moving = cue.t >= shot.moved
+    before = moving & (cue.t <= min(first - 0.005, shot.moved + 0.25))
+    n = min(int(before.sum()), 6)
+    t, xy = cue.t[moving][: max(n, 4)], cue.xy[moving][: max(n, 4)]
+    if n >= 4:
+        speed = np.hypot(*(xy[n - 1] - xy[0])) / (t[n - 1] - t[0])
+        slowest, fastest, turn = 0.88 * speed, 1.12 * speed + 0.1, 0.03
+    else:  # another ball or a cushion is hit at once: the samples after it bound the speed
+        steps = np.hypot(*np.diff(xy, axis=0).T) / np.diff(t) if len(t) > 1 else np.array([1.0])
+        slowest, fastest, turn = 0.6 * steps.max(), 2.2 * steps.max() + 0.3, 0.15
+    gone = xy[max(n, 1) - 1] - shot.places[0]
+    aim = np.arctan2(gone[1], gone[0])
+    turn += 0.004 / max(np.hypot(*gone), 0.03)
+    most = physics.max_offset
+    low = np.array([slowest, aim - turn, -most, -most, 0.0, max(shot.still, shot.moved - 0.06)])
+    return low, np.array([fastest, aim + turn, most, most, 0.0 if level else MOST_ELEVATION, shot.moved])
+
+
+def clipped(strikes, low, high):
+    """Strikes (b, 6) moved into the bounds, tips on to the disc."""
+    found = np.clip(strikes, low, high)
+    offset = np.hypot(found[:, SIDE], found[:, TOP])
+    most = high[SIDE]
+    over = offset > most
+    found[over, SIDE] *= most / offset[over]
+    found[over, TOP] *= most / offset[over]
+    return found
+
+
+def _drawn(rng, low, high, n):
+    found = rng.uniform(low, high, (n, 6))
+    radius, angle = high[SIDE] * np.sqrt(rng.uniform(0, 1, n)), rng.uniform(-np.pi, np.pi, n)
+    found[:, SIDE], found[:, TOP] = radius * np.cos(angle), radius * np.sin(angle)
+    found[:, ELEVATION] = np.minimum(rng.exponential(0.07, n), high[ELEVATION])
+    return found
+
+
+def horizons(shot):
+    """Times up to which the path is fitted in turn: shortly before each contact but the first, and the end [s]."""
+    times = [t for t, _ in shot.contacts]
+    end = max(b.t[-1] for b in shot.balls)
+    found = [max(b - 0.02, a + 0.05) for a, b in zip(times, times[1:], strict=False)]
+    kept = []
+    for h in found:
+        if not kept or h > kept[-1] + 0.2:
+            kept.append(h)
+    return [*kept[:7], end]
+
+
+def evolve(judge, rng, low, high, population=96, generations=14, first=6):
+    """A population of strikes fitted with longer and longer horizons: (population, 6) and their costs."""
+    steps = horizons(judge.shot)
+    pool = _drawn(rng, low, high, first * population)
+    cap = 0.15
+    cost = costs(judge, pool, steps[0], cap)
+    best = np.argsort(cost)[:population]
+    pool, cost = pool[best], cost[best]
+    for k, horizon in enumerate(steps):
+        if k:
+            cost = costs(judge, pool, horizon, cap)
+        cap_now = cap if k < len(steps) - 1 else 0.3
+        for _ in range(generations if k < len(steps) - 1 else 2 * generations):
+            n = len(pool)
+            order = np.argsort(cost)
+            leader = pool[order[rng.integers(0, max(n // 8, 2), n)]]
+            a, b = pool[rng.integers(0, n, n)], pool[rng.integers(0, n, n)]
+            f = rng.normal(0.6, 0.2, (n, 1))
+            trial = pool + f * (leader - pool) + f * (a - b)
+            trial += rng.normal(0, 0.02, (n, 6)) * SCALE
+            keep = rng.uniform(size=(n, 6)) > 0.9
+            trial = clipped(np.where(keep, pool, trial), low, high)
+            found = costs(judge, trial, horizon, cap_now)
+            better = found < cost
+            pool[better], cost[better] = trial[better], found[better]
+    return pool, cost
+
+
+def refine(judge, rng, start, low, high, sigma=0.5, generations=40, population=16, cap=1.0, others=OTHERS):
+    """CMA-ES from one strike: the best found (6,) and its cost."""
+    scale = SCALE.copy()
+    scale[SPEED] *= start[SPEED]
+    best, best_cost = start.copy(), float(costs(judge, start[None], np.inf, cap, others)[0])
+    search = Cma(rng, start, scale, sigma, population)
+    for _ in range(generations):
+        x = clipped(search.ask(), low, high)
+        cost = costs(judge, x, np.inf, cap, others)
+        k = int(np.argmin(cost))
+        if cost[k] < best_cost:
+            best, best_cost = x[k].copy(), float(cost[k])
+        search.tell(x, cost)
+        if search.spread < 1e-5:
+            break
+    return best, best_cost
+
+
+def fit(judge: Judge, seed=0, runs=4, enough=0.03, level=False):
+    """The strike of a shot, from nothing but its samples: (6,), and its cost [m^2].
+
+    Searched anew up to ``runs`` times, until the cost is below ``enough`` squared or the best was found twice.
+    """
+    rng = np.random.default_rng([seed, judge.shot.id])
+    low, high = bounds(judge.shot, judge.physics, level)
+    found = []
+    for _ in range(runs):
+        pool, cost = evolve(judge, rng, low, high)
+        cost = costs(judge, pool)
+        starts = [pool[np.argmin(cost)], pool[rng.integers(len(pool))]]
+        best, least = min((refine(judge, rng, s, low, high) for s in starts), key=lambda f: f[1])
+        found.append(min((refine(judge, rng, best, low, high, sigma=s) for s in (0.1, 1.5)), key=lambda f: f[1]))
+        least = sorted(cost for _, cost in found)
+        if least[0] < enough**2 or (len(least) > 1 and least[1] < 1.05 * least[0]):
+            break
+    return min(found, key=lambda f: f[1])
+
+
+def refit(judge, strike, seed=0, sigma=0.3, generations=25, population=12):
+    """A strike that was fitted with other constants, fitted again from there."""
+    rng = np.random.default_rng([seed, judge.shot.id])
+    low, high = bounds(judge.shot, judge.physics)
+    return refine(judge, rng, strike, low, high, sigma, generations, population)
+
+
+def refine_from(judge, strike, seed=0, level=False):
+    """The same from a strike that may lie farther off: near it, and in a wide search around it."""
+    rng = np.random.default_rng([seed, judge.shot.id])
+    low, high = bounds(judge.shot, judge.physics, level)
+    start = clipped(strike[None], low, high)[0]
+    near, _ = refine(judge, rng, start, low, high, 0.5, 40, 16)
+    return refine(judge, rng, near, low, high, 1.5, 40, 16)
