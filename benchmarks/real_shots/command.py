@@ -114,7 +114,7 @@ def say(figures):
         cells = [f"{100 * m[k]:.1f}" for k in ("cue_rms", "cue_rms_90", "cue_mean", "cue_rms_3s", "balls_rms")]
         rows.append([name, str(m["shots"]), *cells, f"{m['order']:.0%}"])
     print("\nError of the cue ball's path [cm], medians over shots (rms over a shot's samples; mean: of the distances)")
-    print(text_table(head, rows))
+    print("\n".join(text_table(head, rows)))
     wild = sum(sum(s["wild"]) for s in figures["shots"])
     print(f"wild samples left out: {wild}; published for all 182 shots (tailuge's billiards, rms, same samples): 22.3, 90 % 43")
     runs = [run for s in figures["shots"] for run in s["across"]]
@@ -139,7 +139,7 @@ def laws(judges, strikes, found, physics, seed):
     for k in chosen:
         judges[k].use(physics)
     print(f"\nWithout one law, {len(chosen)} shots held out, every strike searched anew")
-    print(text_table(["left out", "error [cm]", "shots worse"], [[n, f"{100 * r['median']:.1f}", f"{r['worse']:.0%}"] for n, r in rows.items()]))
+    print("\n".join(text_table(["left out", "error [cm]", "shots worse"], [[n, f"{100 * r['median']:.1f}", f"{r['worse']:.0%}"] for n, r in rows.items()])))
     return rows
 
 
@@ -161,5 +161,5 @@ def peer(judges, strikes, found, physics):
         row["median"] = float(np.median(errors))
         cells.append([name, f"{100 * row['median']:.1f}", str(row["failed"])])
     print(f"\n{len(chosen)} shots held out by pooltool, its strikes fitted from ours")
-    print(text_table(["engine", "error [cm]", "failed"], cells))
+    print("\n".join(text_table(["engine", "error [cm]", "failed"], cells)))
     return rows
