@@ -187,7 +187,9 @@ def fit(judge: Judge, seed=0, runs=3, enough=0.03, level=False):
         starts = [pool[np.argmin(cost)], pool[rng.integers(len(pool))]]
         best, _ = min((refine(judge, rng, s, low, high, generations=30) for s in starts), key=lambda f: f[1])
         best, _ = settled(judge, best)
-        found.append(min((refine(judge, rng, best, low, high, s, 20) for s in (0.1, 1.5)), key=lambda f: f[1]))
+        found.append(
+            min((refine(judge, rng, best, low, high, s, 20) for s in (0.1, 1.5)), key=lambda f: f[1])
+        )
         least = sorted(cost for _, cost in found)
         if least[0] < enough**2 or (len(least) > 1 and least[1] < 1.05 * least[0]):
             break
