@@ -135,8 +135,9 @@ def fitted(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=print, st
                 break
         damping = damping * 0.5 if better else min(damping * 3, 100.0)
         words = ", ".join(f"{name} {getattr(physics, name):.4g}" for name in names)
+        errors = [rms(judge, strike) for judge, strike in zip(_use(judges, physics), strikes, strict=True)]
         say(
-            f"{rounds}: {100 * best:.3f} median {100 * np.median([rms(j, s) for j, s in zip(_use(judges, physics), strikes, strict=True)]):.2f} cm, damping {damping:.2g}; {words}"
+            f"{rounds}: {100 * best:.3f} median {100 * np.median(errors):.2f} cm, damping {damping:.2g}; {words}"
         )
         if rounds % 8 == 0 or damping >= 30:
             for k, judge in enumerate(_use(judges, physics)):

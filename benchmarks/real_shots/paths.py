@@ -9,7 +9,7 @@ from snooker_env.physics.columns import P_MU_S, P_R
 from snooker_env.physics.events import EventKind
 from snooker_env.physics.impact import contact
 from snooker_env.physics.parameters import Physics
-from snooker_env.physics.table import Table
+from snooker_env.physics.table import Table, TableLike
 
 SPEED, AIM, SIDE, TOP, ELEVATION, START = range(6)
 """A strike: speed [m/s], direction [rad], offsets over R, elevation [rad], and its time on the track's clock [s]."""
@@ -73,7 +73,7 @@ def _places(rows, n, start, times, phys, out):
 class Judge:
     """The samples of one shot, and the engine that plays strikes against them."""
 
-    def __init__(self, shot, physics, table="carom", fidelity="standard"):
+    def __init__(self, shot, physics, table: TableLike = "carom", fidelity="standard"):
         self.shot = shot
         self.times = np.concatenate([b.t for b in shot.balls])
         self.xy = np.concatenate([b.xy for b in shot.balls])

@@ -5,10 +5,12 @@ evolution) is fitted to the path up to the second contact, then up to the third,
 and others that differ, are refined (CMA-ES). Both are cheap: a strike takes 20 to 50 us.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from .cma import Cma
-from .paths import AIM, ELEVATION, SIDE, SPEED, START, TOP, Judge
+from .paths import ELEVATION, SIDE, SPEED, TOP, Judge
 
 OTHERS = 0.1
 """Weight of the other balls' mean squared error against the cue ball's."""
@@ -83,7 +85,7 @@ def horizons(shot):
     """Times up to which the path is fitted in turn: shortly before each contact but the first, and the end [s]."""
     times = [t for t, _ in shot.contacts]
     end = max(b.t[-1] for b in shot.balls)
-    found = [max(b - 0.02, a + 0.05) for a, b in zip(times, times[1:], strict=False)]
+    found = [max(b - 0.02, a + 0.05) for a, b in pairwise(times)]
     kept = []
     for h in found:
         if not kept or h > kept[-1] + 0.2:

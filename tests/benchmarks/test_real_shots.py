@@ -28,8 +28,7 @@ def made(number, wild):
     balls = {}
     for k in range(3):
         moved = np.abs(np.diff(xy[:, k], axis=0)).max(1) > 1e-3
-        seen = np.flatnonzero(np.concatenate([[True], moved]))
-        seen = np.unique([*seen, len(times) - 1])
+        seen = np.flatnonzero(np.concatenate([[True], moved[:-1], [True]]))
         at = xy[seen, k] + rng.normal(0, 7e-4, (len(seen), 2)) * (seen > 0)[:, None]
         if k == 0 and wild:
             at[wild] += (0.0, 0.3)
