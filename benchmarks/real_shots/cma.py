@@ -9,7 +9,13 @@ class Cma:
 
     def __init__(self, rng, start, scale, sigma, population):
         n = len(start)
-        self._rng, self._start, self._scale, self.sigma, self.population = rng, start, scale, sigma, population
+        self._rng, self._start, self._scale, self.sigma, self.population = (
+            rng,
+            start,
+            scale,
+            sigma,
+            population,
+        )
         weights = np.log(population / 2 + 0.5) - np.log(np.arange(1, population // 2 + 1))
         self._weights = weights / weights.sum()
         self._mu = mu = 1.0 / (self._weights**2).sum()
@@ -46,7 +52,9 @@ class Cma:
         y = (((candidates - self._start) / self._scale - self._mean) / self.sigma)[best]
         step = self._weights @ y
         self._mean = self._mean + self.sigma * step
-        self._ps = (1 - cs) * self._ps + np.sqrt(cs * (2 - cs) * mu) * (self._B @ ((self._B.T @ step) / self._d))
+        self._ps = (1 - cs) * self._ps + np.sqrt(cs * (2 - cs) * mu) * (
+            self._B @ ((self._B.T @ step) / self._d)
+        )
         length = np.linalg.norm(self._ps)
         short = length / np.sqrt(1 - (1 - cs) ** (2 * self._told)) < (1.4 + 2 / (n + 1)) * self._chi
         self._pc = (1 - cc) * self._pc + short * np.sqrt(cc * (2 - cc) * mu) * step

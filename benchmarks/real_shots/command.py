@@ -45,11 +45,19 @@ def main(argv=None):
     """Command line."""
     parser = Command("real_shots", __doc__, pictures=(FILE,), seed=0)
     parser.add_argument("file", type=Path, metavar="FILE", help="the tracked shots, JSON")
-    parser.add_argument("--physics", default="carom", choices=sorted(PRESETS), help="the constants of all shots [carom]")
+    parser.add_argument(
+        "--physics", default="carom", choices=sorted(PRESETS), help="the constants of all shots [carom]"
+    )
     parser.add_argument("--shots", type=at_least(1), metavar="N", help="only the first N shots")
-    parser.add_argument("--laws", action="store_true", help="leave out one law after the other (some minutes)")
-    parser.add_argument("--peer", action="store_true", help="play the held-out shots with pooltool too (many minutes)")
-    parser.add_argument("--fit", type=float, metavar="MINUTES", help="fit the constants anew, for so long, and judge those")
+    parser.add_argument(
+        "--laws", action="store_true", help="leave out one law after the other (some minutes)"
+    )
+    parser.add_argument(
+        "--peer", action="store_true", help="play the held-out shots with pooltool too (many minutes)"
+    )
+    parser.add_argument(
+        "--fit", type=float, metavar="MINUTES", help="fit the constants anew, for so long, and judge those"
+    )
     options = parser.options(argv)
     try:
         shots = tracks.read(options.file)
@@ -75,9 +83,14 @@ def measure(options, shots):
     physics = constants_of(options)
     if options.fit:
         used = [s for s in shots if part(s.id) == USED]
-        physics = constants.fitted(physics, used, options.fit, options.seed)
-        print(f"\nfitted on {len(used)} shots: " + ", ".join(f"{k} {getattr(physics, k):.4g}" for k in constants.SEARCHED))
-    print(f"{len(shots)} shots of {options.file.name}, physics {'fitted anew' if options.fit else repr(options.physics)}")
+        physics, _ = constants.fitted(physics, used, options.fit, options.seed)
+        print(
+            f"\nfitted on {len(used)} shots: "
+            + ", ".join(f"{k} {getattr(physics, k):.4g}" for k in constants.SEARCHED)
+        )
+    print(
+        f"{len(shots)} shots of {options.file.name}, physics {'fitted anew' if options.fit else repr(options.physics)}"
+    )
     judges, strikes, found = [], [], []
     for shot in shots:
         judge = Judge(shot, physics)
@@ -111,12 +124,18 @@ def say(figures):
     head = ["shots", "", "whole shot", "90 %", "mean", "first 3 s", "other balls", "order of contacts"]
     rows = []
     for name, m in figures["medians"].items():
-        cells = [f"{100 * m[k]:.1f}" for k in ("cue_rms", "cue_rms_90", "cue_mean", "cue_rms_3s", "balls_rms")]
+        cells = [
+            f"{100 * m[k]:.1f}" for k in ("cue_rms", "cue_rms_90", "cue_mean", "cue_rms_3s", "balls_rms")
+        ]
         rows.append([name, str(m["shots"]), *cells, f"{m['order']:.0%}"])
-    print("\nError of the cue ball's path [cm], medians over shots (rms over a shot's samples; mean: of the distances)")
-    print(text_table(head, rows))
+    print(
+        "\nError of the cue ball's path [cm], medians over shots (rms over a shot's samples; mean: of the distances)"
+    )
+    print("\n".join(text_table(head, rows)))
     wild = sum(sum(s["wild"]) for s in figures["shots"])
-    print(f"wild samples left out: {wild}; published for all 182 shots (tailuge's billiards, rms, same samples): 22.3, 90 % 43")
+    print(
+        f"wild samples left out: {wild}; published for all 182 shots (tailuge's billiards, rms, same samples): 22.3, 90 % 43"
+    )
     runs = [run for s in figures["shots"] for run in s["across"]]
     for n, word in ((2, "twice"), (3, "three times or more")):
         errors = [run[3] for run in runs if (run[2] == 2 if n == 2 else run[2] >= 3)]
@@ -139,7 +158,14 @@ def laws(judges, strikes, found, physics, seed):
     for k in chosen:
         judges[k].use(physics)
     print(f"\nWithout one law, {len(chosen)} shots held out, every strike searched anew")
-    print(text_table(["left out", "error [cm]", "shots worse"], [[n, f"{100 * r['median']:.1f}", f"{r['worse']:.0%}"] for n, r in rows.items()]))
+    print(
+        "\n".join(
+            text_table(
+                ["left out", "error [cm]", "shots worse"],
+                [[n, f"{100 * r['median']:.1f}", f"{r['worse']:.0%}"] for n, r in rows.items()],
+            )
+        )
+    )
     return rows
 
 
@@ -161,5 +187,5 @@ def peer(judges, strikes, found, physics):
         row["median"] = float(np.median(errors))
         cells.append([name, f"{100 * row['median']:.1f}", str(row["failed"])])
     print(f"\n{len(chosen)} shots held out by pooltool, its strikes fitted from ours")
-    print(text_table(["engine", "error [cm]", "failed"], cells))
+    print("\n".join(text_table(["engine", "error [cm]", "failed"], cells)))
     return rows

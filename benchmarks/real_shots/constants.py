@@ -11,7 +11,7 @@ import time
 import numpy as np
 
 from .paths import Judge
-from .strikes import OTHERS, SCALE, bounds, clipped, costs, fit, refit
+from .strikes import SCALE, bounds, clipped, costs, fit, refit, settled, weights
 
 SEARCHED = {
     "mu_s": (0.06, 0.40),
@@ -46,14 +46,6 @@ def loss(errors):
     return float((errors / (1 + errors / MIDDLING)).mean())
 
 
-def _weights(judge):
-    """Of each sample, so that the sum of weighted squares is the cost of ``strikes.costs``."""
-    a = judge.offsets
-    w = np.full(len(judge.times), OTHERS / max(a[-1] - a[1], 1))
-    w[: a[1]] = 1.0 / a[1]
-    return w
-
-
 def _slopes(judge, strike, physics, names, low, high):
     """Differences from the samples (2 m,), and their derivatives by the scaled strike (2 m, 6) and constants (2 m, p)."""
     h = 100 * _STEP
@@ -80,7 +72,7 @@ def step(judges, strikes, physics, names, damping):
     for judge, strike in zip(judges, strikes, strict=True):
         r, by_strike, by_constant = _slopes(judge, strike, physics, names, low, high)
         squares = (r.reshape(-1, 2) ** 2).sum(1)
-        weight = _weights(judge) / (1 + squares / 0.3**2) ** 2
+        weight = weights(judge) / (1 + squares / 0.3**2) ** 2
         e = max(np.sqrt(squares[: judge.offsets[1]].mean()), _LEAST)
         weight = np.repeat(weight / (e * (1 + e / MIDDLING) ** 2), 2)
         # a slope of metres a step is chaos: it is told nothing
@@ -97,31 +89,6 @@ def step(judges, strikes, physics, names, damping):
     S[np.diag_indices(p)] += damping * np.diag(S) + 1e-9
     change = -np.linalg.solve(S, g)
     return change, [-(s[:, p] + s[:, :p] @ change) for s in kept], curvature
-
-
-def settled(judge, strike, steps=4):
-    """A strike after some of Gauss and Newton's own steps, each taken only if it lowers the cost; and the cost."""
-    low, high = bounds(judge.shot, judge.physics)
-    weight = np.repeat(_weights(judge), 2)
-    best, cost = strike, float(costs(judge, strike[None])[0])
-    h = 100 * _STEP
-    for _ in range(steps):
-        around = np.concatenate([best + h * np.diag(SCALE), best - h * np.diag(SCALE), best[None]])
-        found = judge.differences(around).reshape(len(around), -1)
-        J, r = (found[:6] - found[6:12]).T / (2 * h), found[12]
-        A, g = J.T @ (J * weight[:, None]), J.T @ (r * weight)
-        tried = []
-        for damping in (1e-3, 1e-1, 1.0, 10.0):
-            B = A.copy()
-            B[np.diag_indices(6)] += damping * np.diag(A) + 1e-12
-            tried.append(best - np.linalg.solve(B, g) * SCALE)
-        tried = clipped(np.array(tried), low, high)
-        found = costs(judge, tried)
-        k = int(np.argmin(found))
-        if found[k] > 0.999 * cost:
-            break
-        best, cost = tried[k], float(found[k])
-    return best, cost
 
 
 def _tried(judges, strikes, physics):
@@ -168,7 +135,10 @@ def fitted(physics, shots, minutes, seed=0, names=tuple(SEARCHED), say=print, st
                 break
         damping = damping * 0.5 if better else min(damping * 3, 100.0)
         words = ", ".join(f"{name} {getattr(physics, name):.4g}" for name in names)
-        say(f"{rounds}: {100 * best:.3f} median {100 * np.median([rms(j, s) for j, s in zip(_use(judges, physics), strikes, strict=True)]):.2f} cm, damping {damping:.2g}; {words}")
+        errors = [rms(judge, strike) for judge, strike in zip(_use(judges, physics), strikes, strict=True)]
+        say(
+            f"{rounds}: {100 * best:.3f} median {100 * np.median(errors):.2f} cm, damping {damping:.2g}; {words}"
+        )
         if rounds % 8 == 0 or damping >= 30:
             for k, judge in enumerate(_use(judges, physics)):
                 tried = [strikes[k], refit(judge, strikes[k], seed + rounds)[0]]

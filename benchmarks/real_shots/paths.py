@@ -9,13 +9,14 @@ from snooker_env.physics.columns import P_MU_S, P_R
 from snooker_env.physics.events import EventKind
 from snooker_env.physics.impact import contact
 from snooker_env.physics.parameters import Physics
-from snooker_env.physics.table import Table
+from snooker_env.physics.table import Table, TableLike
 
 SPEED, AIM, SIDE, TOP, ELEVATION, START = range(6)
 """A strike: speed [m/s], direction [rad], offsets over R, elevation [rad], and its time on the track's clock [s]."""
 _LOG = 100
 _ROOM = 110
 _CHUNK = 400
+_FAST = contact.parse_fidelity("fast")
 _BALL_BALL, _CUSHION = int(EventKind.BALL_BALL), int(EventKind.CUSHION)
 
 
@@ -72,7 +73,7 @@ def _places(rows, n, start, times, phys, out):
 class Judge:
     """The samples of one shot, and the engine that plays strikes against them."""
 
-    def __init__(self, shot, physics, table="carom", fidelity="standard"):
+    def __init__(self, shot, physics, table: TableLike = "carom", fidelity="standard"):
         self.shot = shot
         self.times = np.concatenate([b.t for b in shot.balls])
         self.xy = np.concatenate([b.xy for b in shot.balls])
@@ -86,8 +87,8 @@ class Judge:
         self.physics = Physics.of(physics)
         self.packed = self.physics.packed_for(self.solver)
 
-    def run(self, strikes, max_events=100_000):
-        """The engine's run of strikes (b, 6)."""
+    def run(self, strikes, max_events=100_000, fast=False):
+        """The engine's run of strikes (b, 6); ``fast``: its impacts to a looser tolerance."""
         b, n = len(strikes), len(self.shot.balls)
         r = np.repeat(self.shot.places[None], b, axis=0)
         v, w = np.zeros((b, n, 2)), np.zeros((b, n, 3))
@@ -97,23 +98,29 @@ class Judge:
             (r, v, w, np.ones((b, n), bool)),
             self.physics,
             self.table,
-            self.solver,
+            _FAST if fast else self.solver,
             max_events,
             simulation.log_space(b, _LOG, _ROOM),
         )
 
-    def squares(self, strikes, horizon=np.inf):
+    def events_until(self, strikes, horizon):
+        """As many events as strikes (b, 6) have up to the horizon [s], and some more."""
+        ran = self.run(strikes, fast=True)
+        counted = np.arange(ran.event_time.shape[1]) < ran.n_events[:, None]
+        return int((counted & (ran.event_time <= horizon)).sum(1).max()) + 8
+
+    def squares(self, strikes, horizon=np.inf, **how):
         """Squared distances (b, samples) [m^2] of strikes (b, 6); beyond the horizon 0."""
-        found = self.differences(strikes, horizon)
+        found = self.differences(strikes, horizon, **how)
         return found[..., 0] ** 2 + found[..., 1] ** 2
 
-    def differences(self, strikes, horizon=np.inf, max_events=100_000):
+    def differences(self, strikes, horizon=np.inf, max_events=100_000, fast=False):
         """From each sample to the simulated ball (b, samples, 2) [m]; beyond the horizon 0."""
         strikes = np.ascontiguousarray(strikes)
         out = np.zeros((len(strikes), len(self.times), 2))
         for a in range(0, len(strikes), _CHUNK):
             part = strikes[a : a + _CHUNK]
-            ran = self.run(part, max_events)
+            ran = self.run(part, max_events, fast)
             _differences(
                 ran.segments,
                 np.minimum(ran.n_segments, _ROOM),

@@ -28,7 +28,9 @@ def draw(figures, judges, strikes, out):
     )
     title = "Real three-cushion shots, and the engine's"
     with picture_style.drawing() as plt:
-        fig, axes = picture_style.page(plt, 5.4, title, note, foot=foot, columns=4, width_ratios=(1, 1, 1, 1.35))
+        fig, axes = picture_style.page(
+            plt, 5.4, title, note, foot=foot, columns=4, width_ratios=(1, 1, 1, 1.35)
+        )
         for ax, k, word in zip(axes, chosen(shots), ("a good", "a middling", "a bad"), strict=False):
             _table(ax, judges[k], strikes[k], f"{word} one: {100 * shots[k]['cue_rms']:.1f} cm", shots[k])
         _errors(axes[3], figures)
@@ -57,7 +59,16 @@ def _errors(ax, figures):
     for name, colour in (("used for the constants", picture_style.GREY), ("held out", picture_style.BLUE)):
         errors = sorted(100 * s["cue_rms"] for s in figures["shots"] if s["part"] == name)
         if errors:
-            ax.plot(np.linspace(0, 100, len(errors)), errors, "-", marker=".", ms=4, lw=1.2, color=colour, label=name)
+            ax.plot(
+                np.linspace(0, 100, len(errors)),
+                errors,
+                "-",
+                marker=".",
+                ms=4,
+                lw=1.2,
+                color=colour,
+                label=name,
+            )
     ax.axhline(100 * PUBLISHED, color=picture_style.ORANGE, lw=1.2, label="published: median")
     ax.set_yscale("log")
     ax.set_ylim(0.8, 100)

@@ -5,26 +5,30 @@ evolution) is fitted to the path up to the second contact, then up to the third,
 and others that differ, are refined (CMA-ES). Both are cheap: a strike takes 20 to 50 us.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from .cma import Cma
-from .paths import AIM, ELEVATION, SIDE, SPEED, START, TOP, Judge
+from .paths import ELEVATION, SIDE, SPEED, TOP, Judge
 
 OTHERS = 0.1
 """Weight of the other balls' mean squared error against the cue ball's."""
 MOST_ELEVATION = 0.6
 SCALE = np.array([0.02, 0.004, 0.03, 0.03, 0.02, 0.002])
 """Steps of a strike that shift its path by some centimetres; that of the speed is a share of it."""
+_QUOTIENT = 0.02
+"""Of the difference quotients of a path by its strike, in these steps."""
 
 
 def _robust(squares, cap):
     return squares / (1.0 + squares / cap**2)
 
 
-def costs(judge, strikes, horizon=np.inf, cap=1.0, others=OTHERS):
+def costs(judge, strikes, horizon=np.inf, cap=1.0, others=OTHERS, **how):
     """The cost of strikes (b, 6): mean over the cue ball's samples of the squared distance d^2 / (1 + d^2/cap^2), and
     ``others`` times the same of the other balls."""
-    squares = _robust(judge.squares(strikes, horizon), cap)
+    squares = _robust(judge.squares(strikes, horizon, **how), cap)
     a = judge.offsets
     counted = judge.times <= horizon
     found = np.zeros(len(strikes))
@@ -81,7 +85,7 @@ def horizons(shot):
     """Times up to which the path is fitted in turn: shortly before each contact but the first, and the end [s]."""
     times = [t for t, _ in shot.contacts]
     end = max(b.t[-1] for b in shot.balls)
-    found = [max(b - 0.02, a + 0.05) for a, b in zip(times, times[1:], strict=False)]
+    found = [max(b - 0.02, a + 0.05) for a, b in pairwise(times)]
     kept = []
     for h in found:
         if not kept or h > kept[-1] + 0.2:
@@ -89,19 +93,22 @@ def horizons(shot):
     return [*kept[:7], end]
 
 
-def evolve(judge, rng, low, high, population=96, generations=14, first=6):
+def evolve(judge, rng, low, high, population=96, generations=12, first=5):
     """A population of strikes fitted with longer and longer horizons: (population, 6) and their costs."""
     steps = horizons(judge.shot)
     pool = _drawn(rng, low, high, first * population)
     cap = 0.15
-    cost = costs(judge, pool, steps[0], cap)
+    cost = costs(judge, pool, steps[0], cap, max_events=judge.events_until(pool[:48], steps[0]), fast=True)
     best = np.argsort(cost)[:population]
     pool, cost = pool[best], cost[best]
     for k, horizon in enumerate(steps):
-        if k:
-            cost = costs(judge, pool, horizon, cap)
-        cap_now = cap if k < len(steps) - 1 else 0.3
-        for _ in range(generations if k < len(steps) - 1 else 2 * generations):
+        last = k == len(steps) - 1
+        how = {"fast": True}
+        if not last:
+            how["max_events"] = judge.events_until(pool[:48], horizon)
+        cap_now = 2 * cap if last else cap
+        cost = costs(judge, pool, horizon, cap_now, **how)
+        for _ in range(2 * generations if last else generations):
             n = len(pool)
             order = np.argsort(cost)
             leader = pool[order[rng.integers(0, max(n // 8, 2), n)]]
@@ -111,7 +118,7 @@ def evolve(judge, rng, low, high, population=96, generations=14, first=6):
             trial += rng.normal(0, 0.02, (n, 6)) * SCALE
             keep = rng.uniform(size=(n, 6)) > 0.9
             trial = clipped(np.where(keep, pool, trial), low, high)
-            found = costs(judge, trial, horizon, cap_now)
+            found = costs(judge, trial, horizon, cap_now, **how)
             better = found < cost
             pool[better], cost[better] = trial[better], found[better]
     return pool, cost
@@ -135,7 +142,40 @@ def refine(judge, rng, start, low, high, sigma=0.5, generations=40, population=1
     return best, best_cost
 
 
-def fit(judge: Judge, seed=0, runs=4, enough=0.03, level=False):
+def weights(judge):
+    """Of each sample, so that the sum of weighted squares is the cost of ``costs``."""
+    a = judge.offsets
+    w = np.full(len(judge.times), OTHERS / max(a[-1] - a[1], 1))
+    w[: a[1]] = 1.0 / a[1]
+    return w
+
+
+def settled(judge, strike, steps=4):
+    """A strike after some of Gauss and Newton's own steps, each taken only if it lowers the cost; and the cost."""
+    low, high = bounds(judge.shot, judge.physics)
+    weight = np.repeat(weights(judge), 2)
+    best, cost = strike, float(costs(judge, strike[None])[0])
+    h = _QUOTIENT
+    for _ in range(steps):
+        around = np.concatenate([best + h * np.diag(SCALE), best - h * np.diag(SCALE), best[None]])
+        found = judge.differences(around).reshape(len(around), -1)
+        J, r = (found[:6] - found[6:12]).T / (2 * h), found[12]
+        A, g = J.T @ (J * weight[:, None]), J.T @ (r * weight)
+        tried = []
+        for damping in (1e-3, 1e-1, 1.0, 10.0):
+            B = A.copy()
+            B[np.diag_indices(6)] += damping * np.diag(A) + 1e-12
+            tried.append(best - np.linalg.solve(B, g) * SCALE)
+        tried = clipped(np.array(tried), low, high)
+        found = costs(judge, tried)
+        k = int(np.argmin(found))
+        if found[k] > 0.999 * cost:
+            break
+        best, cost = tried[k], float(found[k])
+    return best, cost
+
+
+def fit(judge: Judge, seed=0, runs=3, enough=0.03, level=False):
     """The strike of a shot, from nothing but its samples: (6,), and its cost [m^2].
 
     Searched anew up to ``runs`` times, until the cost is below ``enough`` squared or the best was found twice.
@@ -147,8 +187,11 @@ def fit(judge: Judge, seed=0, runs=4, enough=0.03, level=False):
         pool, cost = evolve(judge, rng, low, high)
         cost = costs(judge, pool)
         starts = [pool[np.argmin(cost)], pool[rng.integers(len(pool))]]
-        best, least = min((refine(judge, rng, s, low, high) for s in starts), key=lambda f: f[1])
-        found.append(min((refine(judge, rng, best, low, high, sigma=s) for s in (0.1, 1.5)), key=lambda f: f[1]))
+        best, _ = min((refine(judge, rng, s, low, high, generations=30) for s in starts), key=lambda f: f[1])
+        best, _ = settled(judge, best)
+        found.append(
+            min((refine(judge, rng, best, low, high, s, 20) for s in (0.1, 1.5)), key=lambda f: f[1])
+        )
         least = sorted(cost for _, cost in found)
         if least[0] < enough**2 or (len(least) > 1 and least[1] < 1.05 * least[0]):
             break

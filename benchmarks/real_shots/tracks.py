@@ -102,7 +102,9 @@ def _wild(t, xy):
 def _track(where, ball):
     t, x, y = (_numbers(where, ball, key) for key in "txy")
     if not len(t) == len(x) == len(y):
-        raise ValueError(f"{where}: t, x and y have {len(t)}, {len(x)} and {len(y)} samples, must have as many")
+        raise ValueError(
+            f"{where}: t, x and y have {len(t)}, {len(x)} and {len(y)} samples, must have as many"
+        )
     if (np.diff(t) <= 0).any():
         raise ValueError(f"{where}.t must rise from sample to sample")
     for name, along, half in (("x", x, HALF[0]), ("y", y, HALF[1])):

@@ -99,7 +99,10 @@ def medians(shots):
     """The figures of many shots: medians, 90 % of the cue ball's error, and the share with the right order."""
     if not shots:
         return {}
-    found = {key: float(np.median([s[key] for s in shots])) for key in ("cue_rms", "cue_mean", "cue_rms_3s", "balls_rms")}
+    found = {
+        key: float(np.median([s[key] for s in shots]))
+        for key in ("cue_rms", "cue_mean", "cue_rms_3s", "balls_rms")
+    }
     found["cue_rms_90"] = float(np.quantile([s["cue_rms"] for s in shots], 0.9))
     found["order"] = float(np.mean([s["order"] for s in shots]))
     found["shots"] = len(shots)
