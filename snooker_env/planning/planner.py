@@ -14,7 +14,7 @@ from .._types import Environment, Integers, Scalars, Vectors
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..tasks.box_actions import Actions
-from ..tasks.noise import Noise, NoiseLike, errors_of
+from ..tasks.noise import ERROR_BLOCKS, Noise, NoiseLike, errors_of
 from ..tasks.observations import OBSERVATIONS
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
@@ -60,6 +60,9 @@ class Planner:
     A *stroke* is a row of five numbers in SI: cue speed [m/s], side and top (tip offset over R, to the right
     and up), the direction in which the cue ball leaves [rad], elevation of the cue [rad]. The cue itself
     points aside from that direction by the squirt of the side.
+
+    With ``conditions="drawn"`` positions that were taken from an environment are played with the constants of
+    their tables; other ones, and all of a planner with "fixed", with those of ``physics``.
 
     Parameters
     ----------
@@ -145,7 +148,7 @@ class Planner:
         5) in SI, with a cue ball in hand played from where it lies. The errors are drawn by ``keys``, int
         (n,) in [0, 2**64), or (n, 2) with a counter as a saved state has them: equal keys give equal errors
         for every stroke (common random numbers). Or they are ``errors``, float (n, 5) in standard deviations,
-        of speed, side, top, aim and elevation. Without noise neither is needed.
+        of speed, side, top, aim and elevation, and no kicks. Without noise neither is needed.
 
         ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
         SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes 20 us."""
@@ -171,14 +174,15 @@ class Planner:
 
     def _played(self, positions, rows, actions=None, keys=None, *, strokes=None, errors=None, visits=None):
         """Play the checked strokes on ``visits`` to be filled: the afterstates, and the step's output."""
-        at = Positions.of(positions).as_visits()
+        at = Positions.of(positions).as_visits().known_to(self._rules)
         which = rows_of(at, rows)
         n = len(which)
         if (actions is None) == (strokes is None):
             what = "none" if actions is None else "both"
             raise refuse_what("actions, strokes", what, "must be one of them: what is played")
         played = self._rules.actions.check_many(actions, n) if strokes is None else check_strokes(strokes, n)
-        streams = _streams(keys, n, self.noise.silent or errors is not None)
+        silent = self.noise.silent and not self.noise.kick
+        streams = _streams(keys, n, silent or errors is not None)
         if errors is not None and keys is not None:
             raise refuse_what("keys, errors", "both", "must be one of them: the errors are drawn or passed")
         wrong = None if errors is None else array("errors", errors, (n, STROKE))
@@ -189,6 +193,9 @@ class Planner:
         elif strokes is None and wrong is not None:
             played, after = decoded(self._rules, at, which, played)
         visits = copy.copy(self._visits) if visits is None else visits
+        if strokes is not None and errors is None and self.noise.kick:  # drawn after the errors
+            visits.kick = self.noise.kick
+            streams[:, 1] += np.uint64(0 if self.noise.silent else ERROR_BLOCKS)
         visits.lay(after, streams, wrong)
         out = visits.output()
         visits.step(played, np.zeros(n, np.bool_), out, self._threads)
@@ -245,7 +252,8 @@ class Planner:
     ) -> NDArray[np.float64]:
         """Solve aims as ``planning.pot_aim`` with this planner's physics and fidelity: float64 (n,)."""
         dynamics = self.physics, self._rules.fidelity
-        return solved_aims(Positions.of(positions), rows, balls, targets, strokes, ghosts, dynamics)
+        at = Positions.of(positions).known_to(self._rules)
+        return solved_aims(at, rows, balls, targets, strokes, ghosts, dynamics)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_lock"}
