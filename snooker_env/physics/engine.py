@@ -383,12 +383,11 @@ def _is_sound(balls, reach, boundaries):
 
 
 @kernel
-def _kicked(law, friction, phys):
-    """``law`` with a constant friction between balls, in the work space ``phys``, without tables."""
+def _kick(phys, friction, to):
+    """Copy constants to ``to``, with a constant friction between balls and without tables of their impacts."""
     for c in range(CONSTANTS):
-        phys[c] = law.phys[c]
-    phys[P_MU_BB_LEAST], phys[P_MU_BB_EXTRA], phys[P_BALLS] = friction, 0.0, 0.0
-    return Law(phys, law.fidelity, law.n_steps)
+        to[c] = phys[c]
+    to[P_MU_BB_LEAST], to[P_MU_BB_EXTRA], to[P_BALLS] = friction, 0.0, 0.0
 
 
 @entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion))
@@ -431,7 +430,8 @@ def run_batch(balls, setup, max_events, log, ends, start, stop):
         law = Law(phys[min(k, phys.shape[0] - 1)], fidelity, n_steps)
         first = law
         if kicks.shape[0] and kicks[k] > 0.0:
-            first = _kicked(law, kicks[k], bad)
+            _kick(law.phys, kicks[k], bad)
+            first = Law(bad, fidelity, n_steps)
         setting = Setup(law, first, boundaries, reach, clear)
         shot_log = Log(time[k], what[k], segments[k])
         status[k], n_events[k], n_segments[k], duration[k] = run(

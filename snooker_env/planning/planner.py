@@ -14,7 +14,7 @@ from .._types import Environment, Integers, Scalars, Vectors
 from ..physics.parameters import Physics
 from ..physics.table import Table
 from ..tasks.box_actions import Actions
-from ..tasks.noise import ERROR_BLOCKS, Noise, NoiseLike, errors_of
+from ..tasks.noise import Noise, NoiseLike, errors_of
 from ..tasks.observations import OBSERVATIONS
 from ..tasks.options import Options, Rules, options_of
 from ..tasks.rewards import REWARDS
@@ -181,8 +181,7 @@ class Planner:
             what = "none" if actions is None else "both"
             raise refuse_what("actions, strokes", what, "must be one of them: what is played")
         played = self._rules.actions.check_many(actions, n) if strokes is None else check_strokes(strokes, n)
-        silent = self.noise.silent and not self.noise.kick
-        streams = _streams(keys, n, silent or errors is not None)
+        streams = _streams(keys, n, self.noise.silent or errors is not None)
         if errors is not None and keys is not None:
             raise refuse_what("keys, errors", "both", "must be one of them: the errors are drawn or passed")
         wrong = None if errors is None else array("errors", errors, (n, STROKE))
@@ -193,9 +192,7 @@ class Planner:
         elif strokes is None and wrong is not None:
             played, after = decoded(self._rules, at, which, played)
         visits = copy.copy(self._visits) if visits is None else visits
-        if strokes is not None and errors is None and self.noise.kick:  # drawn after the errors
-            visits.kick = self.noise.kick
-            streams[:, 1] += np.uint64(0 if self.noise.silent else ERROR_BLOCKS)
+        visits.kick = self.noise.kick if errors is None else 0.0
         visits.lay(after, streams, wrong)
         out = visits.output()
         visits.step(played, np.zeros(n, np.bool_), out, self._threads)

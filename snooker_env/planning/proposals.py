@@ -21,15 +21,17 @@ from ..game.balls import VALUES, balls_on_kernel, bits, touching_balls
 from ..game.frame_columns import BALL_ON
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, TOLERANCE, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
+from ..tasks.arrays import CueLaw
 from ..tasks.box_actions import MAX_SPEED
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, ROLLING, escape_aim, find_escapes
 from ..tasks.lines import EASY, new_work
 from ..tasks.pot_aim import solved_aim
+from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
 from .positions import Positions
 from .prospects import FAR, FOLLOWS
 from .sobol import sobol
-from .strokes import AIM, COLUMNS, SIDE, SPEED, TOP, Dynamics, law_at, law_of
+from .strokes import AIM, COLUMNS, SIDE, SPEED, TOP, Dynamics, law_of
 
 SLOWEST, FASTEST, SOFTEST = 0.8, 6.5, 0.5
 """Cue speeds of the proposals at pots [m/s]; the smallest of strokes without a pot."""
@@ -114,10 +116,11 @@ def _aim(stroke, positions, pot, law, work):
 def _propose(balls, seeds, which, spread, law, strokes, chances):
     """Fill strokes (n, m, 5) at the pots ``which`` (n, m), and their chances; without rows, spread them."""
     lines, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
-    (positions, on_table, game), work = balls, new_work()
+    (positions, on_table, game), (phys, ratios, fidelity, n_steps), work = balls, law, new_work()
     m = strokes.shape[1]
     for k in range(len(strokes)):
-        p, here, seed = positions[k], on_table[k], seeds[k]
+        p, here, seed, own = positions[k], on_table[k], seeds[k], row_of(k, phys)
+        its = CueLaw(phys[own], ratios[own], fidelity, n_steps)
         on = balls_on_kernel(game[k, BALL_ON], bits(here))
         many = find_pots(p, here, on, BALL_RADIUS, lines)
         if many == 0:
@@ -138,7 +141,7 @@ def _propose(balls, seeds, which, spread, law, strokes, chances):
                     j += 1
                     reached += weights[j] / total
                 _spread_stroke(i, seed, strokes[k, i])
-            _aim(strokes[k, i], p, lines[j], law_at(k, law), work)
+            _aim(strokes[k, i], p, lines[j], its, work)
             chances[k, i] = pot_chance(p, lines[j], spread, LOST)
 
 
@@ -183,7 +186,8 @@ def _escapes(balls, seeds, law, strokes, chances):
     lines = np.empty((ESCAPES, POT_COLUMNS))
     work, aims = new_work(), np.empty(ESCAPES)
     for k in range(len(strokes)):
-        own, p, here, seed = law_at(k, (law[0], law[1], 0, 0)), positions[k], on_table[k], seeds[k]
+        p, here, seed, own = positions[k], on_table[k], seeds[k], row_of(k, law[0])
+        its = CueLaw(law[0][own], law[1][own], 0, 0)
         on, touching = balls_on_kernel(game[k, BALL_ON], bits(here)), touching_balls(p, here)
         chances[k, :] = 0.0
         if open_windows(p, here, on, touching, windows) and windows[0, HIGH] - windows[0, LOW] >= 2.0 * EASY:
@@ -204,7 +208,7 @@ def _escapes(balls, seeds, law, strokes, chances):
                 aside = line[LINE_ROOM] * (2.0 * sobol(again - 1, 4, scramble) - 1.0)
             stroke[SPEED], stroke[SIDE], stroke[TOP] = line[LINE_SPEED] * exp(0.5 * faster), 0.0, ROLLING
             if again == 0:
-                aims[j] = escape_aim(line[LINE_AIM], (stroke[SPEED], 0.0, ROLLING), p, here, on, own, work)
+                aims[j] = escape_aim(line[LINE_AIM], (stroke[SPEED], 0.0, ROLLING), p, here, on, its, work)
             stroke[AIM] = turned(aims[j % many] + aside)
 
 

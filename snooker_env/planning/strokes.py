@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._check import array, integer, number, refuse, refuse_what
-from .._jit import entry, kernel
+from .._jit import entry
 from .._types import Fidelity, Floats, Integers, Ints, Scalars, Vector, Vectors
 from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
@@ -27,7 +27,7 @@ from ..tasks.lines import new_work
 from ..tasks.noise import Noise, with_errors
 from ..tasks.options import Options, Rules
 from ..tasks.pot_aim import solved_aim
-from ..tasks.stroke import ShotBuffers
+from ..tasks.stroke import ShotBuffers, row_of
 from ..tasks.tables import STROKES_ONLY, StepOutput
 from ..tasks.visit import Visits
 from .positions import Positions, PositionsLike, rows_of
@@ -45,7 +45,7 @@ def _strike(which, strokes, errors, tables, shots, every, noise, silent):
     tables, shots = TableArrays(*tables), StruckArrays(*shots)
     for j in range(which.shape[0]):
         k = which[j]
-        options = every[stroke.row_of(k, every)]
+        options = every[row_of(k, every)]
         speed, aim, elevation = strokes[k, SPEED], strokes[k, AIM], strokes[k, ELEVATION]
         side, top = tip_on_disc(strokes[k, SIDE], strokes[k, TOP], options[A_MAX_OFFSET])
         p, on, aim = tables.positions[k], tables.on_table[k], aim - squirt(side, options[A_END_MASS])
@@ -74,7 +74,9 @@ class TrialVisits(Visits):
         if self.errors is None:
             super().address(which, actions, buffers)
             return
-        (options, noise, _), silent = self.packed, Noise(kick=self.kick).pack(1.0)
+        (options, noise, _), silent = self.packed, NO_NOISE.pack(1.0)
+        if self.kick:  # then blocks are drawn as for errors, too
+            silent = Noise(kick=self.kick).pack(1.0)
         _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
 
 
@@ -181,13 +183,6 @@ def packed_under(conditions: Floats, rules: Rules) -> tuple[Floats, Floats, Floa
     options = np.repeat(options, len(conditions), axis=0)
     options[:, A_END_MASS] = conditions[:, END_MASS_RATIO]
     return options, noise, rows_under(conditions, rules.physics)
-
-
-@kernel
-def law_at(k, law):
-    """The ``CueLaw`` of position k, of ``law_of``."""
-    phys, ratios, fidelity, n_steps = law
-    return CueLaw(phys[min(k, phys.shape[0] - 1)], ratios[min(k, ratios.shape[0] - 1)], fidelity, n_steps)
 
 
 def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
@@ -345,11 +340,13 @@ def as_actions(
 
 @entry(what="the solving of aims", uses=(solved_aim,))
 def _pot_aim(positions, rows, balls, targets, ghosts, strokes, law, aims):
-    work = new_work()
+    (phys, ratios, fidelity, n_steps), work = law, new_work()
     for i in range(len(rows)):
+        own = row_of(rows[i], phys)
+        its = CueLaw(phys[own], ratios[own], fidelity, n_steps)
         stroke = strokes[i, SPEED], strokes[i, SIDE], strokes[i, TOP], strokes[i, ELEVATION]
         target, ghost = (targets[i, 0], targets[i, 1]), (ghosts[i, 0], ghosts[i, 1])
-        aims[i] = solved_aim(positions[rows[i]], balls[i], target, ghost, stroke, law_at(rows[i], law), work)
+        aims[i] = solved_aim(positions[rows[i]], balls[i], target, ghost, stroke, its, work)
 
 
 def pot_aim(

@@ -48,7 +48,6 @@ from ..physics.parameters import Physics, PhysicsLike
 KICK = 0.2
 """Friction between balls in a kick: a stun shot's contact sticks with it up to a cut of 45 degrees, so that
 more would change nothing there (docs/physics/limits.md). Not measured."""
-ERROR_BLOCKS = 3  # of random numbers that the errors of a shot take
 
 
 @kernel
@@ -169,8 +168,8 @@ class Noise:
 
     @property
     def silent(self) -> bool:
-        """Whether all deviations are 0, a bool; then no errors are drawn, but perhaps a kick."""
-        return not (self.aim_deg or self.speed_rel or self.speed_abs or self.offset_mm or self.elevation_deg)
+        """Whether all deviations are 0 and there are no kicks, a bool; then nothing is drawn."""
+        return not any(getattr(self, f.name) for f in fields(self))
 
     def direction_deg(self, physics: PhysicsLike = None) -> float:
         """Return the standard deviation [deg] of the cue ball's direction: aim and squirt together.
