@@ -387,7 +387,7 @@ def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> dict[i
     question(which, on_table, game, b.status, b.seen, asked)
     gaps = {}
     for j in np.flatnonzero(asked).tolist():
-        k = which[j]
+        k = int(which[j])
         one, at = b, j
         if not b.segments.shape[1]:
             one, at = stroke.with_path(b, j, positions[k], on_table[k], *tables.world(k)), 0

@@ -153,6 +153,7 @@ class Tables(ABC):
     SIZE = 0  # numbers in an observation
     COLUMNS = 0  # of ``game``
 
+    reals: tuple[str, ...]  # ``REALS``, and the constants if they are drawn
     rules: Rules
     n: int
     limit: int
@@ -174,9 +175,10 @@ class Tables(ABC):
         self.game[:, BALL_ON], self.game[:, OVER] = -1, True
         self.streams = np.zeros((n, 2), np.uint64)
         self.begun = np.zeros(n, np.bool_)
+        self.reals = self.REALS
         self.conditions, self._phys = np.empty((0, CONDITIONS)), np.empty((0, CONSTANTS))
         if rules.drawn:
-            self.REALS = (*type(self).REALS, *CONDITION_NAMES)
+            self.reals = (*self.REALS, *CONDITION_NAMES)
             self.conditions = np.tile(nominal(rules.physics), (n, 1))
             self._phys = np.tile(rules.physics.pack(), (n, 1))
         if rules.observed:
@@ -196,7 +198,7 @@ class Tables(ABC):
         """New arrays for the results of a step or reset, except for ``arrays`` by name."""
         masked = self.rules.actions if self.rules.observation == "masked" else None
         choices = masked.choices if isinstance(masked, Choices) else 0
-        sizes = self.n, self.SIZE, len(self.REALS), len(self.COUNTS)
+        sizes = self.n, self.SIZE, len(self.reals), len(self.COUNTS)
         out = StepOutput(*sizes, last=last, choices=choices)
         for name, array in (arrays or {}).items():
             array[...] = 0
@@ -206,14 +208,14 @@ class Tables(ABC):
 
     def info(self, out: StepOutput, k: int) -> dict[str, Any]:
         """The info of table k alone, as Python numbers."""
-        info: dict[str, Any] = dict(zip(self.REALS, out.reals[k].tolist(), strict=True))
+        info: dict[str, Any] = dict(zip(self.reals, out.reals[k].tolist(), strict=True))
         info |= zip(self.COUNTS, out.counts[k].tolist(), strict=True)
         info |= {name: info[name] != 0 for name in self.FLAGS}
         return info | {"foul": info["fouls"] != 0}
 
     def infos(self, reals: Floats, counts: Ints, present: Bools) -> dict[str, Any]:
         """Infos as of Gymnasium's vector environments: arrays, and masks of the tables that they hold for."""
-        every = zip((*self.REALS, *self.COUNTS), (*reals.T, *counts.T), strict=True)
+        every = zip((*self.reals, *self.COUNTS), (*reals.T, *counts.T), strict=True)
         infos: dict[str, Any] = {name: column * present for name, column in every}
         infos |= {name: infos[name] != 0 for name in self.FLAGS}
         infos["foul"] = infos["fouls"] != 0
