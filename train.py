@@ -89,6 +89,11 @@ class Settings:
     physics: str = option(
         "", "of the tables: paper, match, or with changes as paper,mu_bb=marlow [the recipe's]"
     )
+    conditions: str = option(
+        "",
+        "fixed, or drawn: each episode has a table of its own [the recipe's]",
+        choices=("", "fixed", "drawn"),
+    )
     imitate: int = option(
         -1, "positions of pre-training, by expert iteration or imitation; -1: the recipe's number"
     )
@@ -154,6 +159,7 @@ def recipe_of(settings):
     """The agent's recipe with the changes of these settings. Raises ValueError."""
     chosen = {"layout": settings.layout, "noise": settings.noise, "fidelity": settings.fidelity}
     chosen["physics"] = physics_option(settings.physics) if settings.physics else ""
+    chosen["conditions"] = settings.conditions
     numbers = {"n_timesteps": settings.steps, "n_envs": settings.envs}
     numbers = {key: value for key, value in numbers.items() if value}
     if settings.start:

@@ -69,7 +69,7 @@ class SnookerVecEnv(VecEnv):
             words = "must be left out: Stable-Baselines3 needs SAME_STEP"
             raise refuse("autoreset_mode", kwargs["autoreset_mode"], words)
         self.tables = SnookerVectorEnv(num_envs, autoreset_mode=AutoresetMode.SAME_STEP, **kwargs)
-        known = (*self.tables.tables.REALS, *self.tables.tables.COUNTS, "foul")
+        known = (*self.tables.tables.reals, *self.tables.tables.COUNTS, "foul")
         self.info_keys = tuple(choice("info_keys", key, known) for key in info_keys)
         super().__init__(num_envs, self.tables.single_observation_space, self.tables.single_action_space)
         self._actions = None

@@ -283,6 +283,7 @@ def log_space(b: int, log_size: int, path_size: int) -> Log:
 
 
 _KEPT = threading.local()
+_NO_KICKS = np.empty(0)
 
 
 def _take_log(log_size, path_size):
@@ -302,7 +303,8 @@ def _run(state, physics, table, fidelity, max_events, log=None, threads=1, doubt
     ends = Ends(np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b, np.int64), np.zeros(b))
     out = _Run(np.zeros((b, n), np.int64), *ends, *log)
     setup = (
-        physics.packed_for(fidelity),
+        physics.packed_for(fidelity)[None],
+        _NO_KICKS,
         table.noses,
         table.jaws,
         table.falls,

@@ -69,7 +69,9 @@ def tried(practice: Practice, at: Positions, ranked: Rankings) -> list[Tried]:
 def _joined(positions: list[Positions]) -> Positions:
     """Several positions of visits as the rows of one."""
     places, present, game = zip(*((one.positions, one.on_table, one.game) for one in positions), strict=True)
-    return Positions(np.concatenate(places), np.concatenate(present), np.concatenate(game))
+    own = [one.conditions for one in positions if one.conditions is not None]
+    tables = np.concatenate(own) if own else None  # all are of one table
+    return Positions(np.concatenate(places), np.concatenate(present), np.concatenate(game), None, tables)
 
 
 def _trial(

@@ -54,7 +54,7 @@ class Record:
             self.strokes.append(played)
             self.last_shot = played.shot
         elif mine:
-            self.last_shot = buffers.shot(j, tables.rules)
+            self.last_shot = tables.shot(k, buffers, j)
 
 
 class OneTable:
@@ -111,8 +111,8 @@ class OneTable:
 
     @property
     def physics(self) -> Physics:
-        """The physical constants, a ``Physics``."""
-        return self.options.rules.physics
+        """The physical constants of this episode's table, a ``Physics``."""
+        return self.tables.physics_of(0)
 
     @property
     def table(self) -> Table:
@@ -185,4 +185,6 @@ class OneTable:
             self.np_random.bit_generator.state, self._np_random_seed = rng, -1
         elif seeded or not self._keyed:
             self.tables.seed(0, self.np_random)
+        if start is not None and rng is None:  # a position, on a table that is drawn
+            self.tables.draw_conditions(np.zeros(1, np.int64))
         self._keyed = True

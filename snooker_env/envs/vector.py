@@ -183,6 +183,8 @@ class SnookerVectorEnv(VectorEnv[Any, Any, Any]):
                 self._generators[k].bit_generator.state, self._generator_seeds[k] = rng, -1
             elif seeds[k] is not None or not self._keyed[k]:
                 tables.seed(k, self._generators[k])
+            if starts is not None and rng is None:  # a position, on a table that is drawn
+                tables.draw_conditions(np.array([k]))
             self._keyed[k] = True
         dealt = wanted if starts is None else np.zeros(self.num_envs, np.bool_)
         written = tables.output(arrays=arrays)

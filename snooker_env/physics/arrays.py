@@ -26,9 +26,11 @@ class Boundaries(NamedTuple):
 
 
 class Setup(NamedTuple):
-    """What is the same in all shots of a batch."""
+    """What a shot needs beside its balls."""
 
     law: Law
+    first: Law
+    """Of the first impact of two balls, which a kick may change; else the same."""
     boundaries: Boundaries
     reach: np.ndarray
     """(2, 2): the lowest and highest x and y that a ball's centre may have [m]."""

@@ -13,7 +13,22 @@ from .._lanes import LANES, lane, lanes, lanes_at, lesser, no_more
 from . import cloth, events, pocket
 from .arrays import Balls, Boundaries, Forecast, Law, Log, Motions, Setup
 from .cloth import FALLING, GONE, HI_X, HI_Y, LO_X, LO_Y, REST, T0, T_END, WZ, X, Y
-from .columns import AXIS_X, FALL_X, FALL_Y, JAW_X, JAW_Y, NOSE_AXIS, NOSE_SIDE, P_R, P_SIN, P_SPIN
+from .columns import (
+    AXIS_X,
+    CONSTANTS,
+    FALL_X,
+    FALL_Y,
+    JAW_X,
+    JAW_Y,
+    NOSE_AXIS,
+    NOSE_SIDE,
+    P_BALLS,
+    P_MU_BB_EXTRA,
+    P_MU_BB_LEAST,
+    P_R,
+    P_SIN,
+    P_SPIN,
+)
 from .detection import HELD, TOUCH, boundary_event, clear_box, pair_time
 from .events import EventKind as EventKind  # for the layers above
 from .events import Status as Status
@@ -221,7 +236,7 @@ def run(balls, setup, max_events, log, paths, forecast, series):
     numba would count references to the arrays of a tuple at every use (4 % of a shot of two balls).
     """
     positions, velocities, spins, on_table, potted = balls
-    law, boundaries, reach, clear = setup
+    law, first, boundaries, reach, clear = setup
     phys, (noses, jaws, falls, R) = law.phys, boundaries
     time, what, segments = log
     motion, state, flight = paths
@@ -246,7 +261,7 @@ def run(balls, setup, max_events, log, paths, forecast, series):
         if state[i] > REST:
             _predict(paths, i, 0.0, boundaries, clear, forecast)
     status = events.OK
-    end = 0.0
+    end, met = 0.0, False
     while True:
         t, kind, i, j = _next_event(best_time, best_ball, alone_time, alone_kind, alone_index)
         if t == inf:
@@ -279,7 +294,8 @@ def run(balls, setup, max_events, log, paths, forecast, series):
                 v2 = pocket.aloft(motion, flight, j, t, v2, phys)
             nx, ny = r2[0] - r1[0], r2[1] - r1[1]
             d = sqrt(nx * nx + ny * ny)
-            v1, w1, v2, w2, solved = meet(v1, w1, v2, w2, (nx / d, ny / d), law, series)
+            v1, w1, v2, w2, solved = meet(v1, w1, v2, w2, (nx / d, ny / d), law if met else first, series)
+            met = True
             _begin_again(paths, i, t, r1, v1, w1, boundaries, phys)
             _begin_again(paths, j, t, r2, v2, w2, boundaries, phys)
         elif kind == events.ROLL or kind == events.STOP or kind == events.BEND:
@@ -366,21 +382,31 @@ def _is_sound(balls, reach, boundaries):
     return layout_fault(positions, on_table, reach, boundaries)[1] == SOUND
 
 
+@kernel
+def _kick(phys, friction, to):
+    """Copy constants to ``to``, with a constant friction between balls and without tables of their impacts."""
+    for c in range(CONSTANTS):
+        to[c] = phys[c]
+    to[P_MU_BB_LEAST], to[P_MU_BB_EXTRA], to[P_BALLS] = friction, 0.0, 0.0
+
+
 @entry(what="the shot engine", seconds=7, uses=(collide_balls, collide_cushion))
 def run_batch(balls, setup, max_events, log, ends, start, stop):
     """Simulate shots ``start`` to ``stop`` of a batch; arrays of balls, log and ends have a batch axis.
 
-    Takes plain tuples: the fields of ``Balls``, ``Log`` and ``Ends``, and (phys, noses, jaws, falls, reach,
-    fidelity, n_steps, doubt). That costs 0.3 us a call, named tuples 3 us (a shot of two balls: 2 us). With
-    ``doubt`` shots are checked first; what may not begin is ``UNSOUND`` and stays.
+    Takes plain tuples: the fields of ``Balls``, ``Log`` and ``Ends``, and (phys, kicks, noses, jaws, falls,
+    reach, fidelity, n_steps, doubt). That costs 0.3 us a call, named tuples 3 us (a shot of two balls: 2 us).
+    ``phys``: one row of constants for all shots, or one for each. ``kicks``: none, or for each shot the
+    friction of its first impact of two balls where it is above 0. With ``doubt`` shots are checked first; what
+    may not begin is ``UNSOUND`` and stays.
     """
     positions, velocities, spins, on_table, potted = balls
     time, what, segments = log
     status, n_events, n_segments, duration = ends
-    phys, noses, jaws, falls, reach, fidelity, n_steps, doubt = setup
-    boundaries = Boundaries(noses, jaws, falls, phys[P_R])
+    phys, kicks, noses, jaws, falls, reach, fidelity, n_steps, doubt = setup
+    boundaries = Boundaries(noses, jaws, falls, phys[0, P_R])
     clear = clear_box(boundaries)
-    same = Setup(Law(phys, fidelity, n_steps), boundaries, reach, clear)
+    bad = np.empty(CONSTANTS)
     n = positions.shape[1]
     m = (n + LANES - 1) // LANES * LANES
     paths = Motions(np.zeros((n, cloth.COLUMNS)), np.zeros(n, np.int64), np.zeros((n, pocket.FLIGHT)))
@@ -401,7 +427,13 @@ def run_batch(balls, setup, max_events, log, ends, start, stop):
         if doubt and not _is_sound(shot, reach, boundaries):
             status[k] = events.UNSOUND
             continue
+        law = Law(phys[min(k, phys.shape[0] - 1)], fidelity, n_steps)
+        first = law
+        if kicks.shape[0] and kicks[k] > 0.0:
+            _kick(law.phys, kicks[k], bad)
+            first = Law(bad, fidelity, n_steps)
+        setting = Setup(law, first, boundaries, reach, clear)
         shot_log = Log(time[k], what[k], segments[k])
         status[k], n_events[k], n_segments[k], duration[k] = run(
-            shot, same, max_events, shot_log, paths, forecast, series
+            shot, setting, max_events, shot_log, paths, forecast, series
         )

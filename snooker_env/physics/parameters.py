@@ -14,6 +14,7 @@ import numpy as np
 from .._check import choice, number, refuse, truth
 from .._types import Floats, PhysicsName, Solver
 from ..geometry import BALL_RADIUS
+from . import conditions
 from .columns import P_BALLS, P_E_J, P_JAW, P_RAIL
 from .impact.tables import SIZE, TABLED, Rolling, table_of
 
@@ -219,6 +220,52 @@ class Physics:
         for field in fields:
             choice("physics field", field, known)
         return cls(**{**base, **fields})
+
+    @classmethod
+    def drawn(cls, rng: np.random.Generator, physics: "PhysicsLike" = None) -> "Physics":
+        """Draw the constants of a table that was not measured, one of those that a player may meet.
+
+        Each is uniform within its range and independent of the others: how they go together on real tables is
+        not known. ``conditions.RANGES`` has sources.
+
+        | constant | lowest | highest |
+        |---|---|---|
+        | mu_s | 0.178 | 0.245 |
+        | mu_r | 0.0100 | 0.0128 |
+        | spin_decel [rad/s^2] | 10.9 | 22 |
+        | e_b | 0.92 | 0.96 |
+        | mu_bb, or both terms of its law, times | 0.7 | 1.3 |
+        | mu_c | 0.10 | 0.18 |
+        | e_c | 0.95 | 0.98 |
+        | end_mass_ratio | 25 | 30 |
+
+        Parameters
+        ----------
+        rng : numpy.random.Generator
+            Where the eight numbers come from.
+        physics : str, dict, Physics or None, optional
+            All other fields, and the friction law that is scaled, see ``of``; default None: "paper".
+
+        Returns
+        -------
+        Physics
+            With ``tables=False``: they take longer to make than a table's few shots.
+
+        Raises
+        ------
+        ValueError
+            If ``rng`` is no generator, or a field does not go with the ranges.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> table = Physics.drawn(np.random.default_rng(1), "match")
+        >>> 0.178 <= table.mu_s < 0.245, table.e_c_knee
+        (True, 2.17)
+        """
+        if not isinstance(rng, np.random.Generator):
+            raise refuse("rng", rng, "must be a numpy.random.Generator")
+        return conditions.physics_with(cls.of(physics), conditions.drawn(rng.random(conditions.COLUMNS)))
 
     def check_stopping(self) -> None:
         """ValueError unless friction brings balls to rest in a finite time that is not zero."""

@@ -62,6 +62,9 @@ class Planner:
     itself points aside from that direction by the squirt of the side; under a raised cue the cloth then turns
     the ball.
 
+    With ``conditions="drawn"`` positions that were taken from an environment are played with the constants of
+    their tables; other ones, and all of a planner with "fixed", with those of ``physics``.
+
     Parameters
     ----------
     env_or_options : Env, VectorEnv, AECEnv, Options or dict
@@ -146,7 +149,7 @@ class Planner:
         5) in SI, with a cue ball in hand played from where it lies. The errors are drawn by ``keys``, int
         (n,) in [0, 2**64), or (n, 2) with a counter as a saved state has them: equal keys give equal errors
         for every stroke (common random numbers). Or they are ``errors``, float (n, 5) in standard deviations,
-        of speed, side, top, aim and elevation. Without noise neither is needed.
+        of speed, side, top, aim and elevation, and no kicks. Without noise neither is needed.
 
         ValueError for arguments out of range and for positions that are invalid or have no stroke to play,
         SimulationError if a shot cannot be computed. Threads may call this at once; a stroke takes 20 us."""
@@ -172,7 +175,7 @@ class Planner:
 
     def _played(self, positions, rows, actions=None, keys=None, *, strokes=None, errors=None, visits=None):
         """Play the checked strokes on ``visits`` to be filled: the afterstates, and the step's output."""
-        at = Positions.of(positions).as_visits()
+        at = Positions.of(positions).as_visits().known_to(self._rules)
         which = rows_of(at, rows)
         n = len(which)
         if (actions is None) == (strokes is None):
@@ -190,6 +193,7 @@ class Planner:
         elif strokes is None and wrong is not None:
             played, after = decoded(self._rules, at, which, played)
         visits = copy.copy(self._visits) if visits is None else visits
+        visits.kick = self.noise.kick if errors is None else 0.0
         visits.lay(after, streams, wrong)
         out = visits.output()
         visits.step(played, np.zeros(n, np.bool_), out, self._threads)
@@ -246,7 +250,8 @@ class Planner:
     ) -> NDArray[np.float64]:
         """Solve aims as ``planning.pot_aim`` with this planner's physics and fidelity: float64 (n,)."""
         dynamics = self.physics, self._rules.fidelity
-        return solved_aims(Positions.of(positions), rows, balls, targets, strokes, ghosts, dynamics)
+        at = Positions.of(positions).known_to(self._rules)
+        return solved_aims(at, rows, balls, targets, strokes, ghosts, dynamics)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "_lock"}

@@ -8,13 +8,15 @@ from numpy.typing import NDArray
 
 from .._check import array, refuse, refuse_what
 from .._jit import entry
-from .._types import Batches, Environment, FlagRows, Integers, Ints
+from .._types import Batches, Environment, FlagRows, Integers, Ints, Vectors
 from ..game import frame_columns as columns
 from ..game.balls import CUE, N_BALLS, BallOn, bits, mask_of_present
 from ..game.frame import MOST_BREAK
 from ..game.sides import as_visits, strikers_own
+from ..physics.conditions import COLUMNS as CONDITIONS
 from ..physics.table import Table
 from ..tasks.observations import SIZE
+from ..tasks.options import Rules
 from ..tasks.tables import Tables
 from ..tasks.visit import observe
 from .position import Position, check_playable
@@ -49,6 +51,9 @@ class Positions:
         ``snooker_env.game.frame_columns``, with the striker as player 0.
     saved : Layouts, optional
         Of frames: the balls before the last foul, which "replace" restores. Default None.
+    conditions : array_like, optional
+        float (m, 8). The constants of each table, in the order of ``physics.conditions.RANGES``, of an
+        environment with ``conditions="drawn"``: planners with that option plan with them. Default None.
 
     Raises
     ------
@@ -64,7 +69,7 @@ class Positions:
     (2, [1, 5], (0.3, 0.3))
     """
 
-    __slots__ = ("game", "on_table", "positions", "saved")
+    __slots__ = ("conditions", "game", "on_table", "positions", "saved")
 
     def __init__(
         self,
@@ -72,6 +77,7 @@ class Positions:
         on_table: FlagRows,
         game: Sequence[Integers] | NDArray[np.integer[Any]],
         saved: columns.Layouts | None = None,
+        conditions: Vectors | None = None,
     ):
         self.positions: NDArray[np.float64] = _floats("positions", positions, (-1, N_BALLS, 2))
         m = len(self.positions)
@@ -86,6 +92,8 @@ class Positions:
         self.on_table: NDArray[np.bool_] = np.ascontiguousarray(present)
         self.game: NDArray[np.int64] = np.ascontiguousarray(held, np.int64)
         self.saved: columns.Layouts | None = saved
+        own = None if conditions is None else array("conditions", conditions, (m, CONDITIONS))
+        self.conditions: NDArray[np.float64] | None = own
 
     @classmethod
     def of(cls, source: "PositionsLike") -> "Positions":
@@ -131,6 +139,8 @@ class Positions:
         saved = self.saved
         held: Any = saved and (np.ascontiguousarray(each[rows]) for each in saved)
         taken.saved = saved and columns.Layouts(*held)
+        own = self.conditions
+        taken.conditions = None if own is None else np.ascontiguousarray(own[rows])
         return taken
 
     def __repr__(self) -> str:
@@ -139,7 +149,8 @@ class Positions:
     def copy(self) -> "Positions":
         """Return a copy with arrays of its own."""
         saved = None if self.saved is None else columns.Layouts(*(each.copy() for each in self.saved))
-        return Positions(self.positions.copy(), self.on_table.copy(), self.game.copy(), saved)
+        own = self.positions.copy(), self.on_table.copy(), self.game.copy()
+        return Positions(*own, saved, self.conditions)
 
     def as_visits(self) -> "Positions":
         """Return positions of visits, with ``game`` (m, 5), that share the balls' places; visits as they are.
@@ -150,7 +161,14 @@ class Positions:
             return self
         game = as_visits(self.game)[:, : columns.VISIT_COLUMNS]
         game[:, columns.STEPS] = 0
-        return Positions(self.positions, self.on_table, game)
+        return Positions(self.positions, self.on_table, game, None, self.conditions)
+
+    def known_to(self, rules: Rules) -> "Positions":
+        """Return them as who plays under these rules knows them: with the constants of the tables where these
+        are drawn; else without, so that all plans are made with the nominal ones."""
+        if rules.drawn or self.conditions is None:
+            return self
+        return Positions(self.positions, self.on_table, self.game, self.saved)
 
     @property
     def of_frames(self) -> bool:
@@ -266,13 +284,13 @@ def bare(env: Any) -> Any:
 
 def _of_tables(tables: Tables) -> Positions:
     """The positions of an environment's tables, those of frames as their strikers see them."""
-    game = tables.game.copy()
+    game, own = tables.game.copy(), tables.conditions if tables.rules.drawn else None
     saved: columns.Layouts | None = getattr(tables, "saved", None)
     if saved is None:
         game[:, columns.STEPS] = 0
-        return Positions(tables.positions.copy(), tables.on_table.copy(), game)
+        return Positions(tables.positions.copy(), tables.on_table.copy(), game, None, own)
     layouts = columns.Layouts(*(each.copy() for each in saved))
-    return Positions(tables.positions.copy(), tables.on_table.copy(), strikers_own(game), layouts)
+    return Positions(tables.positions.copy(), tables.on_table.copy(), strikers_own(game), layouts, own)
 
 
 PositionsLike: TypeAlias = (

@@ -26,6 +26,7 @@ from ..tasks.box_actions import MAX_SPEED
 from ..tasks.escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, ROLLING, escape_aim, find_escapes
 from ..tasks.lines import EASY, new_work
 from ..tasks.pot_aim import solved_aim
+from ..tasks.stroke import row_of
 from ..tasks.windows import HIGH, LOW, MOST_EDGES, open_windows, turned
 from .positions import Positions
 from .prospects import FAR, FOLLOWS
@@ -115,10 +116,11 @@ def _aim(stroke, positions, pot, law, work):
 def _propose(balls, seeds, which, spread, law, strokes, chances):
     """Fill strokes (n, m, 5) at the pots ``which`` (n, m), and their chances; without rows, spread them."""
     lines, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
-    (positions, on_table, game), law, work = balls, CueLaw(*law), new_work()
+    (positions, on_table, game), (phys, ratios, fidelity, n_steps), work = balls, law, new_work()
     m = strokes.shape[1]
     for k in range(len(strokes)):
-        p, here, seed = positions[k], on_table[k], seeds[k]
+        p, here, seed, own = positions[k], on_table[k], seeds[k], row_of(k, phys)
+        its = CueLaw(phys[own], ratios[own], fidelity, n_steps)
         on = balls_on_kernel(game[k, BALL_ON], bits(here))
         many = find_pots(p, here, on, BALL_RADIUS, lines)
         if many == 0:
@@ -139,7 +141,7 @@ def _propose(balls, seeds, which, spread, law, strokes, chances):
                     j += 1
                     reached += weights[j] / total
                 _spread_stroke(i, seed, strokes[k, i])
-            _aim(strokes[k, i], p, lines[j], law, work)
+            _aim(strokes[k, i], p, lines[j], its, work)
             chances[k, i] = pot_chance(p, lines[j], spread, LOST)
 
 
@@ -182,9 +184,10 @@ def _escapes(balls, seeds, law, strokes, chances):
     """Fill strokes (n, m, 5) and chances (n, m) with strokes over cushions, where hardly anything is seen."""
     (positions, on_table, game), windows = balls, np.empty((MOST_EDGES, 3))
     lines = np.empty((ESCAPES, POT_COLUMNS))
-    law, work, aims = CueLaw(law[0], law[1], 0, 0), new_work(), np.empty(ESCAPES)
+    work, aims = new_work(), np.empty(ESCAPES)
     for k in range(len(strokes)):
-        p, here, seed = positions[k], on_table[k], seeds[k]
+        p, here, seed, own = positions[k], on_table[k], seeds[k], row_of(k, law[0])
+        its = CueLaw(law[0][own], law[1][own], 0, 0)
         on, touching = balls_on_kernel(game[k, BALL_ON], bits(here)), touching_balls(p, here)
         chances[k, :] = 0.0
         if open_windows(p, here, on, touching, windows) and windows[0, HIGH] - windows[0, LOW] >= 2.0 * EASY:
@@ -205,7 +208,7 @@ def _escapes(balls, seeds, law, strokes, chances):
                 aside = line[LINE_ROOM] * (2.0 * sobol(again - 1, 4, scramble) - 1.0)
             stroke[SPEED], stroke[SIDE], stroke[TOP] = line[LINE_SPEED] * exp(0.5 * faster), 0.0, ROLLING
             if again == 0:
-                aims[j] = escape_aim(line[LINE_AIM], (stroke[SPEED], 0.0, ROLLING), p, here, on, law, work)
+                aims[j] = escape_aim(line[LINE_AIM], (stroke[SPEED], 0.0, ROLLING), p, here, on, its, work)
             stroke[AIM] = turned(aims[j % many] + aside)
 
 
@@ -280,7 +283,7 @@ def strokes_at(
 
 def _proposed(at, strokes, seeds, which, spread, dynamics):
     chances = np.empty(strokes.shape[:2])
-    _propose(_balls(at), np.asarray(seeds, np.int64), which, spread, law_of(dynamics), strokes, chances)
+    _propose(_balls(at), np.asarray(seeds, np.int64), which, spread, law_of(dynamics, at), strokes, chances)
     return Proposals(strokes, chances)
 
 
@@ -361,5 +364,5 @@ def over_cushions(search: Search, at: Positions, m: int, seeds: Integers) -> Pro
     [[1.0, 1.0, 1.0, 1.0]]
     """
     made = Proposals(np.zeros((len(at), m, COLUMNS)), np.zeros((len(at), m)))
-    _escapes(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics), *made)
+    _escapes(_balls(at), np.asarray(seeds, np.int64), law_of(search.dynamics, at), *made)
     return made

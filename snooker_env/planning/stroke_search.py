@@ -164,7 +164,7 @@ class StrokeSearch:
 
         ``seeds``, int (n,): of the proposals and noise samples; equal seeds give equal decisions. A cue ball
         in hand is played from where it lies. ValueError if a position is invalid or has no stroke."""
-        at = Positions.of(positions).as_visits()
+        at = Positions.of(positions).as_visits().known_to(self.planner.rules)
         n, keys = len(at), seeds_of(seeds, len(at))
         check_played(at, np.arange(n), self.planner.table, self.planner.physics.R)
         looks, rounds = self.strokes_tried, () if self.noise.silent else schedule(self.budget)[1]

@@ -14,6 +14,7 @@ from .._types import Fidelity, Floats, Integers, Ints, Scalars, Vector, Vectors
 from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from ..physics import cue
+from ..physics.conditions import END_MASS_RATIO, pack_into
 from ..physics.cue import squirt
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
@@ -26,7 +27,7 @@ from ..tasks.lines import new_work
 from ..tasks.noise import Noise, with_errors
 from ..tasks.options import Options, Rules
 from ..tasks.pot_aim import solved_aim
-from ..tasks.stroke import ShotBuffers
+from ..tasks.stroke import ShotBuffers, row_of
 from ..tasks.tables import STROKES_ONLY, StepOutput
 from ..tasks.visit import Visits
 from .positions import Positions, PositionsLike, rows_of
@@ -40,11 +41,12 @@ NO_NOISE = Noise()
 
 
 @entry(what="strokes under given errors", seconds=2)
-def _strike(which, strokes, errors, tables, shots, options, noise, silent):
+def _strike(which, strokes, errors, tables, shots, every, noise, silent):
     """Strike the strokes (n, 5) of the tables ``which`` under standard normal errors (n, 5)."""
     tables, shots = TableArrays(*tables), StruckArrays(*shots)
     for j in range(which.shape[0]):
         k = which[j]
+        options = every[row_of(k, every)]
         speed, aim, elevation = strokes[k, SPEED], strokes[k, AIM], strokes[k, ELEVATION]
         side, top = tip_on_disc(strokes[k, SIDE], strokes[k, TOP], options[A_MAX_OFFSET])
         p, on, aim = tables.positions[k], tables.on_table[k], aim - squirt(side, options[A_END_MASS])
@@ -60,13 +62,20 @@ def _off_the_tip(strokes, options):
 
 
 class TrialVisits(Visits):
-    """Visits of one stroke, filled by ``lay``: of strokes (n, 5) with ``errors`` (n, 5), else of actions."""
+    """Visits of one stroke, filled by ``lay``: of strokes (n, 5) with ``errors`` (n, 5), else of actions. Their
+    tables' constants are those of the positions, if these have any."""
 
     errors: Floats | None = None
+    kick: float = 0.0  # the probability of a kick in strokes with ``errors``
+
+    def __init__(self, rules: Rules, n: int):
+        super().__init__(replace(rules, drawn=False, observed=False), n)
 
     def lay(self, after: Positions, streams: np.ndarray, errors: Floats | None = None) -> None:
         """Put positions on the tables; they are played in place."""
         self.n, self.errors, self.streams = len(after), errors, streams
+        if after.conditions is not None:
+            self.packed = packed_under(after.conditions, self.rules)
         self.positions, self.on_table, self.game = after.positions, after.on_table, after.game
 
     def address(self, which: Ints, actions: Floats, buffers: ShotBuffers) -> None:
@@ -74,6 +83,8 @@ class TrialVisits(Visits):
             super().address(which, actions, buffers)
             return
         (options, noise, _), silent = self.packed, NO_NOISE.pack(1.0)
+        if self.kick:  # then blocks are drawn as for errors, too
+            silent = Noise(kick=self.kick).pack(1.0)
         _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
 
 
@@ -83,7 +94,7 @@ def decoded(
     """Strokes (n, 5) that checked actions mean on ``at[which]``, and n positions with the cue ball so placed.
 
     ``nominated`` (n,): of frames, what is nominated with each stroke; a choice is a pot of that ball."""
-    visits, after, n = TrialVisits(replace(rules, noise=NO_NOISE), 0), at[which], len(which)
+    visits, after, n = TrialVisits(replace(rules, noise=NO_NOISE), 0), at.known_to(rules)[which], len(which)
     visits.lay(after, np.zeros((n, 2), np.uint64))
     if nominated is not None:
         visits.nominated = nominated
@@ -161,10 +172,28 @@ Dynamics = tuple[Physics, tuple[int, int]]
 """Physical constants, and a fidelity as ``parse_fidelity`` returns it."""
 
 
-def law_of(dynamics: Dynamics) -> tuple[Floats, float, int, int]:
-    """The fields of a ``CueLaw``."""
+def law_of(dynamics: Dynamics, at: Positions) -> tuple[Floats, Floats, int, int]:
+    """The fields of a ``CueLaw``: the first two in one row for all positions or, with constants of their own, in
+    one for each."""
     physics, fidelity = dynamics
-    return physics.packed_for(fidelity), physics.end_mass_ratio, *fidelity
+    if at.conditions is None:
+        return physics.packed_for(fidelity)[None], np.array([physics.end_mass_ratio]), *fidelity
+    return rows_under(at.conditions, physics), at.conditions[:, END_MASS_RATIO].copy(), *fidelity
+
+
+def rows_under(conditions: Floats, physics: Physics) -> Floats:
+    """The packed constants (n, 20) of tables with these conditions (n, 8)."""
+    rows = np.tile(physics.pack(), (len(conditions), 1))
+    pack_into(rows, np.arange(len(conditions)), conditions, physics)
+    return rows
+
+
+def packed_under(conditions: Floats, rules: Rules) -> tuple[Floats, Floats, Floats]:
+    """``Rules.packed`` with a row for each table."""
+    options, noise, _ = rules.packed()
+    options = np.repeat(options, len(conditions), axis=0)
+    options[:, A_END_MASS] = conditions[:, END_MASS_RATIO]
+    return options, noise, rows_under(conditions, rules.physics)
 
 
 def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
@@ -277,6 +306,7 @@ def encoded(
 
 
 _ABSOLUTE = Actions("absolute", False, False, Physics())
+_ABSOLUTE_RULES = Options().rules
 
 
 def as_actions(
@@ -321,11 +351,13 @@ def as_actions(
 
 @entry(what="the solving of aims", uses=(solved_aim,))
 def _pot_aim(positions, rows, balls, targets, ghosts, strokes, law, aims):
-    law, work = CueLaw(*law), new_work()
+    (phys, ratios, fidelity, n_steps), work = law, new_work()
     for i in range(len(rows)):
+        own = row_of(rows[i], phys)
+        its = CueLaw(phys[own], ratios[own], fidelity, n_steps)
         stroke = strokes[i, SPEED], strokes[i, SIDE], strokes[i, TOP], strokes[i, ELEVATION]
         target, ghost = (targets[i, 0], targets[i, 1]), (ghosts[i, 0], ghosts[i, 1])
-        aims[i] = solved_aim(positions[rows[i]], balls[i], target, ghost, stroke, law, work)
+        aims[i] = solved_aim(positions[rows[i]], balls[i], target, ghost, stroke, its, work)
 
 
 def pot_aim(
@@ -374,7 +406,8 @@ def pot_aim(
     0.785
     """
     dynamics = Physics.of(physics), parse_fidelity(fidelity)
-    return solved_aims(Positions.of(positions), rows, balls, targets, strokes, ghosts, dynamics)
+    at = Positions.of(positions).known_to(_ABSOLUTE_RULES)
+    return solved_aims(at, rows, balls, targets, strokes, ghosts, dynamics)
 
 
 def solved_aims(
@@ -401,7 +434,7 @@ def solved_aims(
         played[:, SPEED] = array("strokes", strokes, (n,) if np.ndim(strokes) else ())
     most = (np.inf, offset, offset, np.inf, cue.MAX_ELEVATION)
     _check_columns(played, (0.0, -offset, -offset, -np.inf, 0.0), most)
-    _pot_aim(at.positions, which, ids, to, behind, played, law_of(dynamics), aims)
+    _pot_aim(at.positions, which, ids, to, behind, played, law_of(dynamics, at), aims)
     return aims
 
 

@@ -104,7 +104,8 @@ class Session:
             raise refuse("phase", "over", "must not be over: there is no stroke to play")
         on = BallOn.ANY_COLOUR if free_ball else frame.ball_on
         game = [[int(on), int(frame.in_hand), frame.break_points, 0, 0]]
-        return Positions(tables.positions.copy(), tables.on_table.copy(), game)
+        own = tables.conditions if tables.rules.drawn else None
+        return Positions(tables.positions.copy(), tables.on_table.copy(), game, None, own)
 
     def options_with(self, noise: NoiseName) -> Options:
         """The options of this frame for a player with these execution errors."""

@@ -34,7 +34,7 @@ class ChoicePlayer(BoundPlayer):
     _planner: Any = None
 
     def _bind(self, options: Options) -> None:
-        same: Any = {name: getattr(options, name) for name in ("physics", "table", "fidelity")}
+        same: Any = {name: getattr(options, name) for name in ("physics", "table", "fidelity", "conditions")}
         self._planner = Planner(Options(action="discrete", **same), threads=1)
 
     def scores(self, at: Positions, seeds: Ints) -> Floats:

@@ -37,7 +37,8 @@ class PlayerOpponent(Opponent):
         drawn(which, frames.streams, numbers)
         saved = Layouts(frames.saved.positions[which], frames.saved.on_table[which])
         game = strikers_own(frames.game[which])
-        at = Positions(frames.positions[which], frames.on_table[which], game, saved)
+        own = frames.conditions[which] if frames.rules.drawn else None
+        at = Positions(frames.positions[which], frames.on_table[which], game, saved, own)
         try:
             strokes = self.player.play(at, (numbers * 2**32).astype(np.int64))
         # of the player's own code: it is named, and the kind kept where callers tell kinds apart

@@ -19,6 +19,7 @@ from ..game.frame_columns import (
     VISIT_COLUMNS,
     WINNER,
 )
+from ..physics.conditions import nominal
 from ..planning import Positions
 from ..planning.positions import seeds_of
 from ..planning.strokes import decoded
@@ -104,6 +105,8 @@ class SeenPlayer(BoundPlayer):
     def _bind(self, options: Options) -> None:
         """Read its options with the physics of ``options``; ValueError if they are no environment's."""
         same: dict[str, Any] = {name: getattr(options, name) for name in Options.group("shot")}
+        if self.sees.get("observe_conditions"):  # on a table that is not drawn it sees the nominal ones
+            same["conditions"] = "drawn"
         if self.frames:
             match = {"frames": options.frames} if options.task == "match" else {}
             same |= {"task": "match" if match else "frame"} | match
@@ -112,8 +115,7 @@ class SeenPlayer(BoundPlayer):
 
     def play(self, positions: Any, seeds: Any) -> Strokes:
         """See ``Player.play``."""
-        _ = self.options  # it must be bound
-        at = Positions.of(positions)
+        at = Positions.of(positions).known_to(self.options.rules)
         keys = seeds_of(seeds, len(at))
         shown, places = self._shown(at, keys)
         actions = self._actions(shown, keys)
@@ -150,6 +152,8 @@ class SeenPlayer(BoundPlayer):
         n, rules = len(at), self._rules
         tables: Any = (Frames if self.frames else Visits)(rules, 0)
         tables.n, tables.positions, tables.on_table, tables.game = n, at.positions, at.on_table, at.game
+        own = at.conditions
+        tables.conditions = np.tile(nominal(rules.physics), (n, 1)) if own is None else own
         if self.frames:
             none = np.zeros_like(at.positions), np.zeros_like(at.on_table)
             tables._saved_positions, tables._saved_on_table = none if at.saved is None else at.saved
@@ -171,4 +175,4 @@ def _begun(at: Positions) -> Positions:
     game = np.zeros((len(at), COLUMNS), np.int64)
     game[:, :VISIT_COLUMNS], game[:, SCORE_0], game[:, WINNER] = at.game, at.points, -1
     game[:, ON_TABLE] = game[:, RACK] = [mask_of_present(on_table) & ~1 for on_table in at.on_table]
-    return Positions(at.positions, at.on_table, game)
+    return Positions(at.positions, at.on_table, game, None, at.conditions)

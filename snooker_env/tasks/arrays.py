@@ -28,6 +28,7 @@ class StruckArrays(NamedTuple):
     w: Floats
     here: Bools
     shots: Floats
+    kicks: Floats
 
 
 class PlayedArrays(NamedTuple):

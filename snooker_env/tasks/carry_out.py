@@ -18,7 +18,7 @@ from .frame import Frames
 from .frame_kernels import choose_as, give_up
 from .options import Rules
 from .rewards import MATCH_REWARDS
-from .stroke import ShotBuffers, place, strike
+from .stroke import ShotBuffers, place, row_of, strike
 
 
 @entry(what="the strokes of players in frames", seconds=3)
@@ -27,9 +27,10 @@ def _carry_out(which, asked, tables, saved, packed, codes, shots, playing):
     values, place, nominate, decision, declare of ``players.Strokes``; ``codes``: rule set, reward."""
     values, places, nominate, decisions, declared = asked
     tables, saved, shots = TableArrays(*tables), columns.Layouts(*saved), StruckArrays(*shots)
-    (options, noise), (rules, reward), m = packed, codes, 0
+    (every, noise), (rules, reward), m = packed, codes, 0
     for k in which:
         row, p, on = tables.game[k], tables.positions[k], tables.on_table[k]
+        options = every[row_of(k, every)]
         says = declared[k] if declarations.may_declare(declared[k], row) else declarations.SAYS_NOTHING
         if says == declarations.CONCEDES:
             columns.concede(row)

@@ -26,6 +26,8 @@ from ..game.balls import COLOURS_MASK, CUE_BIT, N_BALLS, SPOTS, BallOn, mask_of_
 from ..game.frame import MISS_RULES, Frame, frame_of, write_frame
 from ..game.layouts import deal_tables
 from ..game.ruling import AUTO
+from ..physics.conditions import COLUMNS as CONDITIONS
+from ..physics.conditions import normalised
 from . import frame_kernels
 from .box_actions import Actions
 from .declarations import A_LOT
@@ -108,7 +110,7 @@ class Frames(Tables):
         self._saved_on_table = np.zeros((n, N_BALLS), np.bool_)
         self._replies, self._played = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.nominated, self.due = np.full(n, AUTO, np.int64), np.zeros(n, np.bool_)
-        self.SIZE = FRAME_SIZE + (REPLACED_SIZE if rules.misses else 0)
+        self.SIZE += REPLACED_SIZE if rules.misses else 0
         self._reward, self._miss = MATCH_REWARDS.index(rules.reward), MISS_RULES.index(rules.miss)
         game, won = rules.rule_set, rules.frames // 2 + 1
         limits = limit, rules.max_strokes, won, game.clock
@@ -123,11 +125,12 @@ class Frames(Tables):
     def sit(self, seats: Sequence[Seat]) -> None:
         """Assign the seats: one, or two."""
         self.seats = tuple(seats)
-        self.packs = tuple(seat.packed(self.rules) for seat in self.seats)
+        self.packs = tuple(self.own_rows(seat.packed(self.rules)) for seat in self.seats)
         self.packed: tuple[Floats, Floats, Floats] = self.packs[AGENT]
         # the winner of the lot is asked if either player can say who begins
-        self._lot = self.packed[0].copy()
-        self._lot[A_LOT] = any(pack[0][A_LOT] for pack in self.packs)
+        self._reads = tuple(seat.actions.pack() for seat in self.seats)
+        self._lot = self._reads[AGENT].copy()
+        self._lot[A_LOT] = any(options[A_LOT] for options in self._reads)
 
     @property
     def saved(self) -> columns.Layouts:
@@ -147,6 +150,13 @@ class Frames(Tables):
     def _setting_of(self, options):
         """``_setting`` with the packed options of one seat's actions."""
         return *self._numbers, options, self._jaws
+
+    def _every_pack(self) -> tuple[tuple[Floats, Floats, Floats], ...]:
+        return self.packs
+
+    def _take_rows(self, here: slice) -> None:
+        self.packs = tuple((options[here], noise, phys[here]) for options, noise, phys in self.packs)
+        self.packed = self.packs[AGENT]
 
     def _columns(self) -> tuple[str, ...]:
         more = ("_saved_positions", "_saved_on_table", "_replies", "_played", "nominated", "due")
@@ -198,7 +208,7 @@ class Frames(Tables):
 
     def decide(self, which: Ints, actions: Floats, side: int = AGENT) -> Bools:
         """What the strikers say before their strokes; returns which of the tables ``which`` play one."""
-        plays, setting = np.empty(len(which), np.bool_), self._setting_of(self.packs[side][0])
+        plays, setting = np.empty(len(which), np.bool_), self._setting_of(self._reads[side])
         frame_kernels.decide(which, actions, self.arrays, self.saved_arrays, setting, plays)
         return plays
 
@@ -297,6 +307,7 @@ class Frames(Tables):
     def _finish(self, which, out):
         counted = self.due, self._replies, self._played
         frame_kernels.finish(which, self.arrays, self.saved_arrays, self._setting, *counted, out.arrays)
+        self.show_conditions(which, out)
 
     def _reply(self, which, out, crew):
         """All strokes of the opponent until it is the agent's turn or the frame has ended."""
@@ -340,15 +351,18 @@ class Frames(Tables):
         breakers = np.full(self.n, -1) if breakers is None else breakers
         frame_kernels.begin(which, drawn, breakers, plan.in_hand, self.on_table, self.game, self.streams)
         self.begun[which], self.due[which], self.nominated[which] = True, False, AUTO
+        self.draw_conditions(which)
 
     def _show(self, which, out, *, fresh):
         tables = self.arrays, self.saved_arrays, self._setting
         frame_kernels.show(which, fresh, *tables, self._replies, out.arrays, out.last)
+        self.show_conditions(which, out)
 
     def info_of(self, player: int, last: StepOutput | None) -> dict[str, Any]:
         """The info of the first table as ``player`` sees it; ``last``: output of the last stroke."""
         out = self.output()  # the entries that depend on the player
         frame_kernels.inform(player, self.game, out.arrays)
+        self.show_conditions(slice(None), out)
         if last is not None:
             for column in (I_POINTS, I_SECONDS):
                 out.reals[0, column] = last.reals[0, column]
@@ -364,11 +378,13 @@ class Frames(Tables):
     def action_masks(self, which: Ints | None = None, side: int = AGENT) -> Bools:
         """See ``Tables.action_masks``; of the player in seat ``side``."""
         which = np.arange(self.n) if which is None else which
-        return self.masks_of(which, self.seats[side].actions, self.packs[side][0])
+        return self.masks_of(which, self.seats[side].actions)
 
     def observe(self, which: Ints, player: int = AGENT) -> Singles:
         rows = np.empty((len(which), self.SIZE), np.float32)
         frame_kernels.observe(which, player, self.arrays, self.saved_arrays, self._setting, rows)
+        if self.rules.observed:
+            rows[:, -CONDITIONS:] = normalised(self.conditions[which])
         return rows
 
     # states
@@ -415,7 +431,7 @@ class Frames(Tables):
         self.game[k, columns.OPPONENT] = state.opponent
         self.game[k, columns.FIRST_BREAK] = state.frame.breaker
         self.game[k, columns.PAID] = self._worth(k) - state.unpaid
-        self.streams[k] = np.array(state.stream, np.uint64)
+        self._set_state(k, state)
         self._replies[k], self.begun[k], self.due[k], self.nominated[k] = 0, True, state.due, AUTO
 
     def standing(self, k: int) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.engine import EventKind, Status
 from . import declarations, stroke
 from .arrays import OutputArrays, PlayedArrays, TableArrays
-from .observations import FRAME_SIZE, SIZE, observe_into
+from .observations import FRAME_SIZE, REPLACED_SIZE, SIZE, observe_into
 from .rewards import FRAMES_PAID, earned, frame_reward_of
 from .tables import COUNTS, I_BREAK, REALS, Tables, keep_last, write_empty_info, write_stroke_info
 
@@ -204,7 +204,7 @@ def observe_frame_into(out, k, tables, saved, setting, player):
     more[12], more[13] = row[columns.PHASE] == columns.LOT, _share(row[columns.FRAMES_0 + player], 1.0)
     more[14], more[15] = _share(row[columns.FRAMES_1 - player], 1.0), _share(setting.frames, 1.0)
     more[16], more[17], more[18] = clock, _share(row[columns.MISSES], 5.0), row[columns.ANYWHERE] != 0
-    if out.shape[0] == FRAME_SIZE:
+    if out.shape[0] < FRAME_SIZE + REPLACED_SIZE:
         return
     for i in range(N_BALLS):
         at, back = FRAME_SIZE + 3 * i, row[columns.MISS_CALLED] and saved.on_table[k, i]
@@ -387,10 +387,10 @@ def judge_attempts(which: Ints, b: stroke.ShotBuffers, tables: Tables) -> dict[i
     question(which, on_table, game, b.status, b.seen, asked)
     gaps = {}
     for j in np.flatnonzero(asked).tolist():
-        k = which[j]
+        k = int(which[j])
         one, at = b, j
         if not b.segments.shape[1]:
-            one, at = stroke.with_path(b, j, positions[k], on_table[k], tables.rules, tables.packed[2]), 0
+            one, at = stroke.with_path(b, j, positions[k], on_table[k], *tables.world(k)), 0
         gaps[j] = gap_of(positions[k], on_table[k], game[k], one.played, (one.segments, one.n_segments), at)
         b.seen[j, stroke.ATTEMPT] = gaps[j] <= ATTEMPT_GAP
     return gaps

@@ -21,7 +21,7 @@ from .escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, ROLL, ROLLING,
 from .frame import Frames, Opponent
 from .lines import EASY, LINE_ROWS, NARROW, POTS, nearest, racked, thin_at_end
 from .opponents import SIDE
-from .stroke import ShotBuffers, place, strike
+from .stroke import ShotBuffers, place, row_of, strike
 from .windows import open_part, open_windows
 
 SLIDE = 1.4  # initial speed of a ball struck in its middle, over the speed with which it rolls on
@@ -254,10 +254,10 @@ def geometric_turn(positions, on_table, row, rules, rows, stream):
 def _ghost_ball(which, tables, shots, packed, rules):
     """The turns of ``GhostBallOpponent``, up to the strike. ``rules``: the code of the rule set."""
     positions, on_table, game, streams, nominated = tables
-    shots, (options, noise, _), rows = StruckArrays(*shots), packed, np.empty((LINE_ROWS, POT_COLUMNS))
+    shots, (every, noise, _), rows = StruckArrays(*shots), packed, np.empty((LINE_ROWS, POT_COLUMNS))
     for j in range(which.shape[0]):
         k = which[j]
-        p, on = positions[k], on_table[k]
+        p, on, options = positions[k], on_table[k], every[row_of(k, every)]
         speed, side, top, aim, colour, _ = geometric_turn(p, on, game[k], rules, rows, streams[k])
         if options[A_NOMINATE] >= 0:
             nominated[k] = colour

@@ -38,12 +38,16 @@ import numpy as np
 from .._check import choice, number, refuse
 from .._jit import entry, kernel
 from .._types import Floats, NoiseName, Words
-from ..game.philox import normals
+from ..game.philox import normals, pair
 from ..physics.cue import MAX_ELEVATION
 from ..physics.parameters import Physics, PhysicsLike
 
-# Packed deviations: 1 if there are none, speed [m/s], speed (relative), tip offset / R, aim, elevation [rad].
-(N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION) = range(6)
+# Packed deviations: 1 if there are none, speed [m/s], speed (relative), tip offset / R, aim, elevation [rad];
+# then the probability of a kick.
+(N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION, N_KICK) = range(7)
+KICK = 0.2
+"""Friction between balls in a kick: a stun shot's contact sticks with it up to a cut of 45 degrees, so that
+more would change nothing there (docs/physics/limits.md). Not measured."""
 
 
 @kernel
@@ -89,6 +93,15 @@ def executed(speed, side, top, aim, elevation, noise, stream):
     return with_errors(speed, side, top, aim, elevation, drawn_errors(stream), noise)
 
 
+@kernel
+def kick_of(noise, stream):
+    """The friction of a shot's first contact in a kick, or 0. It draws one block, or nothing without kicks."""
+    if noise[N_KICK] == 0.0:
+        return 0.0
+    u, _ = pair(stream)
+    return KICK if u < noise[N_KICK] else 0.0
+
+
 @entry
 def _errors(streams, out):
     for i in range(len(out)):
@@ -104,7 +117,7 @@ def errors_of(streams: Words) -> Floats:
 
 @dataclass(frozen=True, kw_only=True)
 class Noise:
-    """Execution errors: standard deviations of one shot, all at least 0 (the default).
+    """Execution errors: standard deviations of one shot, all at least 0 (the default), and bad contacts.
 
     Parameters
     ----------
@@ -114,6 +127,9 @@ class Noise:
         Speed, as a fraction of the speed, and [m/s], combined as the root of the sum of squares.
     offset_mm : float, optional
         Tip offset [mm], for each of side and height.
+    kick : float, optional
+        Probability of a kick, in [0, 1]: chalk or dirt between the cue ball and the first ball that it meets,
+        with a friction of ``KICK`` = 0.2 in that one impact. How often it happens is not known.
 
     Examples
     --------
@@ -127,10 +143,12 @@ class Noise:
     speed_abs: float = 0.0
     offset_mm: float = 0.0
     elevation_deg: float = 0.0
+    kick: float = 0.0
 
     def __post_init__(self) -> None:
         for f in fields(self):
-            object.__setattr__(self, f.name, number(f"noise.{f.name}", getattr(self, f.name), 0))
+            most = 1 if f.name == "kick" else np.inf
+            object.__setattr__(self, f.name, number(f"noise.{f.name}", getattr(self, f.name), 0, most))
 
     @classmethod
     def of(cls, noise: "NoiseLike") -> "Noise":
@@ -150,8 +168,8 @@ class Noise:
 
     @property
     def silent(self) -> bool:
-        """Whether all deviations are 0, a bool; then nothing is drawn."""
-        return not (self.aim_deg or self.speed_rel or self.speed_abs or self.offset_mm or self.elevation_deg)
+        """Whether all deviations are 0 and there are no kicks, a bool; then nothing is drawn."""
+        return not any(getattr(self, f.name) for f in fields(self))
 
     def direction_deg(self, physics: PhysicsLike = None) -> float:
         """Return the standard deviation [deg] of the cue ball's direction: aim and squirt together.
@@ -165,9 +183,9 @@ class Noise:
         return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + constants.end_mass_ratio)))
 
     def pack(self, R: float) -> Floats:
-        """Return float64 (6,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]."""
+        """Return float64 (7,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]."""
         tip, turns = self.offset_mm * 1e-3 / R, (radians(self.aim_deg), radians(self.elevation_deg))
-        return np.array([self.silent, self.speed_abs, self.speed_rel, tip, *turns], np.float64)
+        return np.array([self.silent, self.speed_abs, self.speed_rel, tip, *turns, self.kick], np.float64)
 
 
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName

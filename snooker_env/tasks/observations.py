@@ -10,6 +10,7 @@ from .._jit import kernel
 from .._types import Bools, Masks, Observation, ObservationKind, Singles
 from ..game.balls import N_BALLS, REDS_MASK, VALUES, BallOn, bits, count
 from ..geometry import HALF_LENGTH, HALF_WIDTH
+from ..physics.conditions import COLUMNS as CONDITIONS_SIZE
 from .declarations import STROKE_CHOICES
 
 OBSERVATIONS = ("flat", "balls", "masked")
@@ -44,10 +45,16 @@ SIZE = BALLS_SIZE + len(STATE_ENTRIES)
 FRAME_SIZE = SIZE + len(FRAME_ENTRIES)  # numbers in the flat observation of a frame without a miss rule (140)
 REPLACED_SIZE = N_BALLS * len(REPLACED_COLUMNS)
 """Numbers that a miss rule adds to it (66): the layout that "replace" restores."""
+_SIZES = SIZE, FRAME_SIZE, FRAME_SIZE + REPLACED_SIZE
 
 
 def space(
-    kind: ObservationKind, *, frame: bool = False, replaced: bool = False, choices: int = STROKE_CHOICES
+    kind: ObservationKind,
+    *,
+    frame: bool = False,
+    replaced: bool = False,
+    choices: int = STROKE_CHOICES,
+    conditions: bool = False,
 ) -> spaces.Box | spaces.Dict:
     """Return the observation space.
 
@@ -61,6 +68,9 @@ def space(
         that "replace" restores, as with a miss rule: (206,), or the box "replaced" (22, 3). Default False.
     choices : int, optional
         Length of "action_mask". Default 540, the discrete actions that only choose a stroke.
+    conditions : bool, optional
+        Whether the 8 constants of the table follow last, in the order of ``physics.conditions.RANGES``, or the
+        box "conditions" (8,). Default False.
 
     Returns
     -------
@@ -82,8 +92,11 @@ def space(
         parts: dict[str, spaces.Space[Any]] = {"balls": balls, "state": state}
         if replaced:
             parts["replaced"] = spaces.Box(-REACH, REACH, (N_BALLS, len(REPLACED_COLUMNS)), np.float32)
+        if conditions:
+            parts["conditions"] = spaces.Box(-1.0, 1.0, (CONDITIONS_SIZE,), np.float32)
         return spaces.Dict(parts)
-    flat = spaces.Box(-REACH, REACH, (BALLS_SIZE + entries + REPLACED_SIZE * replaced,), np.float32)
+    more = REPLACED_SIZE * replaced + CONDITIONS_SIZE * conditions
+    flat = spaces.Box(-REACH, REACH, (BALLS_SIZE + entries + more,), np.float32)
     if kind == "masked":
         return spaces.Dict({"observations": flat, "action_mask": spaces.Box(0, 1, (choices,), np.int8)})
     return flat
@@ -116,7 +129,8 @@ def shaped(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = N
     kind : {"flat", "balls", "masked"}
         The kind.
     rows : numpy.ndarray
-        float32 (..., k), with k = 121 in a visit, 140 in a frame, 206 in a frame with a miss rule.
+        float32 (..., k), with k = 121 in a visit, 140 in a frame, 206 in a frame with a miss rule; 8 more with
+        the constants of the table.
     masks : numpy.ndarray, optional
         int8 or bool (..., choices): the available choices, which "masked" needs. Default None.
 
@@ -124,7 +138,7 @@ def shaped(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = N
     -------
     numpy.ndarray or dict
         "flat": ``rows`` itself. "balls": new arrays "balls" (..., 22, 5), "state" (..., 11 or 30) and, with a
-        miss rule, "replaced" (..., 22, 3). "masked": ``rows`` as "observations", ``masks`` as int8
+        miss rule, "replaced" (..., 22, 3), with constants "conditions" (..., 8). "masked": ``rows`` as "observations", ``masks`` as int8
         "action_mask".
 
     Examples
@@ -142,8 +156,14 @@ def shaped(kind: ObservationKind, rows: Singles, masks: Masks | Bools | None = N
             raise refuse("masks", None, 'must be the available choices, with the kind "masked"')
         return {"observations": rows, "action_mask": masks.astype(np.int8, copy=False)}
     lead = rows.shape[:-1]
+    end = rows.shape[-1]
+    if with_conditions := end - CONDITIONS_SIZE in _SIZES:
+        end -= CONDITIONS_SIZE
     balls = rows[..., :BALLS_SIZE].reshape(*lead, N_BALLS, _COLUMNS)
-    parts = {"balls": np.array(balls), "state": np.array(rows[..., BALLS_SIZE:FRAME_SIZE])}
-    if rows.shape[-1] > FRAME_SIZE:
-        parts["replaced"] = np.array(rows[..., FRAME_SIZE:].reshape(*lead, N_BALLS, len(REPLACED_COLUMNS)))
+    parts = {"balls": np.array(balls), "state": np.array(rows[..., BALLS_SIZE : min(end, FRAME_SIZE)])}
+    if end > FRAME_SIZE:
+        replaced = rows[..., FRAME_SIZE:end].reshape(*lead, N_BALLS, len(REPLACED_COLUMNS))
+        parts["replaced"] = np.array(replaced)
+    if with_conditions:
+        parts["conditions"] = np.array(rows[..., end:])
     return parts

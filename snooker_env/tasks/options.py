@@ -14,6 +14,7 @@ from ..game.frame import MISS_RULES
 from ..game.layouts import Plan
 from ..game.rule_sets import RULES, RuleSet, RulesName, rule_set
 from ..geometry import BALL_RADIUS
+from ..physics import conditions
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
@@ -31,6 +32,7 @@ MOST_TIME = 15.0
 TIME_TO_PLAY = 9.0
 """Default time [s] between strokes, with a clock: some 14 s a stroke in all, as in professionals' Shoot Out."""
 ACTIONS = ("box", "discrete")
+CONDITIONS = ("fixed", "drawn")
 LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 """What layout="default" means in each task."""
 MAX_STROKES = 1000
@@ -65,6 +67,8 @@ class Rules:
     frames: int = 0  # in a match: of how many frames at most; 0 for a single frame, which is no match
     game: RulesName = "snooker"  # the rule set
     time_to_play: int = 0  # with a clock: from the rest of the balls to the next stroke [ms]
+    drawn: bool = False  # whether each episode draws ``physics.conditions`` of its table
+    observed: bool = False  # whether observations hold them
 
     @property
     def rule_set(self) -> RuleSet:
@@ -77,8 +81,10 @@ class Rules:
         return self.miss != "off"
 
     def packed(self) -> tuple[Floats, Floats, Floats]:
-        """For the kernels: options of the action, deviations of the noise, physical parameters."""
-        return self.actions.pack(), self.noise.pack(BALL_RADIUS), self.physics.packed_for(self.fidelity)
+        """For the kernels: options of the action, deviations of the noise, physical parameters. The first and
+        the last are one row, for all tables."""
+        phys = self.physics.packed_for(self.fidelity)[None]
+        return self.actions.pack()[None], self.noise.pack(BALL_RADIUS), phys
 
 
 _ABOUT: dict[str, tuple[str, str | None, str]] = {
@@ -102,6 +108,8 @@ _ABOUT: dict[str, tuple[str, str | None, str]] = {
     "physics": ("shot", None, '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)'),
     "table": ("shot", None, '"match", "tight", or a `Table` whose noses are where snooker\'s are'),
     "fidelity": ("shot", None, '"fast", "standard", "reference", "euler:N"'),
+    "conditions": ("shot", None, '"fixed", "drawn": whether each episode draws constants of its table'),
+    "observe_conditions": ("view", None, "whether observations hold the constants drawn"),
     "one_stroke": ("task", "visit", "whether it ends with its first stroke"),
     "opponent": (
         "task",
@@ -170,6 +178,11 @@ class Options:
         "match" (default), "tight", or a ``Table`` whose noses are where snooker's are.
     fidelity : str, optional
         How impacts are solved: "fast", "standard" (default), "reference" or "euler:N".
+    conditions : {"fixed", "drawn"}, optional
+        "drawn": each episode draws eight constants of its table, in place of those of ``physics``, as
+        ``Physics.drawn`` does, with its own random stream. Infos hold them. Default "fixed".
+    observe_conditions : bool, optional
+        Whether observations hold the constants drawn, from -1 to 1. Default False.
     opponent : str or Path, optional
         In a frame: "none" (default), or what ``snooker_env.player`` takes: a player's name, a model's
         ``.zip``, ... Environments also take objects (docs/environment/opponents.md); their options then say
@@ -225,6 +238,8 @@ class Options:
     physics: PhysicsLike = "paper"
     table: TableLike = "match"
     fidelity: Fidelity = "standard"
+    conditions: Literal["fixed", "drawn"] = "fixed"
+    observe_conditions: bool = False
     one_stroke: bool = False
     opponent: str | Path = "none"
     trust: bool = False
@@ -260,6 +275,7 @@ class Options:
             allowed = 'must be "flat" or "balls" with action="box": a Box has no masks'
             raise refuse("observation", self.observation, allowed)
         truth("trust", self.trust)
+        drawn, observed = self._conditions(physics)
         rewards = {"visit": REWARDS, "frame": FRAME_REWARDS, "match": MATCH_REWARDS}
         choice("reward", self.reward, rewards[self.task])
         one_stroke = truth("one_stroke", self.one_stroke)
@@ -284,7 +300,7 @@ class Options:
             object.__setattr__(self, "opponent", str(self.opponent))
         pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
         world = actions, noise, physics, table, fidelity, plan, self.reward, self.observation
-        read = Rules(*world, self.miss, limit, one_stroke, frames, self.game, pause)
+        read = Rules(*world, self.miss, limit, one_stroke, frames, self.game, pause, drawn, observed)
         object.__setattr__(self, "rules", read)
 
     def _physics(self) -> Physics:
@@ -294,6 +310,21 @@ class Options:
             raise refuse("physics.R", physics.R, allowed)
         physics.check_stopping()
         return physics
+
+    def _conditions(self, physics: Physics) -> tuple[bool, bool]:
+        """Whether the constants of tables are drawn, and observed; ValueError if they do not go together."""
+        drawn = choice("conditions", self.conditions, CONDITIONS) == "drawn"
+        observed = truth("observe_conditions", self.observe_conditions)
+        if observed and not drawn:
+            allowed = 'must be False with conditions="fixed": there is nothing to observe'
+            raise refuse("observe_conditions", True, allowed)
+        for end in (conditions.LOW, conditions.HIGH) if drawn else ():
+            try:
+                conditions.physics_with(physics, end).check_stopping()
+            except ValueError as error:
+                allowed = f"must be 'fixed' with these physics, which do not go with a table drawn: {error}"
+                raise refuse("conditions", "drawn", allowed) from None
+        return drawn, observed
 
     def _actions(self, physics: Physics) -> Actions | Choices:
         if choice("action", self.action, ACTIONS) == "box":
@@ -360,7 +391,8 @@ def observation_space_of(options: Options) -> spaces.Box | spaces.Dict:
     """The observation space of a game with these options."""
     rules, frame = options.rules, options.task != "visit"
     choices = rules.actions.choices if isinstance(rules.actions, Choices) else 0
-    return observations.space(options.observation, frame=frame, replaced=rules.misses, choices=choices)
+    more = {"replaced": rules.misses, "conditions": rules.observed}
+    return observations.space(options.observation, frame=frame, choices=choices, **more)
 
 
 def options_of(options: Options | None, keywords: Mapping[str, Any]) -> Options:

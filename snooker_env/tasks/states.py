@@ -6,11 +6,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._check import array, flags, integer, refuse, refuse_what, truth
+from .._check import array, flags, integer, number, refuse, refuse_what, truth
 from .._types import Bools, Floats
 from ..game import balls
 from ..game.frame import MOST_BREAK, Frame
 from ..game.in_hand import within_d
+from ..physics.conditions import RANGES
 from ..physics.table import Table
 from .options import Rules
 
@@ -30,6 +31,7 @@ class State(NamedTuple):
     over: bool
     stream: list[int]  # key and counter of the table's random stream
     rng: dict[str, Any]
+    conditions: dict[str, float] | None = None  # the constants drawn, by name; None: they are fixed
 
 
 class FrameState(NamedTuple):
@@ -44,15 +46,17 @@ class FrameState(NamedTuple):
     due: bool  # whether the episode ended before the agent's first stroke, and the next step reports it
     stream: list[int]  # key and counter of the table's random stream
     rng: dict[str, Any]
-    frames: tuple[int, int] | None = None  # of a match, as all below: the frames that each player has won
+    frames: tuple[int, int] | None = None  # of a match, as the next two: the frames that each player has won
     first_break: int | None = None  # who broke first
     best_of: int | None = None  # of how many frames at most
+    conditions: dict[str, float] | None = None  # the constants drawn, by name; None: they are fixed
 
 
 _NAMES = ("state.positions", "state.on_table")
+VISIT_KEYS = ("positions", "on_table", "ball_on", "in_hand", "points", "over", "stream", "rng")
 FRAME_KEYS = ("frame", "positions", "on_table", "strokes", "opponent", "unpaid", "due", "stream", "rng")
 MATCH_KEYS = (*FRAME_KEYS, "frames", "first_break", "best_of")
-"""Keys of the saved state of a frame, and of a match."""
+"""Keys of the saved state of a visit, of a frame, and of a match; with drawn constants also "conditions"."""
 
 
 def check_keys(state: Any, keys: Collection[str]) -> None:
@@ -121,15 +125,26 @@ def check_stream(stream: Any) -> list[int]:
     return [integer(f"state.stream[{k}]", word, 0, 2**64 - 1) for k, word in enumerate(stream)]
 
 
-def checked(
-    state: Any, table: Table, R: float, generator: np.random.Generator, *, to_play: bool = False
-) -> State:
+def check_conditions(state: Any, keys: tuple[str, ...], rules: Rules) -> dict[str, float] | None:
+    """The constants drawn, in their order, None if they are fixed; ValueError for wrong ones or other keys."""
+    check_keys(state, (*keys, "conditions") if rules.drawn else keys)
+    if not rules.drawn:
+        return None
+    values = state["conditions"]
+    if not isinstance(values, dict) or set(values) != set(RANGES):
+        allowed = f"must be a dict of the constants {list(RANGES)}"
+        raise refuse("state.conditions", values, allowed)
+    each = RANGES.items()
+    return {name: number(f"state.conditions.{name}", values[name], *ends) for name, ends in each}
+
+
+def checked(state: Any, rules: Rules, generator: np.random.Generator, *, to_play: bool = False) -> State:
     """The ``State`` of a dict; ValueError names the first wrong part, or if none is left ``to_play``."""
-    check_keys(state, State._fields)
+    conditions, table, R = check_conditions(state, VISIT_KEYS, rules), rules.table, rules.physics.R
     positions, on_table = checked_layout(_NAMES, state["positions"], state["on_table"], table, R)
     over, in_hand = truth("state.over", state["over"]), truth("state.in_hand", state["in_hand"])
-    number = integer("state.ball_on", state["ball_on"], balls.BallOn.NOTHING, balls.BallOn.BLACK)
-    ball_on = balls.BallOn(number)
+    on = integer("state.ball_on", state["ball_on"], balls.BallOn.NOTHING, balls.BallOn.BLACK)
+    ball_on = balls.BallOn(on)
     mask = balls.mask_of_present(on_table)
     if not over:  # then there must be a shot to play
         lowest = balls.next_on(mask)
@@ -154,12 +169,12 @@ def checked(
         raise refuse("state.points", points, allowed)
     if over and to_play:
         raise refuse("state.over", True, "must be False: there is no shot to play from this state")
-    return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"])
+    return State(positions, on_table, ball_on, in_hand, points, over, stream, state["rng"], conditions)
 
 
 def checked_frame(state: Any, rules: Rules, generator: np.random.Generator) -> FrameState:
     """The ``FrameState`` that a dict describes, under these rules; ValueError names the first wrong part."""
-    check_keys(state, MATCH_KEYS if rules.frames else FRAME_KEYS)
+    conditions = check_conditions(state, MATCH_KEYS if rules.frames else FRAME_KEYS, rules)
     miss, table, R = rules.miss, rules.table, rules.physics.R
     positions, on_table = checked_layout(_NAMES, state["positions"], state["on_table"], table, R)
     frame = Frame.from_dict(state["frame"], "state.frame")
@@ -185,7 +200,8 @@ def checked_frame(state: Any, rules: Rules, generator: np.random.Generator) -> F
     check_rng(state["rng"], generator)
     opponent = integer("state.opponent", state["opponent"], 0, MOST)
     unpaid, due = integer("state.unpaid", state["unpaid"], -MOST, MOST), truth("state.due", state["due"])
-    made = FrameState(frame, positions, on_table, strokes, opponent, unpaid, due, stream, state["rng"])
+    one = frame, positions, on_table, strokes, opponent, unpaid, due, stream, state["rng"]
+    made = FrameState(*one, conditions=conditions)
     if not rules.frames:
         return made
     frames, first_break = _checked_match(state, frame, rules.frames)

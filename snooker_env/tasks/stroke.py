@@ -17,13 +17,15 @@ from ..game.ruling import AUTO
 from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
 from ..physics.engine import EventKind, Status
+from ..physics.parameters import Physics
+from ..physics.table import Table
 from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
 from .arrays import CueLaw, StruckArrays
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
 from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_MU_S, A_PLACEMENT, playable
 from .lines import new_work
-from .noise import executed
+from .noise import executed, kick_of
 from .options import Rules
 
 AT_ONCE = 1e-9  # contacts within this time [s] are simultaneous
@@ -98,8 +100,10 @@ def reached_cushion(event_what, n_events):
 
 @kernel
 def strike(intended, positions, on_table, stream, options, noise, j, shots):
-    """Shot j: the table as it lies, the cue ball struck as ``intended`` (see ``executed``), with errors."""
+    """Shot j: the table as it lies, the cue ball struck as ``intended`` (see ``executed``), with errors;
+    ``options``: the table's row."""
     speed, side, top, aim, elevation = executed(*intended, noise, stream)
+    shots.kicks[j] = kick_of(noise, stream)
     side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
     shot, r, v, w, here = shots.shots[j], shots.r, shots.v, shots.w, shots.here
     mu_s, m = options[A_MU_S], options[A_END_MASS]
@@ -124,16 +128,33 @@ def _same_table(positions, on_table, other, other_on):
     return differ == 0
 
 
+@kernel
+def row_of(k, rows):
+    """Table k's row of what all tables share, in one row, or have for themselves."""
+    return min(k, rows.shape[0] - 1)
+
+
+@kernel
+def _same_constants(k, before, options, phys):
+    """Whether two tables have the same cue and constants."""
+    differ = 0
+    if phys.shape[0] > 1:
+        differ += options[k, A_END_MASS] != options[before, A_END_MASS]
+        for c in range(phys.shape[1]):
+            differ += phys[k, c] != phys[before, c]
+    return differ == 0
+
+
 @entry(what="the strokes of the environment", seconds=3, uses=(discrete_actions.chosen, shot_of))
 def address(which, actions, tables, shots, packed, fidelity):
     """Carry the actions (n, k) of the tables ``which`` out up to the strike; ``packed``: of ``Tables``."""
     positions, on_table, game, streams, nominated = tables
-    shots, (options, noise, phys) = StruckArrays(*shots), packed
-    law, work = CueLaw(phys, options[A_END_MASS], *fidelity), new_work()
+    shots, (every, noise, phys), work = StruckArrays(*shots), packed, new_work()
     solved, mask_before = np.empty(6), 0  # the last choice, and the stroke that it means
     for j in range(which.shape[0]):
         k = which[j]
-        a, p, on = actions[k], positions[k], on_table[k]
+        a, p, on, options = actions[k], positions[k], on_table[k], every[row_of(k, every)]
+        law = CueLaw(phys[row_of(k, phys)], options[A_END_MASS], fidelity[0], fidelity[1])
         if game[k, IN_HAND] and options[A_PLACEMENT]:
             anywhere = game.shape[1] > ANYWHERE and game[k, ANYWHERE] != 0
             x, y = place_anywhere_of(a, options) if anywhere else place_of(a, options)
@@ -142,6 +163,7 @@ def address(which, actions, tables, shots, packed, fidelity):
         if options[A_DISCRETE]:
             # a planner plays a choice under several errors in succession: its aim is solved once
             before, new = which[max(0, j - 1)], j == 0 or a[0] != solved[0] or mask != mask_before
+            new = new or not _same_constants(k, before, every, phys)
             if new or not _same_table(p, on, positions[before], on_table[before]):
                 chosen = discrete_actions.chosen(int(a[0]), p, on, mask, law, work)
                 solved[0], mask_before = a[0], mask
@@ -185,6 +207,7 @@ class ShotBuffers:
         self.w: Floats = np.zeros((m, N_BALLS, 3))
         self.here: Bools = np.zeros((m, N_BALLS), np.bool_)
         self.potted: Ints = np.zeros((m, N_BALLS), np.int64)
+        self.kicks: Floats = np.zeros(m)  # the friction of the first contact in a kick, else 0
         # each strike, columns ``VX`` to ``ELEVATION``; facts for the referee and the ruling, ``FIRST`` to ``FOULS``
         self.shots: Floats = np.zeros((m, STRIKE_COLUMNS))
         self.seen: Ints = np.zeros((m, SEEN_COLUMNS), np.int64)
@@ -198,7 +221,7 @@ class ShotBuffers:
         self.n_segments: Ints = np.zeros(m, np.int64)
         self.duration: Floats = np.zeros(m)
         # for kernels: the parts of ``StruckArrays`` and ``PlayedArrays``, in plain tuples
-        self.struck: tuple[Any, ...] = (self.r, self.v, self.w, self.here, self.shots)
+        self.struck: tuple[Any, ...] = (self.r, self.v, self.w, self.here, self.shots, self.kicks)
         ends = self.seen, self.potted, self.status, self.duration
         events = self.event_time, self.event_what, self.n_events
         self.played: tuple[Any, ...] = (self.r, self.shots, *ends, *events)
@@ -210,11 +233,11 @@ class ShotBuffers:
     def again(self, j: int, log: int, *, path: bool = False) -> "ShotBuffers":
         """Work space for shot j alone, with that log: struck as before, ``r`` and ``here`` to be filled."""
         one = ShotBuffers(1, log, path=path or self.segments.shape[1] > 0)
-        one.shots[0], one.seen[0] = shot, _ = self.shots[j], self.seen[j]
+        one.shots[0], one.seen[0], one.kicks[0] = shot, _, _ = self.shots[j], self.seen[j], self.kicks[j]
         one.v[0, CUE], one.w[0, CUE] = shot[[VX, VY]], shot[[WX, WY, WZ]]
         return one
 
-    def shot(self, j: int, rules: Rules) -> Shot:
+    def shot(self, j: int, table: Table, physics: Physics) -> Shot:
         """Shot j as a ``Shot``."""
         n = self.n_events[j]
         events = np.zeros(n, EVENT)
@@ -223,11 +246,11 @@ class ShotBuffers:
             events[name] = self.event_what[j, :n, c]
         segments = self.segments[j, : self.n_segments[j]].copy()
         ends = self.r[j].copy(), self.potted[j].copy(), self.here[j].copy(), float(self.duration[j])
-        return Shot(*ends, events, segments, rules.physics, rules.table)
+        return Shot(*ends, events, segments, physics, table)
 
 
 def run(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None:
-    """Play the first m shots until all balls are at rest; ``phys``: the packed ``rules.physics``."""
+    """Play the first m shots until all balls are at rest; ``phys``: packed constants, a row for all or each."""
     count(m)
     _simulated(buffers, m, rules, phys)
 
@@ -237,7 +260,8 @@ def _simulated(buffers: ShotBuffers, m: int, rules: Rules, phys: Floats) -> None
     table = rules.table
     buffers.enlarged = {}
     balls = buffers.r, buffers.v, buffers.w, buffers.here, buffers.potted
-    setup = phys, table.noses, table.jaws, table.falls, table._reach(rules.physics.R), *rules.fidelity, False
+    reach = table._reach(rules.physics.R)
+    setup = phys, buffers.kicks, table.noses, table.jaws, table.falls, reach, *rules.fidelity, False
     log = buffers.event_time, buffers.event_what, buffers.segments
     ends = buffers.status, buffers.n_events, buffers.n_segments, buffers.duration
     engine.run_batch(balls, setup, MAX_EVENTS, log, ends, 0, m)

@@ -7,14 +7,20 @@ from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from .._jit import kernel
+from .._jit import entry, kernel
 from .._types import Bools, Floats, Ints, Masks, Singles, Words
 from ..game.balls import N_BALLS, BallOn, balls_on, mask_of_present
 from ..game.frame_columns import BALL_ON, IN_HAND, OVER
-from ..game.philox import stream_of
+from ..game.philox import pair, stream_of
+from ..physics.columns import CONSTANTS
+from ..physics.conditions import COLUMNS as CONDITIONS
+from ..physics.conditions import END_MASS_RATIO, drawn, nominal, normalised, pack_into, physics_with
+from ..physics.conditions import NAMES as CONDITION_NAMES
 from ..physics.parameters import Physics
+from ..shot import Shot
 from . import discrete_actions, stroke
 from .box_actions import Actions
+from .declarations import A_END_MASS
 from .discrete_actions import Choices
 from .options import NEVER, Rules
 from .played import Played, judged, struck
@@ -65,6 +71,14 @@ def write_empty_info(k, out, ball_on):
     for c in range(counts.shape[1]):
         counts[k, c] = 0
     counts[k, I_BALL_ON], counts[k, I_FIRST] = ball_on, -1
+
+
+@entry
+def _shares(which, streams, out):
+    """Uniform numbers in [0, 1) from the streams of the tables ``which``: one row of ``out`` each."""
+    for j in range(which.shape[0]):
+        for c in range(0, out.shape[1], 2):
+            out[j, c], out[j, c + 1] = pair(streams[which[j]])
 
 
 Task: TypeAlias = Callable[[Ints, stroke.ShotBuffers], None]
@@ -139,6 +153,7 @@ class Tables(ABC):
     SIZE = 0  # numbers in an observation
     COLUMNS = 0  # of ``game``
 
+    reals: tuple[str, ...]  # ``REALS``, and the constants if they are drawn
     rules: Rules
     n: int
     limit: int
@@ -148,7 +163,10 @@ class Tables(ABC):
     streams: Words  # (n, 2) key and counter of each table's random stream
     nominated: Ints = np.empty(0, np.int64)  # (n,) of frames: what each striker has nominated
     begun: Bools  # (n,) which tables have an episode, possibly one that has ended
-    packed: tuple[Floats, Floats, Floats]  # action's options, noise's deviations, physical parameters
+    # action's options, noise's deviations, physical parameters; the first and last one row, for all tables, or
+    # with drawn conditions one for each
+    packed: tuple[Floats, Floats, Floats]
+    conditions: Floats  # (n, 8) constants drawn, of ``physics.conditions``; without rows if they are fixed
 
     def __init__(self, rules: Rules, n: int, *, limit: int = NEVER):
         self.rules, self.n, self.limit = rules, n, limit
@@ -157,7 +175,15 @@ class Tables(ABC):
         self.game[:, BALL_ON], self.game[:, OVER] = -1, True
         self.streams = np.zeros((n, 2), np.uint64)
         self.begun = np.zeros(n, np.bool_)
-        self.packed = rules.packed()
+        self.reals = self.REALS
+        self.conditions, self._phys = np.empty((0, CONDITIONS)), np.empty((0, CONSTANTS))
+        if rules.drawn:
+            self.reals = (*self.REALS, *CONDITION_NAMES)
+            self.conditions = np.tile(nominal(rules.physics), (n, 1))
+            self._phys = np.tile(rules.physics.pack(), (n, 1))
+        if rules.observed:
+            self.SIZE = type(self).SIZE + CONDITIONS
+        self.packed = self.own_rows(rules.packed())
 
     @property
     def arrays(self) -> tuple[Any, ...]:
@@ -172,23 +198,24 @@ class Tables(ABC):
         """New arrays for the results of a step or reset, except for ``arrays`` by name."""
         masked = self.rules.actions if self.rules.observation == "masked" else None
         choices = masked.choices if isinstance(masked, Choices) else 0
-        sizes = self.n, self.SIZE, len(self.REALS), len(self.COUNTS)
+        sizes = self.n, self.SIZE, len(self.reals), len(self.COUNTS)
         out = StepOutput(*sizes, last=last, choices=choices)
         for name, array in (arrays or {}).items():
             array[...] = 0
             setattr(out, name, array)
+        self.show_conditions(slice(None), out)
         return out
 
     def info(self, out: StepOutput, k: int) -> dict[str, Any]:
         """The info of table k alone, as Python numbers."""
-        info: dict[str, Any] = dict(zip(self.REALS, out.reals[k].tolist(), strict=True))
+        info: dict[str, Any] = dict(zip(self.reals, out.reals[k].tolist(), strict=True))
         info |= zip(self.COUNTS, out.counts[k].tolist(), strict=True)
         info |= {name: info[name] != 0 for name in self.FLAGS}
         return info | {"foul": info["fouls"] != 0}
 
     def infos(self, reals: Floats, counts: Ints, present: Bools) -> dict[str, Any]:
         """Infos as of Gymnasium's vector environments: arrays, and masks of the tables that they hold for."""
-        every = zip((*self.REALS, *self.COUNTS), (*reals.T, *counts.T), strict=True)
+        every = zip((*self.reals, *self.COUNTS), (*reals.T, *counts.T), strict=True)
         infos: dict[str, Any] = {name: column * present for name, column in every}
         infos |= {name: infos[name] != 0 for name in self.FLAGS}
         infos["foul"] = infos["fouls"] != 0
@@ -199,7 +226,7 @@ class Tables(ABC):
         game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
         if seen[stroke.SCORED]:
             standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
-        shot = {"shot": buffers.shot(j, self.rules), "cue": struck(buffers, j)}
+        shot = {"shot": self.shot(k, buffers, j), "cue": struck(buffers, j)}
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
         after: Any = {
             "next_on": BallOn(game[BALL_ON]),
@@ -208,6 +235,10 @@ class Tables(ABC):
         }
         return Played(**shot, **balls, **after, **judged(seen), **standing)
 
+    def shot(self, k: int, buffers: stroke.ShotBuffers, j: int) -> Shot:
+        """Shot j of the buffers, played on table k."""
+        return buffers.shot(j, self.rules.table, self.physics_of(k))
+
     def on(self, k: int) -> int:
         """The mask of the balls that may be struck first on table k."""
         return balls_on(int(self.game[k, BALL_ON]), mask_of_present(self.on_table[k]))
@@ -215,13 +246,13 @@ class Tables(ABC):
     def action_masks(self, which: Ints | None = None) -> Bools:
         """Available discrete actions on the tables ``which`` (all if None): bool (len(which), choices)."""
         which = np.arange(self.n) if which is None else which
-        return self.masks_of(which, self.rules.actions, self.packed[0])
+        return self.masks_of(which, self.rules.actions)
 
-    def masks_of(self, which: Ints, actions: Actions | Choices, options: Floats) -> Bools:
-        """``action_masks`` of one space of actions; ``options``: packed, of it."""
+    def masks_of(self, which: Ints, actions: Actions | Choices) -> Bools:
+        """``action_masks`` of one space of actions."""
         choices = actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE
         out = np.empty((len(which), choices), np.bool_)
-        options = options if isinstance(actions, Choices) else STROKES_ONLY
+        options = actions.pack() if isinstance(actions, Choices) else STROKES_ONLY
         discrete_actions.masks(which, self.positions, self.on_table, self.game, options, out)
         return out
 
@@ -250,11 +281,62 @@ class Tables(ABC):
         for name, value in vars(self).items():
             setattr(one, name, value[here] if name in self._columns() else value)
         one.n = 1
+        if self.rules.drawn:
+            one._take_rows(here)
         return one
+
+    # the constants of tables
+
+    def own_rows(self, packed: tuple[Floats, Floats, Floats]) -> tuple[Floats, Floats, Floats]:
+        """``packed`` with a row for each table, if they differ."""
+        if not self.rules.drawn:
+            return packed
+        return np.repeat(packed[0], self.n, axis=0), packed[1], self._phys
+
+    def _every_pack(self) -> tuple[tuple[Floats, Floats, Floats], ...]:
+        return (self.packed,)
+
+    def _take_rows(self, here: slice) -> None:
+        """Of each pack only these rows, as views."""
+        options, noise, phys = self.packed
+        self.packed = options[here], noise, phys[here]
+
+    def draw_conditions(self, which: Ints) -> None:
+        """Draw the constants of the tables ``which`` from their own streams; nothing if they are fixed."""
+        if self.rules.drawn and len(which):
+            shares = np.empty((len(which), CONDITIONS))
+            _shares(which, self.streams, shares)
+            self.set_conditions(which, drawn(shares))
+
+    def set_conditions(self, which: Ints, values: Floats) -> None:
+        """Give the tables ``which`` these constants (len(which), 8)."""
+        self.conditions[which] = values
+        pack_into(self._phys, which, values, self.rules.physics)
+        for options, _, _ in self._every_pack():
+            options[which, A_END_MASS] = values[:, END_MASS_RATIO]
+
+    def show_conditions(self, which: Any, out: StepOutput) -> None:
+        """Write the constants of the tables ``which`` into the results of a step, if they are drawn."""
+        if self.rules.drawn:
+            out.reals[which, -CONDITIONS:] = self.conditions[which]
+        if self.rules.observed:
+            out.observations[which, -CONDITIONS:] = normalised(self.conditions[which])
+
+    def physics_of(self, k: int) -> Physics:
+        """The constants of table k."""
+        return (
+            physics_with(self.rules.physics, self.conditions[k]) if self.rules.drawn else self.rules.physics
+        )
+
+    def world(self, k: int) -> tuple[Rules, Floats]:
+        """The rules, and the packed constants of table k: one row."""
+        phys = self.packed[2]
+        return self.rules, phys if len(phys) == 1 else phys[k : k + 1]
 
     def _columns(self) -> tuple[str, ...]:
         """Names of the attributes that hold one row for each table."""
-        return ("positions", "on_table", "game", "streams", "begun")
+        own = ("conditions", "_phys") if self.rules.drawn else ()
+        return ("positions", "on_table", "game", "streams", "begun", *own)
 
     def interrupted(self) -> None:
         """A step or reset was cut short: tables at which it is not the agent's turn need a reset."""
@@ -270,15 +352,15 @@ class Tables(ABC):
 
     def run(self, which: Ints, buffers: stroke.ShotBuffers) -> list[int]:
         """Play the shots that have been struck; returns the rows of those that need ``again``."""
-        m = len(which)
-        stroke.run(buffers, m, self.rules, self.packed[2])
+        m, phys = len(which), self.packed[2]
+        stroke.run(buffers, m, self.rules, phys if len(phys) == 1 else phys[which])
         status = buffers.status[:m]
         return np.flatnonzero(status).tolist() if status.any() else []
 
     def again(self, which: Ints, j: int, buffers: stroke.ShotBuffers) -> stroke.ShotBuffers:
         """Play shot j once more with a longer log; returns its own buffers."""
-        k, world = which[j], (self.rules, self.packed[2])
-        return stroke.run_again(buffers, j, k, self.positions[k], self.on_table[k], *world)
+        k = which[j]
+        return stroke.run_again(buffers, j, k, self.positions[k], self.on_table[k], *self.world(k))
 
     # what each task implements
 
@@ -302,7 +384,15 @@ class Tables(ABC):
     def get_state(self, k: int) -> dict[str, Any]:
         """Table k as JSON types, without "rng"."""
         balls = {"positions": self.positions[k].tolist(), "on_table": self.on_table[k].tolist()}
+        if self.rules.drawn:
+            balls["conditions"] = dict(zip(CONDITION_NAMES, self.conditions[k].tolist(), strict=True))
         return balls | {"stream": self.streams[k].tolist()}
+
+    def _set_state(self, k: int, state: Any) -> None:
+        """What all tasks restore alike: the random stream and the constants."""
+        self.streams[k] = np.array(state.stream, np.uint64)
+        if self.rules.drawn:
+            self.set_conditions(np.array([k]), np.array([list(state.conditions.values())]))
 
     @abstractmethod
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> Any:
@@ -318,7 +408,8 @@ class Tables(ABC):
 
     @abstractmethod
     def set_position(self, k: int, positions: Floats, on_table: Bools, game: Ints) -> None:
-        """Begin an episode on table k with a valid position; ``game``: a visit's row. The stream goes on."""
+        """Begin an episode on table k with a valid position; ``game``: a visit's row. The stream goes on, and
+        the constants are to be drawn once it has its seed."""
 
     @abstractmethod
     def text(self, k: int) -> str:

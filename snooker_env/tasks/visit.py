@@ -13,6 +13,7 @@ from ..game.frame_columns import BALL_ON, IN_HAND, OVER, POINTS, STEPS, VISIT_CO
 from ..game.layouts import deal_tables
 from ..game.ruling import VISIT
 from ..geometry import BALL_RADIUS
+from ..physics.conditions import normalised
 from ..physics.engine import Status
 from .arrays import OutputArrays, PlayedArrays
 from .observations import SIZE, observe_into
@@ -125,7 +126,9 @@ class Visits(Tables):
             plan = self.rules.plan
             if fresh:
                 deal_tables(which, plan.code, plan.tables, self.streams, self.positions, self.on_table)
+                self.draw_conditions(which)
             _begin(which, fresh, plan.in_hand, self.arrays, out.arrays, out.last)
+            self.show_conditions(which, out)
 
     def reset(self, wanted: Bools, out: StepOutput, crew: Crew) -> None:
 
@@ -138,8 +141,10 @@ class Visits(Tables):
         crew(np.arange(self.n), begin)
 
     def observe(self, which: Ints, player: int = 0) -> Singles:
-        rows = np.empty((len(which), SIZE), np.float32)
+        rows = np.empty((len(which), self.SIZE), np.float32)
         observe(which, self.positions, self.on_table, self.game, rows)
+        if self.rules.observed:
+            rows[:, SIZE:] = normalised(self.conditions[which])
         return rows
 
     def get_state(self, k: int) -> dict[str, Any]:
@@ -149,13 +154,13 @@ class Visits(Tables):
         return super().get_state(k) | visit
 
     def checked(self, state: Any, generator: np.random.Generator, *, to_play: bool = False) -> State:
-        return checked(state, self.rules.table, self.rules.physics.R, generator, to_play=to_play)
+        return checked(state, self.rules, generator, to_play=to_play)
 
     def set_state(self, k: int, state: State) -> None:
         """See ``Tables.set_state``; its steps are counted from 0."""
         self.positions[k], self.on_table[k] = state.positions, state.on_table
         self.game[k] = state.ball_on, state.in_hand, state.points, state.over, 0
-        self.streams[k] = np.array(state.stream, np.uint64)
+        self._set_state(k, state)
         self.begun[k] = True
 
     def standing(self, k: int) -> dict[str, Any]:

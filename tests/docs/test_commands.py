@@ -31,6 +31,7 @@ SHORT = {
     "benchmarks.decisions": "--agents ghost_ball planner_30 --tables 1 4 --repeats 2",
     "benchmarks.learner": "--rounds 1 --steps 2",
     "benchmarks.temperature": "--visits 2 --temperatures 4 8",
+    "benchmarks.conditions": "--visits 2 --players best_pot_8",
     "benchmarks.fuzz": "--shots 300 --threads 1",
     "benchmarks.vector": "--seconds 0.1 --repeats 1 --tables 64 --ppo-steps 2048",
     "agents.value_quality": "--agent planner_30 --visits 3",

@@ -1,0 +1,108 @@
+"""What do tables that differ cost a player, and what is it worth to know them?
+
+    python -m benchmarks.conditions [--players planner best_pot] [--noise LEVEL] [--physics PRESET]
+        [--visits N] [--seed 0] [--json FILE] [--out FOLDER]
+
+Points a visit on opened tables, the same for all, with 95 % intervals by bootstrap over the visits. A player
+that knows its table plans with the constants drawn. One that does not plans with those of an average table,
+the middle of each range, or with the preset's: aims, the squirt that it allows for, and all that it foresees.
+"""
+
+import copy
+
+import numpy as np
+
+import snooker_env as sn
+from snooker_env.benchmark import interval, play_visits
+from snooker_env.physics import conditions
+from snooker_env.planning import Positions
+from snooker_env.planning.planner import options_in
+from snooker_env.planning.strokes import AIM, SIDE
+from snooker_env.players import Strokes
+
+from ._common.command import Command, at_least, run, save_json
+
+FIRST_SEED = 4_000_000
+"""Seed of the first table; ``--seed`` K takes the K-th million after it."""
+NAMES = {
+    "fixed": "fixed",
+    "known": "drawn, knows the table",
+    "average": "drawn, takes an average table",
+    "preset": "drawn, takes the preset",
+}
+
+
+def squirt(side, ratio):
+    """``physics.cue.squirt`` of arrays [rad]."""
+    height = 1.0 - side * side
+    return np.arctan(2.5 * side * np.sqrt(height) / (1.0 + ratio + 2.5 * height))
+
+
+class Stranger:
+    """A player on a table that it takes for one with the constants ``believed``."""
+
+    def __init__(self, player, believed):
+        self.name, self.believed = player.name, believed
+        self._player, self._bound = player, None
+
+    def at(self, rules):
+        """Bind it, see ``players.Player``."""
+        bound = copy.copy(self)
+        bound._bound = self._player.at(options_in(rules).but(conditions="fixed", physics=self.believed))
+        return bound
+
+    def play(self, positions, seeds):
+        """What it does, see ``players.Player``."""
+        at = Positions.of(positions)
+        strokes = self._bound.play(at, seeds)
+        values, side = strokes.values.copy(), strokes.values[:, SIDE]
+        assert at.conditions is not None  # the tables are drawn
+        own = at.conditions[:, conditions.END_MASS_RATIO]
+        # environments allow for the squirt of the cue that is held, and it for that of another
+        values[:, AIM] += squirt(side, own) - squirt(side, self.believed.end_mass_ratio)
+        return Strokes(values, *strokes.parts[1:])
+
+
+def points(name, way, noise, physics, visits, seed):
+    """Points of each visit of a player, in one of the ways of ``NAMES``."""
+    player, base = sn.player(name), sn.Physics.preset(physics)
+    middle = conditions.drawn(np.full(conditions.COLUMNS, 0.5))
+    believed = {"average": conditions.physics_with(base, middle), "preset": base}
+    if way in believed:
+        player = Stranger(player, believed[way])
+    played = play_visits(
+        player,
+        visits,
+        layout="opened",
+        noise=noise,
+        first_seed=FIRST_SEED + 1_000_000 * seed,
+        physics=physics,
+        conditions="fixed" if way == "fixed" else "drawn",
+    )
+    return played.a_visit(played.points)
+
+
+def main():
+    """Play and print."""
+    parser = Command("conditions", __doc__, seed=0)
+    parser.add_argument(
+        "--players", nargs="+", default=("planner", "best_pot"), help="who plays [planner best_pot]"
+    )
+    parser.add_argument("--noise", default="professional", help="execution errors [professional]")
+    parser.add_argument("--physics", choices=("paper", "match"), default="match", help="the preset [match]")
+    parser.add_argument("--visits", type=at_least(2), default=200, help="visits of each [200]")
+    args = parser.options()
+    found = {}
+    print(f"{'player':16s}{'constants':32s}points a visit")
+    for name in args.players:
+        for way, says in NAMES.items():
+            made = points(name, way, args.noise, args.physics, args.visits, args.seed)
+            low, high = interval(made)
+            found[f"{name}, {says}"] = made.tolist()
+            print(f"{name:16s}{says:32s}{made.mean():8.1f} [{low:.1f}, {high:.1f}]", flush=True)
+    save_json(args.json, found)
+    return 0
+
+
+if __name__ == "__main__":
+    run(main)
