@@ -139,6 +139,36 @@ def airborne():
     return {"hops": hops, "thrown up at most": most, "speed to clear a ball": up}
 
 
+def raised():
+    """A raised cue presses the ball into the bed; what the cloth's friction then does is in the model."""
+    speed, gap = 3.0, 0.8
+    print(
+        f"\nRAISED CUE: where the cue ball rests [mm behind (-) or beyond the place of a full contact], struck at {speed:g} m/s,"
+    )
+    print(f"{gap:g} m from the ball's centre; with the bed's friction during the strike, and without it")
+    strokes = {"draw, 0.4 R below the middle": -0.4, "stun": 0.0}
+    print("preset  elevation" + "".join(f"{name:>36}" for name in strokes))
+    found = {}
+    for physics in ("paper", "match"):
+        found[physics] = {}
+        for elevation in (0, 1, 2, 4, 7, 10):
+            ends, e = {}, radians(elevation)
+            for name, top in strokes.items():
+                v, w = sn.strike(speed, 0, 0, top, e, physics)
+                bare = (speed * cos(e), 0), (0, 2.5 * speed * top / R, 0)
+                ends[name] = [1e3 * _rest(gap, *one, physics) for one in ((v[:2], w), bare)]
+            found[physics][elevation] = ends
+            print(f"{physics:8}{elevation:5d} deg" + "".join(f"{a:26.0f}{b:10.0f}" for a, b in ends.values()))
+    return found
+
+
+def _rest(gap, v, w, physics):
+    """Where the cue ball rests, from the place of contact [m]."""
+    still = (0, 0), (0, 0, 0)
+    shot = sn.simulate([(0, 0), (gap, 0)], [v, still[0]], [w, still[1]], table=None, physics=physics)
+    return float(shot.positions[0, 0]) - (gap - 2 * R)
+
+
 def double_hits():
     """A cue of 0.5 kg follows its ball into a ball just ahead."""
     cue, tip = 0.5, 0.73
@@ -166,9 +196,8 @@ def double_hits():
 def main():
     """Command line: print the sizes."""
     options = Command("left_out", __doc__).options()
-    save_json(
-        options.json, {part.__name__: part() for part in (air, level, unequal, kicks, airborne, double_hits)}
-    )
+    parts = air, level, unequal, kicks, airborne, raised, double_hits
+    save_json(options.json, {part.__name__: part() for part in parts})
 
 
 if __name__ == "__main__":

@@ -162,7 +162,8 @@ def strike(
     """The cue ball's velocity and spin just after the strike of the cue.
 
     Side spin deflects it from the aim (squirt: to the left for right side), with an elevated cue it swerves.
-    The cloth takes the downward part of the speed: the ball leaves at speed cos(elevation).
+    The bed takes the downward part of the speed, speed sin(elevation), and the cloth rubs by as much: friction
+    mu_s speed sin(elevation) against the slip, at most what makes the ball roll.
 
     Parameters
     ----------

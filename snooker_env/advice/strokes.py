@@ -26,8 +26,9 @@ class CueStroke:
     speed : float
         Cue speed [m/s], in [0.2, 7].
     aim : float
-        Direction in which the cue ball leaves [rad], anticlockwise from +x, as ``aim="absolute"`` of an
-        action. Squirt is compensated: with side, the cue points in a slightly different direction.
+        Direction in which the cue ball leaves the tip [rad], anticlockwise from +x, as ``aim="absolute"`` of
+        an action. Squirt is compensated: with side, the cue points in a slightly different direction. What
+        the cloth does to the ball of a raised cue is not.
     side, top : float
         Tip offsets to the right and upwards over R, as the player sees it, within a disc of radius 0.5.
     elevation : float

@@ -1,4 +1,7 @@
-"""How does the cue move the ball? Speed, aim, offset, elevation -> velocity and spin; squirt, miscue."""
+"""How does the cue move the ball? Speed, aim, offset, elevation -> velocity and spin; squirt, miscue.
+
+A raised cue presses the ball into the bed while it pushes, and the cloth rubs: ``rubbed``.
+"""
 
 from math import atan, cos, hypot, pi, sin, sqrt
 
@@ -22,23 +25,40 @@ def squirt(side, end_mass_ratio):
 
 
 @kernel
-def struck(speed, aim, side, top, elevation, R, end_mass_ratio):
+def rubbed(v, w, press, mu_s, R):
+    """(vx, vy) [m/s] and (wx, wy) [rad/s] of a ball after the bed has given it ``press`` [m/s], the upward
+    impulse over the mass: friction mu_s ``press`` against the slip, or 2/7 of the slip, and the ball rolls."""
+    (vx, vy), (wx, wy) = v, w
+    ux, uy = vx - R * wy, vy + R * wx
+    slip, friction = hypot(ux, uy), mu_s * press
+    if 3.5 * friction >= slip:
+        vx, vy = vx - ux / 3.5, vy - uy / 3.5
+        return (vx, vy), (-vy / R, vx / R)
+    dx, dy = -friction * ux / slip, -friction * uy / slip
+    return (vx + dx, vy + dy), (wx + 2.5 * dy / R, wy - 2.5 * dx / R)
+
+
+@kernel
+def struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio):
     """The cue ball's (vx, vy, vz) [m/s] and (wx, wy, wz) [rad/s] after a strike that is no miscue.
 
     Spin [TP A.30]: w = (5/2) (speed / R) b x d; b: tip offset over R, d: unit vector along the cue; (5/2) v
-    |b| / R if level. The cloth takes the downward part of the speed.
+    |b| / R if level. The bed takes the downward part of the speed, and the cloth rubs by as much.
     """
     aim += squirt(side, end_mass_ratio)
     c, s, ce, se = cos(aim), sin(aim), cos(elevation), sin(elevation)
     q = 2.5 * speed / R
     # offset = side right + top up: right (s, -c, 0), up (se c, se s, ce), the cue along (ce c, ce s, -se)
-    w = (q * (side * se * c - top * s), q * (side * se * s + top * c), q * side * ce)
-    return (speed * ce * c, speed * ce * s, 0.0), w
+    wx, wy, wz = q * (side * se * c - top * s), q * (side * se * s + top * c), q * side * ce
+    vx, vy = speed * ce * c, speed * ce * s
+    if elevation > 0.0:
+        (vx, vy), (wx, wy) = rubbed((vx, vy), (wx, wy), speed * se, mu_s, R)
+    return (vx, vy, 0.0), (wx, wy, wz)
 
 
 @entry
-def _struck(speed, aim, side, top, elevation, R, end_mass_ratio):
-    return struck(speed, aim, side, top, elevation, R, end_mass_ratio)
+def _struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio):
+    return struck(speed, aim, side, top, elevation, R, mu_s, end_mass_ratio)
 
 
 def strike(
@@ -54,4 +74,5 @@ def strike(
     if hypot(side, top) > physics.max_offset * (1 + 1e-12):
         allowed = f"tip offset {hypot(side, top):.4g} R is a miscue, must be within {physics.max_offset} R of the ball's centre"
         raise refuse("(side, top)", (side, top), allowed)
-    return _struck(speed, aim, side, top, elevation, physics.R, physics.end_mass_ratio)
+    constants = physics.R, physics.mu_s, physics.end_mass_ratio
+    return _struck(speed, aim, side, top, elevation, *constants)

@@ -58,8 +58,9 @@ class Planner:
     free balls, the foul-and-miss rule and the opponent of a frame are not covered.
 
     A *stroke* is a row of five numbers in SI: cue speed [m/s], side and top (tip offset over R, to the right
-    and up), the direction in which the cue ball leaves [rad], elevation of the cue [rad]. The cue itself
-    points aside from that direction by the squirt of the side.
+    and up), the direction in which the cue ball leaves the tip [rad], elevation of the cue [rad]. The cue
+    itself points aside from that direction by the squirt of the side; under a raised cue the cloth then turns
+    the ball.
 
     Parameters
     ----------

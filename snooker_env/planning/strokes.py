@@ -33,7 +33,8 @@ from .positions import Positions, PositionsLike, rows_of
 
 (SPEED, SIDE, TOP, AIM, ELEVATION) = range(5)
 """Columns of a stroke: cue speed [m/s], tip offset over R to the right and up, direction in which the cue ball
-leaves (the cue itself points aside by the squirt of the side), elevation of the cue [rad]."""
+leaves the tip (the cue itself points aside by the squirt of the side; under a raised cue the cloth then turns the
+ball), elevation of the cue [rad]."""
 COLUMNS = 5
 NO_NOISE = Noise()
 
@@ -49,6 +50,13 @@ def _strike(which, strokes, errors, tables, shots, options, noise, silent):
         p, on, aim = tables.positions[k], tables.on_table[k], aim - squirt(side, options[A_END_MASS])
         struck = with_errors(speed, side, top, aim, elevation, errors[k], noise)
         stroke.strike(struck, p, on, tables.streams[k], options, silent, j, shots)
+
+
+@entry
+def _off_the_tip(strokes, options):
+    """Turn the aims of strikes, the cue's, into the directions in which the cue ball leaves the tip [rad]."""
+    for j in range(strokes.shape[0]):
+        strokes[j, AIM] += squirt(strokes[j, SIDE], options[A_END_MASS])
 
 
 class TrialVisits(Visits):
@@ -82,7 +90,10 @@ def decoded(
     buffers = ShotBuffers(n, 0)
     visits.address(np.arange(n), actions, buffers)
     strokes = buffers.shots[:, stroke.CUE_SPEED :].copy()
-    strokes[:, AIM] = np.arctan2(buffers.shots[:, stroke.VY], buffers.shots[:, stroke.VX])
+    _off_the_tip(strokes, visits.packed[0])
+    off = np.arctan2(np.sin(strokes[:, AIM]), np.cos(strokes[:, AIM]))
+    level = np.arctan2(buffers.shots[:, stroke.VY], buffers.shots[:, stroke.VX])
+    strokes[:, AIM] = np.where(strokes[:, ELEVATION] > 0.0, off, level)
     return strokes, after
 
 

@@ -46,7 +46,8 @@ class Strokes:
     ----------
     values : numpy.ndarray
         float64 (n, 5). Cue speed [m/s], side and top (tip offsets over R), direction in which the cue ball
-        leaves [rad, anticlockwise from +x; squirt is compensated], elevation of the cue [rad].
+        leaves the tip [rad, anticlockwise from +x; squirt is compensated, what the cloth does to the ball of
+        a raised cue is not], elevation of the cue [rad].
     place : numpy.ndarray, optional
         float64 (n, 2). Where a cue ball in hand is placed [m]; NaN (default): it is played from where it
         lies.

@@ -139,7 +139,24 @@ class Tip(NamedTuple):
 
 
 def tip_of(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
-    """The strike of a level cue that gives this velocity and spin: ``physics.cue.struck`` solved."""
+    """The strike that gives this velocity and spin: ``physics.cue.struck`` solved. Level, if no side or no slip
+    is left to tell how far the cue was raised."""
+    v, w = np.asarray(velocity, np.float64), np.asarray(spin, np.float64)
+    slip = v + physics.R * np.array([-w[1], w[0]])
+    size = float(np.hypot(*slip))
+    if size > 1e-9 and w[2]:
+        u = (
+            slip / size
+        )  # as before the friction j = mu_s V sin(elevation), whose spin about the path is linear in j
+        turned = float(w[:2] @ u) + 2.5 / physics.R * float(u[1] * v[0] - u[0] * v[1])
+        j = physics.mu_s * float(w[:2] @ v) / (float(w[2]) - physics.mu_s * turned)
+        if j > 0.0:
+            v, w = v + j * u, w + 2.5 * j / physics.R * np.array([u[1], -u[0], 0.0])
+    return _level_tip(v, w, physics)
+
+
+def _level_tip(velocity: Floats, spin: Floats, physics: Physics) -> Tip:
+    """The strike that gives this velocity and spin before the cloth rubs."""
     v = float(np.hypot(*velocity))
     c, s = velocity / v
     about_path, about_up = float(spin[0] * c + spin[1] * s), float(spin[2])

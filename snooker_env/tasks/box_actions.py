@@ -140,13 +140,13 @@ class Actions:
 
     def pack(self) -> Floats:
         """The options for the kernels: float64, in the columns ``A_*`` of ``declarations``."""
-        limits = self.physics.end_mass_ratio, self.physics.max_offset
+        strike = self.physics.end_mass_ratio, self.physics.max_offset, self.physics.mu_s
         last = self.size - self.declares  # the components before the declaration
         nominated = last - 1 - self.decision if self.nominate else -1
         where = nominated, last - 1 if self.decision else -1, last if self.declares else -1
         kind = self.aim == "target", self.elevation, self.placement
         spoken = self.concede, self.claim, self.lot
-        return np.array([*kind, *limits, False, *where, *spoken], np.float64)
+        return np.array([*kind, *strike, False, *where, *spoken], np.float64)
 
     def shot(
         self, a: Any, positions: Vectors, on_table: Flags, on: int

@@ -8,8 +8,8 @@ from ..game.balls import COLOURS_MASK, YELLOW, balls_on_kernel
 from ..game.ruling import AUTO
 
 # Columns of the packed options of an action space.
-A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET, A_DISCRETE = range(6)
-A_NOMINATE, A_DECISION, A_DECLARATION, A_CONCEDE, A_CLAIM, A_LOT = range(6, 12)
+A_TARGET, A_ELEVATION, A_PLACEMENT, A_END_MASS, A_MAX_OFFSET, A_MU_S, A_DISCRETE = range(7)
+A_NOMINATE, A_DECISION, A_DECLARATION, A_CONCEDE, A_CLAIM, A_LOT = range(7, 13)
 SAYS = ("nominate", "decision", "concede", "claim", "lot")  # what an action can say beside the stroke
 (SAYS_NOTHING, CONCEDES, CLAIMS, OTHER_BEGINS) = range(4)  # declarations
 COLOURS = 6

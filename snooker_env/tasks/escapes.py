@@ -19,7 +19,7 @@ from ..game.lines import met
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics import cloth, cue, events
 from ..physics.arrays import Boundaries, Law
-from ..physics.columns import AXIS_X, AXIS_Y, P_R
+from ..physics.columns import AXIS_X, AXIS_Y, P_MU_S, P_R
 from ..physics.detection import boundary_event, pair_time
 from ..physics.impact.contact import FAST, collide_cushion, cushion_restitution
 from .windows import turned
@@ -171,8 +171,8 @@ def find_escapes(positions, on_table, on, lines, first):
 def _played(aim, stroke, positions, on_table, law, work):
     """The ball that the cue ball meets first, by the engine's models; 0: none, or a pocket."""
     (speed, side, top), phys, motion, state = stroke, law.phys, work.motion, work.state
-    R, m = phys[P_R], law.end_mass_ratio
-    (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, m), side, top, 0.0, R, m)
+    R, mu_s, m = phys[P_R], phys[P_MU_S], law.end_mass_ratio
+    (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, m), side, top, 0.0, R, mu_s, m)
     boundaries, rough = Boundaries(_BED, _NO_JAWS, _NO_FALLS, R), Law(phys, FAST, 0)
     cloth.begin(motion, state, 0, 0.0, (positions[0, 0], positions[0, 1]), (vx, vy), w, phys)
     legs, now = 1, 0.0

@@ -7,7 +7,7 @@ from math import atan2, hypot, pi
 from .._jit import kernel
 from ..physics import cloth, cue
 from ..physics.arrays import Law
-from ..physics.columns import P_E_B, P_R
+from ..physics.columns import P_E_B, P_MU_S, P_R
 from ..physics.detection import pair_time
 from ..physics.impact.contact import collide_balls
 
@@ -21,8 +21,8 @@ def _passes(aim, stroke, c, b, p, law, work):
     """Angle [rad] by which the ball at b, hit by a cue ball sent from c, passes p on the left; 9: missed."""
     (speed, side, top, elevation), (cx, cy), (bx, by), (px, py) = stroke, c, b, p
     phys, m, motion, state = law.phys, law.end_mass_ratio, work.motion, work.state
-    R = phys[P_R]
-    (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, m), side, top, elevation, R, m)
+    R, mu_s = phys[P_R], phys[P_MU_S]
+    (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, m), side, top, elevation, R, mu_s, m)
     cloth.begin(motion, state, 0, 0.0, (cx, cy), (vx, vy), w, phys)
     cloth.begin(motion, state, 1, 0.0, (bx, by), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
     t, now = 1e300, 0.0

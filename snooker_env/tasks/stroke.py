@@ -21,7 +21,7 @@ from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
 from .arrays import CueLaw, StruckArrays
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
-from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_PLACEMENT, playable
+from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_MU_S, A_PLACEMENT, playable
 from .lines import new_work
 from .noise import executed
 from .options import Rules
@@ -102,7 +102,8 @@ def strike(intended, positions, on_table, stream, options, noise, j, shots):
     speed, side, top, aim, elevation = executed(*intended, noise, stream)
     side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
     shot, r, v, w, here = shots.shots[j], shots.r, shots.v, shots.w, shots.here
-    struck = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, options[A_END_MASS])
+    mu_s, m = options[A_MU_S], options[A_END_MASS]
+    struck = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m)
     (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = struck
     shot[SPEED] = intended[0]
     shot[CUE_SPEED], shot[SIDE], shot[TOP], shot[AIM], shot[ELEVATION] = speed, side, top, aim, elevation

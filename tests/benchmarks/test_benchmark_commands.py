@@ -114,7 +114,7 @@ def test_what_is_printed_is_written_beside_the_pictures(tmp_path):
     assert files == ["figures.json", "paper.png", "paper.txt", "paper_data.png"]
     code, out, _ = ended(started("left_out", "--out", tmp_path, "--json", tmp_path / "l.json"))
     assert code == 0 and (tmp_path / "left_out.txt").read_text() == out
-    names = {"air", "level", "unequal", "kicks", "airborne", "double_hits"}
+    names = {"air", "level", "unequal", "kicks", "airborne", "raised", "double_hits"}
     assert set(json.loads((tmp_path / "l.json").read_text())) == names
 
 

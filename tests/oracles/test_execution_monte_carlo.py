@@ -13,7 +13,7 @@ from benchmarks.execution import pot_shots
 from snooker_env.geometry import POCKET_AIMS
 from snooker_env.tasks.noise import LEVELS
 
-R, END_MASS_RATIO, MU_ROLL, G = 0.02625, 30.0, 0.0127, 9.81
+R, END_MASS_RATIO, MU_SLIDE, MU_ROLL, G = 0.02625, 30.0, 0.21, 0.0127, 9.81
 POTS = {pot.name: pot for pot in pot_shots.POTS}
 STRAIGHT, RED, HALF = (
     "long: baulk line, 1 m to go, straight",
@@ -47,8 +47,8 @@ def close(share, other, n, slack=0.0):
 
 @pytest.mark.parametrize(("name", "level"), CASES)
 def test_the_same_pots_by_strokes_typed_anew(name, level):
-    """Spin (5/2) v b / R about the axis across the cue, the cue raised by the elevation; only the shot itself
-    is the engine's."""
+    """Spin (5/2) v b / R about the axis across the cue, the cue raised by the elevation, friction of the bed that
+    it presses the ball into; only the shot itself is the engine's."""
     shot = pot_shots.aimed(POTS[name], sn.Physics(), "match")
     speed, aim, side, top, raised = errors(level, shot.stroke[0], N, 11)
     way = shot.stroke[1] + aim + squirt(side)
@@ -59,6 +59,11 @@ def test_the_same_pots_by_strokes_typed_anew(name, level):
     velocities, spins = np.zeros((N, 2, 2)), np.zeros((N, 2, 3))
     velocities[:, 0] = (speed * np.cos(raised))[:, None] * ahead[:, :2]
     spins[:, 0] = 2.5 * speed[:, None] / R * np.cross(offset, cue)
+    slip = velocities[:, 0] + R * np.column_stack([-spins[:, 0, 1], spins[:, 0, 0]])
+    size = np.maximum(np.hypot(*slip.T), 1e-300)
+    push = -np.minimum(2 / 7, MU_SLIDE * speed * np.sin(raised) / size)[:, None] * slip
+    velocities[:, 0] += push
+    spins[:, 0, :2] += 2.5 / R * np.column_stack([push[:, 1], -push[:, 0]])
     end = sn.simulate_batch(np.repeat(shot.pot.positions[None], N, 0), velocities, spins)
     made = (end.potted[:, 1] == 3) & (end.potted[:, 0] < 0)
     found = pot_shots.rolls(shot, level, N, 5, sn.Physics(), "match")

@@ -93,9 +93,13 @@ def test_the_cut_is_that_of_the_geometry():
 
 
 @pytest.mark.parametrize("elevation", [0.0, 0.3, 1.0])
-@pytest.mark.parametrize("tip", [(0.3, -0.2), (-0.25, 0.35), (0.1, 0.0)])
+@pytest.mark.parametrize("tip", [(0.3, -0.2), (-0.25, 0.35), (-0.1, -0.45), (0.02, 0.1)])
 def test_the_tip_is_that_of_the_strike(tip, elevation):
     v, w = sn.strike(2.5, 0.7, *tip, elevation)
+    rolls = np.allclose([v[0] - R * w[1], v[1] + R * w[0]], 0.0, atol=1e-12)
+    assert rolls == ((elevation, tip) in {(0.3, (-0.25, 0.35)), (1.0, (0.02, 0.1))})
+    if rolls:  # nothing tells how
+        return
     found = shot_paths.tip_of(v[:2], w, sn.Physics.of(None))
     given = found.side, found.top, found.speed, found.elevation
     assert np.allclose(given, [*tip, 2.5, elevation], atol=1e-12)
@@ -104,7 +108,20 @@ def test_the_tip_is_that_of_the_strike(tip, elevation):
 def test_without_side_the_cue_is_taken_as_level():
     v, w = sn.strike(2.5, 0.7, 0.0, -0.2, 0.4)
     found = shot_paths.tip_of(v[:2], w, sn.Physics.of(None))
-    assert found.elevation == 0.0 and found.side == 0.0 and found.speed == pytest.approx(2.5 * np.cos(0.4))
+    assert found.elevation == 0.0 and found.side == 0.0 and found.speed == pytest.approx(np.hypot(*v[:2]))
+
+
+@pytest.mark.parametrize("side", [0.0, 0.1, -0.2])
+def test_a_ball_that_rolls_off_the_tip_is_taken_as_struck_by_a_level_cue(side):
+    """The steep cue makes it roll, as a level one at 0.4 R above the middle does."""
+    v, w = sn.strike(2.5, 0.7, side, 0.1, 1.4)
+    found = shot_paths.tip_of(v[:2], w, sn.Physics.of(None))
+    assert (
+        found.elevation == 0.0
+        and found.top == pytest.approx(0.4)
+        and found.speed == pytest.approx(np.hypot(*v[:2]))
+    )
+    assert np.sign(found.side) == np.sign(side)
 
 
 def test_arrowheads_stand_evenly_on_their_line():

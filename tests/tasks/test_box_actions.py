@@ -79,16 +79,20 @@ def test_the_tip_stays_on_the_disc_within_the_miscue_limit(side, top, b, t):
 
 
 @pytest.mark.parametrize(("a", "degrees"), [(-1.0, 0.0), (0.0, 15.0), (1.0, 30.0)])
-def test_elevation_lengthens_the_action_and_takes_speed(a, degrees):
-    env = standing(elevation=True)
+@pytest.mark.parametrize("mu_s", [0.21, 0.1])
+def test_elevation_lengthens_the_action_and_takes_speed(a, degrees, mu_s):
+    env = standing(elevation=True, physics={"mu_s": mu_s})
     assert env.action_space.shape == (5,) and SnookerEnv().action_space.shape == (4,)
     v, w = after_strike(env, [0.0, 1.0, 0.0, 0.0, a])
     angle = math.radians(degrees)
     assert math.radians(30) == MAX_ELEVATION
-    assert np.hypot(*v) == pytest.approx(speed_of(0.0) * math.cos(angle), rel=1e-12)
-    assert w[2] == pytest.approx(2.5 * speed_of(0.0) / R * 0.5 * math.cos(angle), rel=1e-12)
-    # the masse part
-    assert w[0] == pytest.approx(2.5 * speed_of(0.0) / R * 0.5 * math.sin(angle), rel=1e-3, abs=1e-9)
+    on, down = speed_of(0.0) * math.cos(angle), speed_of(0.0) * math.sin(angle)
+    assert w[2] == pytest.approx(2.5 * 0.5 * on / R, rel=1e-12)
+    # the slip along the path is all of the speed, across it the masse part; the cloth rubs against both
+    slip = np.array([on, 2.5 * 0.5 * down])
+    push = -mu_s * down * slip / np.hypot(*slip)
+    assert v == pytest.approx([on + push[0], push[1]], rel=1e-6, abs=1e-6)
+    assert R * w[:2] == pytest.approx([slip[1] + 2.5 * push[1], -2.5 * push[0]], rel=1e-6, abs=1e-6)
 
 
 def test_elevation_of_nothing_is_the_short_action():

@@ -1,0 +1,181 @@
+"""Is the strike of a raised cue right? A ball that bounces in three dimensions, laws, and shots.
+
+A ball that bounces comes to rest where the model's does, whatever the bed's restitution, as long as its slip
+outlasts the bounces: the bed gives V sin(elevation) and gravity's impulse in all, friction is mu_s of both
+against a slip that keeps its direction, and over each hop the two ways of giving it move the ball equally far.
+If the slip ends before, two things are left: a triangle (``bouncing_ball.behind``), and that a ball in the air
+is not slowed by the rolling resistance, so that it runs on at its rolling speed for the rest of the bounces.
+"""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env import EventKind
+from tests.oracles import bouncing_ball
+from tests.oracles.bouncing_ball import Cloth
+
+R, MU_S = 0.02625, 0.21
+CLOTH = Cloth()
+CENTRE, FOLLOW, SCREW, RIGHT, MASSE = (0.0, 0.0), (0.0, 0.4), (0.0, -0.4), (0.35, 0.1), (-0.3, -0.35)
+TIPS = [CENTRE, FOLLOW, SCREW, RIGHT, MASSE, (0.15, 0.05)]
+DEGREES = [1, 4, 7, 12, 20, 35, 60]
+
+
+def squirt(b):
+    """TP A.31, b over R, for the presets' end mass."""
+    return math.atan(2.5 * b * math.sqrt(1 - b * b) / (1 + 30 + 2.5 * (1 - b * b)))
+
+
+def modelled(speed, aim, tip, elevation):
+    """Rest, rolling velocity, and when the slip ends, of a struck ball alone."""
+    v, w = sn.strike(speed, aim, *tip, elevation)
+    shot = sn.simulate([(0.0, 0.0)], [v[:2]], [w], table=None)
+    slides = shot.events["time"][shot.events["kind"] == EventKind.ROLL]
+    until = float(slides[0]) if len(slides) else 0.0
+    return shot.positions[0], shot.at(until)[1][0], until
+
+
+def slip(v, w):
+    return np.array([v[0] - R * w[1], v[1] + R * w[0]])
+
+
+@pytest.mark.parametrize("e_t", [0.02, 0.2, 0.5, 0.7])
+@pytest.mark.parametrize("degrees", DEGREES)
+def test_it_comes_to_rest_where_a_bouncing_ball_does(degrees, e_t):
+    """Within 1e-7 m where the slip outlasts the bounces; else as the two closed forms say, in direction too."""
+    elevation, aim, exact = math.radians(degrees), 0.7, 0
+    for tip, speed in itertools.product(TIPS, [0.5, 1.5, 3.0, 6.0]):
+        v, w = bouncing_ball.off_the_tip(speed, aim + squirt(tip[0]), *tip, elevation, CLOTH)
+        place, runs, until = modelled(speed, aim, tip, elevation)
+        apart = bouncing_ball.rest(v, w, e_t, CLOTH) - place
+        left = bouncing_ball.flown(speed, elevation, e_t, CLOTH) - until
+        if left <= 0.0:
+            assert np.hypot(*apart) < 1e-7, (tip, speed)
+            exact += 1
+            continue
+        u = slip(v, w) / np.hypot(*slip(v, w))
+        apart -= runs * left
+        most = bouncing_ball.behind(speed, elevation, e_t, CLOTH)
+        assert -1e-7 < -apart @ u < most + 1e-7 and abs(apart @ (-u[1], u[0])) < 1e-7, (tip, speed)
+    # 2/7 of the slip is enough for (1 + e) / (1 - e) mu_s V sin(elevation) in all of these
+    assert exact >= (20 if math.tan(elevation) * (1 + e_t) / (1 - e_t) < 1.0 else 0)
+
+
+@pytest.mark.parametrize("e_t", [0.02, 0.3, 0.5, 0.7])
+def test_to_two_millimetres_at_the_elevations_of_play(e_t):
+    """Up to 7 degrees and 3 m/s, with side, stun and screw, without any allowance."""
+    for degrees, speed, tip in itertools.product(
+        [1, 3, 5, 7], [0.5, 1.0, 2.0, 3.0], [CENTRE, SCREW, RIGHT, MASSE]
+    ):
+        elevation = math.radians(degrees)
+        v, w = bouncing_ball.off_the_tip(speed, squirt(tip[0]), *tip, elevation, CLOTH)
+        place, _, _ = modelled(speed, 0.0, tip, elevation)
+        assert np.hypot(*(bouncing_ball.rest(v, w, e_t, CLOTH) - place)) < 2e-3, (degrees, speed, tip)
+
+
+@pytest.mark.parametrize("degrees", [*DEGREES, 80])
+@pytest.mark.parametrize("tip", TIPS)
+def test_given_in_a_thousand_small_pushes_it_is_the_same(tip, degrees):
+    """Slip and impulse grow together while the tip pushes, so the order of push and friction does not matter."""
+    elevation = math.radians(degrees)
+    v, w = sn.strike(3.0, 0.4, *tip, elevation)
+    for parts in (1, 1000):
+        v2, w2 = bouncing_ball.pressed(3.0, 0.4 + squirt(tip[0]), *tip, elevation, CLOTH, parts)
+        assert np.allclose(v, v2, atol=1e-11) and np.allclose(R * w, R * w2, atol=1e-11)
+
+
+@pytest.mark.parametrize("tip", TIPS)
+def test_a_level_cue_feels_no_friction(tip):
+    """The formulas of TP A.30 and A.31 alone, to the last bit; with any friction."""
+    (side, top), speed, aim = tip, 2.7, 1.1
+    way = aim + squirt(side)
+    c, s, q = math.cos(way), math.sin(way), 2.5 * speed / R
+    for mu_s in (0.1, 0.21, 1.0):
+        v, w = sn.strike(speed, aim, side, top, physics={"mu_s": mu_s})
+        assert v.tolist() == [speed * c, speed * s, 0.0]
+        assert w.tolist() == [q * (0.0 - top * s), q * (0.0 + top * c), q * side]
+    v, w = sn.strike(speed, aim, side, top, 1e-9)
+    assert np.allclose(v, [speed * c, speed * s, 0.0], atol=1e-8)
+
+
+@pytest.mark.parametrize("mu_s", [0.1, 0.21, 0.6])
+def test_a_steep_cue_makes_the_ball_roll(mu_s):
+    """Stun: the slip V cos(elevation) is gone where mu_s tan(elevation) = 2/7; at 5/7 of the speed, with the side
+    spin untouched. Just below, the ball still slides: a twentieth of the slip is left at 19/20 of that."""
+    edge = math.atan(2.0 / 7.0 / mu_s)
+    physics = {"mu_s": mu_s}
+    for steeper in (1e-6, 0.03, 0.1):
+        v, w = sn.strike(2.0, 0.3, 0.0, 0.0, edge + steeper, physics)
+        assert v == pytest.approx(
+            5 / 7 * 2.0 * math.cos(edge + steeper) * np.array([math.cos(0.3), math.sin(0.3), 0])
+        )
+        assert np.allclose(slip(v, w), 0.0, atol=1e-15) and w[2] == 0.0
+        shot = sn.simulate([(0, 0)], [v[:2]], [w], table=None, physics=physics)
+        assert shot.events["kind"].tolist() == [EventKind.STOP]
+    flatter = math.atan(0.95 * math.tan(edge))
+    v, w = sn.strike(2.0, 0.3, 0.0, 0.0, flatter, physics)
+    assert np.hypot(*slip(v, w)) == pytest.approx(0.05 * 2.0 * math.cos(flatter), rel=1e-9)
+    level, raised = (sn.strike(2.0, 0.3, 0.3, 0.1, one, physics)[1][2] for one in (0.0, edge + 0.1))
+    assert raised == pytest.approx(level * math.cos(edge + 0.1), rel=1e-12)
+
+
+def test_the_friction_is_a_share_of_the_downward_speed():
+    """Screw, stun and follow above the rolling offset: mu_s V sin(elevation) against the slip, 5/2 of it off the
+    spin. Backspin and the running ball lose, a ball that spins faster than it rolls gains."""
+    for degrees, speed in itertools.product((2, 5, 10), (1.0, 4.0)):
+        e = math.radians(degrees)
+        j = MU_S * speed * math.sin(e)
+        for top, sign in ((-0.45, -1.0), (0.0, -1.0), (0.49, 1.0)):
+            v, w = sn.strike(speed, 0.0, 0.0, top, e)
+            assert v == pytest.approx([speed * math.cos(e) + sign * j, 0, 0], abs=1e-12), (degrees, top)
+            assert R * w == pytest.approx([0, 2.5 * (speed * top - sign * j), 0], abs=1e-12), (degrees, top)
+
+
+def both_ends(speed, top, elevation, gap):
+    """How far behind (< 0) or beyond (> 0) the place of contact the cue ball of a full contact comes to rest."""
+    v, w = sn.strike(speed, 0.0, 0.0, top, elevation)
+    balls = [(0.0, 0.0), (gap, 0.0)]
+    shot = sn.simulate(balls, [v[:2], (0, 0)], [w, (0, 0, 0)], table=None)
+    return shot.positions[0, 0] - (gap - 2 * R)
+
+
+def test_a_draw_loses_backspin_and_a_stun_runs_on():
+    level, raised = (both_ends(3.0, -0.4, math.radians(e), 0.8) for e in (0, 4))
+    assert level < -0.25 and 0.05 < raised - level < 0.2
+    level, raised = (both_ends(3.0, 0.0, math.radians(e), 0.8) for e in (0, 4))
+    assert level > 0.5 and 0.05 < raised - level < 0.3
+    # each degree takes more
+    draws = [both_ends(3.0, -0.4, math.radians(e), 0.8) for e in range(0, 10)]
+    assert (np.diff(draws) > 0.01).all()
+
+
+@pytest.mark.parametrize("degrees", DEGREES)
+@pytest.mark.parametrize("tip", TIPS)
+def test_it_is_the_same_in_a_mirror_and_in_every_direction(tip, degrees):
+    elevation, turn = math.radians(degrees), 2.1
+    v, w = sn.strike(2.2, 0.6, *tip, elevation)
+    v2, w2 = sn.strike(2.2, -0.6, -tip[0], tip[1], elevation)
+    assert np.allclose(v2, v * (1, -1, 1), atol=1e-12) and np.allclose(w2, w * (-1, 1, -1), atol=1e-9)
+    c, s = math.cos(turn), math.sin(turn)
+    q = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+    v3, w3 = sn.strike(2.2, 0.6 + turn, *tip, elevation)
+    assert np.allclose(v3, q @ v, atol=1e-12) and np.allclose(w3, q @ w, atol=1e-9)
+    v4, w4 = sn.strike(4.4, 0.6, *tip, elevation)  # twice as hard is twice of all
+    assert np.allclose(v4, 2 * v, atol=1e-12) and np.allclose(w4, 2 * w, atol=1e-9)
+
+
+@pytest.mark.parametrize("tip", TIPS)
+def test_friction_takes_energy_and_turns_the_slip_never_round(tip):
+    before, least = None, math.inf
+    for mu_s in (0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.0):
+        v, w = sn.strike(3.0, 0.0, *tip, 0.6, physics={"mu_s": mu_s} if mu_s else {"mu_s": 1e-12})
+        before = slip(v, w) if before is None else before
+        energy = v @ v + 0.4 * R * R * (w @ w)
+        assert energy <= least + 1e-12
+        least = energy
+        assert slip(v, w) @ before >= -1e-12
+        assert abs(slip(v, w) @ (-before[1], before[0])) < 1e-10
