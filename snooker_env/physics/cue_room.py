@@ -23,7 +23,12 @@ s sqrt(1 - k^2) = R + r0 + k (b cos el - R q).
 
 from math import asin, atan2, cos, hypot, pi, radians, sin, sqrt
 
+import numpy as np
+
 from .._jit import kernel
+from .._types import Floats
+from .columns import NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
+from .cue import MAX_ELEVATION
 
 TIP, BUTT, LENGTH = 4.75e-3, 14e-3, 1.45
 """Radii of the cue at its ends, and its length [m]."""
@@ -50,6 +55,23 @@ _HALVINGS = 40
 """Bisections of a tip's way, to 1e-12 R; few strokes need them."""
 _TRIALS = 8
 """Newton's steps and fixed points gain two digits and more each."""
+
+
+NO_RAILS = np.empty(0)
+"""The rails of a free cue, which nothing is in the way of."""
+NO_RAILS.setflags(write=False)
+
+
+def rails_of(noses: Floats, falls: Floats) -> Floats:
+    """The rails behind the noses of a table, for the kernels: ``EDGE`` numbers for each nose, those of one side
+    together. Behind a pocket a rail begins where the fall ends that reaches farthest behind the noses of that side.
+    Noses (k, 5) and falls (p, 3): as of ``Table``."""
+    rows = []
+    for nose in sorted(noses.tolist()):
+        axis, side, level = int(nose[NOSE_AXIS]), nose[NOSE_SIDE], nose[NOSE_LEVEL]
+        behind = (side * falls[:, axis] + falls[:, 2] - level).max(initial=0.0)
+        rows.append([*nose, behind])
+    return np.array(rows, np.float64).reshape(-1)
 
 
 @kernel
@@ -84,9 +106,13 @@ def _over_rail(D, sin_phi, c, side, top, R):
 
 
 @kernel
-def _over_ball(b, l, side, top, elevation, R):
-    """The least elevation [rad], from ``elevation`` on, that clears a ball b behind and l to the right [m]."""
-    q, beside, cosine = sqrt(max(1.0 - side * side - top * top, 0.0)), l - R * side, sqrt(1.0 - TAPER * TAPER)
+def _over_ball(b, right, side, top, elevation, R):
+    """The least elevation [rad], from ``elevation`` on, that clears a ball b behind and ``right`` to the right [m]."""
+    q, beside, cosine = (
+        sqrt(max(1.0 - side * side - top * top, 0.0)),
+        right - R * side,
+        sqrt(1.0 - TAPER * TAPER),
+    )
     ce, se, far = cos(elevation), sin(elevation), 0.0
     for trial in range(_TRIALS):
         far = (R + TIP + TAPER * (b * ce - R * q)) / cosine
@@ -134,7 +160,7 @@ def _over_rails(aim, side, top, x, y, rails, R):
             last_axis, last_side, nearest = rails[m + EDGE_AXIS], rails[m + EDGE_SIDE], 0.0
         D, phi, turn = _edge(rails, m, x, y, back_x, back_y)
         # of the noses of one side the cue crosses one, or all of them behind a pocket
-        if D > 0.0 and (nearest == 0.0 or D < nearest):
+        if D > 0.0 and (nearest == 0.0 or nearest > D):
             nearest, sin_phi, c = D, phi, turn
     if nearest > 0.0:
         least = max(least, _over_rail(nearest, sin_phi, c, side, top, R))
@@ -156,9 +182,9 @@ def least_elevation(stroke, positions, on_table, rails, R):
         for i in range(1, positions.shape[0]):
             if on_table[i]:
                 dx, dy = positions[i, 0] - x, positions[i, 1] - y
-                b, l = -(dx * ax + dy * ay), dx * ay - dy * ax
-                if 0.0 < b < LENGTH + 2.0 * R and abs(l) < 2.0 * (R + BUTT):
-                    least = _over_ball(b, l, side, top, least, R)
+                b, right = -(dx * ax + dy * ay), dx * ay - dy * ax
+                if 0.0 < b < LENGTH + 2.0 * R and abs(right) < 2.0 * (R + BUTT):
+                    least = _over_ball(b, right, side, top, least, R)
         if least == before:
             break
     return least
@@ -178,7 +204,11 @@ def _moved_tip(side, top, aim, positions, on_table, rails, R, max_offset):
     for _ in range(_HALVINGS):
         part = 0.5 * (low + high)
         across = side if straight else side * (1.0 - part)
-        up = top + part * (highest - top) if straight else sqrt(max(max_offset * max_offset - across * across, 0.0))
+        up = (
+            top + part * (highest - top)
+            if straight
+            else sqrt(max(max_offset * max_offset - across * across, 0.0))
+        )
         fits = _fits(across, up, aim, positions, on_table, rails, R)
         low, high = (low, part) if fits else (part, high)
     if straight:
@@ -193,8 +223,11 @@ def in_room(stroke, positions, on_table, rails, R, max_offset):
     ``RAISED``, ``MOVED``, ``UNPLAYABLE``.
 
     The elevation is raised to the least one. If that is above ``STEEPEST``, the tip goes up until it is not, along
-    the miscue limit at last; where that does not help, the stroke cannot be played.
+    the miscue limit at last; where that does not help, the stroke cannot be played, but for a cue that nearly
+    stands. A cue without rails is free.
     """
+    if rails.shape[0] == 0:
+        return stroke, FREE
     speed, side, top, aim, elevation = stroke
     least, done = least_elevation((side, top, aim, elevation), positions, on_table, rails, R), FREE
     if least > max(STEEPEST, elevation):
@@ -204,5 +237,13 @@ def in_room(stroke, positions, on_table, rails, R, max_offset):
         if least > max(STEEPEST, elevation):
             done |= UNPLAYABLE
     if least > elevation:
-        elevation, done = least, done | RAISED
+        elevation, done = min(least, max(elevation, MAX_ELEVATION)), done | RAISED
     return (speed, side, top, aim, elevation), done
+
+
+@kernel
+def raised(stroke, positions, on_table, rails, R):
+    """The elevation [rad] of a stroke (side, top, aim, elevation), raised to the least one; a free cue's is its own."""
+    if rails.shape[0] == 0:
+        return stroke[3]
+    return min(least_elevation(stroke, positions, on_table, rails, R), max(stroke[3], MAX_ELEVATION))

@@ -103,12 +103,12 @@ def _spread_stroke(i, seed, stroke):
 
 
 @kernel
-def _aim(stroke, positions, pot, law, work):
+def _aim(stroke, positions, on_table, pot, law, work):
     """Solve the aim of a stroke at a pot."""
     pocket, ghost = int(pot[POT_POCKET]), (pot[GHOST_X], pot[GHOST_Y])
     target, level = (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]), 0.0
     played = stroke[SPEED], stroke[SIDE], stroke[TOP], level
-    stroke[AIM] = solved_aim(positions, int(pot[POT_BALL]), target, ghost, played, law, work)
+    stroke[AIM] = solved_aim(positions, on_table, int(pot[POT_BALL]), target, ghost, played, law, work)
 
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
@@ -139,7 +139,7 @@ def _propose(balls, seeds, which, spread, law, strokes, chances):
                     j += 1
                     reached += weights[j] / total
                 _spread_stroke(i, seed, strokes[k, i])
-            _aim(strokes[k, i], p, lines[j], law, work)
+            _aim(strokes[k, i], p, here, lines[j], law, work)
             chances[k, i] = pot_chance(p, lines[j], spread, LOST)
 
 
@@ -182,7 +182,7 @@ def _escapes(balls, seeds, law, strokes, chances):
     """Fill strokes (n, m, 5) and chances (n, m) with strokes over cushions, where hardly anything is seen."""
     (positions, on_table, game), windows = balls, np.empty((MOST_EDGES, 3))
     lines = np.empty((ESCAPES, POT_COLUMNS))
-    law, work, aims = CueLaw(law[0], law[1], 0, 0), new_work(), np.empty(ESCAPES)
+    law, work, aims = CueLaw(law[0], law[1], 0, 0, law[4], law[5]), new_work(), np.empty(ESCAPES)
     for k in range(len(strokes)):
         p, here, seed = positions[k], on_table[k], seeds[k]
         on, touching = balls_on_kernel(game[k, BALL_ON], bits(here)), touching_balls(p, here)
@@ -205,7 +205,8 @@ def _escapes(balls, seeds, law, strokes, chances):
                 aside = line[LINE_ROOM] * (2.0 * sobol(again - 1, 4, scramble) - 1.0)
             stroke[SPEED], stroke[SIDE], stroke[TOP] = line[LINE_SPEED] * exp(0.5 * faster), 0.0, ROLLING
             if again == 0:
-                aims[j] = escape_aim(line[LINE_AIM], (stroke[SPEED], 0.0, ROLLING), p, here, on, law, work)
+                level = stroke[SPEED], 0.0, ROLLING, 0.0
+                aims[j] = escape_aim(line[LINE_AIM], level, p, here, on, law, work)
             stroke[AIM] = turned(aims[j % many] + aside)
 
 

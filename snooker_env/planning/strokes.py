@@ -15,6 +15,7 @@ from ..game.balls import N_BALLS
 from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from ..physics import cue
 from ..physics.cue import squirt
+from ..physics.cue_room import NO_RAILS
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
 from ..tasks import stroke
@@ -40,7 +41,7 @@ NO_NOISE = Noise()
 
 
 @entry(what="strokes under given errors", seconds=2)
-def _strike(which, strokes, errors, tables, shots, options, noise, silent):
+def _strike(which, strokes, errors, tables, shots, options, noise):
     """Strike the strokes (n, 5) of the tables ``which`` under standard normal errors (n, 5)."""
     tables, shots = TableArrays(*tables), StruckArrays(*shots)
     for j in range(which.shape[0]):
@@ -48,8 +49,9 @@ def _strike(which, strokes, errors, tables, shots, options, noise, silent):
         speed, aim, elevation = strokes[k, SPEED], strokes[k, AIM], strokes[k, ELEVATION]
         side, top = tip_on_disc(strokes[k, SIDE], strokes[k, TOP], options[A_MAX_OFFSET])
         p, on, aim = tables.positions[k], tables.on_table[k], aim - squirt(side, options[A_END_MASS])
-        struck = with_errors(speed, side, top, aim, elevation, errors[k], noise)
-        stroke.strike(struck, p, on, tables.streams[k], options, silent, j, shots)
+        meant = stroke.played_in((speed, side, top, aim, elevation), p, on, options, shots.shots[j])
+        struck = with_errors(*meant, errors[k], noise)
+        stroke.strike_with(meant, struck, p, on, options, j, shots)
 
 
 @entry
@@ -73,8 +75,8 @@ class TrialVisits(Visits):
         if self.errors is None:
             super().address(which, actions, buffers)
             return
-        (options, noise, _), silent = self.packed, NO_NOISE.pack(1.0)
-        _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
+        options, noise, _ = self.packed
+        _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise)
 
 
 def decoded(
@@ -89,11 +91,13 @@ def decoded(
         visits.nominated = nominated
     buffers = ShotBuffers(n, 0)
     visits.address(np.arange(n), actions, buffers)
-    strokes = buffers.shots[:, stroke.CUE_SPEED :].copy()
+    strokes = buffers.shots[:, stroke.CUE_SPEED : stroke.ROOM].copy()
+    changed = buffers.shots[:, stroke.ROOM] != 0  # what is meant does not say how the cue finds room
+    strokes[changed] = buffers.shots[changed, stroke.MEANT :]
     _off_the_tip(strokes, visits.packed[0])
     off = np.arctan2(np.sin(strokes[:, AIM]), np.cos(strokes[:, AIM]))
     level = np.arctan2(buffers.shots[:, stroke.VY], buffers.shots[:, stroke.VX])
-    strokes[:, AIM] = np.where(strokes[:, ELEVATION] > 0.0, off, level)
+    strokes[:, AIM] = np.where(changed | (strokes[:, ELEVATION] > 0.0), off, level)
     return strokes, after
 
 
@@ -157,14 +161,26 @@ class WatchedVisits(TrialVisits):
 FARTHEST = 0.5  # largest tip offset over R: the miscue limit, and the end of the scale of an action
 NAMES = ("speed", "side", "top", "aim", "elevation")
 """Of the columns of a stroke."""
-Dynamics = tuple[Physics, tuple[int, int]]
-"""Physical constants, and a fidelity as ``parse_fidelity`` returns it."""
 
 
-def law_of(dynamics: Dynamics) -> tuple[Floats, float, int, int]:
+class Dynamics(NamedTuple):
+    """Physical constants, a fidelity as ``parse_fidelity`` returns it, and the rails of a real cue (``Rules.rails``)."""
+
+    physics: Physics
+    fidelity: tuple[int, int]
+    rails: Floats = NO_RAILS
+
+    @classmethod
+    def of(cls, rules: Rules) -> "Dynamics":
+        """Those of a game."""
+        return cls(rules.physics, rules.fidelity, rules.rails)
+
+
+def law_of(dynamics: Dynamics) -> tuple[Floats, float, int, int, float, Floats]:
     """The fields of a ``CueLaw``."""
-    physics, fidelity = dynamics
-    return physics.packed_for(fidelity), physics.end_mass_ratio, *fidelity
+    physics, fidelity, rails = dynamics
+    rails = np.array(rails)  # kernels are compiled for arrays that can be written
+    return physics.packed_for(fidelity), physics.end_mass_ratio, *fidelity, physics.max_offset, rails
 
 
 def action_masks(positions: PositionsLike) -> NDArray[np.bool_]:
@@ -320,12 +336,13 @@ def as_actions(
 
 
 @entry(what="the solving of aims", uses=(solved_aim,))
-def _pot_aim(positions, rows, balls, targets, ghosts, strokes, law, aims):
+def _pot_aim(positions, on_table, rows, balls, targets, ghosts, strokes, law, aims):
     law, work = CueLaw(*law), new_work()
     for i in range(len(rows)):
         stroke = strokes[i, SPEED], strokes[i, SIDE], strokes[i, TOP], strokes[i, ELEVATION]
         target, ghost = (targets[i, 0], targets[i, 1]), (ghosts[i, 0], ghosts[i, 1])
-        aims[i] = solved_aim(positions[rows[i]], balls[i], target, ghost, stroke, law, work)
+        p, on = positions[rows[i]], on_table[rows[i]]
+        aims[i] = solved_aim(p, on, balls[i], target, ghost, stroke, law, work)
 
 
 def pot_aim(
@@ -373,7 +390,7 @@ def pot_aim(
     >>> float(pot_aim(position, [0], [1], [(0.8, 0.8)], 2.3)[0].round(3))
     0.785
     """
-    dynamics = Physics.of(physics), parse_fidelity(fidelity)
+    dynamics = Dynamics(Physics.of(physics), parse_fidelity(fidelity))
     return solved_aims(Positions.of(positions), rows, balls, targets, strokes, ghosts, dynamics)
 
 
@@ -401,7 +418,7 @@ def solved_aims(
         played[:, SPEED] = array("strokes", strokes, (n,) if np.ndim(strokes) else ())
     most = (np.inf, offset, offset, np.inf, cue.MAX_ELEVATION)
     _check_columns(played, (0.0, -offset, -offset, -np.inf, 0.0), most)
-    _pot_aim(at.positions, which, ids, to, behind, played, law_of(dynamics), aims)
+    _pot_aim(at.positions, at.on_table, which, ids, to, behind, played, law_of(dynamics), aims)
     return aims
 
 

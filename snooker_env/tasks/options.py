@@ -9,11 +9,12 @@ import numpy as np
 from gymnasium import spaces
 
 from .._check import choice, integer, number, refuse, refuse_what, truth
-from .._types import Fidelity, Floats, MissRule, ObservationKind, Solver
+from .._types import CueKind, Fidelity, Floats, MissRule, ObservationKind, Solver
 from ..game.frame import MISS_RULES
 from ..game.layouts import Plan
 from ..game.rule_sets import RULES, RuleSet, RulesName, rule_set
 from ..geometry import BALL_RADIUS
+from ..physics.cue_room import NO_RAILS, rails_of
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
@@ -31,6 +32,7 @@ MOST_TIME = 15.0
 TIME_TO_PLAY = 9.0
 """Default time [s] between strokes, with a clock: some 14 s a stroke in all, as in professionals' Shoot Out."""
 ACTIONS = ("box", "discrete")
+CUES = ("free", "real")
 LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 """What layout="default" means in each task."""
 MAX_STROKES = 1000
@@ -65,6 +67,7 @@ class Rules:
     frames: int = 0  # in a match: of how many frames at most; 0 for a single frame, which is no match
     game: RulesName = "snooker"  # the rule set
     time_to_play: int = 0  # with a clock: from the rest of the balls to the next stroke [ms]
+    cue: CueKind = "free"  # whether rails and balls are in the way of the cue
 
     @property
     def rule_set(self) -> RuleSet:
@@ -78,7 +81,17 @@ class Rules:
 
     def packed(self) -> tuple[Floats, Floats, Floats]:
         """For the kernels: options of the action, deviations of the noise, physical parameters."""
-        return self.actions.pack(), self.noise.pack(BALL_RADIUS), self.physics.packed_for(self.fidelity)
+        errors = self.noise.pack(BALL_RADIUS, real=self.cue == "real")
+        return self.with_rails(self.actions.pack()), errors, self.physics.packed_for(self.fidelity)
+
+    @property
+    def rails(self) -> Floats:
+        """The rails that the cue passes over, as of ``cue_room.rails_of``; none: it is free."""
+        return rails_of(self.table.noses, self.table.falls) if self.cue == "real" else NO_RAILS
+
+    def with_rails(self, options: Floats) -> Floats:
+        """Packed options of actions, with the rails."""
+        return np.concatenate([options, self.rails])
 
 
 _ABOUT: dict[str, tuple[str, str | None, str]] = {
@@ -101,6 +114,11 @@ _ABOUT: dict[str, tuple[str, str | None, str]] = {
     "placement": ("action", None, "whether box actions hold the place of a cue ball in hand"),
     "physics": ("shot", None, '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)'),
     "table": ("shot", None, '"match", "tight", or a `Table` whose noses are where snooker\'s are'),
+    "cue": (
+        "shot",
+        None,
+        '"free", "real": whether rails and balls are in the way of the cue, see The cue needs room',
+    ),
     "fidelity": ("shot", None, '"fast", "standard", "reference", "euler:N"'),
     "one_stroke": ("task", "visit", "whether it ends with its first stroke"),
     "opponent": (
@@ -168,6 +186,9 @@ class Options:
         As ``Physics.of`` takes them, with snooker's ball radius. Default "paper".
     table : str or Table, optional
         "match" (default), "tight", or a ``Table`` whose noses are where snooker's are.
+    cue : {"free", "real"}, optional
+        "free" (default): the cue passes through rails and balls. "real": it is raised over them as far as it
+        must be, and errors grow with its elevation (docs/environment/specification.md).
     fidelity : str, optional
         How impacts are solved: "fast", "standard" (default), "reference" or "euler:N".
     opponent : str or Path, optional
@@ -224,6 +245,7 @@ class Options:
     placement: bool = False
     physics: PhysicsLike = "paper"
     table: TableLike = "match"
+    cue: CueKind = "free"
     fidelity: Fidelity = "standard"
     one_stroke: bool = False
     opponent: str | Path = "none"
@@ -249,7 +271,7 @@ class Options:
         for name, read in (("physics", physics), ("noise", noise)):
             if isinstance(getattr(self, name), dict):  # a dict may change later
                 object.__setattr__(self, name, read)
-        actions = self._actions(physics)
+        actions, real = self._actions(physics), choice("cue", self.cue, CUES)
         default = isinstance(self.layout, str) and self.layout == "default"
         layout = LAYOUTS[self.task] if default else self.layout
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
@@ -284,7 +306,7 @@ class Options:
             object.__setattr__(self, "opponent", str(self.opponent))
         pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
         world = actions, noise, physics, table, fidelity, plan, self.reward, self.observation
-        read = Rules(*world, self.miss, limit, one_stroke, frames, self.game, pause)
+        read = Rules(*world, self.miss, limit, one_stroke, frames, self.game, pause, real)
         object.__setattr__(self, "rules", read)
 
     def _physics(self) -> Physics:
