@@ -178,7 +178,7 @@ class Dynamics(NamedTuple):
 
 def law_of(dynamics: Dynamics) -> tuple[Floats, float, int, int, float, Floats]:
     """The fields of a ``CueLaw``."""
-    physics, fidelity, rails = dynamics
+    physics, fidelity, rails = Dynamics(*dynamics)
     rails = np.array(rails)  # kernels are compiled for arrays that can be written
     return physics.packed_for(fidelity), physics.end_mass_ratio, *fidelity, physics.max_offset, rails
 

@@ -85,43 +85,6 @@ def _passes(aim, stroke, positions, on_table, b, p, law, work):
     return (qx * uy - qy * ux) / (hypot(ux, uy) * away) if ahead > 0.0 else 9.0
 
 
-@kernel(seconds=5, uses=(collide_balls,))
-def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
-    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised
-    as it must be."""
-    (px, py), (gx, gy) = target, ghost
-    cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
-    line = atan2(gy - cy, gx - cx)
-    # an error turns the object ball's direction the other way, magnified by path / (2 R cos cut)
-    far = hypot(gx - cx, gy - cy)
-    run = hypot(px - bx, py - by)
-    cut = ((gx - cx) * (px - bx) + (gy - cy) * (py - by)) / (far * run)
-    slope = -far / (2.0 * law.phys[0] * max(cut, 0.05))
-    aim, best, least = line, line, 9.0
-    last_aim, last = line, 9.0
-    for _ in range(_TRIALS):
-        off = _passes(aim, stroke, positions, on_table, (bx, by), target, law, work)
-        if abs(off) < abs(least):
-            best, least = aim, off
-        if abs(off) <= _ENOUGH:
-            break
-        if off == 9.0:  # missed, or it never arrived: turn towards the ball's middle
-            middle = atan2(by - cy, bx - cx)
-            turn = middle - aim
-            turn -= 2.0 * pi * round(turn / (2.0 * pi))
-            aim += 0.25 * turn
-            continue
-        if last != 9.0 and aim != last_aim:
-            secant = (off - last) / (aim - last_aim)
-            if 0.2 < secant / slope < 5.0:
-                slope = secant
-        last_aim, last = aim, off
-        step = -off / slope
-        limit = 0.5 * _WIDEST
-        aim = min(line + _WIDEST, max(line - _WIDEST, aim + min(limit, max(-limit, step))))
-    return best
-
-
 @kernel
 def _sent(aim, far, stroke, positions, on_table, law, work):
     """Direction [rad], from where it lies, in which the cue ball is as ``far`` away [m], or where it stops."""
@@ -154,3 +117,42 @@ def swerved_aim(line, far, stroke, positions, on_table, law, work):
         off = _sent(aim, far, stroke, positions, on_table, law, work) - line
         aim -= off - 2.0 * pi * round(off / (2.0 * pi))
     return aim
+
+
+@kernel(seconds=5, uses=(collide_balls,))
+def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
+    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised
+    as it must be."""
+    (px, py), (gx, gy) = target, ghost
+    cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
+    line = atan2(gy - cy, gx - cx)
+    # an error turns the object ball's direction the other way, magnified by path / (2 R cos cut)
+    far = hypot(gx - cx, gy - cy)
+    run = hypot(px - bx, py - by)
+    cut = ((gx - cx) * (px - bx) + (gy - cy) * (py - by)) / (far * run)
+    slope = -far / (2.0 * law.phys[0] * max(cut, 0.05))
+    # a raised cue with side bends the path: by more than a thin cut or a soft stroke would show
+    begin = swerved_aim(line, max(far, law.phys[P_R]), stroke, positions, on_table, law, work)
+    aim, best, least = begin, begin, 9.0
+    last_aim, last = begin, 9.0
+    for _ in range(_TRIALS):
+        off = _passes(aim, stroke, positions, on_table, (bx, by), target, law, work)
+        if abs(off) < abs(least):
+            best, least = aim, off
+        if abs(off) <= _ENOUGH:
+            break
+        if off == 9.0:  # missed, or it never arrived: turn towards the ball's middle
+            middle = atan2(by - cy, bx - cx)
+            turn = middle + (begin - line) - aim
+            turn -= 2.0 * pi * round(turn / (2.0 * pi))
+            aim += 0.25 * turn
+            continue
+        if last != 9.0 and aim != last_aim:
+            secant = (off - last) / (aim - last_aim)
+            if 0.2 < secant / slope < 5.0:
+                slope = secant
+        last_aim, last = aim, off
+        step = -off / slope
+        limit = 0.5 * _WIDEST
+        aim = min(begin + _WIDEST, max(begin - _WIDEST, aim + min(limit, max(-limit, step))))
+    return best
