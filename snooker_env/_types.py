@@ -40,6 +40,7 @@ NoiseName: TypeAlias = Literal["none", "professional", "amateur", "club", "robot
 ObservationKind: TypeAlias = Literal["flat", "balls", "masked"]
 RenderMode: TypeAlias = Literal["human", "rgb_array", "ansi"]
 MissRule: TypeAlias = Literal["off", "clear_path", "attempt"]
+CueKind: TypeAlias = Literal["free", "real"]
 
 # These depend on an environment's options, so that no annotation can say more.
 Action: TypeAlias = Any

@@ -21,7 +21,17 @@ from ..tasks.rewards import REWARDS
 from ..tasks.tables import I_FIRST, I_PENALTY
 from ..tasks.threads import Threads, processors
 from .positions import Positions, PositionsLike, bare, check_played, rows_of
-from .strokes import AIM, Stops, TrialVisits, WatchedVisits, check_strokes, decoded, encoded, solved_aims
+from .strokes import (
+    AIM,
+    Dynamics,
+    Stops,
+    TrialVisits,
+    WatchedVisits,
+    check_strokes,
+    decoded,
+    encoded,
+    solved_aims,
+)
 from .strokes import COLUMNS as STROKE
 
 
@@ -249,7 +259,7 @@ class Planner:
         ghosts: Vectors | None = None,
     ) -> NDArray[np.float64]:
         """Solve aims as ``planning.pot_aim`` with this planner's physics and fidelity: float64 (n,)."""
-        dynamics = self.physics, self._rules.fidelity
+        dynamics = Dynamics.of(self._rules)
         at = Positions.of(positions).known_to(self._rules)
         return solved_aims(at, rows, balls, targets, strokes, ghosts, dynamics)
 

@@ -104,23 +104,24 @@ def _spread_stroke(i, seed, stroke):
 
 
 @kernel
-def _aim(stroke, positions, pot, law, work):
+def _aim(stroke, positions, on_table, pot, law, work):
     """Solve the aim of a stroke at a pot."""
     pocket, ghost = int(pot[POT_POCKET]), (pot[GHOST_X], pot[GHOST_Y])
     target, level = (POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]), 0.0
     played = stroke[SPEED], stroke[SIDE], stroke[TOP], level
-    stroke[AIM] = solved_aim(positions, int(pot[POT_BALL]), target, ghost, played, law, work)
+    stroke[AIM] = solved_aim(positions, on_table, int(pot[POT_BALL]), target, ghost, played, law, work)
 
 
 @entry(what="the proposals of strokes", seconds=2, uses=(solved_aim,))
 def _propose(balls, seeds, which, spread, law, strokes, chances):
     """Fill strokes (n, m, 5) at the pots ``which`` (n, m), and their chances; without rows, spread them."""
     lines, weights = np.empty((MOST_POTS, POT_COLUMNS)), np.empty(MOST_POTS)
-    (positions, on_table, game), (phys, ratios, fidelity, n_steps), work = balls, law, new_work()
+    (positions, on_table, game), work = balls, new_work()
+    phys, ratios, fidelity, n_steps, most, rails = law
     m = strokes.shape[1]
     for k in range(len(strokes)):
         p, here, seed, own = positions[k], on_table[k], seeds[k], row_of(k, phys)
-        its = CueLaw(phys[own], ratios[own], fidelity, n_steps)
+        its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         on = balls_on_kernel(game[k, BALL_ON], bits(here))
         many = find_pots(p, here, on, BALL_RADIUS, lines)
         if many == 0:
@@ -141,7 +142,7 @@ def _propose(balls, seeds, which, spread, law, strokes, chances):
                     j += 1
                     reached += weights[j] / total
                 _spread_stroke(i, seed, strokes[k, i])
-            _aim(strokes[k, i], p, lines[j], its, work)
+            _aim(strokes[k, i], p, here, lines[j], its, work)
             chances[k, i] = pot_chance(p, lines[j], spread, LOST)
 
 
@@ -187,7 +188,7 @@ def _escapes(balls, seeds, law, strokes, chances):
     work, aims = new_work(), np.empty(ESCAPES)
     for k in range(len(strokes)):
         p, here, seed, own = positions[k], on_table[k], seeds[k], row_of(k, law[0])
-        its = CueLaw(law[0][own], law[1][own], 0, 0)
+        its = CueLaw(law[0][own], law[1][own], 0, 0, law[4], law[5])
         on, touching = balls_on_kernel(game[k, BALL_ON], bits(here)), touching_balls(p, here)
         chances[k, :] = 0.0
         if open_windows(p, here, on, touching, windows) and windows[0, HIGH] - windows[0, LOW] >= 2.0 * EASY:
@@ -208,7 +209,8 @@ def _escapes(balls, seeds, law, strokes, chances):
                 aside = line[LINE_ROOM] * (2.0 * sobol(again - 1, 4, scramble) - 1.0)
             stroke[SPEED], stroke[SIDE], stroke[TOP] = line[LINE_SPEED] * exp(0.5 * faster), 0.0, ROLLING
             if again == 0:
-                aims[j] = escape_aim(line[LINE_AIM], (stroke[SPEED], 0.0, ROLLING), p, here, on, its, work)
+                level = stroke[SPEED], 0.0, ROLLING, 0.0
+                aims[j] = escape_aim(line[LINE_AIM], level, p, here, on, its, work)
             stroke[AIM] = turned(aims[j % many] + aside)
 
 

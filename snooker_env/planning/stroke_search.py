@@ -138,7 +138,7 @@ class StrokeSearch:
         rules = self.planner.rules
         self.noise: Noise = rules.noise
         self.spread: float = spread_of(self.noise, rules.physics)
-        self.dynamics: Dynamics = rules.physics, rules.fidelity
+        self.dynamics = Dynamics.of(rules)
         self.value: Value = self._by_rule if value is None else value
         self.propose: Propose | Sequence[Propose] = propose
         self.doubtful: float = number("doubtful", doubtful, 0.0, 1.0)

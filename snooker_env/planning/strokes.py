@@ -16,6 +16,7 @@ from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS
 from ..physics import cue
 from ..physics.conditions import END_MASS_RATIO, pack_into
 from ..physics.cue import squirt
+from ..physics.cue_room import NO_RAILS
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
 from ..tasks import stroke
@@ -24,7 +25,7 @@ from ..tasks.box_actions import MAX_ELEVATION, MAX_SPEED, MIN_SPEED, TARGET_SPAN
 from ..tasks.declarations import A_END_MASS, A_MAX_OFFSET
 from ..tasks.discrete_actions import SIZE, masks
 from ..tasks.lines import new_work
-from ..tasks.noise import Noise, with_errors
+from ..tasks.noise import N_KICK, Noise, drawn_errors, kick_of, with_errors
 from ..tasks.options import Options, Rules
 from ..tasks.pot_aim import solved_aim
 from ..tasks.stroke import ShotBuffers, row_of
@@ -50,15 +51,19 @@ def _strike(which, strokes, errors, tables, shots, every, noise, silent):
         speed, aim, elevation = strokes[k, SPEED], strokes[k, AIM], strokes[k, ELEVATION]
         side, top = tip_on_disc(strokes[k, SIDE], strokes[k, TOP], options[A_MAX_OFFSET])
         p, on, aim = tables.positions[k], tables.on_table[k], aim - squirt(side, options[A_END_MASS])
-        struck = with_errors(speed, side, top, aim, elevation, errors[k], noise)
-        stroke.strike(struck, p, on, tables.streams[k], options, silent, j, shots)
+        meant = stroke.played_in((speed, side, top, aim, elevation), p, on, options, shots.shots[j])
+        struck = with_errors(*meant, errors[k], noise)
+        stroke.strike_with(meant, struck, p, on, options, j, shots)
+        if silent[N_KICK] > 0.0:  # blocks are drawn as for errors, too
+            drawn_errors(tables.streams[k])
+        shots.kicks[j] = kick_of(silent, tables.streams[k])
 
 
 @entry
-def _off_the_tip(strokes, options):
+def _off_the_tip(strokes, every):
     """Turn the aims of strikes, the cue's, into the directions in which the cue ball leaves the tip [rad]."""
     for j in range(strokes.shape[0]):
-        strokes[j, AIM] += squirt(strokes[j, SIDE], options[A_END_MASS])
+        strokes[j, AIM] += squirt(strokes[j, SIDE], every[row_of(j, every), A_END_MASS])
 
 
 class TrialVisits(Visits):
@@ -83,7 +88,7 @@ class TrialVisits(Visits):
             super().address(which, actions, buffers)
             return
         (options, noise, _), silent = self.packed, NO_NOISE.pack(1.0)
-        if self.kick:  # then blocks are drawn as for errors, too
+        if self.kick:
             silent = Noise(kick=self.kick).pack(1.0)
         _strike(which, actions, self.errors, self.arrays, buffers.struck, options, noise, silent)
 
@@ -100,11 +105,13 @@ def decoded(
         visits.nominated = nominated
     buffers = ShotBuffers(n, 0)
     visits.address(np.arange(n), actions, buffers)
-    strokes = buffers.shots[:, stroke.CUE_SPEED :].copy()
+    strokes = buffers.shots[:, stroke.CUE_SPEED : stroke.ROOM].copy()
+    changed = buffers.shots[:, stroke.ROOM] != 0  # what is meant does not say how the cue finds room
+    strokes[changed] = buffers.shots[changed, stroke.MEANT :]
     _off_the_tip(strokes, visits.packed[0])
     off = np.arctan2(np.sin(strokes[:, AIM]), np.cos(strokes[:, AIM]))
     level = np.arctan2(buffers.shots[:, stroke.VY], buffers.shots[:, stroke.VX])
-    strokes[:, AIM] = np.where(strokes[:, ELEVATION] > 0.0, off, level)
+    strokes[:, AIM] = np.where(changed | (strokes[:, ELEVATION] > 0.0), off, level)
     return strokes, after
 
 
@@ -168,21 +175,35 @@ class WatchedVisits(TrialVisits):
 FARTHEST = 0.5  # largest tip offset over R: the miscue limit, and the end of the scale of an action
 NAMES = ("speed", "side", "top", "aim", "elevation")
 """Of the columns of a stroke."""
-Dynamics = tuple[Physics, tuple[int, int]]
-"""Physical constants, and a fidelity as ``parse_fidelity`` returns it."""
 
 
-def law_of(dynamics: Dynamics, at: Positions) -> tuple[Floats, Floats, int, int]:
+class Dynamics(NamedTuple):
+    """Physical constants, a fidelity as ``parse_fidelity`` returns it, and the rails of a real cue (``Rules.rails``)."""
+
+    physics: Physics
+    fidelity: tuple[int, int]
+    rails: Floats = NO_RAILS
+
+    @classmethod
+    def of(cls, rules: Rules) -> "Dynamics":
+        """Those of a game."""
+        return cls(rules.physics, rules.fidelity, rules.rails)
+
+
+def law_of(dynamics: Dynamics, at: Positions) -> tuple[Floats, Floats, int, int, float, Floats]:
     """The fields of a ``CueLaw``: the first two in one row for all positions or, with constants of their own, in
     one for each."""
-    physics, fidelity = dynamics
+    physics, fidelity, rails = dynamics
+    rails = np.array(rails)  # kernels are compiled for arrays that can be written
     if at.conditions is None:
-        return physics.packed_for(fidelity)[None], np.array([physics.end_mass_ratio]), *fidelity
-    return rows_under(at.conditions, physics), at.conditions[:, END_MASS_RATIO].copy(), *fidelity
+        phys, ratios = physics.packed_for(fidelity)[None], np.array([physics.end_mass_ratio])
+    else:
+        phys, ratios = rows_under(at.conditions, physics), at.conditions[:, END_MASS_RATIO].copy()
+    return phys, ratios, *fidelity, physics.max_offset, rails
 
 
 def rows_under(conditions: Floats, physics: Physics) -> Floats:
-    """The packed constants (n, 20) of tables with these conditions (n, 8)."""
+    """The packed constants (n, 21) of tables with these conditions (n, 8)."""
     rows = np.tile(physics.pack(), (len(conditions), 1))
     pack_into(rows, np.arange(len(conditions)), conditions, physics)
     return rows
@@ -350,14 +371,15 @@ def as_actions(
 
 
 @entry(what="the solving of aims", uses=(solved_aim,))
-def _pot_aim(positions, rows, balls, targets, ghosts, strokes, law, aims):
-    (phys, ratios, fidelity, n_steps), work = law, new_work()
+def _pot_aim(positions, on_table, rows, balls, targets, ghosts, strokes, law, aims):
+    (phys, ratios, fidelity, n_steps, most, rails), work = law, new_work()
     for i in range(len(rows)):
         own = row_of(rows[i], phys)
-        its = CueLaw(phys[own], ratios[own], fidelity, n_steps)
+        its = CueLaw(phys[own], ratios[own], fidelity, n_steps, most, rails)
         stroke = strokes[i, SPEED], strokes[i, SIDE], strokes[i, TOP], strokes[i, ELEVATION]
         target, ghost = (targets[i, 0], targets[i, 1]), (ghosts[i, 0], ghosts[i, 1])
-        aims[i] = solved_aim(positions[rows[i]], balls[i], target, ghost, stroke, its, work)
+        p, on = positions[rows[i]], on_table[rows[i]]
+        aims[i] = solved_aim(p, on, balls[i], target, ghost, stroke, its, work)
 
 
 def pot_aim(
@@ -405,7 +427,7 @@ def pot_aim(
     >>> float(pot_aim(position, [0], [1], [(0.8, 0.8)], 2.3)[0].round(3))
     0.785
     """
-    dynamics = Physics.of(physics), parse_fidelity(fidelity)
+    dynamics = Dynamics(Physics.of(physics), parse_fidelity(fidelity))
     at = Positions.of(positions).known_to(_ABSOLUTE_RULES)
     return solved_aims(at, rows, balls, targets, strokes, ghosts, dynamics)
 
@@ -434,7 +456,7 @@ def solved_aims(
         played[:, SPEED] = array("strokes", strokes, (n,) if np.ndim(strokes) else ())
     most = (np.inf, offset, offset, np.inf, cue.MAX_ELEVATION)
     _check_columns(played, (0.0, -offset, -offset, -np.inf, 0.0), most)
-    _pot_aim(at.positions, which, ids, to, behind, played, law_of(dynamics, at), aims)
+    _pot_aim(at.positions, at.on_table, which, ids, to, behind, played, law_of(dynamics, at), aims)
     return aims
 
 

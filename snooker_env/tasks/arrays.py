@@ -63,6 +63,8 @@ class CueLaw(NamedTuple):
     end_mass_ratio: float
     fidelity: int  # this and the next as ``parse_fidelity`` returns them
     n_steps: int
+    max_offset: float  # of the tip, over R
+    rails: Floats  # that the cue passes over, of ``cue_room.rails_of``; none: it is free
 
 
 class Work(NamedTuple):

@@ -15,8 +15,9 @@ from ..geometry import BALL_RADIUS, BAULK_Y, D_RADIUS, HALF_LENGTH, HALF_WIDTH
 from ..physics.cue import squirt
 from ..physics.parameters import Physics
 from .arrays import CueLaw
-from .declarations import A_ELEVATION, A_END_MASS, A_MAX_OFFSET, A_TARGET, SAYS
+from .declarations import A_ELEVATION, A_END_MASS, A_MAX_OFFSET, A_RAILS, A_TARGET, SAYS
 from .lines import LINE_ROWS, aim_along, find_lines, line_of, new_work
+from .pot_aim import swerved_aim
 
 AIMS = ("absolute", "target")
 MIN_SPEED, MAX_SPEED = 0.2, 7.0
@@ -53,7 +54,8 @@ def _target(positions, on_table, on, stroke, law, work):
     """Direction [rad] from which ``aim="target"`` is measured: the widest pot's line, else the first line."""
     lines = work.lines
     if find_pots(positions, on_table, on, BALL_RADIUS, lines[:1]):
-        return atan2(lines[0, GHOST_Y] - positions[0, 1], lines[0, GHOST_X] - positions[0, 0])
+        dx, dy = lines[0, GHOST_X] - positions[0, 0], lines[0, GHOST_Y] - positions[0, 1]
+        return swerved_aim(atan2(dy, dx), hypot(dx, dy), stroke, positions, on_table, law, work)
     find_lines(positions, on_table, on, lines)
     return aim_along(lines[0], stroke, positions, on_table, on, law, work)
 
@@ -66,7 +68,11 @@ def shot_of(a, positions, on_table, on, options, law, work):
     elevation = 0.5 * (a[4] + 1.0) * MAX_ELEVATION if options[A_ELEVATION] else 0.0
     direction = pi * a[3]
     if options[A_TARGET]:
-        direction = _target(positions, on_table, on, (speed, side, top), law, work) + TARGET_SPAN * a[3]
+        # without rails a line is aimed as for a level cue
+        raised = elevation if law.rails.shape[0] else 0.0
+        direction = (
+            _target(positions, on_table, on, (speed, side, top, raised), law, work) + TARGET_SPAN * a[3]
+        )
     return speed, side, top, direction - squirt(side, options[A_END_MASS]), elevation
 
 
@@ -77,7 +83,8 @@ def _line(positions, on_table, on):
 
 @entry(uses=(shot_of,))
 def _shot(a, positions, on_table, on, options, phys):
-    return shot_of(a, positions, on_table, on, options, CueLaw(phys, options[A_END_MASS], 0, 0), new_work())
+    law = CueLaw(phys, options[A_END_MASS], 0, 0, options[A_MAX_OFFSET], options[A_RAILS:])
+    return shot_of(a, positions, on_table, on, options, law, new_work())
 
 
 class Actions:

@@ -3,6 +3,7 @@ aim is solved for them, or is the straight line if none can be. Without a direct
 ``lines`` stand in the pots' places. ``action_masks`` says how many there are."""
 
 from collections.abc import Collection
+from math import atan2
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,10 @@ from ..game.frame_columns import strikeable
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
+from ..physics.cue_room import STEEPEST, least_elevation
 from ..physics.parameters import Physics
 from . import declarations
+from .escapes import LINE_AIM
 from .lines import LINE_ROWS, POTS, aim_along, count_lines, find_lines
 from .pot_aim import solved_aim
 
@@ -69,13 +72,38 @@ def chosen(index, positions, on_table, on, law, work):
     many = find_pots(positions, on_table, on, BALL_RADIUS, lines[:POTS])
     if many == 0:
         line = lines[min(pot, find_lines(positions, on_table, on, lines) - 1)]
-        aim = aim_along(line, (speed, side, top), positions, on_table, on, law, work)
+        aim = aim_along(line, (speed, side, top, 0.0), positions, on_table, on, law, work)
     else:
         line = lines[min(pot, many - 1)]
         pocket, ghost = int(line[POT_POCKET]), (line[GHOST_X], line[GHOST_Y])
         target = POCKET_AIMS[pocket, AIM_X], POCKET_AIMS[pocket, AIM_Y]
-        aim = solved_aim(positions, int(line[POT_BALL]), target, ghost, (speed, side, top, 0.0), law, work)
+        stroke, ball = (speed, side, top, 0.0), int(line[POT_BALL])
+        aim = solved_aim(positions, on_table, ball, target, ghost, stroke, law, work)
     return speed, side, top, aim - squirt(side, law.end_mass_ratio), 0.0
+
+
+@kernel
+def _without_room(positions, on_table, on, options, rows, many, out):
+    """Of the ``many`` lines, clear the choices in ``out`` (SIZE,) whose cue must be steeper than ``STEEPEST``, unless
+    none were left. ``rows``: work space."""
+    rails, x, y = options[declarations.A_RAILS :], positions[0, 0], positions[0, 1]
+    pots, left = find_pots(positions, on_table, on, BALL_RADIUS, rows[:POTS]), 0
+    if pots == 0:
+        find_lines(positions, on_table, on, rows)
+    for line in range(many):
+        aim = atan2(rows[line, GHOST_Y] - y, rows[line, GHOST_X] - x) if pots else rows[line, LINE_AIM]
+        for s in range(len(SIDES)):
+            cue_aim, steep = aim - squirt(SIDES[s], options[declarations.A_END_MASS]), True
+            for t in range(len(TOPS)):  # the higher the tip, the lower the cue
+                if steep:
+                    stroke = SIDES[s], TOPS[t], cue_aim, 0.0
+                    steep = least_elevation(stroke, positions, on_table, rails, BALL_RADIUS) > STEEPEST
+                left += not steep
+                for v in range(len(SPEEDS)):
+                    out[line * STROKES + (v * len(SIDES) + s) * len(TOPS) + t] = not steep
+    if left == 0:
+        for c in range(many * STROKES):
+            out[c] = True
 
 
 @entry
@@ -93,6 +121,9 @@ def masks(which, positions, on_table, game, options, out):
             many = count_lines(positions[k], on_table[k], on, rows) if available and on_table[k, 0] else 1
             for c in range(SIZE):
                 out[j, n * SIZE + c] = available and c < STROKES * many
+            if available and on_table[k, 0] and options.shape[0] > declarations.A_RAILS:
+                here = out[j, n * SIZE : (n + 1) * SIZE]
+                _without_room(positions[k], on_table[k], on, options, rows, many, here)
         at = parts * SIZE
         for what, column in (
             (declarations.CONCEDES, declarations.A_CONCEDE),

@@ -17,11 +17,12 @@ from .._jit import kernel
 from ..game.balls import N_BALLS
 from ..game.lines import met
 from ..geometry import BALL_RADIUS, HALF_LENGTH, HALF_WIDTH
-from ..physics import cloth, cue, events
+from ..physics import cloth, events
 from ..physics.arrays import Boundaries, Law
-from ..physics.columns import AXIS_X, AXIS_Y, P_MU_S, P_R
+from ..physics.columns import AXIS_X, AXIS_Y, P_R
 from ..physics.detection import boundary_event, pair_time
 from ..physics.impact.contact import FAST, collide_cushion, cushion_restitution
+from .pot_aim import struck_in_room
 from .windows import turned
 
 ROLL = 0.25  # twice a rolling ball's deceleration [m/s^2]
@@ -170,9 +171,8 @@ def find_escapes(positions, on_table, on, lines, first):
 @kernel(seconds=1, uses=(collide_cushion,))
 def _played(aim, stroke, positions, on_table, law, work):
     """The ball that the cue ball meets first, by the engine's models; 0: none, or a pocket."""
-    (speed, side, top), phys, motion, state = stroke, law.phys, work.motion, work.state
-    R, mu_s, m = phys[P_R], phys[P_MU_S], law.end_mass_ratio
-    (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, m), side, top, 0.0, R, mu_s, m)
+    phys, motion, state, R = law.phys, work.motion, work.state, law.phys[P_R]
+    (vx, vy, _), w = struck_in_room(aim, stroke, positions, on_table, law)
     boundaries, rough = Boundaries(_BED, _NO_JAWS, _NO_FALLS, R), Law(phys, FAST, 0)
     cloth.begin(motion, state, 0, 0.0, (positions[0, 0], positions[0, 1]), (vx, vy), w, phys)
     legs, now = 1, 0.0
@@ -217,7 +217,8 @@ def _succeeds(aim, stroke, positions, on_table, on, law, work):
 
 @kernel(uses=(_succeeds,))
 def escape_aim(about, stroke, positions, on_table, on, law, work):
-    """Direction [rad] in which the stroke meets a ball on: the middle of the widest, then nearest window
+    """Direction [rad] in which the stroke (speed, side, top, elevation), its cue raised as it must be, meets a
+    ball on: the middle of the widest, then nearest window
     about ``about``, or ``about`` itself."""
     best, low, high = 0.0, about, about
     for steps in _STEPS:

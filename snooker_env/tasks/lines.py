@@ -18,6 +18,7 @@ from ..physics.cloth import COLUMNS
 from ..physics.impact.polynomial import WORK
 from .arrays import Work
 from .escapes import LINE_AIM, LINE_ROOM, LINE_SPEED, LINE_WORTH, escape_aim, find_escapes
+from .pot_aim import swerved_aim
 from .windows import HIGH, LOW, MOST_EDGES, half_width, open_windows, room, towards, turned
 
 POTS = 4
@@ -154,7 +155,14 @@ def line_of(positions, on_table, on, rows):
 
 @kernel(uses=(escape_aim,))
 def aim_along(line, stroke, positions, on_table, on, law, work):
-    """Direction [rad] of the stroke (speed, side, top) along a row of ``find_lines``."""
+    """Direction [rad] of the stroke (speed, side, top, elevation) along a row of ``find_lines``."""
     if line[LINE_SPEED] == 0.0:
-        return line[LINE_AIM]
+        aim, x, y = line[LINE_AIM], positions[0, 0], positions[0, 1]
+        if law.rails.shape[0] == 0:
+            return aim
+        ball = met(positions, on_table, x, y, cos(aim), sin(aim), 1e9)
+        if ball == 0:
+            return aim
+        far = max(BALL_RADIUS, hypot(positions[ball, 0] - x, positions[ball, 1] - y) - 2.0 * BALL_RADIUS)
+        return swerved_aim(aim, far, stroke, positions, on_table, law, work)
     return escape_aim(line[LINE_AIM], stroke, positions, on_table, on, law, work)

@@ -27,7 +27,11 @@ Our choices: aim and squirt have half of the variance each. The errors are indep
 large in height, is small: a real cue turns about the bridge, and with the bridge R over the squirt's slope
 (0.35 m) behind the ball squirt cancels the turn. Speed 1.75, 2.5 and 4 %: a good pool player is said to roll
 a ball a table's length to within an inch or two, 0.5 to 1 % of the speed, a beginner to within a diamond, 6 %
-(Waldron, Pool Table Stimpmeter, 2009). Elevation 0.1 to 0.3 deg hardly matters with a level cue."""
+(Waldron, Pool Table Stimpmeter, 2009). Elevation 0.1 to 0.3 deg hardly matters with a level cue.
+
+A real cue (the option ``cue="real"``) that must be raised is harder to deliver straight, over a rail or a ball the
+bridge is cramped. The errors of aim and tip then grow as 1 + elevation / 20 deg: twice as large at 20 deg. That is
+an estimate: players say so, nothing measured was found. With a free cue they do not grow."""
 
 from dataclasses import asdict, dataclass, fields
 from math import degrees, hypot, radians, sqrt
@@ -43,21 +47,24 @@ from ..physics.cue import MAX_ELEVATION
 from ..physics.parameters import Physics, PhysicsLike
 
 # Packed deviations: 1 if there are none, speed [m/s], speed (relative), tip offset / R, aim, elevation [rad];
-# then the probability of a kick.
-(N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION, N_KICK) = range(7)
+# the probability of a kick; by how much those of tip and aim grow with the elevation [1/rad], 0 for a free cue.
+(N_SILENT, N_SPEED, N_SPEED_REL, N_TIP, N_AIM, N_ELEVATION, N_KICK, N_STEEPER) = range(8)
 KICK = 0.2
 """Friction between balls in a kick: a stun shot's contact sticks with it up to a cut of 45 degrees, so that
 more would change nothing there (docs/physics/limits.md). Not measured."""
+TWICE = radians(20.0)
+"""The elevation of a real cue at which errors of tip and aim are twice those of a level one [rad]: an estimate."""
 
 
 @kernel
 def with_errors(speed, side, top, aim, elevation, errors, noise):
     """The shot under the standard normal ``errors`` (5,): the only law of errors; see ``executed``."""
+    more = 1.0 + elevation * noise[N_STEEPER]
     return (
         max(0.0, speed + errors[0] * sqrt(noise[N_SPEED] ** 2 + (noise[N_SPEED_REL] * speed) ** 2)),
-        side + errors[1] * noise[N_TIP],
-        top + errors[2] * noise[N_TIP],
-        aim + errors[3] * noise[N_AIM],
+        side + errors[1] * (noise[N_TIP] * more),
+        top + errors[2] * (noise[N_TIP] * more),
+        aim + errors[3] * (noise[N_AIM] * more),
         min(MAX_ELEVATION, max(0.0, elevation + errors[4] * noise[N_ELEVATION])),
     )
 
@@ -182,10 +189,13 @@ class Noise:
         tip = self.offset_mm * 1e-3 / constants.R
         return hypot(self.aim_deg, degrees(2.5 * tip / (3.5 + constants.end_mass_ratio)))
 
-    def pack(self, R: float) -> Floats:
-        """Return float64 (7,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]."""
+    def pack(self, R: float, *, real: bool = False) -> Floats:
+        """Return float64 (8,) for the kernels, in the columns ``N_*``. ``R``: the ball's radius [m]; ``real``:
+        whether the errors of tip and aim grow with the elevation."""
         tip, turns = self.offset_mm * 1e-3 / R, (radians(self.aim_deg), radians(self.elevation_deg))
-        return np.array([self.silent, self.speed_abs, self.speed_rel, tip, *turns, self.kick], np.float64)
+        steeper = 1.0 / TWICE if real else 0.0
+        deviations = self.speed_abs, self.speed_rel, tip, *turns
+        return np.array([self.silent, *deviations, self.kick, steeper], np.float64)
 
 
 NoiseLike: TypeAlias = Noise | dict[str, float] | NoiseName

@@ -9,12 +9,13 @@ import numpy as np
 from gymnasium import spaces
 
 from .._check import choice, integer, number, refuse, refuse_what, truth
-from .._types import Fidelity, Floats, MissRule, ObservationKind, Solver
+from .._types import CueKind, Fidelity, Floats, MissRule, ObservationKind, Solver
 from ..game.frame import MISS_RULES
 from ..game.layouts import Plan
 from ..game.rule_sets import RULES, RuleSet, RulesName, rule_set
 from ..geometry import BALL_RADIUS
 from ..physics import conditions
+from ..physics.cue_room import NO_RAILS, rails_of
 from ..physics.impact.contact import parse_fidelity
 from ..physics.parameters import Physics, PhysicsLike
 from ..physics.table import Table, TableLike
@@ -33,6 +34,7 @@ TIME_TO_PLAY = 9.0
 """Default time [s] between strokes, with a clock: some 14 s a stroke in all, as in professionals' Shoot Out."""
 ACTIONS = ("box", "discrete")
 CONDITIONS = ("fixed", "drawn")
+CUES = ("free", "real")
 LAYOUTS = {"visit": "opened", "frame": "break_off", "match": "break_off"}
 """What layout="default" means in each task."""
 MAX_STROKES = 1000
@@ -69,6 +71,7 @@ class Rules:
     time_to_play: int = 0  # with a clock: from the rest of the balls to the next stroke [ms]
     drawn: bool = False  # whether each episode draws ``physics.conditions`` of its table
     observed: bool = False  # whether observations hold them
+    cue: CueKind = "free"  # whether rails and balls are in the way of the cue
 
     @property
     def rule_set(self) -> RuleSet:
@@ -83,8 +86,20 @@ class Rules:
     def packed(self) -> tuple[Floats, Floats, Floats]:
         """For the kernels: options of the action, deviations of the noise, physical parameters. The first and
         the last are one row, for all tables."""
-        phys = self.physics.packed_for(self.fidelity)[None]
-        return self.actions.pack()[None], self.noise.pack(BALL_RADIUS), phys
+        phys, errors = (
+            self.physics.packed_for(self.fidelity)[None],
+            self.noise.pack(BALL_RADIUS, real=self.cue == "real"),
+        )
+        return self.with_rails(self.actions.pack())[None], errors, phys
+
+    @property
+    def rails(self) -> Floats:
+        """The rails that the cue passes over, as of ``cue_room.rails_of``; none: it is free."""
+        return rails_of(self.table.noses, self.table.falls) if self.cue == "real" else NO_RAILS
+
+    def with_rails(self, options: Floats) -> Floats:
+        """Packed options of actions, with the rails."""
+        return np.concatenate([options, self.rails])
 
 
 _ABOUT: dict[str, tuple[str, str | None, str]] = {
@@ -107,6 +122,11 @@ _ABOUT: dict[str, tuple[str, str | None, str]] = {
     "placement": ("action", None, "whether box actions hold the place of a cue ball in hand"),
     "physics": ("shot", None, '"paper", "match", or a dict of overrides of `snooker_env.Physics` (not R)'),
     "table": ("shot", None, '"match", "tight", or a `Table` whose noses are where snooker\'s are'),
+    "cue": (
+        "shot",
+        None,
+        '"free", "real": whether rails and balls are in the way of the cue, see The cue needs room',
+    ),
     "fidelity": ("shot", None, '"fast", "standard", "reference", "euler:N"'),
     "conditions": ("shot", None, '"fixed", "drawn": whether each episode draws constants of its table'),
     "observe_conditions": ("view", None, "whether observations hold the constants drawn"),
@@ -176,6 +196,9 @@ class Options:
         As ``Physics.of`` takes them, with snooker's ball radius. Default "paper".
     table : str or Table, optional
         "match" (default), "tight", or a ``Table`` whose noses are where snooker's are.
+    cue : {"free", "real"}, optional
+        "free" (default): the cue passes through rails and balls. "real": it is raised over them as far as it
+        must be, and errors grow with its elevation (docs/environment/specification.md).
     fidelity : str, optional
         How impacts are solved: "fast", "standard" (default), "reference" or "euler:N".
     conditions : {"fixed", "drawn"}, optional
@@ -237,6 +260,7 @@ class Options:
     placement: bool = False
     physics: PhysicsLike = "paper"
     table: TableLike = "match"
+    cue: CueKind = "free"
     fidelity: Fidelity = "standard"
     conditions: Literal["fixed", "drawn"] = "fixed"
     observe_conditions: bool = False
@@ -264,7 +288,7 @@ class Options:
         for name, read in (("physics", physics), ("noise", noise)):
             if isinstance(getattr(self, name), dict):  # a dict may change later
                 object.__setattr__(self, name, read)
-        actions = self._actions(physics)
+        actions, real = self._actions(physics), choice("cue", self.cue, CUES)
         default = isinstance(self.layout, str) and self.layout == "default"
         layout = LAYOUTS[self.task] if default else self.layout
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
@@ -300,7 +324,7 @@ class Options:
             object.__setattr__(self, "opponent", str(self.opponent))
         pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
         world = actions, noise, physics, table, fidelity, plan, self.reward, self.observation
-        read = Rules(*world, self.miss, limit, one_stroke, frames, self.game, pause, drawn, observed)
+        read = Rules(*world, self.miss, limit, one_stroke, frames, self.game, pause, drawn, observed, real)
         object.__setattr__(self, "rules", read)
 
     def _physics(self) -> Physics:

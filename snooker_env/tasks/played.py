@@ -6,8 +6,9 @@ from typing import Any
 from .._types import Bools, Floats
 from ..game.balls import BallOn, ids_of
 from ..game.ruling import Foul
+from ..physics.cue_room import MOVED, RAISED, UNPLAYABLE
 from ..simulation import Shot
-from .stroke import BREAK, COST, CUE_SPEED, FIRST, FOULS, FREE, PLAYER, SCORED, WAS_ON, ShotBuffers
+from .stroke import BREAK, COST, CUE_SPEED, FIRST, FOULS, FREE, PLAYER, ROOM, SCORED, WAS_ON, ShotBuffers
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -20,6 +21,8 @@ class Played:
         The simulated shot, with its path if that was recorded.
     cue : dict of str to float
         The strike, errors included: "speed" [m/s], "side", "top" (over R), "aim", "elevation" [rad].
+    room : tuple of str
+        What ``cue="real"`` did to the stroke that was meant: "raised", "moved" (its tip, upwards), "unplayable".
     player, next_player : int
         Who played it, and whose turn it is next: 0, or in a frame 0 or 1.
     ball_on, next_on : BallOn
@@ -76,6 +79,7 @@ class Played:
     choice: bool
     over: bool
     winner: int | None
+    room: tuple[str, ...] = ()
 
 
 def judged(seen: list[int]) -> dict[str, Any]:
@@ -88,4 +92,14 @@ def judged(seen: list[int]) -> dict[str, Any]:
 def struck(buffers: ShotBuffers, j: int) -> dict[str, float]:
     """The field ``cue`` of ``Played``, for shot j."""
     names = ("speed", "side", "top", "aim", "elevation")
-    return dict(zip(names, buffers.shots[j, CUE_SPEED:].tolist(), strict=True))
+    return dict(zip(names, buffers.shots[j, CUE_SPEED:ROOM].tolist(), strict=True))
+
+
+def room_of(buffers: ShotBuffers, j: int) -> tuple[str, ...]:
+    """The field ``room`` of ``Played``, for shot j."""
+    done = int(buffers.shots[j, ROOM])
+    return tuple(
+        name
+        for name, flag in (("raised", RAISED), ("moved", MOVED), ("unplayable", UNPLAYABLE))
+        if done & flag
+    )

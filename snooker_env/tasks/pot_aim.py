@@ -8,21 +8,34 @@ from .._jit import kernel
 from ..physics import cloth, cue
 from ..physics.arrays import Law
 from ..physics.columns import P_E_B, P_MU_S, P_NAP, P_R
+from ..physics.cue_room import in_room
 from ..physics.detection import pair_time
 from ..physics.impact.contact import collide_balls
 
 _ENOUGH = 1e-6  # rad that the object ball may pass the aim point by, a hundredth of the best player's error
 _TRIALS = 12
+_ROUNDS, _HALVINGS = 4, 30  # of ``swerved_aim``: corrections of the aim, and of the time along the path
 _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve of a pot
 
 
 @kernel
-def _passes(aim, stroke, c, b, p, law, work):
-    """Angle [rad] by which the ball at b, hit by a cue ball sent from c, passes p on the left; 9: missed."""
-    (speed, side, top, elevation), (cx, cy), (bx, by), (px, py) = stroke, c, b, p
-    phys, m, motion, state = law.phys, law.end_mass_ratio, work.motion, work.state
-    R, mu_s = phys[P_R], phys[P_MU_S]
-    (vx, vy, _), w = cue.struck(speed, aim - cue.squirt(side, m), side, top, elevation, R, mu_s, m)
+def struck_in_room(aim, stroke, positions, on_table, law):
+    """Velocity and spin of a stroke (speed, side, top, elevation), the cue raised as it must be; see ``cue.struck``."""
+    speed, side, top, elevation = stroke
+    R, mu_s, m = law.phys[P_R], law.phys[P_MU_S], law.end_mass_ratio
+    meant = speed, side, top, aim - cue.squirt(side, m), elevation
+    played, _ = in_room(meant, positions, on_table, law.rails, R, law.max_offset)
+    speed, side, top, aim, elevation = played
+    return cue.struck(speed, aim, side, top, elevation, R, mu_s, m)
+
+
+@kernel
+def _passes(aim, stroke, positions, on_table, b, p, law, work):
+    """Angle [rad] by which the ball at b, hit by the cue ball, passes p on the left; 9: missed."""
+    (cx, cy), (bx, by), (px, py) = (positions[0, 0], positions[0, 1]), b, p
+    phys, motion, state = law.phys, work.motion, work.state
+    R = phys[P_R]
+    (vx, vy, _), w = struck_in_room(aim, stroke, positions, on_table, law)
     cloth.begin(motion, state, 0, 0.0, (cx, cy), (vx, vy), w, phys)
     cloth.begin(motion, state, 1, 0.0, (bx, by), (0.0, 0.0), (0.0, 0.0, 0.0), phys)
     t, now = 1e300, 0.0
@@ -72,9 +85,44 @@ def _passes(aim, stroke, c, b, p, law, work):
     return (qx * uy - qy * ux) / (hypot(ux, uy) * away) if ahead > 0.0 else 9.0
 
 
+@kernel
+def _sent(aim, far, stroke, positions, on_table, law, work):
+    """Direction [rad], from where it lies, in which the cue ball is as ``far`` away [m], or where it stops."""
+    phys, motion, state = law.phys, work.motion, work.state
+    cx, cy = positions[0, 0], positions[0, 1]
+    (vx, vy, _), w = struck_in_room(aim, stroke, positions, on_table, law)
+    cloth.begin(motion, state, 0, 0.0, (cx, cy), (vx, vy), w, phys)
+    x, y = cx + vx, cy + vy
+    while state[0] > cloth.REST:
+        low, high = motion[0, cloth.T0], motion[0, cloth.T_END]
+        (x, y), _, _ = cloth.evaluate(motion, state, 0, high, phys)
+        if hypot(x - cx, y - cy) >= far:
+            for _ in range(_HALVINGS):
+                t = 0.5 * (low + high)
+                (x, y), _, _ = cloth.evaluate(motion, state, 0, t, phys)
+                low, high = (low, t) if hypot(x - cx, y - cy) >= far else (t, high)
+            break
+        cloth.next_phase(motion, state, 0, phys)
+    return atan2(y - cy, x - cx)
+
+
+@kernel
+def swerved_aim(line, far, stroke, positions, on_table, law, work):
+    """Direction [rad] in which a stroke (speed, side, top, elevation) leaves, so that its swerve under a raised
+    cue brings it to the place that is ``far`` along the direction ``line``. A free cue's is the line itself."""
+    if law.rails.shape[0] == 0 or stroke[1] == 0.0:
+        return line
+    aim = line
+    for _ in range(_ROUNDS):
+        off = _sent(aim, far, stroke, positions, on_table, law, work) - line
+        aim -= off - 2.0 * pi * round(off / (2.0 * pi))
+    return aim
+
+
 @kernel(seconds=5, uses=(collide_balls,))
-def solved_aim(positions, ball, target, ghost, stroke, law, work):
-    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``."""
+def solved_aim(positions, on_table, ball, target, ghost, stroke, law, work):
+    """Direction [rad] in which a stroke (speed, side, top, elevation) sends ``ball`` to ``target``, its cue raised
+    as it must be."""
     (px, py), (gx, gy) = target, ghost
     cx, cy, bx, by = positions[0, 0], positions[0, 1], positions[ball, 0], positions[ball, 1]
     line = atan2(gy - cy, gx - cx)
@@ -83,17 +131,19 @@ def solved_aim(positions, ball, target, ghost, stroke, law, work):
     run = hypot(px - bx, py - by)
     cut = ((gx - cx) * (px - bx) + (gy - cy) * (py - by)) / (far * run)
     slope = -far / (2.0 * law.phys[0] * max(cut, 0.05))
-    aim, best, least = line, line, 9.0
-    last_aim, last = line, 9.0
+    # a raised cue with side bends the path: by more than a thin cut or a soft stroke would show
+    begin = swerved_aim(line, max(far, law.phys[P_R]), stroke, positions, on_table, law, work)
+    aim, best, least = begin, begin, 9.0
+    last_aim, last = begin, 9.0
     for _ in range(_TRIALS):
-        off = _passes(aim, stroke, (cx, cy), (bx, by), target, law, work)
+        off = _passes(aim, stroke, positions, on_table, (bx, by), target, law, work)
         if abs(off) < abs(least):
             best, least = aim, off
         if abs(off) <= _ENOUGH:
             break
         if off == 9.0:  # missed, or it never arrived: turn towards the ball's middle
             middle = atan2(by - cy, bx - cx)
-            turn = middle - aim
+            turn = middle + (begin - line) - aim
             turn -= 2.0 * pi * round(turn / (2.0 * pi))
             aim += 0.25 * turn
             continue
@@ -104,5 +154,5 @@ def solved_aim(positions, ball, target, ghost, stroke, law, work):
         last_aim, last = aim, off
         step = -off / slope
         limit = 0.5 * _WIDEST
-        aim = min(line + _WIDEST, max(line - _WIDEST, aim + min(limit, max(-limit, step))))
+        aim = min(begin + _WIDEST, max(begin - _WIDEST, aim + min(limit, max(-limit, step))))
     return best

@@ -16,6 +16,7 @@ from ..game.in_hand import nearest_anywhere, nearest_place
 from ..game.ruling import AUTO
 from ..geometry import BALL_RADIUS
 from ..physics import cloth, cue, engine
+from ..physics.cue_room import in_room, raised
 from ..physics.engine import EventKind, Status
 from ..physics.parameters import Physics
 from ..physics.table import Table
@@ -23,15 +24,17 @@ from ..simulation import EVENT, MAX_EVENTS, Shot, SimulationError
 from . import discrete_actions
 from .arrays import CueLaw, StruckArrays
 from .box_actions import place_anywhere_of, place_of, shot_of, tip_on_disc
-from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_MU_S, A_PLACEMENT, playable
+from .declarations import A_DISCRETE, A_END_MASS, A_MAX_OFFSET, A_MU_S, A_PLACEMENT, A_RAILS, playable
 from .lines import new_work
 from .noise import executed, kick_of
 from .options import Rules
 
 AT_ONCE = 1e-9  # contacts within this time [s] are simultaneous
-# Columns of a strike: the cue ball's velocity and spin after it, intended speed, the strike with errors.
-(VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION) = range(11)
-STRIKE_COLUMNS = 11
+# Columns of a strike: the cue ball's velocity and spin after it, intended speed, the strike with errors; what its
+# room did to it (``cue_room.in_room``), and what was meant before.
+(VX, VY, WX, WY, WZ, SPEED, CUE_SPEED, SIDE, TOP, AIM, ELEVATION, ROOM) = range(12)
+MEANT = 12
+STRIKE_COLUMNS = MEANT + 5
 # Columns of the referee's facts: masks of balls, clear paths before a stroke that failed (where misses are
 # called), whether it was an attempt (``miss="attempt"``); and of the ruling (``BREAK``: with this stroke).
 FIRST, TOUCHING, MOVED, DOWN, CLEAR_PATH, FULL_PATH, ATTEMPT = range(7)
@@ -99,16 +102,27 @@ def reached_cushion(event_what, n_events):
 
 
 @kernel
-def strike(intended, positions, on_table, stream, options, noise, j, shots):
-    """Shot j: the table as it lies, the cue ball struck as ``intended`` (see ``executed``), with errors;
-    ``options``: the table's row."""
-    speed, side, top, aim, elevation = executed(*intended, noise, stream)
-    shots.kicks[j] = kick_of(noise, stream)
+def played_in(intended, positions, on_table, options, shot):
+    """The stroke that is ``intended`` (speed, side, top, aim of the cue, elevation) as the cue has room for it; what
+    was done is recorded in the row ``shot``."""
+    rails, most = options[A_RAILS:], options[A_MAX_OFFSET]
+    played, shot[ROOM] = in_room(intended, positions, on_table, rails, BALL_RADIUS, most)
+    for c in range(5):
+        shot[MEANT + c] = intended[c]
+    return played
+
+
+@kernel
+def strike_with(intended, struck, positions, on_table, options, j, shots):
+    """Shot j: the table as it lies, the cue ball ``struck``: as ``intended``, with errors. The cue is raised once
+    more where these took its room."""
+    speed, side, top, aim, elevation = struck
     side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
+    elevation = raised((side, top, aim, elevation), positions, on_table, options[A_RAILS:], BALL_RADIUS)
     shot, r, v, w, here = shots.shots[j], shots.r, shots.v, shots.w, shots.here
     mu_s, m = options[A_MU_S], options[A_END_MASS]
-    struck = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m)
-    (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = struck
+    after = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m)
+    (shot[VX], shot[VY], _), (shot[WX], shot[WY], shot[WZ]) = after
     shot[SPEED] = intended[0]
     shot[CUE_SPEED], shot[SIDE], shot[TOP], shot[AIM], shot[ELEVATION] = speed, side, top, aim, elevation
     for i in range(N_BALLS):
@@ -116,6 +130,15 @@ def strike(intended, positions, on_table, stream, options, noise, j, shots):
         v[j, i, 0] = v[j, i, 1] = w[j, i, 0] = w[j, i, 1] = w[j, i, 2] = 0.0
     v[j, CUE, 0], v[j, CUE, 1] = shot[VX], shot[VY]
     w[j, CUE, 0], w[j, CUE, 1], w[j, CUE, 2] = shot[WX], shot[WY], shot[WZ]
+
+
+@kernel
+def strike(intended, positions, on_table, stream, options, noise, j, shots):
+    """Shot j: the table as it lies, the cue ball struck as ``intended`` (see ``executed``), as far as there is room
+    for the cue, with errors."""
+    meant = played_in(intended, positions, on_table, options, shots.shots[j])
+    strike_with(meant, executed(*meant, noise, stream), positions, on_table, options, j, shots)
+    shots.kicks[j] = kick_of(noise, stream)
 
 
 @kernel
@@ -154,7 +177,8 @@ def address(which, actions, tables, shots, packed, fidelity):
     for j in range(which.shape[0]):
         k = which[j]
         a, p, on, options = actions[k], positions[k], on_table[k], every[row_of(k, every)]
-        law = CueLaw(phys[row_of(k, phys)], options[A_END_MASS], fidelity[0], fidelity[1])
+        most, rails = options[A_MAX_OFFSET], options[A_RAILS:]
+        law = CueLaw(phys[row_of(k, phys)], options[A_END_MASS], fidelity[0], fidelity[1], most, rails)
         if game[k, IN_HAND] and options[A_PLACEMENT]:
             anywhere = game.shape[1] > ANYWHERE and game[k, ANYWHERE] != 0
             x, y = place_anywhere_of(a, options) if anywhere else place_of(a, options)
@@ -208,7 +232,7 @@ class ShotBuffers:
         self.here: Bools = np.zeros((m, N_BALLS), np.bool_)
         self.potted: Ints = np.zeros((m, N_BALLS), np.int64)
         self.kicks: Floats = np.zeros(m)  # the friction of the first contact in a kick, else 0
-        # each strike, columns ``VX`` to ``ELEVATION``; facts for the referee and the ruling, ``FIRST`` to ``FOULS``
+        # each strike, columns ``VX`` to ``MEANT + 4``; facts for the referee and the ruling, ``FIRST`` to ``FOULS``
         self.shots: Floats = np.zeros((m, STRIKE_COLUMNS))
         self.seen: Ints = np.zeros((m, SEEN_COLUMNS), np.int64)
         # time [s]; kind, i, j of each event; the paths, if they are recorded

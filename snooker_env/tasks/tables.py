@@ -23,7 +23,7 @@ from .box_actions import Actions
 from .declarations import A_END_MASS
 from .discrete_actions import Choices
 from .options import NEVER, Rules
-from .played import Played, judged, struck
+from .played import Played, judged, room_of, struck
 
 REALS = ("points", "break", "seconds")
 COUNTS = ("penalty", "pots", "fouls", "ball_on", "first_ball", "events")
@@ -226,7 +226,7 @@ class Tables(ABC):
         game, seen, standing = self.game[k], buffers.seen[j].tolist(), self.standing(k)
         if seen[stroke.SCORED]:
             standing["break_points"] = seen[stroke.BREAK]  # also with the stroke that ended the frame
-        shot = {"shot": self.shot(k, buffers, j), "cue": struck(buffers, j)}
+        shot = {"shot": self.shot(k, buffers, j), "cue": struck(buffers, j), "room": room_of(buffers, j)}
         balls = {"positions": self.positions[k].copy(), "on_table": self.on_table[k].copy()}
         after: Any = {
             "next_on": BallOn(game[BALL_ON]),
@@ -252,7 +252,7 @@ class Tables(ABC):
         """``action_masks`` of one space of actions."""
         choices = actions.choices if isinstance(actions, Choices) else discrete_actions.SIZE
         out = np.empty((len(which), choices), np.bool_)
-        options = actions.pack() if isinstance(actions, Choices) else STROKES_ONLY
+        options = self.rules.with_rails(actions.pack() if isinstance(actions, Choices) else STROKES_ONLY)
         discrete_actions.masks(which, self.positions, self.on_table, self.game, options, out)
         return out
 

@@ -200,8 +200,10 @@ def test_a_solved_aim_allows_for_the_nap(nap):
     work = new_work()
 
     def missed_by(solved_for):
-        law = CueLaw(solved_for.pack(), physics.end_mass_ratio, code, steps)
-        aim = aim_for(balls, 1, tuple(pocket), tuple(ghost), (1.2, 0.0, 0.0, 0.0), law, work)
+        law = CueLaw(solved_for.pack(), physics.end_mass_ratio, code, steps, 0.5, np.empty(0))
+        aim = aim_for(
+            balls, np.ones(2, bool), 1, tuple(pocket), tuple(ghost), (1.2, 0.0, 0.0, 0.0), law, work
+        )
         v, w = sn.strike(1.2, aim, physics=physics)
         shot = sn.simulate(balls, [v[:2], (0, 0)], [w, (0, 0, 0)], None, physics)
         return np.hypot(*(shot.at(np.linspace(0, shot.duration, 40_000))[0][:, 1] - pocket).T).min()

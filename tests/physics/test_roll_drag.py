@@ -277,7 +277,7 @@ def test_a_solved_aim_holds_with_drag():
     balls, pocket = np.array([(-0.62, 0.05), (-0.12, 0.03)]), np.array([0.889, 0.0])
     line = (pocket - balls[1]) / np.linalg.norm(pocket - balls[1])
     code, steps = contact.parse_fidelity("standard")
-    law = CueLaw(physics.pack(), physics.end_mass_ratio, code, steps)
+    law = CueLaw(physics.pack(), physics.end_mass_ratio, code, steps, 0.5, np.empty(0))
     aim = aim_for(
         balls, 1, tuple(pocket), tuple(balls[1] - 2 * R * line), (1.2, 0.0, 0.0, 0.0), law, new_work()
     )

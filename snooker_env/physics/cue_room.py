@@ -1,0 +1,249 @@
+"""How must the cue be raised over what lies behind the cue ball? The least elevation, and the tips it leaves.
+
+A cue tapers from a tip of radius 4.75 mm to a butt of 14 mm over 1.45 m: the union of spheres of radius
+r0 + k x about its axis, x from the tip. It passes over the rails, 38 mm high from the nose on, and over balls.
+(Snooker cues: tips of 9.5 mm, butts of 28 to 29 mm, 57 to 58 inches. [WPBSA, Rules 2019, 1.3]: a rail rises to
+35 to 41 mm.) All in closed form, in two unknowns at most.
+
+Frame. C: centre of the cue ball, R above the bed; d: unit vector along the cue, down by the elevation el; up,
+right: unit vectors across it, right level; tip offset over R: (side, top), q = sqrt(1 - side^2 - top^2). The
+sphere of the tip has its centre at P = C + R (side right + top up - q d), the axis is P - x d.
+
+A rail: its edge is a level line at height h, ``D`` behind C along the outward normal u, sin(phi) = -a . u, a the
+level direction of the cue. The plane through the edge that touches the cue has a normal
+n = (sin(t) u, -cos(t)) with n . d = k (it touches all spheres), and with c = u . right
+
+    n . (E - P) = r0:   (D - R side c) sin t - (h - R) cos t + R top sqrt(1 - k^2 - c^2 sin^2 t) + R q k = r0
+    n . d = k:          sin(el) cos t - cos(el) sin(phi) sin t = k
+
+The first gives t, the second el. A ball with its centre b behind C along a and l to the right of it touches if the
+axis is as far from its centre as both radii, (l - R side)^2 + (b sin el + R top)^2 = s^2, where
+s sqrt(1 - k^2) = R + r0 + k (b cos el - R q).
+"""
+
+from math import asin, atan2, cos, hypot, pi, radians, sin, sqrt
+
+import numpy as np
+
+from .._jit import kernel
+from .._types import Floats
+from .columns import NOSE_AXIS, NOSE_LEVEL, NOSE_SIDE
+from .cue import MAX_ELEVATION
+
+TIP, BUTT, LENGTH = 4.75e-3, 14e-3, 1.45
+"""Radii of the cue at its ends, and its length [m]."""
+TAPER = (BUTT - TIP) / LENGTH
+RAIL = 0.038
+"""Height of a rail above the bed [m]."""
+STEEPEST = radians(45.0)
+"""The highest elevation of a stroke that keeps its tip [rad]. Above it a player stands over the ball, the bridge in
+the air: a masse, which nobody plays for position. Our choice; players' limits are not published."""
+(EDGE_AXIS, EDGE_SIDE, EDGE_LEVEL, EDGE_LOW, EDGE_HIGH, EDGE_BEHIND) = range(6)
+EDGE = 6
+"""Columns of a rail in an array without rows: those of a nose, and how far behind it the rail begins where its
+line runs through a pocket [m]."""
+FREE, RAISED, MOVED, UNPLAYABLE = 0, 1, 2, 4
+"""What a stroke's room does to it: nothing; the cue is raised; the tip is moved up; nobody can play it."""
+
+_ABOVE = 1e-9
+"""The edge of a rail that a vertical cue still touches stands so far in the cue, or further [m]."""
+_TINY = 1e-12
+"""Keeps a cue that lies along a rail from a quotient of zeros."""
+_PASSES = 3
+"""Over the balls, at most."""
+_HALVINGS = 40
+"""Bisections of a tip's way, to 1e-12 R; few strokes need them."""
+_TRIALS = 8
+"""Newton's steps and fixed points gain two digits and more each."""
+
+
+NO_RAILS = np.empty(0)
+"""The rails of a free cue, which nothing is in the way of."""
+NO_RAILS.setflags(write=False)
+
+
+def rails_of(noses: Floats, falls: Floats) -> Floats:
+    """The rails behind the noses of a table, for the kernels: ``EDGE`` numbers for each nose, those of one side
+    together. Behind a pocket a rail begins where the fall ends that reaches farthest behind the noses of that side.
+    Noses (k, 5) and falls (p, 3): as of ``Table``."""
+    rows = []
+    for nose in sorted(noses.tolist()):
+        axis, side, level = int(nose[NOSE_AXIS]), nose[NOSE_SIDE], nose[NOSE_LEVEL]
+        behind = (side * falls[:, axis] + falls[:, 2] - level).max(initial=0.0)
+        rows.append([*nose, behind])
+    return np.array(rows, np.float64).reshape(-1)
+
+
+@kernel
+def _rail_plane(el, sin_phi):
+    """Angle t of the plane through an edge that touches a cue raised by ``el``; phi: between edge and cue."""
+    across, along = sin(el), cos(el) * sin_phi
+    return atan2(across, along) - asin(min(TAPER / hypot(across, along), 1.0))
+
+
+@kernel
+def _over_rail(D, sin_phi, c, side, top, R):
+    """The least elevation [rad] over an edge, ``c`` = u . right; 0 if the cue ends before it."""
+    q = sqrt(max(1.0 - side * side - top * top, 0.0))
+    A, B, K = D - R * side * c, RAIL - R, TIP - R * q * TAPER
+    flat = 1.0 - TAPER * TAPER
+    share = min((K - R * top * sqrt(flat)) / hypot(A, B), 1.0)
+    t, off = atan2(B, A) + asin(max(share, -1.0)), 0.0
+    for _ in range(_TRIALS):  # Newton's method; exact at once where the cue is square to the rail, c = 0
+        s, o = sin(t), cos(t)
+        w = sqrt(max(flat - c * c * s * s, _TINY))
+        off = A * s - B * o + R * top * w - K
+        t = min(max(t - off / (A * o + B * s - R * top * c * c * s * o / w), 0.0), 0.5 * pi)
+    if off < -_ABOVE:
+        return 0.5 * pi
+    if t <= 0.0:
+        return 0.0
+    s, across, along = sin(t), cos(t), sin(t) * sin_phi
+    el = atan2(along, across) + asin(min(TAPER / hypot(across, along), 1.0))
+    ce, se = cos(el), sin(el)
+    x = D - R * (side * c - top * se * sin_phi + q * ce * sin_phi) - TIP * s
+    return el if x <= LENGTH * (sin_phi * ce + TAPER * s) else 0.0
+
+
+@kernel
+def _over_ball(b, right, side, top, elevation, R):
+    """The least elevation [rad], from ``elevation`` on, that clears a ball b behind and ``right`` to the right [m]."""
+    q, beside, cosine = (
+        sqrt(max(1.0 - side * side - top * top, 0.0)),
+        right - R * side,
+        sqrt(1.0 - TAPER * TAPER),
+    )
+    ce, se, far = cos(elevation), sin(elevation), 0.0
+    for trial in range(_TRIALS):
+        far = (R + TIP + TAPER * (b * ce - R * q)) / cosine
+        # a low cue may pass beside a ball, under its middle
+        if far <= abs(beside) or (trial == 0 and hypot(beside, b * se + R * top) >= far):
+            return elevation
+        se = (sqrt(far * far - beside * beside) - R * top) / b
+        if se >= 1.0:
+            return 0.5 * pi
+        ce = sqrt(1.0 - se * se)
+    x = b * ce - R * q + far * TAPER / cosine
+    return max(asin(se), elevation) if 0.0 <= x <= LENGTH else elevation
+
+
+@kernel
+def _edge(rails, m, x, y, back_x, back_y):
+    """Of the rail at ``m``: how far behind (x, y) its edge is [m], sin(phi), c; 0 if the cue does not cross it."""
+    across, along, back, beside = x, y, back_x, back_y
+    if rails[m + EDGE_AXIS] != 0.0:
+        across, along, back, beside = y, x, back_y, back_x
+    side = rails[m + EDGE_SIDE]
+    sin_phi = side * back
+    if sin_phi <= 0.0:
+        return 0.0, 0.0, 0.0
+    D = rails[m + EDGE_LEVEL] - side * across
+    at = along + beside * D / sin_phi
+    # right = (sin aim, -cos aim) = (-back_y, back_x)
+    c = -side * beside if rails[m + EDGE_AXIS] == 0.0 else side * beside
+    if not rails[m + EDGE_LOW] <= at <= rails[m + EDGE_HIGH]:
+        D += rails[m + EDGE_BEHIND]
+    return D, sin_phi, c
+
+
+@kernel
+def _over_rails(aim, side, top, x, y, rails, R):
+    """The least elevation [rad] over the rails."""
+    back_x, back_y = -cos(aim), -sin(aim)
+    least, last_axis, last_side = 0.0, -1.0, 0.0
+    nearest, sin_phi, c = 0.0, 0.0, 0.0
+    for k in range(rails.shape[0] // EDGE):
+        m = EDGE * k
+        if rails[m + EDGE_AXIS] != last_axis or rails[m + EDGE_SIDE] != last_side:
+            if nearest > 0.0:
+                least = max(least, _over_rail(nearest, sin_phi, c, side, top, R))
+            last_axis, last_side, nearest = rails[m + EDGE_AXIS], rails[m + EDGE_SIDE], 0.0
+        D, phi, turn = _edge(rails, m, x, y, back_x, back_y)
+        # of the noses of one side the cue crosses one, or all of them behind a pocket
+        if D > 0.0 and (nearest == 0.0 or nearest > D):
+            nearest, sin_phi, c = D, phi, turn
+    if nearest > 0.0:
+        least = max(least, _over_rail(nearest, sin_phi, c, side, top, R))
+    return least
+
+
+@kernel
+def least_elevation(stroke, positions, on_table, rails, R):
+    """The least elevation of the cue [rad] at which a stroke of ball 0 can be played: its own, or a higher one.
+
+    ``stroke``: (side, top, aim, elevation), aim the direction of the cue [rad]; ``rails``: rows of ``EDGE``
+    numbers, one after the other, those of one side together. pi/2: it cannot be played.
+    """
+    side, top, aim, elevation = stroke
+    ax, ay, x, y = cos(aim), sin(aim), positions[0, 0], positions[0, 1]
+    least = max(elevation, _over_rails(aim, side, top, x, y, rails, R))
+    for _ in range(_PASSES):  # what is raised over one ball may meet another
+        before = least
+        for i in range(1, positions.shape[0]):
+            if on_table[i]:
+                dx, dy = positions[i, 0] - x, positions[i, 1] - y
+                b, right = -(dx * ax + dy * ay), dx * ay - dy * ax
+                if 0.0 < b < LENGTH + 2.0 * R and abs(right) < 2.0 * (R + BUTT):
+                    least = _over_ball(b, right, side, top, least, R)
+        if least == before:
+            break
+    return least
+
+
+@kernel
+def _fits(side, top, aim, positions, on_table, rails, R):
+    return least_elevation((side, top, aim, 0.0), positions, on_table, rails, R) <= STEEPEST
+
+
+@kernel
+def _moved_tip(side, top, aim, positions, on_table, rails, R, max_offset):
+    """The tip nearest to (side, top), on a way up to the miscue limit and along that to the top, that fits."""
+    highest = sqrt(max(max_offset * max_offset - side * side, 0.0))
+    low, high = 0.0, 1.0
+    straight = _fits(side, highest, aim, positions, on_table, rails, R)
+    for _ in range(_HALVINGS):
+        part = 0.5 * (low + high)
+        across = side if straight else side * (1.0 - part)
+        up = (
+            top + part * (highest - top)
+            if straight
+            else sqrt(max(max_offset * max_offset - across * across, 0.0))
+        )
+        fits = _fits(across, up, aim, positions, on_table, rails, R)
+        low, high = (low, part) if fits else (part, high)
+    if straight:
+        return side, top + high * (highest - top)
+    across = side * (1.0 - high)
+    return across, sqrt(max(max_offset * max_offset - across * across, 0.0))
+
+
+@kernel
+def in_room(stroke, positions, on_table, rails, R, max_offset):
+    """A stroke (speed, side, top, aim, elevation) as the cue can play it, and what was done: ``FREE``, or a sum of
+    ``RAISED``, ``MOVED``, ``UNPLAYABLE``.
+
+    The elevation is raised to the least one. If that is above ``STEEPEST``, the tip goes up until it is not, along
+    the miscue limit at last; where that does not help, the stroke cannot be played, but for a cue that nearly
+    stands. A cue without rails is free.
+    """
+    if rails.shape[0] == 0:
+        return stroke, FREE
+    speed, side, top, aim, elevation = stroke
+    least, done = least_elevation((side, top, aim, elevation), positions, on_table, rails, R), FREE
+    if least > max(STEEPEST, elevation):
+        done = MOVED
+        side, top = _moved_tip(side, top, aim, positions, on_table, rails, R, max_offset)
+        least = least_elevation((side, top, aim, elevation), positions, on_table, rails, R)
+        if least > max(STEEPEST, elevation):
+            done |= UNPLAYABLE
+    if least > elevation:
+        elevation, done = min(least, max(elevation, MAX_ELEVATION)), done | RAISED
+    return (speed, side, top, aim, elevation), done
+
+
+@kernel
+def raised(stroke, positions, on_table, rails, R):
+    """The elevation [rad] of a stroke (side, top, aim, elevation), raised to the least one; a free cue's is its own."""
+    if rails.shape[0] == 0:
+        return stroke[3]
+    return min(least_elevation(stroke, positions, on_table, rails, R), max(stroke[3], MAX_ELEVATION))

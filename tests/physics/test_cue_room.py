@@ -1,0 +1,144 @@
+"""Does the closed form of a cue's room agree with spheres along the cue, and does it move tips as it says?"""
+
+import numpy as np
+import pytest
+
+import snooker_env as sn
+from snooker_env.geometry import BALL_RADIUS as R
+from snooker_env.physics import cue_room
+from snooker_env.physics.cue_room import FREE, MOVED, NO_RAILS, RAISED, STEEPEST, UNPLAYABLE, rails_of
+from tests.kernels import from_python
+from tests.oracles import cue_clearance
+
+_LEAST, _IN_ROOM = from_python(cue_room.least_elevation), from_python(cue_room.in_room)
+TABLE = sn.Table.preset("match")
+RAILS = rails_of(TABLE.noses, TABLE.falls)
+ALONE = np.ones(1, bool)
+NONE = np.empty(0)
+
+
+def least(tip, aim, positions, rails=RAILS, elevation=0.0):
+    positions = np.array(positions, float)
+    return _LEAST(
+        (*map(float, tip), float(aim), float(elevation)), positions, np.ones(len(positions), bool), rails, R
+    )
+
+
+def in_room(stroke, positions, rails=RAILS):
+    positions = np.array(positions, float)
+    return _IN_ROOM(tuple(map(float, stroke)), positions, np.ones(len(positions), bool), rails, R, 0.5)
+
+
+def tip_of(rng):
+    far, turn = rng.uniform(0.0, 0.5), rng.uniform(-np.pi, np.pi)
+    return far * np.cos(turn), far * np.sin(turn)
+
+
+def test_over_a_rail_as_spheres():
+    rng, worst, steep = np.random.default_rng(0), 0.0, 0
+    for _ in range(100):
+        tip, away = tip_of(rng), R + 10 ** rng.uniform(-6, -0.3)
+        axis, side, level = int(rng.integers(2)), rng.choice([-1.0, 1.0]), 0.889
+        lie = np.array([0.1, 0.2])
+        lie[axis] = side * (level - away)
+        aim = (0.0 if axis == 0 else np.pi / 2) + (np.pi if side > 0 else 0.0) + rng.uniform(-1.5, 1.5)
+        got = least(tip, aim, [lie], np.array([axis, side, level, -50.0, 50.0, 0.1]))
+        wanted = cue_clearance.least_elevation(lie, aim, *tip, R, rails=[(axis, side, level)])
+        worst, steep = max(worst, abs(got - wanted)), steep + (wanted > 0.3)
+    assert worst < 1e-5 and steep > 30
+
+
+def test_over_a_ball_as_spheres():
+    rng, worst, steep, seen = np.random.default_rng(1), 0.0, 0, 0
+    while seen < 100:
+        tip, aim = tip_of(rng), rng.uniform(-np.pi, np.pi)
+        back, right = np.exp(rng.uniform(np.log(0.03), 0.0)), rng.uniform(-0.05, 0.05)
+        if np.hypot(back, right) < 2.0 * R:
+            continue
+        lie, a = np.array([0.1, 0.2]), np.array([np.cos(aim), np.sin(aim)])
+        ball = lie - back * a + right * np.array([a[1], -a[0]])
+        got = least(tip, aim, [lie, ball], NONE)
+        wanted = cue_clearance.least_elevation(lie, aim, *tip, R, balls=[ball])
+        worst, steep, seen = max(worst, abs(got - wanted)), steep + (wanted > 0.3), seen + 1
+    assert worst < 1e-5 and steep > 5
+
+
+def test_rails_are_those_of_the_noses_and_begin_later_behind_pockets():
+    rows = RAILS.reshape(-1, cue_room.EDGE)
+    assert sorted(map(tuple, rows[:, :5])) == sorted(map(tuple, TABLE.noses))
+    assert len({tuple(row[:2]) for row in rows}) == 4
+    assert (np.diff([(4 * row[0] + row[1]) for row in rows]) >= 0.0).all()  # those of one side stand together
+    assert (rows[:, 5] > 0.05).all() and (rows[:, 5] < 0.2).all()
+    x = 0.889 - R
+    beside, through = least((0, 0), np.pi, [(x, 0.9)]), least((0, 0), np.pi, [(x, 0.0)])
+    assert through < 0.5 * beside  # from the middle of the pocket's mouth the cue lies lower
+
+
+def test_a_frozen_ball_needs_what_players_say_and_one_in_the_open_nothing():
+    x = 0.889 - R
+    centre, screw, follow = (np.degrees(least((0.0, top), np.pi, [(x, 0.9)])) for top in (0.0, -0.4, 0.5))
+    assert 30.0 < centre < 36.0 and screw > 50.0 and follow < 17.0
+    assert least((0.0, 0.0), np.pi, [(x - 1.48, 0.9)]) == 0.0  # all of the cue lies over the bed
+    assert least((0.0, 0.0), 0.0, [(x, 0.9)]) < 0.05  # away from the table: the other rail is 1.7 m behind
+    assert least((0.0, 0.0), 0.0, [(x, 0.9)], elevation=0.4) == 0.4
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_mirrored_tables_need_the_same(axis):
+    rng = np.random.default_rng(2 + axis)
+    for _ in range(300):
+        positions = rng.uniform((-0.86, -1.75), (0.86, 1.75), (6, 2))
+        (side, top), aim = tip_of(rng), rng.uniform(-np.pi, np.pi)
+        mirrored = positions * (np.array([-1, 1]) if axis == 0 else np.array([1, -1]))
+        turned = np.pi - aim if axis == 0 else -aim
+        one, other = least((side, top), aim, positions), least((-side, top), turned, mirrored)
+        assert one == pytest.approx(other, abs=1e-9)
+
+
+def test_it_goes_on_without_a_jump_and_rises_towards_the_rail():
+    places = np.linspace(0.889 - R - 0.7, 0.889 - R, 4000)
+    for tip in ((0.0, 0.0), (0.3, -0.3), (-0.2, 0.4)):
+        for aim in (np.pi, 2.6, -2.4):
+            found = np.array([least(tip, aim, [(x, 0.9)]) for x in places])
+            assert (np.diff(found) > -1e-9).all() and np.diff(found).max() < 0.01
+    heights = np.linspace(-0.45, 0.45, 500)
+    found = np.array([least((0.1, top), np.pi, [(0.85, 0.9)]) for top in heights])
+    assert (np.diff(found) <= 1e-9).all() and found[0] > found[-1] + 0.3
+
+
+def test_what_is_done_to_a_stroke_is_what_is_said():
+    rng, seen, fits = np.random.default_rng(5), dict.fromkeys(range(8), 0), []
+    for _ in range(4000):
+        x = 0.889 - R - 10 ** rng.uniform(-6, 0)
+        positions = [(x, 0.9), *rng.uniform((-0.86, -1.75), (0.86, 1.75), (3, 2))]
+        stroke = (2.0, *tip_of(rng), np.pi + rng.uniform(-1.0, 1.0), rng.choice([0.0, 0.2]))
+        played, done = in_room(stroke, positions)
+        speed, side, top, aim, elevation = played
+        assert (
+            (speed, aim) == (stroke[0], stroke[3])
+            and elevation >= stroke[4]
+            and np.hypot(side, top) < 0.5 + 1e-9
+        )
+        assert bool(done & RAISED) == (elevation > stroke[4]) and bool(done & MOVED) == (
+            (side, top) != stroke[1:3]
+        )
+        assert done != FREE or played == stroke
+        assert elevation == pytest.approx(least((side, top), aim, positions, elevation=stroke[4]), abs=1e-12)
+        if done & UNPLAYABLE:
+            assert elevation > STEEPEST
+        elif done & MOVED:  # to the place that just fits
+            # beside a ball behind it, a cue that moves up may have no more of it in its way at once
+            fits.append(abs(elevation - STEEPEST) < 1e-6)
+            assert elevation <= STEEPEST + 1e-9 and top > stroke[2]
+        seen[done] += 1
+    assert np.mean(fits) > 0.95 and seen[FREE] > 100 and seen[RAISED] > 100 and seen[RAISED | MOVED] > 100
+
+
+def test_a_ball_that_nobody_can_play_is_played_with_a_cue_that_nearly_stands():
+    behind = [(-0.0527, 0.0), (-0.04, -0.0345), (-0.04, 0.0345), (-0.0925, -0.02), (-0.0925, 0.02)]
+    played, done = in_room((2.0, 0.0, 0.5, 0.0, 0.0), [(0.0, 0.0), *behind, (-0.13, 0.0)])
+    assert played[4] <= sn.physics.cue.MAX_ELEVATION
+    assert in_room((2.0, 0.0, -0.4, 0.0, 0.0), [(0.0, 0.0), *behind])[1] & MOVED
+    free = (2.0, 0.1, -0.4, 0.3, 0.0)
+    assert in_room(free, [(0.0, 0.0), *behind], np.array(NO_RAILS)) == (free, FREE)
+    assert done & RAISED
