@@ -5,7 +5,8 @@
 
 Points a visit on opened tables, the same for all, with 95 % intervals by bootstrap over the visits. A player
 that knows its table plans with the constants drawn. One that does not plans with those of an average table,
-the middle of each range, or with the preset's: aims, the squirt that it allows for, and all that it foresees.
+the middle of each range, or with the preset's: aims, all that it foresees and, unless the cue is its own, the
+squirt that it allows for.
 """
 
 import copy
@@ -27,6 +28,7 @@ FIRST_SEED = 4_000_000
 NAMES = {
     "fixed": "fixed",
     "known": "drawn, knows the table",
+    "cue": "drawn, average table, own cue",
     "average": "drawn, takes an average table",
     "preset": "drawn, takes the preset",
 }
@@ -39,11 +41,12 @@ def squirt(side, ratio):
 
 
 class Stranger:
-    """A player on a table that it takes for one with the constants ``believed``."""
+    """A player on a table that it takes for one with the constants ``believed``; ``own``: the cue is its own,
+    whose squirt it knows."""
 
-    def __init__(self, player, believed):
-        self.name, self.believed = player.name, believed
-        self._player, self._bound = player, None
+    def __init__(self, player, believed, own):
+        self.name, self.believed, self.own = player.name, believed, own
+        self._player, self._bound = player, player
 
     def at(self, rules):
         """Bind it, see ``players.Player``."""
@@ -55,6 +58,8 @@ class Stranger:
         """What it does, see ``players.Player``."""
         at = Positions.of(positions)
         strokes = self._bound.play(at, seeds)
+        if self.own:
+            return strokes
         values, side = strokes.values.copy(), strokes.values[:, SIDE]
         assert at.conditions is not None  # the tables are drawn
         own = at.conditions[:, conditions.END_MASS_RATIO]
@@ -67,9 +72,10 @@ def points(name, way, noise, physics, visits, seed):
     """Points of each visit of a player, in one of the ways of ``NAMES``."""
     player, base = sn.player(name), sn.Physics.preset(physics)
     middle = conditions.drawn(np.full(conditions.COLUMNS, 0.5))
-    believed = {"average": conditions.physics_with(base, middle), "preset": base}
+    average = conditions.physics_with(base, middle)
+    believed = {"cue": average, "average": average, "preset": base}
     if way in believed:
-        player = Stranger(player, believed[way])
+        player = Stranger(player, believed[way], own=way == "cue")
     played = play_visits(
         player,
         visits,
@@ -97,7 +103,8 @@ def main():
     for name in args.players:
         for way, says in NAMES.items():
             made = points(name, way, args.noise, args.physics, args.visits, args.seed)
-            low, high = interval(made)
+            again = np.random.default_rng(0).integers(0, len(made), (2000, len(made)))
+            low, high = interval(made[again].mean(axis=1))
             found[f"{name}, {says}"] = made.tolist()
             print(f"{name:16s}{says:32s}{made.mean():8.1f} [{low:.1f}, {high:.1f}]", flush=True)
     save_json(args.json, found)

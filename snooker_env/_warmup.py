@@ -73,7 +73,7 @@ def warmup() -> None:
         strike(1.0, 0.0)
         collide_balls((1, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0))
         collide_cushion((1, 0, 0), (0, 0, 0), (1, 0, 0))
-        env = SnookerEnv(action="discrete")
+        env = SnookerEnv(action="discrete", conditions="drawn")
         env.reset(seed=0)
         env.action_masks()
         env.step(0)

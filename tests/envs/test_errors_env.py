@@ -38,6 +38,8 @@ WRONG = [
     ({}, "noise", NOISE, (*NOT_A_NAME, "pro")),
     ({}, "noise", "must be one of", ([], ["none"])),
     ({}, "fidelity", FIDELITY, WRONG_FIDELITIES),
+    ({}, "conditions", "must be one of 'fixed', 'drawn'", ("random", True, 1, None)),
+    ({}, "observe_conditions", 'must be False with conditions="fixed": there is nothing to observe', (True,)),
     ({}, "table", "must be one of 'match', 'tight'", ("loose",)),
     ({}, "table", '"match", "tight"', (3, None)),
     *[({}, field, "must be True or False", NOT_A_TRUTH) for field in FLAGS],
