@@ -206,9 +206,11 @@ def refit(judge, strike, seed=0, sigma=0.3, generations=25, population=12):
 
 
 def refine_from(judge, strike, seed=0, level=False):
-    """The same from a strike that may lie farther off: near it, and in a wide search around it."""
+    """The same from a strike that may lie farther off: searched around it with small and large steps."""
     rng = np.random.default_rng([seed, judge.shot.id])
     low, high = bounds(judge.shot, judge.physics, level)
     start = clipped(strike[None], low, high)[0]
-    near, _ = refine(judge, rng, start, low, high, 0.5, 40, 16)
-    return refine(judge, rng, near, low, high, 1.5, 40, 16)
+    found = [refine(judge, rng, start, low, high, sigma, 30) for sigma in (0.5, 2.0, 6.0)]
+    best, _ = min(found, key=lambda f: f[1])
+    best, _ = settled(judge, best)
+    return refine(judge, rng, best, low, high, 1.0, 30)
