@@ -2,8 +2,8 @@
 
 Part of ``python -m benchmarks.real_shots --peer``. The child (this file, run by the other Python) plays the shots by
 pooltool's models on its billiard table: once with its own constants for billiards and its own choice of models, once
-with Mathavan's cushion and our constants, as far as it has them. Its strikes are searched by CMA-ES from ours,
-and far, since one of its shots takes as long as hundred of ours.
+with Mathavan's cushion and our constants, as far as it has them. Its strikes are searched by CMA-ES around
+ours only, since one of its shots takes as long as hundred of ours or more.
 """
 
 import json
