@@ -2,8 +2,8 @@
 
 Part of ``python -m benchmarks.real_shots --peer``. The child (this file, run by the other Python) plays the shots by
 pooltool's models on its billiard table: once with its own constants for billiards and its own choice of models, once
-with Mathavan's cushion and our constants, as far as it has them. Its strikes are searched by CMA-ES from ours, near
-and far, since one of its shots takes as long as hundred of ours.
+with Mathavan's cushion and our constants, as far as it has them. Its strikes are searched by CMA-ES around
+ours only, since one of its shots takes as long as hundred of ours or more.
 """
 
 import json
@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 
 VARIANTS = ("pooltool, its own constants and models", "pooltool, our constants, Mathavan's cushion")
-_GENERATIONS, _POPULATION, _SIGMAS = 16, 12, (1.0, 3.0)
+_GENERATIONS, _POPULATION, _SIGMAS = 10, 10, (1.5,)
 _SECONDS = 3000
 
 

@@ -14,10 +14,11 @@ Error of a path: at the time of each sample, the distance between the measured a
 mean square over its samples (and the mean). Samples that no ball can have reached are left out (their number is
 printed). Contacts: of the cue ball with cushions, and the first with each ball; the order is right if the first four
 are the same ones in the same order; two within 0.03 s may change places. ``--laws`` leaves out one law after the other, on the held-out
-shots, every strike searched anew. ``--peer`` plays them with pooltool too (in a virtual environment of its own).
+shots, every strike searched again around the one that was. ``--peer`` plays them with pooltool too (in a virtual environment of its own).
 """
 
 import dataclasses
+import json
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +59,16 @@ def main(argv=None):
     parser.add_argument(
         "--fit", type=float, metavar="MINUTES", help="fit the constants anew, for so long, and judge those"
     )
+    parser.add_argument(
+        "--strikes", type=Path, metavar="FIGURES", help="search none, take those that --json wrote"
+    )
+    parser.add_argument(
+        "--peer-shots",
+        type=at_least(1),
+        default=20,
+        metavar="N",
+        help="only so many of them by pooltool [20]",
+    )
     options = parser.options(argv)
     try:
         shots = tracks.read(options.file)
@@ -91,10 +102,13 @@ def measure(options, shots):
     print(
         f"{len(shots)} shots of {options.file.name}, physics {'fitted anew' if options.fit else repr(options.physics)}"
     )
-    judges, strikes, found = [], [], []
+    judges, strikes, found, kept = [], [], [], {}
+    if options.strikes:
+        for old in json.loads(options.strikes.read_text(encoding="utf-8"))["shots"]:
+            kept[old["id"]] = np.array(list(old["strike"].values()))
     for shot in shots:
         judge = Judge(shot, physics)
-        strike, _ = fit(judge, options.seed)
+        strike = kept[shot.id] if shot.id in kept else fit(judge, options.seed)[0]
         judges.append(judge)
         strikes.append(strike)
         found.append({"part": part(shot.id)} | verdict.judge_shot(judge, strike))
@@ -109,7 +123,7 @@ def measure(options, shots):
     if options.laws:
         figures["laws"] = laws(judges, strikes, found, physics, options.seed)
     if options.peer:
-        figures["peer"] = peer(judges, strikes, found, physics)
+        figures["peer"] = peer(judges, strikes, found, physics, options.peer_shots)
     return figures, judges, strikes
 
 
@@ -157,7 +171,7 @@ def laws(judges, strikes, found, physics, seed):
         rows[name] = {"median": float(np.median(errors)), "worse": worse}
     for k in chosen:
         judges[k].use(physics)
-    print(f"\nWithout one law, {len(chosen)} shots held out, every strike searched anew")
+    print(f"\nWithout one law, {len(chosen)} shots held out, every strike searched again")
     print(
         "\n".join(
             text_table(
@@ -169,12 +183,12 @@ def laws(judges, strikes, found, physics, seed):
     return rows
 
 
-def peer(judges, strikes, found, physics):
+def peer(judges, strikes, found, physics, most):
     """The same shots by pooltool: medians by its models, printed and returned; None if it cannot be installed."""
     from ..speed.against_pooltool import PeerError
     from . import against_pooltool
 
-    chosen = [k for k, s in enumerate(found) if s["part"] == HELD_OUT]
+    chosen = [k for k, s in enumerate(found) if s["part"] == HELD_OUT][:most]
     try:
         rows = against_pooltool.play([judges[k] for k in chosen], [strikes[k] for k in chosen], physics)
     except PeerError as error:

@@ -1,12 +1,9 @@
-"""What is each law worth? The shots again without it, every strike searched anew."""
+"""What is each law worth? The shots again without it, every strike searched again near and far from the one that was."""
 
 from dataclasses import replace
 
 from .constants import rms
-from .strikes import fit, refine_from
-
-SNOOKER_NOSE = 0.4
-"""Height of a snooker cushion's nose over the centre, over R."""
+from .strikes import refine_from
 
 
 def laws(physics):
@@ -24,9 +21,7 @@ def laws(physics):
 
 
 def without(judge, strike, physics, level, seed):
-    """The cue ball's rms error [m] with other constants, or with a level cue: from its strike, and searched anew."""
+    """The cue ball's rms error [m] with other constants, or with a level cue, its strike searched near and far."""
     judge.use(physics)
-    from_there = refine_from(judge, strike, seed, level)
-    anew = fit(judge, seed, runs=1, level=level)
-    best, _ = min(from_there, anew, key=lambda found: found[1])
+    best, _ = refine_from(judge, strike, seed, level)
     return rms(judge, best)

@@ -5,7 +5,6 @@ import numpy as np
 from commands import picture_style, provenance
 
 from .tracks import HALF
-from .verdict import NOSES as NOSES
 
 COLOURS = (picture_style.BLUE, picture_style.ORANGE, picture_style.GREEN)
 PUBLISHED = 0.223
@@ -13,9 +12,10 @@ PUBLISHED = 0.223
 
 
 def chosen(shots):
-    """The shots at 10, 50 and 90 % of the cue ball's error: their places in the list."""
-    order = np.argsort([s["cue_rms"] for s in shots])
-    return [int(order[min(int(q * len(order)), len(order) - 1)]) for q in (0.1, 0.5, 0.9)]
+    """The shots at 10, 50 and 90 % of the cue ball's error, of those held out if there are any: their places in the list."""
+    held = [k for k, s in enumerate(shots) if s["part"] == "held out"] or range(len(shots))
+    order = sorted(held, key=lambda k: shots[k]["cue_rms"])
+    return [order[min(int(q * len(order)), len(order) - 1)] for q in (0.1, 0.5, 0.9)]
 
 
 def draw(figures, judges, strikes, out):

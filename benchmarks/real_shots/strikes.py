@@ -51,6 +51,9 @@ def bounds(shot, physics, level=False):
     if n >= 4:
         speed = np.hypot(*(xy[n - 1] - xy[0])) / (t[n - 1] - t[0])
         slowest, fastest, turn = 0.88 * speed, 1.12 * speed + 0.1, 0.03
+    elif n == 3:
+        speed = np.hypot(*(xy[2] - xy[0])) / (t[2] - t[0])
+        slowest, fastest, turn = 0.8 * speed, 1.2 * speed + 0.1, 0.06
     else:  # another ball or a cushion is hit at once: the samples after it bound the speed
         steps = np.hypot(*np.diff(xy, axis=0).T) / np.diff(t) if len(t) > 1 else np.array([1.0])
         slowest, fastest, turn = 0.6 * steps.max(), 2.2 * steps.max() + 0.3, 0.15
@@ -175,15 +178,16 @@ def settled(judge, strike, steps=4):
     return best, cost
 
 
-def fit(judge: Judge, seed=0, runs=3, enough=0.03, level=False):
+def fit(judge: Judge, seed=0, runs=3, enough=0.03, bad=0.1, level=False):
     """The strike of a shot, from nothing but its samples: (6,), and its cost [m^2].
 
-    Searched anew up to ``runs`` times, until the cost is below ``enough`` squared or the best was found twice.
+    Searched anew up to ``runs`` times, until the cost is below ``enough`` squared or the best was found twice; three times
+    as often while it is above ``bad`` squared.
     """
     rng = np.random.default_rng([seed, judge.shot.id])
     low, high = bounds(judge.shot, judge.physics, level)
     found = []
-    for _ in range(runs):
+    for k in range(3 * runs):
         pool, cost = evolve(judge, rng, low, high)
         cost = costs(judge, pool)
         starts = [pool[np.argmin(cost)], pool[rng.integers(len(pool))]]
@@ -193,7 +197,8 @@ def fit(judge: Judge, seed=0, runs=3, enough=0.03, level=False):
             min((refine(judge, rng, best, low, high, s, 20) for s in (0.1, 1.5)), key=lambda f: f[1])
         )
         least = sorted(cost for _, cost in found)
-        if least[0] < enough**2 or (len(least) > 1 and least[1] < 1.05 * least[0]):
+        again = len(least) > 1 and least[1] < 1.05 * least[0]
+        if least[0] < enough**2 or (least[0] < bad**2 and (again or k + 1 >= runs)):
             break
     return min(found, key=lambda f: f[1])
 
@@ -206,9 +211,11 @@ def refit(judge, strike, seed=0, sigma=0.3, generations=25, population=12):
 
 
 def refine_from(judge, strike, seed=0, level=False):
-    """The same from a strike that may lie farther off: near it, and in a wide search around it."""
+    """The same from a strike that may lie farther off: searched around it with small and large steps."""
     rng = np.random.default_rng([seed, judge.shot.id])
     low, high = bounds(judge.shot, judge.physics, level)
     start = clipped(strike[None], low, high)[0]
-    near, _ = refine(judge, rng, start, low, high, 0.5, 40, 16)
-    return refine(judge, rng, near, low, high, 1.5, 40, 16)
+    found = [refine(judge, rng, start, low, high, sigma, 30) for sigma in (0.5, 2.0, 6.0)]
+    best, _ = min(found, key=lambda f: f[1])
+    best, _ = settled(judge, best)
+    return refine(judge, rng, best, low, high, 1.0, 30)

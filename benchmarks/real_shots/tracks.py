@@ -193,7 +193,10 @@ def _turns(t, gap, near=0.25, touch=0.012, least=0.006):
         away = gap[k:].max() if gap[k] < touch else gap[last]
         if high - gap[k] > least and away - gap[k] > least:
             time, reached = _crossing(t, gap, k)
-            if min(gap[k], reached) < touch:
+            unseen = t[min(k + 1, n - 1)] - t[k - 1] if k else 0.0
+            if min(gap[k], reached) < max(
+                touch, 0.08 * unseen
+            ):  # in a pause of the track the lines meet less well
                 found.append(time)
                 high = gap[k]
         k = last

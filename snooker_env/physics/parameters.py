@@ -377,5 +377,6 @@ PRESETS: dict[str, dict[str, Any]] = {
         "e_c_power": 0.0455,
         "mu_c": 0.238,
         "sin_theta": 0.201,
+        "tables": False,  # above the knee none is used
     },
 }

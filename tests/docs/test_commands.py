@@ -54,6 +54,7 @@ ELSEWHERE = {
     "snooker_env.benchmark": "tests/benchmark/test_results.py",
     "benchmarks.paper": "tests/benchmarks/test_benchmark_commands.py",
     "benchmarks.left_out": "tests/benchmarks/test_benchmark_commands.py",
+    "benchmarks.real_shots": "tests/benchmarks/test_real_shots.py",
     "agents.evaluate": "tests/commands/test_lifecycle.py",
     "agents.report": "tests/commands/test_lifecycle.py",
     "agents.curves": "tests/agents/evaluation/test_learning_curves.py",
