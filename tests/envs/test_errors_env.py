@@ -38,6 +38,7 @@ WRONG = [
     ({}, "noise", NOISE, (*NOT_A_NAME, "pro")),
     ({}, "noise", "must be one of", ([], ["none"])),
     ({}, "fidelity", FIDELITY, WRONG_FIDELITIES),
+    ({}, "cue", "must be one of 'free', 'real'", (*NOT_A_NAME, "Real", ["real"], {})),
     ({}, "table", "must be one of 'match', 'tight'", ("loose",)),
     ({}, "table", '"match", "tight"', (3, None)),
     *[({}, field, "must be True or False", NOT_A_TRUTH) for field in FLAGS],
