@@ -12,12 +12,12 @@ from gymnasium import spaces
 from .._check import refuse, refuse_what
 from .._jit import entry, kernel
 from .._types import Action, Floats
-from ..game.balls import bits
+from ..game.balls import N_BALLS, bits
 from ..game.frame_columns import strikeable
 from ..game.pots import GHOST_X, GHOST_Y, POT_BALL, POT_COLUMNS, POT_POCKET, find_pots
 from ..geometry import AIM_X, AIM_Y, BALL_RADIUS, POCKET_AIMS
 from ..physics.cue import squirt
-from ..physics.cue_room import STEEPEST, least_elevation
+from ..physics.cue_room import EDGE, EDGE_AXIS, EDGE_LEVEL, EDGE_SIDE, STEEPEST, least_elevation
 from ..physics.parameters import Physics
 from . import declarations
 from .escapes import LINE_AIM
@@ -34,6 +34,8 @@ STROKES = len(SPEEDS) * len(SIDES) * len(TOPS)
 """Number of strokes at one pot: speeds x sides x tops."""
 SIZE = POTS * STROKES
 """Number of strokes to choose from: all choices without options of frames. Public as ``tasks.CHOICES``."""
+_NEAR = 0.1
+"""A real cue need not be steeper than ``STEEPEST`` for what is farther from the cue ball's centre [m]."""
 
 
 def choice_of(pot: int, speed: int, side: int, top: int) -> int:
@@ -83,10 +85,25 @@ def chosen(index, positions, on_table, on, law, work):
 
 
 @kernel
+def _crowded(positions, on_table, rails):
+    """Whether a rail or ball is so near that a cue may have to be steeper than ``STEEPEST``."""
+    for m in range(0, rails.shape[0], EDGE):
+        if rails[m + EDGE_LEVEL] - rails[m + EDGE_SIDE] * positions[0, int(rails[m + EDGE_AXIS])] < _NEAR:
+            return True
+    near = False
+    for i in range(1, N_BALLS):
+        dx, dy = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
+        near = near or (on_table[i] and dx * dx + dy * dy < _NEAR * _NEAR)
+    return near
+
+
+@kernel
 def _without_room(positions, on_table, on, options, rows, many, out):
     """Of the ``many`` lines, clear the choices in ``out`` (SIZE,) whose cue must be steeper than ``STEEPEST``, unless
     none were left. ``rows``: work space."""
     rails, x, y = options[declarations.A_RAILS :], positions[0, 0], positions[0, 1]
+    if not _crowded(positions, on_table, rails):
+        return
     pots, left = find_pots(positions, on_table, on, BALL_RADIUS, rows[:POTS]), 0
     if pots == 0:
         find_lines(positions, on_table, on, rows)

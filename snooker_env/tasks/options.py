@@ -125,7 +125,7 @@ _ABOUT: dict[str, tuple[str, str | None, str]] = {
     "cue": (
         "shot",
         None,
-        '"free", "real": whether rails and balls are in the way of the cue, see The cue needs room',
+        '"free", "real": whether rails and balls are in the way of the cue, see Room for the cue',
     ),
     "fidelity": ("shot", None, '"fast", "standard", "reference", "euler:N"'),
     "conditions": ("shot", None, '"fixed", "drawn": whether each episode draws constants of its table'),
@@ -288,7 +288,8 @@ class Options:
         for name, read in (("physics", physics), ("noise", noise)):
             if isinstance(getattr(self, name), dict):  # a dict may change later
                 object.__setattr__(self, name, read)
-        actions, real = self._actions(physics), choice("cue", self.cue, CUES)
+        actions = self._actions(physics)
+        choice("cue", self.cue, CUES)
         default = isinstance(self.layout, str) and self.layout == "default"
         layout = LAYOUTS[self.task] if default else self.layout
         if self.game == "six_red" and isinstance(layout, str) and layout == "break_off":
@@ -324,7 +325,9 @@ class Options:
             object.__setattr__(self, "opponent", str(self.opponent))
         pause = round(1000 * number("time_to_play", self.time_to_play, 0.001, MOST_TIME))
         world = actions, noise, physics, table, fidelity, plan, self.reward, self.observation
-        read = Rules(*world, self.miss, limit, one_stroke, frames, self.game, pause, drawn, observed, real)
+        read = Rules(
+            *world, self.miss, limit, one_stroke, frames, self.game, pause, drawn, observed, self.cue
+        )
         object.__setattr__(self, "rules", read)
 
     def _physics(self) -> Physics:

@@ -40,6 +40,7 @@ WRONG = [
     ({}, "fidelity", FIDELITY, WRONG_FIDELITIES),
     ({}, "conditions", "must be one of 'fixed', 'drawn'", ("random", True, 1, None)),
     ({}, "observe_conditions", 'must be False with conditions="fixed": there is nothing to observe', (True,)),
+    ({}, "cue", "must be one of 'free', 'real'", (*NOT_A_NAME, "Real", ["real"], {})),
     ({}, "table", "must be one of 'match', 'tight'", ("loose",)),
     ({}, "table", '"match", "tight"', (3, None)),
     *[({}, field, "must be True or False", NOT_A_TRUTH) for field in FLAGS],
