@@ -12,6 +12,7 @@ from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics.cue_room import NO_RAILS, STEEPEST, least_elevation
 from snooker_env.planning import Planner, Positions, StrokeSearch, at_pots
 from snooker_env.tasks import choice_of
+from snooker_env.tasks.declarations import A_RAILS
 from snooker_env.tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
 from snooker_env.tasks.noise import TWICE, Noise, with_errors
 from tests.kernels import from_python
@@ -302,3 +303,34 @@ def test_side_without_pots_is_aimed_for_the_swerve_too():
         env.step(choice_of(0, 6, 0, 2))
         assert env.history[-1].first == (1,)
     assert met["real"] == 1 and met["free"] != 1
+
+
+@pytest.mark.parametrize("opponent", ["ghost_ball", "random", "search_60"])
+def test_both_players_of_a_frame_have_the_same_cue(opponent):
+    """Many tables as one; strokes of either side are raised."""
+    options: dict[str, Any] = {"task": "frame", "opponent": opponent, "cue": "real", "action": "discrete"}
+    raised = {0: 0.0, 1: 0.0}
+    env = sn.SnookerEnv(**options, noise="club", layout="random:3")
+    env.keep_history = True
+    many = sn.SnookerVectorEnv(1, **options, noise="club", layout="random:3")
+    seen, _ = many.reset(seed=2)
+    assert np.array_equal(env.reset(seed=2)[0], seen[0])
+    rng = np.random.default_rng(1)
+    for _ in range(25):
+        choice = int(rng.choice(np.flatnonzero(env.action_masks())))
+        observation, _, over, cut, _ = env.step(choice)
+        seen, _, _, _, _ = many.step(np.array([choice]))
+        if over or cut:
+            break
+        assert np.array_equal(observation, seen[0])
+    for played in env.history:
+        raised[played.player] = max(raised[played.player], np.degrees(played.cue["elevation"]))
+    assert min(raised.values()) > 3.0, raised
+
+
+def test_cue_of_two_players_is_the_same():
+    packs = sn.MatchVectorEnv(2, cue="real").tables.packs
+    rails = sn.Options(cue="real").rules.rails
+    assert len(packs) == 2 and all(np.array_equal(options[A_RAILS:], rails) for options, _, _ in packs)
+    with pytest.raises(ValueError, match="cue"):
+        sn.MatchVectorEnv(2, seats=({"cue": "real"}, {}))
