@@ -1,5 +1,7 @@
 """Does ``cue="real"`` raise the cue where it must, everywhere alike, and is what is aimed then aimed for that?"""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from snooker_env.geometry import BALL_RADIUS as R
 from snooker_env.physics.cue_room import NO_RAILS, STEEPEST, least_elevation
 from snooker_env.planning import Planner, Positions, StrokeSearch, at_pots
 from snooker_env.tasks import choice_of
+from snooker_env.tasks.declarations import A_RAILS
 from snooker_env.tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
 from snooker_env.tasks.noise import TWICE, Noise, with_errors
 from tests.kernels import from_python
@@ -17,7 +20,7 @@ from tests.tables import jsonable, table_state
 
 FROZEN = 0.889 - R - 1e-6
 """x of a ball that touches the cushion, nearly."""
-WIDE = {"cue": "real", "aim": "absolute", "layout": "random:1"}
+WIDE: dict[str, Any] = {"cue": "real", "aim": "absolute", "layout": "random:1"}
 
 
 def posed(places, on=1, **options):
@@ -35,6 +38,7 @@ def cue_of(env, action):
 
 
 def test_an_unknown_cue_is_refused_by_name():
+    wrong: Any
     for wrong in ("Real", True, None):
         with pytest.raises(ValueError, match=r"^cue = .*must be one of 'free', 'real'$"):
             sn.Options(cue=wrong)
@@ -100,7 +104,7 @@ def test_the_errors_leave_the_cue_above_the_rail():
     assert np.mean(np.array(found) == least) > 0.3 and max(found) > least + 2.0
 
 
-OPTIONS = [
+OPTIONS: list[dict[str, Any]] = [
     {"aim": "target", "noise": "amateur", "layout": "random:3"},
     {"action": "discrete", "noise": "club", "layout": "random:6"},
     {"aim": "target", "elevation": True, "placement": True, "layout": "break_off", "noise": "club"},
@@ -131,8 +135,8 @@ def test_a_planned_stroke_is_the_stroke_of_the_environment(options):
         env.reset(seed=k)
         state = at_a_cushion(env, k)
         shape = env.action_space.shape
-        masks = None if shape else np.flatnonzero(env.action_masks())
-        chosen = rng.uniform(-1, 1, (1, *shape)).astype(np.float32) if shape else rng.choice(masks, 1)
+        available = np.arange(1) if shape else np.flatnonzero(env.action_masks())
+        chosen = rng.uniform(-1, 1, (1, *shape)).astype(np.float32) if shape else rng.choice(available, 1)
         points, goes_on, left, seen = planner.play(state, [0], chosen, [state["stream"]])
         observation, reward, ended, _, _ = env.step(chosen[0])
         assert points[0] == reward and goes_on[0] == (not ended) and np.array_equal(seen[0], observation)
@@ -229,8 +233,9 @@ def test_target_lines_are_turned_by_the_swerve(elevated):
             env = posed({0: lie, 1: red}, cue=cue, aim="target", elevation=elevated)
             line = pots.pots(env.positions, env.on_table, mask_of([1]), most=1)[0]
             env.step(np.array([0.0, 0.6, 0.0, 0.0] + [-1.0] * elevated, np.float32))
-            hit = env.last_shot.events[env.last_shot.events["kind"] == sn.EventKind.BALL_BALL]
-            place = env.last_shot.at(float(hit["time"][0]))[0][0] if len(hit) else np.array(lie)
+            shot = env.history[-1].shot
+            hit = shot.events[shot.events["kind"] == sn.EventKind.BALL_BALL]
+            place = shot.at(float(hit["time"][0]))[0][0] if len(hit) else np.array(lie)
             thick.append(np.hypot(*(place - line[2:4])))
     free, real = np.array(thick).reshape(2, -1)
     assert real.max() < 1e-3 and np.median(free) < 2e-3  # a level cue's squirt is all there is
@@ -242,7 +247,7 @@ def test_proposals_pot_from_the_cushion_as_often_as_with_a_free_cue():
         search, points = StrokeSearch({"cue": cue}), []
         for k, (lie, red) in enumerate(places):
             env = posed({0: lie, 1: red}, cue=cue)
-            strokes = at_pots(search, Positions.of(env), 30, [k]).strokes[0]
+            strokes = at_pots(search, Positions.of(env), 30, np.array([k])).strokes[0]
             spun = strokes[(np.abs(strokes[:, 1]) > 0.05) & (strokes[:, 0] > 1.5)]
             points.extend(search.planner.play(env, np.zeros(len(spun), int), strokes=spun).points)
         made.append(np.mean(np.array(points) > 0))
@@ -298,3 +303,34 @@ def test_side_without_pots_is_aimed_for_the_swerve_too():
         env.step(choice_of(0, 6, 0, 2))
         assert env.history[-1].first == (1,)
     assert met["real"] == 1 and met["free"] != 1
+
+
+@pytest.mark.parametrize("opponent", ["ghost_ball", "random", "search_60"])
+def test_both_players_of_a_frame_have_the_same_cue(opponent):
+    """Many tables as one; strokes of either side are raised."""
+    options: dict[str, Any] = {"task": "frame", "opponent": opponent, "cue": "real", "action": "discrete"}
+    raised = {0: 0.0, 1: 0.0}
+    env = sn.SnookerEnv(**options, noise="club", layout="random:3")
+    env.keep_history = True
+    many = sn.SnookerVectorEnv(1, **options, noise="club", layout="random:3")
+    seen, _ = many.reset(seed=2)
+    assert np.array_equal(env.reset(seed=2)[0], seen[0])
+    rng = np.random.default_rng(1)
+    for _ in range(25):
+        choice = int(rng.choice(np.flatnonzero(env.action_masks())))
+        observation, _, over, cut, _ = env.step(choice)
+        seen, _, _, _, _ = many.step(np.array([choice]))
+        if over or cut:
+            break
+        assert np.array_equal(observation, seen[0])
+    for played in env.history:
+        raised[played.player] = max(raised[played.player], np.degrees(played.cue["elevation"]))
+    assert min(raised.values()) > 3.0, raised
+
+
+def test_cue_of_two_players_is_the_same():
+    packs = sn.MatchVectorEnv(2, cue="real").tables.packs
+    rails = sn.Options(cue="real").rules.rails
+    assert len(packs) == 2 and all(np.array_equal(options[A_RAILS:], rails) for options, _, _ in packs)
+    with pytest.raises(ValueError, match="cue"):
+        sn.MatchVectorEnv(2, seats=({"cue": "real"}, {}))
