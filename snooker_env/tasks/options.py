@@ -245,8 +245,8 @@ class Options:
     placement: bool = False
     physics: PhysicsLike = "paper"
     table: TableLike = "match"
-    cue: CueKind = "free"
     fidelity: Fidelity = "standard"
+    cue: CueKind = "free"
     one_stroke: bool = False
     opponent: str | Path = "none"
     trust: bool = False
