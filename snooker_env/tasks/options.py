@@ -260,8 +260,8 @@ class Options:
     placement: bool = False
     physics: PhysicsLike = "paper"
     table: TableLike = "match"
-    cue: CueKind = "free"
     fidelity: Fidelity = "standard"
+    cue: CueKind = "free"
     conditions: Literal["fixed", "drawn"] = "fixed"
     observe_conditions: bool = False
     one_stroke: bool = False
