@@ -279,7 +279,14 @@ def test_a_solved_aim_holds_with_drag():
     code, steps = contact.parse_fidelity("standard")
     law = CueLaw(physics.pack(), physics.end_mass_ratio, code, steps, 0.5, np.empty(0))
     aim = aim_for(
-        balls, 1, tuple(pocket), tuple(balls[1] - 2 * R * line), (1.2, 0.0, 0.0, 0.0), law, new_work()
+        balls,
+        np.ones(2, bool),
+        1,
+        tuple(pocket),
+        tuple(balls[1] - 2 * R * line),
+        (1.2, 0.0, 0.0, 0.0),
+        law,
+        new_work(),
     )
     v, w = sn.strike(1.2, aim, physics=physics)
     shot = sn.simulate(balls, [v[:2], (0, 0)], [w, (0, 0, 0)], None, physics)

@@ -28,11 +28,12 @@ from snooker_env.planning.proposals import (
     spread_strokes,
     strokes_at,
 )
+from snooker_env.planning.strokes import Dynamics
 from snooker_env.tasks import LEVELS
 from snooker_env.tasks.box_actions import MAX_SPEED
 
 PLANNER = planning.Planner({"fidelity": "fast"}, threads=1)
-DYNAMICS = PLANNER.physics, PLANNER.rules.fidelity
+DYNAMICS = Dynamics.of(PLANNER.rules)
 SPREAD = planning.spread_of(LEVELS["club"])
 NO_POT = planning.Position(cue=(0.3, 1.0), reds=[(0.3, 1.758), (0.36, 1.758)], black=(0.0, -1.0))
 """Both reds lie on the top cushion and hide each other from the corners."""

@@ -331,6 +331,6 @@ def test_both_players_of_a_frame_have_the_same_cue(opponent):
 def test_cue_of_two_players_is_the_same():
     packs = sn.MatchVectorEnv(2, cue="real").tables.packs
     rails = sn.Options(cue="real").rules.rails
-    assert len(packs) == 2 and all(np.array_equal(options[A_RAILS:], rails) for options, _, _ in packs)
+    assert len(packs) == 2 and all(np.array_equal(options[0, A_RAILS:], rails) for options, _, _ in packs)
     with pytest.raises(ValueError, match="cue"):
         sn.MatchVectorEnv(2, seats=({"cue": "real"}, {}))
