@@ -44,7 +44,7 @@ from .coulomb import (
 )
 from .ends import NEVER, WHOLE, Target, dips_at, ends_inside, locate_end, may_dip, split_at, turns_at
 from .inertia import K_CLOTH, Impulses, slips_after
-from .polynomial import CLOSING, ROW, state_at
+from .polynomial import CLOSING, ROW, WORK_DONE, state_at
 from .transitions import STANDS, Moment, Step, Tolerances, cloth_after, mode_after
 
 OK, TOO_MANY_STEPS = 0, 1
@@ -73,6 +73,8 @@ _ROUNDING = 1e-15
 _SERIES = 40.0
 """Limit of a series' last terms, over tol; their sum is far above the step's error. Doubled: 3 % fewer steps,
 twice the error (8e-7 for two balls at ``standard``). Halved: the reverse."""
+_BENT = 10.0
+"""A step's polynomial with last terms above this, over tol, may err by more than tol between its ends."""
 _OVERSHOOT = 1.05
 """The estimated normal impulse over one without friction. Halved: 2 to 5 times the steps to the end."""
 _LEAST_LEFT = 0.1
@@ -140,6 +142,8 @@ class Outlook(NamedTuple):
     """The largest coefficient of friction at A."""
     may_grip: bool
     """Whether the cloth's friction can hold the ball in some state."""
+    may_rise: bool
+    """Whether friction can ever let the closing speed grow: never between balls."""
     analytic: bool
     """Whether the Taylor series is valid while A slips: the cloth never holds, its load is positive."""
 
@@ -159,7 +163,9 @@ def outlook_of(problem):
     pressed = contact.n_p >= abs(contact.n_f) * mu or (
         contact.n_p == 0.0 and contact.n_f * problem.start.a2 <= 0.0
     )
-    return Outlook(p_full, h_slip, mu, may_grip, pressed and not may_grip)
+    cloth = abs(contact.d_b) * problem.mu_s * (contact.n_p + abs(contact.n_f) * mu)
+    may_rise = abs(contact.d_a) * mu + cloth + abs(contact.l_n) > -contact.d_n
+    return Outlook(p_full, h_slip, mu, may_grip, may_rise, pressed and not may_grip)
 
 
 @kernel
@@ -196,14 +202,14 @@ def _left(x, outlook):
 
 
 @inlined
-def _series_step(series, x, slip, starts, left, problem, tol, order):
+def _series_step(series, x, slip, starts, outlook, problem, tol, order):
     """A Taylor step, up to its accuracy or a reversal of the cloth's slip: end, slips, degree and length."""
-    degree, span = taylor.expand(series, x, slip, starts, left, problem, _SERIES * tol, order)
+    degree, span = taylor.expand(series, x, slip, starts, _left(x, outlook), problem, _SERIES * tol, order)
     # a slip that counts as zero has no definite direction
     o1, o2 = (slip.b1, slip.b2) if starts else (0.0, 0.0)
     end = state_at(series, degree, span)
     slip_end = slips_after(end, problem.start, problem.contact)
-    if may_dip(slip.closing, series[ROW + CLOSING], span, slip_end.closing):
+    if outlook.may_rise and may_dip(slip.closing, series[ROW + CLOSING], span, slip_end.closing):
         t = dips_at(series, degree, span)
         if t != NEVER:
             span = t
@@ -240,7 +246,11 @@ def _runge_kutta_step(series, start, h, mode, cloth, outlook, limits, problem):
             shrink = _TURNED_FACTOR  # the cloth's slip reversed inside the step, perhaps between two stages
         elif -_BELOW * limits.tol > end.Z and x.Z > 0.0 and h > _SHORTEST:
             shrink = _LANDED_FACTOR  # the ball came down inside the step: find where
-        elif h > _SHORTEST and may_dip(slip.closing, _closing_rate(per, contact), h, slip_end.closing):
+        elif (
+            outlook.may_rise
+            and h > _SHORTEST
+            and may_dip(slip.closing, _closing_rate(per, contact), h, slip_end.closing)
+        ):
             dormand_prince.leave_polynomial(series, x, end, h, contact)
             t = dips_at(series, dormand_prince.DEGREE, 1.0)
             shrink = t if t != NEVER else STANDS
@@ -284,9 +294,9 @@ def solve(problem, accuracy, series):
         # Advance: one step from now, unless it must be shorter.
         by_series = outlook.analytic and mode == SLIP
         if by_series:
-            left, starts = _left(now.x, outlook), cloth == STARTS
+            starts = cloth == STARTS
             x, slip, degree, span = _series_step(
-                series, now.x, now.slip, starts, left, problem, limits.tol, order
+                series, now.x, now.slip, starts, outlook, problem, limits.tol, order
             )
             end, error = Moment(x, slip, now.per), limits.tol
         else:
@@ -323,7 +333,9 @@ def solve(problem, accuracy, series):
             over, first, t, ends_at = locate_end(
                 series, degree, span, x, slip.closing, target, problem.e, limits.tol
             )
-            if not by_series and h > _SHORTEST:
+            last = 4 * ROW  # the polynomial's last terms: in a smooth step they are far smaller
+            bent = abs(series[last + WORK_DONE]) + abs(series[last + CLOSING])
+            if not by_series and bent > _BENT * limits.tol and h > _SHORTEST:
                 part = split_at(first, t)
                 if part != WHOLE:
                     h *= part
