@@ -5,6 +5,9 @@ The copy's ``contact.py`` gets one more piece of text, and its ``engine.py`` one
 fidelities beyond the product's own: each is ``standard`` with one model left out.
 """
 
+from snooker_env.physics import parameters
+from snooker_env.physics.impact.tables import TABLED
+
 from . import package_copies
 
 FREE_BALLS, LOOSE_CUSHION, SMOOTH_CLOTH, MIRROR, AT_ONCE = 101, 102, 103, 104, 105
@@ -15,9 +18,6 @@ pocket."""
 
 _FLIES = "if kind == events.POT and state[i] != FALLING"
 """Where the engine tests whether a ball at the edge of a pocket can meet a jaw behind it."""
-
-_TABLED = "TABLED = (0, 1)"
-"""The fidelities that ask tables of rolling impacts."""
 
 _ADDED = '''
 
@@ -75,10 +75,6 @@ def load():
     texts["physics/engine.py"] = texts["physics/engine.py"].replace(
         _FLIES, f"{_FLIES} and law.fidelity != {AT_ONCE}"
     )
-    tables = texts["physics/impact/tables.py"]
-    if tables.count(_TABLED) != 1:
-        raise RuntimeError(f"tables.py has changed: {_TABLED!r} is not in it once")
-    texts["physics/impact/tables.py"] = tables.replace(
-        _TABLED, f"TABLED = (0, 1, *range({FREE_BALLS}, {AT_ONCE + 1}))"
-    )
+    # its shots have constants of the product, whose rolling impacts come from tables at these fidelities too
+    parameters.TABLED = (*TABLED, *range(FREE_BALLS, AT_ONCE + 1))
     return package_copies.load("snooker_env_variants", texts, ["simulation"])[0]
