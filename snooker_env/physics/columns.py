@@ -32,4 +32,4 @@ FALL_X, FALL_Y, FALL_RADIUS = range(3)
     P_BALLS,
 ) = range(21)
 """Places in ``Physics.pack()``. P_RAIL, P_JAW, P_BALLS: where the tables of rolling impacts begin behind these (``tables.py``); 0: none."""
-CONSTANTS = 20
+CONSTANTS = P_BALLS + 1
