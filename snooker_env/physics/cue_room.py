@@ -75,13 +75,6 @@ def rails_of(noses: Floats, falls: Floats) -> Floats:
 
 
 @kernel
-def _rail_plane(el, sin_phi):
-    """Angle t of the plane through an edge that touches a cue raised by ``el``; phi: between edge and cue."""
-    across, along = sin(el), cos(el) * sin_phi
-    return atan2(across, along) - asin(min(TAPER / hypot(across, along), 1.0))
-
-
-@kernel
 def _over_rail(D, sin_phi, c, side, top, R):
     """The least elevation [rad] over an edge, ``c`` = u . right; 0 if the cue ends before it."""
     q = sqrt(max(1.0 - side * side - top * top, 0.0))

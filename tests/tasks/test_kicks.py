@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import snooker_env as sn
+from snooker_env.physics.columns import CONSTANTS
 from snooker_env.planning import Planner
 from snooker_env.tasks.noise import KICK
 from tests.tables import begun
@@ -86,3 +87,8 @@ def test_planners_meet_the_kicks_of_the_environment():
 def test_a_bad_probability_is_refused(kick):
     with pytest.raises(ValueError, match=r"^noise\.kick = "):
         sn.Options(noise={"kick": kick})
+
+
+def test_a_kick_copies_all_constants():
+    """Its work space is ``CONSTANTS`` long: a shorter one would be written past its end."""
+    assert len(sn.Physics().pack()) == CONSTANTS
