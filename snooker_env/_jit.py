@@ -133,7 +133,7 @@ def entry(
     if function is None:
         return partial(entry, what=what, seconds=seconds, uses=uses)
     made: Any = numba.njit(**_OPTIONS)(function)
-    if isinstance(made, CPUDispatcher):  # with NUMBA_DISABLE_JIT it is the function itself
+    if made is not function:  # with NUMBA_DISABLE_JIT it is the function itself
         made.__class__ = Entry
         made.cost = Cost(what, seconds, uses)
         if CACHE_FOLDER is not None and may_be_kept(function):
