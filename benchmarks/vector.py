@@ -1,14 +1,15 @@
 """How fast are whole steps, and what are they spent on? The vector environment on one and two threads, single
 tables, and PPO's split.
 
-    python -m benchmarks.vector [--seconds 2] [--repeats 5] [--tables 1024] [--seed 0] [--json FILE] [--out
-    FOLDER]
+    python -m benchmarks.vector [--seconds 2] [--repeats 5] [--tables 1024] [--seed 0] [--only-cue]
+    [--json FILE] [--out FOLDER]
 
 Random actions on opened 22-ball tables; a step is one shot with everything around it (SAME_STEP: a visit that
 ends is followed by a new one within the step, so every step holds a shot). Frames: the agent plays alone,
 from the same tables. Steps a second are medians over ``--repeats`` rounds in which the kinds take turns, so
 that a busy machine slows all alike. Outside the engine: the same shots, from the same strikes, by the
-engine's kernel alone, and what is left of the step. Threads: what two threads give must be read against the
+engine's kernel alone, and what is left of the step. A real cue: the time of a step over that with a free cue,
+neighbouring steps; ``--only-cue`` measures nothing else. Threads: what two threads give must be read against the
 control, plain arithmetic on two threads at the same time.
 """
 
@@ -24,7 +25,7 @@ import snooker_env
 from commands import provenance
 from snooker_env.envs.snooker import SnookerEnv
 from snooker_env.envs.vector import SnookerVectorEnv
-from snooker_env.tasks import stroke
+from snooker_env.tasks import STROKES, stroke
 from snooker_env.tasks.stroke import ShotBuffers
 
 from ._common.command import Command, at_least, run, save_json
@@ -175,6 +176,37 @@ def outside(tables, repeats, seed):
     return {"step [us]": step_us, "engine alone [us]": engine_us, "outside the engine": share}
 
 
+CUES = {
+    "aim target": {"aim": "target"},
+    "discrete": {"action": "discrete"},
+    "masked": {"action": "discrete", "observation": "masked"},
+}
+
+
+def real_cue(tables, repeats, seed):
+    """By kind of action: the time of a step with ``cue="real"`` over that with "free", median of neighbours."""
+    found = {}
+    for name, options in CUES.items():
+        free, real = (native(tables, 1, cue=cue, **options) for cue in ("free", "real"))
+        rng, ratios = np.random.default_rng(seed), []
+        for env in (free, real):
+            env.reset(seed=seed)
+        for k in range(8 * repeats + 1):
+            took = []
+            if name == "aim target":
+                actions = rng.uniform(-1.0, 1.0, (tables, 4)).astype(np.float32)
+            else:
+                actions = rng.integers(0, STROKES, tables)
+            for env in (free, real) if k % 2 else (real, free):
+                start = time.perf_counter()
+                env.step(actions)
+                took.append(time.perf_counter() - start)
+            if k:  # the first step compiles
+                ratios.append(took[1] / took[0] if k % 2 else took[0] / took[1])
+        found[name] = float(np.median(ratios))
+    return found
+
+
 def sizes(seconds, seed):
     """Steps a second on one thread by number of tables."""
     return {n: rate(stepper(native(n, 1), seed), n, seconds) for n in SIZES}
@@ -225,6 +257,10 @@ def ppo(steps, envs, seed):
 
 def show(found):
     """Print the figures."""
+    for name, ratio in found["real cue"].items():
+        print(f"a step with a real cue over one with a free cue, {name + ':':<12}{ratio:5.2f}")
+    if "rates" not in found:
+        return
     r, o = found["rates"], found["outside"]
     print(f"\nrandom actions, opened 22-ball tables, {found['tables']} tables           steps/s")
     for name in (
@@ -264,16 +300,24 @@ def main():
     parser.add_argument("--repeats", type=at_least(1), default=5)
     parser.add_argument("--tables", type=at_least(1), default=1024)
     parser.add_argument("--ppo-steps", type=at_least(1), default=16384)
+    parser.add_argument("--only-cue", action="store_true", help="only the cost of a real cue")
     args = parser.options()
     snooker_env.warmup()
     found = {
         "machine": provenance.machine(),
         "tables": args.tables,
-        "rates": rates(args.tables, args.seconds, args.repeats, args.seed),
-        "outside": outside(args.tables, 4 * args.repeats, args.seed),
-        "sizes": sizes(args.seconds, args.seed),
-        "ppo": [p for p in (ppo(args.ppo_steps, n, args.seed) for n in (16, 64)) if p],
+        "real cue": real_cue(args.tables, args.repeats, args.seed),
     }
+    found |= (
+        {}
+        if args.only_cue
+        else {
+            "rates": rates(args.tables, args.seconds, args.repeats, args.seed),
+            "outside": outside(args.tables, 4 * args.repeats, args.seed),
+            "sizes": sizes(args.seconds, args.seed),
+            "ppo": [p for p in (ppo(args.ppo_steps, n, args.seed) for n in (16, 64)) if p],
+        }
+    )
     show(found)
     save_json(args.json, found)
 

@@ -21,7 +21,7 @@ axis is as far from its centre as both radii, (l - R side)^2 + (b sin el + R top
 s sqrt(1 - k^2) = R + r0 + k (b cos el - R q).
 """
 
-from math import asin, atan2, cos, hypot, pi, radians, sin, sqrt
+from math import atan2, cos, hypot, inf, radians, sin, sqrt
 
 import numpy as np
 
@@ -53,8 +53,8 @@ _PASSES = 3
 """Over the balls, at most."""
 _HALVINGS = 40
 """Bisections of a tip's way, to 1e-12 R; few strokes need them."""
-_TRIALS = 8
-"""Newton's steps and fixed points gain two digits and more each."""
+_TRIALS, _SAME = 8, 1e-13
+"""Newton's steps and fixed points gain two digits and more each; below such a step they stay [rad]."""
 
 
 NO_RAILS = np.empty(0)
@@ -75,89 +75,118 @@ def rails_of(noses: Floats, falls: Floats) -> Floats:
 
 
 @kernel
-def _over_rail(D, sin_phi, c, side, top, R):
-    """The least elevation [rad] over an edge, ``c`` = u . right; 0 if the cue ends before it."""
-    q = sqrt(max(1.0 - side * side - top * top, 0.0))
+def _over_rail(D, sin_phi, c, side, top, q, R):
+    """Sine and cosine of the least elevation over an edge, ``c`` = u . right; of 0 if the cue ends before it."""
     A, B, K = D - R * side * c, RAIL - R, TIP - R * q * TAPER
     flat = 1.0 - TAPER * TAPER
-    share = min((K - R * top * sqrt(flat)) / hypot(A, B), 1.0)
-    t, off = atan2(B, A) + asin(max(share, -1.0)), 0.0
-    for _ in range(_TRIALS):  # Newton's method; exact at once where the cue is square to the rail, c = 0
-        s, o = sin(t), cos(t)
+    # Newton's method on the unit vector (s, o) = (sin t, cos t); exact at once where the cue is square to the rail
+    far = hypot(A, B)
+    share = max(min((K - R * top * sqrt(flat)) / far, 1.0), -1.0)
+    rest = sqrt(1.0 - share * share)
+    s, o = (B * rest + A * share) / far, (A * rest - B * share) / far
+    off = 0.0
+    for _ in range(_TRIALS):
         w = sqrt(max(flat - c * c * s * s, _TINY))
         off = A * s - B * o + R * top * w - K
-        t = min(max(t - off / (A * o + B * s - R * top * c * c * s * o / w), 0.0), 0.5 * pi)
+        step = -off / (A * o + B * s - R * top * c * c * s * o / w)
+        s, o = s + step * o, o - step * s
+        if s <= 0.0:
+            s, o = 0.0, 1.0
+        elif o <= 0.0:
+            s, o = 1.0, 0.0
+        else:
+            length = sqrt(s * s + o * o)
+            s, o = s / length, o / length
+        if abs(step) < _SAME:
+            break
     if off < -_ABOVE:
-        return 0.5 * pi
-    if t <= 0.0:
-        return 0.0
-    s, across, along = sin(t), cos(t), sin(t) * sin_phi
-    el = atan2(along, across) + asin(min(TAPER / hypot(across, along), 1.0))
-    ce, se = cos(el), sin(el)
+        return 1.0, 0.0
+    if s <= 0.0:
+        return 0.0, 1.0
+    # sin(el) o - cos(el) s sin(phi) = TAPER
+    along = s * sin_phi
+    h2 = o * o + along * along
+    rest = sqrt(max(h2 - TAPER * TAPER, 0.0))
+    se, ce = (along * rest + o * TAPER) / h2, (o * rest - along * TAPER) / h2
+    if not ce > 0.0:
+        se, ce = 1.0, 0.0
     x = D - R * (side * c - top * se * sin_phi + q * ce * sin_phi) - TIP * s
-    return el if x <= LENGTH * (sin_phi * ce + TAPER * s) else 0.0
+    return (se, ce) if x <= LENGTH * (sin_phi * ce + TAPER * s) else (0.0, 1.0)
 
 
 @kernel
-def _over_ball(b, right, side, top, elevation, R):
-    """The least elevation [rad], from ``elevation`` on, that clears a ball b behind and ``right`` to the right [m]."""
-    q, beside, cosine = (
-        sqrt(max(1.0 - side * side - top * top, 0.0)),
-        right - R * side,
-        sqrt(1.0 - TAPER * TAPER),
-    )
-    ce, se, far = cos(elevation), sin(elevation), 0.0
+def _over_ball(b, beside, top, q, se, ce, R):
+    """Sine and cosine of the least elevation, from (``se``, ``ce``) on, that clears a ball b behind and ``beside``
+    the tip [m]."""
+    first_se, first_ce, cosine, far = se, ce, sqrt(1.0 - TAPER * TAPER), 0.0
     for trial in range(_TRIALS):
         far = (R + TIP + TAPER * (b * ce - R * q)) / cosine
         # a low cue may pass beside a ball, under its middle
         if far <= abs(beside) or (trial == 0 and hypot(beside, b * se + R * top) >= far):
-            return elevation
+            return first_se, first_ce
+        before = se
         se = (sqrt(far * far - beside * beside) - R * top) / b
         if se >= 1.0:
-            return 0.5 * pi
+            return 1.0, 0.0
         ce = sqrt(1.0 - se * se)
+        if abs(se - before) < _SAME:
+            break
     x = b * ce - R * q + far * TAPER / cosine
-    return max(asin(se), elevation) if 0.0 <= x <= LENGTH else elevation
+    return (se, ce) if se > first_se and 0.0 <= x <= LENGTH else (first_se, first_ce)
 
 
 @kernel
-def _edge(rails, m, x, y, back_x, back_y):
-    """Of the rail at ``m``: how far behind (x, y) its edge is [m], sin(phi), c; 0 if the cue does not cross it."""
-    across, along, back, beside = x, y, back_x, back_y
-    if rails[m + EDGE_AXIS] != 0.0:
-        across, along, back, beside = y, x, back_y, back_x
-    side = rails[m + EDGE_SIDE]
-    sin_phi = side * back
-    if sin_phi <= 0.0:
-        return 0.0, 0.0, 0.0
-    D = rails[m + EDGE_LEVEL] - side * across
-    at = along + beside * D / sin_phi
-    # right = (sin aim, -cos aim) = (-back_y, back_x)
-    c = -side * beside if rails[m + EDGE_AXIS] == 0.0 else side * beside
-    if not rails[m + EDGE_LOW] <= at <= rails[m + EDGE_HIGH]:
-        D += rails[m + EDGE_BEHIND]
-    return D, sin_phi, c
+def _over_rails(ax, ay, side, top, q, x, y, rails, R):
+    """Sine and cosine of the least elevation over the rails."""
+    # the cue crosses one end rail and one side rail at most, the nearest edge of each
+    across_x, across_y, c_x, c_y = inf, inf, 0.0, 0.0
+    for m in range(0, rails.shape[0], EDGE):
+        ends = rails[m + EDGE_AXIS] != 0.0
+        sin_phi = -rails[m + EDGE_SIDE] * (ay if ends else ax)
+        D = rails[m + EDGE_LEVEL] - rails[m + EDGE_SIDE] * (y if ends else x)
+        # the cue points away from it, or ends before it
+        if sin_phi <= 0.0 or D > LENGTH * sin_phi + BUTT + R:
+            continue
+        at = x - ax * D / sin_phi if ends else y - ay * D / sin_phi
+        # right = (ay, -ax)
+        c = rails[m + EDGE_SIDE] * (-ax if ends else ay)
+        if not rails[m + EDGE_LOW] <= at <= rails[m + EDGE_HIGH]:
+            D += rails[m + EDGE_BEHIND]
+        if D > 0.0:
+            if ends and D < across_y:
+                across_y, c_y = D, c
+            elif not ends and D < across_x:
+                across_x, c_x = D, c
+    se, ce = 0.0, 1.0
+    if across_x < inf:
+        se, ce = _over_rail(across_x, abs(ax), c_x, side, top, q, R)
+    if across_y < inf:
+        other, its = _over_rail(across_y, abs(ay), c_y, side, top, q, R)
+        if other > se:
+            se, ce = other, its
+    return se, ce
 
 
 @kernel
-def _over_rails(aim, side, top, x, y, rails, R):
-    """The least elevation [rad] over the rails."""
-    back_x, back_y = -cos(aim), -sin(aim)
-    least, last_axis, last_side = 0.0, -1.0, 0.0
-    nearest, sin_phi, c = 0.0, 0.0, 0.0
-    for k in range(rails.shape[0] // EDGE):
-        m = EDGE * k
-        if rails[m + EDGE_AXIS] != last_axis or rails[m + EDGE_SIDE] != last_side:
-            if nearest > 0.0:
-                least = max(least, _over_rail(nearest, sin_phi, c, side, top, R))
-            last_axis, last_side, nearest = rails[m + EDGE_AXIS], rails[m + EDGE_SIDE], 0.0
-        D, phi, turn = _edge(rails, m, x, y, back_x, back_y)
-        # of the noses of one side the cue crosses one, or all of them behind a pocket
-        if D > 0.0 and (nearest == 0.0 or nearest > D):
-            nearest, sin_phi, c = D, phi, turn
-    if nearest > 0.0:
-        least = max(least, _over_rail(nearest, sin_phi, c, side, top, R))
-    return least
+def _least(side, top, ax, ay, elevation, positions, on_table, rails, R):
+    """``least_elevation`` of a cue that points along (ax, ay)."""
+    x, y, q = positions[0, 0], positions[0, 1], sqrt(max(1.0 - side * side - top * top, 0.0))
+    own, its = (sin(elevation), cos(elevation)) if elevation != 0.0 else (0.0, 1.0)
+    se, ce = _over_rails(ax, ay, side, top, q, x, y, rails, R)
+    if own >= se:
+        se, ce = own, its
+    for _ in range(_PASSES):  # what is raised over one ball may meet another
+        before = se
+        for i in range(1, positions.shape[0]):
+            dx, dy = positions[i, 0] - x, positions[i, 1] - y
+            b = -(dx * ax + dy * ay)
+            if on_table[i] and 0.0 < b < LENGTH + 2.0 * R:
+                beside = dx * ay - dy * ax - R * side
+                if abs(beside) < R + TIP + 2.0 * TAPER * (b + R):  # wider than ever the cue is there
+                    se, ce = _over_ball(b, beside, top, q, se, ce, R)
+        if se == before:
+            break
+    return elevation if se <= own else atan2(se, ce)
 
 
 @kernel
@@ -165,35 +194,23 @@ def least_elevation(stroke, positions, on_table, rails, R):
     """The least elevation of the cue [rad] at which a stroke of ball 0 can be played: its own, or a higher one.
 
     ``stroke``: (side, top, aim, elevation), aim the direction of the cue [rad]; ``rails``: rows of ``EDGE``
-    numbers, one after the other, those of one side together. pi/2: it cannot be played.
+    numbers, one after the other. pi/2: it cannot be played.
     """
     side, top, aim, elevation = stroke
-    ax, ay, x, y = cos(aim), sin(aim), positions[0, 0], positions[0, 1]
-    least = max(elevation, _over_rails(aim, side, top, x, y, rails, R))
-    for _ in range(_PASSES):  # what is raised over one ball may meet another
-        before = least
-        for i in range(1, positions.shape[0]):
-            if on_table[i]:
-                dx, dy = positions[i, 0] - x, positions[i, 1] - y
-                b, right = -(dx * ax + dy * ay), dx * ay - dy * ax
-                if 0.0 < b < LENGTH + 2.0 * R and abs(right) < 2.0 * (R + BUTT):
-                    least = _over_ball(b, right, side, top, least, R)
-        if least == before:
-            break
-    return least
+    return _least(side, top, cos(aim), sin(aim), elevation, positions, on_table, rails, R)
 
 
 @kernel
-def _fits(side, top, aim, positions, on_table, rails, R):
-    return least_elevation((side, top, aim, 0.0), positions, on_table, rails, R) <= STEEPEST
+def _fits(side, top, ax, ay, positions, on_table, rails, R):
+    return _least(side, top, ax, ay, 0.0, positions, on_table, rails, R) <= STEEPEST
 
 
 @kernel
-def _moved_tip(side, top, aim, positions, on_table, rails, R, max_offset):
+def _moved_tip(side, top, ax, ay, positions, on_table, rails, R, max_offset):
     """The tip nearest to (side, top), on a way up to the miscue limit and along that to the top, that fits."""
     highest = sqrt(max(max_offset * max_offset - side * side, 0.0))
     low, high = 0.0, 1.0
-    straight = _fits(side, highest, aim, positions, on_table, rails, R)
+    straight = _fits(side, highest, ax, ay, positions, on_table, rails, R)
     for _ in range(_HALVINGS):
         part = 0.5 * (low + high)
         across = side if straight else side * (1.0 - part)
@@ -202,7 +219,7 @@ def _moved_tip(side, top, aim, positions, on_table, rails, R, max_offset):
             if straight
             else sqrt(max(max_offset * max_offset - across * across, 0.0))
         )
-        fits = _fits(across, up, aim, positions, on_table, rails, R)
+        fits = _fits(across, up, ax, ay, positions, on_table, rails, R)
         low, high = (low, part) if fits else (part, high)
     if straight:
         return side, top + high * (highest - top)
@@ -222,11 +239,12 @@ def in_room(stroke, positions, on_table, rails, R, max_offset):
     if rails.shape[0] == 0:
         return stroke, FREE
     speed, side, top, aim, elevation = stroke
-    least, done = least_elevation((side, top, aim, elevation), positions, on_table, rails, R), FREE
+    ax, ay, done = cos(aim), sin(aim), FREE
+    least = _least(side, top, ax, ay, elevation, positions, on_table, rails, R)
     if least > max(STEEPEST, elevation):
         done = MOVED
-        side, top = _moved_tip(side, top, aim, positions, on_table, rails, R, max_offset)
-        least = least_elevation((side, top, aim, elevation), positions, on_table, rails, R)
+        side, top = _moved_tip(side, top, ax, ay, positions, on_table, rails, R, max_offset)
+        least = _least(side, top, ax, ay, elevation, positions, on_table, rails, R)
         if least > max(STEEPEST, elevation):
             done |= UNPLAYABLE
     if least > elevation:

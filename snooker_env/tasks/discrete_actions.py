@@ -34,8 +34,9 @@ STROKES = len(SPEEDS) * len(SIDES) * len(TOPS)
 """Number of strokes at one pot: speeds x sides x tops."""
 SIZE = POTS * STROKES
 """Number of strokes to choose from: all choices without options of frames. Public as ``tasks.CHOICES``."""
-_NEAR = 0.1
-"""A real cue need not be steeper than ``STEEPEST`` for what is farther from the cue ball's centre [m]."""
+_NEAR_RAIL, _NEAR_BALL = 0.038, 0.064
+"""A real cue need not be steeper than ``STEEPEST`` for what is farther from the cue ball's centre [m]: the nose of a
+rail; the centre of a ball."""
 
 
 def choice_of(pot: int, speed: int, side: int, top: int) -> int:
@@ -88,12 +89,15 @@ def chosen(index, positions, on_table, on, law, work):
 def _crowded(positions, on_table, rails):
     """Whether a rail or ball is so near that a cue may have to be steeper than ``STEEPEST``."""
     for m in range(0, rails.shape[0], EDGE):
-        if rails[m + EDGE_LEVEL] - rails[m + EDGE_SIDE] * positions[0, int(rails[m + EDGE_AXIS])] < _NEAR:
+        if (
+            rails[m + EDGE_LEVEL] - rails[m + EDGE_SIDE] * positions[0, int(rails[m + EDGE_AXIS])]
+            < _NEAR_RAIL
+        ):
             return True
     near = False
     for i in range(1, N_BALLS):
         dx, dy = positions[i, 0] - positions[0, 0], positions[i, 1] - positions[0, 1]
-        near = near or (on_table[i] and dx * dx + dy * dy < _NEAR * _NEAR)
+        near = near or (on_table[i] and dx * dx + dy * dy < _NEAR_BALL * _NEAR_BALL)
     return near
 
 

@@ -14,7 +14,11 @@ from ..physics.impact.contact import collide_balls
 
 _ENOUGH = 1e-6  # rad that the object ball may pass the aim point by, a hundredth of the best player's error
 _TRIALS = 12
-_ROUNDS, _HALVINGS = 4, 30  # of ``swerved_aim``: corrections of the aim, and of the time along the path
+_ROUNDS, _NEARLY = (
+    4,
+    1e-5,
+)  # of ``swerved_aim``: corrections of the aim; the last may be as large as that [rad]
+_STEPS, _THERE = 30, 1e-9  # of Newton's method along the path, two to four as a rule; near enough [m]
 _WIDEST = 0.12  # rad off the geometric line: far more than any throw and swerve of a pot
 
 
@@ -95,12 +99,18 @@ def _sent(aim, far, stroke, positions, on_table, law, work):
     x, y = cx + vx, cy + vy
     while state[0] > cloth.REST:
         low, high = motion[0, cloth.T0], motion[0, cloth.T_END]
-        (x, y), _, _ = cloth.evaluate(motion, state, 0, high, phys)
-        if hypot(x - cx, y - cy) >= far:
-            for _ in range(_HALVINGS):
+        t = high
+        for k in range(_STEPS):
+            (x, y), v, _ = cloth.evaluate(motion, state, 0, t, phys)
+            dx, dy = x - cx, y - cy
+            away = hypot(dx, dy)
+            if (k == 0 and away < far) or abs(away - far) < _THERE:
+                break
+            low, high = (low, t) if away > far else (t, high)
+            t -= (away - far) * away / (dx * v[0] + dy * v[1])
+            if not low < t < high:
                 t = 0.5 * (low + high)
-                (x, y), _, _ = cloth.evaluate(motion, state, 0, t, phys)
-                low, high = (low, t) if hypot(x - cx, y - cy) >= far else (t, high)
+        if hypot(x - cx, y - cy) > far - _THERE:
             break
         cloth.next_phase(motion, state, 0, phys)
     return atan2(y - cy, x - cx)
@@ -112,10 +122,16 @@ def swerved_aim(line, far, stroke, positions, on_table, law, work):
     cue brings it to the place that is ``far`` along the direction ``line``. A free cue's is the line itself."""
     if law.rails.shape[0] == 0 or stroke[1] == 0.0:
         return line
-    aim = line
-    for _ in range(_ROUNDS):
+    aim, last_aim, last, slope = line, line, 0.0, 1.0
+    for k in range(_ROUNDS):
         off = _sent(aim, far, stroke, positions, on_table, law, work) - line
-        aim -= off - 2.0 * pi * round(off / (2.0 * pi))
+        off -= 2.0 * pi * round(off / (2.0 * pi))
+        if k and aim != last_aim:  # the elevation turns with the aim, if little
+            slope = min(2.0, max(0.5, (off - last) / (aim - last_aim)))
+        last_aim, last = aim, off
+        aim -= off / slope
+        if abs(off) < _NEARLY:
+            break
     return aim
 
 

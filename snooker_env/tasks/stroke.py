@@ -114,11 +114,12 @@ def played_in(intended, positions, on_table, options, shot):
 
 @kernel
 def strike_with(intended, struck, positions, on_table, options, j, shots):
-    """Shot j: the table as it lies, the cue ball ``struck``: as ``intended``, with errors. The cue is raised once
-    more where these took its room."""
+    """Shot j: the table as it lies, the cue ball ``struck``: as ``intended``, for which there is room, with errors.
+    The cue is raised once more where these took its room."""
     speed, side, top, aim, elevation = struck
     side, top = tip_on_disc(side, top, options[A_MAX_OFFSET])
-    elevation = raised((side, top, aim, elevation), positions, on_table, options[A_RAILS:], BALL_RADIUS)
+    if side != intended[1] or top != intended[2] or aim != intended[3] or elevation != intended[4]:
+        elevation = raised((side, top, aim, elevation), positions, on_table, options[A_RAILS:], BALL_RADIUS)
     shot, r, v, w, here = shots.shots[j], shots.r, shots.v, shots.w, shots.here
     mu_s, m = options[A_MU_S], options[A_END_MASS]
     after = cue.struck(speed, aim, side, top, elevation, BALL_RADIUS, mu_s, m)

@@ -13,7 +13,7 @@ from snooker_env.physics.cue_room import NO_RAILS, STEEPEST, least_elevation
 from snooker_env.planning import Planner, Positions, StrokeSearch, at_pots
 from snooker_env.tasks import choice_of
 from snooker_env.tasks.declarations import A_RAILS
-from snooker_env.tasks.discrete_actions import SIDES, SPEEDS, STROKES, TOPS
+from snooker_env.tasks.discrete_actions import _NEAR_BALL, _NEAR_RAIL, SIDES, SPEEDS, STROKES, TOPS
 from snooker_env.tasks.noise import TWICE, Noise, with_errors
 from tests.kernels import from_python
 from tests.tables import jsonable, table_state
@@ -269,15 +269,24 @@ def test_masks_leave_out_what_must_be_steeper_than_a_player_can():
 
 
 def test_only_what_is_near_makes_a_cue_too_steep():
-    """Masks look no further than ``_NEAR``: nothing there needs even 30 degrees."""
+    """Masks look no further: there is a margin at that distance, and none at 5 mm less."""
     least = from_python(least_elevation)
-    rails, far = sn.Options(cue="real").rules.rails, 0.1
-    for top, side in [(top, side) for top in TOPS for side in SIDES]:
-        for aim in np.linspace(0.0, 2.0 * np.pi, 60):
-            here = np.array([(0.889 - far, 0.9), (0.889 - far - far * np.cos(aim), 0.9 - far * np.sin(aim))])
-            for turn in np.linspace(-0.5, 0.5, 21):
-                stroke = side, top, aim + turn, 0.0
-                assert least(stroke, here, np.array([True, here[1, 0] < 0.86]), rails, R) < np.radians(30.0)
+    rails = np.array(sn.Options(cue="real").rules.rails)
+    for far, balls in ((_NEAR_RAIL, False), (_NEAR_BALL, True)):
+        worst = []
+        for nearer in (0.0, 0.005):
+            lie = (0.0, 0.2) if balls else (0.889 - far + nearer, 0.9)
+            ball = [(far - nearer, 0.2)] if balls else []
+            found = [
+                least(
+                    (side, top, np.pi + turn, 0.0), np.array([lie, *ball]), np.ones(1 + balls, bool), rails, R
+                )
+                for top in TOPS
+                for side in SIDES
+                for turn in np.linspace(-1.5, 1.5, 301)
+            ]
+            worst.append(max(found))
+        assert worst[0] < np.radians(42.0) and worst[1] > STEEPEST
 
 
 def test_masks_never_leave_nothing():
