@@ -94,6 +94,9 @@ class Settings:
         "fixed, or drawn: each episode has a table of its own [the recipe's]",
         choices=("", "fixed", "drawn"),
     )
+    observe_conditions: bool = option(
+        False, "let the agent observe the constants of its table; with --conditions drawn"
+    )
     imitate: int = option(
         -1, "positions of pre-training, by expert iteration or imitation; -1: the recipe's number"
     )
@@ -125,8 +128,12 @@ def parse(argv):
         "train.py", "python train.py [options]", (__doc__ or "").partition("\n")[0]
     )
     for f in fields(Settings):
+        name = "--" + f.name.replace("_", "-")
+        if isinstance(f.default, bool):
+            parser.add_argument(name, action="store_true", default=argparse.SUPPRESS, help=f.metadata["help"])
+            continue
         parser.add_argument(
-            "--" + f.name.replace("_", "-"),
+            name,
             type=str if f.name == "set" else type(f.default),
             choices=f.metadata.get("choices"),
             default=argparse.SUPPRESS,
@@ -159,7 +166,7 @@ def recipe_of(settings):
     """The agent's recipe with the changes of these settings. Raises ValueError."""
     chosen = {"layout": settings.layout, "noise": settings.noise, "fidelity": settings.fidelity}
     chosen["physics"] = physics_option(settings.physics) if settings.physics else ""
-    chosen["conditions"] = settings.conditions
+    chosen |= {"conditions": settings.conditions, "observe_conditions": settings.observe_conditions}
     numbers = {"n_timesteps": settings.steps, "n_envs": settings.envs}
     numbers = {key: value for key, value in numbers.items() if value}
     if settings.start:
@@ -190,7 +197,9 @@ def command_of(settings):
     for f in fields(Settings):
         value = getattr(settings, f.name)
         same = value == f.default or f.name in ("parallel", "eval_visits", "checkpoint_every")
-        if f.name == "agent" or not same:
+        if isinstance(value, bool):
+            words += [f"--{f.name.replace('_', '-')}"] * value
+        elif f.name == "agent" or not same:
             words += [f"--{f.name}", *map(str, value if f.name == "set" else [value])]
     return shlex.join(words)
 

@@ -1,20 +1,30 @@
 """How are tables shown to an agent? By a view: pots, or simulated outcomes too; to train as a ``VecEnv``."""
 
 import numpy as np
+from gymnasium import spaces
 
 from snooker_env.checks import choice
 from snooker_env.planning import Positions
-from snooker_env.planning.learned.pot_view import SHOWN, VIEW_SPACE, with_pots
+from snooker_env.planning.learned.pot_view import SHOWN, with_pots
+from snooker_env.tasks import OBSERVATION_SIZE, observation_space
 
 from .lookahead_features import ForesightView
 
 VIEWS = ("pots", "foresight")
 
 
-class PotsView:
-    """The view with the table and its pots: ``with_pots``."""
+OBSERVED_SIZE = observation_space("flat", conditions=True).shape[0]
+"""Numbers in a flat observation with the constants of the table."""
 
-    space = VIEW_SPACE
+
+class PotsView:
+    """The view with the table and its pots: ``with_pots``. ``constants``: those of the table follow, as
+    environments with ``observe_conditions=True`` show them."""
+
+    def __init__(self, constants=False):
+        self.constants = constants
+        size = SHOWN + (OBSERVED_SIZE - OBSERVATION_SIZE) * constants
+        self.space = spaces.Box(-1.0, 1.0, (size,), np.float32)
 
     def at(self, options):
         """The view under the rules of ``options``."""
@@ -22,16 +32,17 @@ class PotsView:
 
     def __call__(self, at, observations):
         """The view of n ``Positions`` with these flat observations."""
-        return with_pots(observations)
+        shown = with_pots(observations)
+        return np.concatenate([shown, observations[:, OBSERVATION_SIZE:]], 1) if self.constants else shown
 
     def allowed(self, masks):
         """Which of the available choices may be played."""
         return masks
 
 
-def view_of(name, threads=None):
-    """The view of that name."""
-    return ForesightView(threads) if choice("view", name, VIEWS) == "foresight" else PotsView()
+def view_of(name, threads=None, constants=False):
+    """The view of that name; ``constants``: with those of the table, which "foresight" never shows."""
+    return ForesightView(threads) if choice("view", name, VIEWS) == "foresight" else PotsView(constants)
 
 
 def training_tables(n, threads=None, view="pots", **options):
@@ -41,10 +52,11 @@ def training_tables(n, threads=None, view="pots", **options):
     from snooker_env.sb3 import SnookerVecEnv
 
     base = SnookerVecEnv(n, threads=threads, **options)
-    shown = view_of(view, threads).at(base.tables.options)
+    options = base.tables.options
+    shown = view_of(view, threads, options.observe_conditions).at(options)
 
     class Viewed(VecEnvWrapper):
-        """All tables at once. A terminal observation holds the pots only: nothing is learned from it."""
+        """All tables at once. A terminal observation holds table and pots only: nothing is learned from it."""
 
         judge = None
         """Values [points] of ``Positions``, added to rewards where the visit goes on; or None."""

@@ -17,6 +17,7 @@ from snooker_env import SnookerVectorEnv
 from snooker_env.planning import Positions, StrokeSearch, spread_of
 
 from ..cluster.job import Here
+from .hyperparameters import SHOT_OPTIONS
 from .imitation import round_of
 from .judged_choices import JudgedChoices
 from .self_play import in_slices, policy_for, positions_given
@@ -55,9 +56,11 @@ class Starts:
         which = rng.choice(len(STARTS), n, p=[share for _, share in STARTS])
         rows = (rng.random(n) * [len(self._pools[k]) for k in which]).astype(np.int64)
         parts = [self._pools[k][row : row + 1] for k, row in zip(which.tolist(), rows.tolist(), strict=True)]
-        columns = zip(*map(positions_given, parts), strict=True)
-        positions, on_table, game = (np.concatenate(column) for column in columns)
-        return Positions(positions, on_table, game)
+        joined = [
+            None if column[0] is None else np.concatenate(column)
+            for column in zip(*map(positions_given, parts), strict=True)
+        ]
+        return Positions(*joined)
 
 
 class ExpertIteration:
@@ -69,7 +72,7 @@ class ExpertIteration:
 
     def __init__(self, model, venv, states, seed, threads, before=None, where=None):
         tables = venv.unwrapped.tables
-        options = {name: getattr(tables.options, name) for name in ("noise", "physics", "table", "fidelity")}
+        options = {name: getattr(tables.options, name) for name in SHOT_OPTIONS}
         self.states, self._n, self._rng = states, venv.num_envs, np.random.default_rng((seed, 19))
         self._model, self._where = model, where or Here(threads)
         self._sent = {"run": uuid.uuid4().hex, "options": options, "budget": BUDGET, "fresh": FRESH}
@@ -152,12 +155,14 @@ class ExpertIteration:
         made = {name: np.concatenate([one[name] for one in played]) for name in played[0]}
         follows = made["follows"]
         self._value.add(made["seen"], made["after"], made["points"], made["goes_on"], follows & ~explored)
-        self._at = Positions(made["positions"], made["on_table"], made["game"])
+        # a visit keeps its table
+        self._at = Positions(made["positions"], made["on_table"], made["game"], None, at.conditions)
         ended = np.flatnonzero(~follows)
         if len(ended):
             fresh = self._starts.draw(len(ended), rng)
-            for name in ("positions", "on_table", "game"):
-                getattr(self._at, name)[ended] = getattr(fresh, name)
+            for mine, its in zip(positions_given(self._at), positions_given(fresh), strict=True):
+                if mine is not None:
+                    mine[ended] = its
         self._at.game[:, 2] = 0  # points of the visit so far: no break may exceed what a table allows
 
 

@@ -22,8 +22,12 @@ ACTION_OPTIONS = Options.group("action", "visit")
 """Options of the environment that say how actions are read, with its defaults: they belong to the agent."""
 SHOT_OPTIONS = tuple(Options.group("shot"))
 """Options that decide the outcome of a shot: the same in training and evaluation."""
+VIEW_OPTIONS = ("observe_conditions",)
+"""Options that say what the agent observes beside its view: they belong to the agent."""
 TRAINING_OPTIONS = ("layout", "reward")
 """Options of training alone."""
+ENV_OPTIONS = (*ACTION_OPTIONS, *SHOT_OPTIONS, *VIEW_OPTIONS, *TRAINING_OPTIONS)
+"""The options that ``env_kwargs`` may hold."""
 BY_OPTION = ("n_timesteps", "n_envs", "imitation")
 """Keys that have their own option of train.py: --steps, --envs, --imitate."""
 
@@ -98,6 +102,11 @@ class Recipe:
             if keys.get(key) is not None:
                 keys[key] = check(key, keys[key], low, high)
         keys["env_kwargs"] = _options(keys["env_kwargs"], env_kwargs, usual, keys["policy"])
+        if keys["env_kwargs"].get("observe_conditions") and (keys["expert"] or keys["view"] != "pots"):
+            why = "its planner reads policy and value without the constants of the table"
+            if not keys["expert"]:
+                why = "what it observes is simulated with the constants of the table"
+            raise refuse("observe_conditions", True, f"must be left out for {name}: {why}")
         asked = "fidelity" in env_kwargs or "fidelity" in changed.get("env_kwargs", {})
         mine = {f.name: keys.pop(f.name) for f in fields(cls) if f.name in keys}
         return cls(name, **mine, settings=keys, fidelity_given=asked)
@@ -169,11 +178,10 @@ def _changes(changes, keys):
 
 def _options(options, more, usual, policy):
     """Environment options with ``more``; if ``policy`` needs it, actions must be read as ``usual``."""
-    known = (*ACTION_OPTIONS, *SHOT_OPTIONS, *TRAINING_OPTIONS)
     if not isinstance(options, dict):
-        raise refuse("env_kwargs", options, f"must be a dict with keys of {', '.join(known)}")
+        raise refuse("env_kwargs", options, f"must be a dict with keys of {', '.join(ENV_OPTIONS)}")
     for key in options:
-        choice("key of env_kwargs", key, known)
+        choice("key of env_kwargs", key, ENV_OPTIONS)
     options = options | more
     for key in ("action",) if policy == "MlpPolicy" else ACTION_OPTIONS:
         value, wanted = (some.get(key, ACTION_OPTIONS[key]) for some in (options, usual))

@@ -21,6 +21,7 @@ import torch
 from snooker_env.planning import Positions, spread_of
 
 from ..cluster.job import Here
+from .hyperparameters import SHOT_OPTIONS
 from .self_play import judged
 
 TRIES = 48
@@ -32,7 +33,7 @@ KEPT = 50_000
 BATCH, PER_UPDATE = 512, 8
 """Positions in the batch of a gradient step, and new positions for each step."""
 RATE = 3e-3
-USED = ("action", "aim", "elevation", "placement", "noise", "physics", "table", "fidelity")
+USED = ("action", "aim", "elevation", "placement", *SHOT_OPTIONS)
 """Options of the tables that decide what a choice is worth."""
 
 

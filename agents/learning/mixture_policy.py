@@ -50,7 +50,7 @@ def lines_of(seen):
     to_ball = places - places[:, :1]
     far = to_ball.square().sum(2).masked_fill((balls[:, :, 2] <= 0.0) | (balls[:, :, 4] <= 0.0), float("inf"))
     nearest = to_ball[torch.arange(len(seen), device=seen.device), far.argmin(1)]
-    pots = seen[:, OBSERVATION_SIZE:].reshape(-1, POTS, POT_ENTRIES)
+    pots = seen[:, OBSERVATION_SIZE : pot_view.SHOWN].reshape(-1, POTS, POT_ENTRIES)
     offered = pots[:, :, 0]
     first = torch.where(offered[:, :1] > 0.0, pots[:, 0, 1:3], nearest)
     direction = torch.cat([first[:, None], pots[:, 1:, 1:3]], 1)

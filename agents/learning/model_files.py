@@ -17,7 +17,7 @@ from snooker_env.checks import choice, integer, number, refuse
 from snooker_env.tasks.saved_models import PLAIN, by_train, entries, part
 
 from ..features.views import VIEWS, view_of
-from .hyperparameters import ACTION_OPTIONS, SHOT_OPTIONS, TRAINING_OPTIONS, Recipe, names
+from .hyperparameters import ENV_OPTIONS, Recipe, names
 
 WEIGHTS = "policy.pth"
 
@@ -48,7 +48,7 @@ class Trained:
 
 def _options(field, value):
     for key in _dict(field, value):
-        choice(f"key of {field}", key, (*ACTION_OPTIONS, *SHOT_OPTIONS, *TRAINING_OPTIONS))
+        choice(f"key of {field}", key, ENV_OPTIONS)
     return value
 
 
@@ -113,7 +113,8 @@ def _network(path, described, seen):
         recipe = Recipe.of(described["recipe"], env_kwargs=described["env_options"])
         tables = SnookerVectorEnv(1, **described["env_options"])
         with torch.random.fork_rng(devices=[]):  # the initial weights are replaced below
-            network = recipe.new_network(view_of(described["view"]).space, tables.single_action_space)
+            view = view_of(described["view"], constants=tables.options.observe_conditions)
+            network = recipe.new_network(view.space, tables.single_action_space)
     except ImportError:
         raise
     except Exception:  # options or parts that no longer exist

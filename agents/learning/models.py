@@ -53,6 +53,11 @@ def load_weights(model, path):
     if not isinstance(other.policy, type(model.policy)):
         wanted = f"must be a model of {model.recipe}, or of another agent with its network"
         raise refuse("start", str(path), f"{wanted}, not of {other.recipe}")
+    if other.policy.observation_space != model.policy.observation_space:
+        seen = (
+            "must be a model that observes the same as this one: both the constants of the table, or neither"
+        )
+        raise refuse("start", str(path), seen)
     spaces = other.action_space == model.action_space
     if not spaces or any(other.env_options.get(key) != model.env_options.get(key) for key in ACTION_OPTIONS):
         both = [one.env_options for one in (model, other)]

@@ -16,7 +16,7 @@ from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from torch import nn
 
 from snooker_env.game import N_BALLS
-from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN
+from snooker_env.planning.learned.pot_view import BALL_X, CUT, POT_ENTRIES, POT_X, SHOWN, VIEW_SPACE
 from snooker_env.tasks import OBSERVATION_SIZE, POTS, SIDES, SPEEDS, STROKES, TOPS
 
 from ..features.lookahead_features import CUE_X, ENTRIES, PICKS, POTS_SEEN, STROKES_SEEN
@@ -36,16 +36,19 @@ def mlp(*sizes):
 
 
 class TableReader(BaseFeaturesExtractor):
-    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, -1 if mirrored, else 1."""
+    """(n, SHOWN) -> (n, CONTEXT + POTS * POT + 1): the context, each pot's code, -1 if mirrored, else 1.
+
+    What follows the first ``SHOWN`` numbers, the constants of the table, goes into the context."""
 
     def __init__(self, observation_space, width=32):
         super().__init__(observation_space, CONTEXT + POTS * POT + 1)
+        constants = observation_space.shape[0] - SHOWN
         self.ball = mlp(5 + 2, width, BALL)
         self.pot = mlp(POT_ENTRIES, 2 * width, POT)
-        self.context = mlp(3 * BALL + POT + _STATE + 3, CONTEXT, CONTEXT)
+        self.context = mlp(3 * BALL + POT + _STATE + 3 + constants, CONTEXT, CONTEXT)
         # one layer from both; the context's part is shared
         self.joint = nn.ModuleList([nn.Linear(CONTEXT, POT), nn.Linear(POT, POT)])
-        flips = torch.zeros(SHOWN, dtype=torch.bool)
+        flips = torch.zeros(SHOWN + constants, dtype=torch.bool)
         flips[torch.arange(N_BALLS) * 5 + BALL_X] = True
         for entry in (*POT_X, CUT):
             flips[OBSERVATION_SIZE + torch.arange(POTS) * POT_ENTRIES + entry] = True
@@ -58,7 +61,7 @@ class TableReader(BaseFeaturesExtractor):
         seen = torch.where(self.flips, seen * side, seen)
         balls = seen[:, : 5 * N_BALLS].reshape(n, N_BALLS, 5)
         state = seen[:, 5 * N_BALLS : OBSERVATION_SIZE]
-        pots = seen[:, OBSERVATION_SIZE:].reshape(n, POTS, POT_ENTRIES)
+        pots = seen[:, OBSERVATION_SIZE:SHOWN].reshape(n, POTS, POT_ENTRIES)
         cue = balls[:, 0, :2]
         here = (balls[:, 1:, 2:3] > 0.0).float()
         on = (balls[:, 1:, 4:5] > 0.0).float() * here
@@ -66,7 +69,7 @@ class TableReader(BaseFeaturesExtractor):
         offered = pots[:, :, :1]
         each = self.pot(pots) * offered
         sums = [(codes * on).sum(1) / 5.0, codes[:, :_N_REDS].sum(1) / 5.0, codes[:, _N_REDS:].sum(1) / 5.0]
-        context = self.context(torch.cat([*sums, each.sum(1), state, cue, side], 1))
+        context = self.context(torch.cat([*sums, each.sum(1), state, cue, side, seen[:, SHOWN:]], 1))
         joint = torch.relu(self.joint[0](context)[:, None] + self.joint[1](each)) * offered
         return torch.cat([context, joint.reshape(n, -1), side], 1)
 
@@ -92,7 +95,7 @@ class ForesightReader(TableReader):
     """The view ``foresight`` -> (n, CONTEXT + STROKES_SEEN * OUTCOME): the context, a code an outcome."""
 
     def __init__(self, observation_space):
-        super().__init__(observation_space)
+        super().__init__(VIEW_SPACE)  # the outcomes do not pass through it
         self._features_dim = CONTEXT + STROKES_SEEN * OUTCOME
         # one layer from the three
         self.outcome = nn.ModuleList([nn.Linear(CONTEXT, 64), nn.Linear(POT, 64), nn.Linear(ENTRIES, 64)])
@@ -166,8 +169,10 @@ class TablePolicy(_Policy):
 
     @property
     def has_fused(self):
-        """Whether there are fused passes: not for a subclass with another reader or head."""
-        return (self.reader, self.head) == (TableReader, StrokeHead)
+        """Whether there are fused passes: not for a subclass with another reader or head, nor for one that
+        observes the constants of the table."""
+        alone = self.observation_space.shape == (SHOWN,)
+        return alone and (self.reader, self.head) == (TableReader, StrokeHead)
 
     @property
     def fused(self):

@@ -21,8 +21,8 @@ _made = {}
 
 
 def positions_given(at):
-    """``Positions`` as a tuple of arrays."""
-    return at.positions, at.on_table, at.game
+    """``Positions`` of visits as a tuple of arrays, with the constants of their tables or None."""
+    return at.positions, at.on_table, at.game, None, at.conditions
 
 
 def policy_for(model, where):

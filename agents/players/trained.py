@@ -8,11 +8,12 @@ from snooker_env.planning import action_masks
 from snooker_env.planning.learned.dense_layers import Layers
 from snooker_env.players import ChoicePlayer, SeenPlayer
 from snooker_env.players.choices import shares
+from snooker_env.players.seen import conditions_seen
 from snooker_env.players.weights import learned_of
 from snooker_env.tasks.saved_models import by_train, entries, one_thread
 
 from ..features.views import view_of
-from ..learning.hyperparameters import ACTION_OPTIONS
+from ..learning.hyperparameters import ACTION_OPTIONS, VIEW_OPTIONS
 from ..learning.models import file_of, load_trained
 from ..learning.policy_files import read_policy
 
@@ -26,8 +27,8 @@ class PolicyPlayer(ChoicePlayer):
 
     def _bind(self, options):
         super()._bind(options)
-        plain = isinstance(self.model.policy, Layers)
-        self._view = None if plain else view_of(self.model.view, threads=1).at(options)
+        plain, constants = isinstance(self.model.policy, Layers), _sees_constants(self.model)
+        self._view = None if plain else view_of(self.model.view, 1, constants).at(options)
 
     @property
     def learned(self):
@@ -42,6 +43,8 @@ class PolicyPlayer(ChoicePlayer):
         policy, masks, observations = self.model.policy, action_masks(at), at.observations()
         if self._view is None:
             return np.where(masks, policy(observations), -np.inf)
+        if _sees_constants(self.model):
+            observations = np.concatenate([observations, conditions_seen(at, self.options.rules)], 1)
         masks, seen = self._view.allowed(masks), self._view(at, observations)
         fused = getattr(policy, "has_fused", False)
         scores = policy.fused.scores(seen, masks) if fused else _logits(policy, seen, masks)
@@ -50,6 +53,11 @@ class PolicyPlayer(ChoicePlayer):
     def figures(self, scores):
         """The probabilities."""
         return shares(scores)
+
+
+def _sees_constants(model):
+    """Whether a ``Trained`` model observes the constants of its table."""
+    return bool(model.env_options.get("observe_conditions"))
 
 
 def _logits(policy, seen, masks):
@@ -69,8 +77,9 @@ class BoxModel:
     """A model with box actions as a ``Seen``: its deterministic actions, a table at a time."""
 
     def __init__(self, model):
-        self.model, self._view = model, view_of(model.view)
-        self.options = {key: model.env_options[key] for key in ACTION_OPTIONS if key in model.env_options}
+        self.model, self._view = model, view_of(model.view, constants=_sees_constants(model))
+        belong = (*ACTION_OPTIONS, *VIEW_OPTIONS)
+        self.options = {key: model.env_options[key] for key in belong if key in model.env_options}
 
     def act(self, observations, masks, seeds):
         """The actions (n, k)."""

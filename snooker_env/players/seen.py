@@ -6,7 +6,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 
 from .._check import choice, refuse_what
-from .._types import Bools, Floats, Ints, Observation
+from .._types import Bools, Floats, Ints, Observation, Singles
 from ..game.balls import mask_of_present
 from ..game.frame_columns import (
     ANYWHERE,
@@ -19,7 +19,7 @@ from ..game.frame_columns import (
     VISIT_COLUMNS,
     WINNER,
 )
-from ..physics.conditions import nominal
+from ..physics.conditions import nominal, normalised
 from ..planning import Positions
 from ..planning.positions import seeds_of
 from ..planning.strokes import decoded
@@ -28,7 +28,7 @@ from ..tasks.declarations import SAYS
 from ..tasks.discrete_actions import Choices
 from ..tasks.frame import Frames
 from ..tasks.observations import shaped
-from ..tasks.options import Options
+from ..tasks.options import Options, Rules
 from ..tasks.visit import Visits
 from .player import BoundPlayer, Strokes, placed
 
@@ -152,8 +152,7 @@ class SeenPlayer(BoundPlayer):
         n, rules = len(at), self._rules
         tables: Any = (Frames if self.frames else Visits)(rules, 0)
         tables.n, tables.positions, tables.on_table, tables.game = n, at.positions, at.on_table, at.game
-        own = at.conditions
-        tables.conditions = np.tile(nominal(rules.physics), (n, 1)) if own is None else own
+        tables.conditions = _conditions_known(at, rules)
         if self.frames:
             none = np.zeros_like(at.positions), np.zeros_like(at.on_table)
             tables._saved_positions, tables._saved_on_table = none if at.saved is None else at.saved
@@ -168,6 +167,17 @@ class SeenPlayer(BoundPlayer):
             return rules.actions.check_many(actions, n)
         except ValueError as error:
             raise ValueError(f"player {self.name}: {error}") from None
+
+
+def _conditions_known(at: Positions, rules: Rules) -> Floats:
+    """The constants (n, 8) of the tables as who plays under ``rules`` knows them: if not drawn the nominal ones."""
+    own = at.known_to(rules).conditions
+    return np.tile(nominal(rules.physics), (len(at), 1)) if own is None else own
+
+
+def conditions_seen(at: Positions, rules: Rules) -> Singles:
+    """The same as observations show them: float32 (n, 8) in [-1, 1]."""
+    return normalised(_conditions_known(at, rules)).astype(np.float32)
 
 
 def _begun(at: Positions) -> Positions:
