@@ -1,186 +1,215 @@
-"""Where do the cushion constants of ``physics="match"`` come from? Fits e(v) to the measured rebounds of
-Mathavan 2010, Fig. 7a.
+"""Where do the constants of ``physics="match"`` for cushions and cloth at speed come from? They are fitted
+together to all that is known of them.
 
-    python -m benchmarks.fit_cushion [--seed 0] [--json FILE] [--out FOLDER]
+    python -m benchmarks.fit_cushion [--steps 60000] [--seed 0] [--json FILE] [--out FOLDER]
 
-The model is this project's own cushion impact for a rolling ball at right angles, with e(v) = e_c up to a
-knee and e_c (v / knee)^(-power) above it. e_c stays at the authors' own 0.98 (their fit below 1.5 m/s): left
-free it runs into its bound at 1, a cushion without loss. Printed beside it: a constant, the straight line of
-version 0.1 and an exponential, which follow the same 19 points as well and go elsewhere beyond them; the
-interval of the power (95 %: profile with an F test, and a bootstrap of the points) and what it leaves open at
-5 to 10 m/s; the rebound speeds to 15 m/s; and how many lengths of the table a stroke travels.
+Measured: rebounds of a ball that rolls straight into a snooker cushion (Mathavan 2010, Fig. 7a: 19 speeds up
+to 3.4 m/s; an error of 0.037 m/s each, what is left of the best fit to them alone), and the rows of
+``benchmarks/data/hard_strokes.csv``: how far balls thrown as hard as possible and balls off a ramp run on
+full-size tables, a snooker cloth's rolling deceleration, and the fall of restitution on a carom table.
+Free: the knee and the power of e(v) = e_c (v / knee)^(-power), mu_r, and, as unknowns of no further interest,
+the speed of the throw and roll_drag, the growth of the rolling resistance. e_c stays at the authors' own 0.98
+(their fit below 1.5 m/s): left free it runs into its bound at 1. Printed: the least squares, with roll_drag 0
+and free; intervals by Metropolis steps in all five; each measurement beside the model; lengths of strokes.
+
+Alciatore's lengths of pool strokes (TP B.6) are printed, not fitted: they are a calculation, which a rolling
+resistance of 0.010 and one restitution for all speeds give back to 0.0001 lengths. So they say nothing about
+how either depends on speed.
 """
 
+import csv
+from math import inf
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.stats import f as f_distribution
 
 import snooker_env as sn
 
-from .._common.command import Command, save_json
-from .lengths import print_lengths
+from .._common.command import Command, at_least, save_json
+from . import line
+from .lengths import LENGTH, RAMP, START, print_lengths
 
 DATA = Path(__file__).parents[1] / "data" / "cushion_rebound.csv"
-E_C = 0.98
-SHARES = np.linspace(0.0, 1.0, 201)
-FAR = np.array((5.0, 7.0, 10.0))
-"""Speeds [m/s] beyond the data at which the laws are compared."""
-KNEES, POWERS = np.arange(1.0, 3.4, 0.02), np.arange(0.05, 0.8, 0.005)
+STROKES = DATA.with_name("hard_strokes.csv")
+E_C, REBOUND_ERROR = 0.98, 0.037
+NAMES = ("e_c_knee", "e_c_power", "mu_r", "thrown at", "roll_drag")
+LOW, HIGH = np.array((0.5, 0.0, 0.005, 4.0, 0.0)), np.array((3.4, 0.8, 0.02, 13.4, 0.03))
+START_AT = np.array((2.1, 0.25, 0.0115, 10.0, 0.002))
+STEP = np.array((0.12, 0.04, 0.0007, 0.8, 0.002))
+BEFORE = {"e_c_knee": 2.17, "e_c_power": 0.31, "mu_r": 0.0127}
+"""The preset until version 0.3: the cushion fitted to its rebounds alone, the cloth of one table."""
+RADIUS = sn.Physics().R
+ALONG = LENGTH - 2.0 * RADIUS
+MPH, POOL_LENGTH, POOL_BALL = 0.44704, 2.54, 0.028575
 
 
-def power_law(v, knee, power, e_c=E_C):
-    """Restitution at v [m/s]: the package's law."""
-    return e_c * np.maximum(1.0, v / knee) ** -power
+def measured():
+    """(incident speeds, rebound speeds [m/s], {(quantity, setting): (value, error or None)})."""
+    speed, rebound = np.loadtxt(DATA, delimiter=",", skiprows=2).T
+    with STROKES.open(encoding="utf-8", newline="") as file:
+        rows = csv.DictReader(row for row in file if not row.startswith("#"))
+        found = {
+            (row["quantity"], row["setting"]): (float(row["value"]), float(row["error"] or "nan"))
+            for row in rows
+        }
+    return speed, rebound, found
 
 
-def line(v, knee, slope, e_c=E_C):
-    """The law of version 0.1, for comparison: ``slope`` in s/m."""
-    return np.maximum(0.0, e_c - slope * np.maximum(0.0, v - knee))
+def restitution(v, knee, power):
+    """The package's law."""
+    return E_C * np.maximum(1.0, v / knee) ** -power
 
 
-def exponential(v, knee, rate, e_c=E_C):
-    """For comparison: ``rate`` in s/m."""
-    return e_c * np.exp(-rate * np.maximum(0.0, v - knee))
+class Misfit:
+    """(model - measured) / error of every measurement, for values in the order of ``NAMES``."""
+
+    def __init__(self):
+        self.speed, self.rebound, self.known = measured()
+        self.table = line.impacts()
+        self._rolling = self.table[:, np.searchsorted(line.SPINS, 1.0 - 1e-9), 0]
+        strokes = [name for (name, _), (_, error) in self.known.items() if error > 0]
+        self.names = [*(f"rebound at {v:.2f} m/s" for v in self.speed), *strokes]
+
+    def model(self, values):
+        """What is measured, as the model has it: rebounds [m/s], then the rows that have an error."""
+        knee, power, mu_r, thrown, drag = values
+        constants = (E_C, knee, power, mu_r, drag)
+        rebound = self.speed * np.interp(restitution(self.speed, knee, power), line.SHARES, self._rolling)
+        lengths = line.travels(thrown, 0.0, START - RADIUS, ALONG, constants, self.table) / LENGTH
+        back = 1.25 * LENGTH - START - 2.0 * RADIUS  # to the top cushion and on to the pink's spot
+        ramp = line.travels(RAMP, RAMP, START - RADIUS, ALONG, constants, self.table) - back
+        slows = mu_r * line.G + 0.25 * drag
+        fall = restitution(3.0, knee, power) / restitution(2.15, knee, power)
+        return np.array((*rebound, lengths, thrown, ramp, slows, fall))
+
+    def __call__(self, values):
+        """Of the whole."""
+        known = np.array([pair for pair in self.known.values() if pair[1] > 0])
+        want = np.concatenate((self.rebound, known[:, 0]))
+        errors = np.concatenate((np.full(len(self.speed), REBOUND_ERROR), known[:, 1]))
+        return (self.model(values) - want) / errors
 
 
-LAWS = {"power": power_law, "line": line, "exponential": exponential}
+def fitted(misfit, free):
+    """Least squares over the values named ``free``, the others at ``START_AT``, roll_drag at 0; from several
+    knees, because the kink makes the problem bumpy."""
+    which = [NAMES.index(name) for name in free]
 
+    def whole(x):
+        values = START_AT * np.array((1, 1, 1, 1, 0.0))
+        values[which] = x
+        return values
 
-def impact(speed, physics, rolling=True):
-    """Rebound speed [m/s] of a ball that meets a cushion at right angles, rolling or sliding without spin."""
-    v, _ = sn.collide_cushion((0, speed, 0), (-rolling * speed / 0.02625, 0, 0), (0, 1, 0), physics)
-    return -float(v[1])
-
-
-class Ratios(NamedTuple):
-    """Rebound over incident speed for each restitution of ``SHARES``: for a given e the impact scales with
-    its speed."""
-
-    rolling: np.ndarray
-    sliding: np.ndarray
-
-    @classmethod
-    def measured(cls):
-        """By the package's impact."""
-        constants = [sn.Physics.preset("match", e_c=float(e), e_c_power=0.0, tables=False) for e in SHARES]
-        return cls(
-            *(np.array([impact(1.0, physics, rolling) for physics in constants]) for rolling in (True, False))
+    found = []
+    for knee in (1.5, 1.8, 2.1, 2.4):
+        start = START_AT.copy()
+        start[0] = knee
+        bounds = (LOW[which], HIGH[which])
+        found.append(
+            least_squares(
+                lambda x: misfit(whole(x)), start[which], bounds=bounds, x_scale=STEP[which], diff_step=1e-3
+            )
         )
+    return whole(min(found, key=lambda one: one.cost).x)
 
 
-class Interval(NamedTuple):
-    """What the data leave open, 95 %: (low, high) of the power and of e at ``FAR`` by the profile and by the
-    bootstrap; ends: the (knee, power) of the two ends of the power's profile."""
-
-    power: tuple
-    power_bootstrap: np.ndarray
-    e: np.ndarray
-    e_bootstrap: np.ndarray
-    ends: list
-
-
-def fitted(law, residuals, free):
-    """(knee, x[, e_c]) of least squares. The kink makes the problem bumpy: it starts from several knees and
-    keeps the best."""
-    low, high = [0.5, 0.0] + [0.5] * free, [3.4, 0.9] + [1.0] * free
-    starts = [(knee, 0.2, 0.97)[: 2 + free] for knee in (1.0, 1.5, 2.0, 2.5)]
-    fits = [
-        least_squares(lambda x: residuals(law, *x), start, bounds=(low, high), diff_step=1e-4)
-        for start in starts
-    ]
-    return min(fits, key=lambda found: found.cost).x
+def walked(misfit, steps, seed):
+    """Metropolis steps: (steps, 5) values as probable as their squares say, uniform within their bounds."""
+    rng = np.random.default_rng(seed)
+    here, out = START_AT.copy(), np.empty((steps, len(NAMES)))
+    square = np.sum(misfit(here) ** 2)
+    for k in range(steps):
+        there = here + 0.6 * STEP * rng.normal(size=len(NAMES))
+        inside = ((there > LOW) & (there < HIGH)).all()
+        other = np.sum(misfit(there) ** 2) if inside else inf
+        if other < square - 2.0 * np.log(rng.random()):
+            here, square = there, other
+        out[k] = here
+    return out[steps // 10 :]
 
 
-def interval(residuals, points, draws=2000, seed=0):
-    """The ``Interval`` of the power law from the squares of its residuals on a grid of knees and powers."""
-    squares = np.array([[residuals(power_law, knee, power) ** 2 for knee in KNEES] for power in POWERS])
-    misfit = squares.sum(axis=2)
-    allowed = misfit <= misfit.min() * (1.0 + f_distribution.ppf(0.95, 1, points - 2) / (points - 2))
-    inside = np.flatnonzero(allowed.any(axis=1))[[0, -1]]
-    knees, powers = (a.ravel() for a in np.meshgrid(KNEES, POWERS))
-    e = power_law(FAR[:, None], knees, powers)
-    counts = np.random.default_rng(seed).multinomial(points, np.full(points, 1.0 / points), size=draws)
-    flat = squares.reshape(-1, points)
-    best = np.concatenate([(flat @ part.T).argmin(axis=0) for part in np.array_split(counts, draws // 100)])
-    within = e[:, allowed.ravel()]
-    return Interval(
-        tuple(POWERS[inside]),
-        np.quantile(powers[best], (0.025, 0.975)),
-        np.stack((within.min(axis=1), within.max(axis=1))),
-        np.quantile(e[:, best], (0.025, 0.975), axis=1),
-        [(float(KNEES[misfit[k].argmin()]), float(POWERS[k])) for k in inside],
-    )
+def print_constants(misfit, fits, walk):
+    """One line for each set of constants, its squares, and the intervals."""
+    print(f"{'':28s}" + "".join(f"{name:>11s}" for name in NAMES) + "    squares: all  rebounds  throw")
+    for name, values in fits.items():
+        r = misfit(values) ** 2
+        row = "".join(f"{value:11.4g}" for value in values)
+        n = len(misfit.speed)
+        print(f"{name:28s}{row}{r.sum():16.1f}{r[:n].sum():10.1f}{r[n : n + 2].sum():7.1f}")
+    for share in (0.025, 0.5, 0.975):
+        row = "".join(f"{value:11.4g}" for value in np.quantile(walk, share, axis=0))
+        print(f"{f'{100 * share:g} % of the steps below':28s}{row}")
+    far = (5.0, 7.0, 10.0)
+    print("e at m/s  match  95 %")
+    match = sn.Physics.preset("match")
+    left_open = {}
+    for v in far:
+        left_open[v] = np.quantile(restitution(v, walk[:, 0], walk[:, 1]), (0.025, 0.975)).tolist()
+        low, high = left_open[v]
+        print(f"{v:8g}{restitution(v, match.e_c_knee, match.e_c_power):7.2f}  {low:.2f} to {high:.2f}")
+    return left_open
 
 
-def print_fits(fits, residuals, shipped, preset):
-    """One line for each law: its constants, its residuals, e beyond the data."""
-    rows = [(name, x, residuals(law, *x), law(FAR, *x)) for name, law, x in fits]
-    kept = (preset.e_c_knee, preset.e_c_power, preset.e_c)
-    rows.insert(0, ("shipped (power)", kept, shipped, power_law(FAR, *kept)))
+def print_measurements(misfit, values):
+    """Each measurement beside the model."""
+    print(f"\n{'measurement':28s}   model   off by, in errors")
+    for name, model, off in zip(misfit.names, misfit.model(values), misfit(values), strict=True):
+        print(f"{name:28s}{model:8.3f}{off:+8.1f}")
+
+
+def print_pool(misfit):
+    """Alciatore's calculated lengths beside those of match's law of e on a pool table with his cloth."""
+    physics = {"R": POOL_BALL, "sin_theta": 0.27}
+    table, match = line.impacts(**physics), sn.Physics.preset("match")
     print(
-        f"{'':22s}    e_c  knee m/s  power, or s/m  rms m/s  largest m/s  e at {FAR[0]:g}, {FAR[1]:g}, {FAR[2]:g} m/s"
+        "\npool, lengths of 100 in: TP B.6 (a calculation), match's e(v) and a constant e_c, each with mu_r 0.010"
     )
-    for name, x, r, e in rows:
-        e_c = x[2] if len(x) == 3 else E_C
-        rms, largest = np.sqrt(np.mean(np.square(r))), np.abs(r).max()
-        far = "  ".join(f"{value:.2f}" for value in e)
-        print(f"{name:22s} {e_c:6.3f}  {x[0]:8.3f}  {x[1]:13.4f}  {rms:7.4f}  {largest:11.4f}  {far}")
-
-
-def print_points(speed, measured, shipped):
-    """The data beside the preset."""
-    print("\nspeed  measured  ratio  model  ratio  residual")
-    for s, m, r in zip(speed, measured, shipped, strict=True):
-        print(f"{s:5.2f}  {m:8.3f}  {m / s:5.3f}  {m + r:5.3f}  {(m + r) / s:5.3f}  {r:+8.3f}")
-
-
-def print_interval(found, fastest):
-    """The power's interval and what it means beyond the data."""
-    low, high = found.power
-    print(
-        f"\n95 % interval of the power: {low:.2f} to {high:.2f} (profile), {found.power_bootstrap[0]:.2f} to "
-        f"{found.power_bootstrap[1]:.2f} (bootstrap); the data end at {fastest:.2f} m/s.\nIf the power law goes on:"
-    )
-    for v, e, b in zip(FAR, found.e.T, found.e_bootstrap.T, strict=True):
-        print(f"  e({v:2g} m/s) = {e[0]:.2f} to {e[1]:.2f} (profile), {b[0]:.2f} to {b[1]:.2f} (bootstrap)")
-
-
-def print_rebounds(ratios, old, preset):
-    """Rebound against incident speed, at right angles: the preset's law and the line that it replaces."""
-    print("\nrebound speed [m/s]   power law (shipped)    line of version 0.1")
-    print("incident [m/s]        rolling   sliding     rolling   sliding")
-    for v in (0.5, 1.0, 2.0, 3.0, 3.4, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0, 15.0):
-        new = [impact(v, preset, rolling) for rolling in (True, False)]
-        was = [v * max(0.0, np.interp(line(v, *old), SHARES, ratio)) for ratio in ratios]
-        print(f"{v:14.1f}  {new[0]:13.2f} {new[1]:9.2f}  {was[0]:10.2f} {was[1]:9.2f}")
+    for (name, setting), (value, _) in misfit.known.items():
+        if name == "pool_lengths":
+            v = float(setting.split()[0]) * MPH
+            ours = [
+                line.travels(
+                    v, v, 0.0, POOL_LENGTH - 2 * POOL_BALL, (E_C, match.e_c_knee, power, 0.010, 0.0), table
+                )
+                for power in (match.e_c_power, 0.0)
+            ]
+            print(f"{setting:>8s}{value:8.3f}" + "".join(f"{way / POOL_LENGTH:8.3f}" for way in ours))
 
 
 def main():
     """Command line: fit, print the tables."""
-    options = Command("fit_cushion", __doc__, seed=0).options()
-    speed, measured = np.loadtxt(DATA, delimiter=",", skiprows=2).T
-    ratios, preset = Ratios.measured(), sn.Physics.preset("match")
-
-    def residuals(law, *x):
-        return speed * np.interp(law(speed, *x), SHARES, ratios.rolling) - measured
-
-    fits = [(name, law, fitted(law, residuals, free=False)) for name, law in LAWS.items()]
-    fits += [
-        (f"{name}, e_c free", LAWS[name], fitted(LAWS[name], residuals, free=True))
-        for name in ("power", "line")
-    ]
-    old = fits[1][2]
-    fits.append(("constant", power_law, (0.5, 0.0)))
-    shipped = np.array([impact(float(s), preset) for s in speed]) - measured
-    print_fits(fits, residuals, shipped, preset)
-    print_points(speed, measured, shipped)
-    found = interval(residuals, len(speed), seed=options.seed)
-    print_interval(found, speed.max())
-    print_rebounds(ratios, old, preset)
-    travelled = print_lengths(found.ends)
-    laws = {name: [float(value) for value in x] for name, _, x in fits}
-    left_open = {name: np.asarray(value).tolist() for name, value in found._asdict().items()}
-    save_json(options.json, {"seed": options.seed, "laws": laws, "interval": left_open, "lengths": travelled})
+    parser = Command("fit_cushion", __doc__, seed=0)
+    parser.add_argument("--steps", type=at_least(100), default=60_000, help="Metropolis steps [60000]")
+    options = parser.options()
+    misfit, match = Misfit(), sn.Physics.preset("match")
+    fits = {
+        "fitted, roll_drag 0": fitted(misfit, NAMES[:4]),
+        "fitted, roll_drag free": fitted(misfit, NAMES),
+    }
+    shipped = {name: getattr(match, name) for name in (*BEFORE, "roll_drag")}
+    for name, constants in (("shipped", shipped), ("until version 0.3", {**BEFORE, "roll_drag": 0.0})):
+        values = fits["fitted, roll_drag 0"].copy()
+        for field, value in constants.items():
+            values[NAMES.index(field)] = value
+        values[3] = min(
+            np.arange(4.0, HIGH[3], 0.05), key=lambda v, at=values: np.sum(misfit((*at[:3], v, at[4])) ** 2)
+        )
+        fits[name] = values
+    walk = walked(misfit, options.steps, options.seed)
+    left_open = print_constants(misfit, fits, walk)
+    print_measurements(misfit, fits["shipped"])
+    print_pool(misfit)
+    before = sn.Physics.preset("match", **BEFORE)
+    travelled = print_lengths({"until version 0.3": before})
+    low, high = np.quantile(walk, (0.025, 0.975), axis=0)
+    save_json(
+        options.json,
+        {
+            "seed": options.seed,
+            "fits": {name: values.tolist() for name, values in fits.items()},
+            "interval": dict(zip(NAMES, zip(low.tolist(), high.tolist(), strict=True), strict=True)),
+            "e": left_open,
+            "lengths": travelled,
+        },
+    )

@@ -1,5 +1,5 @@
-"""How many lengths of the table does a stroke travel? The cue ball alone, up and down the long axis, with
-several sets of constants.
+"""How many lengths of the table does a stroke travel? The cue ball alone, up and down the long axis, by the
+engine, with several sets of constants.
 
 Measured: I. Stevenage, The Amateur Billiard Player, October 1996 (https://www.eaba.co.uk/?p=4149), on
 full-size tables. A ball thrown from the baulk end as hard as possible goes 4.25 to 4.75 lengths on nine
@@ -20,78 +20,33 @@ LENGTH = 3.569
 BAULK_END = -LENGTH / 2.0
 PINK = LENGTH / 4.0
 SPEEDS = (2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 13.0)
+START = 0.05
+"""Where a ball starts, from the baulk cushion's nose [m]."""
 RAMP = sqrt(10.0 / 7.0 * 9.81 * 3.5 * 0.0254)
 """Speed [m/s] of a ball that has rolled down 3.5 inches."""
-QUICK = 0.010
-"""A rolling resistance below the measured one of the presets: that of a quick cloth."""
 
 
-def path(speed, physics, rolling=False, start=0.05):
-    """Heights y [m] of the cue ball at the start, at each event and at rest; start: from the baulk cushion's
-    nose [m]."""
+def path(speed, physics, rolling=False):
+    """Heights y [m] of the cue ball at the start, at each event and at rest."""
     v, w = sn.strike(speed, pi / 2.0, physics=physics)
     if rolling:
         w = np.array((-speed / physics.R, 0.0, 0.0))
-    shot = sn.simulate([(0.0, BAULK_END + start)], [v[:2]], [w], physics=physics)
+    shot = sn.simulate([(0.0, BAULK_END + START)], [v[:2]], [w], physics=physics)
     return shot.at(np.concatenate(([0.0], shot.events["time"], [shot.duration])))[0][:, 0, 1]
 
 
-def lengths(speed, physics):
+def lengths(speed, physics, rolling=False):
     """Distance travelled over the table's length, for a stroke at the middle of the ball at this speed
-    [m/s]."""
-    return float(np.abs(np.diff(path(speed, physics))).sum()) / LENGTH
+    [m/s], or a rolling ball."""
+    return float(np.abs(np.diff(path(speed, physics, rolling))).sum()) / LENGTH
 
 
-def past_pink(physics, start):
-    """How far [m] beyond the pink's spot the ball of the test ramp stops on its way back."""
-    return PINK - float(path(RAMP, physics, rolling=True, start=start)[-1])
-
-
-def print_lengths(ends):
-    """Print the table of lengths and give it, {speed: {constants: lengths}}.
-
-    ends: (knee, power) at the two ends of the interval of the power.
-    """
-    match, (livelier, deader) = (
-        sn.Physics.preset("match"),
-        ({"e_c_knee": knee, "e_c_power": power} for knee, power in ends),
-    )
-    laws = {
-        "paper": sn.Physics(),
-        "match": match,
-        f"power {livelier['e_c_power']:.2f}": sn.Physics.preset("match", **livelier),
-        f"power {deader['e_c_power']:.2f}": sn.Physics.preset("match", **deader),
-        f"mu_r {QUICK:.3f}": sn.Physics.preset("match", mu_r=QUICK),
-        "both livelier": sn.Physics.preset("match", mu_r=QUICK, **livelier),
-    }
-    print(
-        f"\nlengths of the table travelled ({LENGTH} m each), struck at the middle from the baulk cushion along the long axis"
-    )
-    print("m/s   " + "".join(f"{name:>15s}" for name in laws))
+def print_lengths(others):
+    """Print the table of lengths and give it, {speed: {constants: lengths}}; others: physics by name."""
+    laws = {"match": sn.Physics.preset("match"), "paper": sn.Physics(), **others}
+    print(f"\nlengths of the table travelled ({LENGTH} m each), struck at the middle, along the long axis")
+    print("m/s   " + "".join(f"{name:>22s}" for name in laws))
     table = {speed: {name: lengths(speed, physics) for name, physics in laws.items()} for speed in SPEEDS}
     for speed, row in table.items():
-        print(f"{speed:4.0f}  " + "".join(f"{value:15.2f}" for value in row.values()))
-    print(
-        f"\nball off a 3.5 inch ramp ({RAMP:.2f} m/s, rolling): where it stops past the pink's spot; measured 0.15 m, on new cloth"
-    )
-    for mu_r in (match.mu_r, QUICK):
-        far, near = (past_pink(sn.Physics.preset("match", mu_r=mu_r), start) for start in (0.05, 0.35))
-        print(
-            f"  mu_r {mu_r:.4f}: {far:+.2f} m from the baulk cushion, {near:+.2f} m where the ramp ends 0.3 m further up the table"
-        )
-
-    def between(law, soft, hard):
-        return f"{table[soft][law]:.1f} to {table[hard][law]:.1f}"
-
-    shipped, quick, both, paper = (
-        (between(law, 7.0, 9.0), between(law, 10.0, 13.0))
-        for law in ("match", f"mu_r {QUICK:.3f}", "both livelier", "paper")
-    )
-    print(f"""
-Players say about 5 lengths for the hardest stroke; a ball thrown as hard as possible was measured to go 4.25 to 4.75 (Stevenage 1996).
-"match" is short of that: {shipped[0]} at 7 to 9 m/s, {shipped[1]} at 10 to 13, which is a maximum. Part of it is the cloth: with this
-cushion the ramp needs a rolling resistance of about {QUICK:g}, which gives {quick[0]} and {quick[1]}. With the livelier end of the
-power's interval as well it is {both[0]} and {both[1]}: the measured lengths, if balls were thrown at 10 to 13 m/s. "paper" has
-{paper[0]} and {paper[1]}, by a restitution that does not fall, which the rebounds above 2.5 m/s contradict.
-The constants are not bent to these lengths.""")
+        print(f"{speed:4.0f}  " + "".join(f"{value:22.2f}" for value in row.values()))
     return table

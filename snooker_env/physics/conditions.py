@@ -35,8 +35,8 @@ RANGES: dict[str, tuple[float, float]] = {
 """The lowest and highest value of each constant that is drawn. All are fields of ``Physics`` but
 "mu_bb_scale", the factor of its friction between balls at every slip speed: dirt and polish.
 
-* mu_s: measured [MJP14 2.4.2]. mu_r: 0.0128 is a deceleration of 0.126 m/s^2 [MJP14]; 0.0100 fits the lengths
-  that balls ran on real tables (docs/physics/limits.md).
+* mu_s: measured [MJP14 2.4.2]. mu_r: 0.0128 is a deceleration of 0.126 m/s^2 [MJP14]; 0.0100 is what a ball
+  off a ramp needs on a heated table with new cloth (``python -m benchmarks.fit_cushion``).
 * spin_decel: 22 rad/s^2 [MJP14 eq. 21]; for pool balls 5 to 15 are given; the lower end is our choice.
 * e_b: about the 0.94 of the preset "match". mu_bb_scale: 30 % either way covers the throws measured with clean
   and with dirty balls about one law [Marlow]; the share is our choice.

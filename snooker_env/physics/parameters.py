@@ -55,7 +55,8 @@ class Physics:
     mu_s : float
         Sliding friction between ball and cloth, in [0, 1] [MJP14 2.4.2: measured 0.178 to 0.245].
     mu_r : float
-        Rolling resistance: deceleration over g, in [0, 1]. Measured: 0.124 to 0.126 m/s^2, 0.0127 g.
+        Rolling resistance: deceleration over g, in [0, 1]. Measured: 0.124 to 0.126 m/s^2, 0.0127 g, on one
+        table; a heated one with new cloth needs about 0.010 (``python -m benchmarks.fit_cushion``).
     spin_decel : float
         Deceleration of the spin about the vertical [rad/s^2], in every state, >= 0 [MJP14 eq. 21]. With 0
         such a spin stays: a shot ends when no ball moves across the table.
@@ -185,11 +186,12 @@ class Physics:
     def preset(cls, name: PhysicsName = "paper", **fields: Any) -> "Physics":
         """The constants of a preset, with any ``fields`` replaced; ValueError if a name or value is wrong.
 
-        "paper": [MJP14] and [MJP10]. "match": measured snooker, that is e_b 0.94, Marlow's mu_bb(s), and a
-        cushion whose restitution falls as v^-0.31 above 2.17 m/s, fitted to Fig. 7a of [MJP10]: 19 speeds
-        from 0.26 to 3.40 m/s (``python -m benchmarks.fit_cushion``; 95 % interval of the power 0.21 to 0.46).
-        Beyond it is extrapolated: e is 0.70 to 0.80 at 5 m/s, 0.60 to 0.75 at 7 and 0.51 to 0.69 at 10 (95 %,
-        if the law holds there). "carom": a heated three-cushion table and its balls (``Table.preset("carom")``), fitted
+        "paper": [MJP14] and [MJP10]. "match": measured snooker, that is e_b 0.94, Marlow's mu_bb(s), and
+        cushion and cloth at speed fitted together (``python -m benchmarks.fit_cushion``): to Fig. 7a of
+        [MJP10], 19 rebounds from 0.26 to 3.40 m/s, and to how far hard throws and a ball off a ramp run on
+        full-size tables. mu_r is 0.0114 (95 %: 0.0088 to 0.0132), and restitution falls as v^-0.243 above 2.02
+        m/s (95 % interval of the power 0.19 to 0.38): e is 0.73 to 0.81 at 5 m/s, 0.65 to 0.76 at 7 and 0.57
+        to 0.71 at 10. "carom": a heated three-cushion table and its balls (``Table.preset("carom")``), fitted
         to the paths of 61 tracked shots of one match, the cue ball up to 6 m/s (``python -m benchmarks.real_shots``).
         """
         choice("physics", name, PRESETS)
@@ -261,7 +263,7 @@ class Physics:
         >>> import numpy as np
         >>> table = Physics.drawn(np.random.default_rng(1), "match")
         >>> 0.178 <= table.mu_s < 0.245, table.e_c_knee
-        (True, 2.17)
+        (True, 2.02)
         """
         if not isinstance(rng, np.random.Generator):
             raise refuse("rng", rng, "must be a numpy.random.Generator")
@@ -362,7 +364,14 @@ def _mu_bb(value: Any) -> float | Literal["marlow"] | tuple[float, float, float]
 
 PRESETS: dict[str, dict[str, Any]] = {
     "paper": {},
-    "match": {"e_b": 0.94, "mu_bb": "marlow", "e_c": 0.98, "e_c_knee": 2.17, "e_c_power": 0.31},
+    "match": {
+        "mu_r": 0.0114,
+        "e_b": 0.94,
+        "mu_bb": "marlow",
+        "e_c": 0.98,
+        "e_c_knee": 2.02,
+        "e_c_power": 0.243,
+    },
     "carom": {
         "R": 0.03075,
         "M": 0.2125,

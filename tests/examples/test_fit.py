@@ -82,12 +82,14 @@ def test_domenech_s_throw_gives_a_tenth():
     assert np.sqrt(np.mean(fitted.residuals["throw_deg"] ** 2)) < 0.75
 
 
-def test_the_cushion_of_match_is_what_the_rebounds_give():
-    """Free, e_c is at the end of its range, and has no interval."""
+def test_the_cushion_of_match_is_within_what_the_rebounds_give():
+    """Alone they give a steeper fall than with how far hard throws run (``benchmarks.fit_cushion``), about
+    which "match" was fitted too. Free, e_c is at the end of its range, and has no interval."""
     columns = fitting.read(DATA / "cushion_rebound.csv", "cushion")
     fitted, match = fitting.fit("cushion", columns, fixed={"e_c": 0.98}), sn.Physics.preset("match")
-    found = {"e_c_knee": match.e_c_knee, "e_c_power": match.e_c_power}
-    assert fitted.values == pytest.approx(found, abs=0.01)
+    assert fitted.values == pytest.approx({"e_c_knee": 2.174, "e_c_power": 0.3084}, rel=0.002)
+    for name, (low, high) in fitted.intervals.items():
+        assert low < getattr(match, name) < high
     fitted = fitting.fit("cushion", columns)
     assert fitted.values["e_c"] == pytest.approx(1.0, abs=1e-4) and fitted.intervals["e_c"] is None
     assert fitted.intervals["e_c_power"] is not None
